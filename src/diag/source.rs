@@ -1,0 +1,68 @@
+//! Source texts and places in them.
+
+/// Which text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub struct FileId(pub u32);
+
+/// A run of bytes in a source text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub struct Span {
+    /// Which text.
+    pub file: FileId,
+    /// First byte.
+    pub start: u32,
+    /// One past the last byte.
+    pub end: u32,
+}
+
+impl Span {
+    /// The bytes `start..end` of `file`.
+    pub fn new(file: FileId, start: usize, end: usize) -> Self {
+        Self { file, start: start as u32, end: end as u32 }
+    }
+
+    /// The smallest span that holds both (of the same text; else the first).
+    #[must_use]
+    pub fn to(self, other: Span) -> Span {
+        if self.file != other.file {
+            return self;
+        }
+        Span { file: self.file, start: self.start.min(other.start), end: self.end.max(other.end) }
+    }
+}
+
+/// One text with its name.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// The file's path, or `<stdin>`.
+    pub name: String,
+    /// All of it.
+    pub text: String,
+}
+
+/// Every text read so far.
+#[derive(Clone, Debug, Default)]
+pub struct Sources(Vec<Source>);
+
+impl Sources {
+    /// Takes a text in and names it.
+    pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> FileId {
+        self.0.push(Source { name: name.into(), text: text.into() });
+        FileId(self.0.len() as u32 - 1)
+    }
+
+    /// The text with this id; the empty text if there is none.
+    pub fn get(&self, id: FileId) -> Option<&Source> {
+        self.0.get(id.0 as usize)
+    }
+
+    /// Line and column (both from 1, column in characters) of a span's start.
+    pub fn place(&self, span: Span) -> (usize, usize) {
+        let Some(source) = self.get(span.file) else { return (0, 0) };
+        let at = (span.start as usize).min(source.text.len());
+        let before = source.text.get(..at).unwrap_or("");
+        let line = before.bytes().filter(|&b| b == b'\n').count() + 1;
+        let start = before.rfind('\n').map_or(0, |k| k + 1);
+        (line, before[start..].chars().count() + 1)
+    }
+}

@@ -1,0 +1,1 @@
+//! Commands as a graph of declarations, acts and runs.

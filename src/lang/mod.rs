@@ -1,0 +1,1 @@
+//! Decks as text: words with places, formulas, variables, flow control.

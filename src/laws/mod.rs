@@ -1,0 +1,1 @@
+//! Force laws as pure functions of local data, and the loops that apply them.

@@ -1,0 +1,1 @@
+//! Small vectors and matrices, decompositions, random numbers.

@@ -1,0 +1,1 @@
+//! What leaves the program: logs, tables, dumps, pictures.

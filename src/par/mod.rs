@@ -1,0 +1,1 @@
+//! Threads with the same bits for any number of them.

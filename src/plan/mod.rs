@@ -1,0 +1,1 @@
+//! The step as data: ops with stages, reads, writes and times.

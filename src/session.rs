@@ -1,0 +1,1 @@
+//! One deck being worked off: text in, diagnostics and results out.

@@ -1,0 +1,1 @@
+//! Everything a deck can name: pair styles, fixes, computes, regions, dumps, commands.

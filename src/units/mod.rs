@@ -1,0 +1,1 @@
+//! Unit systems and the constants each defines.
