@@ -1,1 +1,3 @@
 //! Small vectors and matrices, decompositions, random numbers.
+
+pub mod cformat;
