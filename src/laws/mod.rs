@@ -1,1 +1,3 @@
 //! Force laws as pure functions of local data, and the loops that apply them.
+
+pub mod peri;

@@ -1,0 +1,3 @@
+//! Peridynamic laws: what a bond does, and what engineering moduli mean for it.
+
+pub mod moduli;
