@@ -1,1 +1,10 @@
 //! The step as data: ops with stages, reads, writes and times.
+
+pub mod explain;
+pub mod meter;
+pub mod op;
+pub mod schedule;
+
+pub use meter::Meter;
+pub use op::{Access, Op, OpClass, Stage, Tick, When};
+pub use schedule::{LeftOut, Placed, StepPlan};

@@ -1,1 +1,5 @@
 //! The time loop.
+
+pub mod verlet;
+
+pub use verlet::{Outcome, Watch, verlet};

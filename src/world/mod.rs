@@ -1,4 +1,92 @@
 //! The state of a scene: everything that outlives a step, and nothing that decides.
 
+pub mod clock;
+pub mod columns;
+pub mod domain;
+pub mod groups;
 pub mod material;
+pub mod particles;
 pub mod potentials;
+pub mod settings;
+pub mod slots;
+pub mod tally;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+pub use clock::Clock;
+pub use columns::Columns;
+pub use domain::{Boundary, Domain, Face};
+pub use groups::{GroupId, Groups};
+pub use particles::{AtomStyle, Particles};
+pub use settings::{Compat, NeighborSettings, Settings};
+pub use slots::{Slot, SlotId, Slots};
+pub use tally::Tally;
+
+/// Everything that outlives a step. It decides nothing: commands change it, ops advance it.
+#[derive(Clone, Debug, Default)]
+pub struct World {
+    /// Time, step and step size.
+    pub clock: Clock,
+    /// Choices of the deck that concern everybody: units, skin, compatibility.
+    pub settings: Settings,
+    /// The box; `None` before `create_box` or `read_data`.
+    pub domain: Option<Domain>,
+    /// The particles' core columns.
+    pub particles: Particles,
+    /// Further columns, owned by fixes and computes.
+    pub columns: Columns,
+    /// Groups of particles.
+    pub groups: Groups,
+    /// Number of particle types, from `create_box`.
+    pub types: usize,
+    /// Mass of each type (index type − 1) where `mass` set one.
+    pub type_mass: Vec<Option<f64>>,
+    /// Values that computes, fixes and variables have produced.
+    pub slots: Slots,
+    /// Energy and virial of the present step.
+    pub tally: Tally,
+    /// Small state of fixes that outlives a run, by `kind/ID`.
+    pub memo: BTreeMap<String, Vec<f64>>,
+    /// What the deck's folder is, for files beside it.
+    pub folder: PathBuf,
+    /// State that rooms above own: families, contact histories, lattices, regions, materials.
+    pub parts: Parts,
+}
+
+/// State of one kind each, owned by the room that knows it.
+#[derive(Clone, Debug, Default)]
+pub struct Parts {
+    /// Half-open: set when the scene has changed so that forces must be computed anew at the next run.
+    pub changed: bool,
+    /// Text facts that styles leave for the log's end, by name.
+    pub facts: BTreeMap<String, Arc<str>>,
+}
+
+impl World {
+    /// The box, for code that runs only when one exists.
+    ///
+    /// # Errors
+    /// When no box has been defined yet.
+    pub fn domain(&self) -> crate::diag::Result<&Domain> {
+        match &self.domain {
+            Some(d) => Ok(d),
+            None => crate::diag::fail(
+                crate::diag::Code::WRONG_ORDER,
+                None,
+                "the simulation box is not defined yet: a create_box must come first",
+            ),
+        }
+    }
+
+    /// Number of particles.
+    pub fn n(&self) -> usize {
+        self.particles.len()
+    }
+
+    /// Marks that forces of the last run no longer belong to this scene.
+    pub fn touch(&mut self) {
+        self.parts.changed = true;
+    }
+}

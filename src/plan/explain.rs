@@ -1,0 +1,43 @@
+//! The plan as text, with and without measurements.
+
+use super::{Stage, StepPlan};
+use std::fmt::Write;
+
+/// The sealed plan, one line per op, then what was left out.
+pub fn text(plan: &StepPlan, measured: bool) -> String {
+    let mut s = String::new();
+    let total: f64 = plan.ops.iter().map(|p| p.meter.time.as_secs_f64()).sum();
+    for stage in Stage::ALL {
+        let ops: Vec<_> = plan.ops.iter().filter(|p| p.op.stage() == stage).collect();
+        if ops.is_empty() {
+            continue;
+        }
+        let _ = writeln!(s, "{}", stage.name());
+        for p in ops {
+            let a = p.op.access();
+            let _ = write!(s, "  {:<34} {:<22}", p.op.name(), p.when.to_string());
+            if measured {
+                let secs = p.meter.time.as_secs_f64();
+                let share = if total > 0.0 { 100.0 * secs / total } else { 0.0 };
+                let _ = write!(s, " {:>9} calls {:>11.6} s {:>5.1} %", p.meter.calls, secs, share);
+                if p.meter.bytes > 0 {
+                    let _ = write!(
+                        s,
+                        " {:>9.2} MB/call",
+                        p.meter.bytes as f64 / 1e6 / p.meter.calls.max(1) as f64
+                    );
+                }
+            } else {
+                let _ = write!(s, " reads {:<26} writes {}", a.reads.join(" "), a.writes.join(" "));
+            }
+            let _ = writeln!(s);
+        }
+    }
+    if !plan.left_out.is_empty() {
+        let _ = writeln!(s, "left out");
+        for l in &plan.left_out {
+            let _ = writeln!(s, "  {:<34} {}", l.what, l.why);
+        }
+    }
+    s
+}

@@ -1,0 +1,233 @@
+//! What a step is made of: ops, their stage, what they read and write, and when they act.
+
+use crate::diag::Result;
+use crate::world::World;
+
+/// The stages of a step in their order, in LAMMPS' words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    /// First half kick and drift.
+    InitialIntegrate,
+    /// After the drift.
+    PostIntegrate,
+    /// Wrap, shrink, lost test, lists.
+    Neighbor,
+    /// Before forces: clear them.
+    PreForce,
+    /// Pair and bond forces.
+    Force,
+    /// Forces of fixes.
+    PostForce,
+    /// Second half kick.
+    FinalIntegrate,
+    /// After the step.
+    EndOfStep,
+    /// Tables and files.
+    Output,
+}
+
+impl Stage {
+    /// All stages in order.
+    pub const ALL: [Stage; 9] = [
+        Stage::InitialIntegrate,
+        Stage::PostIntegrate,
+        Stage::Neighbor,
+        Stage::PreForce,
+        Stage::Force,
+        Stage::PostForce,
+        Stage::FinalIntegrate,
+        Stage::EndOfStep,
+        Stage::Output,
+    ];
+
+    /// Whether ops of this stage also act in a run's setup unless they say otherwise.
+    pub fn in_setup(self) -> bool {
+        !matches!(
+            self,
+            Stage::InitialIntegrate | Stage::PostIntegrate | Stage::FinalIntegrate | Stage::EndOfStep
+        )
+    }
+
+    /// The stage's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::InitialIntegrate => "initial integrate",
+            Stage::PostIntegrate => "post integrate",
+            Stage::Neighbor => "neighbor",
+            Stage::PreForce => "pre force",
+            Stage::Force => "force",
+            Stage::PostForce => "post force",
+            Stage::FinalIntegrate => "final integrate",
+            Stage::EndOfStep => "end of step",
+            Stage::Output => "output",
+        }
+    }
+}
+
+/// At which steps of a run an op acts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum When {
+    /// Every step.
+    Always,
+    /// Steps that are multiples of N.
+    Every(i64),
+    /// The setup of a run.
+    First,
+    /// The last step of a run.
+    Last,
+    /// Whenever one of these does.
+    Any(Vec<When>),
+    /// Only when asked between runs.
+    Never,
+}
+
+impl When {
+    /// Whether the op acts at this tick.
+    pub fn fires(&self, t: &Tick) -> bool {
+        match self {
+            When::Always => true,
+            When::Every(n) => *n > 0 && t.step % n == 0,
+            When::First => t.setup,
+            When::Last => t.step == t.last,
+            When::Any(list) => list.iter().any(|w| w.fires(t)),
+            When::Never => false,
+        }
+    }
+
+    /// The union of two.
+    #[must_use]
+    pub fn or(self, other: When) -> When {
+        match (self, other) {
+            (When::Always, _) | (_, When::Always) => When::Always,
+            (When::Never, w) | (w, When::Never) => w,
+            (a, b) if a == b => a,
+            (When::Any(mut a), When::Any(b)) => {
+                a.extend(b.into_iter().filter(|w| !a.contains(w)).collect::<Vec<_>>());
+                When::Any(a)
+            }
+            (When::Any(mut a), b) | (b, When::Any(mut a)) => {
+                if !a.contains(&b) {
+                    a.push(b);
+                }
+                When::Any(a)
+            }
+            (a, b) => When::Any(vec![a, b]),
+        }
+    }
+}
+
+impl std::fmt::Display for When {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            When::Always => write!(f, "every step"),
+            When::Every(n) => write!(f, "every {n} steps"),
+            When::First => write!(f, "first"),
+            When::Last => write!(f, "last"),
+            When::Any(list) => {
+                write!(f, "{}", list.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))
+            }
+            When::Never => write!(f, "on demand"),
+        }
+    }
+}
+
+/// What an op may know of the present step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tick {
+    /// Present step.
+    pub step: i64,
+    /// First step of the run.
+    pub first: i64,
+    /// Last step of the run.
+    pub last: i64,
+    /// Step size.
+    pub dt: f64,
+    /// Whether this is the run's setup (forces at the start, no motion).
+    pub setup: bool,
+    /// In setup: the scene is as the last run left it, so forces, bonds and history stand already.
+    pub unchanged: bool,
+    /// Somebody reads the energy at this step.
+    pub energy: bool,
+    /// Somebody reads the virial at this step.
+    pub virial: bool,
+    /// Somebody reads per-particle energies at this step.
+    pub atom_energy: bool,
+}
+
+/// What an op reads and writes, by column or state name (`x`, `v`, `f`, `families`, `c_dmg`).
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Access {
+    /// Read.
+    pub reads: Vec<&'static str>,
+    /// Written.
+    pub writes: Vec<&'static str>,
+}
+
+impl Access {
+    /// Reads and writes, each as words separated by blanks.
+    pub fn new(reads: &'static str, writes: &'static str) -> Self {
+        Self {
+            reads: reads.split(' ').filter(|s| !s.is_empty()).collect(),
+            writes: writes.split(' ').filter(|s| !s.is_empty()).collect(),
+        }
+    }
+}
+
+/// The row of LAMMPS' timing table an op's time goes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum OpClass {
+    /// Pair and bond forces.
+    Pair,
+    /// Lists, wrapping.
+    Neigh,
+    /// Thermo, dumps and what they need.
+    Output,
+    /// Fixes.
+    Modify,
+    /// The rest.
+    Other,
+}
+
+/// One thing a step does. Ops own scratch only; whatever outlives a step lives in `World`.
+pub trait Op: Send {
+    /// A name for plan and timing, as `fix ball indent`.
+    fn name(&self) -> &str;
+    /// Where in the step.
+    fn stage(&self) -> Stage;
+    /// What it reads and writes.
+    fn access(&self) -> Access;
+    /// At which steps. Providers of values get the union of their consumers' times instead.
+    fn when(&self) -> When {
+        When::Always
+    }
+    /// Whether it acts in the setup of a run too.
+    fn in_setup(&self) -> bool {
+        self.stage().in_setup()
+    }
+    /// The row of the timing table.
+    fn class(&self) -> OpClass {
+        match self.stage() {
+            Stage::Force => OpClass::Pair,
+            Stage::Neighbor => OpClass::Neigh,
+            Stage::Output => OpClass::Output,
+            Stage::PreForce => OpClass::Other,
+            _ => OpClass::Modify,
+        }
+    }
+    /// Acts.
+    ///
+    /// # Errors
+    /// Failures of the physics (lost particles, numbers out of control) and of files.
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()>;
+    /// What the run's end should do (close files, print a fact).
+    ///
+    /// # Errors
+    /// As `run`.
+    fn finish(&mut self, _w: &mut World) -> Result<()> {
+        Ok(())
+    }
+    /// Bytes of memory the op has touched per call, for `plan --measure`; 0 when unknown.
+    fn bytes(&self, _w: &World) -> u64 {
+        0
+    }
+}

@@ -1,0 +1,85 @@
+//! Velocity Verlet over a sealed plan: the loop, short enough to read aloud.
+
+use crate::diag::Result;
+use crate::plan::{Stage, StepPlan, Tick};
+use crate::world::World;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// Steps made.
+    pub steps: i64,
+    /// Wall time of the steps, setup not included.
+    pub time: Duration,
+    /// CPU time of the whole process during the steps.
+    pub cpu: f64,
+    /// Ended from outside before the last step.
+    pub interrupted: bool,
+}
+
+/// Told after every step, for a progress bar.
+pub trait Watch {
+    /// `done` of `total` steps are made.
+    fn step(&mut self, done: i64, total: i64);
+}
+
+/// Computes forces at the start of a run and makes its first outputs.
+///
+/// # Errors
+/// The first op's that fails.
+pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool) -> Result<()> {
+    let mut t = tick(w, true);
+    t.unchanged = unchanged;
+    plan.ask(&mut t);
+    plan.run(w, &t, &[Stage::Neighbor, Stage::PreForce, Stage::Force, Stage::PostForce])?;
+    plan.run(w, &t, &[Stage::InitialIntegrate, Stage::PostIntegrate, Stage::FinalIntegrate])?;
+    plan.run(w, &t, &[Stage::EndOfStep, Stage::Output])
+}
+
+/// Makes the steps `clock.first + 1 ..= clock.last`.
+///
+/// # Errors
+/// The first op's that fails; the world is then as that op left it.
+pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Result<Outcome> {
+    let (begin, cpu) = (Instant::now(), cpu_seconds());
+    let first = w.clock.step;
+    let mut interrupted = false;
+    while w.clock.step < w.clock.last {
+        if w.settings.stop.load(Ordering::Relaxed) {
+            interrupted = true;
+            break;
+        }
+        w.clock.step += 1;
+        let mut t = tick(w, false);
+        plan.ask(&mut t);
+        plan.run(w, &t, &Stage::ALL)?;
+        watch.step(w.clock.step - first, w.clock.last - first);
+    }
+    let steps = w.clock.step - first;
+    Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })
+}
+
+fn tick(w: &World, setup: bool) -> Tick {
+    Tick {
+        step: w.clock.step,
+        first: w.clock.first,
+        last: w.clock.last,
+        dt: w.clock.dt,
+        setup,
+        unchanged: false,
+        energy: false,
+        virial: false,
+        atom_energy: false,
+    }
+}
+
+/// User + system time of this process [s], from /proc where there is one, else 0.
+fn cpu_seconds() -> f64 {
+    let Ok(stat) = std::fs::read_to_string("/proc/self/stat") else { return 0.0 };
+    let Some((_, rest)) = stat.rsplit_once(')') else { return 0.0 };
+    let fields: Vec<f64> = rest.split_whitespace().map(|s| s.parse().unwrap_or(0.0)).collect();
+    // utime and stime are fields 14 and 15 of proc(5); ticks are 1/100 s on Linux.
+    fields.get(11).zip(fields.get(12)).map_or(0.0, |(u, s)| (u + s) / 100.0)
+}

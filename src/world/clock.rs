@@ -1,0 +1,67 @@
+//! Time: the step counter, the step size and what has elapsed.
+
+/// Where a run stands in time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clock {
+    /// Present step.
+    pub step: i64,
+    /// Step size in time units of the deck.
+    pub dt: f64,
+    /// Time at `time_step`.
+    pub time_base: f64,
+    /// Step at which `time_base` was taken (moves when dt changes).
+    pub time_step: i64,
+    /// First step of the present (or last) run.
+    pub first: i64,
+    /// Last step of the present (or last) run.
+    pub last: i64,
+    /// Step at which `run … start` begins (for ramps); the first step by default.
+    pub start: i64,
+    /// Step at which `run … stop` ends (for ramps); the last step by default.
+    pub stop: i64,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self { step: 0, dt: 0.005, time_base: 0.0, time_step: 0, first: 0, last: 0, start: 0, stop: 0 }
+    }
+}
+
+impl Clock {
+    /// Elapsed time [time units]: accumulated with the dt of each step.
+    pub fn time(&self) -> f64 {
+        self.time_base + (self.step - self.time_step) as f64 * self.dt
+    }
+
+    /// Changes dt from the next step on; elapsed time keeps the old one up to here.
+    pub fn set_dt(&mut self, dt: f64) {
+        self.time_base = self.time();
+        self.time_step = self.step;
+        self.dt = dt;
+    }
+
+    /// Sets the counter (`reset_timestep`): time restarts at step · dt.
+    pub fn reset(&mut self, step: i64) {
+        self.step = step;
+        self.time_base = step as f64 * self.dt;
+        self.time_step = step;
+        self.first = step;
+        self.last = step;
+        self.start = step;
+        self.stop = step;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_accumulates_with_the_old_step() {
+        let mut c = Clock { dt: 0.5, ..Clock::default() };
+        c.step = 4;
+        c.set_dt(0.25);
+        c.step = 6;
+        assert_eq!(c.time(), 2.5); // 4 · 0.5 + 2 · 0.25
+    }
+}

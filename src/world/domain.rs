@@ -1,0 +1,156 @@
+//! The simulation box: faces, periodicity, wrapping, shrink-wrapping.
+
+/// What a face of the box does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Face {
+    /// `p`: periodic.
+    #[default]
+    Periodic,
+    /// `f`: fixed; a particle beyond it is lost.
+    Fixed,
+    /// `s`: follows the outermost particle.
+    Shrink,
+    /// `m`: as `s`, but never inside the bound given at creation.
+    ShrinkMin,
+}
+
+/// The two faces (lo, hi) of each dimension, as the `boundary` command gives them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Boundary(pub [[Face; 2]; 3]);
+
+impl Boundary {
+    /// Whether a dimension is periodic.
+    pub fn periodic(&self, d: usize) -> bool {
+        self.0[d][0] == Face::Periodic
+    }
+
+    /// LAMMPS' letters, as `pp ff ss`.
+    pub fn letters(&self) -> String {
+        let letter = |f: Face| match f {
+            Face::Periodic => 'p',
+            Face::Fixed => 'f',
+            Face::Shrink => 's',
+            Face::ShrinkMin => 'm',
+        };
+        self.0.iter().map(|[a, b]| format!("{}{}", letter(*a), letter(*b))).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// An orthogonal box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Domain {
+    /// Lower corner [length].
+    pub lo: [f64; 3],
+    /// Upper corner [length].
+    pub hi: [f64; 3],
+    /// What the faces do.
+    pub boundary: Boundary,
+    /// Extra room beyond the outermost particle of a shrink-wrapped face: 1e-4 of the first box.
+    pub small: [f64; 3],
+    /// Bounds that `m` faces never go inside of.
+    pub min_lo: [f64; 3],
+    /// See `min_lo`.
+    pub min_hi: [f64; 3],
+}
+
+impl Domain {
+    /// A box between two corners with these faces.
+    pub fn new(lo: [f64; 3], hi: [f64; 3], boundary: Boundary) -> Self {
+        let small = [0, 1, 2].map(|d| 1e-4 * (hi[d] - lo[d]));
+        Self { lo, hi, boundary, small, min_lo: lo, min_hi: hi }
+    }
+
+    /// Edge lengths [length].
+    pub fn lengths(&self) -> [f64; 3] {
+        [0, 1, 2].map(|d| self.hi[d] - self.lo[d])
+    }
+
+    /// Volume [length³] (area in two dimensions is the caller's business).
+    pub fn volume(&self) -> f64 {
+        let l = self.lengths();
+        l[0] * l[1] * l[2]
+    }
+
+    /// Which dimensions are periodic.
+    pub fn periodic(&self) -> [bool; 3] {
+        [0, 1, 2].map(|d| self.boundary.periodic(d))
+    }
+
+    /// Wraps a position into the box along periodic dimensions and counts the crossings in `image`.
+    pub fn wrap(&self, x: &mut [f64; 3], image: &mut [i32; 3]) {
+        for d in 0..3 {
+            if !self.boundary.periodic(d) {
+                continue;
+            }
+            let l = self.hi[d] - self.lo[d];
+            if x[d] < self.lo[d] {
+                x[d] += l;
+                image[d] -= 1;
+                x[d] = x[d].max(self.lo[d]);
+                if x[d] < self.lo[d] || x[d] - self.lo[d] > l {
+                    let k = ((x[d] - self.lo[d]) / l).floor();
+                    x[d] -= k * l;
+                    image[d] += k as i32;
+                }
+            }
+            if x[d] >= self.hi[d] {
+                x[d] -= l;
+                image[d] += 1;
+                if x[d] >= self.hi[d] {
+                    let k = ((x[d] - self.lo[d]) / l).floor();
+                    x[d] -= k * l;
+                    image[d] += k as i32;
+                }
+                x[d] = x[d].max(self.lo[d]);
+            }
+        }
+    }
+
+    /// Shortest difference under periodic boundaries (minimum image).
+    pub fn minimum_image(&self, mut d: [f64; 3]) -> [f64; 3] {
+        for k in 0..3 {
+            if self.boundary.periodic(k) {
+                let l = self.hi[k] - self.lo[k];
+                if d[k].abs() > 0.5 * l {
+                    d[k] -= l * (d[k] / l).round();
+                }
+            }
+        }
+        d
+    }
+
+    /// Moves shrink-wrapped faces to the particles' extent, as LAMMPS does at every reneighbouring.
+    pub fn shrink(&mut self, x: &[[f64; 3]]) {
+        let mut lo = [f64::INFINITY; 3];
+        let mut hi = [f64::NEG_INFINITY; 3];
+        for p in x {
+            for d in 0..3 {
+                lo[d] = lo[d].min(p[d]);
+                hi[d] = hi[d].max(p[d]);
+            }
+        }
+        if x.is_empty() {
+            return;
+        }
+        for d in 0..3 {
+            match self.boundary.0[d][0] {
+                Face::Shrink => self.lo[d] = lo[d] - self.small[d],
+                Face::ShrinkMin => self.lo[d] = (lo[d] - self.small[d]).min(self.min_lo[d]),
+                _ => {}
+            }
+            match self.boundary.0[d][1] {
+                Face::Shrink => self.hi[d] = hi[d] + self.small[d],
+                Face::ShrinkMin => self.hi[d] = (hi[d] + self.small[d]).max(self.min_hi[d]),
+                _ => {}
+            }
+        }
+    }
+
+    /// Whether a point is inside all fixed faces (upper faces exclusive, as LAMMPS loses particles).
+    pub fn keeps(&self, x: &[f64; 3]) -> bool {
+        (0..3).all(|d| {
+            (self.boundary.0[d][0] != Face::Fixed || x[d] >= self.lo[d])
+                && (self.boundary.0[d][1] != Face::Fixed || x[d] < self.hi[d])
+        })
+    }
+}

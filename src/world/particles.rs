@@ -1,0 +1,132 @@
+//! The particles' core columns as plain fields.
+
+/// Which optional columns exist (`atom_style`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AtomStyle {
+    /// A style has been chosen.
+    pub chosen: bool,
+    /// Radius, angular velocity, torque, mass per particle.
+    pub sphere: bool,
+    /// Volume, reference position, mass per particle.
+    pub peri: bool,
+}
+
+impl AtomStyle {
+    /// Whether each particle has its own mass (else masses go by type).
+    pub fn own_mass(&self) -> bool {
+        self.sphere || self.peri
+    }
+}
+
+/// Structure of arrays; every non-empty column has one entry per particle.
+#[derive(Clone, Debug, Default)]
+pub struct Particles {
+    /// Which columns exist.
+    pub style: AtomStyle,
+    /// Identity, from 1.
+    pub tag: Vec<u32>,
+    /// Type, from 1.
+    pub kind: Vec<u16>,
+    /// Group bits.
+    pub mask: Vec<u32>,
+    /// Periodic image counts.
+    pub image: Vec<[i32; 3]>,
+    /// Position [length].
+    pub x: Vec<[f64; 3]>,
+    /// Velocity [length/time].
+    pub v: Vec<[f64; 3]>,
+    /// Force (force density for peridynamic particles in LAMMPS' convention).
+    pub f: Vec<[f64; 3]>,
+    /// Mass (LAMMPS' rmass: density for peridynamic particles in its convention).
+    pub mass: Vec<f64>,
+    /// Sphere: radius [length].
+    pub radius: Vec<f64>,
+    /// Sphere: angular velocity [1/time].
+    pub omega: Vec<[f64; 3]>,
+    /// Sphere: torque.
+    pub torque: Vec<[f64; 3]>,
+    /// Peridynamics: volume of the node [length³].
+    pub volume: Vec<f64>,
+    /// Peridynamics: position at creation [length].
+    pub x0: Vec<[f64; 3]>,
+    /// Density as the deck set it, NaN where it did not (peri and sphere styles).
+    pub density: Vec<f64>,
+}
+
+impl Particles {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    /// Adds a particle with LAMMPS' defaults (radius 0.5, density 1 → mass, volume 1).
+    pub fn push(&mut self, tag: u32, kind: u16, x: [f64; 3]) {
+        self.tag.push(tag);
+        self.kind.push(kind);
+        self.mask.push(1);
+        self.image.push([0; 3]);
+        self.x.push(x);
+        self.v.push([0.0; 3]);
+        self.f.push([0.0; 3]);
+        let AtomStyle { sphere, peri, .. } = self.style;
+        let mass = match (sphere, peri) {
+            (true, _) => 4.0 * std::f64::consts::PI / 3.0 * 0.5 * 0.5 * 0.5,
+            _ => 1.0,
+        };
+        self.mass.push(mass);
+        if sphere {
+            self.radius.push(0.5);
+            self.omega.push([0.0; 3]);
+            self.torque.push([0.0; 3]);
+        }
+        if peri {
+            self.volume.push(1.0);
+            self.x0.push(x);
+        }
+        if sphere || peri {
+            self.density.push(f64::NAN);
+        }
+    }
+
+    /// Keeps the particle `old[k]` at each new index `k`.
+    pub fn gather(&mut self, old: &[usize]) {
+        fn pick<T: Copy>(column: &mut Vec<T>, old: &[usize]) {
+            if !column.is_empty() {
+                *column = old.iter().map(|&k| column[k]).collect();
+            }
+        }
+        pick(&mut self.tag, old);
+        pick(&mut self.kind, old);
+        pick(&mut self.mask, old);
+        pick(&mut self.image, old);
+        pick(&mut self.x, old);
+        pick(&mut self.v, old);
+        pick(&mut self.f, old);
+        pick(&mut self.mass, old);
+        pick(&mut self.radius, old);
+        pick(&mut self.omega, old);
+        pick(&mut self.torque, old);
+        pick(&mut self.volume, old);
+        pick(&mut self.x0, old);
+        pick(&mut self.density, old);
+    }
+
+    /// The index of the particle with this tag.
+    pub fn index_of(&self, tag: u32) -> Option<usize> {
+        let guess = (tag as usize).wrapping_sub(1);
+        if self.tag.get(guess) == Some(&tag) {
+            return Some(guess);
+        }
+        self.tag.iter().position(|&t| t == tag)
+    }
+
+    /// Largest tag in use (0 when empty).
+    pub fn last_tag(&self) -> u32 {
+        self.tag.iter().copied().max().unwrap_or(0)
+    }
+}

@@ -1,0 +1,33 @@
+//! Energy and virial of the present step, as force ops add them up.
+
+/// What the force ops of a step have tallied.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    /// The step the sums belong to; `None` when they were not asked for.
+    pub step: Option<i64>,
+    /// Whether the virial was asked for at that step.
+    pub with_virial: bool,
+    /// Whether per-particle energies were asked for.
+    pub with_atoms: bool,
+    /// Energy of all pairs (LAMMPS' evdwl).
+    pub pair: f64,
+    /// Virial of all pairs: xx yy zz xy xz yz.
+    pub virial: [f64; 6],
+    /// Energy per particle; empty when not asked for.
+    pub atom: Vec<f64>,
+}
+
+impl Tally {
+    /// Starts a step's sums at zero.
+    pub fn clear(&mut self, step: i64, virial: bool, atoms: bool, n: usize) {
+        self.step = Some(step);
+        self.with_virial = virial;
+        self.with_atoms = atoms;
+        self.pair = 0.0;
+        self.virial = [0.0; 6];
+        self.atom.clear();
+        if atoms {
+            self.atom.resize(n, 0.0);
+        }
+    }
+}
