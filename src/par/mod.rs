@@ -1,1 +1,17 @@
 //! Threads with the same bits for any number of them.
+//!
+//! Work is cut into parts by a rule that knows only the size of the problem, never the number of threads:
+//! [`for_rows`] and [`for_chunks`] where parts do not touch each other's data, [`two_colours`] where a part
+//! also writes into the next one, [`sum`] and [`reduce`] where parts are added up along a fixed tree. None of
+//! them allocates, and all run inline on one thread or when there is only one part.
+
+mod pool;
+mod split;
+mod sum;
+
+pub use pool::{for_rows, set_threads, threads, two_colours};
+pub use split::{Shared, Split, each, for_chunks};
+pub use sum::{max, reduce, sum};
+
+/// Particles per chunk, everywhere: fixed, so that the order of additions is too.
+pub const CHUNK: usize = 2048;

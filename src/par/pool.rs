@@ -1,0 +1,109 @@
+//! The thread pool and loops over parts; the only user of rayon.
+
+use std::sync::{Arc, PoisonError, RwLock};
+
+use rayon::ThreadPool;
+
+static POOL: RwLock<Option<Arc<ThreadPool>>> = RwLock::new(None);
+
+/// Sets the number of threads for everything that follows; 0 means all cores. Returns what was obtained:
+/// one thread if the system grants no more.
+pub fn set_threads(n: usize) -> usize {
+    let n = if n == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { n };
+    let pool = if n > 1 { rayon::ThreadPoolBuilder::new().num_threads(n).build().ok() } else { None };
+    *POOL.write().unwrap_or_else(PoisonError::into_inner) = pool.map(Arc::new);
+    threads()
+}
+
+/// The number of threads in use.
+pub fn threads() -> usize {
+    pool().map_or(1, |p| p.current_num_threads())
+}
+
+fn pool() -> Option<Arc<ThreadPool>> {
+    POOL.read().unwrap_or_else(PoisonError::into_inner).clone()
+}
+
+/// Runs `work` inside the pool if there is one and `parts` are worth it, else right here.
+pub(super) fn enter<R: Send>(parts: usize, work: impl FnOnce(bool) -> R + Send) -> R {
+    if parts < 2 {
+        return work(false);
+    }
+    match pool() {
+        None => work(false),
+        Some(pool) => pool.install(|| work(true)),
+    }
+}
+
+/// Calls `f` once for each of `n` parts, in any order; parts must not write what others touch.
+pub fn for_rows(n: usize, f: impl Fn(usize) + Sync) {
+    let f = &f;
+    enter(n, |threaded| {
+        if threaded {
+            halve(0, n, f);
+        } else {
+            (0..n).for_each(f);
+        }
+    });
+}
+
+/// Calls `f` for the parts 0, 2, 4, ..., then for 1, 3, 5, ...: part `k` may write into part `k + 1` as well,
+/// and every particle receives its additions in the same order for any number of threads.
+pub fn two_colours(n: usize, f: impl Fn(usize) + Sync) {
+    let f = &f;
+    enter(n, |threaded| {
+        for colour in 0..2 {
+            let count = (n + 1 - colour) / 2;
+            if threaded {
+                halve(0, count, &|k| f(2 * k + colour));
+            } else {
+                (0..count).for_each(|k| f(2 * k + colour));
+            }
+        }
+    });
+}
+
+/// Halves a range of parts until one is left; idle threads steal the upper halves.
+fn halve(lo: usize, hi: usize, f: &(impl Fn(usize) + Sync)) {
+    if hi - lo < 2 {
+        (lo..hi).for_each(f);
+        return;
+    }
+    let mid = lo.midpoint(hi);
+    rayon::join(|| halve(lo, mid, f), || halve(mid, hi, f));
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+
+    #[test]
+    fn every_part_runs_once() {
+        for n in [0, 1, 2, 7, 64] {
+            let hits: Vec<AtomicUsize> = (0..n).map(|_| AtomicUsize::new(0)).collect();
+            for_rows(n, |k| {
+                hits[k].fetch_add(1, Ordering::Relaxed);
+            });
+            two_colours(n, |k| {
+                hits[k].fetch_add(1, Ordering::Relaxed);
+            });
+            assert!(hits.iter().all(|h| h.load(Ordering::Relaxed) == 2));
+        }
+    }
+
+    #[test]
+    fn second_colour_starts_after_the_first() {
+        set_threads(2);
+        let done = AtomicUsize::new(0);
+        two_colours(9, |k| {
+            // Parts 0, 2, 4, 6, 8 come first.
+            if k % 2 == 1 {
+                assert!(done.load(Ordering::SeqCst) >= 5);
+            }
+            done.fetch_add(1, Ordering::SeqCst);
+        });
+        set_threads(1);
+    }
+}

@@ -1,0 +1,71 @@
+//! Reductions along a tree that depends on the number of rows alone: same bits for any thread count.
+
+use std::ops::Range;
+
+use super::{CHUNK, pool::enter};
+
+/// Maps every chunk of [`CHUNK`] indices below `n` and joins the results along a fixed tree; `None` if `n` is 0.
+pub fn reduce<T: Send>(
+    n: usize,
+    map: impl Fn(Range<usize>) -> T + Sync,
+    join: impl Fn(T, T) -> T + Sync,
+) -> Option<T> {
+    fn tree<T: Send>(
+        range: Range<usize>,
+        threaded: bool,
+        map: &(impl Fn(Range<usize>) -> T + Sync),
+        join: &(impl Fn(T, T) -> T + Sync),
+    ) -> T {
+        if range.len() <= CHUNK {
+            return map(range);
+        }
+        let mid = range.start + range.len().div_ceil(CHUNK).div_ceil(2) * CHUNK;
+        let (low, high) = (range.start..mid, mid..range.end);
+        let (a, b) = if threaded {
+            rayon::join(|| tree(low, true, map, join), || tree(high, true, map, join))
+        } else {
+            (tree(low, false, map, join), tree(high, false, map, join))
+        };
+        join(a, b)
+    }
+    if n == 0 {
+        return None;
+    }
+    Some(enter(n.div_ceil(CHUNK), |threaded| tree(0..n, threaded, &map, &join)))
+}
+
+/// The sum of `term(i)` for `i` below `n`: in order within a chunk, chunks along a fixed tree.
+pub fn sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    reduce(n, |range| range.fold(0.0, |sum, i| sum + term(i)), |a, b| a + b).unwrap_or(0.0)
+}
+
+/// The largest `term(i)` for `i` below `n`; negative infinity if there is none. NaNs are ignored.
+pub fn max(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    reduce(n, |range| range.fold(f64::NEG_INFINITY, |m, i| m.max(term(i))), f64::max)
+        .unwrap_or(f64::NEG_INFINITY)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::set_threads;
+    use super::*;
+
+    #[test]
+    fn sums_have_the_same_bits_for_any_thread_count() {
+        let term = |i: usize| ((i * 7919) % 1013) as f64 * 0.1 - 37.0 / (i as f64 + 1.0);
+        let n = 11 * CHUNK + 17;
+        let bits: Vec<u64> = [1, 2, 8]
+            .map(|t| {
+                set_threads(t);
+                sum(n, term).to_bits()
+            })
+            .into();
+        set_threads(1);
+        assert!(bits.windows(2).all(|b| b[0] == b[1]));
+        // Round-off of the plain sum: n terms of size 100, 1e-16 each, added up as a random walk.
+        let plain: f64 = (0..n).map(term).sum();
+        assert!((sum(n, term) - plain).abs() < 1e-8 * plain.abs().max(1.0));
+        assert_eq!(sum(0, term), 0.0);
+        assert_eq!(max(n, |i| i as f64), (n - 1) as f64);
+    }
+}
