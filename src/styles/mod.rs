@@ -1,1 +1,41 @@
 //! Everything a deck can name: pair styles, fixes, computes, regions, dumps, commands.
+//!
+//! A style is one file and one line in its folder's table. It parses its own words, says what it needs,
+//! and hands ops to the step plan when a run is sealed.
+
+pub mod build;
+pub mod command;
+pub mod compute;
+pub mod dump;
+pub mod fix;
+pub mod pair;
+pub mod seal;
+
+pub use build::{ActCx, BuildCx, Names, Shape, Use, UseKind, Values};
+pub use command::{Act, CommandStyle};
+pub use compute::{Compute, ComputeStyle};
+pub use dump::{Dump, DumpStyle};
+pub use fix::{Fix, FixStyle};
+pub use pair::{Pair, PairStyle, TypePairs};
+pub use seal::{Reading, SealCx};
+
+/// What the manual says of a style.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Doc {
+    /// The line to write, as `fix ID group gravity magnitude vector x y z`.
+    pub syntax: &'static str,
+    /// What it does, in one sentence.
+    pub summary: &'static str,
+    /// The page's text (Markdown): parameters with units, equations, sources, differences from LAMMPS.
+    pub text: &'static str,
+    /// A line (or few) that works, shown on the page.
+    pub example: &'static str,
+}
+
+/// What every registered thing has: a name and a page.
+pub trait Style: Sync {
+    /// The word in the deck.
+    fn name(&self) -> &'static str;
+    /// Its page.
+    fn doc(&self) -> Doc;
+}

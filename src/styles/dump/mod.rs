@@ -1,0 +1,44 @@
+//! Dumps: snapshots of particles in files.
+
+use super::{BuildCx, SealCx, Style};
+use crate::diag::Result;
+use crate::lang::Args;
+use crate::plan::Op;
+
+/// A dump style: one file, one line in `DUMPS`.
+pub trait DumpStyle: Style {
+    /// Reads the words after `dump ID group style N`: the file name and the attributes.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>>;
+}
+
+/// A declared dump.
+pub trait Dump: Send {
+    /// The op that writes a snapshot each time it runs; `every` is the interval in steps (0: `write_dump`,
+    /// which runs the op once between runs). Its name is `dump ID style`, its stage `Output`, its times
+    /// those of the dump: multiples of `every`, and the first step of a run when it is such a multiple or
+    /// `dump_modify first yes` was said.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn op(&self, cx: &mut dyn SealCx, every: i64) -> Result<Box<dyn Op>>;
+
+    /// `dump_modify ID …`.
+    ///
+    /// # Errors
+    /// Unknown keywords.
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()>;
+
+    /// The interval a `dump_modify … every N` asked for, if it did.
+    fn every(&self) -> Option<i64> {
+        None
+    }
+
+    /// A copy, so that a failing `dump_modify` changes nothing.
+    fn boxed(&self) -> Box<dyn Dump>;
+}
+
+/// Every dump style.
+pub const DUMPS: &[&dyn DumpStyle] = &[];

@@ -1,0 +1,68 @@
+//! Fixes: what is done to particles during the steps besides their mutual forces.
+
+use super::{BuildCx, SealCx, Shape, Style};
+use crate::diag::{Code, Result, fail};
+use crate::lang::Args;
+use crate::plan::Op;
+use crate::world::World;
+
+/// A fix style: one file, one line in `FIXES`.
+pub trait FixStyle: Style {
+    /// Reads the words after the style's name.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>>;
+}
+
+/// A declared fix.
+pub trait Fix: Send {
+    /// The ops it contributes to a step. Values it offers go to the slot `f_ID`.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>>;
+
+    /// Captures what it must know of the moment it is declared (positions, the present step).
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn declare(&self, _w: &mut World) -> Result<()> {
+        Ok(())
+    }
+
+    /// Forgets what `declare` captured.
+    fn remove(&self, _w: &mut World) {}
+
+    /// Which values it offers.
+    fn shape(&self) -> Shape {
+        Shape::default()
+    }
+
+    /// Whether it moves the particles of its group (two such fixes on one particle draw a warning).
+    fn integrates(&self) -> bool {
+        false
+    }
+
+    /// Whether its scalar is an energy that `fix_modify energy yes` may add to the potential energy.
+    fn has_energy(&self) -> bool {
+        false
+    }
+
+    /// Options of `fix_modify ID …` other than `energy`, which the graph keeps.
+    ///
+    /// # Errors
+    /// Unknown keywords; by default there are none.
+    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        match args.next() {
+            None => Ok(()),
+            Some(w) => fail(Code::UNKNOWN_KEYWORD, w.span, format!("this fix has no option `{}`", w.text)),
+        }
+    }
+
+    /// A copy, so that a failing `fix_modify` changes nothing.
+    fn boxed(&self) -> Box<dyn Fix>;
+}
+
+/// Every fix style.
+pub const FIXES: &[&dyn FixStyle] = &[];

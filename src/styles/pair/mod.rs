@@ -1,0 +1,65 @@
+//! Pair styles: forces between particles.
+
+use super::{BuildCx, SealCx, Style};
+use crate::diag::{Code, Result, fail};
+use crate::lang::Args;
+use crate::plan::Op;
+
+/// Type pairs (i ≤ j, from 1) that a `pair_coeff` line speaks of.
+pub type TypePairs = [(u16, u16)];
+
+/// A pair style: one file, one line in `PAIRS`.
+pub trait PairStyle: Style {
+    /// Reads the words after the style's name.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>>;
+}
+
+/// A declared pair style with its coefficients.
+pub trait Pair: Send {
+    /// The style's name.
+    fn name(&self) -> &'static str;
+
+    /// Reads the words of `pair_coeff` after the two types.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()>;
+
+    /// Whether a type pair has coefficients, its own or mixed ones.
+    fn covers(&self, i: u16, j: u16) -> bool;
+
+    /// Limits the style to some type pairs (as a sub-style of `hybrid`); by default it acts on all.
+    fn restrict(&mut self, _pairs: &TypePairs) {}
+
+    /// The ops it contributes to a step.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>>;
+
+    /// `peri_modify …` and the like: options by command name.
+    ///
+    /// # Errors
+    /// By default the pair style has none.
+    fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let span = args.peek().map_or(cx.span, |w| w.span);
+        fail(Code::CONFLICT, span, format!("`{command}` does not concern pair_style {}", self.name()))
+    }
+
+    /// Facts of the scene it needs (`volume`, `density`, `diameter` …), for checks.
+    fn needs(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Contradictions within the present declarations that a run would trip over, left as notes in `cx`.
+    fn check(&self, _cx: &BuildCx) {}
+
+    /// A copy, so that a failing line changes nothing.
+    fn boxed(&self) -> Box<dyn Pair>;
+}
+
+/// Every pair style.
+pub const PAIRS: &[&dyn PairStyle] = &[];

@@ -1,0 +1,87 @@
+//! What styles may ask for while a run is sealed into a plan.
+
+use crate::diag::{Result, Span};
+use crate::lang::{Param, ValueRef};
+use crate::plan::{Stage, When};
+use crate::world::{SlotId, World};
+
+/// Where an op finds a value while it runs; the plan makes sure it is fresh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reading {
+    /// A constant.
+    Const(f64),
+    /// A slot's single number.
+    Scalar(SlotId),
+    /// An element (from 0) of a slot's global vector.
+    Element(SlotId, usize),
+    /// A column (from 0) of a slot's per-particle values.
+    Atom(SlotId, usize),
+}
+
+impl Reading {
+    /// The number; of a per-particle reading the first particle's.
+    pub fn get(&self, w: &World) -> f64 {
+        match *self {
+            Reading::Const(a) => a,
+            Reading::Scalar(s) => w.slots.get(s).scalar,
+            Reading::Element(s, k) => w.slots.get(s).vector.get(k).copied().unwrap_or(0.0),
+            Reading::Atom(..) => self.atom(w, 0),
+        }
+    }
+
+    /// The number of particle `i`: its own, or the same for everyone.
+    pub fn atom(&self, w: &World, i: usize) -> f64 {
+        match *self {
+            Reading::Atom(s, c) => {
+                let slot = w.slots.get(s);
+                slot.atom.get(i * slot.cols + c).copied().unwrap_or(0.0)
+            }
+            _ => self.get(w),
+        }
+    }
+
+    /// Whether particles differ.
+    pub fn per_atom(&self) -> bool {
+        matches!(self, Reading::Atom(..))
+    }
+}
+
+/// What a style may ask for while a run is sealed.
+pub trait SealCx {
+    /// The world as the run starts: columns may be made here.
+    fn world(&mut self) -> &mut World;
+    /// The line that declared the style.
+    fn span(&self) -> Span;
+    /// The slot `f_ID`, `c_ID` … of this name.
+    fn slot(&mut self, name: &str) -> SlotId;
+    /// A reference's value, fresh whenever `when` fires, before the ops of this style at `stage`.
+    ///
+    /// # Errors
+    /// Unknown names, wrong kinds, circles.
+    fn value(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<Reading>;
+    /// As `value` for a number or a reference.
+    ///
+    /// # Errors
+    /// As `value`.
+    fn param(&mut self, p: &Param, stage: Stage, when: &When) -> Result<Reading> {
+        match p {
+            Param::Number(a) => Ok(Reading::Const(*a)),
+            Param::Ref(r) => self.value(r, stage, when),
+        }
+    }
+    /// A thermo keyword's value (`temp`, `pe`, `vol` …), fresh as with `value`.
+    ///
+    /// # Errors
+    /// Unknown keywords.
+    fn keyword(&mut self, name: &str, span: Span, stage: Stage, when: &When) -> Result<Reading>;
+    /// Energies must be tallied whenever `when` fires.
+    fn ask_energy(&mut self, when: &When);
+    /// The virial must be tallied whenever `when` fires.
+    fn ask_virial(&mut self, when: &When);
+    /// Per-particle energies must be tallied whenever `when` fires.
+    fn ask_atom_energy(&mut self, when: &When);
+    /// Slots of fixes whose energy counts (`fix_modify ID energy yes`), for the potential energy.
+    fn energy_fixes(&self) -> Vec<String>;
+    /// Says what this scene does without, and why.
+    fn leave_out(&mut self, what: &str, why: &str);
+}
