@@ -1,3 +1,4 @@
 //! Small vectors and matrices, decompositions, random numbers.
 
 pub mod cformat;
+pub mod rng;

@@ -4,9 +4,11 @@ pub mod clock;
 pub mod columns;
 pub mod domain;
 pub mod groups;
+pub mod lattice;
 pub mod material;
 pub mod particles;
 pub mod potentials;
+pub mod region;
 pub mod settings;
 pub mod slots;
 pub mod tally;
@@ -19,7 +21,9 @@ pub use clock::Clock;
 pub use columns::Columns;
 pub use domain::{Boundary, Domain, Face};
 pub use groups::{GroupId, Groups};
+pub use lattice::Lattice;
 pub use particles::{AtomStyle, Particles};
+pub use region::Region;
 pub use settings::{Compat, NeighborSettings, Settings};
 pub use slots::{Slot, SlotId, Slots};
 pub use tally::Tally;
@@ -39,6 +43,10 @@ pub struct World {
     pub columns: Columns,
     /// Groups of particles.
     pub groups: Groups,
+    /// The latest `lattice`.
+    pub lattice: Lattice,
+    /// Named volumes.
+    pub regions: BTreeMap<String, Region>,
     /// Number of particle types, from `create_box`.
     pub types: usize,
     /// Mass of each type (index type − 1) where `mass` set one.
@@ -51,7 +59,7 @@ pub struct World {
     pub memo: BTreeMap<String, Vec<f64>>,
     /// What the deck's folder is, for files beside it.
     pub folder: PathBuf,
-    /// State that rooms above own: families, contact histories, lattices, regions, materials.
+    /// State that rooms above own: families, contact histories, materials.
     pub parts: Parts,
 }
 
