@@ -1,1 +1,82 @@
-//! The command line.
+//! The command line: what was asked for, done, and turned into an exit code.
+
+pub mod args;
+pub mod progress;
+pub mod tasks;
+
+use crate::diag::{CODES, nearest};
+use args::Usage;
+use std::process::ExitCode;
+use tasks::Task;
+
+/// Everything went well.
+const OK: u8 = 0;
+/// The deck was refused, or its run failed.
+const FAILED: u8 = 1;
+/// The command line itself is wrong.
+const USAGE: u8 = 2;
+
+/// Runs the program with the words of the command line.
+pub fn main() -> ExitCode {
+    let words = std::env::args_os().skip(1).map(|w| w.to_string_lossy().into_owned()).collect();
+    let code = match tasks::parse(words).and_then(perform) {
+        Ok(code) => code,
+        Err(usage) => {
+            complain(&usage);
+            USAGE
+        }
+    };
+    ExitCode::from(code)
+}
+
+fn perform(task: Task) -> Result<u8, Usage> {
+    match task {
+        Task::Text(text) => show(&text),
+        Task::Explain(code) => show(&explain(&code)?),
+        _ => Ok(FAILED),
+    }
+}
+
+/// Prints to standard output; a reader that closes early, as `| head`, is no failure.
+fn show(text: &str) -> Result<u8, Usage> {
+    use std::io::Write;
+    let _ = std::io::stdout().write_all(text.as_bytes());
+    Ok(OK)
+}
+
+fn complain(usage: &Usage) {
+    eprintln!("error: {}", usage.message);
+    if let Some(help) = &usage.help {
+        eprintln!("  = help: {help}");
+    }
+}
+
+/// The paragraph about one diagnostic code, or the list of all for `all`.
+fn explain(word: &str) -> Result<String, Usage> {
+    let line = |(code, title, text): &(_, &str, &str)| format!("{code}: {title}\n\n{text}\n");
+    if word == "all" {
+        return Ok(CODES.iter().map(line).collect::<Vec<_>>().join("\n"));
+    }
+    let wanted = word.to_uppercase();
+    if let Some(entry) = CODES.iter().find(|(code, ..)| code.to_string() == wanted) {
+        return Ok(line(entry));
+    }
+    let known: Vec<String> = CODES.iter().map(|(code, ..)| code.to_string()).collect();
+    let help = match nearest(&wanted, known.iter().map(String::as_str)) {
+        Some(code) => format!("did you mean {code}? `perigrain explain all` lists them"),
+        None => "`perigrain explain all` lists them".into(),
+    };
+    Err(Usage { message: format!("no diagnostic has the code `{word}`"), help: Some(help) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_explained_and_the_nearest_is_offered() {
+        assert!(explain("pg0102").unwrap().starts_with("PG0102: unknown command\n\nThe first word"));
+        assert!(explain("PG01O2").unwrap_err().help.unwrap().contains("PG0102"));
+        assert_eq!(explain("all").unwrap().matches("\nPG0").count(), CODES.len() - 1);
+    }
+}

@@ -1,0 +1,381 @@
+//! LAMMPS' command-line switches, read by hand because `-var name a b c` fits no option parser.
+
+use crate::diag::nearest;
+use std::path::PathBuf;
+
+/// Where the deck comes from.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Deck {
+    /// Standard input.
+    #[default]
+    Stdin,
+    /// A file.
+    File(PathBuf),
+}
+
+/// Where a stream of text goes.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Target {
+    /// Where it goes when nothing is said: `log.lammps`, the terminal.
+    #[default]
+    Usual,
+    /// Nowhere.
+    None,
+    /// A file.
+    File(PathBuf),
+}
+
+/// Everything that can be said about how a deck is worked off; nothing here has been acted upon.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// `perigrain in.deck`, `-in in.deck`, else standard input.
+    pub deck: Deck,
+    /// `-log file|none`.
+    pub log: Target,
+    /// `-screen file|none`.
+    pub screen: Target,
+    /// `-echo none|screen|log|both`.
+    pub echo: Option<String>,
+    /// `-var name value …`: index variables, in the order given.
+    pub vars: Vec<(String, Vec<String>)>,
+    /// `-threads N`, `-pk omp N`.
+    pub threads: Option<usize>,
+    /// `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong.
+    pub compat: bool,
+    /// `-layout list`: no lattice layout, for tests.
+    pub list_layout: bool,
+    /// `-rest full`: particles at rest are computed too, for tests.
+    pub no_skipping: bool,
+    /// `-portable`: no AVX2, for tests.
+    pub portable: bool,
+    /// `-help`.
+    pub help: bool,
+    /// `-version`.
+    pub version: bool,
+}
+
+/// What is wrong with a command line, and what to write instead.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Usage {
+    /// One sentence, lower case, no full stop.
+    pub message: String,
+    /// Advice, if there is any.
+    pub help: Option<String>,
+}
+
+impl Usage {
+    fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), help: None }
+    }
+
+    fn help(mut self, text: impl Into<String>) -> Self {
+        self.help = Some(text.into());
+        self
+    }
+}
+
+type Set = fn(&mut Options, &mut Values) -> Result<(), Usage>;
+
+/// One switch: its spellings, what follows it, what it is for, how it is read.
+pub struct Switch {
+    /// All spellings, the one for the help page first.
+    pub names: &'static [&'static str],
+    /// What follows it.
+    pub values: &'static str,
+    /// One line for the help page; an empty one hides the switch.
+    pub about: &'static str,
+    set: Set,
+}
+
+/// Every switch, in the order of the help page.
+pub const SWITCHES: &[Switch] = &[
+    switch(&["-in", "-i"], "FILE", "read the deck from FILE (`none` or nothing: standard input)", |o, v| {
+        let file = v.one("a deck")?;
+        o.deck = if file == "none" { Deck::Stdin } else { Deck::File(file.into()) };
+        Ok(())
+    }),
+    switch(&["-log", "-l"], "FILE|none", "where the log goes (log.lammps)", |o, v| {
+        o.log = target(v.one("a file or `none`")?);
+        Ok(())
+    }),
+    switch(&["-screen", "-sc"], "FILE|none", "where the screen output goes (the terminal)", |o, v| {
+        o.screen = target(v.one("a file or `none`")?);
+        Ok(())
+    }),
+    switch(&["-echo", "-e"], "none|screen|log|both", "repeat each line of the deck there (log)", |o, v| {
+        const KNOWN: [&str; 4] = ["none", "screen", "log", "both"];
+        let word = v.one("none, screen, log or both")?;
+        if !KNOWN.contains(&word.as_str()) {
+            let usage = Usage::new(format!("`-echo {word}` is neither none, screen, log nor both"));
+            return Err(match nearest(&word, KNOWN) {
+                Some(known) => usage.help(format!("did you mean `-echo {known}`?")),
+                None => usage,
+            });
+        }
+        o.echo = Some(word);
+        Ok(())
+    }),
+    switch(
+        &["-var", "-v"],
+        "NAME VALUE…",
+        "define an index variable; the deck's own line then has no effect",
+        |o, v| {
+            let name = v.one("a name and a value")?;
+            if name.is_empty() || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
+                let message = format!("`{name}` is no name for a variable: letters, digits and _ only");
+                return Err(Usage::new(message));
+            }
+            let mut values = vec![v.one("at least one value")?];
+            values.extend(v.rest());
+            o.vars.push((name, values));
+            Ok(())
+        },
+    ),
+    switch(&["-threads"], "N", "use N threads; results are the same bits for any N (all cores)", |o, v| {
+        o.threads = Some(v.count("a number of threads")?);
+        Ok(())
+    }),
+    switch(&["-compat"], "lammps", "LAMMPS' numbers also where LAMMPS is wrong", |o, v| {
+        let word = v.one("lammps")?;
+        if word != "lammps" {
+            let message = format!("perigrain cannot imitate `{word}`");
+            return Err(Usage::new(message).help("write `-compat lammps`"));
+        }
+        o.compat = true;
+        Ok(())
+    }),
+    switch(&["-suffix", "-sf"], "omp", "for LAMMPS' command lines: every style has threads here", |_, v| {
+        match v.one("omp")?.as_str() {
+            "omp" | "off" => Ok(()),
+            other => Err(Usage::new(format!("perigrain has no styles with suffix `{other}`"))
+                .help("leave it out, or write `-sf omp`")),
+        }
+    }),
+    switch(&["-package", "-pk"], "omp N", "for LAMMPS' command lines: the same as -threads N", |o, v| {
+        let package = v.one("omp N")?;
+        if package != "omp" {
+            let message = format!("perigrain has no package `{package}`");
+            return Err(Usage::new(message).help("leave it out, or write `-pk omp N`"));
+        }
+        // LAMMPS reads 0 as "what the environment says"; further keywords tune what does not exist here.
+        let n = v.number("a number of threads")?;
+        o.threads = (n > 0).then_some(n);
+        v.rest();
+        Ok(())
+    }),
+    switch(&["-nocite", "-nc"], "", "for LAMMPS' command lines: there is no citation file anyway", |_, _| {
+        Ok(())
+    }),
+    switch(&["-help", "-h", "--help"], "", "this page", |o, _| {
+        o.help = true;
+        Ok(())
+    }),
+    switch(&["-version", "--version", "-V"], "", "the version", |o, _| {
+        o.version = true;
+        Ok(())
+    }),
+    switch(&["-layout"], "list|auto", "", |o, v| {
+        o.list_layout = either(v, "list", "auto")?;
+        Ok(())
+    }),
+    switch(&["-rest"], "full|skip", "", |o, v| {
+        o.no_skipping = either(v, "full", "skip")?;
+        Ok(())
+    }),
+    switch(&["-portable"], "", "", |o, _| {
+        o.portable = true;
+        Ok(())
+    }),
+];
+
+/// Switches of LAMMPS that mean nothing to one process without accelerators.
+const LAMMPS_ONLY: &[&str] = &[
+    "-cite",
+    "-kokkos",
+    "-k",
+    "-mdi",
+    "-mpicolor",
+    "-m",
+    "-partition",
+    "-p",
+    "-plog",
+    "-pl",
+    "-pscreen",
+    "-ps",
+    "-reorder",
+    "-ro",
+    "-restart2data",
+    "-r2data",
+    "-restart2dump",
+    "-r2dump",
+    "-restart2info",
+    "-r2info",
+    "-skiprun",
+    "-sr",
+];
+
+const fn switch(
+    names: &'static [&'static str],
+    values: &'static str,
+    about: &'static str,
+    set: Set,
+) -> Switch {
+    Switch { names, values, about, set }
+}
+
+fn target(word: String) -> Target {
+    if word == "none" { Target::None } else { Target::File(word.into()) }
+}
+
+fn either(v: &mut Values, yes: &str, no: &str) -> Result<bool, Usage> {
+    match v.one(&format!("{yes} or {no}"))? {
+        word if word == yes => Ok(true),
+        word if word == no => Ok(false),
+        word => Err(Usage::new(format!("`{} {word}` is neither {yes} nor {no}", v.switch))),
+    }
+}
+
+/// What follows a switch.
+struct Values<'a> {
+    switch: String,
+    words: &'a mut std::iter::Peekable<std::vec::IntoIter<String>>,
+}
+
+impl Values<'_> {
+    fn one(&mut self, what: &str) -> Result<String, Usage> {
+        match self.words.next_if(|w| !is_switch(w)) {
+            Some(word) => Ok(word),
+            None => Err(Usage::new(format!("`{}` needs {what}", self.switch))),
+        }
+    }
+
+    fn number(&mut self, what: &str) -> Result<usize, Usage> {
+        let word = self.one(what)?;
+        word.parse().map_err(|_| Usage::new(format!("`{} {word}`: `{word}` is not {what}", self.switch)))
+    }
+
+    fn count(&mut self, what: &str) -> Result<usize, Usage> {
+        match self.number(what)? {
+            0 => Err(Usage::new(format!("`{} 0`: at least 1 is needed", self.switch))),
+            n => Ok(n),
+        }
+    }
+
+    fn rest(&mut self) -> Vec<String> {
+        std::iter::from_fn(|| self.words.next_if(|w| !is_switch(w))).collect()
+    }
+}
+
+/// Begins like a switch: a dash that starts no number.
+fn is_switch(word: &str) -> bool {
+    word.strip_prefix('-').is_some_and(|w| w.starts_with(|c: char| c.is_ascii_alphabetic() || c == '-'))
+}
+
+/// Reads a command line without the program's name.
+///
+/// # Errors
+/// A word that is not understood, with the nearest known one.
+pub fn parse(words: Vec<String>) -> Result<Options, Usage> {
+    let mut options = Options::default();
+    let mut deck_given = false;
+    let mut words = words.into_iter().peekable();
+    while let Some(word) = words.next() {
+        if !is_switch(&word) {
+            if deck_given {
+                let message = format!("`{word}`: there is a deck already");
+                return Err(Usage::new(message).help("one deck at a time; quote a name with spaces"));
+            }
+            deck_given = true;
+            options.deck = Deck::File(word.into());
+            continue;
+        }
+        let Some(switch) = SWITCHES.iter().find(|s| s.names.contains(&word.as_str())) else {
+            return Err(unknown(&word));
+        };
+        if switch.names[0] == "-in" && std::mem::replace(&mut deck_given, true) {
+            return Err(Usage::new(format!("`{word}`: there is a deck already")).help("one deck at a time"));
+        }
+        (switch.set)(&mut options, &mut Values { switch: word, words: &mut words })?;
+    }
+    Ok(options)
+}
+
+fn unknown(word: &str) -> Usage {
+    if LAMMPS_ONLY.contains(&word) {
+        let message = format!("LAMMPS' switch `{word}` is not in perigrain");
+        return Usage::new(message).help("leave it out: perigrain is one process with threads");
+    }
+    let names = SWITCHES.iter().filter(|s| !s.about.is_empty()).flat_map(|s| s.names.iter().copied());
+    let usage = Usage::new(format!("unknown switch `{word}`"));
+    match nearest(word, names) {
+        Some(known) => usage.help(format!("did you mean `{known}`?")),
+        None => usage.help("`perigrain -help` lists them"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(line: &str) -> Result<Options, Usage> {
+        parse(line.split_whitespace().map(String::from).collect())
+    }
+
+    #[test]
+    fn a_deck_is_a_file_a_switch_or_standard_input() {
+        assert_eq!(read("in.plate").unwrap().deck, Deck::File("in.plate".into()));
+        assert_eq!(read("-i in.plate").unwrap().deck, Deck::File("in.plate".into()));
+        assert_eq!(read("").unwrap().deck, Deck::Stdin);
+        assert!(read("in.plate in.other").is_err());
+        assert!(read("in.plate -in in.other").is_err());
+    }
+
+    #[test]
+    fn lammps_switches_are_understood_long_and_short() {
+        let long =
+            read("-in a -log none -screen s.txt -echo both -nocite -suffix omp -package omp 3").unwrap();
+        let short = read("-i a -l none -sc s.txt -e both -nc -sf omp -pk omp 3 neigh yes").unwrap();
+        assert_eq!(long, short);
+        assert_eq!(long.log, Target::None);
+        assert_eq!(long.screen, Target::File("s.txt".into()));
+        assert_eq!(long.threads, Some(3));
+        assert_eq!(read("a -pk omp 0").unwrap().threads, None);
+    }
+
+    #[test]
+    fn variables_take_all_words_up_to_the_next_switch() {
+        let o = read("in.x -var v 35 70 -var depth -1e-3 -v t a-b -threads 2").unwrap();
+        let vars: Vec<(&str, String)> = o.vars.iter().map(|(n, v)| (n.as_str(), v.join(","))).collect();
+        assert_eq!(vars, [("v", "35,70".into()), ("depth", "-1e-3".into()), ("t", "a-b".into())]);
+        assert_eq!(o.threads, Some(2));
+    }
+
+    #[test]
+    fn what_is_not_understood_is_named_with_the_nearest() {
+        let usage = read("-thread 2").unwrap_err();
+        assert_eq!(usage.help.as_deref(), Some("did you mean `-threads`?"));
+        assert_eq!(read("-echo scren").unwrap_err().help.as_deref(), Some("did you mean `-echo screen`?"));
+        for line in [
+            "-in",
+            "-var v",
+            "-var a:b 1",
+            "-threads 0",
+            "-threads two",
+            "-compat hoomd",
+            "-sf gpu",
+            "-pk gpu 1",
+        ] {
+            assert!(read(line).is_err(), "{line}");
+        }
+        assert!(read("-partition 2x1").unwrap_err().message.contains("LAMMPS"));
+    }
+
+    #[test]
+    fn hidden_switches_choose_a_path_and_stay_out_of_the_help() {
+        let o = read("a -layout list -rest full -portable").unwrap();
+        assert!(o.list_layout && o.no_skipping && o.portable);
+        let o = read("a -layout auto -rest skip").unwrap();
+        assert!(!o.list_layout && !o.no_skipping && !o.portable);
+        assert!(read("a -layout lattice").is_err());
+    }
+}

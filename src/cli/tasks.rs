@@ -1,0 +1,199 @@
+//! What the program is asked to do: a subcommand, or a deck as LAMMPS would be given it.
+
+use super::args::{self, Deck, Options, SWITCHES, Usage};
+use clap::{CommandFactory, Parser};
+
+/// One call of the program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Task {
+    /// Run a deck.
+    Run(Options),
+    /// Report every problem of a deck without acting.
+    Check(Options),
+    /// Print a deck's step plan.
+    Plan {
+        /// The deck and its switches.
+        options: Options,
+        /// Run it and add time and bytes per op.
+        measure: bool,
+        /// Print the command graph for `dot` instead.
+        dot: bool,
+    },
+    /// Explain a diagnostic code.
+    Explain(String),
+    /// Print the manual page of a command or style, or the list of all.
+    Doc(Option<String>),
+    /// Print this text.
+    Text(String),
+}
+
+#[derive(Parser)]
+#[command(name = "perigrain", disable_version_flag = true)]
+enum Sub {
+    /// Run a deck, like `perigrain DECK`
+    Run {
+        /// The deck and LAMMPS' switches
+        #[arg(value_name = "DECK [SWITCH]", trailing_var_arg = true, allow_hyphen_values = true)]
+        rest: Vec<String>,
+    },
+    /// Report every problem of a deck at once, without acting
+    Check {
+        /// The deck and LAMMPS' switches
+        #[arg(value_name = "DECK [SWITCH]", trailing_var_arg = true, allow_hyphen_values = true)]
+        rest: Vec<String>,
+    },
+    /// Print what each step of a deck's runs will do, in which order, and what was left out and why
+    Plan {
+        /// Run it too, and print time, calls and bytes of each part
+        #[arg(long)]
+        measure: bool,
+        /// Print the command graph for graphviz' `dot` instead
+        #[arg(long, conflicts_with = "measure")]
+        dot: bool,
+        /// The deck and LAMMPS' switches
+        #[arg(value_name = "DECK [SWITCH]", trailing_var_arg = true, allow_hyphen_values = true)]
+        rest: Vec<String>,
+    },
+    /// Explain the code of a message, as PG0102
+    Explain {
+        /// The code
+        code: String,
+    },
+    /// Print the manual page of a command or style, or the list of all
+    Doc {
+        /// `pair_style peri/pmb`, `run`, …
+        name: Vec<String>,
+    },
+}
+
+/// Reads the command line without the program's name.
+///
+/// # Errors
+/// What is not understood about it.
+pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
+    let first = words.first().map(String::as_str);
+    let is_sub = Sub::command().get_subcommands().any(|c| Some(c.get_name()) == first);
+    let task =
+        if is_sub || first == Some("help") { subcommand(words)? } else { Task::Run(args::parse(words)?) };
+    match &task {
+        Task::Run(o) | Task::Check(o) | Task::Plan { options: o, .. } if o.help => Ok(Task::Text(help())),
+        Task::Run(o) | Task::Check(o) | Task::Plan { options: o, .. } if o.version => {
+            Ok(Task::Text(version()))
+        }
+        Task::Check(o) | Task::Plan { options: o, .. } if o.deck == Deck::Stdin && is_terminal() => {
+            Err(Usage { message: "no deck".into(), help: Some("name one: `perigrain check in.deck`".into()) })
+        }
+        Task::Run(o) if o.deck == Deck::Stdin && is_terminal() => Err(no_deck(o)),
+        _ => Ok(task),
+    }
+}
+
+fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
+    // `plan deck --measure` reads as well as `plan --measure deck`.
+    if words[0] == "plan" {
+        words[1..].sort_by_key(|w| !matches!(w.as_str(), "--measure" | "--dot"));
+    }
+    let sub = match Sub::try_parse_from(std::iter::once("perigrain".to_string()).chain(words)) {
+        Ok(sub) => sub,
+        Err(e) if e.use_stderr() => {
+            let text = e.to_string();
+            let mut lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
+            let first = lines.next().unwrap_or("").trim_start_matches("error: ").to_string();
+            let help =
+                lines.find(|l| l.starts_with("tip:")).map(|l| l.trim_start_matches("tip: ").to_string());
+            return Err(Usage { message: first, help });
+        }
+        Err(e) => return Ok(Task::Text(e.to_string())),
+    };
+    Ok(match sub {
+        Sub::Run { rest } => Task::Run(args::parse(rest)?),
+        Sub::Check { rest } => Task::Check(args::parse(rest)?),
+        Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
+        Sub::Explain { code } => Task::Explain(code),
+        Sub::Doc { name } => Task::Doc((!name.is_empty()).then(|| name.join(" "))),
+    })
+}
+
+fn is_terminal() -> bool {
+    std::io::IsTerminal::is_terminal(&std::io::stdin())
+}
+
+fn no_deck(options: &Options) -> Usage {
+    let swallowed = options.vars.last().filter(|(_, values)| values.len() > 1);
+    let help = match swallowed.and_then(|(name, values)| Some((name, values.last()?))) {
+        Some((name, last)) => format!(
+            "`{last}` was read as a value of variable `{name}`: put the deck first, or write `-in {last}`"
+        ),
+        None => "name one: `perigrain in.deck`; `perigrain -help` tells more".into(),
+    };
+    Usage { message: "no deck".into(), help: Some(help) }
+}
+
+/// Name and version.
+pub fn version() -> String {
+    format!("perigrain {}\n", env!("CARGO_PKG_VERSION"))
+}
+
+/// The help page: forms, subcommands, switches.
+pub fn help() -> String {
+    let mut text = String::from(
+        "perigrain: LAMMPS-style decks for fracture, erosion, grains and agglomerates\n\n\
+         usage: perigrain DECK [SWITCH…]\n       perigrain SUBCOMMAND …\n       perigrain [SWITCH…] < DECK\n\nsubcommands:\n",
+    );
+    for sub in Sub::command().get_subcommands() {
+        let about = sub.get_about().map(ToString::to_string).unwrap_or_default();
+        text += &format!("  {:<10} {about}\n", sub.get_name());
+    }
+    text += "\nswitches (what holds without them in brackets):\n";
+    for s in SWITCHES.iter().filter(|s| !s.about.is_empty()) {
+        let names = s.names[..s.names.len().min(2)].join(", ");
+        text += &format!("  {:<36} {}\n", format!("{names} {}", s.values), s.about);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(line: &str) -> Result<Task, Usage> {
+        parse(line.split_whitespace().map(String::from).collect())
+    }
+
+    fn deck(name: &str) -> Options {
+        Options { deck: Deck::File(name.into()), ..Options::default() }
+    }
+
+    #[test]
+    fn a_bare_deck_and_run_are_the_same() {
+        assert_eq!(read("in.plate").unwrap(), Task::Run(deck("in.plate")));
+        assert_eq!(read("run in.plate").unwrap(), Task::Run(deck("in.plate")));
+        let vars = vec![("v".to_string(), vec!["35".to_string()])];
+        assert_eq!(
+            read("check in.plate -var v 35").unwrap(),
+            Task::Check(Options { vars, ..deck("in.plate") })
+        );
+    }
+
+    #[test]
+    fn plan_takes_its_options_on_either_side_of_the_deck() {
+        let task = Task::Plan { options: deck("in.plate"), measure: true, dot: false };
+        assert_eq!(read("plan --measure in.plate").unwrap(), task);
+        assert_eq!(read("plan in.plate --measure").unwrap(), task);
+        assert!(read("plan --measure --dot in.plate").is_err());
+    }
+
+    #[test]
+    fn texts_and_errors_come_from_every_form() {
+        assert_eq!(read("explain PG0101").unwrap(), Task::Explain("PG0101".into()));
+        assert_eq!(read("doc pair_style peri/pmb").unwrap(), Task::Doc(Some("pair_style peri/pmb".into())));
+        assert_eq!(read("-version").unwrap(), Task::Text(version()));
+        assert_eq!(read("check -help").unwrap(), Task::Text(help()));
+        assert!(matches!(read("help"), Ok(Task::Text(_))));
+        assert!(read("check in.plate -logg x").unwrap_err().help.unwrap().contains("`-log`"));
+        assert!(read("explain").is_err());
+        for hidden in ["-layout", "-rest", "-portable"] {
+            assert!(!help().contains(hidden));
+        }
+    }
+}
