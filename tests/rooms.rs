@@ -13,7 +13,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("units", &[]),
     ("par", &[]),
     ("lang", &["units"]),
-    ("world", &["par"]),
+    ("world", &["par", "units"]),
     ("neigh", &["world", "par"]),
     ("laws", &["world", "neigh", "par"]),
     ("plan", &["world", "par"]),

@@ -1,5 +1,6 @@
 //! Choices of a deck that concern everybody.
 
+use crate::units::UnitSystem;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -49,6 +50,8 @@ impl Default for NeighborSettings {
 /// Choices of a deck that concern everybody.
 #[derive(Clone, Debug, Default)]
 pub struct Settings {
+    /// The deck's units.
+    pub units: UnitSystem,
     /// Whose numbers.
     pub compat: Compat,
     /// Space dimension minus three is never printed; 3 or 2.
