@@ -1,1 +1,3 @@
 //! Who is near whom: cell grids, neighbour lists, peridynamic families.
+
+pub mod family;

@@ -3,6 +3,7 @@
 pub mod clock;
 pub mod columns;
 pub mod domain;
+pub mod families;
 pub mod groups;
 pub mod lattice;
 pub mod material;

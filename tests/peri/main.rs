@@ -1,0 +1,4 @@
+//! Peridynamic families on raw arrays: golden numbers, layouts against each other, patch tests, determinism.
+
+mod golden;
+mod scene;
