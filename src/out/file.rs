@@ -1,0 +1,147 @@
+//! File names with a step in them, and files that appear whole or not at all.
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use crate::diag::{Code, Diagnostic, Result, fail};
+
+/// Endings that LAMMPS writes compressed or binary and perigrain does not.
+const REFUSED_ENDINGS: &[&str] = &[".gz", ".zst", ".bz2", ".xz", ".lz4", ".bin", ".lammpsbin"];
+
+/// A file name in which `*` stands for the step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pattern {
+    text: String,
+    /// Least number of digits of the step.
+    pub pad: usize,
+}
+
+impl Pattern {
+    /// Checks a name: one `*` at most, no `%` (one file per processor), no compressed or binary ending.
+    pub fn new(text: &str) -> Result<Self> {
+        if text.is_empty() {
+            return fail(Code::BAD_VALUE, None, "the file name is empty");
+        }
+        if text.contains('%') {
+            let d =
+                Diagnostic::error(Code::NOT_SUPPORTED, None, "`%` in a file name, one file per processor");
+            return Err(d.help("there is one process here: leave the % out").into());
+        }
+        if text.matches('*').count() > 1 {
+            return fail(Code::BAD_VALUE, None, "more than one `*` in the file name");
+        }
+        if let Some(ending) = REFUSED_ENDINGS.iter().find(|e| text.ends_with(**e)) {
+            let d = Diagnostic::error(Code::NOT_SUPPORTED, None, format!("files that end in `{ending}`"));
+            return Err(d.help("write plain text and compress the file afterwards").into());
+        }
+        Ok(Self { text: text.into(), pad: 0 })
+    }
+
+    /// The name as it was written in the deck.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether every snapshot gets a file of its own.
+    pub fn many(&self) -> bool {
+        self.text.contains('*')
+    }
+
+    /// The name for a step.
+    pub fn at(&self, step: i64) -> PathBuf {
+        PathBuf::from(self.text.replacen('*', &format!("{step:0pad$}", pad = self.pad), 1))
+    }
+
+    /// The name with `*` and a separator before it taken out: the base of a series file.
+    pub fn stem(&self) -> PathBuf {
+        let mut text = self.text.clone();
+        for star in [".*", "_*", "-*", "*"] {
+            text = text.replacen(star, "", 1);
+        }
+        PathBuf::from(text)
+    }
+}
+
+/// What a failing operation on a file is reported as.
+pub fn trouble(doing: &str, path: &Path, error: &std::io::Error) -> Diagnostic {
+    let d = Diagnostic::error(Code::NO_FILE, None, format!("cannot {doing} `{}`: {error}", path.display()));
+    match path.parent() {
+        Some(folder) if error.kind() == std::io::ErrorKind::NotFound && !folder.as_os_str().is_empty() => {
+            d.help(format!("create the folder `{}` first", folder.display()))
+        }
+        _ => d,
+    }
+}
+
+/// Opens a file for writing, at its end or from scratch.
+pub fn open(path: &Path, append: bool) -> Result<BufWriter<File>> {
+    let file = File::options().create(true).write(true).append(append).truncate(!append).open(path);
+    match file {
+        Ok(file) => Ok(BufWriter::with_capacity(1 << 16, file)),
+        Err(e) => Err(trouble("write", path, &e).into()),
+    }
+}
+
+/// Writes a whole file beside its place and moves it there at the end: readers see the old or the new file,
+/// never half of one.
+pub fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
+    let part = beside(path);
+    let outcome = (|| {
+        let mut file = BufWriter::with_capacity(1 << 20, File::create(&part)?);
+        write(&mut file)?;
+        file.flush()?;
+        drop(file);
+        fs::rename(&part, path)
+    })();
+    outcome.map_err(|e| {
+        // The half-written file is of no use; that it may not exist is fine.
+        let _ = fs::remove_file(&part);
+        trouble("write", path, &e).into()
+    })
+}
+
+/// `.NAME.part` in the same folder.
+fn beside(path: &Path) -> PathBuf {
+    let mut name = OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(".part");
+    path.with_file_name(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names() {
+        let mut p = Pattern::new("run/d.*.atom").unwrap();
+        assert!(p.many());
+        assert_eq!(p.at(5), PathBuf::from("run/d.5.atom"));
+        p.pad = 6;
+        // As LAMMPS 22Jul2025 names it under `dump_modify pad 6`.
+        assert_eq!(p.at(5), PathBuf::from("run/d.000005.atom"));
+        assert_eq!(p.stem(), PathBuf::from("run/d.atom"));
+        assert_eq!(Pattern::new("plate_*.vtu").unwrap().stem(), PathBuf::from("plate.vtu"));
+        for bad in ["", "a.%.b", "a.*.*", "d.gz", "x.bin"] {
+            assert!(Pattern::new(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn whole_or_not_at_all() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.txt");
+        replace(&path, |w| w.write_all(b"one")).unwrap();
+        let failing = replace(&path, |w| {
+            w.write_all(b"two")?;
+            Err(std::io::Error::other("disk full"))
+        });
+        assert!(failing.unwrap_err().to_string().contains("disk full"));
+        assert_eq!(fs::read(&path).unwrap(), b"one");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+        let nowhere = replace(&dir.path().join("no/such.txt"), |_| Ok(())).unwrap_err();
+        assert!(nowhere.0[0].help[0].contains("create the folder"));
+    }
+}
