@@ -19,11 +19,26 @@ pub struct Clock {
     pub start: i64,
     /// Step at which `run … stop` ends (for ramps); the last step by default.
     pub stop: i64,
+    /// When the present run's steps began, for the keyword `cpu`.
+    pub began: Option<std::time::Instant>,
+    /// Whether a run is going on.
+    pub running: bool,
 }
 
 impl Default for Clock {
     fn default() -> Self {
-        Self { step: 0, dt: 0.005, time_base: 0.0, time_step: 0, first: 0, last: 0, start: 0, stop: 0 }
+        Self {
+            step: 0,
+            dt: 0.005,
+            time_base: 0.0,
+            time_step: 0,
+            first: 0,
+            last: 0,
+            start: 0,
+            stop: 0,
+            began: None,
+            running: false,
+        }
     }
 }
 

@@ -10,6 +10,7 @@ pub mod material;
 pub mod particles;
 pub mod potentials;
 pub mod region;
+pub mod rebuild;
 pub mod settings;
 pub mod slots;
 pub mod tally;
@@ -24,6 +25,7 @@ pub use domain::{Boundary, Domain, Face};
 pub use groups::{GroupId, Groups};
 pub use lattice::Lattice;
 pub use particles::{AtomStyle, Particles};
+pub use rebuild::Rebuild;
 pub use region::Region;
 pub use settings::{Compat, NeighborSettings, Settings};
 pub use slots::{Slot, SlotId, Slots};
@@ -58,6 +60,10 @@ pub struct World {
     pub tally: Tally,
     /// Small state of fixes that outlives a run, by `kind/ID`.
     pub memo: BTreeMap<String, Vec<f64>>,
+    /// When neighbour lists were last rebuilt.
+    pub rebuild: Rebuild,
+    /// Materials by ID.
+    pub materials: BTreeMap<String, material::Material>,
     /// What the deck's folder is, for files beside it.
     pub folder: PathBuf,
     /// State that rooms above own: families, contact histories, materials.
@@ -92,6 +98,18 @@ impl World {
     /// Number of particles.
     pub fn n(&self) -> usize {
         self.particles.len()
+    }
+
+    /// Copies the masses of types into the per-particle column where particles have none of their own.
+    pub fn spread_type_masses(&mut self) {
+        if self.particles.style.own_mass() {
+            return;
+        }
+        for (m, &kind) in self.particles.mass.iter_mut().zip(&self.particles.kind) {
+            if let Some(Some(mass)) = self.type_mass.get(kind as usize - 1) {
+                *m = *mass;
+            }
+        }
     }
 
     /// Marks that forces of the last run no longer belong to this scene.

@@ -1,0 +1,16 @@
+//! When neighbour lists were last rebuilt, and where everybody was then.
+
+/// The state behind LAMMPS' reneighbouring rule.
+#[derive(Clone, Debug, Default)]
+pub struct Rebuild {
+    /// Counts rebuilds since the program began; lists compare it with the one they were made at.
+    pub generation: u64,
+    /// Step of the last rebuild.
+    pub step: i64,
+    /// Positions at the last rebuild [length].
+    pub held: Vec<[f64; 3]>,
+    /// Rebuilds in the present run, setup not counted.
+    pub builds: u64,
+    /// Rebuilds in the present run that came at the first step allowed, so perhaps too late.
+    pub dangerous: u64,
+}
