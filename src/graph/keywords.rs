@@ -106,9 +106,7 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
     let n = w.n() as f64;
     let per_atom = if s.norm && n > 0.0 { 1.0 / n } else { 1.0 };
     let scalar = |id: Option<SlotId>| id.map_or(0.0, |id| w.slots.get(id).scalar);
-    let press = |k: usize| {
-        s.press.and_then(|id| w.slots.get(id).vector.get(k).copied()).unwrap_or(0.0)
-    };
+    let press = |k: usize| s.press.and_then(|id| w.slots.get(id).vector.get(k).copied()).unwrap_or(0.0);
     let pe = || scalar(s.pe) * per_atom;
     // The tensor of the temperature compute holds Σ m v v in energy units: half its trace is the energy.
     let ke = || s.temp.map_or(0.0, |id| w.slots.get(id).vector.iter().take(3).sum::<f64>()) * 0.5 * per_atom;
@@ -123,8 +121,7 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
         "etotal" | "econserve" => pe() + ke(),
         "evdwl" | "epair" => w.tally.pair * per_atom,
         "enthalpy" => {
-            pe() + ke()
-                + scalar(s.press) * volume(w) / w.settings.units.constants().nktv2p * per_atom
+            pe() + ke() + scalar(s.press) * volume(w) / w.settings.units.constants().nktv2p * per_atom
         }
         "atoms" => n,
         "vol" => volume(w),
@@ -145,7 +142,9 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
         "pxy" => press(3),
         "pxz" => press(4),
         "pyz" => press(5),
-        "fmax" => crate::par::max(w.n(), |i| w.particles.f[i].iter().fold(0.0, |m: f64, a| m.max(a.abs()))).max(0.0),
+        "fmax" => {
+            crate::par::max(w.n(), |i| w.particles.f[i].iter().fold(0.0, |m: f64, a| m.max(a.abs()))).max(0.0)
+        }
         "fnorm" => crate::par::sum(w.n(), |i| w.particles.f[i].iter().map(|a| a * a).sum()).sqrt(),
         "nbuild" => w.rebuild.builds as f64,
         "ndanger" => w.rebuild.dangerous as f64,

@@ -7,8 +7,8 @@ use nalgebra::{Matrix3, Vector3};
 
 /// The names of all group functions.
 pub const NAMES: [&str; 13] = [
-    "count", "mass", "charge", "xcm", "vcm", "fcm", "bound", "gyration", "ke", "angmom", "torque",
-    "inertia", "omega",
+    "count", "mass", "charge", "xcm", "vcm", "fcm", "bound", "gyration", "ke", "angmom", "torque", "inertia",
+    "omega",
 ];
 
 /// Evaluates a group function; `args` are group, then what the function needs, then maybe a region.
@@ -136,8 +136,7 @@ impl Members<'_> {
     pub fn ke(&self) -> f64 {
         let v = &self.w.particles.v;
         let mvv2e = self.w.settings.units.constants().mvv2e;
-        0.5 * mvv2e
-            * self.sum(|i| self.m(i) * (v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]))
+        0.5 * mvv2e * self.sum(|i| self.m(i) * (v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]))
     }
 
     fn bound(&self, which: &str, span: Span) -> Result<f64> {

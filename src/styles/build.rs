@@ -2,7 +2,7 @@
 
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail, nearest};
 use crate::lang::{Param, RefKind, ValueRef, Word};
-use crate::world::{GroupId, World};
+use crate::world::{GroupId, Region, World};
 use std::cell::RefCell;
 
 /// What kind of thing a line refers to.
@@ -101,6 +101,24 @@ impl BuildCx<'_> {
             None => d.help("define it before this line with `group ID …`"),
         };
         Err(d.into())
+    }
+
+    /// The region a word names.
+    ///
+    /// # Errors
+    /// An unknown region, with the nearest known one.
+    pub fn region(&self, word: &Word) -> Result<&Region> {
+        if let Some(r) = self.world.regions.get(&word.text) {
+            self.uses(UseKind::Region, &word.text);
+            return Ok(r);
+        }
+        let d =
+            Diagnostic::error(Code::UNKNOWN_NAME, word.span, format!("there is no region `{}`", word.text));
+        Err(match nearest(&word.text, self.world.regions.keys().map(String::as_str)) {
+            Some(n) => d.help(format!("did you mean `{n}`?")),
+            None => d.help("define it before this line with `region ID style …`"),
+        }
+        .into())
     }
 
     /// Checks that a value reference names something that exists and offers what is asked of it:
