@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Lets ovito, pyvista, lammps-logfile and MDAnalysis read what a run leaves. Needs python3 and packages from PyPI;
+# without them it says so and succeeds. Usage: tests/clients/run.sh [PATH OF perigrain]
+set -euo pipefail
+top=$(cd "$(dirname "$0")/../.." && pwd)
+work=$top/target/clients
+
+skip() {
+    echo "client programs: skipped, $1"
+    exit 0
+}
+
+command -v python3 >/dev/null || skip "python3 is not installed"
+mkdir -p "$work"
+if ! "$work/venv/bin/python" -c 'import ovito, pyvista, lammps_logfile, MDAnalysis' 2>/dev/null; then
+    python3 -m venv "$work/venv" 2>/dev/null || skip "python3 has no venv"
+    timeout 300 "$work/venv/bin/pip" install -q --disable-pip-version-check ovito pyvista lammps-logfile MDAnalysis \
+        >"$work/pip.log" 2>&1 || skip "packages cannot be fetched (see $work/pip.log)"
+    "$work/venv/bin/python" -c 'import ovito, pyvista, lammps_logfile, MDAnalysis' 2>"$work/import.log" ||
+        skip "the packages do not start here ($(tail -n 1 "$work/import.log"))"
+fi
+
+perigrain=${1:-}
+if [ -z "$perigrain" ]; then
+    (cd "$top" && cargo build --quiet --release)
+    perigrain=$top/target/release/perigrain
+fi
+rm -rf "$work/run"
+mkdir -p "$work/run"
+cd "$work/run"
+"$perigrain" -in "$top/tests/clients/in.clients" -log log.clients -screen none
+timeout 300 "$work/venv/bin/python" "$top/tests/clients/read.py" "$work/run"
