@@ -68,6 +68,17 @@ impl UnitSystem {
         self == Self::Lj
     }
 
+    /// One unit of length, mass and time in metres, kilograms and seconds; `None` for reduced and molecular units.
+    pub fn mechanical(self) -> Option<[f64; 3]> {
+        match self {
+            Self::Si => Some([1.0, 1.0, 1.0]),
+            Self::Cgs => Some([1e-2, 1e-3, 1.0]),
+            Self::Micro => Some([1e-6, 1e-15, 1e-6]),
+            Self::Nano => Some([1e-9, 1e-21, 1e-9]),
+            Self::Lj | Self::Real | Self::Metal | Self::Electron => None,
+        }
+    }
+
     /// The constants of the system.
     pub fn constants(self) -> Constants {
         const ONE: Constants = Constants {

@@ -5,16 +5,16 @@ use toml::Spanned;
 
 use crate::diag::{Code, Diagnostic, FileId, Result, Span};
 
-/// One material, in SI units.
+/// One material: in SI units when read from a file, in those of the deck once it is in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// What it is.
     pub name: String,
-    /// Young's modulus E, Pa.
+    /// Young's modulus E, Pa in SI.
     pub young: f64,
     /// Poisson's ratio ν.
     pub nu: f64,
-    /// Density ρ, kg/m³.
+    /// Density ρ, kg/m³ in SI.
     pub density: f64,
     /// When its bonds break; `None`: never.
     pub strength: Option<Strength>,
@@ -29,7 +29,7 @@ pub struct Material {
 /// The two ways to say when a bond breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Strength {
-    /// Fracture energy G_c, J/m²; the critical stretch depends on the horizon.
+    /// Fracture energy G_c, J/m² in SI; the critical stretch depends on the horizon.
     FractureEnergy(f64),
     /// Critical stretch s00, whatever the horizon.
     Stretch(f64),
@@ -117,6 +117,18 @@ impl Material {
         }
     }
 
+    /// From SI to units of which one length, mass and time is so many metres, kilograms and seconds.
+    #[must_use]
+    pub fn in_units(mut self, [length, mass, time]: [f64; 3]) -> Self {
+        let pressure = mass / (length * time * time);
+        self.young /= pressure;
+        self.density /= mass / length.powi(3);
+        if let Some(Strength::FractureEnergy(g)) = &mut self.strength {
+            *g /= pressure * length;
+        }
+        self
+    }
+
     /// The first number that no material can have: its key and what is wrong with it.
     pub fn implausible(&self) -> Option<(&'static str, &'static str)> {
         let positive = |x: f64| x.is_finite() && x > 0.0;
@@ -159,6 +171,7 @@ fn positive(text: &str, units: Units) -> std::result::Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::units::UnitSystem;
     use crate::world::potentials;
 
     const MINIMAL: &str = "name='x'\nsource='y'\ndate='2026-01-01'\nE='2 GPa'\nnu=0.25\nrho='1.5 g/cm3'\n";
@@ -181,6 +194,20 @@ mod tests {
         assert_eq!((m.young, m.nu, m.density, m.strength, m.alpha), (2e9, 0.25, 1500.0, None, 0.0));
         let m = parse(&format!("{MINIMAL}Gc='0.01 N/mm'\nalpha=0.25")).unwrap();
         assert_eq!((m.strength, m.alpha), (Some(Strength::FractureEnergy(10.0)), 0.25));
+    }
+
+    #[test]
+    fn deck_units() {
+        let m = parse(&format!("{MINIMAL}Gc='10 J/m2'")).unwrap();
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-14;
+        // 1 Pa = 10 dyn/cm², 1 kg/m³ = 1e-3 g/cm³, 1 J/m² = 1e3 erg/cm².
+        let cgs = m.clone().in_units(UnitSystem::Cgs.mechanical().unwrap());
+        assert!(near(cgs.young, 2e10) && near(cgs.density, 1.5));
+        assert!(matches!(cgs.strength, Some(Strength::FractureEnergy(g)) if near(g, 1e4)));
+        // One micro unit of pressure is 1e3 Pa, of density 1e3 kg/m³, of energy per area 1e-3 J/m².
+        let micro = m.in_units(UnitSystem::Micro.mechanical().unwrap());
+        assert!(near(micro.young, 2e6) && near(micro.density, 1.5));
+        assert!(matches!(micro.strength, Some(Strength::FractureEnergy(g)) if near(g, 1e4)));
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Commands that act on the world once, in order.
 
+mod material;
+
 use super::{ActCx, BuildCx, Style};
 use crate::diag::Result;
 use crate::lang::Args;
@@ -33,4 +35,4 @@ pub trait Act {
 }
 
 /// Every command that acts.
-pub const COMMANDS: &[&dyn CommandStyle] = &[];
+pub const COMMANDS: &[&dyn CommandStyle] = &[&material::MaterialStyle];

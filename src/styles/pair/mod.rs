@@ -1,5 +1,7 @@
 //! Pair styles: forces between particles.
 
+pub mod materials;
+
 use super::{BuildCx, SealCx, Style};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
