@@ -9,8 +9,8 @@ struct Table {
 }
 
 fn table(name: &str) -> Table {
-    let text =
-        std::fs::read_to_string(format!("{}/tests/golden/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let text = std::fs::read_to_string(format!("{}/tests/lammps/golden/{name}", env!("CARGO_MANIFEST_DIR")))
+        .unwrap();
     let mut lines = text.lines();
     let names = lines.next().unwrap().split(',').map(str::to_owned).collect();
     let rows = lines.map(|l| l.split(',').map(|w| w.parse().unwrap()).collect()).collect();
