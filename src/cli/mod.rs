@@ -1,6 +1,7 @@
 //! The command line: what was asked for, done, and turned into an exit code.
 
 pub mod args;
+pub mod manual;
 pub mod progress;
 pub mod tasks;
 
@@ -33,6 +34,8 @@ fn perform(task: Task) -> Result<u8, Usage> {
     match task {
         Task::Text(text) => show(&text),
         Task::Explain(code) => show(&explain(&code)?),
+        Task::Doc(None) => show(&manual::list()),
+        Task::Doc(Some(name)) => show(&manual::page(&name)?),
         _ => Ok(FAILED),
     }
 }

@@ -1,0 +1,100 @@
+//! The manual: one page per command and style, made from the tables they are registered in.
+
+use super::args::Usage;
+use crate::diag::nearest;
+use crate::styles::command::COMMANDS;
+use crate::styles::compute::COMPUTES;
+use crate::styles::dump::DUMPS;
+use crate::styles::fix::FIXES;
+use crate::styles::pair::PAIRS;
+use crate::styles::{Doc, Style};
+use std::fmt::Write;
+
+/// One page: what it is about and where it belongs.
+#[derive(Clone, Copy)]
+pub struct Page {
+    /// `command`, or the command that takes the style: `pair_style`, `fix`, `compute`, `dump`.
+    pub kind: &'static str,
+    /// The word in the deck.
+    pub name: &'static str,
+    /// What is said about it.
+    pub doc: Doc,
+}
+
+impl Page {
+    /// As it is asked for and headed: `fix nve`, `run`.
+    pub fn title(&self) -> String {
+        if self.kind == "command" { self.name.to_string() } else { format!("{} {}", self.kind, self.name) }
+    }
+
+    /// The page's file below `docs/styles`.
+    pub fn file(&self) -> String {
+        format!("{}.md", self.title().replace([' ', '/'], "_"))
+    }
+
+    /// The page as Markdown.
+    pub fn markdown(&self) -> String {
+        let Doc { syntax, summary, text, example } = self.doc;
+        let mut page = format!("# {}\n\n{summary}\n\n```text\n{syntax}\n```\n", self.title());
+        if !text.is_empty() {
+            let _ = write!(page, "\n{}\n", text.trim());
+        }
+        if !example.is_empty() {
+            let _ = write!(page, "\n## Example\n\n```text\n{}\n```\n", example.trim());
+        }
+        page
+    }
+}
+
+/// Every page, by kind and then in the order of the tables.
+pub fn pages() -> Vec<Page> {
+    fn of<S: Style + ?Sized>(kind: &'static str, table: &[&S]) -> Vec<Page> {
+        table.iter().map(|s| Page { kind, name: s.name(), doc: s.doc() }).collect()
+    }
+    [
+        of("command", COMMANDS),
+        of("pair_style", PAIRS),
+        of("fix", FIXES),
+        of("compute", COMPUTES),
+        of("dump", DUMPS),
+    ]
+    .concat()
+}
+
+/// All pages with their summaries, as `perigrain doc` prints them.
+pub fn list() -> String {
+    let mut text = String::new();
+    let mut kind = "";
+    for page in pages() {
+        if page.kind != kind {
+            kind = page.kind;
+            let _ = writeln!(text, "{}{}", if text.is_empty() { "" } else { "\n" }, heading(kind));
+        }
+        let _ = writeln!(text, "  {:<24} {}", page.name, page.doc.summary);
+    }
+    text
+}
+
+/// What a kind of page is called in a list.
+pub fn heading(kind: &str) -> &str {
+    if kind == "command" { "commands" } else { kind }
+}
+
+/// The page of a name, as `fix nve`, `nve` or `run`.
+///
+/// # Errors
+/// No page of this name; the nearest is offered.
+pub fn page(name: &str) -> Result<String, Usage> {
+    let all = pages();
+    let found: Vec<&Page> = all.iter().filter(|p| p.title() == name || p.name == name).collect();
+    if !found.is_empty() {
+        return Ok(found.iter().map(|p| p.markdown()).collect::<Vec<_>>().join("\n"));
+    }
+    let titles: Vec<String> = all.iter().map(Page::title).collect();
+    let known = titles.iter().map(String::as_str).chain(all.iter().map(|p| p.name));
+    let help = match nearest(name, known) {
+        Some(near) => format!("did you mean `{near}`? `perigrain doc` lists all"),
+        None => "`perigrain doc` lists all".into(),
+    };
+    Err(Usage { message: format!("the manual has no page `{name}`"), help: Some(help) })
+}
