@@ -1,5 +1,7 @@
 //! Fixes: what is done to particles during the steps besides their mutual forces.
 
+mod extremes;
+
 use super::{BuildCx, SealCx, Shape, Style};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
@@ -65,4 +67,4 @@ pub trait Fix: Send {
 }
 
 /// Every fix style.
-pub const FIXES: &[&dyn FixStyle] = &[];
+pub const FIXES: &[&dyn FixStyle] = &[&extremes::ExtremesStyle];
