@@ -11,7 +11,7 @@ mod sum;
 
 pub use pool::{for_rows, set_threads, threads, two_colours};
 pub use split::{Shared, Split, each, for_chunks};
-pub use sum::{max, reduce, sum};
+pub use sum::{max, reduce, reduce_each, sum};
 
 /// Particles per chunk, everywhere: fixed, so that the order of additions is too.
 pub const CHUNK: usize = 2048;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{CHUNK, pool::enter};
+use super::{CHUNK, Split, pool::enter};
 
 /// Maps every chunk of [`CHUNK`] indices below `n` and joins the results along a fixed tree; `None` if `n` is 0.
 pub fn reduce<T: Send>(
@@ -32,6 +32,37 @@ pub fn reduce<T: Send>(
         return None;
     }
     Some(enter(n.div_ceil(CHUNK), |threaded| tree(0..n, threaded, &map, &join)))
+}
+
+/// Calls `map(first row, chunk)` for every chunk of [`CHUNK`] rows of columns of equal length, as
+/// [`each`](super::each) does, and joins what it returns along a fixed tree; `None` if there are no rows.
+pub fn reduce_each<S: Split, T: Send>(
+    columns: S,
+    map: impl Fn(usize, S) -> T + Sync,
+    join: impl Fn(T, T) -> T + Sync,
+) -> Option<T> {
+    fn tree<S: Split, T: Send>(
+        start: usize,
+        columns: S,
+        threaded: bool,
+        map: &(impl Fn(usize, S) -> T + Sync),
+        join: &(impl Fn(T, T) -> T + Sync),
+    ) -> T {
+        let n = columns.rows();
+        if n <= CHUNK {
+            return map(start, columns);
+        }
+        let mid = n.div_ceil(CHUNK).div_ceil(2) * CHUNK;
+        let (low, high) = columns.cut(mid);
+        let (a, b) = if threaded {
+            rayon::join(|| tree(start, low, true, map, join), || tree(start + mid, high, true, map, join))
+        } else {
+            (tree(start, low, false, map, join), tree(start + mid, high, false, map, join))
+        };
+        join(a, b)
+    }
+    let n = columns.rows();
+    (n > 0).then(|| enter(n.div_ceil(CHUNK), |threaded| tree(0, columns, threaded, &map, &join)))
 }
 
 /// The sum of `term(i)` for `i` below `n`: in order within a chunk, chunks along a fixed tree.
@@ -66,6 +97,15 @@ mod tests {
         let plain: f64 = (0..n).map(term).sum();
         assert!((sum(n, term) - plain).abs() < 1e-8 * plain.abs().max(1.0));
         assert_eq!(sum(0, term), 0.0);
+        let mut rows = vec![0.0; n];
+        let write = |start: usize, chunk: &mut [f64]| {
+            chunk.iter_mut().enumerate().fold(0.0, |sum, (k, row)| {
+                *row = term(start + k);
+                sum + *row
+            })
+        };
+        assert_eq!(reduce_each(&mut rows[..], write, |a, b| a + b), Some(sum(n, term)));
+        assert_eq!(rows[n - 1], term(n - 1));
         assert_eq!(max(n, |i| i as f64), (n - 1) as f64);
     }
 }

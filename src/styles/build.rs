@@ -40,6 +40,10 @@ pub struct Shape {
     pub vector: usize,
     /// Columns per particle; `Some(1)` is a per-atom vector.
     pub atom: Option<usize>,
+    /// The number grows with the scene: `thermo_modify norm yes` divides it by the number of particles.
+    pub scalar_extensive: bool,
+    /// The global vector grows with the scene.
+    pub vector_extensive: bool,
 }
 
 /// What has been declared so far, by name.
@@ -135,8 +139,8 @@ impl BuildCx<'_> {
         let shape = match r.kind {
             RefKind::Variable => self.names.variable(&r.name).map(|atom| Shape {
                 scalar: !atom,
-                vector: 0,
                 atom: atom.then_some(1),
+                ..Shape::default()
             }),
             RefKind::Compute | RefKind::ComputeAtom => self.names.compute(&r.name),
             RefKind::Fix | RefKind::FixAtom => self.names.fix(&r.name),

@@ -8,8 +8,12 @@ pub mod command;
 pub mod compute;
 pub mod dump;
 pub mod fix;
+pub mod matter;
 pub mod pair;
 pub mod seal;
+pub mod step_op;
+#[cfg(test)]
+mod testing;
 
 pub use build::{ActCx, BuildCx, Names, Shape, Use, UseKind, Values};
 pub use command::{Act, CommandStyle};

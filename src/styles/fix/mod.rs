@@ -1,6 +1,7 @@
 //! Fixes: what is done to particles during the steps besides their mutual forces.
 
 mod extremes;
+mod nve;
 
 use super::{BuildCx, SealCx, Shape, Style};
 use crate::diag::{Code, Result, fail};
@@ -67,4 +68,8 @@ pub trait Fix: Send {
 }
 
 /// Every fix style.
-pub const FIXES: &[&dyn FixStyle] = &[&extremes::ExtremesStyle];
+#[rustfmt::skip]
+pub const FIXES: &[&dyn FixStyle] = &[
+    &extremes::ExtremesStyle,
+    &nve::Nve,
+];

@@ -1,0 +1,166 @@
+//! fix nve: velocity Verlet at constant energy.
+
+use super::{Fix, FixStyle};
+use crate::diag::Result;
+use crate::lang::Args;
+use crate::par;
+use crate::plan::{Access, Op, Stage};
+use crate::styles::matter::{Masses, check_masses};
+use crate::styles::step_op::StepOp;
+use crate::styles::{BuildCx, Doc, SealCx, Style};
+use crate::world::{GroupId, World};
+
+/// The style.
+pub struct Nve;
+
+impl Style for Nve {
+    fn name(&self) -> &'static str {
+        "nve"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group nve",
+            summary: "moves the group's particles by velocity Verlet",
+            text: "Each step: v += Δt/2 · f/m, then x += Δt · v, then new forces, then again v += Δt/2 · f/m \
+                   (Swope et al. 1982). Printed velocities belong to whole steps. For peridynamic particles \
+                   in LAMMPS' convention f is a force density and m the density. Spheres are moved but not \
+                   turned: for that use `nve/sphere`.",
+            example: "fix 1 all nve",
+        }
+    }
+}
+
+impl FixStyle for Nve {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        args.finish()?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (group, span) = (self.group, cx.span());
+        check_masses(cx.world(), span)?;
+        let name = format!("fix {} nve", self.id);
+        let first = StepOp::new(
+            name.clone(),
+            Stage::InitialIntegrate,
+            Access::new("f mass mask", "x v"),
+            move |w, t| {
+                kick_and_drift(w, group, t.dt);
+                Ok(())
+            },
+        );
+        let second =
+            StepOp::new(name, Stage::FinalIntegrate, Access::new("f mass mask", "v"), move |w, t| {
+                kick(w, group, t.dt);
+                Ok(())
+            });
+        Ok(vec![first.boxed(), second.boxed()])
+    }
+
+    fn integrates(&self) -> bool {
+        true
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+/// First half of a step: v += Δt/2 · f/m, x += Δt · v.
+pub fn kick_and_drift(w: &mut World, group: GroupId, dt: f64) {
+    let half = 0.5 * dt * w.settings.units.constants().ftm2v;
+    let p = &mut w.particles;
+    let bit = group.bit();
+    if p.style.own_mass() {
+        let columns = (&mut p.x[..], &mut p.v[..], &p.f[..], &p.mass[..], &p.mask[..]);
+        return par::each(columns, |_, (x, v, f, mass, mask)| {
+            for ((((x, v), f), m), mask) in x.iter_mut().zip(v).zip(f).zip(mass).zip(mask) {
+                if mask & bit != 0 {
+                    drifted(x, kicked(v, f, half / m), dt);
+                }
+            }
+        });
+    }
+    let masses = Masses::ByType(&p.kind, &w.type_mass);
+    par::each((&mut p.x[..], &mut p.v[..], &p.f[..], &p.mask[..]), |start, (x, v, f, mask)| {
+        for (k, (((x, v), f), mask)) in x.iter_mut().zip(v).zip(f).zip(mask).enumerate() {
+            if mask & bit != 0 {
+                drifted(x, kicked(v, f, half / masses.get(start + k)), dt);
+            }
+        }
+    });
+}
+
+/// Second half of a step: v += Δt/2 · f/m.
+pub fn kick(w: &mut World, group: GroupId, dt: f64) {
+    let half = 0.5 * dt * w.settings.units.constants().ftm2v;
+    let p = &mut w.particles;
+    let bit = group.bit();
+    let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
+    par::each((&mut p.v[..], &p.f[..], &p.mask[..]), |start, (v, f, mask)| {
+        for (k, ((v, f), mask)) in v.iter_mut().zip(f).zip(mask).enumerate() {
+            if mask & bit != 0 {
+                kicked(v, f, half / masses.get(start + k));
+            }
+        }
+    });
+}
+
+#[inline]
+fn kicked<'a>(v: &'a mut [f64; 3], f: &[f64; 3], half_dt_by_m: f64) -> &'a [f64; 3] {
+    for d in 0..3 {
+        v[d] += half_dt_by_m * f[d];
+    }
+    v
+}
+
+#[inline]
+fn drifted(x: &mut [f64; 3], v: &[f64; 3], dt: f64) {
+    for d in 0..3 {
+        x[d] += dt * v[d];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+    use crate::world::AtomStyle;
+
+    // Binary fractions, so that every result is exact: m = 2, f = 4, dt = 0.5.
+    #[test]
+    fn a_step_is_two_half_kicks_around_a_drift() {
+        for peri in [false, true] {
+            let mut b = Bench::new(AtomStyle { peri, ..AtomStyle::default() }, &[[1.0, 0.0, 0.0]; 2]);
+            b.world.clock.dt = 0.5;
+            b.world.particles.f = vec![[4.0, 0.0, -8.0]; 2];
+            b.world.particles.v = vec![[1.0, 0.0, 0.0]; 2];
+            b.world.particles.mask[1] = 0;
+            let fix = b.fix(&Nve, "").unwrap();
+            let mut ops = b.seal(&*fix).unwrap();
+            b.stage(&mut ops, Stage::InitialIntegrate).unwrap();
+            assert_eq!(b.world.particles.v, [[1.5, 0.0, -1.0], [1.0, 0.0, 0.0]]);
+            assert_eq!(b.world.particles.x, [[1.75, 0.0, -0.5], [1.0, 0.0, 0.0]]);
+            b.stage(&mut ops, Stage::FinalIntegrate).unwrap();
+            assert_eq!(b.world.particles.v[0], [2.0, 0.0, -2.0]);
+        }
+    }
+
+    #[test]
+    fn every_type_needs_a_mass() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
+        b.world.type_mass = vec![None];
+        let fix = b.fix(&Nve, "").unwrap();
+        let e = b.seal(&*fix).err().unwrap();
+        assert_eq!(e.0[0].message, "atom type 1 has no mass");
+        assert!(b.fix(&Nve, "1.0").is_err());
+    }
+}

@@ -1,0 +1,96 @@
+//! Ops made of a closure: all that most fixes and computes need.
+
+use crate::diag::Result;
+use crate::plan::{Access, Op, Stage, Tick, When};
+use crate::world::{Slot, SlotId, World};
+
+/// An op whose whole work is one closure at one stage.
+pub struct StepOp<F> {
+    name: String,
+    stage: Stage,
+    access: Access,
+    when: When,
+    in_setup: bool,
+    act: F,
+}
+
+impl<F> StepOp<F>
+where
+    F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
+{
+    /// Acts every step at `stage`, and in the setup of a run where that stage usually does.
+    pub fn new(name: impl Into<String>, stage: Stage, access: Access, act: F) -> Self {
+        Self { name: name.into(), stage, access, when: When::Always, in_setup: stage.in_setup(), act }
+    }
+
+    /// Acts at other times.
+    #[must_use]
+    pub fn when(mut self, when: When) -> Self {
+        self.when = when;
+        self
+    }
+
+    /// Acts in the setup of a run too, or not.
+    #[must_use]
+    pub fn in_setup(mut self, yes: bool) -> Self {
+        self.in_setup = yes;
+        self
+    }
+
+    /// The op as the plan takes it.
+    pub fn boxed(self) -> Box<dyn Op> {
+        Box::new(self)
+    }
+}
+
+impl<F> Op for StepOp<F>
+where
+    F: FnMut(&mut World, &Tick) -> Result<()> + Send,
+{
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn stage(&self) -> Stage {
+        self.stage
+    }
+    fn access(&self) -> Access {
+        self.access.clone()
+    }
+    fn when(&self) -> When {
+        self.when.clone()
+    }
+    fn in_setup(&self) -> bool {
+        self.in_setup
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        (self.act)(w, t)
+    }
+}
+
+/// Where and when a compute's values are wanted.
+pub struct Wanted<'a> {
+    /// Where they go.
+    pub slot: SlotId,
+    /// The stage their first reader acts at.
+    pub stage: Stage,
+    /// When they are read.
+    pub when: &'a When,
+}
+
+/// The op of a compute: reads the world and fills the slot.
+pub fn fill<F>(name: &str, wanted: &Wanted, reads: &'static str, mut read: F) -> Box<dyn Op>
+where
+    F: FnMut(&World, &Tick, &mut Slot) -> Result<()> + Send + 'static,
+{
+    let slot = wanted.slot;
+    let act = move |w: &mut World, t: &Tick| {
+        let mut out = w.slots.take(slot);
+        let outcome = read(w, t, &mut out);
+        w.slots.put(slot, out, t.step);
+        outcome
+    };
+    StepOp::new(format!("compute {name}"), wanted.stage, Access::new(reads, ""), act)
+        .when(wanted.when.clone())
+        .in_setup(true)
+        .boxed()
+}
