@@ -1,6 +1,27 @@
 //! Commands that act on the world once, in order.
 
+mod atom_modify;
+mod atom_style;
+mod boundary;
+mod comm_modify;
+mod common;
+mod create_atoms;
+mod create_box;
+mod dimension;
+mod group;
+mod lattice;
+mod mass;
 mod material;
+mod neigh_modify;
+mod neighbor;
+mod newton;
+mod processors;
+mod region;
+mod reset_timestep;
+#[cfg(test)]
+mod testing;
+mod timestep;
+mod units;
 
 use super::{ActCx, BuildCx, Style};
 use crate::diag::Result;
@@ -29,10 +50,30 @@ pub trait Act {
     }
 
     /// Which facts of the scene it settles (`volume`, `density`, `mass`, `diameter`, `velocity` …), for checks.
-    fn settles(&self) -> &'static [&'static str] {
-        &[]
+    fn settles(&self) -> Vec<&'static str> {
+        vec![]
     }
 }
 
 /// Every command that acts.
-pub const COMMANDS: &[&dyn CommandStyle] = &[&material::MaterialStyle];
+pub const COMMANDS: &[&dyn CommandStyle] = &[
+    &units::Units,
+    &dimension::Dimension,
+    &boundary::BoundaryCommand,
+    &atom_style::AtomStyleCommand,
+    &atom_modify::AtomModify,
+    &newton::Newton,
+    &processors::Processors,
+    &comm_modify::CommModify,
+    &lattice::LatticeCommand,
+    &region::RegionCommand,
+    &create_box::CreateBox,
+    &create_atoms::CreateAtoms,
+    &group::Group,
+    &mass::Mass,
+    &material::MaterialStyle,
+    &timestep::Timestep,
+    &reset_timestep::ResetTimestep,
+    &neighbor::Neighbor,
+    &neigh_modify::NeighModify,
+];

@@ -1,0 +1,139 @@
+//! `atom_style`: which columns particles have.
+
+use super::common::{before_box, not_here, setting};
+use super::{Act, CommandStyle};
+use crate::diag::{Code, Result, fail};
+use crate::lang::{Args, Word};
+use crate::styles::{BuildCx, Doc, Style};
+use crate::world::AtomStyle;
+
+/// The command.
+pub struct AtomStyleCommand;
+
+/// Styles LAMMPS has besides.
+const ELSEWHERE: [&str; 16] = [
+    "angle",
+    "bond",
+    "bpm/sphere",
+    "body",
+    "charge",
+    "dipole",
+    "dpd",
+    "electron",
+    "ellipsoid",
+    "full",
+    "line",
+    "molecular",
+    "mdpd",
+    "sph",
+    "template",
+    "tri",
+];
+
+impl Style for AtomStyleCommand {
+    fn name(&self) -> &'static str {
+        "atom_style"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "atom_style atomic | sphere | peri | hybrid STYLE STYLE …",
+            summary: "Says which properties particles have.",
+            text: "`atomic`: mass by type. `sphere`: radius, spin, own mass (LAMMPS: density times 4/3 π r³). `peri`: volume, \
+                   position at creation, own mass (in LAMMPS' convention its density). `hybrid sphere peri` has both; \
+                   the mass is one column. Must come before the box. Default: `atomic`.",
+            example: "atom_style hybrid sphere peri",
+        }
+    }
+}
+
+impl CommandStyle for AtomStyleCommand {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        before_box(cx, "atom_style")?;
+        let mut style = AtomStyle { chosen: true, ..AtomStyle::default() };
+        let first = a.expect("a style")?;
+        if first.text != "hybrid" {
+            add(&mut style, first)?;
+            if first.text == "sphere" {
+                constant_radius(a)?;
+            }
+            return Ok(choose(style));
+        }
+        add(&mut style, a.expect("a style")?)?;
+        while let Some(word) = a.next() {
+            if style.sphere && matches!(word.text.as_str(), "0" | "1") {
+                check_radius_flag(word)?;
+                continue;
+            }
+            add(&mut style, word)?;
+        }
+        Ok(choose(style))
+    }
+}
+
+fn choose(style: AtomStyle) -> Box<dyn Act> {
+    setting(move |cx| {
+        cx.world.particles.style = style;
+        Ok(())
+    })
+}
+
+fn add(style: &mut AtomStyle, word: &Word) -> Result<()> {
+    let twice = |is: bool| match is {
+        true => fail(Code::BAD_VALUE, word.span, format!("atom_style `{}` is named twice", word.text)),
+        false => Ok(()),
+    };
+    match word.text.as_str() {
+        "atomic" => {}
+        "sphere" => {
+            twice(style.sphere)?;
+            style.sphere = true;
+        }
+        "peri" => {
+            twice(style.peri)?;
+            style.peri = true;
+        }
+        name if ELSEWHERE.contains(&name) => return Err(not_here(word, "atom_style")),
+        name => {
+            let text = format!("unknown atom_style `{name}`: atomic, sphere, peri or hybrid");
+            return fail(Code::UNKNOWN_STYLE, word.span, text);
+        }
+    }
+    Ok(())
+}
+
+/// `atom_style sphere 0`: LAMMPS' flag for radii that change during a run; 0 is what perigrain does.
+fn constant_radius(a: &mut Args) -> Result<()> {
+    match a.next() {
+        Some(word) => check_radius_flag(word),
+        None => Ok(()),
+    }
+}
+
+fn check_radius_flag(word: &Word) -> Result<()> {
+    match word.text.as_str() {
+        "0" => Ok(()),
+        "1" => Err(not_here(word, "atom_style sphere with changing radii,")),
+        _ => fail(Code::EXTRA_ARGUMENT, word.span, "atom_style sphere takes at most the flag 0 or 1"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{refused, scene};
+
+    #[test]
+    fn hybrid_has_both() {
+        let s = scene("atom_style hybrid sphere peri").particles.style;
+        assert!(s.sphere && s.peri && s.chosen);
+        assert!(!scene("atom_style sphere 0").particles.style.peri);
+    }
+
+    #[test]
+    fn refuses_by_name() {
+        let empty = Default::default();
+        assert!(refused(&empty, "atom_style body nparticle 2 6").1.contains("not in perigrain"));
+        assert_eq!(refused(&empty, "atom_style hybrid peri peri").0, "peri");
+        assert_eq!(refused(&empty, "atom_style spere").0, "spere");
+    }
+}

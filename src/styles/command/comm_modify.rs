@@ -1,0 +1,67 @@
+//! `comm_modify`: what LAMMPS' processes tell each other; one process here.
+
+use super::common::{bad_keyword, choice_or_refuse, setting};
+use super::{Act, CommandStyle};
+use crate::diag::{Code, Diagnostic, Result};
+use crate::lang::Args;
+use crate::styles::{BuildCx, Doc, Style};
+
+/// The command.
+pub struct CommModify;
+
+impl Style for CommModify {
+    fn name(&self) -> &'static str {
+        "comm_modify"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "comm_modify [vel yes|no] [cutoff R] [mode single]",
+            summary: "Accepted for the sake of LAMMPS decks: one process has nothing to communicate.",
+            text: "All velocities are at hand, whatever `vel` says.",
+            example: "comm_modify vel yes",
+        }
+    }
+}
+
+impl CommandStyle for CommModify {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        while let Some(word) = a.next() {
+            match word.text.as_str() {
+                "vel" => {
+                    a.flag("vel")?;
+                }
+                "cutoff" => {
+                    a.non_negative("the cutoff")?;
+                }
+                "mode" => {
+                    choice_or_refuse(a, "mode", &["single"], &["multi", "multi/old"])?;
+                }
+                _ => {
+                    let lammps = ["group", "cutoff/multi", "cutoff/multi/old", "reduce/multi"];
+                    return Err(bad_keyword(a, word, &["vel", "cutoff", "mode"], &lammps));
+                }
+            }
+        }
+        let text = "comm_modify has no effect here: one process has nothing to communicate";
+        cx.note(Diagnostic::note(Code::NO_EFFECT, a.name_span(), text));
+        Ok(setting(|_| Ok(())))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{refused, scene};
+
+    #[test]
+    fn is_validated() {
+        scene("comm_modify vel yes cutoff 0.5 mode single\nnewton on off\nprocessors * 1 1\ndimension 3");
+        let empty = Default::default();
+        assert_eq!(refused(&empty, "comm_modify velo yes").0, "velo");
+        assert_eq!(refused(&empty, "comm_modify mode multi").0, "multi");
+        assert_eq!(refused(&empty, "comm_modify group all").0, "group");
+        assert_eq!(refused(&empty, "newton maybe").0, "maybe");
+        assert_eq!(refused(&empty, "processors 2 0 1").0, "0");
+        assert_eq!(refused(&empty, "dimension 2").0, "2");
+    }
+}

@@ -1,0 +1,195 @@
+//! What several scene commands share: refusals by name, distances in lattice units, choices of axes and seeds.
+
+use super::Act;
+use crate::diag::{Code, Diagnostic, Diagnostics, Result, fail};
+use crate::lang::{Args, Param, RefKind, ValueRef, Word};
+use crate::styles::{ActCx, BuildCx};
+use crate::world::{Domain, World};
+
+/// The refusal of a word that LAMMPS understands and perigrain does not.
+pub fn not_here(word: &Word, what: &str) -> Diagnostics {
+    let text = format!("{what} `{}` is not in perigrain yet", word.text);
+    Diagnostic::error(Code::NOT_SUPPORTED, word.span, text).into()
+}
+
+/// The unknown or refused keyword `word` of a command: refused by name where LAMMPS has it.
+pub fn bad_keyword(a: &Args, word: &Word, known: &[&'static str], lammps: &[&str]) -> Diagnostics {
+    if lammps.contains(&word.text.as_str()) {
+        return not_here(word, &format!("keyword of {}", a.command()));
+    }
+    a.unknown(word, known)
+}
+
+/// Takes one of the known words; one that only LAMMPS knows is refused by name.
+pub fn choice_or_refuse(
+    a: &mut Args,
+    what: &str,
+    known: &[&'static str],
+    lammps: &[&str],
+) -> Result<&'static str> {
+    match a.peek() {
+        Some(w) if lammps.contains(&w.text.as_str()) => Err(not_here(w, what)),
+        _ => a.choice(what, known),
+    }
+}
+
+/// Takes the value of a `units` keyword: whether distances are in lattice spacings.
+pub fn units_lattice(a: &mut Args) -> Result<bool> {
+    Ok(a.choice("value of units", &["lattice", "box"])? == "lattice")
+}
+
+/// Factors from the words' distances to the box's.
+pub fn scales(world: &World, lattice: bool) -> [f64; 3] {
+    if lattice { world.lattice.spacing } else { [1.0; 3] }
+}
+
+/// Takes an axis: `x`, `y` or `z`.
+pub fn axis(a: &mut Args, what: &str) -> Result<usize> {
+    Ok(match a.choice(what, &["x", "y", "z"])? {
+        "x" => 0,
+        "y" => 1,
+        _ => 2,
+    })
+}
+
+/// Takes a seed of the Park–Miller stream.
+pub fn seed(a: &mut Args) -> Result<u32> {
+    let span = a.here();
+    let k = a.integer_from(1, "the random seed")?;
+    if k < 2_147_483_647 {
+        return Ok(k as u32);
+    }
+    fail(Code::BAD_VALUE, span, format!("the random seed must be below 2147483647, not {k}"))
+}
+
+/// Takes a number, `NULL` (nothing) or a variable.
+pub fn param_or_null(a: &mut Args, what: &str) -> Result<Option<Param>> {
+    if a.eat("NULL") {
+        return Ok(None);
+    }
+    variable_param(a, what).map(Some)
+}
+
+/// Takes a number or `v_name`; references of other kinds are an error here.
+pub fn variable_param(a: &mut Args, what: &str) -> Result<Param> {
+    match a.param(what)? {
+        Param::Ref(r) if r.kind != RefKind::Variable => {
+            fail(Code::WRONG_KIND, r.span, format!("{what} may be a number or a variable, not `{r}`"))
+        }
+        p => Ok(p),
+    }
+}
+
+/// Takes a plain number where LAMMPS would also take a variable that changes with time.
+pub fn constant(a: &mut Args, what: &str) -> Result<f64> {
+    match a.peek() {
+        Some(w) if w.text.starts_with("v_") => Err(not_here(w, &format!("a variable as {what}:"))),
+        _ => a.number(what),
+    }
+}
+
+/// The box, or the error that it is missing.
+pub fn domain<'a>(cx: &BuildCx<'a>) -> Result<&'a Domain> {
+    cx.world.domain().map_err(|d| d.at(cx.span))
+}
+
+/// Refuses a line that must come before the box exists.
+pub fn before_box(cx: &BuildCx, command: &str) -> Result<()> {
+    match cx.world.domain {
+        Some(_) => fail(
+            Code::WRONG_ORDER,
+            cx.span,
+            format!("`{command}` must come before the simulation box is defined"),
+        ),
+        None => Ok(()),
+    }
+}
+
+/// The atom-style variable a word names, without its `v_`.
+pub fn atom_variable(cx: &BuildCx, word: &Word) -> Result<ValueRef> {
+    let r = ValueRef { kind: RefKind::Variable, name: word.text.clone(), index: vec![], span: word.span };
+    cx.value(&r, true)?;
+    Ok(r)
+}
+
+/// Checks that an ID consists of letters, digits and underscores.
+pub fn id(word: &Word, what: &str) -> Result<String> {
+    if word.unknown || word.text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
+        return Ok(word.text.clone());
+    }
+    fail(
+        Code::BAD_VALUE,
+        word.span,
+        format!("{what} `{}` must consist of letters, digits and underscores", word.text),
+    )
+}
+
+/// Reads a whole number from a word.
+pub fn whole(word: &Word, what: &str) -> Result<i64> {
+    match word.text.parse() {
+        Ok(k) => Ok(k),
+        Err(_) if word.unknown => Ok(1),
+        Err(_) => {
+            fail(Code::BAD_NUMBER, word.span, format!("{what} must be a whole number, not `{}`", word.text))
+        }
+    }
+}
+
+/// Reads `a`, `*`, `a*`, `*b` or `a*b` as an inclusive range of ids; open ends are 1 and the last id.
+pub fn id_range(word: &Word, last: i64) -> Result<(i64, i64)> {
+    let part = |s: &str, default: i64| if s.is_empty() { Some(default) } else { s.parse().ok() };
+    let (lo, hi) = match word.text.split_once('*') {
+        Some((a, b)) => (part(a, 1), part(b, last)),
+        None => (word.text.parse().ok(), word.text.parse().ok()),
+    };
+    match (lo, hi) {
+        (Some(a), Some(b)) if a >= 1 && a <= b => Ok((a, b)),
+        _ if word.unknown => Ok((1, last)),
+        _ => fail(Code::BAD_VALUE, word.span, format!("`{}` is no id or range of ids from 1", word.text)),
+    }
+}
+
+/// Gives every particle the mass of its type, where particles have none of their own.
+pub fn masses_by_type(world: &mut World) {
+    if world.particles.style.own_mass() {
+        return;
+    }
+    let (kinds, masses) = (&world.particles.kind, &mut world.particles.mass);
+    for (mass, &kind) in masses.iter_mut().zip(kinds) {
+        *mass = world.type_mass.get(usize::from(kind) - 1).copied().flatten().unwrap_or(1.0);
+    }
+}
+
+/// An act made of a closure.
+struct Do<F> {
+    f: F,
+    particles: bool,
+    settles: Vec<&'static str>,
+}
+
+impl<F: FnOnce(&mut ActCx) -> Result<()>> Act for Do<F> {
+    fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
+        (self.f)(cx)
+    }
+
+    fn needs_particles(&self) -> bool {
+        self.particles
+    }
+
+    fn settles(&self) -> Vec<&'static str> {
+        self.settles.clone()
+    }
+}
+
+/// An act on settings, names or the box: it needs no particles and happens in `perigrain check` too.
+pub fn setting(f: impl FnOnce(&mut ActCx) -> Result<()> + 'static) -> Box<dyn Act> {
+    Box::new(Do { f, particles: false, settles: vec![] })
+}
+
+/// An act on particles that settles these facts of the scene.
+pub fn on_particles(
+    settles: Vec<&'static str>,
+    f: impl FnOnce(&mut ActCx) -> Result<()> + 'static,
+) -> Box<dyn Act> {
+    Box::new(Do { f, particles: true, settles })
+}

@@ -1,0 +1,118 @@
+//! `create_box`: the simulation box and the number of types.
+
+use super::common::{self, bad_keyword, setting};
+use super::{Act, CommandStyle};
+use crate::diag::{Code, Result, fail};
+use crate::lang::Args;
+use crate::math::cformat::general;
+use crate::styles::{BuildCx, Doc, Style};
+use crate::world::region::{INFINITE, Shape};
+use crate::world::{Domain, Face};
+
+/// The command.
+pub struct CreateBox;
+
+/// Keywords LAMMPS has: room for bonded topologies.
+const ELSEWHERE: [&str; 9] = [
+    "bond/types",
+    "angle/types",
+    "dihedral/types",
+    "improper/types",
+    "extra/bond/per/atom",
+    "extra/angle/per/atom",
+    "extra/dihedral/per/atom",
+    "extra/improper/per/atom",
+    "extra/special/per/atom",
+];
+
+impl Style for CreateBox {
+    fn name(&self) -> &'static str {
+        "create_box"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "create_box N REGION",
+            summary: "Creates the simulation box from a block region, for N particle types.",
+            text: "The region must be a block with finite bounds and `side in`. Shrink-wrapped faces start 1e-4 of the \
+                   edge length outside it, as in LAMMPS.",
+            example: "create_box 1 world",
+        }
+    }
+}
+
+impl CommandStyle for CreateBox {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        if cx.world.domain.is_some() {
+            return fail(Code::WRONG_ORDER, a.name_span(), "the simulation box is defined already");
+        }
+        let span = a.here();
+        let types = a.integer_from(1, "the number of types")?;
+        if types > i64::from(u16::MAX) {
+            return fail(Code::BAD_VALUE, span, format!("at most {} types are possible", u16::MAX));
+        }
+        let word = a.expect("a region")?;
+        if word.text == "NULL" {
+            return Err(common::not_here(word, "a general triclinic box: create_box"));
+        }
+        let region = cx.region(word)?;
+        let (lo, hi) = match (&region.shape, region.outside) {
+            (Shape::Block { lo, hi }, false) => (*lo, *hi),
+            _ => return fail(Code::WRONG_KIND, word.span, "the box must be a block with `side in`"),
+        };
+        if (0..3).any(|d| hi[d] <= lo[d] || lo[d].abs() >= INFINITE || hi[d].abs() >= INFINITE) {
+            return fail(Code::BAD_VALUE, word.span, "the box must have finite edges longer than zero");
+        }
+        if let Some(word) = a.next() {
+            return Err(bad_keyword(a, word, &[], &ELSEWHERE));
+        }
+        Ok(setting(move |cx| {
+            let mut domain = Domain::new(lo, hi, cx.world.settings.boundary);
+            open_shrinking_faces(&mut domain);
+            let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
+            cx.say(format!("Created orthogonal box = ({}) to ({})", text(domain.lo), text(domain.hi)));
+            cx.say("  1 by 1 by 1 MPI processor grid");
+            cx.world.domain = Some(domain);
+            cx.world.types = types as usize;
+            cx.world.type_mass = vec![None; types as usize];
+            Ok(())
+        }))
+    }
+}
+
+/// Shrink-wrapped faces start a little outside the region, so that particles on it are inside.
+fn open_shrinking_faces(domain: &mut Domain) {
+    for d in 0..3 {
+        if domain.boundary.0[d][0] == Face::Shrink {
+            domain.lo[d] -= domain.small[d];
+        }
+        if domain.boundary.0[d][1] == Face::Shrink {
+            domain.hi[d] += domain.small[d];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{act, refused, scene};
+
+    #[test]
+    fn box_is_lammps_box() {
+        let mut w = scene("units si\nlattice sc 0.5\nboundary s p f\nregion b block 0 4 0 3 0 3 units box");
+        let said = act(&mut w, "create_box 2 b", &[]).unwrap();
+        // Oracle: the same deck says "orthogonal box = (-0.0004 0 0) to (4.0004 3 3)".
+        assert_eq!(said[0], "Created orthogonal box = (-0.0004 0 0) to (4.0004 3 3)");
+        assert_eq!(w.type_mass.len(), 2);
+        assert_eq!(refused(&w, "create_box 2 b").0, "create_box");
+    }
+
+    #[test]
+    fn refuses_what_is_no_box() {
+        let w =
+            scene("region s sphere 0 0 0 1\nregion o block 0 1 0 1 0 1 side out\nregion f block 0 0 0 1 0 1");
+        for (region, blamed) in [("s", "s"), ("o", "o"), ("f", "f"), ("q", "q")] {
+            assert_eq!(refused(&w, &format!("create_box 1 {region}")).0, blamed);
+        }
+        assert_eq!(refused(&w, "create_box 0 f").0, "0");
+    }
+}

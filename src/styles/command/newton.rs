@@ -1,0 +1,37 @@
+//! `newton`: LAMMPS' choice who computes a pair at a processor's border; accepted, without effect.
+
+use super::common::setting;
+use super::{Act, CommandStyle};
+use crate::diag::{Code, Diagnostic, Result};
+use crate::lang::Args;
+use crate::styles::{BuildCx, Doc, Style};
+
+/// The command.
+pub struct Newton;
+
+impl Style for Newton {
+    fn name(&self) -> &'static str {
+        "newton"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "newton on|off [on|off]",
+            summary: "Accepted for the sake of LAMMPS decks: every pair is computed once, whatever the flags.",
+            text: "One flag for pairs and bonds, or one each.",
+            example: "newton off",
+        }
+    }
+}
+
+impl CommandStyle for Newton {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        a.flag("newton")?;
+        if !a.is_empty() {
+            a.flag("newton for bonds")?;
+        }
+        let text = "newton has no effect here: every pair is computed once";
+        cx.note(Diagnostic::note(Code::NO_EFFECT, a.name_span(), text));
+        Ok(setting(|_| Ok(())))
+    }
+}

@@ -1,0 +1,65 @@
+//! `reset_timestep`: the step counter.
+
+use super::common::setting;
+use super::{Act, CommandStyle};
+use crate::diag::{Code, Result, fail};
+use crate::lang::Args;
+use crate::styles::{BuildCx, Doc, Style};
+
+/// The command.
+pub struct ResetTimestep;
+
+impl Style for ResetTimestep {
+    fn name(&self) -> &'static str {
+        "reset_timestep"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "reset_timestep N [time T]",
+            summary: "Sets the step counter; elapsed time becomes N times the step size, or T.",
+            text: "The scene is left alone. N is a whole number from 0.",
+            example: "reset_timestep 0",
+        }
+    }
+}
+
+impl CommandStyle for ResetTimestep {
+    fn parse(&self, a: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Act>> {
+        let step = a.integer_from(0, "the step")?;
+        let mut time = None;
+        while let Some(word) = a.next() {
+            if word.text != "time" {
+                return Err(a.unknown(word, &["time"]));
+            }
+            let span = a.here();
+            let t = a.number("the time")?;
+            if t < 0.0 {
+                return fail(Code::BAD_VALUE, span, format!("the time must not be negative: {t}"));
+            }
+            time = Some(t);
+        }
+        Ok(setting(move |cx| {
+            let clock = &mut cx.world.clock;
+            clock.reset(step);
+            if let Some(t) = time {
+                clock.time_base = t;
+            }
+            Ok(())
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{refused, scene};
+
+    // Oracle: `timestep 0.1`, `reset_timestep 5` prints time 0.5; `reset_timestep 7 time 3.5` prints 3.5.
+    #[test]
+    fn time_follows_the_counter() {
+        let w = scene("timestep 0.1\nreset_timestep 5");
+        assert_eq!((w.clock.step, w.clock.time()), (5, 0.5));
+        assert_eq!(scene("timestep 0.1\nreset_timestep 7 time 3.5").clock.time(), 3.5);
+        assert_eq!(refused(&w, "reset_timestep -1").0, "-1");
+    }
+}
