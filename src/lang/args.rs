@@ -113,7 +113,8 @@ impl<'a> Args<'a> {
         if word.unknown || a > 0.0 {
             return Ok(a);
         }
-        fail(Code::BAD_VALUE, word.span, format!("{what} must be greater than zero, not {}", word.text))
+        let message = format!("{what} must be greater than zero, not {}", word.text);
+        Err(blame(word, Code::BAD_VALUE, message).into())
     }
 
     /// Takes a number not below zero.
@@ -126,7 +127,7 @@ impl<'a> Args<'a> {
         if word.unknown || a >= 0.0 {
             return Ok(a);
         }
-        fail(Code::BAD_VALUE, word.span, format!("{what} must not be negative: {}", word.text))
+        Err(blame(word, Code::BAD_VALUE, format!("{what} must not be negative: {}", word.text)).into())
     }
 
     /// Takes a whole number.
@@ -138,11 +139,12 @@ impl<'a> Args<'a> {
         match word.text.parse::<i64>() {
             Ok(k) => Ok(k),
             Err(_) if word.unknown => Ok(1),
-            Err(_) => fail(
+            Err(_) => Err(blame(
+                word,
                 Code::BAD_NUMBER,
-                word.span,
                 format!("{what} must be a whole number, not `{}`", word.text),
-            ),
+            )
+            .into()),
         }
     }
 
@@ -169,9 +171,13 @@ impl<'a> Args<'a> {
         match word.text.as_str() {
             "yes" | "on" | "true" => Ok(true),
             "no" | "off" | "false" => Ok(false),
-            _ => {
-                fail(Code::BAD_VALUE, word.span, format!("{what} must be `yes` or `no`, not `{}`", word.text))
-            }
+            _ if word.unknown => Ok(true),
+            _ => Err(blame(
+                word,
+                Code::BAD_VALUE,
+                format!("{what} must be `yes` or `no`, not `{}`", word.text),
+            )
+            .into()),
         }
     }
 
@@ -211,11 +217,8 @@ impl<'a> Args<'a> {
     pub fn type_range(&mut self, types: usize) -> Result<(u16, u16)> {
         let word = self.expect("an atom type")?;
         let bad = || {
-            fail(
-                Code::BAD_VALUE,
-                word.span,
-                format!("`{}` is no type or range of types from 1 to {types}", word.text),
-            )
+            let message = format!("`{}` is no type or range of types from 1 to {types}", word.text);
+            Err(blame(word, Code::BAD_VALUE, message).into())
         };
         let part = |s: &str, default: usize| {
             if s.is_empty() { Some(default) } else { s.parse::<usize>().ok() }
@@ -247,13 +250,7 @@ impl<'a> Args<'a> {
         let list: Vec<_> = self
             .rest()
             .iter()
-            .map(|w| {
-                Diagnostic::error(
-                    Code::EXTRA_ARGUMENT,
-                    w.span,
-                    format!("`{name}` does not expect `{}` here", w.text),
-                )
-            })
+            .map(|w| blame(w, Code::EXTRA_ARGUMENT, format!("`{name}` does not expect `{}` here", w.text)))
             .collect();
         if list.is_empty() { Ok(()) } else { Err(Diagnostics(list)) }
     }
@@ -261,6 +258,15 @@ impl<'a> Args<'a> {
     /// The whole line's place.
     pub fn span(&self) -> Span {
         self.end
+    }
+}
+
+/// A refusal of a word, which also shows where its value was defined if it came from a variable.
+pub fn blame(word: &Word, code: Code, message: impl Into<String>) -> Diagnostic {
+    let d = Diagnostic::error(code, word.span, message);
+    match word.origin {
+        Some(o) => d.label(o, format!("`{}` comes from here", word.text)),
+        None => d,
     }
 }
 
@@ -275,17 +281,14 @@ pub fn parse_number(word: &Word, what: &str) -> Result<f64> {
     let looks = word.text.bytes().all(|b| b.is_ascii_digit() || b"+-.eE".contains(&b));
     match word.text.parse::<f64>() {
         Ok(a) if looks && a.is_finite() => Ok(a),
-        _ => Err(Diagnostic::error(
-            Code::BAD_NUMBER,
-            word.span,
-            format!("{what} must be a number, not `{}`", word.text),
-        )
-        .into()),
+        _ => {
+            Err(blame(word, Code::BAD_NUMBER, format!("{what} must be a number, not `{}`", word.text)).into())
+        }
     }
 }
 
 fn unknown_word(word: &Word, what: &str, known: &[&'static str]) -> Diagnostic {
-    let d = Diagnostic::error(Code::UNKNOWN_KEYWORD, word.span, format!("unknown {what}: `{}`", word.text));
+    let d = blame(word, Code::UNKNOWN_KEYWORD, format!("unknown {what}: `{}`", word.text));
     match nearest(&word.text, known.iter().copied()) {
         Some(n) => d.help(format!("did you mean `{n}`?")),
         None => d.help(format!("known here: {}", known.join(" "))),

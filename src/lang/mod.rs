@@ -2,8 +2,29 @@
 
 pub mod args;
 pub mod command;
+mod condition;
+pub mod expr;
+mod flow;
+mod lex;
+pub mod number;
 pub mod reference;
+mod scan;
+mod script;
+mod substitute;
+mod text;
+mod value;
+mod vars;
+
+#[cfg(test)]
+mod tests;
 
 pub use args::Args;
 pub use command::{Command, Line, Word};
+pub use expr::{Dep, Expr};
+pub use flow::{Files, Flow};
+pub use number::{printf, value_text};
 pub use reference::{Param, RefKind, ValueRef};
+pub use script::Script;
+pub use substitute::{Substituted, substitute, substitute_known};
+pub use value::{Clock, Env, Value};
+pub use vars::{Kind, Vars};

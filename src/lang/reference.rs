@@ -30,6 +30,26 @@ pub struct ValueRef {
     pub span: Span,
 }
 
+impl RefKind {
+    /// The letter before the underscore.
+    pub fn letter(self) -> char {
+        match self {
+            RefKind::Variable => 'v',
+            RefKind::Compute => 'c',
+            RefKind::Fix => 'f',
+            RefKind::ComputeAtom => 'C',
+            RefKind::FixAtom => 'F',
+        }
+    }
+
+    /// The kind a letter stands for.
+    pub fn from_letter(letter: char) -> Option<Self> {
+        [Self::Variable, Self::Compute, Self::Fix, Self::ComputeAtom, Self::FixAtom]
+            .into_iter()
+            .find(|k| k.letter() == letter)
+    }
+}
+
 impl ValueRef {
     /// Reads `v_name`, `c_ID[2]` …; `None` if the text does not begin like a reference.
     ///
@@ -67,14 +87,7 @@ impl ValueRef {
 
 impl std::fmt::Display for ValueRef {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let letter = match self.kind {
-            RefKind::Variable => 'v',
-            RefKind::Compute => 'c',
-            RefKind::Fix => 'f',
-            RefKind::ComputeAtom => 'C',
-            RefKind::FixAtom => 'F',
-        };
-        write!(f, "{letter}_{}", self.name)?;
+        write!(f, "{}_{}", self.kind.letter(), self.name)?;
         self.index.iter().try_for_each(|k| write!(f, "[{k}]"))
     }
 }

@@ -1,0 +1,226 @@
+//! Commands that move the cursor: if, jump, label, next, include, quit; and `variable`, which steers them.
+
+use super::args::{Args, blame};
+use super::command::{Command, Word};
+use super::condition;
+use super::script::{Frame, Script};
+use super::substitute::expand;
+use super::text::Mapped;
+use super::value::Env;
+use super::vars::Vars;
+use crate::diag::{Code, Diagnostic, FileId, Result, Sources, fail};
+
+/// How deep includes and then-commands may nest.
+const NESTING: usize = 100;
+
+/// Reads files for `include` and `jump`.
+pub trait Files {
+    /// The whole text of a file.
+    fn read(&self, path: &str) -> std::io::Result<String>;
+}
+
+/// What became of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flow {
+    /// It is none of the flow commands.
+    NotMine,
+    /// It is done.
+    Done,
+    /// The deck asks to end with this exit status.
+    Quit(i32),
+}
+
+/// One branch of an `if`: its condition (none for `else`) and its commands.
+type Branch<'a> = (Option<&'a Word>, &'a [Word]);
+
+impl Script {
+    /// The commands that [`Script::flow`] carries out.
+    pub const FLOW: &'static [&'static str] = &["if", "jump", "label", "next", "include", "quit", "variable"];
+
+    /// Carries out a command that moves the cursor or sets a variable.
+    pub fn flow(
+        &mut self,
+        command: &Command,
+        sources: &mut Sources,
+        vars: &mut Vars,
+        env: &mut dyn Env,
+        files: &dyn Files,
+    ) -> Result<Flow> {
+        match command.name.text.as_str() {
+            "if" => self.branch(command, vars, env)?,
+            "jump" => self.jump(command, sources, files)?,
+            "include" => self.include(command, sources, files)?,
+            "label" => {
+                let mut args = Args::new(command);
+                args.expect("the label's name")?;
+                args.finish()?;
+            }
+            "next" => {
+                Args::new(command).expect("a variable's name")?;
+                self.skip_jump |= vars.next(&command.args)?;
+            }
+            "quit" => return self.quit(command),
+            "variable" => {
+                vars.define(command, env)?;
+                if let Some(name) = command.args.first().filter(|_| self.speculative) {
+                    vars.mark_unknown(&name.text);
+                }
+            }
+            _ => return Ok(Flow::NotMine),
+        }
+        Ok(Flow::Done)
+    }
+
+    fn branch(&mut self, command: &Command, vars: &Vars, env: &mut dyn Env) -> Result<()> {
+        self.room(command)?;
+        let mut chosen: Vec<Word> = Vec::new();
+        let mut unsure = false;
+        for (condition, commands) in branches(command)? {
+            let holds = condition.map_or(Ok(Some(true)), |c| evaluate(c, vars, env))?;
+            if holds == Some(false) {
+                continue;
+            }
+            chosen.extend_from_slice(commands);
+            unsure |= holds.is_none();
+            if holds == Some(true) {
+                break;
+            }
+        }
+        let speculative = unsure || self.speculative;
+        self.frames.push(Frame::Commands { queue: chosen.into(), speculative });
+        Ok(())
+    }
+
+    fn jump(&mut self, command: &Command, sources: &mut Sources, files: &dyn Files) -> Result<()> {
+        let mut args = Args::new(command);
+        let target = args.expect("a file, or SELF")?;
+        let label = args.next();
+        args.finish()?;
+        if std::mem::take(&mut self.skip_jump) {
+            return Ok(());
+        }
+        if self.speculative {
+            self.escaped = true;
+            return Ok(());
+        }
+        let again = !self.made.insert((command.span.file, command.span.start));
+        if self.escaped && again {
+            return Ok(());
+        }
+        let Some((level, current)) = self.file() else {
+            return fail(Code::WRONG_ORDER, command.span, "there is no file to jump in");
+        };
+        let file = if target.text == "SELF" { current } else { load(target, sources, files)? };
+        self.frames[level] = Frame::File { file, at: 0 };
+        if label.is_some() {
+            self.frames.truncate(level + 1);
+        }
+        self.seeking = label.cloned();
+        Ok(())
+    }
+
+    fn include(&mut self, command: &Command, sources: &mut Sources, files: &dyn Files) -> Result<()> {
+        let mut args = Args::new(command);
+        let target = args.expect("a file")?;
+        args.finish()?;
+        self.room(command)?;
+        let file = load(target, sources, files)?;
+        self.frames.push(Frame::File { file, at: 0 });
+        Ok(())
+    }
+
+    fn quit(&mut self, command: &Command) -> Result<Flow> {
+        let mut args = Args::new(command);
+        let span = args.here();
+        let status = if args.is_empty() { 0 } else { args.integer("the exit status")? };
+        let Ok(status) = i32::try_from(status) else {
+            return fail(Code::BAD_VALUE, span, "this is no exit status");
+        };
+        args.finish()?;
+        if self.speculative {
+            self.escaped = true;
+            return Ok(Flow::Done);
+        }
+        Ok(Flow::Quit(status))
+    }
+
+    /// Drops finished frames and refuses one level too many.
+    fn room(&mut self, command: &Command) -> Result<()> {
+        while matches!(self.frames.last(), Some(Frame::Commands { queue, .. }) if queue.is_empty()) {
+            self.frames.pop();
+        }
+        if self.frames.len() < NESTING {
+            return Ok(());
+        }
+        fail(Code::CONFLICT, command.span, format!("files and then-commands nest deeper than {NESTING}"))
+    }
+}
+
+/// The branches of an `if`.
+fn branches(command: &Command) -> Result<Vec<Branch<'_>>> {
+    let mut args = Args::new(command);
+    let mut out = Vec::new();
+    let condition = args.expect("a condition")?;
+    let then = args.expect("the word then")?;
+    if then.text != "then" {
+        return Err(
+            blame(then, Code::UNKNOWN_KEYWORD, &format!("`{}` found, expected then", then.text)).into()
+        );
+    }
+    args.clone().expect("a command to carry out")?;
+    out.push((Some(condition), until_next(&mut args)));
+    while let Some(word) = args.next() {
+        if word.text == "elif" {
+            let condition = args.expect("a condition")?;
+            out.push((Some(condition), until_next(&mut args)));
+            continue;
+        }
+        out.push((None, until_next(&mut args)));
+        if let Some(w) = args.next() {
+            let message = format!("`{}` after else can never be reached", w.text);
+            return Err(blame(w, Code::EXTRA_ARGUMENT, &message).into());
+        }
+    }
+    Ok(out)
+}
+
+/// The words up to the next `elif` or `else`.
+fn until_next<'a>(args: &mut Args<'a>) -> &'a [Word] {
+    let all = args.clone().rest();
+    let n = all.iter().position(|w| w.text == "elif" || w.text == "else").unwrap_or(all.len());
+    for _ in 0..n {
+        args.next();
+    }
+    &all[..n]
+}
+
+/// Whether a condition holds; `None` if that is unknown.
+fn evaluate(word: &Word, vars: &Vars, env: &mut dyn Env) -> Result<Option<bool>> {
+    let text = Mapped::whole(&word.text, word.span, word.origin, word.unknown);
+    let full = expand(&text, vars, env, &mut vec![])?;
+    let truth = condition::holds(&full);
+    if word.unknown || full.unknown(0..full.text.len()) {
+        return Ok(None);
+    }
+    truth.map(Some)
+}
+
+/// Reads a file into the sources, once per content.
+fn load(path: &Word, sources: &mut Sources, files: &dyn Files) -> Result<FileId> {
+    let text = files.read(&path.text).map_err(|e| {
+        let reason = match e.kind() {
+            std::io::ErrorKind::NotFound => "does not exist".to_owned(),
+            _ => format!("cannot be read: {e}"),
+        };
+        let d: Diagnostic = blame(path, Code::NO_FILE, &format!("the file `{}` {reason}", path.text));
+        crate::diag::Diagnostics::from(d)
+    })?;
+    let mut k = 0;
+    while let Some(s) = sources.get(FileId(k)) {
+        if s.name == path.text && s.text == text {
+            return Ok(FileId(k));
+        }
+        k += 1;
+    }
+    Ok(sources.add(path.text.clone(), text))
+}

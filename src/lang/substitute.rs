@@ -1,0 +1,176 @@
+//! `$x`, `${name}`, `$(formula)` and `$(formula:%8.3f)` inside lines and inside quoted text.
+
+use super::expr::Expr;
+use super::lex::{Quote, close_quote, opening, unclosed};
+use super::number::printf;
+use super::scan::{place, taken};
+use super::text::{Mapped, within};
+use super::value::Env;
+use super::vars::{Text, Vars};
+use crate::diag::{Code, Result, Span, fail};
+use nom::bytes::complete::{tag, take_until};
+use nom::character::complete::{anychar, char};
+use nom::combinator::verify;
+use nom::sequence::{delimited, preceded};
+use nom::{IResult, Parser, branch::alt};
+
+/// What stands for a value that is not known yet, so that the line around it can still be checked.
+const STAND_IN: &str = "1";
+
+/// A text after substitution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Substituted {
+    /// The text.
+    pub text: String,
+    /// Whether an unknown value went into it (`check` mode).
+    pub unknown: bool,
+}
+
+/// What follows a dollar sign.
+enum Dollar<'a> {
+    Name(&'a str),
+    Formula(&'a str),
+}
+
+/// Puts values into a text that stands at `span`, outside the quotes within it (as `print` and `if` do).
+pub fn substitute(text: &str, span: Span, vars: &Vars, env: &mut dyn Env) -> Result<String> {
+    Ok(substitute_known(text, span, vars, env)?.text)
+}
+
+/// As [`substitute`], and says whether all values were known.
+pub fn substitute_known(text: &str, span: Span, vars: &Vars, env: &mut dyn Env) -> Result<Substituted> {
+    let line = expand(&Mapped::whole(text, span, None, false), vars, env, &mut vec![])?;
+    let unknown = line.unknown(0..line.text.len().max(1));
+    Ok(Substituted { text: line.text, unknown })
+}
+
+/// Puts values into a line outside its quotes; `echoes` gets the line after each of them.
+pub(super) fn expand(
+    line: &Mapped,
+    vars: &Vars,
+    env: &mut dyn Env,
+    echoes: &mut Vec<String>,
+) -> Result<Mapped> {
+    let text = line.text.as_str();
+    let mut out = Mapped::default();
+    let (mut rest, mut from) = (text, 0);
+    let mut quote: Option<(Quote, usize)> = None;
+    while let Some(c) = rest.chars().next() {
+        let at = place(text, rest);
+        if let Some((q, _)) = quote {
+            match close_quote(rest, q) {
+                Ok((after, ())) => (quote, rest) = (None, after),
+                Err(_) => rest = &rest[c.len_utf8()..],
+            }
+            continue;
+        }
+        if let Ok((after, q)) = opening(rest) {
+            (quote, rest) = (Some((q, at)), after);
+            continue;
+        }
+        if c != '$' {
+            rest = &rest[c.len_utf8()..];
+            continue;
+        }
+        let Ok((after, dollar)) = dollar(rest) else { return Err(no_dollar(line, rest)) };
+        let range = at..place(text, after);
+        let value = lookup(line, &dollar, range.clone(), vars, env)?;
+        out.append(line, from..at);
+        let shown = if value.unknown { STAND_IN } else { &value.text };
+        out.push_value(shown, line.span(range.clone()), value.origin, value.unknown);
+        (rest, from) = (after, range.end);
+        echoes.push(format!("{}{rest}", out.text));
+    }
+    if let Some((q, at)) = quote {
+        return Err(unclosed(q, line.span(at..at + 1)).into());
+    }
+    if from == 0 {
+        return Ok(line.clone());
+    }
+    out.append(line, from..text.len());
+    Ok(out)
+}
+
+fn dollar(input: &str) -> IResult<&str, Dollar<'_>> {
+    let braces = delimited(tag("{"), take_until("}"), char('}')).map(Dollar::Name);
+    let formula = delimited(char('('), balanced, char(')')).map(Dollar::Formula);
+    let single = taken(verify(anychar, |c| !"{(\"' \t\r\n$".contains(*c))).map(Dollar::Name);
+    preceded(char('$'), alt((braces, formula, single))).parse(input)
+}
+
+/// Everything up to the parenthesis that closes one already open.
+fn balanced(input: &str) -> IResult<&str, &str> {
+    let mut depth = 0usize;
+    for (k, c) in input.char_indices() {
+        match c {
+            '(' => depth += 1,
+            ')' if depth == 0 => return Ok((&input[k..], &input[..k])),
+            ')' => depth -= 1,
+            _ => {}
+        }
+    }
+    Err(nom::Err::Error(nom::error::Error::new(input, nom::error::ErrorKind::Char)))
+}
+
+/// A dollar sign that no variable follows.
+fn no_dollar(line: &Mapped, rest: &str) -> crate::diag::Diagnostics {
+    let at = place(&line.text, rest);
+    let (end, message) = match rest.as_bytes().get(1) {
+        Some(b'{') => (line.text.len(), "this ${ is never closed by }"),
+        Some(b'(') => (line.text.len(), "this $( is never closed by )"),
+        _ => (at + 1, "a variable's name is expected after $"),
+    };
+    let d = crate::diag::Diagnostic::error(Code::SYNTAX, line.span(at..end), message);
+    d.help("write $x, ${name} or $(formula); put text with a $ of its own into quotes").into()
+}
+
+fn lookup(
+    line: &Mapped,
+    dollar: &Dollar<'_>,
+    range: std::ops::Range<usize>,
+    vars: &Vars,
+    env: &mut dyn Env,
+) -> Result<Text> {
+    let span = line.span(range.clone());
+    let whole = match dollar {
+        Dollar::Name(name) => {
+            let braced = line.text[range.start..].starts_with("${");
+            let longer = if braced { "" } else { &line.text[range.start + 1..] };
+            return vars.text(name, longer, span, env);
+        }
+        Dollar::Formula(text) => *text,
+    };
+    let at = range.start + 2;
+    let (formula, format) = match whole.rfind(':') {
+        Some(k) => (&whole[..k], Some(&whole[k + 1..])),
+        None => (whole, None),
+    };
+    let place = line.span(at..(at + formula.len()).max(at + 1));
+    let place = if formula.is_empty() { span } else { place };
+    let value = Expr::parse(formula, place)?.number(vars, env)?;
+    let Some(value) = value else {
+        return Ok(Text { text: String::new(), origin: None, unknown: true });
+    };
+    let text = match format {
+        None => crate::math::cformat::general(value + 0.0, 20),
+        Some(f) => {
+            let place = within(line.span(at..at + whole.len()), whole.len(), formula.len() + 1..whole.len());
+            float_format(f, place)?;
+            printf(f, value + 0.0).or_else(|e| fail(Code::SYNTAX, place, e))?
+        }
+    };
+    Ok(Text { text, origin: None, unknown: false })
+}
+
+/// Refuses a format that does not suit a number with a fraction.
+pub(super) fn float_format(format: &str, span: Span) -> Result<()> {
+    let parsed = crate::math::cformat::Format::parse(format);
+    let specs: Vec<_> = match &parsed {
+        Ok(f) => f.specs().collect(),
+        Err(e) => return fail(Code::SYNTAX, span, format!("`{format}` is no format: {}", e.message)),
+    };
+    if specs.len() == 1 && specs[0].is_float() {
+        return Ok(());
+    }
+    fail(Code::SYNTAX, span, format!("`{format}` is no format for a number; one %g, %f or %e is expected"))
+}
