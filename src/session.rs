@@ -1,1 +1,384 @@
 //! One deck being worked off: text in, diagnostics and results out.
+
+mod checking;
+mod commands;
+mod running;
+
+use crate::diag::{Code, Diagnostic, Diagnostics, Result, Sources, Span, fail, nearest};
+use crate::graph::build::{Context, DECLARATIONS, declare};
+use crate::graph::env::{DeckEnv, DeckValues};
+use crate::graph::{Graph, Node, Role};
+use crate::lang::{Command, Files, Flow, Line, Script, Vars};
+use crate::out::log::Log;
+use crate::plan::StepPlan;
+use crate::run::Watch;
+use crate::styles::command::COMMANDS;
+use crate::styles::{ActCx, Use, UseKind};
+use crate::world::{Compat, GroupId, World};
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What a session is asked to do with a deck.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// Work it off.
+    #[default]
+    Run,
+    /// Read it and report every problem; change nothing, write nothing.
+    Check,
+    /// Print each run's sealed plan instead of running it.
+    Plan,
+    /// Run, then print each run's plan with time and bytes per op.
+    Measure,
+}
+
+/// How a session is set up.
+#[derive(Clone)]
+pub struct Options {
+    /// What to do.
+    pub mode: Mode,
+    /// Where the session speaks.
+    pub log: Log,
+    /// LAMMPS' artefacts too.
+    pub compat: bool,
+    /// The list layout for every peridynamic body.
+    pub force_list: bool,
+    /// Work also where everything is at rest.
+    pub no_skipping: bool,
+    /// The portable kernels only.
+    pub portable: bool,
+    /// Index variables from the command line.
+    pub vars: Vec<(String, Vec<String>)>,
+    /// The deck's folder, for files named in it.
+    pub folder: PathBuf,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            mode: Mode::Run,
+            log: Log::silent(),
+            compat: false,
+            force_list: false,
+            no_skipping: false,
+            portable: false,
+            vars: vec![],
+            folder: PathBuf::new(),
+        }
+    }
+}
+
+/// How a deck ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ending {
+    /// `quit STATUS`, else 0.
+    pub status: i32,
+    /// Ended from outside.
+    pub interrupted: bool,
+}
+
+/// A deck being worked off.
+pub struct Session {
+    /// All texts read.
+    pub sources: Sources,
+    /// Variables.
+    pub vars: Vars,
+    /// Declarations.
+    pub graph: Graph,
+    /// The scene.
+    pub world: World,
+    /// Warnings and notes so far.
+    pub notes: Diagnostics,
+    options: Options,
+    /// The last run's plan, kept while nothing it depends on has changed.
+    pub plan: Option<StepPlan>,
+    watch: Box<dyn Watch>,
+    ran: bool,
+    shown: usize,
+    interrupted: bool,
+}
+
+/// Files as the system has them.
+struct RealFiles;
+
+impl Files for RealFiles {
+    fn read(&self, path: &str) -> std::io::Result<String> {
+        let bytes = std::fs::read(path)?;
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
+    }
+}
+
+/// No progress shown.
+struct Unwatched;
+
+impl Watch for Unwatched {
+    fn step(&mut self, _done: i64, _total: i64) {}
+}
+
+impl Session {
+    /// A session before its first line.
+    ///
+    /// # Errors
+    /// Variables of the command line that cannot be set.
+    pub fn new(options: Options) -> Result<Self> {
+        let mut s = Self {
+            sources: Sources::default(),
+            vars: Vars::new(),
+            graph: Graph::default(),
+            world: World::default(),
+            notes: Diagnostics::default(),
+            options,
+            plan: None,
+            watch: Box::new(Unwatched),
+            ran: false,
+            shown: 0,
+            interrupted: false,
+        };
+        for (name, values) in s.options.vars.clone() {
+            s.vars.set_index(&name, &values)?;
+        }
+        s.reset_world();
+        Ok(s)
+    }
+
+    /// Who is told of each step.
+    pub fn set_watch(&mut self, watch: Box<dyn Watch>) {
+        self.watch = watch;
+    }
+
+    /// A flag that ends a run at the next whole step when set.
+    pub fn stop_flag(&self) -> Arc<std::sync::atomic::AtomicBool> {
+        self.world.settings.stop.clone()
+    }
+
+    /// An empty world with this session's settings; the computes that thermo output needs are there.
+    fn reset_world(&mut self) {
+        let stop = self.world.settings.stop.clone();
+        let compat = match self.options.compat {
+            true => Compat::Lammps,
+            false => Compat::Perigrain,
+        };
+        self.world = World::default();
+        let s = &mut self.world.settings;
+        s.compat = compat;
+        s.stop = stop;
+        s.force_list = self.options.force_list;
+        s.no_skipping = self.options.no_skipping;
+        s.portable = self.options.portable;
+        self.world.folder = self.options.folder.clone();
+        self.graph = Graph::default();
+        self.plan = None;
+        self.ran = false;
+    }
+
+    /// Works off a deck.
+    ///
+    /// # Errors
+    /// The first line that is refused or fails; in check mode all problems of the whole deck.
+    pub fn run_text(&mut self, name: &str, text: &str) -> Result<Ending> {
+        let file = self.sources.add(name, text);
+        let mut script = Script::new(file);
+        let outcome = self.work_off(&mut script);
+        let flushed = self.options.log.flush();
+        let ending = outcome?;
+        flushed?;
+        Ok(ending)
+    }
+
+    fn work_off(&mut self, script: &mut Script) -> Result<Ending> {
+        let mut problems = Diagnostics::default();
+        let mut status = 0;
+        loop {
+            let line = match self.next_line(script) {
+                Ok(None) => break,
+                Ok(Some(line)) => line,
+                Err(e) if self.checking() => {
+                    let hopeless = problems.0.len() > 200;
+                    problems.append(e);
+                    if hopeless {
+                        break;
+                    }
+                    continue;
+                }
+                Err(e) => return Err(e),
+            };
+            match self.line(script, &line) {
+                Ok(Some(code)) => {
+                    status = code;
+                    break;
+                }
+                Ok(None) => {}
+                Err(e) if self.checking() => problems.append(e),
+                Err(e) => return Err(e),
+            }
+            if self.interrupted {
+                break;
+            }
+        }
+        if problems.is_empty() { Ok(Ending { status, interrupted: self.interrupted }) } else { Err(problems) }
+    }
+
+    fn checking(&self) -> bool {
+        self.options.mode == Mode::Check
+    }
+
+    fn next_line(&mut self, script: &mut Script) -> Result<Option<Line>> {
+        let vars = Arc::new(self.vars.clone());
+        let checking = self.checking();
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, vars, checking };
+        script.next(&mut self.sources, &self.vars, &mut env)
+    }
+
+    /// Works off one line; `Some(status)` when the deck is over.
+    fn line(&mut self, script: &mut Script, line: &Line) -> Result<Option<i32>> {
+        self.options.log.echo(&line.raw)?;
+        for text in &line.echoes {
+            self.options.log.echo(text)?;
+        }
+        let Some(cmd) = &line.command else { return Ok(None) };
+        let outcome = self.command(script, cmd);
+        self.say_notes()?;
+        outcome.map_err(|e| e.at(cmd.span))
+    }
+
+    /// Warnings go to screen and log as they come.
+    fn say_notes(&mut self) -> Result<()> {
+        if self.checking() {
+            return Ok(());
+        }
+        for d in &self.notes.0[self.shown..] {
+            let one = Diagnostics(vec![d.clone()]);
+            let text = crate::diag::render::plain(&one, &self.sources);
+            self.options.log.line(text.trim_end())?;
+        }
+        self.shown = self.notes.0.len();
+        Ok(())
+    }
+
+    fn command(&mut self, script: &mut Script, cmd: &Command) -> Result<Option<i32>> {
+        match self.flow(script, cmd)? {
+            Flow::Quit(status) => return Ok(Some(status)),
+            Flow::Done => return Ok(None),
+            Flow::NotMine => {}
+        }
+        let name = cmd.name.text.as_str();
+        if name == "run" {
+            self.run_command(cmd)?;
+        } else if name == "write_dump" {
+            self.write_dump(cmd)?;
+        } else if DECLARATIONS.contains(&name) {
+            self.declare(cmd)?;
+        } else if let Some(style) = COMMANDS.iter().find(|c| c.name() == name) {
+            self.act(cmd, *style)?;
+        } else if !self.own_command(cmd)? {
+            return Err(unknown_command(cmd));
+        }
+        Ok(None)
+    }
+
+    fn flow(&mut self, script: &mut Script, cmd: &Command) -> Result<Flow> {
+        let snapshot = Arc::new(self.vars.clone());
+        let redefines = cmd.name.text == "variable"
+            && cmd.args.first().is_some_and(|w| {
+                self.vars.kind(&w.text).is_some() && self.graph.forces_use_variable(&w.text)
+            });
+        let checking = self.checking();
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, vars: snapshot, checking };
+        let flow = script.flow(cmd, &mut self.sources, &mut self.vars, &mut env, &RealFiles)?;
+        if !matches!(flow, Flow::NotMine) {
+            if redefines || cmd.name.text == "next" {
+                self.world.touch();
+            }
+            self.graph.variables = commands::variable_kinds(&self.vars);
+            let provides = (cmd.name.text == "variable")
+                .then(|| cmd.args.first().map(|w| Use { kind: UseKind::Variable, name: w.text.clone() }))
+                .flatten();
+            self.record(cmd, Role::Declare, provides, commands::variable_uses(cmd), vec![]);
+        }
+        Ok(flow)
+    }
+
+    fn record(
+        &mut self,
+        cmd: &Command,
+        role: Role,
+        provides: Option<Use>,
+        mut uses: Vec<Use>,
+        settles: Vec<&'static str>,
+    ) {
+        uses.sort();
+        uses.dedup();
+        let text = cmd.text.trim().to_string();
+        self.graph.nodes.push(Node { role, provides, text, span: cmd.span, uses, settles });
+    }
+
+    fn declare(&mut self, cmd: &Command) -> Result<()> {
+        self.thermo_computes();
+        let (notes, uses) = (RefCell::default(), RefCell::default());
+        let cx = Context { span: cmd.span, checking: self.checking(), notes: &notes, uses: &uses };
+        let outcome = declare(&mut self.graph, &mut self.world, cmd, &cx);
+        self.notes.append(notes.into_inner());
+        let declared = outcome?;
+        self.record(cmd, Role::Declare, declared.provides, uses.into_inner(), vec![]);
+        Ok(())
+    }
+
+    fn act(&mut self, cmd: &Command, style: &'static dyn crate::styles::CommandStyle) -> Result<()> {
+        let (notes, uses) = (RefCell::default(), RefCell::default());
+        let cx = Context { span: cmd.span, checking: self.checking(), notes: &notes, uses: &uses };
+        let mut said = vec![];
+        let outcome: Result<Vec<&'static str>> = (|| {
+            let mut args = crate::lang::Args::new(cmd);
+            let act = style.parse(&mut args, &cx.build(&self.graph, &self.world, "", GroupId::ALL))?;
+            args.finish()?;
+            let settles = act.settles().to_vec();
+            if self.checking() && act.needs_particles() {
+                return Ok(settles);
+            }
+            let mut values =
+                DeckValues { graph: &self.graph, vars: Arc::new(self.vars.clone()) };
+            self.world.spread_type_masses();
+            let world = &mut self.world;
+            act.apply(&mut ActCx { world, values: &mut values, span: cmd.span, said: &mut said, notes: &notes })?;
+            self.world.touch();
+            Ok(settles)
+        })();
+        self.notes.append(notes.into_inner());
+        for line in &said {
+            self.options.log.line(line)?;
+        }
+        let settles = outcome?;
+        let provides = commands::provided(cmd);
+        self.record(cmd, Role::Act, provides, uses.into_inner(), settles);
+        Ok(())
+    }
+}
+
+fn unknown_command(cmd: &Command) -> Diagnostics {
+    let name = cmd.name.text.as_str();
+    if commands::LAMMPS_ONLY.contains(&name) {
+        return Diagnostic::error(
+            Code::NOT_SUPPORTED,
+            cmd.name.span,
+            format!("`{name}` is a LAMMPS command that perigrain does not have yet"),
+        )
+        .into();
+    }
+    let known = COMMANDS.iter().map(|c| c.name()).chain(DECLARATIONS).chain(commands::OWN.iter().copied());
+    let d = Diagnostic::error(Code::UNKNOWN_COMMAND, cmd.name.span, format!("unknown command `{name}`"));
+    match nearest(name, known) {
+        Some(n) => d.help(format!("did you mean `{n}`?")),
+        None => d,
+    }
+    .into()
+}
+
+/// The folder a deck's relative names refer to: its own.
+pub fn folder_of(deck: &Path) -> PathBuf {
+    deck.parent().map(Path::to_path_buf).unwrap_or_default()
+}
+
+fn refuse<T>(code: Code, span: Span, text: impl Into<String>) -> Result<T> {
+    fail(code, span, text)
+}

@@ -1,11 +1,13 @@
 //! The command line: what was asked for, done, and turned into an exit code.
 
 pub mod args;
+pub mod deck;
 pub mod manual;
 pub mod progress;
 pub mod tasks;
 
 use crate::diag::{CODES, nearest};
+use crate::session::Mode;
 use args::Usage;
 use std::process::ExitCode;
 use tasks::Task;
@@ -36,7 +38,11 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Explain(code) => show(&explain(&code)?),
         Task::Doc(None) => show(&manual::list()),
         Task::Doc(Some(name)) => show(&manual::page(&name)?),
-        _ => Ok(FAILED),
+        Task::Run(o) => deck::work_off(&o, Mode::Run),
+        Task::Check(o) => deck::work_off(&o, Mode::Check),
+        Task::Plan { options, dot: true, .. } => deck::draw(&options),
+        Task::Plan { options, measure: true, .. } => deck::work_off(&options, Mode::Measure),
+        Task::Plan { options, .. } => deck::work_off(&options, Mode::Plan),
     }
 }
 

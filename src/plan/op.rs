@@ -154,6 +154,23 @@ pub struct Tick {
     pub atom_energy: bool,
 }
 
+impl Tick {
+    /// The tick of something that happens between runs.
+    pub fn between_runs(c: &crate::world::Clock) -> Tick {
+        Tick {
+            step: c.step,
+            first: c.step,
+            last: c.step,
+            dt: c.dt,
+            setup: false,
+            unchanged: true,
+            energy: false,
+            virial: false,
+            atom_energy: false,
+        }
+    }
+}
+
 /// What an op reads and writes, by column or state name (`x`, `v`, `f`, `families`, `c_dmg`).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Access {

@@ -7,6 +7,7 @@ pub mod families;
 pub mod groups;
 pub mod lattice;
 pub mod material;
+pub mod memory;
 pub mod particles;
 pub mod potentials;
 pub mod rebuild;
@@ -62,6 +63,8 @@ pub struct World {
     pub memo: BTreeMap<String, Vec<f64>>,
     /// When neighbour lists were last rebuilt.
     pub rebuild: Rebuild,
+    /// Peridynamic bonds, from the first run on.
+    pub families: Option<families::Families>,
     /// Materials by ID.
     pub materials: BTreeMap<String, material::Material>,
     /// What the deck's folder is, for files beside it.
@@ -98,6 +101,23 @@ impl World {
     /// Number of particles.
     pub fn n(&self) -> usize {
         self.particles.len()
+    }
+
+    /// Keeps the particle `old[k]` at each new index `k`, with all that belongs to it; bonds of those
+    /// left out are gone.
+    pub fn gather(&mut self, old: &[usize]) {
+        let n = self.n();
+        self.particles.gather(old);
+        self.columns.gather(old);
+        if let Some(families) = &mut self.families {
+            let mut to = vec![None; n];
+            for (new, &k) in old.iter().enumerate() {
+                to[k] = Some(new as u32);
+            }
+            families.remap(&to);
+        }
+        self.slots.invalidate();
+        self.touch();
     }
 
     /// Copies the masses of types into the per-particle column where particles have none of their own.

@@ -1,6 +1,7 @@
 //! Pair styles: forces between particles.
 
 pub mod materials;
+mod peri_pmb;
 
 use super::{BuildCx, SealCx, Style};
 use crate::diag::{Code, Result, fail};
@@ -56,6 +57,11 @@ pub trait Pair: Send {
         &[]
     }
 
+    /// For peridynamic styles: whether forces are true forces (else force densities, as LAMMPS).
+    fn true_forces(&self) -> Option<bool> {
+        None
+    }
+
     /// Contradictions within the present declarations that a run would trip over, left as notes in `cx`.
     fn check(&self, _cx: &BuildCx) {}
 
@@ -64,4 +70,4 @@ pub trait Pair: Send {
 }
 
 /// Every pair style.
-pub const PAIRS: &[&dyn PairStyle] = &[];
+pub const PAIRS: &[&dyn PairStyle] = &[&peri_pmb::PeriPmb];

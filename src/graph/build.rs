@@ -1,0 +1,470 @@
+//! Lines that declare become nodes: pair styles, fixes, computes, dumps, thermo.
+
+use super::node::{ComputeNode, DumpNode, FixNode, Graph, PairNode};
+use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
+use crate::lang::{Args, Command};
+use crate::styles::compute::COMPUTES;
+use crate::styles::dump::DUMPS;
+use crate::styles::fix::FIXES;
+use crate::styles::pair::PAIRS;
+use crate::styles::{BuildCx, Style, Use, UseKind};
+use crate::world::{GroupId, World};
+
+/// The commands that declare.
+pub const DECLARATIONS: [&str; 17] = [
+    "pair_style",
+    "pair_coeff",
+    "pair_modify",
+    "peri_modify",
+    "fix",
+    "unfix",
+    "fix_modify",
+    "compute",
+    "uncompute",
+    "compute_modify",
+    "dump",
+    "undump",
+    "dump_modify",
+    "thermo",
+    "thermo_style",
+    "thermo_modify",
+    "write_dump",
+];
+
+/// Finds a style in its table.
+///
+/// # Errors
+/// An unknown style, with the nearest known one.
+pub fn style<'t, S: Style + ?Sized>(table: &[&'t S], kind: &str, args: &mut Args) -> Result<&'t S> {
+    let word = args.expect(&format!("a {kind} style"))?;
+    if let Some(s) = table.iter().find(|s| s.name() == word.text) {
+        return Ok(s);
+    }
+    if LAMMPS_STYLES.contains(&(kind, word.text.as_str())) {
+        let text = format!("{kind} style `{}` is LAMMPS', but perigrain does not have it yet", word.text);
+        return fail(Code::NOT_SUPPORTED, word.span, text);
+    }
+    let d = Diagnostic::error(Code::UNKNOWN_STYLE, word.span, format!("unknown {kind} style `{}`", word.text));
+    let known: Vec<&str> = table.iter().map(|s| s.name()).collect();
+    Err(match nearest(&word.text, known.iter().copied()) {
+        Some(n) => d.help(format!("did you mean `{n}`?")),
+        None => d.help(format!("known: {}", known.join(" "))),
+    }
+    .into())
+}
+
+/// LAMMPS styles of our field that the next issues bring; named so that nobody searches for a typo.
+const LAMMPS_STYLES: &[(&str, &str)] = &[
+    ("pair", "gran/hooke"),
+    ("pair", "gran/hooke/history"),
+    ("pair", "gran/hertz/history"),
+    ("pair", "peri/lps"),
+    ("pair", "peri/ves"),
+    ("pair", "peri/eps"),
+    ("pair", "bpm/spring"),
+    ("pair", "lj/cut"),
+    ("fix", "freeze"),
+    ("fix", "wall/gran"),
+    ("fix", "wall/gran/region"),
+    ("fix", "pour"),
+    ("fix", "deposit"),
+    ("fix", "rigid"),
+    ("fix", "rigid/small"),
+    ("fix", "nvt"),
+    ("fix", "npt"),
+    ("fix", "langevin"),
+    ("fix", "ave/time"),
+    ("fix", "ave/atom"),
+    ("fix", "ave/chunk"),
+    ("fix", "print"),
+    ("fix", "adapt"),
+    ("fix", "halt"),
+    ("fix", "enforce2d"),
+    ("fix", "momentum"),
+    ("fix", "spring"),
+    ("fix", "drag"),
+    ("fix", "lineforce"),
+    ("fix", "planeforce"),
+    ("fix", "aveforce"),
+    ("fix", "nve/limit"),
+    ("fix", "nve/noforce"),
+    ("fix", "store/state"),
+    ("fix", "wall/reflect"),
+    ("fix", "property/atom"),
+    ("compute", "stress/atom"),
+    ("compute", "dilatation/atom"),
+    ("compute", "plasticity/atom"),
+    ("compute", "coord/atom"),
+    ("compute", "contact/atom"),
+    ("compute", "displace/atom"),
+    ("compute", "cluster/atom"),
+    ("compute", "fragment/atom"),
+    ("compute", "chunk/atom"),
+    ("compute", "gyration"),
+    ("compute", "msd"),
+    ("compute", "pair/local"),
+    ("compute", "property/local"),
+    ("compute", "erotate/sphere/atom"),
+    ("dump", "local"),
+    ("dump", "xyz"),
+    ("dump", "cfg"),
+    ("dump", "yaml"),
+    ("dump", "movie"),
+];
+
+/// What a declaration has done, for the node's record.
+#[derive(Default)]
+pub struct Declared {
+    /// What the line provides now.
+    pub provides: Option<Use>,
+}
+
+/// Handles one declaring line. The caller has a copy of nothing: every change happens last, after all checks.
+///
+/// # Errors
+/// Every mistake in the line; then nothing has changed.
+pub fn declare(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) -> Result<Declared> {
+    let mut args = Args::new(cmd);
+    match cmd.name.text.as_str() {
+        "pair_style" => pair_style(graph, w, &mut args, cx),
+        "pair_coeff" => pair_coeff(graph, w, &mut args, cx),
+        "pair_modify" => fail(Code::NOT_SUPPORTED, cmd.name.span, "pair_modify: none of the pair styles here uses its options"),
+        "peri_modify" => pair_modify(graph, w, &mut args, cx),
+        "fix" => fix(graph, w, &mut args, cx),
+        "unfix" => unfix(graph, w, &mut args),
+        "fix_modify" => fix_modify(graph, w, &mut args, cx),
+        "compute" => compute(graph, w, &mut args, cx),
+        "uncompute" => uncompute(graph, &mut args),
+        "compute_modify" => compute_modify(graph, w, &mut args, cx),
+        "dump" => dump(graph, w, &mut args, cx),
+        "undump" => undump(graph, &mut args),
+        "dump_modify" => dump_modify(graph, w, &mut args, cx),
+        "thermo" => graph.thermo.interval(&mut args).map(|()| Declared::default()),
+        "thermo_style" | "thermo_modify" => {
+            let mut thermo = graph.thermo.clone();
+            let build = cx.build(graph, w, "", GroupId::ALL);
+            match cmd.name.text.as_str() {
+                "thermo_style" => thermo.style(&mut args, &build)?,
+                _ => thermo.modify(&mut args, &build)?,
+            }
+            graph.thermo = thermo;
+            Ok(Declared::default())
+        }
+        other => fail(Code::UNKNOWN_COMMAND, cmd.name.span, format!("`{other}` declares nothing")),
+    }
+}
+
+/// What the session lends while a line is read.
+pub struct Context<'a> {
+    /// The whole line.
+    pub span: Span,
+    /// `perigrain check`.
+    pub checking: bool,
+    /// Warnings and notes.
+    pub notes: &'a std::cell::RefCell<crate::diag::Diagnostics>,
+    /// Names used.
+    pub uses: &'a std::cell::RefCell<Vec<Use>>,
+}
+
+impl<'a> Context<'a> {
+    /// The context a style sees.
+    pub fn build<'b>(&'b self, graph: &'b Graph, world: &'b World, id: &'b str, group: GroupId) -> BuildCx<'b>
+    where
+        'a: 'b,
+    {
+        BuildCx {
+            world,
+            names: graph,
+            id,
+            group,
+            span: self.span,
+            checking: self.checking,
+            notes: self.notes,
+            uses: self.uses,
+        }
+    }
+}
+
+fn provides(kind: UseKind, id: &str) -> Declared {
+    Declared { provides: Some(Use { kind, name: id.to_string() }) }
+}
+
+fn needs_box(w: &World, args: &Args) -> Result<()> {
+    if w.domain.is_some() {
+        return Ok(());
+    }
+    Err(Diagnostic::error(
+        Code::WRONG_ORDER,
+        args.name_span(),
+        format!("`{}` needs the simulation box, which is not defined yet", args.command()),
+    )
+    .help("put a `create_box` before this line")
+    .into())
+}
+
+fn pair_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    if args.eat("none") {
+        args.finish()?;
+        graph.pair = None;
+        w.touch();
+        return Ok(Declared::default());
+    }
+    let style = style(PAIRS, "pair", args)?;
+    let pair = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    args.finish()?;
+    graph.pair = Some(PairNode { pair, span: cx.span });
+    w.touch();
+    Ok(Declared::default())
+}
+
+fn pair_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    needs_box(w, args)?;
+    let Some(node) = &graph.pair else {
+        return Err(Diagnostic::error(Code::WRONG_ORDER, args.name_span(), "pair_coeff comes before any pair_style")
+            .help("put a `pair_style` line first")
+            .into());
+    };
+    let (i0, i1) = args.type_range(w.types)?;
+    let (j0, j1) = args.type_range(w.types)?;
+    let pairs: Vec<(u16, u16)> =
+        (i0..=i1).flat_map(|i| (j0.max(i)..=j1).map(move |j| (i, j))).collect();
+    if pairs.is_empty() {
+        return Err(Diagnostic::error(Code::BAD_VALUE, cx.span, "these types name no pair i ≤ j")
+            .help("write the smaller type first, as `pair_coeff 1 2 …`")
+            .into());
+    }
+    let mut pair = node.pair.boxed();
+    pair.coeff(&pairs, args, &cx.build(graph, w, "", GroupId::ALL))?;
+    args.finish()?;
+    if let Some(node) = &mut graph.pair {
+        node.pair = pair;
+    }
+    w.touch();
+    Ok(Declared::default())
+}
+
+fn pair_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    let Some(node) = &graph.pair else {
+        let text = format!("`{}` comes before any pair_style", args.command());
+        return fail(Code::WRONG_ORDER, args.name_span(), text);
+    };
+    let mut pair = node.pair.boxed();
+    pair.modify(args.command(), args, &cx.build(graph, w, "", GroupId::ALL))?;
+    args.finish()?;
+    if let Some(node) = &mut graph.pair {
+        node.pair = pair;
+    }
+    w.touch();
+    Ok(Declared::default())
+}
+
+fn id_of<'a>(args: &mut Args<'a>, what: &str) -> Result<(&'a str, Span)> {
+    let word = args.expect(&format!("the {what}'s ID"))?;
+    if word.unknown || word.text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
+        return Ok((&word.text, word.span));
+    }
+    let text = format!("the ID `{}` may only have letters, digits and underscores", word.text);
+    fail(Code::BAD_VALUE, word.span, text)
+}
+
+fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    needs_box(w, args)?;
+    let (id, id_span) = id_of(args, "fix")?;
+    let group_word = args.expect("the fix's group")?;
+    let group = cx.build(graph, w, id, GroupId::ALL).group(group_word)?;
+    let style = style(FIXES, "fix", args)?;
+    let fix = style.build(args, &cx.build(graph, w, id, group))?;
+    args.finish()?;
+    let node = FixNode { id: id.to_string(), style: style.name(), group, fix, energy: false, span: cx.span };
+    // LAMMPS lets a fix of the same ID, style and group replace the old one in its place.
+    let old = graph.fixes.iter().position(|f| f.id == id);
+    if let Some(k) = old
+        && (graph.fixes[k].style != node.style || graph.fixes[k].group != group)
+    {
+        return Err(Diagnostic::error(Code::DUPLICATE_NAME, id_span, format!("fix `{id}` exists already, with another style or group"))
+            .label(graph.fixes[k].span, "defined here")
+            .help(format!("put `unfix {id}` before this line, or choose another ID"))
+            .into());
+    }
+    if let Some(k) = old {
+        graph.fixes[k].fix.remove(w);
+    }
+    node.fix.declare(w)?;
+    match old {
+        Some(k) => graph.fixes[k] = node,
+        None => graph.fixes.push(node),
+    }
+    w.touch();
+    Ok(provides(UseKind::Fix, id))
+}
+
+fn find(list: Option<usize>, known: Vec<&str>, what: &str, id: &str, span: Span) -> Result<usize> {
+    if let Some(k) = list {
+        return Ok(k);
+    }
+    let d = Diagnostic::error(Code::UNKNOWN_NAME, span, format!("there is no {what} `{id}`"));
+    Err(match nearest(id, known) {
+        Some(n) => d.help(format!("did you mean `{n}`?")),
+        None => d,
+    }
+    .into())
+}
+
+fn find_fix(graph: &Graph, id: &str, span: Span) -> Result<usize> {
+    let known = graph.fixes.iter().map(|f| f.id.as_str()).collect();
+    find(graph.fixes.iter().position(|f| f.id == id), known, "fix", id, span)
+}
+
+fn find_compute(graph: &Graph, id: &str, span: Span) -> Result<usize> {
+    let known = graph.computes.iter().map(|f| f.id.as_str()).collect();
+    find(graph.computes.iter().position(|f| f.id == id), known, "compute", id, span)
+}
+
+fn find_dump(graph: &Graph, id: &str, span: Span) -> Result<usize> {
+    let known = graph.dumps.iter().map(|f| f.id.as_str()).collect();
+    find(graph.dumps.iter().position(|f| f.id == id), known, "dump", id, span)
+}
+
+fn unfix(graph: &mut Graph, w: &mut World, args: &mut Args) -> Result<Declared> {
+    let (id, span) = id_of(args, "fix")?;
+    let k = find_fix(graph, id, span)?;
+    args.finish()?;
+    graph.fixes.remove(k).fix.remove(w);
+    w.touch();
+    Ok(Declared::default())
+}
+
+fn fix_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    let (id, span) = id_of(args, "fix")?;
+    let k = find_fix(graph, id, span)?;
+    if args.is_empty() {
+        return fail(Code::MISSING_ARGUMENT, args.here(), "fix_modify needs an option");
+    }
+    let mut fix = graph.fixes[k].fix.boxed();
+    let mut energy = graph.fixes[k].energy;
+    while !args.is_empty() {
+        let word = args.here();
+        if !args.eat("energy") {
+            fix.modify(args, &cx.build(graph, w, id, graph.fixes[k].group))?;
+            continue;
+        }
+        energy = args.flag("energy")?;
+        if energy && !fix.has_energy() {
+            let text = format!("fix {} has no energy to add", graph.fixes[k].style);
+            return fail(Code::CONFLICT, word, text);
+        }
+    }
+    graph.fixes[k].fix = fix;
+    graph.fixes[k].energy = energy;
+    w.touch();
+    Ok(Declared::default())
+}
+
+fn compute(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    needs_box(w, args)?;
+    let (id, id_span) = id_of(args, "compute")?;
+    if let Some(old) = graph.find_compute(id) {
+        return Err(Diagnostic::error(Code::DUPLICATE_NAME, id_span, format!("compute `{id}` exists already"))
+            .label(old.span, "defined here")
+            .help(format!("put `uncompute {id}` before this line, or choose another ID"))
+            .into());
+    }
+    let group_word = args.expect("the compute's group")?;
+    let group = cx.build(graph, w, id, GroupId::ALL).group(group_word)?;
+    let style = style(COMPUTES, "compute", args)?;
+    let compute = style.build(args, &cx.build(graph, w, id, group))?;
+    args.finish()?;
+    graph.computes.push(ComputeNode { id: id.to_string(), style: style.name(), compute, span: cx.span });
+    forget_values(w, &format!("c_{id}"));
+    Ok(provides(UseKind::Compute, id))
+}
+
+/// A slot of an earlier producer with this name must not be read as this one's.
+fn forget_values(w: &mut World, name: &str) {
+    let slot = w.slots.id(name);
+    *w.slots.get_mut(slot) = crate::world::Slot { name: name.to_string(), ..Default::default() };
+}
+
+fn uncompute(graph: &mut Graph, args: &mut Args) -> Result<Declared> {
+    let (id, span) = id_of(args, "compute")?;
+    let k = find_compute(graph, id, span)?;
+    args.finish()?;
+    graph.computes.remove(k);
+    Ok(Declared::default())
+}
+
+fn compute_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    let (id, span) = id_of(args, "compute")?;
+    let k = find_compute(graph, id, span)?;
+    if args.is_empty() {
+        return fail(Code::MISSING_ARGUMENT, args.here(), "compute_modify needs an option");
+    }
+    let mut compute = graph.computes[k].compute.boxed();
+    while !args.is_empty() {
+        compute.modify(args, &cx.build(graph, w, id, GroupId::ALL))?;
+    }
+    graph.computes[k].compute = compute;
+    forget_values(w, &format!("c_{id}"));
+    Ok(Declared::default())
+}
+
+fn dump(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    needs_box(w, args)?;
+    let (id, id_span) = id_of(args, "dump")?;
+    if let Some(old) = graph.dumps.iter().find(|d| d.id == id) {
+        return Err(Diagnostic::error(Code::DUPLICATE_NAME, id_span, format!("dump `{id}` exists already"))
+            .label(old.span, "defined here")
+            .help(format!("put `undump {id}` before this line, or choose another ID"))
+            .into());
+    }
+    let group_word = args.expect("the dump's group")?;
+    let group = cx.build(graph, w, id, GroupId::ALL).group(group_word)?;
+    let style = style(DUMPS, "dump", args)?;
+    let every = args.integer_from(1, "the dump's interval")?;
+    let dump = style.build(args, &cx.build(graph, w, id, group))?;
+    args.finish()?;
+    graph.dumps.push(DumpNode { id: id.to_string(), style: style.name(), every, dump, span: cx.span });
+    Ok(Declared::default())
+}
+
+fn undump(graph: &mut Graph, args: &mut Args) -> Result<Declared> {
+    let (id, span) = id_of(args, "dump")?;
+    let k = find_dump(graph, id, span)?;
+    args.finish()?;
+    graph.dumps.remove(k);
+    Ok(Declared::default())
+}
+
+fn dump_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    let (id, span) = id_of(args, "dump")?;
+    let k = find_dump(graph, id, span)?;
+    if args.is_empty() {
+        return fail(Code::MISSING_ARGUMENT, args.here(), "dump_modify needs an option");
+    }
+    let mut dump = graph.dumps[k].dump.boxed();
+    dump.modify(args, &cx.build(graph, w, id, GroupId::ALL))?;
+    args.finish()?;
+    if let Some(every) = dump.every() {
+        graph.dumps[k].every = every;
+    }
+    graph.dumps[k].dump = dump;
+    Ok(Declared::default())
+}
+
+/// A dump built for `write_dump group style file … [modify …]`, not kept.
+///
+/// # Errors
+/// As `dump` and `dump_modify`.
+pub fn once_dump(graph: &Graph, w: &World, args: &mut Args, cx: &Context) -> Result<Box<dyn crate::styles::Dump>> {
+    needs_box(w, args)?;
+    let group_word = args.expect("the group to write")?;
+    let group = cx.build(graph, w, "WRITE_DUMP", GroupId::ALL).group(group_word)?;
+    let style = style(DUMPS, "dump", args)?;
+    let build = cx.build(graph, w, "WRITE_DUMP", group);
+    let mut dump = style.build(args, &build)?;
+    if args.eat("modify") {
+        dump.modify(args, &build)?;
+    }
+    args.finish()?;
+    Ok(dump)
+}

@@ -1,0 +1,279 @@
+//! The world as formulas see it: while the deck is read, and inside a step.
+
+use super::keywords;
+use super::measure;
+use super::node::Graph;
+use super::seal::Sealer;
+use crate::diag::{Code, Diagnostic, Result, Span, fail};
+use crate::lang::{Clock, Env, RefKind, Value, ValueRef, Vars};
+use crate::plan::{Op, Stage, StepPlan, Tick, When};
+use crate::styles::{Reading, SealCx, Values};
+use crate::world::{SlotId, World};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A value of one attribute per particle, by LAMMPS' names.
+fn attribute(w: &World, name: &str, i: usize) -> Option<f64> {
+    let p = &w.particles;
+    let of = |column: &Vec<[f64; 3]>, d: usize| column.get(i).map(|a| a[d]);
+    Some(match name {
+        "id" => f64::from(*p.tag.get(i)?),
+        "type" => f64::from(*p.kind.get(i)?),
+        "mass" => *p.mass.get(i)?,
+        "radius" => *p.radius.get(i)?,
+        "x" => of(&p.x, 0)?,
+        "y" => of(&p.x, 1)?,
+        "z" => of(&p.x, 2)?,
+        "vx" => of(&p.v, 0)?,
+        "vy" => of(&p.v, 1)?,
+        "vz" => of(&p.v, 2)?,
+        "fx" => of(&p.f, 0)?,
+        "fy" => of(&p.f, 1)?,
+        "fz" => of(&p.f, 2)?,
+        "omegax" => of(&p.omega, 0)?,
+        "omegay" => of(&p.omega, 1)?,
+        "omegaz" => of(&p.omega, 2)?,
+        _ => return None,
+    })
+}
+
+fn one(w: &World, name: &str, tag: usize, span: Span) -> Result<Value> {
+    let Some(i) = u32::try_from(tag).ok().and_then(|t| w.particles.index_of(t)) else {
+        return fail(Code::UNKNOWN_NAME, span, format!("there is no particle {tag}"));
+    };
+    match attribute(w, name, i) {
+        Some(a) => Ok(Value::Number(a)),
+        None => fail(Code::WRONG_KIND, span, format!("this atom style has no `{name}`")),
+    }
+}
+
+fn column(w: &World, name: &str) -> Option<Result<Vec<f64>>> {
+    const KNOWN: [&str; 16] = [
+        "id", "type", "mass", "radius", "x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz", "omegax", "omegay",
+        "omegaz",
+    ];
+    if !KNOWN.contains(&name) {
+        return None;
+    }
+    let list: Option<Vec<f64>> = (0..w.n()).map(|i| attribute(w, name, i)).collect();
+    Some(match list {
+        Some(list) => Ok(list),
+        None => fail(Code::WRONG_KIND, None, format!("this atom style has no `{name}`")),
+    })
+}
+
+fn clock(w: &World) -> Clock {
+    let c = &w.clock;
+    Clock { step: c.step, begin: c.start, end: c.stop, dt: c.dt, running: c.running }
+}
+
+/// What a slot offers to a reference in a formula.
+fn from_slot(w: &World, slot: SlotId, r: &ValueRef) -> Result<Value> {
+    let s = w.slots.get(slot);
+    let missing = || fail(Code::WRONG_KIND, r.span, format!("`{r}` has no such value"));
+    let per_particle = matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom);
+    if per_particle {
+        let (tag, c) = match r.index.as_slice() {
+            [tag] => (*tag, 0),
+            [tag, c] => (*tag, c - 1),
+            _ => return missing(),
+        };
+        let Some(i) = u32::try_from(tag).ok().and_then(|t| w.particles.index_of(t)) else {
+            return fail(Code::UNKNOWN_NAME, r.span, format!("there is no particle {tag}"));
+        };
+        return if c < s.cols { Ok(Value::Number(s.atom_value(i, c))) } else { missing() };
+    }
+    let atom = |c: usize| Value::Atom((0..w.n()).map(|i| s.atom_value(i, c)).collect());
+    match r.index.as_slice() {
+        [] if s.cols == 1 => Ok(atom(0)),
+        [] if s.cols > 1 => missing(),
+        [] => Ok(Value::Number(s.scalar)),
+        [k] if s.cols > 1 && *k <= s.cols => Ok(atom(k - 1)),
+        [k] => match s.vector.get(k - 1) {
+            Some(a) => Ok(Value::Number(*a)),
+            None => missing(),
+        },
+        _ => missing(),
+    }
+}
+
+/// Inside a step: values come from slots that the plan has filled before.
+pub struct RunEnv<'a> {
+    /// The world, read only.
+    pub w: &'a World,
+    /// The slots of what the formula depends on.
+    pub from: &'a BTreeMap<String, SlotId>,
+}
+
+impl Env for RunEnv<'_> {
+    fn keyword(&mut self, name: &str) -> Option<Result<Value>> {
+        let slot = self.from.get(name)?;
+        Some(Ok(Value::Number(self.w.slots.get(*slot).scalar)))
+    }
+    fn reference(&mut self, r: &ValueRef) -> Result<Value> {
+        match self.from.get(&r.to_string()) {
+            Some(slot) => from_slot(self.w, *slot, r),
+            None => fail(Code::UNKNOWN_NAME, r.span, format!("`{r}` is not available in this step")),
+        }
+    }
+    fn particle(&mut self, attribute: &str, tag: usize, span: Span) -> Result<Value> {
+        one(self.w, attribute, tag, span)
+    }
+    fn column(&mut self, attribute: &str) -> Option<Result<Vec<f64>>> {
+        column(self.w, attribute)
+    }
+    fn group_function(&mut self, name: &str, args: &[String], span: Span) -> Result<Value> {
+        measure::group_function(self.w, name, args, span).map(Value::Number)
+    }
+    fn clock(&self) -> Clock {
+        clock(self.w)
+    }
+    fn natoms(&self) -> usize {
+        self.w.n()
+    }
+}
+
+/// While the deck is read: values are computed on the spot.
+pub struct DeckEnv<'a> {
+    /// The world.
+    pub w: &'a mut World,
+    /// What is declared.
+    pub graph: &'a Graph,
+    /// The variable table as it stands.
+    pub vars: Arc<Vars>,
+    /// `perigrain check`: what only particles or a run can tell is unknown.
+    pub checking: bool,
+}
+
+impl DeckEnv<'_> {
+    /// Plans the values asked for by `ask` and runs that plan once.
+    fn now<T>(
+        &mut self,
+        span: Span,
+        ask: impl FnOnce(&mut Sealer) -> Result<T>,
+    ) -> Result<T> {
+        let (answer, mut plan, t) = self.planned(span, ask)?;
+        plan.run(self.w, &t, &Stage::ALL)?;
+        Ok(answer)
+    }
+
+    /// Runs an op once, its values fresh, as `write_dump` does.
+    ///
+    /// # Errors
+    /// Values that are not available, and the op's own failures.
+    pub fn once(&mut self, span: Span, ask: impl FnOnce(&mut Sealer) -> Result<Box<dyn Op>>) -> Result<()> {
+        let (mut op, mut plan, t) = self.planned(span, ask)?;
+        plan.run(self.w, &t, &Stage::ALL)?;
+        op.run(self.w, &t)?;
+        op.finish(self.w)
+    }
+
+    fn planned<T>(
+        &mut self,
+        span: Span,
+        ask: impl FnOnce(&mut Sealer) -> Result<T>,
+    ) -> Result<(T, StepPlan, Tick)> {
+        self.w.spread_type_masses();
+        let mut sealer = Sealer::new(self.w, self.graph, self.vars.clone());
+        sealer.at(span);
+        let answer = ask(&mut sealer)?;
+        let plan = sealer.plan;
+        let t = Tick::between_runs(&self.w.clock);
+        let mut wanted = t.clone();
+        plan.ask(&mut wanted);
+        let tally = &self.w.tally;
+        let stands = tally.step == Some(t.step) && !self.w.parts.changed;
+        let short = (wanted.energy && !stands)
+            || (wanted.virial && !(stands && tally.with_virial))
+            || (wanted.atom_energy && !(stands && tally.with_atoms));
+        if short {
+            return Err(Diagnostic::error(
+                Code::WRONG_ORDER,
+                span,
+                "energies or pressures of the present state have not been computed",
+            )
+            .help("put `run 0` before this line, or let thermo output show the quantity at the run's last step")
+            .into());
+        }
+        Ok((answer, plan, t))
+    }
+}
+
+impl Env for DeckEnv<'_> {
+    fn keyword(&mut self, name: &str) -> Option<Result<Value>> {
+        let (name, _, needs) = keywords::find(name)?;
+        let particles = ["atoms", "density", "fmax", "fnorm"].contains(name);
+        if self.checking && (!needs.is_empty() || particles) {
+            return Some(Ok(Value::Unknown));
+        }
+        let span = Span::default();
+        let reading = self.now(span, |s| s.keyword(name, span, Stage::Output, &When::Always));
+        Some(reading.map(|r| Value::Number(r.get(self.w))))
+    }
+
+    fn reference(&mut self, r: &ValueRef) -> Result<Value> {
+        if self.checking {
+            return Ok(Value::Unknown);
+        }
+        let slot = self.now(r.span, |s| s.reference(r))?;
+        from_slot(self.w, slot, r)
+    }
+
+    fn particle(&mut self, attribute: &str, tag: usize, span: Span) -> Result<Value> {
+        if self.checking { Ok(Value::Unknown) } else { one(self.w, attribute, tag, span) }
+    }
+
+    fn column(&mut self, attribute: &str) -> Option<Result<Vec<f64>>> {
+        self.w.spread_type_masses();
+        column(self.w, attribute)
+    }
+
+    fn group_function(&mut self, name: &str, args: &[String], span: Span) -> Result<Value> {
+        self.w.spread_type_masses();
+        let value = measure::group_function(self.w, name, args, span)?;
+        Ok(if self.checking { Value::Unknown } else { Value::Number(value) })
+    }
+
+    fn clock(&self) -> Clock {
+        clock(self.w)
+    }
+
+    fn natoms(&self) -> usize {
+        self.w.n()
+    }
+
+    fn keywords(&self) -> Vec<&str> {
+        keywords::KEYWORDS.iter().map(|(n, ..)| *n).collect()
+    }
+}
+
+/// Values for acts, between runs.
+pub struct DeckValues<'a> {
+    /// What is declared.
+    pub graph: &'a Graph,
+    /// The variable table.
+    pub vars: Arc<Vars>,
+}
+
+impl Values for DeckValues<'_> {
+    fn scalar(&mut self, w: &mut World, r: &ValueRef) -> Result<f64> {
+        match self.reading(w, r)? {
+            reading if reading.per_atom() => {
+                fail(Code::WRONG_KIND, r.span, format!("`{r}` has one value per particle; one number is needed"))
+            }
+            reading => Ok(reading.get(w)),
+        }
+    }
+
+    fn per_atom(&mut self, w: &mut World, r: &ValueRef) -> Result<Vec<f64>> {
+        let reading = self.reading(w, r)?;
+        Ok((0..w.n()).map(|i| reading.atom(w, i)).collect())
+    }
+}
+
+impl DeckValues<'_> {
+    fn reading(&mut self, w: &mut World, r: &ValueRef) -> Result<Reading> {
+        let mut env = DeckEnv { w, graph: self.graph, vars: self.vars.clone(), checking: false };
+        env.now(r.span, |s| s.value(r, Stage::Output, &When::Always))
+    }
+}

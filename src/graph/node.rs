@@ -1,0 +1,190 @@
+//! The graph's nodes: what has been declared, done and run, each with the line it came from.
+
+use super::thermo::Thermo;
+use crate::diag::Span;
+use crate::lang::{RefKind, ValueRef};
+use crate::styles::{Compute, Dump, Fix, Names, Pair, Shape, Use, UseKind};
+use crate::world::GroupId;
+use std::collections::BTreeMap;
+
+/// Which node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct NodeId(pub usize);
+
+/// The three kinds of node that keep LAMMPS' imperative order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Replaces or removes what an earlier line said.
+    Declare,
+    /// Changes the world once.
+    Act,
+    /// Seals the declarations and steps.
+    Run,
+}
+
+/// A line of the deck as a node.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Kind.
+    pub role: Role,
+    /// What it provides, as `fix ball`, `group left`; empty for most acts.
+    pub provides: Option<Use>,
+    /// The line after substitution.
+    pub text: String,
+    /// Where it stands.
+    pub span: Span,
+    /// What it names.
+    pub uses: Vec<Use>,
+    /// Facts an act settles (`volume`, `density` …).
+    pub settles: Vec<&'static str>,
+}
+
+/// The pair style in force.
+pub struct PairNode {
+    /// The style with its coefficients.
+    pub pair: Box<dyn Pair>,
+    /// The `pair_style` line.
+    pub span: Span,
+}
+
+/// A fix in force.
+pub struct FixNode {
+    /// Its ID.
+    pub id: String,
+    /// Its style's name.
+    pub style: &'static str,
+    /// Whom it concerns.
+    pub group: GroupId,
+    /// The fix.
+    pub fix: Box<dyn Fix>,
+    /// `fix_modify energy yes`.
+    pub energy: bool,
+    /// Its line.
+    pub span: Span,
+}
+
+/// A compute in force.
+pub struct ComputeNode {
+    /// Its ID.
+    pub id: String,
+    /// Its style's name.
+    pub style: &'static str,
+    /// The compute.
+    pub compute: Box<dyn Compute>,
+    /// Its line.
+    pub span: Span,
+}
+
+/// A dump in force.
+pub struct DumpNode {
+    /// Its ID.
+    pub id: String,
+    /// Its style's name.
+    pub style: &'static str,
+    /// Interval in steps.
+    pub every: i64,
+    /// The dump.
+    pub dump: Box<dyn Dump>,
+    /// Its line.
+    pub span: Span,
+}
+
+/// Everything declared so far, and every line as a node.
+#[derive(Clone, Default)]
+pub struct Graph {
+    /// The pair style.
+    pub pair: Option<PairNode>,
+    /// Fixes in order of definition.
+    pub fixes: Vec<FixNode>,
+    /// Computes in order of definition.
+    pub computes: Vec<ComputeNode>,
+    /// Dumps in order of definition.
+    pub dumps: Vec<DumpNode>,
+    /// What the step table shows.
+    pub thermo: Thermo,
+    /// Every line.
+    pub nodes: Vec<Node>,
+    /// Variables by name: whether atom-style. Kept in step with the variable table for look-ups.
+    pub variables: BTreeMap<String, bool>,
+}
+
+impl Clone for PairNode {
+    fn clone(&self) -> Self {
+        Self { pair: self.pair.boxed(), span: self.span }
+    }
+}
+
+impl Clone for FixNode {
+    fn clone(&self) -> Self {
+        Self { id: self.id.clone(), fix: self.fix.boxed(), ..*self }
+    }
+}
+
+impl Clone for ComputeNode {
+    fn clone(&self) -> Self {
+        Self { id: self.id.clone(), compute: self.compute.boxed(), ..*self }
+    }
+}
+
+impl Clone for DumpNode {
+    fn clone(&self) -> Self {
+        Self { id: self.id.clone(), dump: self.dump.boxed(), ..*self }
+    }
+}
+
+impl Graph {
+    /// The fix with this ID.
+    pub fn find_fix(&self, id: &str) -> Option<&FixNode> {
+        self.fixes.iter().find(|f| f.id == id)
+    }
+
+    /// The compute with this ID.
+    pub fn find_compute(&self, id: &str) -> Option<&ComputeNode> {
+        self.computes.iter().find(|c| c.id == id)
+    }
+
+    /// The latest node that provides a name.
+    pub fn provider(&self, wanted: &Use) -> Option<NodeId> {
+        self.nodes.iter().rposition(|n| n.provides.as_ref() == Some(wanted)).map(NodeId)
+    }
+
+    /// Whether some fix or the pair style depends on this variable, directly or through others.
+    pub fn forces_use_variable(&self, name: &str) -> bool {
+        let wanted = Use { kind: UseKind::Variable, name: name.to_string() };
+        self.nodes.iter().any(|n| {
+            n.uses.contains(&wanted)
+                && n.provides.as_ref().is_none_or(|p| p.kind == UseKind::Fix || p.kind == UseKind::Variable)
+        })
+    }
+}
+
+impl Names for Graph {
+    fn compute(&self, id: &str) -> Option<Shape> {
+        self.find_compute(id).map(|c| c.compute.shape())
+    }
+
+    fn fix(&self, id: &str) -> Option<Shape> {
+        self.find_fix(id).map(|f| f.fix.shape())
+    }
+
+    fn variable(&self, name: &str) -> Option<bool> {
+        self.variables.get(name).copied()
+    }
+
+    fn extensive(&self, r: &ValueRef) -> bool {
+        match r.kind {
+            RefKind::Compute => self.find_compute(&r.name).is_some_and(|c| c.compute.extensive()),
+            RefKind::Fix => self.find_fix(&r.name).is_some_and(|f| f.fix.extensive()),
+            _ => false,
+        }
+    }
+
+    fn all(&self, kind: UseKind) -> Vec<String> {
+        match kind {
+            UseKind::Compute => self.computes.iter().map(|c| c.id.clone()).collect(),
+            UseKind::Fix => self.fixes.iter().map(|f| f.id.clone()).collect(),
+            UseKind::Variable => self.variables.keys().cloned().collect(),
+            UseKind::Group | UseKind::Region | UseKind::Material => vec![],
+        }
+    }
+}

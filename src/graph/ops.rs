@@ -1,0 +1,134 @@
+//! Ops every plan begins with: reneighbouring at LAMMPS' times, and clearing forces.
+
+use crate::diag::{Code, Diagnostic, Result};
+use crate::par;
+use crate::plan::{Access, Op, Stage, Tick};
+use crate::world::World;
+
+/// Wraps, shrinks, checks for lost particles and tells lists to rebuild, at LAMMPS' reneighbour times.
+pub struct Reneighbor;
+
+impl Op for Reneighbor {
+    fn name(&self) -> &str {
+        "reneighbor"
+    }
+    fn stage(&self) -> Stage {
+        Stage::Neighbor
+    }
+    fn access(&self) -> Access {
+        Access::new("x", "x image box lists")
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if t.setup {
+            w.rebuild.builds = 0;
+            w.rebuild.dangerous = 0;
+            return rebuild(w, t);
+        }
+        let s = &w.settings.neighbor;
+        let ago = t.step - w.rebuild.step;
+        if ago < s.delay || ago % s.every != 0 || s.once {
+            return Ok(());
+        }
+        if s.check {
+            let half = 0.5 * s.skin;
+            let moved = farthest(w, t)?;
+            if moved <= half * half {
+                return Ok(());
+            }
+            let first_chance = ago == s.every.max(s.delay);
+            w.rebuild.dangerous += u64::from(first_chance && s.delay.max(s.every) > 1);
+        }
+        w.rebuild.builds += 1;
+        rebuild(w, t)
+    }
+}
+
+/// Largest squared displacement since the last rebuild.
+fn farthest(w: &World, t: &Tick) -> Result<f64> {
+    let (x, held) = (&w.particles.x, &w.rebuild.held);
+    let square = |i: usize| {
+        let d = [x[i][0] - held[i][0], x[i][1] - held[i][1], x[i][2] - held[i][2]];
+        let s = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        // A NaN must not be overlooked by the maximum.
+        if s.is_finite() { s } else { f64::INFINITY }
+    };
+    let most = par::max(x.len(), square);
+    if most.is_finite() {
+        return Ok(most.max(0.0));
+    }
+    let bad = (0..x.len()).find(|&i| !square(i).is_finite()).unwrap_or(0);
+    Err(not_finite(w, bad, t))
+}
+
+fn not_finite(w: &World, i: usize, t: &Tick) -> crate::diag::Diagnostics {
+    let p = &w.particles;
+    Diagnostic::error(
+        Code::NOT_FINITE,
+        None,
+        format!(
+            "particle {} (type {}) has no finite position any more at step {}: x = {:?}, v = {:?}",
+            p.tag[i], p.kind[i], t.step, p.x[i], p.v[i]
+        ),
+    )
+    .help("the time step is too long for the stiffness, or particles overlapped heavily: shorten `timestep`")
+    .into()
+}
+
+fn rebuild(w: &mut World, t: &Tick) -> Result<()> {
+    let n = w.n();
+    let Some(domain) = &mut w.domain else { return Ok(()) };
+    let p = &mut w.particles;
+    if let Some(bad) = (0..n).find(|&i| p.x[i].iter().any(|a| !a.is_finite())) {
+        return Err(not_finite(w, bad, t));
+    }
+    for (x, image) in p.x.iter_mut().zip(&mut p.image) {
+        domain.wrap(x, image);
+    }
+    domain.shrink(&p.x);
+    let domain = &*domain;
+    let lost: Vec<usize> = (0..n).filter(|&i| !domain.keeps(&p.x[i])).take(5).collect();
+    if let Some(&i) = lost.first() {
+        let tags: Vec<String> = lost.iter().map(|&i| p.tag[i].to_string()).collect();
+        return Err(Diagnostic::error(
+            Code::LOST,
+            None,
+            format!(
+                "particles lost through a fixed face at step {}: {}{} (the first is at {:?}, v = {:?})",
+                t.step,
+                tags.join(" "),
+                if lost.len() == 5 { " …" } else { "" },
+                p.x[i],
+                p.v[i]
+            ),
+        )
+        .help("enlarge the box, or let it follow the particles with `boundary s s s` or `m`")
+        .into());
+    }
+    w.rebuild.generation += 1;
+    w.rebuild.step = t.step;
+    w.rebuild.held.clone_from(&w.particles.x);
+    Ok(())
+}
+
+/// Forces and torques to zero; the tally starts.
+pub struct ClearForces;
+
+impl Op for ClearForces {
+    fn name(&self) -> &str {
+        "clear forces"
+    }
+    fn stage(&self) -> Stage {
+        Stage::PreForce
+    }
+    fn access(&self) -> Access {
+        Access::new("", "f torque tally")
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        w.particles.f.fill([0.0; 3]);
+        w.particles.torque.fill([0.0; 3]);
+        if t.energy || t.virial {
+            w.tally.clear(t.step, t.virial, t.atom_energy, w.particles.len());
+        }
+        Ok(())
+    }
+}

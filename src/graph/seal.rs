@@ -1,0 +1,361 @@
+//! Declarations and world become a step plan: values before their readers, and only what somebody reads.
+
+use super::env::RunEnv;
+use super::keywords::{self, Need, Sources};
+use super::node::Graph;
+use crate::diag::{Code, Result, Span, fail};
+use crate::lang::{Dep, RefKind, Value, ValueRef, Vars};
+use crate::plan::{Access, LeftOut, Op, OpClass, Placed, Stage, StepPlan, Tick, When};
+use crate::styles::{Reading, SealCx};
+use crate::world::{SlotId, World};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A plan in the making.
+pub struct Sealer<'a> {
+    world: &'a mut World,
+    graph: &'a Graph,
+    vars: Arc<Vars>,
+    /// The ops so far.
+    pub plan: StepPlan,
+    span: Span,
+    /// Computes placed so far: ID and stage.
+    placed: Vec<(String, Stage)>,
+    /// Names being resolved, to find circles.
+    trail: Vec<String>,
+    /// Variables placed so far, to give each use a slot of its own.
+    uses: usize,
+}
+
+impl<'a> Sealer<'a> {
+    /// Starts an empty plan.
+    pub fn new(world: &'a mut World, graph: &'a Graph, vars: Arc<Vars>) -> Self {
+        Self {
+            world,
+            graph,
+            vars,
+            plan: StepPlan::default(),
+            span: Span::default(),
+            placed: vec![],
+            trail: vec![],
+            uses: 0,
+        }
+    }
+
+    /// Adds ops that come from the line at `span`.
+    pub fn add(&mut self, ops: Vec<Box<dyn Op>>, span: Span) {
+        for op in ops {
+            self.plan.add(Placed::new(op, Some(span)));
+        }
+    }
+
+    /// What follows belongs to the line at `span`.
+    pub fn at(&mut self, span: Span) {
+        self.span = span;
+    }
+
+    /// Places a provider so that it runs before what is added to `stage` next.
+    fn provide(&mut self, op: Box<dyn Op>, when: When) {
+        self.plan.add(Placed { op, when, from: Some(self.span), meter: Default::default() });
+    }
+
+    fn enter(&mut self, name: String, span: Span) -> Result<()> {
+        if self.trail.contains(&name) {
+            let circle = self.trail.join(" → ");
+            return fail(Code::CONFLICT, span, format!("`{name}` depends on itself: {circle} → {name}"));
+        }
+        self.trail.push(name);
+        Ok(())
+    }
+
+    /// The slot of a compute that is fresh at `stage` whenever `when` fires.
+    fn compute(&mut self, id: &str, span: Span, stage: Stage, when: &When) -> Result<SlotId> {
+        let graph = self.graph;
+        let Some(node) = graph.find_compute(id) else {
+            return fail(Code::UNKNOWN_NAME, span, format!("there is no compute `{id}`"));
+        };
+        let key = format!("c_{id}");
+        let slot = self.world.slots.id(&key);
+        if self.placed.contains(&(key.clone(), stage)) {
+            // Already there: it only has to act at these times too, and so must what it reads.
+            self.widen(&key, stage, when);
+        }
+        self.enter(key.clone(), span)?;
+        let outer = std::mem::replace(&mut self.span, node.span);
+        let op = node.compute.op(self, slot, stage, when);
+        self.span = outer;
+        self.trail.pop();
+        let op = op?;
+        if !self.placed.contains(&(key.clone(), stage)) {
+            self.provide(Box::new(Once { op, stage, slot }), when.clone());
+            self.placed.push((key, stage));
+        }
+        Ok(slot)
+    }
+
+    fn widen(&mut self, key: &str, stage: Stage, when: &When) {
+        let name = key.replacen("c_", "compute ", 1);
+        for p in &mut self.plan.ops {
+            if p.op.stage() == stage && p.op.name().strip_prefix(&name).is_some_and(|r| r.is_empty() || r.starts_with(' ')) {
+                p.when = p.when.clone().or(when.clone());
+            }
+        }
+    }
+
+    /// A variable's value; each use is evaluated by itself.
+    fn variable(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<Reading> {
+        let vars = self.vars.clone();
+        if vars.kind(&r.name).is_none() {
+            return fail(Code::UNKNOWN_NAME, r.span, format!("there is no variable `{}`", r.name));
+        }
+        self.enter(format!("v_{}", r.name), r.span)?;
+        let deps = vars.expr(&r.name).map_or(vec![], |e| e.depends(&vars));
+        let mut from = BTreeMap::new();
+        for dep in deps {
+            let (name, slot) = match dep {
+                Dep::Keyword(k) => {
+                    let reading = self.keyword(&k, r.span, stage, when)?;
+                    let Reading::Scalar(slot) = reading else { continue };
+                    (k, slot)
+                }
+                Dep::Ref(d) => (d.to_string(), self.source(&d, stage, when)?),
+            };
+            from.insert(name, slot);
+        }
+        self.trail.pop();
+        self.uses += 1;
+        let slot = self.world.slots.id(&format!("v_{}#{}", r.name, self.uses));
+        let atom = self.graph.variables.get(&r.name).copied().unwrap_or(false);
+        let op = Evaluate { title: format!("variable {}", r.name), name: r.name.clone(), span: r.span, vars, from, slot, stage };
+        self.provide(Box::new(op), when.clone());
+        Ok(if atom { Reading::Atom(slot, 0) } else { Reading::Scalar(slot) })
+    }
+
+    /// A thermo keyword's value over all particles, never divided by their number.
+    ///
+    /// # Errors
+    /// Unknown keywords.
+    pub fn keyword_total(&mut self, name: &str, span: Span, stage: Stage, when: &When) -> Result<Reading> {
+        self.keyword_as(name, span, stage, when, false)
+    }
+
+    fn keyword_as(
+        &mut self,
+        name: &str,
+        span: Span,
+        stage: Stage,
+        when: &When,
+        norm: bool,
+    ) -> Result<Reading> {
+        let Some((name, _, needs)) = keywords::find(name) else {
+            return fail(Code::UNKNOWN_NAME, span, format!("there is no thermo keyword `{name}`"));
+        };
+        let thermo = &self.graph.thermo;
+        let ids = (thermo.temp.clone(), thermo.press.clone(), thermo.pe.clone());
+        let mut sources = Sources { norm, ..Sources::default() };
+        for need in *needs {
+            match need {
+                Need::Temp => sources.temp = Some(self.compute(&ids.0, span, stage, when)?),
+                Need::Press => sources.press = Some(self.compute(&ids.1, span, stage, when)?),
+                Need::Pe => sources.pe = Some(self.compute(&ids.2, span, stage, when)?),
+                Need::Pair => self.ask_energy(when),
+            }
+        }
+        self.uses += 1;
+        let slot = self.world.slots.id(&format!("{name}#{}", self.uses));
+        self.provide(Box::new(Keyword { name, sources, slot, stage }), when.clone());
+        Ok(Reading::Scalar(slot))
+    }
+
+    /// The slot of a compute or fix, fresh for a formula evaluated between runs.
+    ///
+    /// # Errors
+    /// Unknown names.
+    pub fn reference(&mut self, r: &ValueRef) -> Result<SlotId> {
+        self.source(r, Stage::Output, &When::Always)
+    }
+
+    /// The slot of a compute or fix that a formula reads.
+    fn source(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<SlotId> {
+        match r.kind {
+            RefKind::Compute | RefKind::ComputeAtom => self.compute(&r.name, r.span, stage, when),
+            RefKind::Fix | RefKind::FixAtom => match self.graph.find_fix(&r.name) {
+                Some(_) => Ok(self.world.slots.id(&format!("f_{}", r.name))),
+                None => fail(Code::UNKNOWN_NAME, r.span, format!("there is no fix `{}`", r.name)),
+            },
+            RefKind::Variable => match self.variable(r, stage, when)? {
+                Reading::Scalar(s) | Reading::Atom(s, _) => Ok(s),
+                _ => fail(Code::WRONG_KIND, r.span, "this variable has no value here"),
+            },
+        }
+    }
+}
+
+impl SealCx for Sealer<'_> {
+    fn world(&mut self) -> &mut World {
+        self.world
+    }
+
+    fn span(&self) -> Span {
+        self.span
+    }
+
+    fn slot(&mut self, name: &str) -> SlotId {
+        self.world.slots.id(name)
+    }
+
+    fn value(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<Reading> {
+        let wrong = |text: String| fail(Code::WRONG_KIND, r.span, text);
+        let shape = match r.kind {
+            RefKind::Variable => return self.variable(r, stage, when),
+            RefKind::Compute => self.graph.find_compute(&r.name).map(|c| c.compute.shape()),
+            RefKind::Fix => self.graph.find_fix(&r.name).map(|f| f.fix.shape()),
+            RefKind::ComputeAtom | RefKind::FixAtom => {
+                return wrong(format!("`{r}` belongs in a formula: use an equal-style variable"));
+            }
+        };
+        let slot = self.source(r, stage, when)?;
+        let shape = shape.unwrap_or_default();
+        match (r.index.as_slice(), shape.atom) {
+            ([], _) if shape.scalar => Ok(Reading::Scalar(slot)),
+            ([], Some(1)) => Ok(Reading::Atom(slot, 0)),
+            ([k], _) if shape.vector > 0 && *k <= shape.vector => Ok(Reading::Element(slot, k - 1)),
+            ([k], Some(cols)) if *k <= cols => Ok(Reading::Atom(slot, k - 1)),
+            _ => wrong(format!("`{r}` has no such value")),
+        }
+    }
+
+    fn keyword(&mut self, name: &str, span: Span, stage: Stage, when: &When) -> Result<Reading> {
+        let norm = self.graph.thermo.normalized(self.world);
+        self.keyword_as(name, span, stage, when, norm)
+    }
+
+    fn ask_energy(&mut self, when: &When) {
+        self.plan.energy.push(when.clone());
+    }
+
+    fn ask_virial(&mut self, when: &When) {
+        self.plan.virial.push(when.clone());
+    }
+
+    fn ask_atom_energy(&mut self, when: &When) {
+        self.plan.atom_energy.push(when.clone());
+    }
+
+    fn energy_fixes(&self) -> Vec<String> {
+        self.graph.fixes.iter().filter(|f| f.energy).map(|f| format!("f_{}", f.id)).collect()
+    }
+
+    fn leave_out(&mut self, what: &str, why: &str) {
+        let l = LeftOut { what: what.to_string(), why: why.to_string() };
+        if !self.plan.left_out.contains(&l) {
+            self.plan.left_out.push(l);
+        }
+    }
+}
+
+/// A compute's op, at the stage of its reader, at most once per step.
+struct Once {
+    op: Box<dyn Op>,
+    stage: Stage,
+    slot: SlotId,
+}
+
+impl Op for Once {
+    fn name(&self) -> &str {
+        self.op.name()
+    }
+    fn stage(&self) -> Stage {
+        self.stage
+    }
+    fn access(&self) -> Access {
+        self.op.access()
+    }
+    fn in_setup(&self) -> bool {
+        true
+    }
+    fn class(&self) -> OpClass {
+        OpClass::Output
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if w.slots.get(self.slot).step == Some(t.step) {
+            return Ok(());
+        }
+        self.op.run(w, t)
+    }
+}
+
+/// A thermo keyword on its way into a slot.
+struct Keyword {
+    name: &'static str,
+    sources: Sources,
+    slot: SlotId,
+    stage: Stage,
+}
+
+impl Op for Keyword {
+    fn name(&self) -> &str {
+        self.name
+    }
+    fn stage(&self) -> Stage {
+        self.stage
+    }
+    fn access(&self) -> Access {
+        Access::default()
+    }
+    fn in_setup(&self) -> bool {
+        true
+    }
+    fn class(&self) -> OpClass {
+        OpClass::Output
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let value = keywords::value(self.name, w, &self.sources);
+        let slot = w.slots.get_mut(self.slot);
+        slot.scalar = value;
+        slot.step = Some(t.step);
+        Ok(())
+    }
+}
+
+/// A variable on its way into a slot.
+struct Evaluate {
+    title: String,
+    name: String,
+    span: Span,
+    vars: Arc<Vars>,
+    from: BTreeMap<String, SlotId>,
+    slot: SlotId,
+    stage: Stage,
+}
+
+impl Op for Evaluate {
+    fn name(&self) -> &str {
+        &self.title
+    }
+    fn stage(&self) -> Stage {
+        self.stage
+    }
+    fn access(&self) -> Access {
+        Access::default()
+    }
+    fn in_setup(&self) -> bool {
+        true
+    }
+    fn class(&self) -> OpClass {
+        OpClass::Output
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let value = self.vars.value(&self.name, self.span, &mut RunEnv { w, from: &self.from })?;
+        let slot = w.slots.get_mut(self.slot);
+        slot.step = Some(t.step);
+        match value {
+            Value::Number(a) => slot.scalar = a,
+            Value::Atom(list) => (slot.atom, slot.cols) = (list, 1),
+            Value::Vector(_) | Value::Unknown => {
+                return fail(Code::WRONG_KIND, self.span, format!("variable `{}` has no number here", self.name));
+            }
+        }
+        Ok(())
+    }
+}

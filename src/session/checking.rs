@@ -1,0 +1,114 @@
+//! Checks across nodes before a run: errors where LAMMPS refuses, warnings where it would run all the same.
+
+use super::Session;
+use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
+use crate::graph::build::Context;
+use crate::world::GroupId;
+use std::cell::RefCell;
+
+impl Session {
+    /// Looks at all declarations together; warnings are noted, errors returned.
+    ///
+    /// # Errors
+    /// What LAMMPS would refuse too: missing coefficients, masses.
+    pub(super) fn check_run(&mut self, span: Span) -> Result<()> {
+        let mut found = Diagnostics::default();
+        self.check_pair(span, &mut found);
+        self.check_masses(span, &mut found);
+        self.check_integrators(span, &mut found);
+        let (errors, notes) = found.0.into_iter().partition(|d| d.severity == crate::diag::Severity::Error);
+        for note in Vec::into_iter(notes) {
+            // A deck with a loop around `run` is told once.
+            if !self.notes.0.contains(&note) {
+                self.notes.push(note);
+            }
+        }
+        let errors: Vec<Diagnostic> = errors;
+        if errors.is_empty() { Ok(()) } else { Err(Diagnostics(errors)) }
+    }
+
+    fn settled(&self, fact: &str) -> bool {
+        self.graph.nodes.iter().any(|n| n.settles.contains(&fact))
+    }
+
+    fn check_pair(&self, span: Span, found: &mut Diagnostics) {
+        let Some(node) = &self.graph.pair else {
+            found.push(
+                Diagnostic::warning(Code::SUSPICIOUS, span, "no pair_style: particles do not feel each other")
+                    .help("this is right for free flight only"),
+            );
+            return;
+        };
+        let types = self.world.types as u16;
+        let missing: Vec<String> = (1..=types)
+            .flat_map(|i| (i..=types).map(move |j| (i, j)))
+            .filter(|&(i, j)| !node.pair.covers(i, j))
+            .map(|(i, j)| format!("{i}-{j}"))
+            .collect();
+        if !missing.is_empty() {
+            let text = format!("pair_style {} has no coefficients for types {}", node.pair.name(), missing.join(", "));
+            found.push(
+                Diagnostic::error(Code::INCOMPLETE, span, text)
+                    .label(node.span, "pair_style given here")
+                    .help(format!("add `pair_coeff {} …`", missing[0].replace('-', " "))),
+            );
+        }
+        for fact in node.pair.needs() {
+            if !self.settled(fact) {
+                found.push(
+                    Diagnostic::warning(
+                        Code::SUSPICIOUS,
+                        span,
+                        format!("the {fact} of particles was never set, and pair_style {} uses it", node.pair.name()),
+                    )
+                    .help(format!("add `set group all {fact} …`")),
+                );
+            }
+        }
+        let (notes, uses) = (RefCell::default(), RefCell::default());
+        let cx = Context { span: node.span, checking: self.checking(), notes: &notes, uses: &uses };
+        node.pair.check(&cx.build(&self.graph, &self.world, "", GroupId::ALL));
+        found.append(notes.into_inner());
+    }
+
+    fn check_masses(&self, span: Span, found: &mut Diagnostics) {
+        if self.world.particles.style.own_mass() {
+            return;
+        }
+        for (k, m) in self.world.type_mass.iter().enumerate() {
+            if m.is_none() {
+                found.push(
+                    Diagnostic::error(Code::INCOMPLETE, span, format!("type {} has no mass", k + 1))
+                        .help(format!("add `mass {} …`", k + 1)),
+                );
+            }
+        }
+    }
+
+    /// No integrator at all, and two on one particle.
+    fn check_integrators(&self, span: Span, found: &mut Diagnostics) {
+        let moving: Vec<_> = self.graph.fixes.iter().filter(|f| f.fix.integrates()).collect();
+        if moving.is_empty() {
+            found.push(
+                Diagnostic::warning(Code::SUSPICIOUS, span, "no fix moves any particle")
+                    .help("add a time integrator, as `fix 1 all nve`"),
+            );
+        }
+        for (k, a) in moving.iter().enumerate() {
+            for b in &moving[k + 1..] {
+                let both = a.group.bit() | b.group.bit();
+                let shared = self.world.particles.mask.iter().any(|m| m & both == both);
+                if shared || (self.checking() && a.group == b.group) {
+                    found.push(
+                        Diagnostic::warning(
+                            Code::SUSPICIOUS,
+                            b.span,
+                            format!("fixes `{}` and `{}` both move some particles", a.id, b.id),
+                        )
+                        .label(a.span, "the other one"),
+                    );
+                }
+            }
+        }
+    }
+}

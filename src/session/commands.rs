@@ -1,0 +1,187 @@
+//! Commands about the session itself: print, log, echo, clear, compat.
+
+use super::{Session, refuse};
+use crate::diag::{Code, Diagnostic, Result};
+use crate::graph::env::DeckEnv;
+use crate::graph::{ComputeNode, Role};
+use crate::lang::{Args, Command, Kind, RefKind, ValueRef, Vars, Word, substitute};
+use crate::out::log::Echo;
+use crate::styles::compute::COMPUTES;
+use crate::styles::{BuildCx, Use, UseKind};
+use crate::world::{Compat, GroupId};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The session's own commands and those of the cursor, for "did you mean".
+pub const OWN: [&str; 15] = [
+    "print", "log", "echo", "clear", "compat", "run", "variable", "if", "jump", "label", "next", "include", "quit",
+    "suffix", "package",
+];
+
+/// LAMMPS commands that come with later issues, named so that nobody searches for a typo.
+pub const LAMMPS_ONLY: &[&str] = &[
+    "angle_coeff", "angle_style", "atom_modify_map", "balance", "bond_coeff", "bond_style", "bond_write",
+    "change_box", "comm_style", "create_bonds", "delete_bonds", "dielectric", "dihedral_coeff", "dihedral_style",
+    "dynamical_matrix", "improper_coeff", "improper_style", "info", "kspace_modify", "kspace_style", "mdi",
+    "min_modify", "min_style", "minimize", "molecule", "neb", "partition", "plugin", "prd", "python", "read_data",
+    "read_dump", "read_restart", "replicate", "rerun", "reset_atoms", "restart", "run_style", "server", "shell",
+    "special_bonds", "tad", "temper", "third_order", "timer", "write_coeff", "write_data", "write_restart",
+];
+
+/// Which variables are atom-style, by name.
+pub fn variable_kinds(vars: &Vars) -> BTreeMap<String, bool> {
+    vars.names().map(|n| (n.to_string(), vars.kind(n) == Some(Kind::Atom))).collect()
+}
+
+/// The computes, fixes and variables that the words of a line refer to.
+pub fn variable_uses(cmd: &Command) -> Vec<Use> {
+    let mut uses = vec![];
+    for word in &cmd.args {
+        for part in word.text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')) {
+            let Ok(Some(r)) = ValueRef::parse(part, word.span) else { continue };
+            let kind = match r.kind {
+                RefKind::Variable => UseKind::Variable,
+                RefKind::Compute | RefKind::ComputeAtom => UseKind::Compute,
+                RefKind::Fix | RefKind::FixAtom => UseKind::Fix,
+            };
+            uses.push(Use { kind, name: r.name });
+        }
+    }
+    uses
+}
+
+/// What an act's line provides by name.
+pub fn provided(cmd: &Command) -> Option<Use> {
+    let kind = match cmd.name.text.as_str() {
+        "group" => UseKind::Group,
+        "region" => UseKind::Region,
+        "material" => UseKind::Material,
+        _ => return None,
+    };
+    cmd.args.first().map(|w| Use { kind, name: w.text.clone() })
+}
+
+impl Session {
+    /// LAMMPS defines three computes by itself; they appear with the box.
+    pub(super) fn thermo_computes(&mut self) {
+        if self.world.domain.is_none() || self.graph.find_compute("thermo_temp").is_some() {
+            return;
+        }
+        for (id, style, rest) in
+            [("thermo_temp", "temp", ""), ("thermo_press", "pressure", "thermo_temp"), ("thermo_pe", "pe", "")]
+        {
+            let Some(style) = COMPUTES.iter().find(|c| c.name() == style) else { continue };
+            let span = crate::diag::Span::default();
+            let words: Vec<Word> = rest.split_whitespace().map(|w| Word::new(w, span)).collect();
+            let cmd = Command { name: Word::new("compute", span), args: words, span, text: String::new() };
+            let (notes, uses) = (RefCell::default(), RefCell::default());
+            let built = style.build(
+                &mut Args::new(&cmd),
+                &BuildCx {
+                    world: &self.world,
+                    names: &self.graph,
+                    id,
+                    group: GroupId::ALL,
+                    span,
+                    checking: false,
+                    notes: &notes,
+                    uses: &uses,
+                },
+            );
+            if let Ok(compute) = built {
+                self.graph.computes.push(ComputeNode { id: id.into(), style: style.name(), compute, span });
+            }
+        }
+    }
+
+    /// Handles a command about the session; `false` if it is none.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    pub(super) fn own_command(&mut self, cmd: &Command) -> Result<bool> {
+        let mut args = Args::new(cmd);
+        match cmd.name.text.as_str() {
+            "print" => self.print(&mut args)?,
+            "log" => self.log(&mut args)?,
+            "echo" => {
+                let word = args.expect("none, screen, log or both")?;
+                let Some(echo) = Echo::parse(&word.text) else {
+                    return refuse(Code::BAD_VALUE, word.span, "echo takes none, screen, log or both");
+                };
+                args.finish()?;
+                self.options.log.set_echo(echo);
+            }
+            "clear" => {
+                args.finish()?;
+                self.reset_world();
+            }
+            "compat" => {
+                let mode = args.choice("mode", &["lammps", "none"])?;
+                args.finish()?;
+                let compat = if mode == "lammps" { Compat::Lammps } else { Compat::Perigrain };
+                self.options.compat = compat == Compat::Lammps;
+                self.world.settings.compat = compat;
+                self.world.touch();
+            }
+            "suffix" | "package" => {
+                args.rest();
+                let text = format!("`{}` is without effect here: perigrain chooses its kernels itself", cmd.name.text);
+                self.notes.push(Diagnostic::note(Code::NO_EFFECT, cmd.span, text));
+            }
+            _ => return Ok(false),
+        }
+        self.record(cmd, Role::Act, None, variable_uses(cmd), vec![]);
+        Ok(true)
+    }
+
+    fn print(&mut self, args: &mut Args) -> Result<()> {
+        let word = args.expect("a text")?;
+        let (mut file, mut append, mut screen, mut universe) = (None, false, true, true);
+        while let Some(key) = args.next() {
+            match key.text.as_str() {
+                "file" | "append" => {
+                    append = key.text == "append";
+                    file = Some(args.expect("a file name")?);
+                }
+                "screen" => screen = args.flag("screen")?,
+                "universe" => universe = args.flag("universe")?,
+                _ => return Err(args.unknown(key, &["file", "append", "screen", "universe"])),
+            }
+        }
+        let _ = universe;
+        let vars = Arc::new(self.vars.clone());
+        let checking = self.checking();
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, vars, checking };
+        let text = substitute(&word.text, word.span, &self.vars, &mut env)?;
+        if checking {
+            return Ok(());
+        }
+        match screen {
+            true => self.options.log.line(&text)?,
+            false => self.options.log.to_log(&text)?,
+        }
+        if let Some(name) = file {
+            use std::io::Write;
+            let path = Path::new(&name.text);
+            let mut out = crate::out::file::open(path, append).map_err(|e| e.at(name.span))?;
+            let failed = writeln!(out, "{text}").and_then(|()| out.flush());
+            failed.map_err(|e| crate::out::file::trouble("write", path, &e).at(name.span))?;
+        }
+        Ok(())
+    }
+
+    fn log(&mut self, args: &mut Args) -> Result<()> {
+        let word = args.expect("a file name or `none`")?;
+        let append = args.eat("append");
+        args.finish()?;
+        if self.checking() {
+            return Ok(());
+        }
+        match word.text.as_str() {
+            "none" => self.options.log.close(),
+            name => self.options.log.open(Path::new(name), append).map_err(|e| e.at(word.span)),
+        }
+    }
+}

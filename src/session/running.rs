@@ -1,0 +1,236 @@
+//! `run` and `write_dump`: seal the declarations, step, say how it went.
+
+use super::{Mode, Session, refuse};
+use crate::diag::{Code, Diagnostic, Result, Span};
+use crate::graph::build::{Context, once_dump};
+use crate::graph::env::DeckEnv;
+use crate::graph::ops::{ClearForces, Reneighbor};
+use crate::graph::seal::Sealer;
+use crate::graph::Role;
+use crate::lang::{Args, Command, Script, Word};
+use crate::out::thermo::{Finish, Section, memory_line};
+use crate::plan::{OpClass, StepPlan, explain};
+use crate::run::verlet;
+use std::cell::RefCell;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What a `run` line asks for.
+struct RunArgs {
+    steps: i64,
+    start: Option<i64>,
+    stop: Option<i64>,
+    pre: bool,
+    post: bool,
+    every: Option<(i64, Vec<Word>)>,
+}
+
+impl Session {
+    pub(super) fn run_command(&mut self, cmd: &Command) -> Result<()> {
+        let args = self.read_run(cmd)?;
+        self.thermo_computes();
+        self.record(cmd, Role::Run, None, vec![], vec![]);
+        if self.checking() {
+            return self.check_run(cmd.span);
+        }
+        self.ready(cmd.span)?;
+        self.check_run(cmd.span)?;
+        self.say_notes()?;
+        let c = &mut self.world.clock;
+        let last = c.step + args.steps;
+        c.start = args.start.unwrap_or(c.step);
+        c.stop = args.stop.unwrap_or(last);
+        match args.every {
+            None => self.leg(args.steps, args.pre, args.post, cmd.span),
+            Some((every, commands)) => {
+                let mut left = args.steps;
+                let mut first = true;
+                while left > 0 {
+                    let n = left.min(every);
+                    left -= n;
+                    self.leg(n, args.pre && first, args.post && left == 0, cmd.span)?;
+                    first = false;
+                    if self.interrupted {
+                        break;
+                    }
+                    let mut script = Script::of_commands(&commands);
+                    self.work_off(&mut script)?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn read_run(&mut self, cmd: &Command) -> Result<RunArgs> {
+        let mut args = Args::new(cmd);
+        let span = args.here();
+        let mut steps = args.integer("the number of steps")?;
+        let mut out = RunArgs { steps, start: None, stop: None, pre: true, post: true, every: None };
+        while let Some(key) = args.next() {
+            match key.text.as_str() {
+                "upto" => steps -= self.world.clock.step,
+                "start" => out.start = Some(args.integer("the first step of ramps")?),
+                "stop" => out.stop = Some(args.integer("the last step of ramps")?),
+                "pre" => out.pre = args.flag("pre")?,
+                "post" => out.post = args.flag("post")?,
+                "every" => {
+                    let n = args.integer_from(1, "the interval of commands")?;
+                    let words = args.rest();
+                    let commands = if words.len() == 1 && words[0].text == "NULL" { vec![] } else { words.to_vec() };
+                    out.every = Some((n, commands));
+                }
+                _ => return Err(args.unknown(key, &["upto", "start", "stop", "pre", "post", "every"])),
+            }
+        }
+        if steps < 0 {
+            return refuse(Code::BAD_VALUE, span, format!("a run cannot make {steps} steps"));
+        }
+        out.steps = steps;
+        let (first, last) = (self.world.clock.step, self.world.clock.step + steps);
+        if out.start.is_some_and(|s| s > first) || out.stop.is_some_and(|s| s < last) {
+            return refuse(Code::BAD_VALUE, cmd.span, "start and stop must enclose the steps of this run");
+        }
+        Ok(out)
+    }
+
+    /// Refuses a run without box; fills masses of types in.
+    fn ready(&mut self, span: Span) -> Result<()> {
+        if self.world.domain.is_none() {
+            return Err(Diagnostic::error(Code::WRONG_ORDER, span, "there is nothing to run: no box has been defined")
+                .help("define a box with `create_box` and particles with `create_atoms` first")
+                .into());
+        }
+        self.world.spread_type_masses();
+        self.world.columns.resize(self.world.particles.len());
+        Ok(())
+    }
+
+    /// Seals the declarations into a plan.
+    ///
+    /// # Errors
+    /// What styles miss in the scene.
+    pub fn seal(&mut self) -> Result<StepPlan> {
+        let vars = Arc::new(self.vars.clone());
+        let mut s = Sealer::new(&mut self.world, &self.graph, vars);
+        s.add(vec![Box::new(Reneighbor), Box::new(ClearForces)], Span::default());
+        if let Some(node) = &self.graph.pair {
+            s.at(node.span);
+            let ops = node.pair.ops(&mut s)?;
+            s.add(ops, node.span);
+        }
+        for f in &self.graph.fixes {
+            s.at(f.span);
+            let ops = f.fix.ops(&mut s)?;
+            s.add(ops, f.span);
+        }
+        for d in &self.graph.dumps {
+            s.at(d.span);
+            let op = d.dump.op(&mut s, d.every)?;
+            s.add(vec![op], d.span);
+        }
+        let row = self.graph.thermo.op(&mut s, self.options.log.clone())?;
+        s.add(vec![row], Span::default());
+        Ok(s.plan)
+    }
+
+    /// One uninterrupted stretch of steps.
+    fn leg(&mut self, steps: i64, pre: bool, post: bool, span: Span) -> Result<()> {
+        let c = &mut self.world.clock;
+        (c.first, c.last) = (c.step, c.step + steps);
+        c.began = None;
+        let unchanged =
+            self.ran && !self.world.parts.changed && (!self.world.settings.lammps() || !pre);
+        let mut plan = self.seal()?;
+        if self.options.mode == Mode::Plan {
+            self.options.log.line(explain::text(&plan, false).trim_end())?;
+            self.world.clock.step += steps;
+            return Ok(());
+        }
+        if !unchanged {
+            self.world.slots.invalidate();
+        }
+        let bytes = crate::world::memory::bytes(&self.world);
+        self.options.log.line(&memory_line(bytes))?;
+        self.world.clock.running = true;
+        let outcome = self.steps(&mut plan, unchanged);
+        self.world.clock.running = false;
+        let finished = plan.finish(&mut self.world);
+        let outcome = outcome.map_err(|e| e.at(span))?;
+        finished?;
+        self.ran = true;
+        self.world.parts.changed = false;
+        self.interrupted |= outcome.interrupted;
+        self.say_end(&plan, &outcome, post)?;
+        if self.options.mode == Mode::Measure {
+            self.options.log.line(explain::text(&plan, true).trim_end())?;
+        }
+        self.plan = Some(plan);
+        Ok(())
+    }
+
+    fn steps(&mut self, plan: &mut StepPlan, unchanged: bool) -> Result<verlet::Outcome> {
+        verlet::setup(plan, &mut self.world, unchanged)?;
+        plan.reset_meters();
+        self.world.clock.began = Some(Instant::now());
+        verlet::verlet(plan, &mut self.world, self.watch.as_mut())
+    }
+
+    fn say_end(&mut self, plan: &StepPlan, o: &verlet::Outcome, post: bool) -> Result<()> {
+        let log = &self.options.log;
+        let times = plan.time_by_class();
+        let section = |name, class| Section {
+            name,
+            seconds: times.iter().find(|(c, _)| *c == class).map_or(0.0, |(_, t)| t.as_secs_f64()),
+        };
+        let sections = [
+            section("Pair", OpClass::Pair),
+            section("Neigh", OpClass::Neigh),
+            Section { name: "Comm", seconds: 0.0 },
+            section("Output", OpClass::Output),
+            section("Modify", OpClass::Modify),
+        ];
+        let (neighbors, full) = crate::world::memory::neighbors(&self.world);
+        let finish = Finish {
+            seconds: o.time.as_secs_f64(),
+            cpu: o.cpu,
+            steps: o.steps,
+            atoms: self.world.n() as u64,
+            threads: crate::par::threads(),
+            units: self.world.settings.units.name(),
+            time: o.steps as f64 * self.world.clock.dt,
+            sections: if post { &sections } else { &[] },
+            neighbors,
+            full,
+            builds: self.world.rebuild.builds,
+            dangerous: self.world.rebuild.dangerous,
+        };
+        let text = finish.text();
+        let shown = if post { text.as_str() } else { text.lines().next().unwrap_or("") };
+        log.line(shown)?;
+        if post {
+            let ops: Vec<(&str, f64, u64)> =
+                plan.ops.iter().map(|p| (p.op.name(), p.meter.time.as_secs_f64(), p.meter.calls)).collect();
+            log.line(crate::out::thermo::ops_table(&ops, finish.seconds).trim_end())?;
+        }
+        if o.interrupted {
+            log.line(&format!("Interrupted at step {}: all files are complete", self.world.clock.step))?;
+        }
+        log.flush()
+    }
+
+    pub(super) fn write_dump(&mut self, cmd: &Command) -> Result<()> {
+        let (notes, uses) = (RefCell::default(), RefCell::default());
+        let cx = Context { span: cmd.span, checking: self.checking(), notes: &notes, uses: &uses };
+        let dump = once_dump(&self.graph, &self.world, &mut Args::new(cmd), &cx);
+        self.notes.append(notes.into_inner());
+        let dump = dump?;
+        self.record(cmd, Role::Act, None, uses.into_inner(), vec![]);
+        if self.checking() {
+            return Ok(());
+        }
+        self.world.spread_type_masses();
+        let vars = Arc::new(self.vars.clone());
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, vars, checking: false };
+        env.once(cmd.span, |s| dump.op(s, 0))
+    }
+}
