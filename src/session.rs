@@ -336,11 +336,16 @@ impl Session {
             if self.checking() && act.needs_particles() {
                 return Ok(settles);
             }
-            let mut values =
-                DeckValues { graph: &self.graph, vars: Arc::new(self.vars.clone()) };
+            let mut values = DeckValues { graph: &self.graph, vars: Arc::new(self.vars.clone()) };
             self.world.spread_type_masses();
             let world = &mut self.world;
-            act.apply(&mut ActCx { world, values: &mut values, span: cmd.span, said: &mut said, notes: &notes })?;
+            act.apply(&mut ActCx {
+                world,
+                values: &mut values,
+                span: cmd.span,
+                said: &mut said,
+                notes: &notes,
+            })?;
             self.world.touch();
             Ok(settles)
         })();

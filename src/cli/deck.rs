@@ -117,9 +117,7 @@ fn read(deck: &Deck) -> Result<(String, String), Usage> {
     let mut bytes = vec![];
     let (name, outcome) = match deck {
         Deck::Stdin => ("<stdin>".to_string(), std::io::stdin().read_to_end(&mut bytes).map(|_| ())),
-        Deck::File(path) => {
-            (path.display().to_string(), std::fs::read(path).map(|b| bytes = b))
-        }
+        Deck::File(path) => (path.display().to_string(), std::fs::read(path).map(|b| bytes = b)),
     };
     match outcome {
         Ok(()) => Ok((name, String::from_utf8_lossy(&bytes).into_owned())),
@@ -132,12 +130,16 @@ fn open_log(o: &Options, mode: Mode, progress: &Progress) -> Result<Log, Usage> 
         return Ok(Log::silent());
     }
     let screen: Option<Box<dyn Write + Send>> = match &o.screen {
-        Target::Usual if std::io::stdout().is_terminal() => Some(Box::new(progress.around(std::io::stdout()))),
+        Target::Usual if std::io::stdout().is_terminal() => {
+            Some(Box::new(progress.around(std::io::stdout())))
+        }
         Target::Usual => Some(Box::new(std::io::stdout())),
         Target::None => None,
         Target::File(path) => match std::fs::File::create(path) {
             Ok(f) => Some(Box::new(f)),
-            Err(e) => return Err(Usage { message: format!("cannot write {}: {e}", path.display()), help: None }),
+            Err(e) => {
+                return Err(Usage { message: format!("cannot write {}: {e}", path.display()), help: None });
+            }
         },
     };
     let log = Log::new(screen);
@@ -164,7 +166,8 @@ fn open_log(o: &Options, mode: Mode, progress: &Progress) -> Result<Log, Usage> 
 /// Problems go to standard error, and to the log without colours.
 fn complain(e: &Diagnostics, sources: &Sources, log: &Log, mode: Mode) {
     let stderr = std::io::stderr();
-    let text = if progress::colors(&stderr) { render::colored(e, sources) } else { render::plain(e, sources) };
+    let text =
+        if progress::colors(&stderr) { render::colored(e, sources) } else { render::plain(e, sources) };
     let _ = stderr.lock().write_all(text.as_bytes());
     if mode != Mode::Check {
         let _ = log.to_log(&render::plain(e, sources));

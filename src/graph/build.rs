@@ -44,7 +44,8 @@ pub fn style<'t, S: Style + ?Sized>(table: &[&'t S], kind: &str, args: &mut Args
         let text = format!("{kind} style `{}` is LAMMPS', but perigrain does not have it yet", word.text);
         return fail(Code::NOT_SUPPORTED, word.span, text);
     }
-    let d = Diagnostic::error(Code::UNKNOWN_STYLE, word.span, format!("unknown {kind} style `{}`", word.text));
+    let d =
+        Diagnostic::error(Code::UNKNOWN_STYLE, word.span, format!("unknown {kind} style `{}`", word.text));
     let known: Vec<&str> = table.iter().map(|s| s.name()).collect();
     Err(match nearest(&word.text, known.iter().copied()) {
         Some(n) => d.help(format!("did you mean `{n}`?")),
@@ -128,7 +129,11 @@ pub fn declare(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) ->
     match cmd.name.text.as_str() {
         "pair_style" => pair_style(graph, w, &mut args, cx),
         "pair_coeff" => pair_coeff(graph, w, &mut args, cx),
-        "pair_modify" => fail(Code::NOT_SUPPORTED, cmd.name.span, "pair_modify: none of the pair styles here uses its options"),
+        "pair_modify" => fail(
+            Code::NOT_SUPPORTED,
+            cmd.name.span,
+            "pair_modify: none of the pair styles here uses its options",
+        ),
         "peri_modify" => pair_modify(graph, w, &mut args, cx),
         "fix" => fix(graph, w, &mut args, cx),
         "unfix" => unfix(graph, w, &mut args),
@@ -220,14 +225,17 @@ fn pair_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -
 fn pair_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
     needs_box(w, args)?;
     let Some(node) = &graph.pair else {
-        return Err(Diagnostic::error(Code::WRONG_ORDER, args.name_span(), "pair_coeff comes before any pair_style")
-            .help("put a `pair_style` line first")
-            .into());
+        return Err(Diagnostic::error(
+            Code::WRONG_ORDER,
+            args.name_span(),
+            "pair_coeff comes before any pair_style",
+        )
+        .help("put a `pair_style` line first")
+        .into());
     };
     let (i0, i1) = args.type_range(w.types)?;
     let (j0, j1) = args.type_range(w.types)?;
-    let pairs: Vec<(u16, u16)> =
-        (i0..=i1).flat_map(|i| (j0.max(i)..=j1).map(move |j| (i, j))).collect();
+    let pairs: Vec<(u16, u16)> = (i0..=i1).flat_map(|i| (j0.max(i)..=j1).map(move |j| (i, j))).collect();
     if pairs.is_empty() {
         return Err(Diagnostic::error(Code::BAD_VALUE, cx.span, "these types name no pair i ≤ j")
             .help("write the smaller type first, as `pair_coeff 1 2 …`")
@@ -281,10 +289,14 @@ fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Resul
     if let Some(k) = old
         && (graph.fixes[k].style != node.style || graph.fixes[k].group != group)
     {
-        return Err(Diagnostic::error(Code::DUPLICATE_NAME, id_span, format!("fix `{id}` exists already, with another style or group"))
-            .label(graph.fixes[k].span, "defined here")
-            .help(format!("put `unfix {id}` before this line, or choose another ID"))
-            .into());
+        return Err(Diagnostic::error(
+            Code::DUPLICATE_NAME,
+            id_span,
+            format!("fix `{id}` exists already, with another style or group"),
+        )
+        .label(graph.fixes[k].span, "defined here")
+        .help(format!("put `unfix {id}` before this line, or choose another ID"))
+        .into());
     }
     if let Some(k) = old {
         graph.fixes[k].fix.remove(w);
@@ -364,10 +376,14 @@ fn compute(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> R
     needs_box(w, args)?;
     let (id, id_span) = id_of(args, "compute")?;
     if let Some(old) = graph.find_compute(id) {
-        return Err(Diagnostic::error(Code::DUPLICATE_NAME, id_span, format!("compute `{id}` exists already"))
-            .label(old.span, "defined here")
-            .help(format!("put `uncompute {id}` before this line, or choose another ID"))
-            .into());
+        return Err(Diagnostic::error(
+            Code::DUPLICATE_NAME,
+            id_span,
+            format!("compute `{id}` exists already"),
+        )
+        .label(old.span, "defined here")
+        .help(format!("put `uncompute {id}` before this line, or choose another ID"))
+        .into());
     }
     let group_word = args.expect("the compute's group")?;
     let group = cx.build(graph, w, id, GroupId::ALL).group(group_word)?;
@@ -455,7 +471,12 @@ fn dump_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) 
 ///
 /// # Errors
 /// As `dump` and `dump_modify`.
-pub fn once_dump(graph: &Graph, w: &World, args: &mut Args, cx: &Context) -> Result<Box<dyn crate::styles::Dump>> {
+pub fn once_dump(
+    graph: &Graph,
+    w: &World,
+    args: &mut Args,
+    cx: &Context,
+) -> Result<Box<dyn crate::styles::Dump>> {
     needs_box(w, args)?;
     let group_word = args.expect("the group to write")?;
     let group = cx.build(graph, w, "WRITE_DUMP", GroupId::ALL).group(group_word)?;

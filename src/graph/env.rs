@@ -49,8 +49,8 @@ fn one(w: &World, name: &str, tag: usize, span: Span) -> Result<Value> {
 
 fn column(w: &World, name: &str) -> Option<Result<Vec<f64>>> {
     const KNOWN: [&str; 16] = [
-        "id", "type", "mass", "radius", "x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz", "omegax", "omegay",
-        "omegaz",
+        "id", "type", "mass", "radius", "x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz", "omegax",
+        "omegay", "omegaz",
     ];
     if !KNOWN.contains(&name) {
         return None;
@@ -147,11 +147,7 @@ pub struct DeckEnv<'a> {
 
 impl DeckEnv<'_> {
     /// Plans the values asked for by `ask` and runs that plan once.
-    fn now<T>(
-        &mut self,
-        span: Span,
-        ask: impl FnOnce(&mut Sealer) -> Result<T>,
-    ) -> Result<T> {
+    fn now<T>(&mut self, span: Span, ask: impl FnOnce(&mut Sealer) -> Result<T>) -> Result<T> {
         let (answer, mut plan, t) = self.planned(span, ask)?;
         plan.run(self.w, &t, &Stage::ALL)?;
         Ok(answer)
@@ -192,7 +188,9 @@ impl DeckEnv<'_> {
                 span,
                 "energies or pressures of the present state have not been computed",
             )
-            .help("put `run 0` before this line, or let thermo output show the quantity at the run's last step")
+            .help(
+                "put `run 0` before this line, or let thermo output show the quantity at the run's last step",
+            )
             .into());
         }
         Ok((answer, plan, t))
@@ -258,9 +256,11 @@ pub struct DeckValues<'a> {
 impl Values for DeckValues<'_> {
     fn scalar(&mut self, w: &mut World, r: &ValueRef) -> Result<f64> {
         match self.reading(w, r)? {
-            reading if reading.per_atom() => {
-                fail(Code::WRONG_KIND, r.span, format!("`{r}` has one value per particle; one number is needed"))
-            }
+            reading if reading.per_atom() => fail(
+                Code::WRONG_KIND,
+                r.span,
+                format!("`{r}` has one value per particle; one number is needed"),
+            ),
             reading => Ok(reading.get(w)),
         }
     }

@@ -96,7 +96,9 @@ impl<'a> Sealer<'a> {
     fn widen(&mut self, key: &str, stage: Stage, when: &When) {
         let name = key.replacen("c_", "compute ", 1);
         for p in &mut self.plan.ops {
-            if p.op.stage() == stage && p.op.name().strip_prefix(&name).is_some_and(|r| r.is_empty() || r.starts_with(' ')) {
+            if p.op.stage() == stage
+                && p.op.name().strip_prefix(&name).is_some_and(|r| r.is_empty() || r.starts_with(' '))
+            {
                 p.when = p.when.clone().or(when.clone());
             }
         }
@@ -126,7 +128,15 @@ impl<'a> Sealer<'a> {
         self.uses += 1;
         let slot = self.world.slots.id(&format!("v_{}#{}", r.name, self.uses));
         let atom = self.graph.variables.get(&r.name).copied().unwrap_or(false);
-        let op = Evaluate { title: format!("variable {}", r.name), name: r.name.clone(), span: r.span, vars, from, slot, stage };
+        let op = Evaluate {
+            title: format!("variable {}", r.name),
+            name: r.name.clone(),
+            span: r.span,
+            vars,
+            from,
+            slot,
+            stage,
+        };
         self.provide(Box::new(op), when.clone());
         Ok(if atom { Reading::Atom(slot, 0) } else { Reading::Scalar(slot) })
     }
@@ -353,7 +363,11 @@ impl Op for Evaluate {
             Value::Number(a) => slot.scalar = a,
             Value::Atom(list) => (slot.atom, slot.cols) = (list, 1),
             Value::Vector(_) | Value::Unknown => {
-                return fail(Code::WRONG_KIND, self.span, format!("variable `{}` has no number here", self.name));
+                return fail(
+                    Code::WRONG_KIND,
+                    self.span,
+                    format!("variable `{}` has no number here", self.name),
+                );
             }
         }
         Ok(())

@@ -5,7 +5,8 @@ use std::fmt::Write;
 
 /// The graph in the `dot` language: one box per line of the deck, arrows to what it uses.
 pub fn dot(graph: &Graph) -> String {
-    let mut s = String::from("digraph deck {\n  rankdir=LR;\n  node [fontname=\"monospace\", fontsize=10];\n");
+    let mut s =
+        String::from("digraph deck {\n  rankdir=LR;\n  node [fontname=\"monospace\", fontsize=10];\n");
     for (k, n) in graph.nodes.iter().enumerate() {
         let shape = match n.role {
             Role::Declare => "box",

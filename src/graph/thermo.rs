@@ -64,7 +64,11 @@ impl Thermo {
     /// Anything but a whole number from 0.
     pub fn interval(&mut self, args: &mut Args) -> Result<()> {
         if args.peek_text().starts_with("v_") {
-            return fail(Code::NOT_SUPPORTED, args.here(), "thermo with a variable interval is not there yet");
+            return fail(
+                Code::NOT_SUPPORTED,
+                args.here(),
+                "thermo with a variable interval is not there yet",
+            );
         }
         self.every = args.integer_from(0, "the interval of thermo output")?;
         args.finish()
@@ -99,8 +103,18 @@ impl Thermo {
     /// Unknown keywords, formats that do not fit, and `lost ignore|warn`, which is not there.
     pub fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
         const KNOWN: [&str; 12] = [
-            "lost", "lost/bond", "warn", "norm", "flush", "line", "colname", "format", "temp", "press",
-            "triclinic/general", "pe",
+            "lost",
+            "lost/bond",
+            "warn",
+            "norm",
+            "flush",
+            "line",
+            "colname",
+            "format",
+            "temp",
+            "press",
+            "triclinic/general",
+            "pe",
         ];
         while let Some(word) = args.next() {
             match word.text.as_str() {
@@ -119,7 +133,10 @@ impl Thermo {
                         return Err(Diagnostic::error(
                             Code::NOT_SUPPORTED,
                             how.span,
-                            format!("thermo_modify lost {}: perigrain always stops at a lost particle", how.text),
+                            format!(
+                                "thermo_modify lost {}: perigrain always stops at a lost particle",
+                                how.text
+                            ),
                         )
                         .help("use boundary s or m, or a larger box, so that fragments stay inside")
                         .into());
@@ -127,11 +144,19 @@ impl Thermo {
                 }
                 "lost/bond" => {
                     args.choice("lost/bond", &["error", "warn", "ignore"])?;
-                    cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, "without effect: bonds are never lost here"));
+                    cx.note(Diagnostic::note(
+                        Code::NO_EFFECT,
+                        word.span,
+                        "without effect: bonds are never lost here",
+                    ));
                 }
                 "warn" => {
                     args.expect("ignore, reset, default or a number")?;
-                    cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, "without effect: warnings are not counted here"));
+                    cx.note(Diagnostic::note(
+                        Code::NO_EFFECT,
+                        word.span,
+                        "without effect: warnings are not counted here",
+                    ));
                 }
                 "format" => self.format(args)?,
                 "colname" => match args.peek_text() {
@@ -203,7 +228,8 @@ fn existing(args: &mut Args, cx: &BuildCx, what: &str) -> Result<String> {
     let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
     cx.value(&r, false).map_err(|e| {
         let mut e = e;
-        e.0.iter_mut().for_each(|d| d.help.push(format!("define it with `compute {} all {what} …`", word.text)));
+        e.0.iter_mut()
+            .for_each(|d| d.help.push(format!("define it with `compute {} all {what} …`", word.text)));
         e
     })?;
     Ok(word.text.clone())

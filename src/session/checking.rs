@@ -34,8 +34,12 @@ impl Session {
     fn check_pair(&self, span: Span, found: &mut Diagnostics) {
         let Some(node) = &self.graph.pair else {
             found.push(
-                Diagnostic::warning(Code::SUSPICIOUS, span, "no pair_style: particles do not feel each other")
-                    .help("this is right for free flight only"),
+                Diagnostic::warning(
+                    Code::SUSPICIOUS,
+                    span,
+                    "no pair_style: particles do not feel each other",
+                )
+                .help("this is right for free flight only"),
             );
             return;
         };
@@ -46,7 +50,11 @@ impl Session {
             .map(|(i, j)| format!("{i}-{j}"))
             .collect();
         if !missing.is_empty() {
-            let text = format!("pair_style {} has no coefficients for types {}", node.pair.name(), missing.join(", "));
+            let text = format!(
+                "pair_style {} has no coefficients for types {}",
+                node.pair.name(),
+                missing.join(", ")
+            );
             found.push(
                 Diagnostic::error(Code::INCOMPLETE, span, text)
                     .label(node.span, "pair_style given here")
@@ -59,7 +67,10 @@ impl Session {
                     Diagnostic::warning(
                         Code::SUSPICIOUS,
                         span,
-                        format!("the {fact} of particles was never set, and pair_style {} uses it", node.pair.name()),
+                        format!(
+                            "the {fact} of particles was never set, and pair_style {} uses it",
+                            node.pair.name()
+                        ),
                     )
                     .help(format!("add `set group all {fact} …`")),
                 );

@@ -16,18 +16,60 @@ use std::sync::Arc;
 
 /// The session's own commands and those of the cursor, for "did you mean".
 pub const OWN: [&str; 15] = [
-    "print", "log", "echo", "clear", "compat", "run", "variable", "if", "jump", "label", "next", "include", "quit",
-    "suffix", "package",
+    "print", "log", "echo", "clear", "compat", "run", "variable", "if", "jump", "label", "next", "include",
+    "quit", "suffix", "package",
 ];
 
 /// LAMMPS commands that come with later issues, named so that nobody searches for a typo.
 pub const LAMMPS_ONLY: &[&str] = &[
-    "angle_coeff", "angle_style", "atom_modify_map", "balance", "bond_coeff", "bond_style", "bond_write",
-    "change_box", "comm_style", "create_bonds", "delete_bonds", "dielectric", "dihedral_coeff", "dihedral_style",
-    "dynamical_matrix", "improper_coeff", "improper_style", "info", "kspace_modify", "kspace_style", "mdi",
-    "min_modify", "min_style", "minimize", "molecule", "neb", "partition", "plugin", "prd", "python", "read_data",
-    "read_dump", "read_restart", "replicate", "rerun", "reset_atoms", "restart", "run_style", "server", "shell",
-    "special_bonds", "tad", "temper", "third_order", "timer", "write_coeff", "write_data", "write_restart",
+    "angle_coeff",
+    "angle_style",
+    "atom_modify_map",
+    "balance",
+    "bond_coeff",
+    "bond_style",
+    "bond_write",
+    "change_box",
+    "comm_style",
+    "create_bonds",
+    "delete_bonds",
+    "dielectric",
+    "dihedral_coeff",
+    "dihedral_style",
+    "dynamical_matrix",
+    "improper_coeff",
+    "improper_style",
+    "info",
+    "kspace_modify",
+    "kspace_style",
+    "mdi",
+    "min_modify",
+    "min_style",
+    "minimize",
+    "molecule",
+    "neb",
+    "partition",
+    "plugin",
+    "prd",
+    "python",
+    "read_data",
+    "read_dump",
+    "read_restart",
+    "replicate",
+    "rerun",
+    "reset_atoms",
+    "restart",
+    "run_style",
+    "server",
+    "shell",
+    "special_bonds",
+    "tad",
+    "temper",
+    "third_order",
+    "timer",
+    "write_coeff",
+    "write_data",
+    "write_restart",
 ];
 
 /// Which variables are atom-style, by name.
@@ -69,9 +111,11 @@ impl Session {
         if self.world.domain.is_none() || self.graph.find_compute("thermo_temp").is_some() {
             return;
         }
-        for (id, style, rest) in
-            [("thermo_temp", "temp", ""), ("thermo_press", "pressure", "thermo_temp"), ("thermo_pe", "pe", "")]
-        {
+        for (id, style, rest) in [
+            ("thermo_temp", "temp", ""),
+            ("thermo_press", "pressure", "thermo_temp"),
+            ("thermo_pe", "pe", ""),
+        ] {
             let Some(style) = COMPUTES.iter().find(|c| c.name() == style) else { continue };
             let span = crate::diag::Span::default();
             let words: Vec<Word> = rest.split_whitespace().map(|w| Word::new(w, span)).collect();
@@ -127,7 +171,10 @@ impl Session {
             }
             "suffix" | "package" => {
                 args.rest();
-                let text = format!("`{}` is without effect here: perigrain chooses its kernels itself", cmd.name.text);
+                let text = format!(
+                    "`{}` is without effect here: perigrain chooses its kernels itself",
+                    cmd.name.text
+                );
                 self.notes.push(Diagnostic::note(Code::NO_EFFECT, cmd.span, text));
             }
             _ => return Ok(false),

@@ -2,11 +2,11 @@
 
 use super::{Mode, Session, refuse};
 use crate::diag::{Code, Diagnostic, Result, Span};
+use crate::graph::Role;
 use crate::graph::build::{Context, once_dump};
 use crate::graph::env::DeckEnv;
 use crate::graph::ops::{ClearForces, Reneighbor};
 use crate::graph::seal::Sealer;
-use crate::graph::Role;
 use crate::lang::{Args, Command, Script, Word};
 use crate::out::thermo::{Finish, Section, memory_line};
 use crate::plan::{OpClass, StepPlan, explain};
@@ -76,7 +76,8 @@ impl Session {
                 "every" => {
                     let n = args.integer_from(1, "the interval of commands")?;
                     let words = args.rest();
-                    let commands = if words.len() == 1 && words[0].text == "NULL" { vec![] } else { words.to_vec() };
+                    let commands =
+                        if words.len() == 1 && words[0].text == "NULL" { vec![] } else { words.to_vec() };
                     out.every = Some((n, commands));
                 }
                 _ => return Err(args.unknown(key, &["upto", "start", "stop", "pre", "post", "every"])),
@@ -96,9 +97,13 @@ impl Session {
     /// Refuses a run without box; fills masses of types in.
     fn ready(&mut self, span: Span) -> Result<()> {
         if self.world.domain.is_none() {
-            return Err(Diagnostic::error(Code::WRONG_ORDER, span, "there is nothing to run: no box has been defined")
-                .help("define a box with `create_box` and particles with `create_atoms` first")
-                .into());
+            return Err(Diagnostic::error(
+                Code::WRONG_ORDER,
+                span,
+                "there is nothing to run: no box has been defined",
+            )
+            .help("define a box with `create_box` and particles with `create_atoms` first")
+            .into());
         }
         self.world.spread_type_masses();
         self.world.columns.resize(self.world.particles.len());
@@ -138,8 +143,7 @@ impl Session {
         let c = &mut self.world.clock;
         (c.first, c.last) = (c.step, c.step + steps);
         c.began = None;
-        let unchanged =
-            self.ran && !self.world.parts.changed && (!self.world.settings.lammps() || !pre);
+        let unchanged = self.ran && !self.world.parts.changed && (!self.world.settings.lammps() || !pre);
         let mut plan = self.seal()?;
         if self.options.mode == Mode::Plan {
             self.options.log.line(explain::text(&plan, false).trim_end())?;

@@ -9,7 +9,13 @@ pub fn bytes(w: &World) -> u64 {
     }
     let p = &w.particles;
     let columns = of(&p.tag) + of(&p.kind) + of(&p.mask) + of(&p.image) + of(&p.x) + of(&p.v) + of(&p.f);
-    let own = of(&p.mass) + of(&p.radius) + of(&p.omega) + of(&p.torque) + of(&p.volume) + of(&p.x0) + of(&p.density);
+    let own = of(&p.mass)
+        + of(&p.radius)
+        + of(&p.omega)
+        + of(&p.torque)
+        + of(&p.volume)
+        + of(&p.x0)
+        + of(&p.density);
     columns + own + of(&w.rebuild.held)
 }
 

@@ -48,9 +48,13 @@ impl Style for PeriPmb {
 impl PairStyle for PeriPmb {
     fn build(&self, _args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
         if !cx.world.particles.style.peri {
-            return Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, "pair_style peri/pmb needs particles with a volume")
-                .help("put `atom_style peri` (or `hybrid sphere peri`) at the top of the deck")
-                .into());
+            return Err(Diagnostic::error(
+                Code::WRONG_ORDER,
+                cx.span,
+                "pair_style peri/pmb needs particles with a volume",
+            )
+            .help("put `atom_style peri` (or `hybrid sphere peri`) at the top of the deck")
+            .into());
         }
         Ok(Box::new(Pmb {
             table: PmbTable::new(cx.world.types),
@@ -97,8 +101,12 @@ impl Pmb {
         let lc = cx.world.lattice.spacing[0];
         if horizon < lc && lc > 0.0 {
             cx.note(
-                Diagnostic::warning(Code::SUSPICIOUS, span, format!("the horizon {horizon} is shorter than the lattice spacing {lc}: no bonds"))
-                    .help("a horizon of about 3 spacings is usual"),
+                Diagnostic::warning(
+                    Code::SUSPICIOUS,
+                    span,
+                    format!("the horizon {horizon} is shorter than the lattice spacing {lc}: no bonds"),
+                )
+                .help("a horizon of about 3 spacings is usual"),
             );
         }
         Ok(PmbCoeff { c, horizon, s00, alpha })
@@ -157,14 +165,21 @@ impl Pair for Pmb {
             skip_rest: !s.no_skipping,
             portable: s.portable,
         };
-        cx.leave_out("neighbour list of peri/pmb", "bonds never change partners; close pairs are found by their stretch");
+        cx.leave_out(
+            "neighbour list of peri/pmb",
+            "bonds never change partners; close pairs are found by their stretch",
+        );
         Ok(vec![Box::new(Force { style: self.clone(), options })])
     }
 
     fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
         const KNOWN: [&str; 2] = ["force", "volume"];
         if command != "peri_modify" {
-            return fail(Code::CONFLICT, cx.span, format!("`{command}` does not concern pair_style peri/pmb"));
+            return fail(
+                Code::CONFLICT,
+                cx.span,
+                format!("`{command}` does not concern pair_style peri/pmb"),
+            );
         }
         if args.is_empty() {
             return fail(Code::MISSING_ARGUMENT, args.here(), "peri_modify needs an option: force or volume");
@@ -185,7 +200,11 @@ impl Pair for Pmb {
                     };
                 }
                 "calibrate" | "broken" | "family" | "nofail" => {
-                    return fail(Code::NOT_SUPPORTED, word.span, format!("peri_modify {} is not there yet", word.text));
+                    return fail(
+                        Code::NOT_SUPPORTED,
+                        word.span,
+                        format!("peri_modify {} is not there yet", word.text),
+                    );
                 }
                 _ => return Err(args.unknown(word, &KNOWN)),
             }
@@ -303,7 +322,10 @@ impl Force {
                 return Err(Diagnostic::error(
                     Code::INCOMPLETE,
                     None,
-                    format!("particle {} (type {kind}) has no density, which `peri_modify force newton` needs", p.tag[i]),
+                    format!(
+                        "particle {} (type {kind}) has no density, which `peri_modify force newton` needs",
+                        p.tag[i]
+                    ),
                 )
                 .help(format!("add `set type {kind} density …`"))
                 .into());
