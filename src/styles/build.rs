@@ -55,7 +55,9 @@ pub trait Names {
     /// Whether a variable is atom-style (`Some(true)`), any other style (`Some(false)`), or absent.
     fn variable(&self, name: &str) -> Option<bool>;
     /// Whether the global values of a compute or fix grow with the number of particles (`thermo_modify norm`).
-    fn extensive(&self, r: &ValueRef) -> bool;
+    fn extensive(&self, _r: &ValueRef) -> bool {
+        false
+    }
     /// All names of a kind, for "did you mean".
     fn all(&self, kind: UseKind) -> Vec<String>;
 }
