@@ -3,6 +3,7 @@
 use super::Session;
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use crate::graph::build::Context;
+use crate::styles::Pair;
 use crate::world::GroupId;
 use std::cell::RefCell;
 
@@ -76,10 +77,27 @@ impl Session {
                 );
             }
         }
+        self.check_units_of_force(node.pair.as_ref(), node.span, found);
         let (notes, uses) = (RefCell::default(), RefCell::default());
         let cx = Context { span: node.span, checking: self.checking(), notes: &notes, uses: &uses };
         node.pair.check(&cx.build(&self.graph, &self.world, "", GroupId::ALL));
         found.append(notes.into_inner());
+    }
+
+    /// Force densities and forces added up in one column.
+    fn check_units_of_force(&self, pair: &dyn Pair, span: Span, found: &mut Diagnostics) {
+        let parts = pair.parts();
+        let densities = parts.iter().any(|p| p.true_forces() == Some(false));
+        let forces = parts.iter().any(|p| p.true_forces() != Some(false));
+        if densities && forces && !self.settled("mass") {
+            let text = "peridynamic force densities (with the density as mass) and granular forces meet in one scene: \
+                        momentum is not conserved, and grains meet bodies that hardly move";
+            found.push(
+                Diagnostic::warning(Code::SUSPICIOUS, span, text)
+                    .help("say `peri_modify force newton` (implied by `material` coefficients): forces become newtons, masses ρV")
+                    .help("or scale by hand as in LAMMPS: multiply c by the particle volume V and `set … mass` to ρV"),
+            );
+        }
     }
 
     fn check_masses(&self, span: Span, found: &mut Diagnostics) {

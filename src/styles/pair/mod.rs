@@ -62,6 +62,11 @@ pub trait Pair: Send {
         None
     }
 
+    /// The sub-styles of a `hybrid`.
+    fn parts(&self) -> Vec<&dyn Pair> {
+        vec![]
+    }
+
     /// Contradictions within the present declarations that a run would trip over, left as notes in `cx`.
     fn check(&self, _cx: &BuildCx) {}
 
