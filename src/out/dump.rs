@@ -232,7 +232,7 @@ mod tests {
     use super::*;
 
     /// The probe box of 12 spheres: periodic, fixed, shrink-wrapped.
-    const BOUNDS: [[f64; 2]; 3] = [[0.0, 2.0], [0.0, 2.0], [-2.2999999999999998e-04, 2.0002300000000002]];
+    const BOUNDS: [[f64; 2]; 3] = [[0.0, 2.0], [0.0, 2.0], [-2.2999999999999998e-04, 2.00023]];
 
     fn lattice() -> Vec<[f64; 3]> {
         let site = |k: usize| [k % 2, k / 2 % 2, k / 4].map(|n| n as f64);

@@ -105,10 +105,10 @@ impl Log {
         let mut inner = self.inner();
         let echo = inner.echo;
         if matches!(echo, Echo::Screen | Echo::Both) {
-            inner.to_screen(line);
+            inner.say(line);
         }
         if matches!(echo, Echo::Log | Echo::Both) {
-            inner.to_file(line)?;
+            inner.record(line)?;
         }
         Ok(())
     }
@@ -116,18 +116,18 @@ impl Log {
     /// A line for screen and file.
     pub fn line(&self, line: &str) -> Result<()> {
         let mut inner = self.inner();
-        inner.to_screen(line);
-        inner.to_file(line)
+        inner.say(line);
+        inner.record(line)
     }
 
     /// A line for the screen alone.
     pub fn to_screen(&self, line: &str) {
-        self.inner().to_screen(line);
+        self.inner().say(line);
     }
 
     /// A line for the file alone.
     pub fn to_log(&self, line: &str) -> Result<()> {
-        self.inner().to_file(line)
+        self.inner().record(line)
     }
 
     /// Hands everything written so far to the system.
@@ -142,7 +142,7 @@ impl Log {
 
 impl Inner {
     /// A screen that cannot be written (`| head`) is dropped; the file has it all.
-    fn to_screen(&mut self, line: &str) {
+    fn say(&mut self, line: &str) {
         if let Some(screen) = &mut self.screen
             && writeln!(screen, "{line}").is_err()
         {
@@ -151,7 +151,7 @@ impl Inner {
     }
 
     /// A file that cannot be written is reported once and then dropped.
-    fn to_file(&mut self, line: &str) -> Result<()> {
+    fn record(&mut self, line: &str) -> Result<()> {
         let Some((_, file)) = &mut self.file else { return Ok(()) };
         let outcome = writeln!(file, "{line}");
         self.report(outcome)

@@ -5,9 +5,11 @@
 pub mod dump;
 pub mod file;
 pub mod formats;
+pub mod image;
 pub mod log;
 pub mod table;
 pub mod thermo;
+pub mod vtu;
 
 use std::sync::OnceLock;
 
