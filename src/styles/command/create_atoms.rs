@@ -7,7 +7,7 @@ use crate::lang::Args;
 use crate::math::cformat::general;
 use crate::math::rng::ParkMiller;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
-use crate::world::{Domain, Region, World};
+use crate::world::{Domain, Region, World, memory};
 use std::ops::ControlFlow;
 
 /// The command.
@@ -146,6 +146,9 @@ fn random(a: &mut Args, cx: &BuildCx) -> Result<Place> {
 
 fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {
     let domain = cx.world.domain()?.clone();
+    if let Some(line) = memory::forecast(cx.world, expected(cx.world, &domain, &c.place))? {
+        cx.say(line);
+    }
     let places = match &c.place {
         Place::Lattice(region) => on_sites(cx.world, &domain, region.as_ref(), &c.basis),
         Place::Single { x, remap } => single(&domain, *x, *remap, c.kind),
@@ -170,6 +173,23 @@ fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {
         text(domain.hi)
     ));
     Ok(())
+}
+
+/// About how many particles will be made: lattice cells times the share of sample points inside the region.
+fn expected(world: &World, domain: &Domain, place: &Place) -> f64 {
+    const SAMPLES: usize = 16;
+    let region = match place {
+        Place::Single { .. } => return 1.0,
+        Place::Random { count, .. } => return *count as f64,
+        Place::Lattice(region) => region.as_ref(),
+    };
+    let (lo, hi) = bounds(domain, region);
+    let at = |k: usize, d: usize| lo[d] + (hi[d] - lo[d]) * (k as f64 + 0.5) / SAMPLES as f64;
+    let inside = (0..SAMPLES.pow(3))
+        .map(|k| [at(k % SAMPLES, 0), at(k / SAMPLES % SAMPLES, 1), at(k / SAMPLES / SAMPLES, 2)])
+        .filter(|x| region.is_none_or(|r| r.contains(*x)))
+        .count();
+    world.lattice.site_bound(lo, hi) * inside as f64 / SAMPLES.pow(3) as f64
 }
 
 /// Puts the new particles behind the present ones, with the ids that follow.
