@@ -2,3 +2,4 @@
 
 pub mod cformat;
 pub mod rng;
+pub mod vec3;

@@ -1,0 +1,117 @@
+//! The law against LAMMPS, closed forms and conservation, with a plain velocity-Verlet driver of two spheres.
+
+mod closed_forms;
+mod oblique;
+
+use super::*;
+use crate::math::vec3::{add, cross, dot, length, scale};
+use crate::world::Compat;
+
+/// A sphere, or with infinite mass and radius 0 a wall.
+#[derive(Clone, Copy, Debug)]
+struct Ball {
+    x: Vec3,
+    motion: Motion,
+    radius: f64,
+    mass: f64,
+    force: Vec3,
+    torque: Vec3,
+}
+
+impl Ball {
+    fn new(x: Vec3, velocity: Vec3, spin: Vec3, radius: f64, density: f64) -> Self {
+        let mass = density * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+        Self { x, motion: Motion { velocity, spin }, radius, mass, force: [0.0; 3], torque: [0.0; 3] }
+    }
+
+    fn inertia(&self) -> f64 {
+        0.4 * self.mass * self.radius * self.radius
+    }
+
+    fn kick(&mut self, dt: f64) {
+        self.motion.velocity = add(self.motion.velocity, scale(0.5 * dt / self.mass, self.force));
+        if self.radius > 0.0 {
+            self.motion.spin = add(self.motion.spin, scale(0.5 * dt / self.inertia(), self.torque));
+        }
+    }
+}
+
+/// Two balls, one law, LAMMPS' step: forces between the half kicks, from half-step velocities.
+struct Duel {
+    balls: [Ball; 2],
+    law: Granular,
+    history: Vec3,
+    curvature: Option<f64>,
+    dt: f64,
+}
+
+impl Duel {
+    fn new(balls: [Ball; 2], law: Granular, dt: f64) -> Self {
+        Self { balls, law, history: [0.0; 3], curvature: None, dt }
+    }
+
+    fn forces(&mut self, history: bool) {
+        let [a, b] = self.balls;
+        let mut w = Wrench::default();
+        match Geometry::of_spheres(sub(a.x, b.x), [a.radius, b.radius], [a.mass, b.mass]) {
+            Some(g) => {
+                let g = self.curvature.map_or(g, |r| g.with_curvature(r));
+                let step = Advance { dt: self.dt, history };
+                w = self.law.contact(&g, &a.motion, &b.motion, &mut self.history, step);
+            }
+            None => self.history = [0.0; 3],
+        }
+        self.balls[0].force = w.force;
+        self.balls[1].force = scale(-1.0, w.force);
+        self.balls[0].torque = w.torque_i;
+        self.balls[1].torque = w.torque_j;
+    }
+
+    fn step(&mut self) {
+        assert!(self.overlap().is_finite());
+        for b in &mut self.balls {
+            b.kick(self.dt);
+            b.x = add(b.x, scale(self.dt, b.motion.velocity));
+        }
+        self.forces(true);
+        for b in &mut self.balls {
+            b.kick(self.dt);
+        }
+    }
+
+    fn momentum(&self) -> Vec3 {
+        let p = |b: &Ball| scale(b.mass, b.motion.velocity);
+        add(p(&self.balls[0]), p(&self.balls[1]))
+    }
+
+    fn angular_momentum(&self) -> Vec3 {
+        let l =
+            |b: &Ball| add(scale(b.inertia(), b.motion.spin), cross(b.x, scale(b.mass, b.motion.velocity)));
+        add(l(&self.balls[0]), l(&self.balls[1]))
+    }
+
+    fn overlap(&self) -> f64 {
+        let [a, b] = &self.balls;
+        a.radius + b.radius - length(sub(a.x, b.x))
+    }
+
+    fn kinetic(&self) -> f64 {
+        let k = |b: &Ball| {
+            0.5 * b.mass * dot(b.motion.velocity, b.motion.velocity)
+                + 0.5 * b.inertia() * dot(b.motion.spin, b.motion.spin)
+        };
+        k(&self.balls[0]) + k(&self.balls[1])
+    }
+}
+
+fn material(young: f64, eta: f64, poisson: f64) -> Normal {
+    Normal::HertzMaterial { young, eta, poisson }
+}
+
+fn mindlin(x_gamma: f64, mu: f64) -> Tangential {
+    Tangential::Mindlin { stiffness: None, x_gamma, mu }
+}
+
+fn model(normal: Normal, damping: Damping, tangential: Tangential) -> Model {
+    Model { normal, damping, tangential, limit_damping: false }
+}
