@@ -1,8 +1,9 @@
 //! Ops made of a closure: all that most fixes and computes need.
 
 use crate::diag::Result;
+use crate::par;
 use crate::plan::{Access, Op, Stage, Tick, When};
-use crate::world::{Slot, SlotId, World};
+use crate::world::{GroupId, Slot, SlotId, World};
 
 /// An op whose whole work is one closure at one stage.
 pub struct StepOp<F> {
@@ -93,4 +94,16 @@ where
         .when(wanted.when.clone())
         .in_setup(true)
         .boxed()
+}
+
+/// Fills a per-atom vector: `value(i)` for the particles of the group, 0 for all others.
+pub fn per_particle(w: &World, group: GroupId, out: &mut Slot, value: impl Fn(usize) -> f64 + Sync) {
+    let bit = group.bit();
+    out.cols = 1;
+    out.atom.resize(w.n(), 0.0);
+    par::each((&mut out.atom[..], &w.particles.mask[..]), |start, (out, mask)| {
+        for (k, (out, mask)) in out.iter_mut().zip(mask).enumerate() {
+            *out = if mask & bit != 0 { value(start + k) } else { 0.0 };
+        }
+    });
 }

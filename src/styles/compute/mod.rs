@@ -1,5 +1,16 @@
 //! Computes: quantities read from the world, never changing it.
 
+mod com;
+mod ke;
+mod ke_atom;
+mod momentum;
+mod pe;
+mod pe_atom;
+mod pressure;
+mod property_atom;
+mod reduce;
+mod temp;
+
 use super::{BuildCx, SealCx, Shape, Style};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
@@ -49,4 +60,32 @@ pub trait Compute: Send {
 }
 
 /// Every compute style.
-pub const COMPUTES: &[&dyn ComputeStyle] = &[];
+#[rustfmt::skip]
+pub const COMPUTES: &[&dyn ComputeStyle] = &[
+    &com::Com,
+    &ke::Ke,
+    &ke_atom::KeAtom,
+    &momentum::Momentum,
+    &pe::Pe,
+    &pe_atom::PeAtom,
+    &pressure::Pressure,
+    &property_atom::PropertyAtom,
+    &reduce::Reduce,
+    &temp::Temp,
+];
+
+/// Keywords of `pe` and `pe/atom`: whether pairs and fixes count. Terms of styles that perigrain does not have
+/// are known and contribute nothing.
+fn energy_terms(args: &mut Args) -> Result<(bool, bool)> {
+    let all = args.is_empty();
+    let (mut pair, mut fix) = (all, all);
+    while !args.is_empty() {
+        let terms = ["pair", "bond", "angle", "dihedral", "improper", "kspace", "fix"];
+        match args.choice("term of the potential energy", &terms)? {
+            "pair" => pair = true,
+            "fix" => fix = true,
+            _ => {}
+        }
+    }
+    Ok((pair, fix))
+}

@@ -20,7 +20,7 @@ impl Style for Nve {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "fix ID group nve",
-            summary: "moves the group's particles by velocity Verlet",
+            summary: "Moves the particles of the group by velocity Verlet.",
             text: "Each step: v += Δt/2 · f/m, then x += Δt · v, then new forces, then again v += Δt/2 · f/m \
                    (Swope et al. 1982). Printed velocities belong to whole steps. For peridynamic particles \
                    in LAMMPS' convention f is a force density and m the density. Spheres are moved but not \

@@ -1,0 +1,252 @@
+//! compute property/atom: the particles' own attributes as values.
+
+use super::{Compute, ComputeStyle};
+use crate::diag::{Code, Diagnostic, Result, fail, nearest};
+use crate::lang::{Args, Word};
+use crate::par;
+use crate::plan::{Op, Stage, When};
+use crate::styles::matter::{Masses, unwrapped};
+use crate::styles::step_op::{Wanted, fill};
+use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
+use crate::world::{AtomStyle, GroupId, SlotId, World};
+
+/// The style.
+pub struct PropertyAtom;
+
+impl Style for PropertyAtom {
+    fn name(&self) -> &'static str {
+        "property/atom"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group property/atom attribute …",
+            summary: "Attributes of each particle.",
+            text: "Per-atom vector for one attribute, array for several; 0 outside the group. Attributes: `id type proc \
+                   mass x y z`; `xs ys zs` as fractions of the box; `xu yu zu` unwrapped across periodic faces; `ix iy iz` \
+                   image counts; `vx vy vz fx fy fz`; with atom_style sphere `radius diameter omegax omegay omegaz tqx \
+                   tqy tqz`; with atom_style peri `vfrac`, the volume. All in the deck's units. LAMMPS' other attributes \
+                   belong to atom styles that perigrain does not have and are refused, as is `s0`.",
+            example: "compute r all property/atom radius",
+        }
+    }
+}
+
+/// Which columns an attribute needs.
+#[derive(Clone, Copy, PartialEq)]
+enum Needs {
+    Nothing,
+    Sphere,
+    Peri,
+}
+
+impl Needs {
+    fn met(self, style: AtomStyle) -> bool {
+        match self {
+            Needs::Nothing => true,
+            Needs::Sphere => style.sphere,
+            Needs::Peri => style.peri,
+        }
+    }
+}
+
+type Getter = fn(&World, usize) -> f64;
+
+/// Name, needs and value of every attribute.
+const ATTRIBUTES: &[(&str, Needs, Getter)] = &[
+    ("id", Needs::Nothing, |w, i| f64::from(w.particles.tag[i])),
+    ("type", Needs::Nothing, |w, i| f64::from(w.particles.kind[i])),
+    ("proc", Needs::Nothing, |_, _| 0.0),
+    ("mass", Needs::Nothing, |w, i| Masses::of(w).get(i)),
+    ("x", Needs::Nothing, |w, i| w.particles.x[i][0]),
+    ("y", Needs::Nothing, |w, i| w.particles.x[i][1]),
+    ("z", Needs::Nothing, |w, i| w.particles.x[i][2]),
+    ("xs", Needs::Nothing, |w, i| scaled(w, i, 0)),
+    ("ys", Needs::Nothing, |w, i| scaled(w, i, 1)),
+    ("zs", Needs::Nothing, |w, i| scaled(w, i, 2)),
+    ("xu", Needs::Nothing, |w, i| unwrapped(w, i)[0]),
+    ("yu", Needs::Nothing, |w, i| unwrapped(w, i)[1]),
+    ("zu", Needs::Nothing, |w, i| unwrapped(w, i)[2]),
+    ("ix", Needs::Nothing, |w, i| f64::from(w.particles.image[i][0])),
+    ("iy", Needs::Nothing, |w, i| f64::from(w.particles.image[i][1])),
+    ("iz", Needs::Nothing, |w, i| f64::from(w.particles.image[i][2])),
+    ("vx", Needs::Nothing, |w, i| w.particles.v[i][0]),
+    ("vy", Needs::Nothing, |w, i| w.particles.v[i][1]),
+    ("vz", Needs::Nothing, |w, i| w.particles.v[i][2]),
+    ("fx", Needs::Nothing, |w, i| w.particles.f[i][0]),
+    ("fy", Needs::Nothing, |w, i| w.particles.f[i][1]),
+    ("fz", Needs::Nothing, |w, i| w.particles.f[i][2]),
+    ("radius", Needs::Sphere, |w, i| w.particles.radius[i]),
+    ("diameter", Needs::Sphere, |w, i| 2.0 * w.particles.radius[i]),
+    ("omegax", Needs::Sphere, |w, i| w.particles.omega[i][0]),
+    ("omegay", Needs::Sphere, |w, i| w.particles.omega[i][1]),
+    ("omegaz", Needs::Sphere, |w, i| w.particles.omega[i][2]),
+    ("tqx", Needs::Sphere, |w, i| w.particles.torque[i][0]),
+    ("tqy", Needs::Sphere, |w, i| w.particles.torque[i][1]),
+    ("tqz", Needs::Sphere, |w, i| w.particles.torque[i][2]),
+    ("vfrac", Needs::Peri, |w, i| w.particles.volume[i]),
+];
+
+/// LAMMPS' attributes of atom styles that perigrain does not have.
+const ELSEWHERE: &[&str] = &[
+    "mol",
+    "q",
+    "mux",
+    "muy",
+    "muz",
+    "mu",
+    "spx",
+    "spy",
+    "spz",
+    "sp",
+    "fmx",
+    "fmy",
+    "fmz",
+    "nbonds",
+    "temperature",
+    "heatflow",
+    "angmomx",
+    "angmomy",
+    "angmomz",
+    "shapex",
+    "shapey",
+    "shapez",
+    "quatw",
+    "quati",
+    "quatj",
+    "quatk",
+    "end1x",
+    "end1y",
+    "end1z",
+    "end2x",
+    "end2y",
+    "end2z",
+    "corner1x",
+    "corner1y",
+    "corner1z",
+    "corner2x",
+    "corner2y",
+    "corner2z",
+    "corner3x",
+    "corner3y",
+    "corner3z",
+    "s0",
+    "espin",
+    "eradius",
+    "ervel",
+    "erforce",
+    "rho",
+    "drho",
+    "e",
+    "de",
+    "cv",
+    "buckling",
+];
+
+fn scaled(w: &World, i: usize, d: usize) -> f64 {
+    w.domain.as_ref().map_or(0.0, |b| (w.particles.x[i][d] - b.lo[d]) / (b.hi[d] - b.lo[d]))
+}
+
+impl ComputeStyle for PropertyAtom {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let mut getters = vec![read_attribute(args.expect("an attribute, as `radius`")?, cx)?];
+        while let Some(word) = args.next() {
+            getters.push(read_attribute(word, cx)?);
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, getters }))
+    }
+}
+
+fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
+    let name = word.text.as_str();
+    if let Some((_, needs, getter)) = ATTRIBUTES.iter().find(|a| a.0 == name) {
+        if needs.met(cx.world.particles.style) {
+            return Ok(*getter);
+        }
+        let style = if *needs == Needs::Sphere { "sphere" } else { "peri" };
+        return Err(Diagnostic::error(
+            Code::INCOMPLETE,
+            word.span,
+            format!("the particles of this scene have no `{name}`"),
+        )
+        .help(format!("`atom_style {style}`, alone or in a hybrid, has it"))
+        .into());
+    }
+    let custom = ["i_", "d_", "i2_", "d2_"].iter().any(|p| name.starts_with(p));
+    if custom || ELSEWHERE.contains(&name) {
+        return fail(Code::NOT_SUPPORTED, word.span, format!("the attribute `{name}` is not in perigrain"));
+    }
+    let d =
+        Diagnostic::error(Code::UNKNOWN_KEYWORD, word.span, format!("`{name}` is no attribute of particles"));
+    let known = ATTRIBUTES.iter().map(|a| a.0);
+    Err(match nearest(name, known.clone()) {
+        Some(n) => d.help(format!("did you mean `{n}`?")),
+        None => d.help(format!("attributes: {}", known.collect::<Vec<_>>().join(" "))),
+    }
+    .into())
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    getters: Vec<Getter>,
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        Shape { atom: Some(self.getters.len()), ..Shape::default() }
+    }
+
+    fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let (group, getters) = (self.group, self.getters.clone());
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, "particles", move |w, _, out| {
+            let (bit, columns) = (group.bit(), getters.len());
+            out.cols = columns;
+            out.atom.resize(w.n() * columns, 0.0);
+            par::each(&mut out.atom[..], |start, values| {
+                for (k, value) in values.iter_mut().enumerate() {
+                    let (i, column) = ((start + k) / columns, (start + k) % columns);
+                    *value = if w.particles.mask[i] & bit != 0 { getters[column](w, i) } else { 0.0 };
+                }
+            });
+            Ok(())
+        }))
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+
+    #[test]
+    fn attributes_of_all_kinds() {
+        let style = AtomStyle { chosen: true, sphere: true, peri: true };
+        let mut b = Bench::new(style, &[[1.0, 5.0, -10.0], [0.0; 3]]);
+        b.world.particles.image[0] = [1, 0, -1];
+        b.world.particles.volume[0] = 0.125;
+        b.world.particles.mask[1] = 0;
+        let c = b.compute(&PropertyAtom, "id xs ys zs xu zu iz mass diameter vfrac").unwrap();
+        let slot = b.evaluate(&*c).unwrap();
+        assert_eq!(slot.cols, 10);
+        // The box reaches from -10 to 10; mass 2 and radius 0.5 are the bench's.
+        assert_eq!(slot.atom[..10], [1.0, 0.55, 0.75, 0.0, 21.0, -30.0, -1.0, 2.0, 1.0, 0.125]);
+        assert_eq!(slot.atom[10..], [0.0; 10]);
+    }
+
+    #[test]
+    fn what_is_missing_is_named() {
+        let b = Bench::new(AtomStyle::default(), &[]);
+        let code = |words: &str| b.compute(&PropertyAtom, words).err().unwrap().0[0].code;
+        assert_eq!(code(""), Code::MISSING_ARGUMENT);
+        assert_eq!(code("x radius"), Code::INCOMPLETE);
+        assert_eq!(code("vfrac"), Code::INCOMPLETE);
+        assert_eq!(code("mol"), Code::NOT_SUPPORTED);
+        assert_eq!(code("d_mine"), Code::NOT_SUPPORTED);
+        assert_eq!(code("radus"), Code::UNKNOWN_KEYWORD);
+    }
+}

@@ -1,0 +1,111 @@
+//! compute temp: temperature and the kinetic energy tensor.
+
+use super::{Compute, ComputeStyle};
+use crate::diag::Result;
+use crate::lang::Args;
+use crate::plan::{Op, Stage, When};
+use crate::styles::matter::{Masses, check_masses, count, sum};
+use crate::styles::step_op::{Wanted, fill};
+use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
+use crate::world::{GroupId, SlotId};
+
+/// Where the slot of a temperature keeps its degrees of freedom: behind the six elements decks may see.
+pub const DOF: usize = 6;
+
+/// The style.
+pub struct Temp;
+
+impl Style for Temp {
+    fn name(&self) -> &'static str {
+        "temp"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group temp",
+            summary: "Temperature of the group's translation.",
+            text: "Scalar (intensive): T = Σ m v² / (dof k_B) with dof = d N − `extra/dof`, where d is the dimension and \
+                   `extra/dof` is d unless `compute_modify ID extra/dof n` says otherwise; 0 where dof is not \
+                   positive. Vector of 6 (extensive): Σ m v_a v_b for xx yy zz xy xz yz, in energy units. N is counted \
+                   anew at each use, so that `compute_modify ID dynamic/dof` has nothing to change.",
+            example: "compute t all temp",
+        }
+    }
+}
+
+impl ComputeStyle for Temp {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        args.finish()?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, extra: None }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    extra: Option<f64>,
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, vector: 6, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let (group, extra, span) = (self.group, self.extra, cx.span());
+        check_masses(cx.world(), span)?;
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, "v mass mask", move |w, _, out| {
+            let (p, masses) = (&w.particles, Masses::of(w));
+            let units = w.settings.units.constants();
+            let [mv2, tensor @ ..] = sum::<7>(&p.mask, group, |i| {
+                let ([x, y, z], m) = (p.v[i], masses.get(i));
+                let mv2 = (x * x + y * y + z * z) * m;
+                [mv2, m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z]
+            });
+            let dimension = if w.settings.two_dimensional { 2.0 } else { 3.0 };
+            let dof = dimension * count(w, group) as f64 - extra.unwrap_or(dimension);
+            out.scalar = if dof > 0.0 { mv2 * (units.mvv2e / (dof * units.boltz)) } else { 0.0 };
+            out.vector.clear();
+            out.vector.extend(tensor.map(|k| k * units.mvv2e));
+            out.vector.push(dof);
+            Ok(())
+        }))
+    }
+
+    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        while !args.is_empty() {
+            match args.choice("option of a temperature", &["extra/dof", "extra", "dynamic/dof", "dynamic"])? {
+                "extra/dof" | "extra" => self.extra = Some(args.number("the number of degrees of freedom")?),
+                _ => drop(args.flag("dynamic/dof")?),
+            }
+        }
+        Ok(())
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+    use crate::world::AtomStyle;
+
+    #[test]
+    fn temperature_tensor_and_freedom() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 3]);
+        b.world.particles.v = vec![[1.0, 2.0, 0.0], [0.0, 0.0, 4.0], [0.0, 0.0, 1.0]];
+        let mut c = b.compute(&Temp, "").unwrap();
+        let slot = b.evaluate(&*c).unwrap();
+        // By hand, m = 2: Σ m v² = 44 over 3 · 3 − 3 degrees of freedom.
+        assert_eq!(slot.vector, [2.0, 8.0, 34.0, 4.0, 0.0, 0.0, 6.0]);
+        assert!((slot.scalar - 44.0 / 6.0).abs() < 1e-14);
+        b.modify("extra/dof 1 dynamic/dof yes", |a, cx| c.modify(a, cx)).unwrap();
+        assert!((b.evaluate(&*c).unwrap().scalar - 44.0 / 8.0).abs() < 1e-14);
+        b.modify("extra/dof 9", |a, cx| c.modify(a, cx)).unwrap();
+        assert_eq!(b.evaluate(&*c).unwrap().scalar, 0.0);
+        assert!(b.modify("thermo no", |a, cx| c.modify(a, cx)).is_err());
+    }
+}
