@@ -49,6 +49,23 @@ impl<'a> Sealer<'a> {
         }
     }
 
+    /// Notes the parts of a full step that this scene does without.
+    pub fn say_what_is_missing(&mut self) {
+        let p = &self.world.particles;
+        let out: [(bool, &str, &str); 5] = [
+            (!p.style.sphere, "rotation and torque", "no particle has a radius"),
+            (self.graph.pair.is_none(), "pair forces", "no pair_style"),
+            (self.plan.energy.is_empty(), "energy tally", "nobody reads the potential energy"),
+            (self.plan.virial.is_empty(), "virial tally", "nobody reads the pressure"),
+            (self.plan.atom_energy.is_empty(), "per-particle energies", "nobody reads them"),
+        ];
+        for (missing, what, why) in out {
+            if missing {
+                self.leave_out(what, why);
+            }
+        }
+    }
+
     /// What follows belongs to the line at `span`.
     pub fn at(&mut self, span: Span) {
         self.span = span;

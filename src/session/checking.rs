@@ -19,13 +19,17 @@ impl Session {
         self.check_integrators(span, &mut found);
         let (errors, notes) = found.0.into_iter().partition(|d| d.severity == crate::diag::Severity::Error);
         for note in Vec::into_iter(notes) {
-            // A deck with a loop around `run` is told once.
-            if !self.notes.0.contains(&note) {
-                self.notes.push(note);
-            }
+            self.note_once(note);
         }
         let errors: Vec<Diagnostic> = errors;
         if errors.is_empty() { Ok(()) } else { Err(Diagnostics(errors)) }
+    }
+
+    /// A deck with a loop around `run` is told once.
+    pub(super) fn note_once(&mut self, note: Diagnostic) {
+        if !self.notes.0.contains(&note) {
+            self.notes.push(note);
+        }
     }
 
     fn settled(&self, fact: &str) -> bool {

@@ -114,10 +114,11 @@ impl Session {
     ///
     /// # Errors
     /// What styles miss in the scene.
-    pub fn seal(&mut self) -> Result<StepPlan> {
+    pub fn seal(&mut self, span: Span) -> Result<StepPlan> {
         let vars = Arc::new(self.vars.clone());
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
-        s.add(vec![Box::new(Reneighbor), Box::new(ClearForces)], Span::default());
+        s.at(span);
+        s.add(vec![Box::new(Reneighbor), Box::new(ClearForces)], span);
         if let Some(node) = &self.graph.pair {
             s.at(node.span);
             let ops = node.pair.ops(&mut s)?;
@@ -133,8 +134,10 @@ impl Session {
             let op = d.dump.op(&mut s, d.every)?;
             s.add(vec![op], d.span);
         }
+        s.at(span);
         let row = self.graph.thermo.op(&mut s, self.options.log.clone())?;
-        s.add(vec![row], Span::default());
+        s.add(vec![row], span);
+        s.say_what_is_missing();
         Ok(s.plan)
     }
 
@@ -144,7 +147,7 @@ impl Session {
         (c.first, c.last) = (c.step, c.step + steps);
         c.began = None;
         let unchanged = self.ran && !self.world.parts.changed && (!self.world.settings.lammps() || !pre);
-        let mut plan = self.seal()?;
+        let mut plan = self.seal(span)?;
         if self.options.mode == Mode::Plan {
             self.options.log.line(explain::text(&plan, false).trim_end())?;
             self.world.clock.step += steps;
@@ -152,6 +155,17 @@ impl Session {
         }
         if !unchanged {
             self.world.slots.invalidate();
+        }
+        if self.ran && self.world.settings.lammps() && self.world.families.is_some() {
+            self.note_once(
+                Diagnostic::note(
+                    Code::COMPAT,
+                    span,
+                    "compat lammps: the setup of this run advances bond breaking",
+                )
+                .help("LAMMPS 22Jul2025 computes forces once more between runs; perigrain alone does not"),
+            );
+            self.say_notes()?;
         }
         let bytes = crate::world::memory::bytes(&self.world);
         self.options.log.line(&memory_line(bytes))?;
