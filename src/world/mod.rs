@@ -8,6 +8,7 @@ pub mod groups;
 pub mod lattice;
 pub mod material;
 pub mod memory;
+pub mod order;
 pub mod particles;
 pub mod potentials;
 pub mod rebuild;

@@ -9,6 +9,8 @@ pub struct AtomStyle {
     pub sphere: bool,
     /// Volume, reference position, mass per particle.
     pub peri: bool,
+    /// Masses start as those of spheres: `sphere`, unless `peri` follows it in `hybrid`.
+    pub sphere_mass: bool,
 }
 
 impl AtomStyle {
@@ -73,12 +75,8 @@ impl Particles {
         self.x.push(x);
         self.v.push([0.0; 3]);
         self.f.push([0.0; 3]);
-        let AtomStyle { sphere, peri, .. } = self.style;
-        let mass = match (sphere, peri) {
-            (true, _) => 4.0 * std::f64::consts::PI / 3.0 * 0.5 * 0.5 * 0.5,
-            _ => 1.0,
-        };
-        self.mass.push(mass);
+        let AtomStyle { sphere, peri, sphere_mass, .. } = self.style;
+        self.mass.push(if sphere_mass { 4.0 * std::f64::consts::PI / 3.0 * 0.5 * 0.5 * 0.5 } else { 1.0 });
         if sphere {
             self.radius.push(0.5);
             self.omega.push([0.0; 3]);

@@ -87,11 +87,11 @@ fn add(style: &mut AtomStyle, word: &Word) -> Result<()> {
         "atomic" => {}
         "sphere" => {
             twice(style.sphere)?;
-            style.sphere = true;
+            (style.sphere, style.sphere_mass) = (true, true);
         }
         "peri" => {
             twice(style.peri)?;
-            style.peri = true;
+            (style.peri, style.sphere_mass) = (true, false);
         }
         name if ELSEWHERE.contains(&name) => return Err(not_here(word, "atom_style")),
         name => {
@@ -126,6 +126,8 @@ mod tests {
     fn hybrid_has_both() {
         let s = scene("atom_style hybrid sphere peri").particles.style;
         assert!(s.sphere && s.peri && s.chosen);
+        // Oracle: particles of `hybrid sphere peri` start with mass 1, of `hybrid peri sphere` with π/6.
+        assert!(!s.sphere_mass && scene("atom_style hybrid peri sphere").particles.style.sphere_mass);
         assert!(!scene("atom_style sphere 0").particles.style.peri);
     }
 

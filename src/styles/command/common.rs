@@ -4,7 +4,7 @@ use super::Act;
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, fail};
 use crate::lang::{Args, Param, RefKind, ValueRef, Word};
 use crate::styles::{ActCx, BuildCx};
-use crate::world::{Domain, World};
+use crate::world::{Domain, Particles, World};
 
 /// The refusal of a word that LAMMPS understands and perigrain does not.
 pub fn not_here(word: &Word, what: &str) -> Diagnostics {
@@ -149,14 +149,30 @@ pub fn id_range(word: &Word, last: i64) -> Result<(i64, i64)> {
     }
 }
 
-/// Gives every particle the mass of its type, where particles have none of their own.
-pub fn masses_by_type(world: &mut World) {
-    if world.particles.style.own_mass() {
-        return;
+/// A value that runs linearly from `by[0]` to `by[1]` between two places and is constant beyond them.
+pub fn ramp(at: f64, between: [f64; 2], by: [f64; 2]) -> f64 {
+    let fraction = ((at - between[0]) / (between[1] - between[0])).clamp(0.0, 1.0);
+    by[0] + fraction * (by[1] - by[0])
+}
+
+/// Wraps particles into the box and lets shrink-wrapped faces follow, as LAMMPS does after it has moved them.
+pub fn settle(world: &mut World) {
+    let Some(domain) = &mut world.domain else { return };
+    for (x, image) in world.particles.x.iter_mut().zip(&mut world.particles.image) {
+        domain.wrap(x, image);
     }
-    let (kinds, masses) = (&world.particles.kind, &mut world.particles.mass);
-    for (mass, &kind) in masses.iter_mut().zip(kinds) {
-        *mass = world.type_mass.get(usize::from(kind) - 1).copied().flatten().unwrap_or(1.0);
+    domain.shrink(&world.particles.x);
+}
+
+/// Gives particles the mass that belongs to a density: 4/3 π r³ ρ for one with a radius, else ρ itself.
+pub fn masses_from_density(p: &mut Particles, chosen: &[usize], density: &[f64]) {
+    for &i in chosen {
+        let rho = density[i];
+        p.density[i] = rho;
+        p.mass[i] = match p.radius.get(i) {
+            Some(&r) if r > 0.0 => 4.0 * std::f64::consts::PI / 3.0 * r * r * r * rho,
+            _ => rho,
+        };
     }
 }
 

@@ -1,6 +1,6 @@
 //! `create_atoms`: particles on lattice sites, single ones, or at random places.
 
-use super::common::{self, bad_keyword, masses_by_type, not_here, on_particles, scales, seed, units_lattice};
+use super::common::{self, bad_keyword, not_here, on_particles, scales, seed, units_lattice};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
@@ -203,7 +203,7 @@ fn add(world: &mut World, places: &[(u16, [f64; 3])]) -> Result<()> {
     }
     let n = world.n();
     world.columns.resize(n);
-    masses_by_type(world);
+    world.spread_type_masses();
     world.touch();
     Ok(())
 }
@@ -346,6 +346,21 @@ mod tests {
         assert_eq!(w.particles.x[4], [1.8714421331749496, 1.9279322713743583, 0.95768498883474873]);
         assert_eq!(w.particles.x[7], [2.1848301728651069, 1.0407153438500667, 0.70278408806900694]);
         assert_eq!(w.particles.tag, [1, 2, 3, 4, 5, 6, 7, 8]);
+    }
+
+    // Oracle: two small balls far apart (most attempts miss), then 200 particles that keep 0.3 apart.
+    #[test]
+    fn attempts_are_counted_as_in_lammps() {
+        let mut w = scene("units si\nregion b block 0 4 0 3 0 3 units box\ncreate_box 2 b");
+        more(
+            &mut w,
+            "region tiny sphere 0.5 0.5 0.5 0.001 units box\nregion tiny2 sphere 3.5 2.5 2.5 0.3 units box",
+        );
+        more(&mut w, "region u union 2 tiny tiny2\ncreate_atoms 1 random 40 123 u");
+        more(&mut w, "create_atoms 1 random 200 124 NULL overlap 0.3");
+        assert_eq!(w.n(), 240);
+        assert_eq!(w.particles.x[2], [3.7333863149561854, 2.4255354054144278, 2.4085588002961864]);
+        assert_eq!(w.particles.x[239], [1.1922303890773236, 1.3621119169341922, 0.014987912967329806]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! `mass`: the mass of each type, where particles have none of their own.
 
-use super::common::{domain, masses_by_type, setting};
+use super::common::{domain, setting};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
@@ -37,7 +37,7 @@ impl CommandStyle for Mass {
         let mass = a.positive("the mass")?;
         Ok(setting(move |cx| {
             cx.world.type_mass[usize::from(lo) - 1..usize::from(hi)].fill(Some(mass));
-            masses_by_type(cx.world);
+            cx.world.spread_type_masses();
             cx.world.touch();
             Ok(())
         }))

@@ -7,7 +7,9 @@ mod comm_modify;
 mod common;
 mod create_atoms;
 mod create_box;
+mod delete_atoms;
 mod dimension;
+mod displace_atoms;
 mod group;
 mod lattice;
 mod mass;
@@ -18,6 +20,7 @@ mod newton;
 mod processors;
 mod region;
 mod reset_timestep;
+mod set;
 #[cfg(test)]
 mod testing;
 mod timestep;
@@ -70,6 +73,9 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &create_box::CreateBox,
     &create_atoms::CreateAtoms,
     &group::Group,
+    &set::Set,
+    &delete_atoms::DeleteAtoms,
+    &displace_atoms::DisplaceAtoms,
     &mass::Mass,
     &material::MaterialStyle,
     &timestep::Timestep,

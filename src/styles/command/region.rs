@@ -146,12 +146,12 @@ fn bound(a: &mut Args, cx: &BuildCx, d: usize, upper: bool, scale: f64) -> Resul
     }
 }
 
-fn range(a: &mut Args, cx: &BuildCx, d: usize, scale: f64, strict: bool) -> Result<(f64, f64)> {
+fn range(a: &mut Args, cx: &BuildCx, d: usize, scale: f64) -> Result<(f64, f64)> {
     let span = a.here();
     let lo = bound(a, cx, d, false, scale)?;
     let span = span.to(a.here());
     let hi = bound(a, cx, d, true, scale)?;
-    if lo > hi || (strict && lo == hi) {
+    if lo > hi {
         return fail(Code::BAD_VALUE, span, format!("the lower bound {lo} lies above the upper bound {hi}"));
     }
     Ok((lo, hi))
@@ -160,7 +160,7 @@ fn range(a: &mut Args, cx: &BuildCx, d: usize, scale: f64, strict: bool) -> Resu
 fn block(a: &mut Args, cx: &BuildCx, scale: [f64; 3]) -> Result<Shape> {
     let (mut lo, mut hi) = ([0.0; 3], [0.0; 3]);
     for d in 0..3 {
-        (lo[d], hi[d]) = range(a, cx, d, scale[d], false)?;
+        (lo[d], hi[d]) = range(a, cx, d, scale[d])?;
     }
     no_more(a)?;
     Ok(Shape::Block { lo, hi })
@@ -171,7 +171,7 @@ fn cylinder(a: &mut Args, cx: &BuildCx, scale: [f64; 3]) -> Result<Shape> {
     let [c, d] = across(axis);
     let center = [scale[c] * constant(a, "the axis")?, scale[d] * constant(a, "the axis")?];
     let radius = scale[if axis == 0 { 1 } else { 0 }] * radius(a)?;
-    let (lo, hi) = range(a, cx, axis, scale[axis], true)?;
+    let (lo, hi) = range(a, cx, axis, scale[axis])?;
     no_more(a)?;
     Ok(Shape::Cylinder { axis, center, radius, lo, hi })
 }

@@ -1,0 +1,159 @@
+//! `displace_atoms`: moves particles once.
+
+use super::common::{
+    self, axis, bad_keyword, not_here, on_particles, scales, seed, units_lattice, variable_param,
+};
+use super::{Act, CommandStyle};
+use crate::diag::{Code, Result, fail};
+use crate::lang::{Args, Param};
+use crate::math::rng::ParkMiller;
+use crate::styles::{ActCx, BuildCx, Doc, Style};
+use crate::world::GroupId;
+
+/// The command.
+pub struct DisplaceAtoms;
+
+impl Style for DisplaceAtoms {
+    fn name(&self) -> &'static str {
+        "displace_atoms"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "displace_atoms GROUP move DX DY DZ | ramp x|y|z DLO DHI x|y|z CLO CHI | random DX DY DZ SEED \
+                     [units lattice|box]",
+            summary: "Moves the particles of a group once.",
+            text: "`move` takes numbers or variables. `ramp` moves by DLO where the coordinate is CLO, by DHI where it is \
+                   CHI, linearly between and constant beyond. `random` moves by up to ±DX, ±DY, ±DZ, each particle by \
+                   numbers that belong to its place, as in LAMMPS. Distances are in lattice spacings unless `units box` \
+                   is said. Afterwards particles are wrapped into the box and shrink-wrapped faces follow.",
+            example: "displace_atoms ball move 0 0 -0.001 units box",
+        }
+    }
+}
+
+enum Motion {
+    Shift([Param; 3]),
+    Ramp { along: usize, by: [f64; 2], axis: usize, between: [f64; 2] },
+    Random { by: [f64; 3], seed: u32 },
+}
+
+impl CommandStyle for DisplaceAtoms {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        common::domain(cx)?;
+        let group = cx.group(a.expect("a group")?)?;
+        let style = a.expect("move, ramp or random")?;
+        let motion = match style.text.as_str() {
+            "move" => {
+                let mut next = || {
+                    let p = variable_param(a, "the displacement")?;
+                    cx.param(&p, true).map(|()| p)
+                };
+                Motion::Shift([next()?, next()?, next()?])
+            }
+            "ramp" => Motion::Ramp {
+                along: axis(a, "direction of the displacement")?,
+                by: [a.number("the displacement")?, a.number("the displacement")?],
+                axis: axis(a, "axis of the ramp")?,
+                between: [a.number("the lower end")?, a.number("the upper end")?],
+            },
+            "random" => {
+                let by = [a.number("the range")?, a.number("the range")?, a.number("the range")?];
+                Motion::Random { by, seed: seed(a)? }
+            }
+            "rotate" => return Err(not_here(style, "displace_atoms")),
+            other => {
+                let text = format!("unknown style `{other}`: move, ramp or random");
+                return fail(Code::UNKNOWN_STYLE, style.span, text);
+            }
+        };
+        let mut lattice = true;
+        while let Some(word) = a.next() {
+            match word.text.as_str() {
+                "units" => lattice = units_lattice(a)?,
+                _ => return Err(bad_keyword(a, word, &["units"], &[])),
+            }
+        }
+        let scale = scales(cx.world, lattice);
+        Ok(on_particles(vec![], move |cx| {
+            cx.say("Displacing atoms ...");
+            displace(cx, group, &motion, scale)?;
+            common::settle(cx.world);
+            cx.world.touch();
+            Ok(())
+        }))
+    }
+}
+
+fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, scale: [f64; 3]) -> Result<()> {
+    let members: Vec<usize> =
+        (0..cx.world.n()).filter(|&i| cx.world.particles.mask[i] & group.bit() != 0).collect();
+    match motion {
+        Motion::Shift(params) => {
+            let by = [cx.per_atom(&params[0])?, cx.per_atom(&params[1])?, cx.per_atom(&params[2])?];
+            for (d, by) in by.iter().enumerate() {
+                members.iter().for_each(|&i| cx.world.particles.x[i][d] += scale[d] * by[i]);
+            }
+        }
+        Motion::Ramp { along, by, axis, between } => {
+            let by = by.map(|b| scale[*along] * b);
+            let between = between.map(|c| scale[*axis] * c);
+            for &i in &members {
+                let x = &mut cx.world.particles.x[i];
+                x[*along] += common::ramp(x[*axis], between, by);
+            }
+        }
+        Motion::Random { by, seed } => {
+            let mut stream = ParkMiller::new(*seed);
+            for &i in &members {
+                let x = &mut cx.world.particles.x[i];
+                stream.reset_at(*seed, *x);
+                for d in 0..3 {
+                    x[d] += scale[d] * by[d] * 2.0 * (stream.uniform() - 0.5);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{more, refused, scene};
+    use crate::world::World;
+
+    fn bar() -> World {
+        let mut w = scene("units si\nboundary s p f\nlattice sc 0.5\nregion b block 0 4 0 3 0 3 units box");
+        more(&mut w, "create_box 2 b\ncreate_atoms 1 box");
+        w
+    }
+
+    // Oracle: the same lines in LAMMPS, %.17g.
+    #[test]
+    fn moves_wrap_and_shrink_like_lammps() {
+        let mut w = bar();
+        more(&mut w, "displace_atoms all move 0.1 0 0.2 units box");
+        let domain = w.domain.clone().unwrap();
+        assert_eq!((domain.lo[0], domain.hi[0]), (0.099600000000000008, 4.1003999999999996));
+        more(&mut w, "displace_atoms all random 0.1 0.02 0 332 units box");
+        assert_eq!(w.particles.x[0], [0.039815216995689656, 0.014870409311200681, 0.2]);
+        assert_eq!(w.particles.x[1], [0.53045676016735688, 2.9973536265535996, 0.2]);
+        assert_eq!(w.particles.image[1], [0, -1, 0]);
+        assert_eq!(w.particles.x[8], [4.1414832941915289, 0.0019450954077509675, 0.2]);
+    }
+
+    #[test]
+    fn ramps_are_linear_between_and_constant_beyond() {
+        let mut w = bar();
+        more(&mut w, "displace_atoms all ramp z 0 0.2 x 2 4");
+        // Spacing 0.5: moves by 0 at x ≤ 1, by 0.1 at x ≥ 2.
+        let z = |x: f64| w.particles.x.iter().find(|p| p[0] == x && p[2] < 0.3).unwrap()[2];
+        assert_eq!([z(0.0), z(1.0), z(1.5), z(2.0), z(4.0)], [0.0, 0.0, 0.05, 0.1, 0.1]);
+        assert_eq!(refused(&w, "displace_atoms all rotate 0 0 0 0 0 1 90").0, "rotate");
+        assert_eq!(refused(&w, "displace_atoms all ramp w 0 0.2 x 2 4").0, "w");
+        assert_eq!(
+            refused(&w, "displace_atoms all move 1 2").1,
+            "`displace_atoms` ends too early: the displacement is missing"
+        );
+    }
+}
