@@ -10,8 +10,9 @@ use crate::graph::env::{DeckEnv, DeckValues};
 use crate::graph::{Graph, Node, Role};
 use crate::lang::{Command, Files, Flow, Line, Script, Vars};
 use crate::out::log::Log;
+pub use crate::par::{set_threads, threads};
 use crate::plan::StepPlan;
-use crate::run::Watch;
+pub use crate::run::Watch;
 use crate::styles::command::COMMANDS;
 use crate::styles::{ActCx, Use, UseKind};
 use crate::world::{Compat, GroupId, World};
@@ -150,6 +151,11 @@ impl Session {
     /// A flag that ends a run at the next whole step when set.
     pub fn stop_flag(&self) -> Arc<std::sync::atomic::AtomicBool> {
         self.world.settings.stop.clone()
+    }
+
+    /// The command graph for graphviz' `dot`.
+    pub fn dot(&self) -> String {
+        crate::graph::show::dot(&self.graph)
     }
 
     /// An empty world with this session's settings; the computes that thermo output needs are there.

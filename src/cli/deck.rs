@@ -1,33 +1,85 @@
 //! A deck given on the command line, worked off by a session.
 
-use super::args::{Deck, Options, Target, Usage};
+use super::args::{Deck, Options, Target};
 use super::progress::{self, Progress};
-use super::{FAILED, OK};
-use crate::diag::{Diagnostics, Severity, Sources, render};
-use crate::graph::show;
+use super::{FAILED, INTERRUPTED, OK};
+use crate::diag::{Code, Diagnostics, Result, Severity, Sources, fail, render};
 use crate::out::log::{Echo, Log};
 use crate::out::thermo::wall_time;
-use crate::run::Watch;
-use crate::session::{self, Mode, Session, folder_of};
-use std::io::{IsTerminal, Read, Write};
+use crate::session::{self, Mode, Session, Watch, folder_of};
+use std::io::{IsTerminal, LineWriter, Read, Write, stderr, stdin, stdout};
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-/// Ended from outside (Ctrl-C).
-const INTERRUPTED: u8 = 130;
-
 /// Works a deck off in some mode; the exit code.
-///
-/// # Errors
-/// A command line that cannot be obeyed.
-pub fn work_off(o: &Options, mode: Mode) -> Result<u8, Usage> {
+pub fn work_off(o: &Options, mode: Mode) -> u8 {
     let begin = Instant::now();
-    let (name, text) = read(&o.deck)?;
-    let threads = crate::par::set_threads(o.threads.unwrap_or(1));
     let progress = Progress::new();
-    let log = open_log(o, mode, &progress)?;
-    let options = session::Options {
+    let log = Log::silent();
+    let mut sources = Sources::default();
+    let outcome = attempt(o, mode, &progress, &log, &mut sources);
+    progress.clear();
+    let code = outcome.unwrap_or_else(|problems| {
+        complain(&problems, &sources, &log);
+        FAILED
+    });
+    if runs(mode) {
+        let _ = log.line(&wall_time(begin.elapsed().as_secs_f64()));
+        let _ = log.flush();
+    }
+    code
+}
+
+fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mut Sources) -> Result<u8> {
+    let (name, text) = read(&o.deck)?;
+    open(log, o, mode, progress)?;
+    let mut session = begin(o, mode, log)?;
+    session.set_watch(Box::new(Bar(progress.clone())));
+    catch_interrupt(&session);
+    if runs(mode) {
+        let with = if o.compat { ", compat lammps" } else { "" };
+        let threads = session::threads();
+        let version = env!("CARGO_PKG_VERSION");
+        let _ = log.line(&format!("perigrain {version} ({threads} thread(s){with})"));
+    }
+    let outcome = session.run_text(&name, &text);
+    sources.clone_from(&session.sources);
+    if mode == Mode::Check {
+        let mut all = session.notes.clone();
+        if let Err(problems) = outcome {
+            all.append(problems);
+        }
+        print(&all, sources);
+        summary(&name, &all);
+        return Ok(if all.has_errors() { FAILED } else { OK });
+    }
+    let ending = outcome?;
+    Ok(if ending.interrupted { INTERRUPTED } else { ending.status.clamp(0, 255) as u8 })
+}
+
+/// Prints a deck's command graph for graphviz.
+pub fn draw(o: &Options) -> u8 {
+    let mut sources = Sources::default();
+    let outcome = read(&o.deck).and_then(|(name, text)| {
+        let mut session = begin(o, Mode::Check, &Log::silent())?;
+        let outcome = session.run_text(&name, &text);
+        sources.clone_from(&session.sources);
+        super::show(&session.dot());
+        outcome
+    });
+    match outcome {
+        Ok(_) => OK,
+        Err(problems) => {
+            print(&problems, &sources);
+            FAILED
+        }
+    }
+}
+
+fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
+    session::set_threads(o.threads.unwrap_or(0));
+    Session::new(session::Options {
         mode,
         log: log.clone(),
         compat: o.compat,
@@ -35,74 +87,27 @@ pub fn work_off(o: &Options, mode: Mode) -> Result<u8, Usage> {
         no_skipping: o.no_skipping,
         portable: o.portable,
         vars: o.vars.clone(),
-        folder: folder_of(Path::new(&name)),
-    };
-    let mut session = match Session::new(options) {
-        Ok(s) => s,
-        Err(e) => {
-            complain(&e, &Sources::default(), &log, mode);
-            return Ok(FAILED);
-        }
-    };
+        folder: match &o.deck {
+            Deck::Stdin => Default::default(),
+            Deck::File(path) => folder_of(path),
+        },
+    })
+}
+
+/// Whether steps are made and files written.
+fn runs(mode: Mode) -> bool {
+    matches!(mode, Mode::Run | Mode::Measure)
+}
+
+/// The first Ctrl-C ends the run at a whole step, the second one the program at once.
+fn catch_interrupt(session: &Session) {
     let stop = session.stop_flag();
-    let twice = stop.clone();
-    // A second Ctrl-C does not wait for the step's end.
+    // Without a handler, Ctrl-C ends the program as it always did.
     let _ = ctrlc::set_handler(move || {
-        if twice.swap(true, Ordering::Relaxed) {
+        if stop.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(INTERRUPTED));
         }
     });
-    session.set_watch(Box::new(Bar(progress.clone())));
-    if mode == Mode::Run || mode == Mode::Measure {
-        let with = if o.compat { ", compat lammps" } else { "" };
-        let _ = log.line(&format!("perigrain {} ({threads} thread(s){with})", env!("CARGO_PKG_VERSION")));
-    }
-    let outcome = session.run_text(&name, &text);
-    progress.clear();
-    let code = match &outcome {
-        Ok(ending) if ending.interrupted => INTERRUPTED,
-        Ok(ending) => ending.status.clamp(0, 255) as u8,
-        Err(e) => {
-            complain(e, &session.sources, &log, mode);
-            FAILED
-        }
-    };
-    if mode == Mode::Check {
-        report(&session, outcome.is_ok());
-    } else if mode == Mode::Run || mode == Mode::Measure {
-        let _ = log.line(&wall_time(begin.elapsed().as_secs_f64()));
-        let _ = log.flush();
-    }
-    Ok(code)
-}
-
-/// Prints a deck's command graph for graphviz.
-///
-/// # Errors
-/// A deck that cannot be read.
-pub fn draw(o: &Options) -> Result<u8, Usage> {
-    let (name, text) = read(&o.deck)?;
-    let options = session::Options {
-        mode: Mode::Check,
-        vars: o.vars.clone(),
-        folder: folder_of(Path::new(&name)),
-        ..session::Options::default()
-    };
-    let (log, mode) = (Log::silent(), Mode::Check);
-    let mut session = match Session::new(options) {
-        Ok(s) => s,
-        Err(e) => {
-            complain(&e, &Sources::default(), &log, mode);
-            return Ok(FAILED);
-        }
-    };
-    let outcome = session.run_text(&name, &text);
-    super::show(&show::dot(&session.graph))?;
-    if let Err(e) = outcome {
-        complain(&e, &session.sources, &log, mode);
-        return Ok(FAILED);
-    }
-    Ok(OK)
 }
 
 struct Bar(Progress);
@@ -113,77 +118,72 @@ impl Watch for Bar {
     }
 }
 
-fn read(deck: &Deck) -> Result<(String, String), Usage> {
+/// The deck's name and text; bytes that are no UTF-8 become the replacement character and are refused where they matter.
+fn read(deck: &Deck) -> Result<(String, String)> {
     let mut bytes = vec![];
     let (name, outcome) = match deck {
-        Deck::Stdin => ("<stdin>".to_string(), std::io::stdin().read_to_end(&mut bytes).map(|_| ())),
-        Deck::File(path) => (path.display().to_string(), std::fs::read(path).map(|b| bytes = b)),
+        Deck::Stdin => ("<stdin>".to_string(), stdin().read_to_end(&mut bytes).map(drop)),
+        Deck::File(path) => (path.display().to_string(), std::fs::read(path).map(|all| bytes = all)),
     };
     match outcome {
         Ok(()) => Ok((name, String::from_utf8_lossy(&bytes).into_owned())),
-        Err(e) => Err(Usage { message: format!("cannot read the deck {name}: {e}"), help: None }),
+        Err(e) => fail(Code::NO_FILE, None, format!("cannot read the deck `{name}`: {e}")),
     }
 }
 
-fn open_log(o: &Options, mode: Mode, progress: &Progress) -> Result<Log, Usage> {
+/// Opens screen and log file. Looking at a deck leaves no log unless one is asked for.
+fn open(log: &Log, o: &Options, mode: Mode, progress: &Progress) -> Result<()> {
     if mode == Mode::Check {
-        return Ok(Log::silent());
+        return Ok(());
     }
-    let screen: Option<Box<dyn Write + Send>> = match &o.screen {
-        Target::Usual if std::io::stdout().is_terminal() => {
-            Some(Box::new(progress.around(std::io::stdout())))
-        }
-        Target::Usual => Some(Box::new(std::io::stdout())),
+    log.set_screen(match &o.screen {
         Target::None => None,
+        Target::Usual if stdout().is_terminal() => Some(Box::new(LineWriter::new(progress.around(stdout())))),
+        Target::Usual => Some(Box::new(stdout())),
         Target::File(path) => match std::fs::File::create(path) {
-            Ok(f) => Some(Box::new(f)),
-            Err(e) => {
-                return Err(Usage { message: format!("cannot write {}: {e}", path.display()), help: None });
-            }
+            Ok(file) => Some(Box::new(file)),
+            Err(e) => return fail(Code::NO_FILE, None, format!("cannot write `{}`: {e}", path.display())),
         },
-    };
-    let log = Log::new(screen);
-    let file = match &o.log {
-        Target::Usual if mode == Mode::Run || mode == Mode::Measure => Some(Path::new("log.lammps")),
-        Target::File(path) => Some(path.as_path()),
-        _ => None,
-    };
-    if let Some(path) = file {
-        log.open(path, false).map_err(|e| Usage { message: e.to_string(), help: None })?;
+    });
+    match &o.log {
+        Target::Usual if runs(mode) => log.open(Path::new("log.lammps"), false)?,
+        Target::File(path) => log.open(path, false)?,
+        _ => {}
     }
-    if let Some(word) = &o.echo {
-        match Echo::parse(word) {
-            Some(echo) => log.set_echo(echo),
-            None => {
-                let help = Some("none, screen, log or both".to_string());
-                return Err(Usage { message: format!("-echo {word} is not known"), help });
-            }
-        }
+    if let Some(echo) = o.echo.as_deref().and_then(Echo::parse) {
+        log.set_echo(echo);
     }
-    Ok(log)
+    Ok(())
 }
 
 /// Problems go to standard error, and to the log without colours.
-fn complain(e: &Diagnostics, sources: &Sources, log: &Log, mode: Mode) {
-    let stderr = std::io::stderr();
-    let text =
-        if progress::colors(&stderr) { render::colored(e, sources) } else { render::plain(e, sources) };
-    let _ = stderr.lock().write_all(text.as_bytes());
-    if mode != Mode::Check {
-        let _ = log.to_log(&render::plain(e, sources));
-    }
+fn complain(problems: &Diagnostics, sources: &Sources, log: &Log) {
+    // When the log cannot be written the terminal has it all the same.
+    let _ = log.to_log(render::plain(problems, sources).trim_end());
+    print(problems, sources);
 }
 
-/// What `perigrain check` says at the end.
-fn report(session: &Session, clean: bool) {
-    let warnings = session.notes.0.iter().filter(|d| d.severity == Severity::Warning).count();
-    let stderr = std::io::stderr();
-    let text = match progress::colors(&stderr) {
-        true => render::colored(&session.notes, &session.sources),
-        false => render::plain(&session.notes, &session.sources),
+fn print(problems: &Diagnostics, sources: &Sources) {
+    let err = stderr();
+    let text = if progress::colors(&err) {
+        render::colored(problems, sources)
+    } else {
+        render::plain(problems, sources)
     };
-    let _ = stderr.lock().write_all(text.as_bytes());
-    if clean {
-        let _ = super::show(&format!("no errors, {warnings} warning(s)\n"));
-    }
+    let _ = err.lock().write_all(text.as_bytes());
+}
+
+/// The last line of `perigrain check`: how many problems of which kind.
+fn summary(name: &str, problems: &Diagnostics) {
+    let count = |severity, word: &str| {
+        let n = problems.0.iter().filter(|d| d.severity == severity).count();
+        (n > 0).then(|| format!("{n} {word}{}", if n == 1 { "" } else { "s" }))
+    };
+    let parts: Vec<String> =
+        [count(Severity::Error, "error"), count(Severity::Warning, "warning"), count(Severity::Note, "note")]
+            .into_iter()
+            .flatten()
+            .collect();
+    let found = if parts.is_empty() { "no problems found".into() } else { parts.join(", ") };
+    super::show(&format!("{name}: {found}\n"));
 }

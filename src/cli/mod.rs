@@ -18,6 +18,8 @@ const OK: u8 = 0;
 const FAILED: u8 = 1;
 /// The command line itself is wrong.
 const USAGE: u8 = 2;
+/// Ended from outside (Ctrl-C) at a whole step.
+const INTERRUPTED: u8 = 130;
 
 /// Runs the program with the words of the command line.
 pub fn main() -> ExitCode {
@@ -38,19 +40,19 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Explain(code) => show(&explain(&code)?),
         Task::Doc(None) => show(&manual::list()),
         Task::Doc(Some(name)) => show(&manual::page(&name)?),
-        Task::Run(o) => deck::work_off(&o, Mode::Run),
-        Task::Check(o) => deck::work_off(&o, Mode::Check),
-        Task::Plan { options, dot: true, .. } => deck::draw(&options),
-        Task::Plan { options, measure: true, .. } => deck::work_off(&options, Mode::Measure),
-        Task::Plan { options, .. } => deck::work_off(&options, Mode::Plan),
+        Task::Run(o) => return Ok(deck::work_off(&o, Mode::Run)),
+        Task::Check(o) => return Ok(deck::work_off(&o, Mode::Check)),
+        Task::Plan { options, dot: true, .. } => return Ok(deck::draw(&options)),
+        Task::Plan { options, measure: true, .. } => return Ok(deck::work_off(&options, Mode::Measure)),
+        Task::Plan { options, .. } => return Ok(deck::work_off(&options, Mode::Plan)),
     }
+    Ok(OK)
 }
 
 /// Prints to standard output; a reader that closes early, as `| head`, is no failure.
-fn show(text: &str) -> Result<u8, Usage> {
+fn show(text: &str) {
     use std::io::Write;
     let _ = std::io::stdout().write_all(text.as_bytes());
-    Ok(OK)
 }
 
 fn complain(usage: &Usage) {
