@@ -72,8 +72,8 @@ impl<'a> Sealer<'a> {
     }
 
     /// Places a provider so that it runs before what is added to `stage` next.
-    fn provide(&mut self, op: Box<dyn Op>, when: When) {
-        self.plan.add(Placed { op, when, from: Some(self.span), meter: Default::default() });
+    fn provide(&mut self, op: Box<dyn Op>, when: When, provides: String) {
+        self.plan.add(Placed { op, when, from: Some(self.span), provides, meter: Default::default() });
     }
 
     fn enter(&mut self, name: String, span: Span) -> Result<()> {
@@ -104,20 +104,15 @@ impl<'a> Sealer<'a> {
         self.trail.pop();
         let op = op?;
         if !self.placed.contains(&(key.clone(), stage)) {
-            self.provide(Box::new(Once { op, stage, slot }), when.clone());
+            self.provide(Box::new(Once { op, stage, slot }), when.clone(), key.clone());
             self.placed.push((key, stage));
         }
         Ok(slot)
     }
 
     fn widen(&mut self, key: &str, stage: Stage, when: &When) {
-        let name = key.replacen("c_", "compute ", 1);
-        for p in &mut self.plan.ops {
-            if p.op.stage() == stage
-                && p.op.name().strip_prefix(&name).is_some_and(|r| r.is_empty() || r.starts_with(' '))
-            {
-                p.when = p.when.clone().or(when.clone());
-            }
+        for p in self.plan.ops.iter_mut().filter(|p| p.op.stage() == stage && p.provides == key) {
+            p.when = p.when.clone().or(when.clone());
         }
     }
 
@@ -154,7 +149,7 @@ impl<'a> Sealer<'a> {
             slot,
             stage,
         };
-        self.provide(Box::new(op), when.clone());
+        self.provide(Box::new(op), when.clone(), String::new());
         Ok(if atom { Reading::Atom(slot, 0) } else { Reading::Scalar(slot) })
     }
 
@@ -190,7 +185,7 @@ impl<'a> Sealer<'a> {
         }
         self.uses += 1;
         let slot = self.world.slots.id(&format!("{name}#{}", self.uses));
-        self.provide(Box::new(Keyword { name, sources, slot, stage }), when.clone());
+        self.provide(Box::new(Keyword { name, sources, slot, stage }), when.clone(), String::new());
         Ok(Reading::Scalar(slot))
     }
 

@@ -13,6 +13,8 @@ pub struct Placed {
     pub when: When,
     /// The command that created it, for messages.
     pub from: Option<Span>,
+    /// The value it provides, as `c_dmg`; empty for ops that provide none to others.
+    pub provides: String,
     /// What it has cost.
     pub meter: Meter,
 }
@@ -21,7 +23,7 @@ impl Placed {
     /// An op at its own times.
     pub fn new(op: Box<dyn Op>, from: Option<Span>) -> Self {
         let when = op.when();
-        Self { op, when, from, meter: Meter::default() }
+        Self { op, when, from, provides: String::new(), meter: Meter::default() }
     }
 }
 
