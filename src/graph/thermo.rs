@@ -9,7 +9,7 @@ use crate::out::log::Log;
 use crate::out::thermo::{Column, Layout, Line};
 use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::{BuildCx, Reading, SealCx};
-use crate::world::World;
+use crate::world::{Face, World};
 
 /// What the step table shows and when.
 #[derive(Clone, Debug)]
@@ -26,6 +26,8 @@ pub struct Thermo {
     pub press: String,
     /// ID of the potential-energy compute.
     pub pe: String,
+    /// A built-in style (`one`, `multi`, `yaml`) shows the volume too where the box changes.
+    pub built_in: bool,
     /// `thermo_modify norm`; by default yes in lj units.
     pub norm: Option<bool>,
 }
@@ -44,7 +46,16 @@ impl Default for Thermo {
         let layout = Layout::one();
         let sources = sources_of(&layout);
         let id = |s: &str| format!("thermo_{s}");
-        Self { every: 0, layout, sources, temp: id("temp"), press: id("press"), pe: id("pe"), norm: None }
+        Self {
+            every: 0,
+            layout,
+            sources,
+            temp: id("temp"),
+            press: id("press"),
+            pe: id("pe"),
+            built_in: true,
+            norm: None,
+        }
     }
 }
 
@@ -94,6 +105,7 @@ impl Thermo {
             }
         };
         (self.layout, self.sources, self.norm) = (layout, sources, None);
+        self.built_in = style != "custom";
         Ok(())
     }
 
@@ -211,8 +223,13 @@ impl Thermo {
         let when = self.when();
         let mut layout = self.layout.clone();
         layout.norm = self.normalized(s.world());
+        let mut sources = self.sources.clone();
+        if self.built_in && box_changes(s.world()) {
+            layout.columns.extend(Column::keyword("vol"));
+            sources.push(Source::Keyword("vol".into(), Span::default()));
+        }
         let mut readings = vec![];
-        for source in &self.sources {
+        for source in &sources {
             readings.push(match source {
                 Source::Keyword(name, span) => s.keyword_total(name, *span, Stage::Output, &when)?,
                 Source::Ref(r) => s.value(r, Stage::Output, &when)?,
@@ -220,6 +237,12 @@ impl Thermo {
         }
         Ok(Box::new(Row { layout, readings, when, log }))
     }
+}
+
+/// Whether a face of the box follows the particles.
+fn box_changes(w: &World) -> bool {
+    let follows = |f: &Face| matches!(f, Face::Shrink | Face::ShrinkMin);
+    w.domain.as_ref().is_some_and(|d| d.boundary.0.iter().flatten().any(follows))
 }
 
 /// The ID of an existing compute.
