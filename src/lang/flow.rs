@@ -164,7 +164,7 @@ fn branches(command: &Command) -> Result<Vec<Branch<'_>>> {
     let then = args.expect("the word then")?;
     if then.text != "then" {
         return Err(
-            blame(then, Code::UNKNOWN_KEYWORD, &format!("`{}` found, expected then", then.text)).into()
+            blame(then, Code::UNKNOWN_KEYWORD, format!("`{}` found, expected then", then.text)).into()
         );
     }
     args.clone().expect("a command to carry out")?;
@@ -178,7 +178,7 @@ fn branches(command: &Command) -> Result<Vec<Branch<'_>>> {
         out.push((None, until_next(&mut args)));
         if let Some(w) = args.next() {
             let message = format!("`{}` after else can never be reached", w.text);
-            return Err(blame(w, Code::EXTRA_ARGUMENT, &message).into());
+            return Err(blame(w, Code::EXTRA_ARGUMENT, message).into());
         }
     }
     Ok(out)
@@ -212,7 +212,7 @@ fn load(path: &Word, sources: &mut Sources, files: &dyn Files) -> Result<FileId>
             std::io::ErrorKind::NotFound => "does not exist".to_owned(),
             _ => format!("cannot be read: {e}"),
         };
-        let d: Diagnostic = blame(path, Code::NO_FILE, &format!("the file `{}` {reason}", path.text));
+        let d: Diagnostic = blame(path, Code::NO_FILE, format!("the file `{}` {reason}", path.text));
         crate::diag::Diagnostics::from(d)
     })?;
     let mut k = 0;

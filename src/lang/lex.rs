@@ -95,10 +95,10 @@ pub(super) fn advance(input: &str, at: usize, mode: Mode) -> IResult<&str, Mode>
     }
 }
 
-/// Scans `text` from byte `from` on.
-fn scan(text: &str, from: usize, mut mode: Mode) -> Mode {
-    let mut rest = &text[from..];
-    while let Ok((after, next)) = advance(rest, place(text, rest), mode) {
+/// Scans `text`, which starts at byte `base` of its line.
+fn scan(text: &str, base: usize, mut mode: Mode) -> Mode {
+    let mut rest = text;
+    while let Ok((after, next)) = advance(rest, base + place(text, rest), mode) {
         (rest, mode) = (after, next);
     }
     mode
@@ -111,20 +111,16 @@ pub(super) fn logical(source: &str, file: FileId, start: usize) -> Result<Option
     let mut mode = Mode::Plain;
     while let Ok((after, line)) = physical(rest) {
         let at = place(source, rest);
-        let from = text.text.len();
-        let printable = line.trim_end();
-        let joined = printable.strip_suffix('&').filter(|_| !matches!(mode, Mode::Quote(Quote::Triple, _)));
-        let body = joined.unwrap_or_else(|| line.strip_suffix('\r').unwrap_or(line));
-        text.push_literal(body, file, at);
-        mode = scan(&text.text, from, mode);
+        let body = line.strip_suffix('\r').unwrap_or(line);
+        mode = scan(body, text.text.len(), mode);
         rest = after;
-        let triple = matches!(mode, Mode::Quote(Quote::Triple, _));
-        if joined.is_some() && triple {
-            text.push_literal(&line[body.len()..], file, at + body.len());
+        if matches!(mode, Mode::Quote(Quote::Triple, _)) && !rest.is_empty() {
+            text.push_literal(&source[at..place(source, rest)], file, at);
+            continue;
         }
-        if triple && !rest.is_empty() {
-            text.push_literal("\n", file, at + line.len());
-        } else if joined.is_none() || rest.is_empty() {
+        let joined = body.trim_end().strip_suffix('&');
+        text.push_literal(joined.unwrap_or(body), file, at);
+        if joined.is_none() || rest.is_empty() {
             break;
         }
     }

@@ -158,7 +158,7 @@ impl Expr {
         let r = ValueRef { kind: RefKind::Variable, name, index: vec![], span };
         match vars.reference(&r, env, trail)? {
             Value::Unknown => Ok(None),
-            Value::Number(v) if v >= 1.0 && v < 9e15 => Ok(Some(v as usize)),
+            Value::Number(v) if (1.0..9e15).contains(&v) => Ok(Some(v as usize)),
             _ => fail(
                 Code::BAD_VALUE,
                 span,
@@ -177,7 +177,7 @@ impl Expr {
         let apply = |a: &[f64]| {
             f(a).map_err(|e| Diagnostic::error(Code::BAD_VALUE, self.place(&step.range), e).into())
         };
-        if args.iter().any(|a| *a == Value::Unknown) {
+        if args.contains(&Value::Unknown) {
             return Ok(Value::Unknown);
         }
         let Some(len) = self.common_length(step, args)? else {
