@@ -1,4 +1,4 @@
-//! Which particle stands where: deletion and renumbering, with everything that hangs on particles.
+//! Which particle stands where: deletion and renumbering.
 
 use super::World;
 
@@ -6,20 +6,12 @@ impl World {
     /// Deletes the marked particles as LAMMPS does: the last particle moves into the first hole, and so on.
     /// With `renumber`, ids become storage order + 1 afterwards.
     pub fn delete(&mut self, marked: &[bool], renumber: bool) {
-        self.keep(&left_after(marked), renumber);
-    }
-
-    /// Keeps the particle `old[k]` at each new place `k`; with `renumber`, ids become place + 1.
-    pub fn keep(&mut self, old: &[usize], renumber: bool) {
-        self.particles.gather(old);
-        self.columns.gather(old);
+        self.gather(&left_after(marked));
         if renumber {
             for (tag, k) in self.particles.tag.iter_mut().zip(1..) {
                 *tag = k;
             }
         }
-        self.slots.invalidate();
-        self.touch();
     }
 }
 

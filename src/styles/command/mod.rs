@@ -14,6 +14,7 @@ mod group;
 mod lattice;
 mod mass;
 mod material;
+mod momentum;
 mod neigh_modify;
 mod neighbor;
 mod newton;
@@ -25,6 +26,7 @@ mod set;
 mod testing;
 mod timestep;
 mod units;
+mod velocity;
 
 use super::{ActCx, BuildCx, Style};
 use crate::diag::Result;
@@ -76,6 +78,7 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &set::Set,
     &delete_atoms::DeleteAtoms,
     &displace_atoms::DisplaceAtoms,
+    &velocity::Velocity,
     &mass::Mass,
     &material::MaterialStyle,
     &timestep::Timestep,

@@ -1,0 +1,343 @@
+//! `velocity`: gives particles velocities, changes or scales them.
+
+use super::common::{
+    self, axis, bad_keyword, not_here, on_particles, param_or_null, ramp, scales, seed, units_lattice,
+};
+use super::momentum::{Members, temperature};
+use super::{Act, CommandStyle};
+use crate::diag::{Code, Result, fail};
+use crate::lang::{Args, Param};
+use crate::math::rng::ParkMiller;
+use crate::styles::{ActCx, BuildCx, Doc, Style};
+use crate::world::{GroupId, World};
+
+/// The command.
+pub struct Velocity;
+
+const KEYWORDS: [&str; 7] = ["dist", "sum", "mom", "rot", "loop", "units", "bias"];
+
+impl Style for Velocity {
+    fn name(&self) -> &'static str {
+        "velocity"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "velocity GROUP create T SEED | set VX VY VZ | scale T | ramp vx|vy|vz VLO VHI x|y|z CLO CHI | \
+                     zero linear|angular  [dist uniform|gaussian] [sum yes|no] [mom yes|no] [rot yes|no] \
+                     [loop all|local|geom] [units lattice|box]",
+            summary: "Gives the particles of a group velocities.",
+            text: "`create` draws from LAMMPS' Park–Miller stream, number by number as LAMMPS does, takes away the mean \
+                   (`mom yes`, default) and the rotation (`rot yes`), and scales to the temperature T, where \
+                   T = Σ m v² / ((3N − 3) k). `loop all` draws for ids 1 … N in order, `local` in storage order, `geom` by a \
+                   stream for each place. `set` takes numbers, `NULL` or variables. `ramp` is linear between two \
+                   coordinates and constant beyond. `sum yes` adds to the present velocities. Velocities and coordinates \
+                   of `set` and `ramp` are in lattice spacings (per time) unless `units box` is said: in SI decks with a \
+                   fine lattice `units box` is nearly always meant; values of variables are not scaled.",
+            example: "velocity bullet set 0.0 0.0 -35.0 units box",
+        }
+    }
+}
+
+/// In which order random numbers are given out.
+#[derive(Clone, Copy, PartialEq)]
+enum Loop {
+    All,
+    Local,
+    Geom,
+}
+
+enum Action {
+    Create { temperature: f64, seed: u32 },
+    Set([Option<Param>; 3]),
+    Scale { temperature: f64 },
+    Ramp { along: usize, by: [f64; 2], axis: usize, between: [f64; 2] },
+    ZeroLinear,
+    ZeroAngular,
+}
+
+struct Options {
+    gaussian: bool,
+    sum: bool,
+    momentum: bool,
+    rotation: bool,
+    order: Loop,
+    lattice: bool,
+}
+
+impl CommandStyle for Velocity {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        common::domain(cx)?;
+        let group = cx.group(a.expect("a group")?)?;
+        let style = a.expect("create, set, scale, ramp or zero")?;
+        let action = match style.text.as_str() {
+            "create" => Action::Create { temperature: a.non_negative("the temperature")?, seed: seed(a)? },
+            "set" => {
+                let mut next = || {
+                    let p = param_or_null(a, "the velocity")?;
+                    p.iter().try_for_each(|p| cx.param(p, true)).map(|()| p)
+                };
+                Action::Set([next()?, next()?, next()?])
+            }
+            "scale" => Action::Scale { temperature: a.non_negative("the temperature")? },
+            "ramp" => Action::Ramp {
+                along: velocity_axis(a)?,
+                by: [a.number("the lower velocity")?, a.number("the upper velocity")?],
+                axis: axis(a, "axis of the ramp")?,
+                between: [a.number("the lower end")?, a.number("the upper end")?],
+            },
+            "zero" => match a.choice("momentum to take away", &["linear", "angular"])? {
+                "linear" => Action::ZeroLinear,
+                _ => Action::ZeroAngular,
+            },
+            other => {
+                let text = format!("unknown style `{other}`: create, set, scale, ramp or zero");
+                return fail(Code::UNKNOWN_STYLE, style.span, text);
+            }
+        };
+        let options = options(a)?;
+        Ok(on_particles(vec!["velocity"], move |cx| {
+            apply(cx, group, &action, &options)?;
+            cx.world.touch();
+            Ok(())
+        }))
+    }
+}
+
+fn velocity_axis(a: &mut Args) -> Result<usize> {
+    Ok(match a.choice("velocity component", &["vx", "vy", "vz"])? {
+        "vx" => 0,
+        "vy" => 1,
+        _ => 2,
+    })
+}
+
+fn options(a: &mut Args) -> Result<Options> {
+    let mut o = Options {
+        gaussian: false,
+        sum: false,
+        momentum: true,
+        rotation: false,
+        order: Loop::All,
+        lattice: true,
+    };
+    while let Some(word) = a.next() {
+        match word.text.as_str() {
+            "dist" => o.gaussian = a.choice("distribution", &["uniform", "gaussian"])? == "gaussian",
+            "sum" => o.sum = a.flag("sum")?,
+            "mom" => o.momentum = a.flag("mom")?,
+            "rot" => o.rotation = a.flag("rot")?,
+            "loop" => {
+                o.order = match a.choice("loop", &["all", "local", "geom"])? {
+                    "all" => Loop::All,
+                    "local" => Loop::Local,
+                    _ => Loop::Geom,
+                }
+            }
+            "units" => o.lattice = units_lattice(a)?,
+            "bias" => {
+                let value = a.peek().cloned();
+                if let (true, Some(w)) = (a.flag("bias")?, value) {
+                    return Err(not_here(&w, "velocity bias"));
+                }
+            }
+            _ => return Err(bad_keyword(a, word, &KEYWORDS, &["temp", "rigid"])),
+        }
+    }
+    Ok(o)
+}
+
+fn apply(cx: &mut ActCx, group: GroupId, action: &Action, o: &Options) -> Result<()> {
+    let scale = scales(cx.world, o.lattice);
+    let members = Members::new(cx.world, group);
+    match action {
+        Action::Create { temperature, seed } => {
+            let new = created(cx.world, &members, *temperature, *seed, o)?;
+            members.write(cx.world, &new, o.sum);
+        }
+        Action::Set(values) => {
+            for (d, value) in values.iter().enumerate() {
+                let Some(value) = value else { continue };
+                let factor = if matches!(value, Param::Number(_)) { scale[d] } else { 1.0 };
+                let v = cx.per_atom(value)?;
+                for &i in &members.list {
+                    let old = if o.sum { cx.world.particles.v[i][d] } else { 0.0 };
+                    cx.world.particles.v[i][d] = old + factor * v[i];
+                }
+            }
+        }
+        Action::Scale { temperature } => {
+            let mut new = members.velocities(cx.world);
+            rescale(cx.world, &members, &mut new, *temperature)?;
+            members.write(cx.world, &new, o.sum);
+        }
+        Action::Ramp { along, by, axis, between } => {
+            let by = by.map(|b| scale[*along] * b);
+            let between = between.map(|c| scale[*axis] * c);
+            for &i in &members.list {
+                let v = ramp(cx.world.particles.x[i][*axis], between, by);
+                let old = if o.sum { cx.world.particles.v[i][*along] } else { 0.0 };
+                cx.world.particles.v[i][*along] = old + v;
+            }
+        }
+        Action::ZeroLinear => {
+            let mut v = members.velocities(cx.world);
+            members.stop_drift(cx.world, &mut v);
+            members.write(cx.world, &v, false);
+        }
+        Action::ZeroAngular => {
+            let mut v = members.velocities(cx.world);
+            members.stop_rotation(cx.world, &mut v);
+            members.write(cx.world, &v, false);
+        }
+    }
+    Ok(())
+}
+
+/// Velocities of a temperature, one per member.
+fn created(w: &World, members: &Members, t: f64, seed: u32, o: &Options) -> Result<Vec<[f64; 3]>> {
+    let mut v = draws(w, members, seed, o)?;
+    for (v, &i) in v.iter_mut().zip(&members.list) {
+        let factor = 1.0 / w.particles.mass[i].sqrt();
+        *v = v.map(|x| x * factor);
+    }
+    if o.momentum {
+        members.stop_drift(w, &mut v);
+    }
+    if o.rotation {
+        members.stop_rotation(w, &mut v);
+    }
+    rescale(w, members, &mut v, t)?;
+    Ok(v)
+}
+
+/// Three random numbers for each member, in LAMMPS' order of drawing.
+fn draws(w: &World, members: &Members, seed: u32, o: &Options) -> Result<Vec<[f64; 3]>> {
+    let mut stream = ParkMiller::new(seed);
+    let next = |stream: &mut ParkMiller| {
+        let mut one = || if o.gaussian { stream.gaussian() } else { stream.uniform() - 0.5 };
+        [one(), one(), one()]
+    };
+    let p = &w.particles;
+    match o.order {
+        Loop::All => {
+            if p.last_tag() as usize != p.len() {
+                let text = "`loop all` needs ids that run from 1 to the number of particles";
+                return fail(Code::CONFLICT, None, text);
+            }
+            let mut by_tag = vec![[0.0; 3]; p.len()];
+            by_tag.iter_mut().for_each(|v| *v = next(&mut stream));
+            Ok(members.list.iter().map(|&i| by_tag[p.tag[i] as usize - 1]).collect())
+        }
+        Loop::Local => {
+            stream.skip(100);
+            let mut all = vec![[0.0; 3]; p.len()];
+            members.list.iter().for_each(|&i| all[i] = next(&mut stream));
+            Ok(members.list.iter().map(|&i| all[i]).collect())
+        }
+        Loop::Geom => Ok(members
+            .list
+            .iter()
+            .map(|&i| {
+                stream.reset_at(seed, p.x[i]);
+                next(&mut stream)
+            })
+            .collect()),
+    }
+}
+
+fn rescale(w: &World, members: &Members, v: &mut [[f64; 3]], target: f64) -> Result<()> {
+    let now = temperature(w, members, v);
+    if now == 0.0 {
+        return fail(Code::CONFLICT, None, "the group's velocities have temperature 0 and cannot be scaled");
+    }
+    let factor = (target / now).sqrt();
+    v.iter_mut().flatten().for_each(|x| *x *= factor);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{act, more, refused, scene};
+    use crate::world::World;
+
+    /// Eight spheres of mixed mass at random places, half of them in group g.
+    fn balls() -> World {
+        let mut w = scene(
+            "atom_style sphere\nboundary p p f\nregion b block 0 3 0 3 0 3\ncreate_box 1 b\nlattice sc 1.0",
+        );
+        more(&mut w, "create_atoms 1 random 4 9281 NULL\nset group all diameter 0.3\nlattice fcc 0.7");
+        more(
+            &mut w,
+            "region s sphere 1.5 1.5 1.5 1.2 units box\ncreate_atoms 1 random 4 77 s\nset atom 3*6 mass 0.7",
+        );
+        more(&mut w, "group g id 2:8:2 3");
+        w
+    }
+
+    /// Oracle: the same lines in LAMMPS, printed with %.17g. Sums run in the same order; what is left are roundings
+    /// of the inverse inertia tensor, a few ulp.
+    fn agree(w: &World, i: usize, oracle: [f64; 3], ulps: f64) {
+        for d in 0..3 {
+            let v = w.particles.v[i][d];
+            assert!((v - oracle[d]).abs() <= ulps * f64::EPSILON * 4.0, "{i} {d}: {v:?} {:?}", oracle[d]);
+        }
+    }
+
+    #[test]
+    fn creation_is_lammps_creation() {
+        let mut w = balls();
+        more(&mut w, "velocity all create 1.5 4928");
+        agree(&w, 0, [-2.5409036010280941, -1.5463265645152058, 0.7714793541775451], 0.0);
+        agree(&w, 7, [-0.2349458539270694, 0.034389181218136583, -1.8682718829951646], 0.0);
+        more(&mut w, "velocity all create 1.5 4928 loop geom mom no dist gaussian");
+        agree(&w, 0, [0.74748094108626983, 0.86416933834450127, -1.8668364711870886], 0.0);
+        agree(&w, 5, [0.58299769286507197, -3.2906093449187379, 1.5912585417071607], 0.0);
+        more(&mut w, "velocity g create 2.5 4928 loop local mom yes rot yes dist gaussian sum yes");
+        agree(&w, 0, [0.74748094108626983, 0.86416933834450127, -1.8668364711870886], 0.0);
+        agree(&w, 1, [2.719451286306322, -1.5792605250893599, -0.78646519900238143], 1.0);
+        agree(&w, 7, [2.6667022134743501, -3.6444051336283803, -1.1375883599263843], 1.0);
+    }
+
+    #[test]
+    fn changes_are_lammps_changes() {
+        let mut w = balls();
+        more(&mut w, "velocity all create 1.5 4928 loop geom mom no dist gaussian");
+        more(
+            &mut w,
+            "velocity g create 2.5 4928 loop local mom yes rot yes dist gaussian sum yes\nvelocity g set 1 NULL 2",
+        );
+        agree(&w, 1, [1.7878070701931352, -1.5792605250893599, 3.5756141403862705], 1.0);
+        more(&mut w, "velocity all ramp vy -1 2 x 0.5 1.5 sum yes");
+        agree(&w, 0, [0.74748094108626983, 2.5833016335219523, -1.8668364711870886], 1.0);
+        agree(&w, 6, [-1.0984469584747918, 1.4315095303514505, 1.1523445309408638], 1.0);
+        more(&mut w, "velocity g zero linear\nvelocity all zero angular");
+        agree(&w, 0, [0.37490033427277508, 2.0981088020008145, -1.3553146632411612], 2.0);
+        agree(&w, 3, [0.44736442089703349, 4.4252175429366583, 0.32800448497489665], 2.0);
+        more(&mut w, "velocity all scale 0.4");
+        agree(&w, 2, [-0.27969410001790945, 0.5718517108692136, -0.22096095983479336], 2.0);
+        let tenth: fn(&World, usize) -> f64 = |w, i| w.particles.x[i][0] * 0.1;
+        act(&mut w, "velocity g set v_q 3 NULL sum yes units box", &[("q", tenth)]).unwrap();
+        agree(&w, 7, [0.27756733348562534, 1.9578424142158071, -0.05055226252678742], 2.0);
+    }
+
+    #[test]
+    fn blames_the_right_word() {
+        let mut w = balls();
+        for (line, word) in [
+            ("velocity gg set 1 1 1", "gg"),
+            ("velocity g set 1 1 q", "q"),
+            ("velocity g spin 1 1 1", "spin"),
+            ("velocity g create -1 3", "-1"),
+            ("velocity g create 1 0", "0"),
+            ("velocity g set 1 1 1 bias yes", "yes"),
+            ("velocity g scale 1 temp mine", "temp"),
+            ("velocity g ramp vq 1 1 x 0 1", "vq"),
+        ] {
+            assert_eq!(refused(&w, line).0, word, "{line}");
+        }
+        assert!(refused(&w, "velocity g scale 1.0").1.contains("temperature 0"));
+        more(&mut w, "delete_atoms group g compress no");
+        assert!(refused(&w, "velocity all create 1 3").1.contains("ids"));
+    }
+}
