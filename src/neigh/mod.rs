@@ -1,3 +1,5 @@
 //! Who is near whom: cell grids, neighbour lists, peridynamic families.
 
 pub mod family;
+pub mod grid;
+pub mod list;

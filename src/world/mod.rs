@@ -2,6 +2,7 @@
 
 pub mod clock;
 pub mod columns;
+pub mod contacts;
 pub mod domain;
 pub mod families;
 pub mod groups;

@@ -4,7 +4,7 @@ mod closed_forms;
 mod oblique;
 
 use super::*;
-use crate::math::vec3::{add, cross, dot, length, scale};
+use crate::math::vec3::{add, cross, length, scale};
 use crate::world::Compat;
 
 /// A sphere, or with infinite mass and radius 0 a wall.
@@ -93,14 +93,6 @@ impl Duel {
     fn overlap(&self) -> f64 {
         let [a, b] = &self.balls;
         a.radius + b.radius - length(sub(a.x, b.x))
-    }
-
-    fn kinetic(&self) -> f64 {
-        let k = |b: &Ball| {
-            0.5 * b.mass * dot(b.motion.velocity, b.motion.velocity)
-                + 0.5 * b.inertia() * dot(b.motion.spin, b.motion.spin)
-        };
-        k(&self.balls[0]) + k(&self.balls[1])
     }
 }
 

@@ -1,6 +1,7 @@
 //! Oblique collisions: LAMMPS' numbers, mixing of types, conservation, exact action and reaction.
 
 use super::*;
+use crate::math::vec3::dot;
 
 /// The spheres of the reference decks gr2_*: unequal, spinning, 5 mm and 4 mm.
 fn spheres() -> [Ball; 2] {
