@@ -26,7 +26,7 @@ proptest! {
         let _ = ValueRef::parse(&text, Span::default());
     }
 
-    /// A number put into a line by `%.15g` or `%.20g` is read back as it was printed.
+    /// A number printed with 17 digits is read back to the bit.
     #[test]
     fn numbers_survive(v in any::<f64>().prop_filter("finite", |v| v.is_finite())) {
         let text = crate::math::cformat::general(v, 17);
