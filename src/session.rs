@@ -1,5 +1,6 @@
 //! One deck being worked off: text in, diagnostics and results out.
 
+mod causes;
 mod checking;
 mod commands;
 mod running;
@@ -194,6 +195,7 @@ impl Session {
 
     fn work_off(&mut self, script: &mut Script) -> Result<Ending> {
         let mut problems = Diagnostics::default();
+        let mut refused = causes::Refused::default();
         let mut status = 0;
         loop {
             let line = match self.next_line(script) {
@@ -201,7 +203,7 @@ impl Session {
                 Ok(Some(line)) => line,
                 Err(e) if self.checking() => {
                     let hopeless = problems.0.len() > 200;
-                    problems.append(e);
+                    problems.append(refused.causes(script.raw(), e));
                     if hopeless {
                         break;
                     }
@@ -215,7 +217,7 @@ impl Session {
                     break;
                 }
                 Ok(None) => {}
-                Err(e) if self.checking() => problems.append(e),
+                Err(e) if self.checking() => problems.append(refused.causes(&line.raw, e)),
                 Err(e) => return Err(e),
             }
             if self.interrupted {

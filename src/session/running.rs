@@ -30,11 +30,11 @@ impl Session {
         let args = self.read_run(cmd)?;
         self.thermo_computes();
         self.record(cmd, Role::Run, None, vec![], vec![]);
-        if self.checking() {
-            return self.check_run(cmd.span);
-        }
         self.ready(cmd.span)?;
         self.check_run(cmd.span)?;
+        if self.checking() {
+            return Ok(());
+        }
         self.say_notes()?;
         let c = &mut self.world.clock;
         let last = c.step + args.steps;

@@ -1,6 +1,6 @@
 //! `atom_style`: which columns particles have.
 
-use super::common::{before_box, not_here, setting};
+use super::common::{before_box, not_here, setting, unknown_style};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Word};
@@ -94,10 +94,7 @@ fn add(style: &mut AtomStyle, word: &Word) -> Result<()> {
             (style.peri, style.sphere_mass) = (true, false);
         }
         name if ELSEWHERE.contains(&name) => return Err(not_here(word, "atom_style")),
-        name => {
-            let text = format!("unknown atom_style `{name}`: atomic, sphere, peri or hybrid");
-            return fail(Code::UNKNOWN_STYLE, word.span, text);
-        }
+        _ => return Err(unknown_style(word, "atom_style", &["atomic", "sphere", "peri", "hybrid"])),
     }
     Ok(())
 }

@@ -1,7 +1,8 @@
 //! What several scene commands share: refusals by name, distances in lattice units, choices of axes and seeds.
 
 use super::Act;
-use crate::diag::{Code, Diagnostic, Diagnostics, Result, fail};
+use crate::diag::{Code, Diagnostic, Diagnostics, Result, fail, nearest};
+use crate::lang::args::blame;
 use crate::lang::{Args, Param, RefKind, ValueRef, Word};
 use crate::styles::{ActCx, BuildCx};
 use crate::world::{Domain, Particles, World};
@@ -10,6 +11,16 @@ use crate::world::{Domain, Particles, World};
 pub fn not_here(word: &Word, what: &str) -> Diagnostics {
     let text = format!("{what} `{}` is not in perigrain yet", word.text);
     Diagnostic::error(Code::NOT_SUPPORTED, word.span, text).into()
+}
+
+/// The refusal of a word that names no style of a command, with the nearest that does.
+pub fn unknown_style(word: &Word, what: &str, known: &[&'static str]) -> Diagnostics {
+    let d = blame(word, Code::UNKNOWN_STYLE, format!("unknown {what} `{}`", word.text));
+    match nearest(&word.text, known.iter().copied()) {
+        Some(n) => d.help(format!("did you mean `{n}`?")),
+        None => d.help(format!("known: {}", known.join(" "))),
+    }
+    .into()
 }
 
 /// The unknown or refused keyword `word` of a command: refused by name where LAMMPS has it.

@@ -1,6 +1,6 @@
 //! `create_atoms`: particles on lattice sites, single ones, or at random places.
 
-use super::common::{self, bad_keyword, not_here, on_particles, scales, seed, units_lattice};
+use super::common::{self, bad_keyword, not_here, on_particles, scales, seed, units_lattice, unknown_style};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
@@ -71,9 +71,9 @@ impl CommandStyle for CreateAtoms {
             }
             "random" => random(a, cx)?,
             "mesh" => return Err(not_here(style, "create_atoms")),
-            other => {
-                let text = format!("unknown style `{other}`: box, region, single or random");
-                return fail(Code::UNKNOWN_STYLE, style.span, text);
+            _ => {
+                const KNOWN: [&str; 4] = ["box", "region", "single", "random"];
+                return Err(unknown_style(style, "style of create_atoms", &KNOWN));
             }
         };
         let on_sites = matches!(place, Place::Lattice(_));

@@ -1,6 +1,6 @@
 //! `delete_atoms`: takes particles away.
 
-use super::common::{self, bad_keyword, not_here, on_particles};
+use super::common::{self, bad_keyword, not_here, on_particles, unknown_style};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Param, ValueRef};
@@ -44,9 +44,9 @@ impl CommandStyle for DeleteAtoms {
             "variable" => Choice::Variable(common::atom_variable(cx, a.expect("a variable")?)?),
             "overlap" => overlap(a, cx, domain)?,
             "random" | "porosity" => return Err(not_here(style, "delete_atoms")),
-            other => {
-                let text = format!("unknown style `{other}`: group, region, variable or overlap");
-                return fail(Code::UNKNOWN_STYLE, style.span, text);
+            _ => {
+                const KNOWN: [&str; 4] = ["group", "region", "variable", "overlap"];
+                return Err(unknown_style(style, "style of delete_atoms", &KNOWN));
             }
         };
         let mut compress = true;

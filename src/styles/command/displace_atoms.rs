@@ -1,10 +1,10 @@
 //! `displace_atoms`: moves particles once.
 
 use super::common::{
-    self, axis, bad_keyword, not_here, on_particles, scales, seed, units_lattice, variable_param,
+    self, axis, bad_keyword, not_here, on_particles, scales, seed, units_lattice, unknown_style, variable_param,
 };
 use super::{Act, CommandStyle};
-use crate::diag::{Code, Result, fail};
+use crate::diag::Result;
 use crate::lang::{Args, Param};
 use crate::math::rng::ParkMiller;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
@@ -62,9 +62,8 @@ impl CommandStyle for DisplaceAtoms {
                 Motion::Random { by, seed: seed(a)? }
             }
             "rotate" => return Err(not_here(style, "displace_atoms")),
-            other => {
-                let text = format!("unknown style `{other}`: move, ramp or random");
-                return fail(Code::UNKNOWN_STYLE, style.span, text);
+            _ => {
+                return Err(unknown_style(style, "style of displace_atoms", &["move", "ramp", "random"]));
             }
         };
         let mut lattice = true;

@@ -1,6 +1,6 @@
 //! `group`: named sets of particles.
 
-use super::common::{self, atom_variable, id, not_here, setting, whole};
+use super::common::{self, atom_variable, id, not_here, setting, unknown_style, whole};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Param, ValueRef, Word};
@@ -113,6 +113,9 @@ fn clear(cx: &BuildCx, word: &Word) -> Result<Box<dyn Act>> {
     }))
 }
 
+/// The ways to choose a group's particles.
+const KNOWN: [&str; 8] = ["empty", "type", "id", "region", "variable", "union", "intersect", "subtract"];
+
 fn choice(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<Choice> {
     Ok(match style.text.as_str() {
         "empty" => Choice::Nobody,
@@ -124,10 +127,7 @@ fn choice(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<Choice> {
         "intersect" => Choice::Intersect(groups(a, cx, 2)?),
         "subtract" => Choice::Subtract(groups(a, cx, 2)?),
         "dynamic" | "static" | "molecule" | "include" => return Err(not_here(style, "group")),
-        other => {
-            let text = format!("unknown style `{other}` of group");
-            return fail(Code::UNKNOWN_STYLE, style.span, text);
-        }
+        _ => return Err(unknown_style(style, "style of group", &KNOWN)),
     })
 }
 

@@ -1,6 +1,6 @@
 //! `lattice`: the points particles are created on, and the unit of length of `units lattice`.
 
-use super::common::{not_here, setting};
+use super::common::{not_here, setting, unknown_style};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Result, Span, fail};
 use crate::lang::{Args, Word};
@@ -89,8 +89,8 @@ fn cell_of(style: &Word) -> Result<Option<Cell>> {
         name => match Cell::named(name) {
             Some(cell) => Ok(Some(cell)),
             None => {
-                let text = format!("unknown lattice `{name}`: none, sc, bcc, fcc, hcp, diamond or custom");
-                fail(Code::UNKNOWN_STYLE, style.span, text)
+                const KNOWN: [&str; 7] = ["none", "sc", "bcc", "fcc", "hcp", "diamond", "custom"];
+                Err(unknown_style(style, "lattice", &KNOWN))
             }
         },
     }

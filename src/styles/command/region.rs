@@ -1,6 +1,6 @@
 //! `region`: a named volume.
 
-use super::common::{self, constant, id, not_here, scales, setting, units_lattice};
+use super::common::{self, constant, id, not_here, scales, setting, units_lattice, unknown_style};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Word};
@@ -63,10 +63,7 @@ impl CommandStyle for RegionCommand {
             "union" => Shape::Union(parts(a, cx)?),
             "intersect" => Shape::Intersect(parts(a, cx)?),
             other if ELSEWHERE.contains(&other) => return Err(not_here(style, "region")),
-            other => {
-                let text = format!("unknown shape `{other}`: block, cylinder, sphere, union or intersect");
-                return fail(Code::UNKNOWN_STYLE, style.span, text);
-            }
+            _ => return Err(unknown_style(style, "region style", &["block", "cylinder", "sphere", "union", "intersect"])),
         };
         a.rest();
         let region = Region { shape, outside: options.outside, open: options.open };

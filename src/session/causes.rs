@@ -1,0 +1,67 @@
+//! Check mode reports causes, not their consequences: what a refused line would have provided is not missed again.
+
+use crate::diag::{Code, Diagnostic, Diagnostics};
+use std::collections::BTreeSet;
+
+/// What refused lines would have provided.
+#[derive(Default)]
+pub(super) struct Refused {
+    names: BTreeSet<String>,
+    scene: bool,
+}
+
+/// Commands that name what they make in their first word.
+const NAMING: [&str; 7] = ["variable", "region", "group", "compute", "fix", "dump", "material"];
+
+/// Commands that change what is there, but whose lack makes no later line wrong.
+const HARMLESS: [&str; 9] =
+    ["thermo", "thermo_style", "thermo_modify", "timestep", "velocity", "print", "run", "if", "dump_modify"];
+
+impl Refused {
+    /// Those of a line's problems that no earlier refusal explains; the line counts as refused from now on.
+    pub fn causes(&mut self, line: &str, problems: Diagnostics) -> Diagnostics {
+        let causes = problems.0.into_iter().filter(|d| !self.explains(d)).collect();
+        let mut words = line.split_whitespace();
+        let (command, first) = (words.next().unwrap_or(""), words.next());
+        if NAMING.contains(&command) {
+            self.names.extend(first.map(String::from));
+        } else if !HARMLESS.contains(&command) {
+            self.scene = true;
+        }
+        Diagnostics(causes)
+    }
+
+    fn explains(&self, d: &Diagnostic) -> bool {
+        match d.code {
+            Code::UNKNOWN_NAME => self.names.iter().any(|n| d.message.contains(&format!("`{n}`"))),
+            Code::WRONG_ORDER | Code::INCOMPLETE => self.scene,
+            _ => false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problem(code: Code, text: &str) -> Diagnostics {
+        Diagnostic::error(code, None, text).into()
+    }
+
+    #[test]
+    fn a_name_whose_own_line_was_refused_is_not_missed_again() {
+        let mut refused = Refused::default();
+        let missing = || problem(Code::UNKNOWN_NAME, "there is no compute `dmg`");
+        assert!(!refused.causes("thermo_style custom c_dmg", missing()).is_empty());
+        assert!(!refused.causes("compute dmg all damge/atom", problem(Code::UNKNOWN_STYLE, "x")).is_empty());
+        assert!(refused.causes("thermo_style custom c_dmg", missing()).is_empty());
+    }
+
+    #[test]
+    fn without_a_box_everything_comes_too_early() {
+        let mut refused = Refused::default();
+        let early = || problem(Code::WRONG_ORDER, "no box has been defined");
+        assert!(!refused.causes("create_atoms 1 box", early()).is_empty());
+        assert!(refused.causes("create_atoms 1 box", early()).is_empty());
+    }
+}
