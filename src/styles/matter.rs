@@ -2,7 +2,8 @@
 
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::par;
-use crate::world::{AtomStyle, GroupId, World};
+use crate::plan::Tick;
+use crate::world::{AtomStyle, GroupId, Region, SlotId, World};
 
 /// The mass of each particle: its own where the atom style has one, else its type's.
 #[derive(Clone, Copy)]
@@ -88,4 +89,75 @@ pub fn unwrapped(w: &World, i: usize) -> [f64; 3] {
     let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
     let (x, image) = (w.particles.x[i], w.particles.image[i]);
     std::array::from_fn(|k| x[k] + f64::from(image[k]) * lengths[k])
+}
+
+/// Who a force acts on: a group, or its members inside a region.
+#[derive(Clone)]
+pub struct Chosen {
+    bit: u32,
+    region: Option<Region>,
+}
+
+impl Chosen {
+    /// A group, limited to the region of this name if one is given.
+    ///
+    /// # Errors
+    /// The region no longer exists.
+    pub fn new(w: &World, group: GroupId, region: Option<&str>, span: Span) -> Result<Self> {
+        let region = match region {
+            None => None,
+            Some(name) => match w.regions.get(name) {
+                Some(r) => Some(r.clone()),
+                None => {
+                    return Err(Diagnostic::error(
+                        Code::UNKNOWN_NAME,
+                        span,
+                        format!("there is no region `{name}` any more"),
+                    )
+                    .into());
+                }
+            },
+        };
+        Ok(Self { bit: group.bit(), region })
+    }
+
+    /// Whether a particle with these group bits at this place is meant.
+    #[inline]
+    pub fn has(&self, mask: u32, x: [f64; 3]) -> bool {
+        mask & self.bit != 0 && self.region.as_ref().is_none_or(|r| r.contains(x))
+    }
+}
+
+/// Changes the force on each chosen particle and adds up what `change(world, i, force)` returns; the world it sees
+/// lacks the forces.
+pub fn change_forces<const N: usize>(
+    w: &mut World,
+    chosen: &Chosen,
+    change: impl Fn(&World, usize, &mut [f64; 3]) -> [f64; N] + Sync,
+) -> [f64; N] {
+    let mut forces = std::mem::take(&mut w.particles.f);
+    let world = &*w;
+    let columns = (&mut forces[..], &world.particles.x[..], &world.particles.mask[..]);
+    let chunk = |start: usize, (f, x, mask): (&mut [[f64; 3]], &[[f64; 3]], &[u32])| {
+        let mut total = [0.0; N];
+        for (k, ((f, x), mask)) in f.iter_mut().zip(x).zip(mask).enumerate() {
+            if chosen.has(*mask, *x) {
+                let term = change(world, start + k, f);
+                (0..N).for_each(|k| total[k] += term[k]);
+            }
+        }
+        total
+    };
+    let total = par::reduce_each(columns, chunk, add).unwrap_or([0.0; N]);
+    w.particles.f = forces;
+    total
+}
+
+/// Writes a fix's global values into its slot.
+pub fn publish(w: &mut World, slot: SlotId, t: &Tick, scalar: f64, vector: &[f64]) {
+    let out = w.slots.get_mut(slot);
+    out.step = Some(t.step);
+    out.scalar = scalar;
+    out.vector.clear();
+    out.vector.extend_from_slice(vector);
 }

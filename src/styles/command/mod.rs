@@ -4,7 +4,7 @@ mod atom_modify;
 mod atom_style;
 mod boundary;
 mod comm_modify;
-mod common;
+pub(super) mod common;
 mod create_atoms;
 mod create_box;
 mod delete_atoms;

@@ -1,7 +1,14 @@
 //! Fixes: what is done to particles during the steps besides their mutual forces.
 
+mod addforce;
+mod dt_reset;
 mod extremes;
+mod gravity;
+mod indent;
+mod move_fix;
 mod nve;
+mod setforce;
+mod viscous;
 
 use super::{BuildCx, SealCx, Shape, Style};
 use crate::diag::{Code, Result, fail};
@@ -76,5 +83,18 @@ pub trait Fix: Send {
 #[rustfmt::skip]
 pub const FIXES: &[&dyn FixStyle] = &[
     &extremes::ExtremesStyle,
+    &addforce::AddForce,
+    &dt_reset::DtReset,
+    &gravity::Gravity,
+    &indent::Indent,
+    &move_fix::Move,
     &nve::Nve,
+    &setforce::SetForce,
+    &viscous::Viscous,
 ];
+
+/// Takes the region after the keyword `region`.
+fn region_keyword(args: &mut Args, cx: &BuildCx) -> Result<String> {
+    let word = args.expect("the region's ID")?;
+    cx.region(word).map(|_| word.text.clone())
+}

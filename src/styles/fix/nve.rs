@@ -74,9 +74,14 @@ impl Fix for Declared {
     }
 }
 
+/// ½ Δt in units that turn force/mass into velocity.
+pub fn half_step(w: &World, dt: f64) -> f64 {
+    0.5 * dt * w.settings.units.constants().ftm2v
+}
+
 /// First half of a step: v += Δt/2 · f/m, x += Δt · v.
 pub fn kick_and_drift(w: &mut World, group: GroupId, dt: f64) {
-    let half = 0.5 * dt * w.settings.units.constants().ftm2v;
+    let half = half_step(w, dt);
     let p = &mut w.particles;
     let bit = group.bit();
     if p.style.own_mass() {
@@ -101,7 +106,7 @@ pub fn kick_and_drift(w: &mut World, group: GroupId, dt: f64) {
 
 /// Second half of a step: v += Δt/2 · f/m.
 pub fn kick(w: &mut World, group: GroupId, dt: f64) {
-    let half = 0.5 * dt * w.settings.units.constants().ftm2v;
+    let half = half_step(w, dt);
     let p = &mut w.particles;
     let bit = group.bit();
     let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);

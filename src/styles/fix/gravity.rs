@@ -1,0 +1,199 @@
+//! fix gravity: the same acceleration for everyone.
+
+use super::{Fix, FixStyle};
+use crate::diag::{Code, Result, fail};
+use crate::lang::{Args, Param};
+use crate::plan::{Access, Op, Stage, When};
+use crate::styles::command::common::{choice_or_refuse, variable_param};
+use crate::styles::matter::{Chosen, Masses, change_forces, check_masses, publish};
+use crate::styles::step_op::StepOp;
+use crate::styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use crate::world::{GroupId, World};
+
+/// The style.
+pub struct Gravity;
+
+impl Style for Gravity {
+    fn name(&self) -> &'static str {
+        "gravity"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group gravity g chute angle | spherical phi theta | vector x y z",
+            summary: "Pulls every particle of the group with the same acceleration.",
+            text: "f ← f + m g e, with g in force/mass units and the direction e: `vector x y z`, of whatever length; \
+                   `chute angle`, tilted by that angle from −z (in two dimensions −y) towards +x; `spherical phi theta`, \
+                   with phi from +x around z and theta from +z (in two dimensions theta from +y, phi without meaning). \
+                   Angles in degrees. Each parameter is a number or `v_name` of an equal-style variable, evaluated each \
+                   step. Scalar (extensive): the potential energy −Σ m g e·x of the positions in the box; `fix_modify ID \
+                   energy yes` adds it to the potential energy. Acts with the particles' mass: for peridynamic particles \
+                   in LAMMPS' convention that is the density, as f is a force density.",
+            example: "fix g all gravity 9.81 vector 0 0 -1",
+        }
+    }
+}
+
+/// Where the acceleration points, as the deck says it.
+#[derive(Clone)]
+enum Direction {
+    Chute(Param),
+    Spherical(Param, Param),
+    Vector(Param, Param, Param),
+}
+
+impl FixStyle for Gravity {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let param = |args: &mut Args, what: &str| {
+            let p = variable_param(args, what)?;
+            cx.param(&p, false).map(|()| p)
+        };
+        let magnitude = param(args, "the acceleration")?;
+        let span = args.here();
+        let style = choice_or_refuse(args, "direction", &["chute", "spherical", "vector"], &["gradient"])?;
+        let direction = match style {
+            "chute" => Direction::Chute(param(args, "the chute's angle")?),
+            "spherical" => Direction::Spherical(param(args, "phi")?, param(args, "theta")?),
+            _ => Direction::Vector(param(args, "x")?, param(args, "y")?, param(args, "z")?),
+        };
+        if let Direction::Vector(Param::Number(x), Param::Number(y), Param::Number(z)) = direction
+            && x * x + y * y + z * z == 0.0
+        {
+            return fail(Code::BAD_VALUE, span, "`vector 0 0 0` has no direction");
+        }
+        args.finish()?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, magnitude, direction }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    magnitude: Param,
+    direction: Direction,
+}
+
+/// A direction as it is read during a run.
+#[derive(Clone, Copy)]
+enum Pointer {
+    Angles { phi: Reading, theta: Reading },
+    Chute(Reading),
+    Vector([Reading; 3]),
+}
+
+impl Pointer {
+    /// The unit vector now.
+    fn unit(self, w: &World) -> [f64; 3] {
+        let flat = w.settings.two_dimensional;
+        match self {
+            Pointer::Chute(angle) => turned(0.0, 180.0 - angle.get(w), flat),
+            Pointer::Angles { phi, theta } => turned(phi.get(w), theta.get(w), flat),
+            Pointer::Vector(v) => {
+                let [x, y, z] = v.map(|r| r.get(w));
+                let z = if flat { 0.0 } else { z };
+                let length = (x * x + y * y + z * z).sqrt();
+                [x / length, y / length, z / length]
+            }
+        }
+    }
+}
+
+/// The unit vector of spherical angles in degrees.
+fn turned(phi: f64, theta: f64, flat: bool) -> [f64; 3] {
+    let radian = std::f64::consts::PI / 180.0;
+    let (phi, theta) = (radian * phi, radian * theta);
+    if flat {
+        return [theta.sin(), theta.cos(), 0.0];
+    }
+    [theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()]
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        check_masses(cx.world(), span)?;
+        let chosen = Chosen::new(cx.world(), self.group, None, span)?;
+        let mut read = |p: &Param| cx.param(p, Stage::PostForce, &When::Always);
+        let magnitude = read(&self.magnitude)?;
+        let pointer = match &self.direction {
+            Direction::Chute(angle) => Pointer::Chute(read(angle)?),
+            Direction::Spherical(phi, theta) => Pointer::Angles { phi: read(phi)?, theta: read(theta)? },
+            Direction::Vector(x, y, z) => Pointer::Vector([read(x)?, read(y)?, read(z)?]),
+        };
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let access = Access::new("f x mass mask", "f");
+        let op = StepOp::new(format!("fix {} gravity", self.id), Stage::PostForce, access, move |w, t| {
+            if t.unchanged {
+                return Ok(());
+            }
+            let (g, unit) = (magnitude.get(w), pointer.unit(w));
+            let [ax, ay, az] = unit.map(|e| g * e);
+            let [energy] = change_forces(w, &chosen, |w, i, f| {
+                let (m, [x, y, z]) = (Masses::of(w).get(i), w.particles.x[i]);
+                f[0] += m * ax;
+                f[1] += m * ay;
+                f[2] += m * az;
+                [-(m * (ax * x + ay * y + az * z))]
+            });
+            publish(w, slot, t, energy, &[]);
+            Ok(())
+        });
+        Ok(vec![op.boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, scalar_extensive: true, ..Shape::default() }
+    }
+
+    fn has_energy(&self) -> bool {
+        true
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+    use crate::world::AtomStyle;
+
+    fn force(b: &mut Bench, words: &str) -> [f64; 3] {
+        b.world.particles.f = vec![[0.0; 3]; 2];
+        let fix = b.fix(&Gravity, words).unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        b.world.particles.f[0]
+    }
+
+    #[test]
+    fn directions() {
+        let mut b = Bench::new(AtomStyle::default(), &[[1.0, 0.0, 3.0], [0.0, 0.0, -4.0]]);
+        b.equal.insert("g".into(), 5.0);
+        let near = |a: [f64; 3], e: [f64; 3]| {
+            // Angles go through sin and cos: a few ulp of a force of 10.
+            assert!((0..3).all(|d| (a[d] - e[d]).abs() < 1e-14), "{a:?} {e:?}")
+        };
+        // m = 2, g = 5.
+        assert_eq!(force(&mut b, "v_g vector 0 0 -3"), [0.0, 0.0, -10.0]);
+        assert_eq!(b.slot_of("f_f").scalar, -10.0);
+        near(force(&mut b, "5 chute 30"), [5.0, 0.0, -75f64.sqrt()]);
+        near(force(&mut b, "5 spherical 90 90"), [0.0, 10.0, 0.0]);
+        near(force(&mut b, "5 spherical 12 180"), [0.0, 0.0, -10.0]);
+        b.world.settings.two_dimensional = true;
+        near(force(&mut b, "5 chute 0"), [0.0, -10.0, 0.0]);
+        near(force(&mut b, "5 vector 3 4 100"), [6.0, 8.0, 0.0]);
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let b = Bench::new(AtomStyle::default(), &[]);
+        for words in
+            ["", "1", "1 vector 0 0", "1 vector 0 0 0", "1 gradient 1 1 1 1", "1 chute 2 3", "1 down"]
+        {
+            assert!(b.fix(&Gravity, words).is_err(), "{words}");
+        }
+    }
+}

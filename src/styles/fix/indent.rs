@@ -1,0 +1,323 @@
+//! fix indent: a sphere, cylinder or plane that repels particles.
+
+use super::{Fix, FixStyle};
+use crate::diag::{Code, Diagnostic, Result, fail};
+use crate::lang::{Args, Param, Word};
+use crate::plan::{Access, Op, Stage, When};
+use crate::styles::command::common::{axis, not_here, scales, units_lattice, variable_param};
+use crate::styles::matter::{Chosen, change_forces, publish};
+use crate::styles::step_op::StepOp;
+use crate::styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use crate::world::region::across;
+use crate::world::{GroupId, World};
+
+/// The style.
+pub struct Indent;
+
+const KEYWORDS: &[&str] = &["sphere", "cylinder", "plane", "side", "units"];
+
+impl Style for Indent {
+    fn name(&self) -> &'static str {
+        "indent"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group indent K sphere x y z R | cylinder dim c1 c2 R | plane dim pos lo|hi [side in|out] \
+                     [units lattice|box]",
+            summary: "Pushes particles out of a sphere, cylinder or half-space.",
+            text: "A particle at distance r < R from the sphere's centre or the cylinder's axis feels the force \
+                   K (r − R)² away from it; `side in` keeps particles inside instead (r > R, force towards the centre). \
+                   `plane dim pos lo` pushes what is below pos upwards, `hi` what is above downwards. K is in \
+                   force/distance² units; peridynamic particles in LAMMPS' convention take it as force density. Places \
+                   and radius are numbers or `v_name` of an equal-style variable, evaluated each step; numbers are in \
+                   lattice spacings (the radius in those of x) unless `units box`; variables are not scaled. Across \
+                   periodic faces the nearest image counts. Scalar (extensive): the energy Σ K/3 |r − R|³; `fix_modify \
+                   ID energy yes` adds it to the potential energy. Vector of 3 (extensive): the force on the indenter.",
+            example: "fix ball all indent 4.0e20 sphere 0.0 0.0 v_z 0.003 units box",
+        }
+    }
+}
+
+/// The indenter as the deck gives it; `T` is a parameter there and a reading during a run.
+#[derive(Clone, Copy)]
+enum Form<T> {
+    Sphere { center: [T; 3], radius: T },
+    Cylinder { axis: usize, center: [T; 2], radius: T },
+    Plane { axis: usize, place: T, high: bool },
+}
+
+impl FixStyle for Indent {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let stiffness = args.non_negative("the force constant K")?;
+        let (mut form, mut inside, mut lattice) = (None, false, true);
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "side" => inside = args.choice("side", &["in", "out"])? == "in",
+                "units" => lattice = units_lattice(args)?,
+                "cone" => return Err(not_here(word, "indenter")),
+                _ if form.is_some() && KEYWORDS.contains(&word.text.as_str()) => {
+                    return fail(Code::CONFLICT, word.span, "an indenter has one shape; use a second fix");
+                }
+                _ => form = Some(read_form(word, args, cx)?),
+            }
+        }
+        let Some(form) = form else {
+            return Err(Diagnostic::error(Code::MISSING_ARGUMENT, args.here(), "the indenter has no shape")
+                .help("write `sphere x y z R`, `cylinder dim c1 c2 R` or `plane dim pos lo|hi`")
+                .into());
+        };
+        let form = scaled(form, scales(cx.world, lattice));
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, stiffness, form, inside }))
+    }
+}
+
+fn read_form(word: &Word, args: &mut Args, cx: &BuildCx) -> Result<Form<Param>> {
+    let param = |args: &mut Args, what: &str| {
+        let p = variable_param(args, what)?;
+        cx.param(&p, false).map(|()| p)
+    };
+    let radius = |args: &mut Args| {
+        let span = args.here();
+        match param(args, "the radius")? {
+            Param::Number(r) if r < 0.0 => fail(Code::BAD_VALUE, span, "the radius must not be negative"),
+            p => Ok(p),
+        }
+    };
+    match word.text.as_str() {
+        "sphere" => {
+            let center = [param(args, "x")?, param(args, "y")?, param(args, "z")?];
+            Ok(Form::Sphere { center, radius: radius(args)? })
+        }
+        "cylinder" => {
+            let axis = axis(args, "axis of the cylinder")?;
+            let center = [param(args, "c1")?, param(args, "c2")?];
+            Ok(Form::Cylinder { axis, center, radius: radius(args)? })
+        }
+        "plane" => {
+            let axis = axis(args, "direction of the plane")?;
+            let place = param(args, "the plane's position")?;
+            Ok(Form::Plane { axis, place, high: args.choice("side of the plane", &["lo", "hi"])? == "hi" })
+        }
+        _ => Err(args.unknown(word, KEYWORDS)),
+    }
+}
+
+/// Numbers become lengths of the box; variables stay.
+fn scaled(form: Form<Param>, scale: [f64; 3]) -> Form<Param> {
+    let by = |p: Param, s: f64| match p {
+        Param::Number(a) => Param::Number(a * s),
+        p => p,
+    };
+    match form {
+        Form::Sphere { center: [x, y, z], radius } => Form::Sphere {
+            center: [by(x, scale[0]), by(y, scale[1]), by(z, scale[2])],
+            radius: by(radius, scale[0]),
+        },
+        Form::Cylinder { axis, center: [a, b], radius } => {
+            let [d, e] = across(axis);
+            let center = [by(a, scale[d]), by(b, scale[e])];
+            Form::Cylinder { axis, center, radius: by(radius, scale[0]) }
+        }
+        Form::Plane { axis, place, high } => Form::Plane { axis, place: by(place, scale[axis]), high },
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    stiffness: f64,
+    form: Form<Param>,
+    inside: bool,
+}
+
+/// The indenter at one moment.
+#[derive(Clone, Copy)]
+enum Body {
+    /// Distances count along the axes with factor 1.
+    Round {
+        center: [f64; 3],
+        along: [f64; 3],
+        radius: f64,
+    },
+    Flat {
+        axis: usize,
+        place: f64,
+        high: bool,
+    },
+}
+
+impl Form<Reading> {
+    /// Where the indenter is now, wrapped into a periodic box.
+    fn now(&self, w: &World) -> Result<Body> {
+        let wrapped = |mut x: [f64; 3]| {
+            if let Some(d) = &w.domain {
+                d.wrap(&mut x, &mut [0; 3]);
+            }
+            x
+        };
+        let (center, along, radius) = match self {
+            Form::Plane { axis, place, high } => {
+                return Ok(Body::Flat { axis: *axis, place: place.get(w), high: *high });
+            }
+            Form::Sphere { center, radius } => (center.map(|c| c.get(w)), [1.0; 3], radius.get(w)),
+            Form::Cylinder { axis, center: [a, b], radius } => {
+                let [d, e] = across(*axis);
+                let (mut center, mut along) = (w.domain()?.lo, [1.0; 3]);
+                (center[d], center[e], along[*axis]) = (a.get(w), b.get(w), 0.0);
+                (center, along, radius.get(w))
+            }
+        };
+        if radius < 0.0 {
+            return fail(Code::BAD_VALUE, None, format!("the indenter's radius is negative: {radius}"));
+        }
+        Ok(Body::Round { center: wrapped(center), along, radius })
+    }
+}
+
+impl Body {
+    /// Force on a particle at `x` and its energy: K (r − R)² outwards (inwards for `inside`) and K/3 |r − R|³.
+    #[inline]
+    fn push(&self, w: &World, x: [f64; 3], k: f64, inside: bool) -> Option<([f64; 3], f64)> {
+        match *self {
+            Body::Flat { axis, place, high } => {
+                let sign = if high { 1.0 } else { -1.0 };
+                let depth = sign * (place - x[axis]);
+                if depth >= 0.0 {
+                    return None;
+                }
+                let mut f = [0.0; 3];
+                f[axis] = -sign * k * depth * depth;
+                Some((f, -(k / 3.0 * depth * depth * depth)))
+            }
+            Body::Round { center, along, radius } => {
+                let apart = std::array::from_fn(|d| along[d] * (x[d] - center[d]));
+                let d = w.domain.as_ref().map_or(apart, |b| b.minimum_image(apart));
+                let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+                let depth = if inside { radius - r } else { r - radius };
+                if depth >= 0.0 {
+                    return None;
+                }
+                let size = if inside { -k * depth * depth } else { k * depth * depth };
+                Some((d.map(|d| d * size / r), -(k / 3.0 * depth * depth * depth)))
+            }
+        }
+    }
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        let chosen = Chosen::new(cx.world(), self.group, None, span)?;
+        let mut read = |p: &Param| cx.param(p, Stage::PostForce, &When::Always);
+        let form = match &self.form {
+            Form::Sphere { center: [x, y, z], radius } => {
+                Form::Sphere { center: [read(x)?, read(y)?, read(z)?], radius: read(radius)? }
+            }
+            Form::Cylinder { axis, center: [a, b], radius } => {
+                Form::Cylinder { axis: *axis, center: [read(a)?, read(b)?], radius: read(radius)? }
+            }
+            Form::Plane { axis, place, high } => {
+                Form::Plane { axis: *axis, place: read(place)?, high: *high }
+            }
+        };
+        let (k, inside) = (self.stiffness, self.inside);
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let access = Access::new("x mask", "f");
+        let op = StepOp::new(format!("fix {} indent", self.id), Stage::PostForce, access, move |w, t| {
+            if t.unchanged {
+                return Ok(());
+            }
+            let body = form.now(w)?;
+            let [energy, reaction @ ..] = change_forces::<4>(w, &chosen, |w, i, f| {
+                let Some((push, energy)) = body.push(w, w.particles.x[i], k, inside) else {
+                    return [0.0; 4];
+                };
+                (0..3).for_each(|d| f[d] += push[d]);
+                [energy, -push[0], -push[1], -push[2]]
+            });
+            publish(w, slot, t, energy, &reaction);
+            Ok(())
+        });
+        Ok(vec![op.boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, vector: 3, scalar_extensive: true, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn has_energy(&self) -> bool {
+        true
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+    use crate::world::{AtomStyle, Lattice};
+
+    /// The force on a particle at (3, 0, 1), and the indenter's energy and force.
+    fn force(b: &mut Bench, words: &str) -> ([f64; 3], f64, Vec<f64>) {
+        b.world.particles.f = vec![[0.0; 3]];
+        let fix = b.fix(&Indent, words).unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        let slot = b.slot_of("f_f");
+        (b.world.particles.f[0], slot.scalar, slot.vector.clone())
+    }
+
+    fn scene() -> Bench {
+        let mut b = Bench::new(AtomStyle::default(), &[[3.0, 0.0, 1.0]]);
+        b.equal.insert("z".into(), 1.0);
+        b.equal.insert("n".into(), -1.0);
+        b.world.lattice = Lattice::none(0.5);
+        b
+    }
+
+    // Depth 2 (or where said otherwise), K = 6: force 24, energy 6/3 · 8 = 16, by hand.
+    #[test]
+    fn shapes_and_sides() {
+        let mut b = scene();
+        let (out, energy, reaction) = force(&mut b, "6 sphere 0 0 v_z 5 units box");
+        assert_eq!((out, energy, reaction), ([24.0, 0.0, 0.0], 16.0, vec![-24.0, 0.0, 0.0]));
+        assert_eq!(force(&mut b, "6 sphere 0 0 v_z 1 side in units box").0, [-24.0, 0.0, 0.0]);
+        assert_eq!(force(&mut b, "6 sphere 0 0 v_z 1 units box").0, [0.0; 3]);
+        assert_eq!(force(&mut b, "6 cylinder y 0 v_z 5 units box").0, [24.0, 0.0, 0.0]);
+        assert_eq!(force(&mut b, "6 cylinder z 0 0 5 units box").0, [24.0, 0.0, 0.0]);
+        assert_eq!(force(&mut b, "6 plane z 3 lo units box").0, [0.0, 0.0, 24.0]);
+        assert_eq!(force(&mut b, "6 plane z -1 hi units box").0, [0.0, 0.0, -24.0]);
+        assert_eq!(force(&mut b, "6 plane z 3 hi units box").0, [0.0; 3]);
+        // In lattice spacings of 0.5.
+        assert_eq!(force(&mut b, "6 sphere 0 0 2 10").0, [24.0, 0.0, 0.0]);
+        // The box repeats after 20: the sphere's image at -18 is 5 away from x = -13 … and 2 deep from x = 3.
+        assert_eq!(force(&mut b, "6 sphere 20 0 v_z 5 units box").0, [24.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let mut b = scene();
+        for words in [
+            "",
+            "-1 sphere 0 0 0 1",
+            "1",
+            "1 sphere 0 0 0",
+            "1 sphere 0 0 0 -1",
+            "1 cone x 0 0 1 2 3 4",
+            "1 plane w 0 lo",
+            "1 plane x 0 up",
+            "1 sphere 0 0 0 1 plane x 0 lo",
+            "1 sphere 0 0 0 1 unit box",
+            "1 sphere 0 0 v_q 1",
+        ] {
+            assert!(b.fix(&Indent, words).is_err(), "{words}");
+        }
+        let fix = b.fix(&Indent, "1 sphere 0 0 0 v_n").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        assert!(b.stage(&mut ops, Stage::PostForce).is_err());
+    }
+}

@@ -1,0 +1,145 @@
+//! fix setforce: forces replaced by given ones.
+
+use super::{Fix, FixStyle, region_keyword};
+use crate::diag::Result;
+use crate::lang::{Args, Param};
+use crate::plan::{Access, Op, Stage, When};
+use crate::styles::command::common::param_or_null;
+use crate::styles::matter::{Chosen, change_forces, publish};
+use crate::styles::step_op::StepOp;
+use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
+use crate::world::GroupId;
+
+/// The style.
+pub struct SetForce;
+
+impl Style for SetForce {
+    fn name(&self) -> &'static str {
+        "setforce"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group setforce fx fy fz [region ID]",
+            summary: "Replaces components of the force on each particle of the group.",
+            text: "Each of fx fy fz is a number, `NULL` (this component stays) or `v_name` of an equal- or atom-style \
+                   variable, evaluated each step; in force units, for peridynamic particles in LAMMPS' convention force \
+                   densities. Only forces computed before count: those of pair styles and of fixes declared earlier. \
+                   With `region` only particles inside it at that moment. Acts in the setup of a run too. Vector of 3 \
+                   (extensive): the total force before the change.",
+            example: "fix clamp foot setforce 0.0 0.0 0.0",
+        }
+    }
+}
+
+impl FixStyle for SetForce {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let mut force = [const { None }; 3];
+        for (force, what) in force.iter_mut().zip(["fx", "fy", "fz"]) {
+            *force = param_or_null(args, what)?;
+            force.iter().try_for_each(|p| cx.param(p, true))?;
+        }
+        let mut region = None;
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "region" => region = Some(region_keyword(args, cx)?),
+                _ => return Err(args.unknown(word, &["region"])),
+            }
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, force, region }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    force: [Option<Param>; 3],
+    region: Option<String>,
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        let chosen = Chosen::new(cx.world(), self.group, self.region.as_deref(), span)?;
+        let mut force = [None; 3];
+        for (reading, param) in force.iter_mut().zip(&self.force) {
+            if let Some(p) = param {
+                *reading = Some(cx.param(p, Stage::PostForce, &When::Always)?);
+            }
+        }
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let access = Access::new("f x mask", "f");
+        let op = StepOp::new(format!("fix {} setforce", self.id), Stage::PostForce, access, move |w, t| {
+            if t.unchanged {
+                return Ok(());
+            }
+            let before = change_forces(w, &chosen, |w, i, f| {
+                let before = *f;
+                for d in 0..3 {
+                    if let Some(reading) = force[d] {
+                        f[d] = reading.atom(w, i);
+                    }
+                }
+                before
+            });
+            publish(w, slot, t, 0.0, &before);
+            Ok(())
+        });
+        Ok(vec![op.boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { vector: 3, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+    use crate::world::AtomStyle;
+    use crate::world::region::{Region, Shape};
+
+    fn scene() -> Bench {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [5.0, 0.0, 0.0]]);
+        b.world.particles.f = vec![[1.0, 2.0, 3.0], [10.0, 20.0, 30.0]];
+        b.atom.insert("a".into(), vec![-1.0, -2.0]);
+        b.equal.insert("e".into(), 7.0);
+        b.world.regions.insert("r".into(), Region::inside(Shape::Sphere { center: [0.0; 3], radius: 1.0 }));
+        b
+    }
+
+    #[test]
+    fn components_are_replaced_and_the_total_is_kept() {
+        let mut b = scene();
+        let fix = b.fix(&SetForce, "NULL v_e v_a").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        assert_eq!(b.world.particles.f, [[1.0, 7.0, -1.0], [10.0, 7.0, -2.0]]);
+        assert_eq!(b.slot_of("f_f").vector, [11.0, 22.0, 33.0]);
+    }
+
+    #[test]
+    fn only_inside_the_region() {
+        let mut b = scene();
+        let fix = b.fix(&SetForce, "0 0 0 region r").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        assert_eq!(b.world.particles.f, [[0.0; 3], [10.0, 20.0, 30.0]]);
+        assert_eq!(b.slot_of("f_f").vector, [1.0, 2.0, 3.0]);
+        b.world.regions.clear();
+        assert!(b.seal(&*fix).is_err());
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let b = scene();
+        for words in ["0 0", "0 0 v_no", "0 0 zero", "0 0 c_a", "0 0 0 regoin r", "0 0 0 region q"] {
+            assert!(b.fix(&SetForce, words).is_err(), "{words}");
+        }
+    }
+}
