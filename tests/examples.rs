@@ -1,0 +1,88 @@
+//! Every example, made small by `-var`, prints the numbers in its `expected.csv`.
+#![allow(clippy::unwrap_used)] // a test fails by panicking
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// One row of an `expected.csv`: what a run with these arguments prints after this label.
+struct Row {
+    label: String,
+    value: f64,
+    tolerance: f64,
+}
+
+#[test]
+fn examples_print_what_they_should() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let mut tables: Vec<PathBuf> = fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().path().join("expected.csv"))
+        .filter(|p| p.exists())
+        .collect();
+    tables.sort();
+    for table in tables {
+        for ((deck, args), rows) in read(&table) {
+            let printed = run(&table.with_file_name(&deck), &args);
+            for row in rows {
+                let got = number_after(&printed, &row.label);
+                let off = (got - row.value).abs();
+                let name = table.parent().unwrap().file_name().unwrap();
+                assert!(
+                    off <= row.tolerance,
+                    "{name:?} {deck} {args}: `{}` is {got}, not {} within {}",
+                    row.label,
+                    row.value,
+                    row.tolerance
+                );
+            }
+        }
+    }
+}
+
+/// Rows by deck and arguments. Columns: deck, arguments, label, value, absolute tolerance; `#` begins a comment.
+fn read(table: &Path) -> BTreeMap<(String, String), Vec<Row>> {
+    let mut runs = BTreeMap::<_, Vec<Row>>::new();
+    let text = fs::read_to_string(table).unwrap();
+    for line in text.lines().filter(|l| !l.starts_with('#') && !l.trim().is_empty()) {
+        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
+        let [deck, args, label, value, tolerance] = cells[..] else {
+            panic!("{}: five columns expected: {line}", table.display());
+        };
+        runs.entry((deck.to_owned(), args.to_owned())).or_default().push(Row {
+            label: label.to_owned(),
+            value: value.parse().unwrap(),
+            tolerance: tolerance.parse().unwrap(),
+        });
+    }
+    runs
+}
+
+/// What the deck prints, run in a folder of its own.
+fn run(deck: &Path, args: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let out = Command::new(env!("CARGO_BIN_EXE_perigrain"))
+        .arg("-in")
+        .arg(deck)
+        .args(args.split_whitespace())
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&out.stdout).into_owned();
+    assert!(
+        out.status.success(),
+        "{} {args}:\n{text}\n{}",
+        deck.display(),
+        String::from_utf8_lossy(&out.stderr)
+    );
+    text
+}
+
+/// The first number behind the label, in the last line that begins with it.
+fn number_after(printed: &str, label: &str) -> f64 {
+    let line = printed.lines().filter(|l| l.starts_with(label)).next_back();
+    let line = line.unwrap_or_else(|| panic!("nothing printed begins with `{label}`:\n{printed}"));
+    let found = line[label.len()..].split_whitespace().find_map(|w| w.parse().ok());
+    found.unwrap_or_else(|| panic!("no number in `{line}`"))
+}
