@@ -1,5 +1,9 @@
 //! Dumps: snapshots of particles in files.
 
+mod attribute;
+mod base;
+mod text;
+
 use super::{BuildCx, SealCx, Style};
 use crate::diag::Result;
 use crate::lang::Args;
@@ -41,4 +45,4 @@ pub trait Dump: Send {
 }
 
 /// Every dump style.
-pub const DUMPS: &[&dyn DumpStyle] = &[];
+pub const DUMPS: &[&dyn DumpStyle] = &[&text::Atom, &text::Custom];
