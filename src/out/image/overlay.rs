@@ -153,7 +153,8 @@ pub(super) fn lines(
         let square = (along[0] * along[0] + along[1] * along[1]).max(1e-6);
         let (lo, hi) = (|k: usize| p[k].min(q[k]) - half - 1.0, |k: usize| p[k].max(q[k]) + half + 1.0);
         let range = |k: usize, most: usize| (lo(k).max(0.0) as i64, hi(k).min(most as f32) as i64);
-        let ((x0, x1), (y0, y1)) = (range(0, look.width), range(1, look.height));
+        // Lines end where the legend begins.
+        let ((x0, x1), (y0, y1)) = (range(0, (frame.room[0] / n) as usize), range(1, look.height));
         for y in y0..y1 {
             for x in x0..x1 {
                 let d = [x as f32 + 0.5 - p[0], y as f32 + 0.5 - p[1]];

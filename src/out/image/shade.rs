@@ -8,7 +8,7 @@ use crate::out::make;
 const KEY: [f32; 3] = [-0.4472, 0.6261, 0.6386];
 
 /// Direction to the weak light that opens the shadows. Normalised.
-const FILL: [f32; 3] = [0.7071, 0.1414, 0.6928];
+const FILL: [f32; 3] = [0.7, 0.14, 0.7003];
 
 /// Halfway between the main light and the viewer, for the highlight. Normalised.
 const HALF: [f32; 3] = [-0.2470, 0.3459, 0.9052];

@@ -225,7 +225,11 @@ impl Bound {
             }
             Core::ScaledUnwrapped(k) => {
                 let (lo, inverse) = (d.lo[k], inverse(k));
-                Data::float(move |i| (p.x[i][k] - lo) * inverse + f64::from(p.image[i][k]))
+                // LAMMPS adds its image offset of 512 and takes it away again, which costs three digits.
+                let offset = if w.settings.lammps() { 512.0 } else { 0.0 };
+                Data::float(move |i| {
+                    (p.x[i][k] - lo) * inverse + (f64::from(p.image[i][k]) + offset) - offset
+                })
             }
             Core::Image(k) => Data::int(move |i| i64::from(p.image[i][k])),
             Core::V(k) => Data::component(&p.v, k),

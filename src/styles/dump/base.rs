@@ -70,6 +70,9 @@ pub struct Threshold {
     value: f64,
 }
 
+/// A threshold whose attribute has been found: left side, comparison, right side.
+type Test<T> = (T, fn(f64, f64) -> bool, f64);
+
 /// What all dumps share.
 #[derive(Clone, Debug)]
 pub struct Base {
@@ -258,12 +261,7 @@ impl Base {
     }
 
     /// Particles that pass, in order.
-    fn rows(
-        &self,
-        w: &World,
-        tested: &[(Bound, fn(f64, f64) -> bool, f64)],
-        data: &[Data<'_>],
-    ) -> Result<Vec<u32>> {
+    fn rows(&self, w: &World, tested: &[Test<Bound>], data: &[Data<'_>]) -> Result<Vec<u32>> {
         let region = match &self.region {
             None => None,
             Some(name) => match w.regions.get(name) {
@@ -273,7 +271,7 @@ impl Base {
         };
         let (bit, p) = (self.group.bit(), &w.particles);
         let domain = w.domain()?;
-        let tests: Vec<(Data<'_>, fn(f64, f64) -> bool, f64)> =
+        let tests: Vec<Test<Data<'_>>> =
             tested.iter().map(|(b, compare, value)| (b.data(w, domain), *compare, *value)).collect();
         let passes = |i: usize| {
             p.mask[i] & bit != 0

@@ -2,7 +2,10 @@
 
 mod attribute;
 mod base;
+mod image;
+mod picture;
 mod text;
+mod vtk;
 
 use super::{BuildCx, SealCx, Style};
 use crate::diag::Result;
@@ -45,4 +48,4 @@ pub trait Dump: Send {
 }
 
 /// Every dump style.
-pub const DUMPS: &[&dyn DumpStyle] = &[&text::Atom, &text::Custom];
+pub const DUMPS: &[&dyn DumpStyle] = &[&text::Atom, &text::Custom, &vtk::Vtk, &image::Image];
