@@ -66,6 +66,30 @@ impl Particles {
         self.x.is_empty()
     }
 
+    /// Makes room for exactly `more` further particles.
+    pub fn reserve(&mut self, more: usize) {
+        self.tag.reserve_exact(more);
+        self.kind.reserve_exact(more);
+        self.mask.reserve_exact(more);
+        self.image.reserve_exact(more);
+        for column in [&mut self.x, &mut self.v, &mut self.f] {
+            column.reserve_exact(more);
+        }
+        self.mass.reserve_exact(more);
+        if self.style.sphere {
+            self.radius.reserve_exact(more);
+            self.omega.reserve_exact(more);
+            self.torque.reserve_exact(more);
+        }
+        if self.style.peri {
+            self.volume.reserve_exact(more);
+            self.x0.reserve_exact(more);
+        }
+        if self.style.own_mass() {
+            self.density.reserve_exact(more);
+        }
+    }
+
     /// Adds a particle with LAMMPS' defaults (radius 0.5, density 1 → mass, volume 1).
     pub fn push(&mut self, tag: u32, kind: u16, x: [f64; 3]) {
         self.tag.push(tag);

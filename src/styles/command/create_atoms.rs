@@ -1,14 +1,13 @@
 //! `create_atoms`: particles on lattice sites, single ones, or at random places.
 
 use super::common::{self, bad_keyword, not_here, on_particles, scales, seed, units_lattice, unknown_style};
+use super::places::{New, Place};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
 use crate::math::cformat::general;
-use crate::math::rng::ParkMiller;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
-use crate::world::{Domain, Region, World, memory};
-use std::ops::ControlFlow;
+use crate::world::{World, memory};
 
 /// The command.
 pub struct CreateAtoms;
@@ -38,13 +37,6 @@ impl Style for CreateAtoms {
             example: "create_atoms 1 region disc",
         }
     }
-}
-
-/// Where particles are made.
-enum Place {
-    Lattice(Option<Region>),
-    Single { x: [f64; 3], remap: bool },
-    Random { count: i64, seed: u32, region: Option<Region>, overlap: f64, tries: i64 },
 }
 
 /// What a line asks for.
@@ -146,23 +138,16 @@ fn random(a: &mut Args, cx: &BuildCx) -> Result<Place> {
 
 fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {
     let domain = cx.world.domain()?.clone();
-    if let Some(line) = memory::forecast(cx.world, expected(cx.world, &domain, &c.place))? {
+    if let Some(line) = memory::forecast(cx.world, c.place.expected(cx.world, &domain))? {
         cx.say(line);
     }
-    let places = match &c.place {
-        Place::Lattice(region) => on_sites(cx.world, &domain, region.as_ref(), &c.basis),
-        Place::Single { x, remap } => single(&domain, *x, *remap, c.kind),
-        Place::Random { count, seed, region, overlap, tries } => {
-            let bounds = bounds(&domain, region.as_ref());
-            let random = Random { bounds, region: region.as_ref(), overlap: *overlap, tries: *tries };
-            let places = random.places(cx.world, &domain, *count, *seed, c.kind);
-            if (places.len() as i64) < *count {
-                let text = format!("only {} of {count} particles found a place", places.len());
-                cx.note(Diagnostic::warning(Code::SUSPICIOUS, None, text));
-            }
-            places
-        }
-    };
+    let places = c.place.find(cx.world, &domain, c.kind, &c.basis);
+    if let Place::Random { count, .. } = c.place
+        && (places.len() as i64) < count
+    {
+        let text = format!("only {} of {count} particles found a place", places.len());
+        cx.note(Diagnostic::warning(Code::SUSPICIOUS, None, text));
+    }
     add(cx.world, &places)?;
     let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
     let units = if c.lattice_units { "lattice" } else { "box" };
@@ -175,28 +160,14 @@ fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {
     Ok(())
 }
 
-/// About how many particles will be made: lattice cells times the share of sample points inside the region.
-fn expected(world: &World, domain: &Domain, place: &Place) -> f64 {
-    const SAMPLES: usize = 16;
-    let region = match place {
-        Place::Single { .. } => return 1.0,
-        Place::Random { count, .. } => return *count as f64,
-        Place::Lattice(region) => region.as_ref(),
-    };
-    let (lo, hi) = bounds(domain, region);
-    let at = |k: usize, d: usize| lo[d] + (hi[d] - lo[d]) * (k as f64 + 0.5) / SAMPLES as f64;
-    let inside = (0..SAMPLES.pow(3))
-        .map(|k| [at(k % SAMPLES, 0), at(k / SAMPLES % SAMPLES, 1), at(k / SAMPLES / SAMPLES, 2)])
-        .filter(|x| region.is_none_or(|r| r.contains(*x)))
-        .count();
-    world.lattice.site_bound(lo, hi) * inside as f64 / SAMPLES.pow(3) as f64
-}
-
 /// Puts the new particles behind the present ones, with the ids that follow.
-fn add(world: &mut World, places: &[(u16, [f64; 3])]) -> Result<()> {
+fn add(world: &mut World, places: &[New]) -> Result<()> {
     let last = world.particles.last_tag();
     if u32::try_from(places.len()).ok().and_then(|n| last.checked_add(n)).is_none() {
         return fail(Code::TOO_LARGE, None, "more particles than there are ids");
+    }
+    if places.len() > world.n() / 4 {
+        world.particles.reserve(places.len());
     }
     for (tag, &(kind, x)) in (last + 1..).zip(places) {
         world.particles.push(tag, kind, x);
@@ -206,99 +177,6 @@ fn add(world: &mut World, places: &[(u16, [f64; 3])]) -> Result<()> {
     world.spread_type_masses();
     world.touch();
     Ok(())
-}
-
-/// Sites of the lattice inside box and region.
-fn on_sites(world: &World, domain: &Domain, region: Option<&Region>, basis: &[u16]) -> Vec<(u16, [f64; 3])> {
-    let (mut lo, mut hi) = (domain.lo, domain.hi);
-    for d in (0..3).filter(|&d| domain.boundary.periodic(d)) {
-        let epsilon = 1e-6 * (domain.hi[d] - domain.lo[d]);
-        (lo[d], hi[d]) = (lo[d] - epsilon, hi[d] - 2.0 * epsilon);
-    }
-    let (first, last) = match region.and_then(Region::bounds) {
-        Some((a, b)) => ([0, 1, 2].map(|d| lo[d].max(a[d])), [0, 1, 2].map(|d| hi[d].min(b[d]))),
-        None => (lo, hi),
-    };
-    let mut places = vec![];
-    if (0..3).any(|d| first[d] > last[d]) {
-        return places;
-    }
-    let _ = world.lattice.sites(first, last, |m, x| {
-        let inside = (0..3).all(|d| x[d] >= lo[d] && x[d] < hi[d]);
-        if inside && region.is_none_or(|r| r.contains(x)) {
-            places.push((basis[m], x));
-        }
-        ControlFlow::<()>::Continue(())
-    });
-    places
-}
-
-fn single(domain: &Domain, mut x: [f64; 3], remap: bool, kind: u16) -> Vec<(u16, [f64; 3])> {
-    if remap {
-        domain.wrap(&mut x, &mut [0; 3]);
-    }
-    let inside = (0..3).all(|d| x[d] >= domain.lo[d] && x[d] < domain.hi[d]);
-    if inside { vec![(kind, x)] } else { vec![] }
-}
-
-/// The part of the box that a region leaves.
-fn bounds(domain: &Domain, region: Option<&Region>) -> ([f64; 3], [f64; 3]) {
-    match region.and_then(Region::bounds) {
-        Some((a, b)) => {
-            ([0, 1, 2].map(|d| domain.lo[d].max(a[d])), [0, 1, 2].map(|d| domain.hi[d].min(b[d])))
-        }
-        None => (domain.lo, domain.hi),
-    }
-}
-
-struct Random<'a> {
-    bounds: ([f64; 3], [f64; 3]),
-    region: Option<&'a Region>,
-    overlap: f64,
-    tries: i64,
-}
-
-impl Random<'_> {
-    /// Draws places one by one; what finds none within the attempts is left out.
-    fn places(
-        &self,
-        world: &World,
-        domain: &Domain,
-        count: i64,
-        seed: u32,
-        kind: u16,
-    ) -> Vec<(u16, [f64; 3])> {
-        let mut stream = ParkMiller::new(seed);
-        stream.skip(30);
-        let mut places = vec![];
-        if (0..3).any(|d| self.bounds.0[d] > self.bounds.1[d]) {
-            return places;
-        }
-        for _ in 0..count {
-            let found = (0..self.tries).find_map(|_| {
-                let x = self.draw(&mut stream);
-                let free =
-                    self.region.is_none_or(|r| r.contains(x)) && self.is_free(world, domain, &places, x);
-                free.then_some((kind, x))
-            });
-            places.extend(found);
-        }
-        places
-    }
-
-    fn draw(&self, stream: &mut ParkMiller) -> [f64; 3] {
-        let (lo, hi) = self.bounds;
-        [0, 1, 2].map(|d| lo[d] + stream.uniform() * (hi[d] - lo[d]))
-    }
-
-    fn is_free(&self, world: &World, domain: &Domain, new: &[(u16, [f64; 3])], x: [f64; 3]) -> bool {
-        let old = world.particles.x.iter();
-        self.overlap == 0.0
-            || old.chain(new.iter().map(|(_, y)| y)).all(|y| {
-                let d = domain.minimum_image([x[0] - y[0], x[1] - y[1], x[2] - y[2]]);
-                d[0] * d[0] + d[1] * d[1] + d[2] * d[2] >= self.overlap * self.overlap
-            })
-    }
 }
 
 #[cfg(test)]

