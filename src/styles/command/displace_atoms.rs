@@ -90,9 +90,16 @@ fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, scale: [f64; 3]) ->
         (0..cx.world.n()).filter(|&i| cx.world.particles.mask[i] & group.bit() != 0).collect();
     match motion {
         Motion::Shift(params) => {
-            let by = [cx.per_atom(&params[0])?, cx.per_atom(&params[1])?, cx.per_atom(&params[2])?];
-            for (d, by) in by.iter().enumerate() {
-                members.iter().for_each(|&i| cx.world.particles.x[i][d] += scale[d] * by[i]);
+            // One direction after the other: a variable for y sees the shift in x already, as in LAMMPS.
+            let before = cx.world.particles.x.clone();
+            for (d, param) in params.iter().enumerate() {
+                match cx.per_atom(param) {
+                    Ok(by) => members.iter().for_each(|&i| cx.world.particles.x[i][d] += scale[d] * by[i]),
+                    Err(e) => {
+                        cx.world.particles.x = before;
+                        return Err(e);
+                    }
+                }
             }
         }
         Motion::Ramp { along, by, axis, between } => {
