@@ -1,6 +1,7 @@
 //! Computes: quantities read from the world, never changing it.
 
 mod com;
+mod damage_atom;
 mod ke;
 mod ke_atom;
 mod momentum;
@@ -63,6 +64,7 @@ pub trait Compute: Send {
 #[rustfmt::skip]
 pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &com::Com,
+    &damage_atom::DamageAtom,
     &ke::Ke,
     &ke_atom::KeAtom,
     &momentum::Momentum,

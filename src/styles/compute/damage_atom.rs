@@ -1,0 +1,86 @@
+//! compute damage/atom: the share of each particle's family that it has lost.
+
+use super::{Compute, ComputeStyle};
+use crate::diag::{Code, Diagnostic, Result};
+use crate::lang::Args;
+use crate::plan::{Op, Stage, When};
+use crate::styles::step_op::{Wanted, fill, per_particle};
+use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
+use crate::world::{GroupId, SlotId};
+
+/// The style.
+pub struct DamageAtom;
+
+impl Style for DamageAtom {
+    fn name(&self) -> &'static str {
+        "damage/atom"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group damage/atom",
+            summary: "Damage of each peridynamic particle, from 0 (whole) to 1 (every bond broken).",
+            text: "Per-atom vector: φ_i = 1 − Σ V_j over the live bonds / Σ V_j over the family at the first run \
+                   (Silling & Askari 2005, equation 29), with plain volumes, without the partial-volume weights of the \
+                   force. 0 for particles that never had a bond, before the first run, and outside the group.",
+            example: "compute dmg all damage/atom",
+        }
+    }
+}
+
+impl ComputeStyle for DamageAtom {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        args.finish()?;
+        if !cx.world.particles.style.peri {
+            return Err(Diagnostic::error(
+                Code::WRONG_ORDER,
+                cx.span,
+                "damage/atom needs particles with bonds",
+            )
+            .help("put `atom_style peri` (or `hybrid sphere peri`) at the top of the deck")
+            .into());
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        Shape { atom: Some(1), ..Shape::default() }
+    }
+
+    fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let group = self.group;
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, "families volume mask", move |w, _, out| {
+            let volume = &w.particles.volume;
+            per_particle(w, group, out, |i| w.families.as_ref().map_or(0.0, |f| f.damage(i, volume)));
+            Ok(())
+        }))
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+    use crate::world::AtomStyle;
+
+    // Broken bonds are compared with LAMMPS' damage in tests/lammps.
+    #[test]
+    fn whole_before_the_first_run_and_refused_without_bonds() {
+        let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &[[0.0; 3]; 2]);
+        let c = b.compute(&DamageAtom, "").unwrap();
+        assert_eq!(b.evaluate(&*c).unwrap().atom, [0.0, 0.0]);
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
+        assert!(b.compute(&DamageAtom, "").is_err());
+    }
+}
