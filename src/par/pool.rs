@@ -20,6 +20,11 @@ pub fn threads() -> usize {
     pool().map_or(1, |p| p.current_num_threads())
 }
 
+/// The calling thread's number, below [`threads`]: for scratch memory of one piece per thread.
+pub fn slot() -> usize {
+    rayon::current_thread_index().unwrap_or(0)
+}
+
 fn pool() -> Option<Arc<ThreadPool>> {
     POOL.read().unwrap_or_else(PoisonError::into_inner).clone()
 }

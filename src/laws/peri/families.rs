@@ -1,13 +1,24 @@
-//! Bonds of the prototype microelastic brittle model: building families, forces, breaking, damage.
+//! Peridynamic families at work: building them, the forces of a step, breaking, damage.
 
+use std::sync::{Mutex, PoisonError};
+
+use super::breaking::{Periodic, break_bonds};
+#[cfg(target_arch = "x86_64")]
+use super::chunk::Wide;
+use super::chunk::{Kernels, Plain};
+use super::contact::{Repulsion, repel};
+use super::energy::tally;
+use super::lanes::has_avx2;
+use super::lattice::{self, ChunkColumns, Mode};
+use super::list::{self, RowKernels};
 use crate::diag::{Code, Diagnostic, Result};
-use crate::neigh::family::Cells;
-use crate::world::families::{Families, FamilyOptions, ForceUnit, PeriTally, PeriView, PmbTable};
-
-/// A bond length change below this counts as none (LAMMPS' absolute threshold, `compat lammps` only).
-const NEAR_ZERO: f64 = 2.2204e-16;
-/// A bond stretched less than this carries exactly no force.
-const DEAD_BAND: f64 = 4e-13;
+use crate::neigh::family::{detect, lattice as cells, list as records};
+use crate::par::{self, Shared};
+use crate::world::families::lattice::RowMotion;
+use crate::world::families::{
+    Bounds, Candidate, Families, FamilyOptions, ForceUnit, Layout, NearPairs, PeriTally, PeriView, PmbTable,
+    Scratch,
+};
 
 impl Families {
     /// Finds all bonds: partners closer than the horizon of their types in the present positions.
@@ -15,57 +26,107 @@ impl Families {
     /// # Errors
     /// A periodic box shorter than two horizons is refused: a bond would meet its own image.
     pub fn build(view: &PeriView, table: &PmbTable, options: FamilyOptions) -> Result<Self> {
+        check_box(view, detect::reach(table, &options))?;
         let n = view.x.len();
-        let lc = options.lattice_spacing;
-        let far = table.iter().map(|c| options.volume.reach(c.horizon, lc)).fold(0.0, f64::max);
-        let bounds = &view.bounds;
-        for k in 0..3 {
-            let length = bounds.hi[k] - bounds.lo[k];
-            if bounds.periodic[k] && length < 2.0 * far {
-                let name = ["x", "y", "z"][k];
-                let message = format!(
-                    "the periodic box is {length} long in {name}, less than twice the horizon {far}: \
-                     bonds would meet their own images"
-                );
-                let help = "make the box longer, the horizon shorter, or this boundary f, s or m";
-                return Err(Diagnostic::error(Code::CONFLICT, None, message).help(help).into());
-            }
-        }
-        let mut pairs = Vec::new();
-        if far > 0.0 {
-            let mut cells = Cells::default();
-            cells.fill(view.x, 0..n as u32, bounds, far);
-            cells.pairs(|i, j| {
-                let Some(coeff) = table.get(view.kind[i as usize], view.kind[j as usize]) else { return };
-                let rsq = squared(between(view.x, i, j, view));
-                let cut = options.volume.reach(coeff.horizon, lc);
-                if rsq <= cut * cut {
-                    pairs.push((i, j, rsq.sqrt()));
-                    pairs.push((j, i, rsq.sqrt()));
-                }
-            });
-        }
-        pairs.sort_unstable_by_key(|&(i, j, _)| (i, j));
-        let mut start = vec![0; n + 1];
-        let mut family_volume = vec![0.0; n];
-        for &(i, j, _) in &pairs {
-            start[i as usize + 1] += 1;
-            family_volume[i as usize] += view.volume[j as usize];
-        }
-        for i in 0..n {
-            start[i + 1] += start[i];
-        }
-        Ok(Self {
+        let mut families = Self {
             table: table.clone(),
             options,
             armed: false,
-            start,
-            alive: vec![true; pairs.len()],
-            partner: pairs.iter().map(|p| p.1).collect(),
-            r0: pairs.iter().map(|p| p.2).collect(),
-            family_volume,
-            limit: vec![0.0; n],
-        })
+            lattices: vec![],
+            list: Default::default(),
+            reference: (view.x != view.x0).then(|| view.x.to_vec()),
+            place: vec![u32::MAX; n],
+            family_volume: vec![0.0; n],
+            family_size: vec![0; n],
+            near: NearPairs::default(),
+            scratch: Scratch::default(),
+        };
+        families.lay_out(view);
+        families.number_places();
+        families.refresh(view, table);
+        let reaches = table.iter().map(|c| options.volume.reach(c.horizon, options.lattice_spacing));
+        families.start_near(reaches.fold(f64::INFINITY, f64::min));
+        families.find_loose(view);
+        Ok(families)
+    }
+
+    /// Gives each body its layout.
+    fn lay_out(&mut self, view: &PeriView) {
+        let bodies = detect::bodies(view, &self.table, &self.options);
+        let mut listed = Vec::new();
+        let mut wraps = false;
+        for (k, members) in bodies.members.iter().enumerate() {
+            let free = self.options.layout == Layout::Auto && !bodies.wraps[k];
+            let sites = if free { detect::sites(view, members, bodies.nearest[k]) } else { None };
+            let (volume, size) = (&mut self.family_volume, &mut self.family_size);
+            let body = sites.and_then(|sites| {
+                cells::lay_out(view, members, &sites, &self.table, &self.options, volume, size)
+            });
+            match body {
+                Some(body) => self.lattices.push(body),
+                None => {
+                    listed.extend_from_slice(members);
+                    wraps |= bodies.wraps[k];
+                }
+            }
+        }
+        listed.sort_unstable();
+        let (volume, size) = (&mut self.family_volume, &mut self.family_size);
+        self.list = records::lay_out(view, &listed, wraps, &self.table, &self.options, volume, size);
+    }
+
+    /// Numbers cells and records through all bodies.
+    fn number_places(&mut self) {
+        let mut first = 0;
+        self.place.fill(u32::MAX);
+        for body in &mut self.lattices {
+            body.first_place = first;
+            for (cell, &p) in body.particle.iter().enumerate() {
+                if p != u32::MAX {
+                    self.place[p as usize] = first + cell as u32;
+                }
+            }
+            first += body.particle.len() as u32;
+        }
+        self.list.first_place = first;
+        for (r, &p) in self.list.particle.iter().enumerate() {
+            if p != u32::MAX {
+                self.place[p as usize] = first + r as u32;
+            }
+        }
+    }
+
+    fn find_loose(&mut self, view: &PeriView) {
+        let types = self.table.types() as u16;
+        let touches = |kind: u16| (1..=types).any(|other| self.table.get(kind, other).is_some());
+        let loose = (0..self.place.len()).filter(|&p| self.place[p] == u32::MAX && touches(view.kind[p]));
+        self.near.loose = loose.map(|p| (p as u32, view.x[p])).collect();
+    }
+
+    /// Takes over coefficients, types and volumes that a deck has changed since families were built. Families
+    /// themselves stay.
+    pub fn refresh(&mut self, view: &PeriView, table: &PmbTable) {
+        self.table = table.clone();
+        for body in &mut self.lattices {
+            lattice::refresh(body, view, table, &self.options);
+        }
+        list::refresh(&mut self.list, view, table, &self.options);
+    }
+
+    /// Takes in particles created since: they have no family, but short-range contact.
+    fn welcome(&mut self, view: &PeriView) {
+        let n = view.x.len();
+        if self.place.len() == n {
+            return;
+        }
+        self.place.resize(n, u32::MAX);
+        self.family_volume.resize(n, 0.0);
+        self.family_size.resize(n, 0);
+        if let Some(reference) = &mut self.reference {
+            reference.extend_from_slice(&view.x[reference.len()..]);
+        }
+        self.find_loose(view);
+        self.forget_near();
     }
 
     /// Adds the forces of all bonds and of short-range contact to `f`. With `advance`, overstretched bonds
@@ -75,226 +136,134 @@ impl Families {
         view: &PeriView,
         f: &mut [[f64; 3]],
         advance: bool,
-        mut tally: Option<&mut PeriTally>,
+        tally: Option<&mut PeriTally>,
     ) {
-        self.short_range(view, f, tally.as_deref_mut());
-        let compat = self.options.compat_lammps;
-        let lc = self.options.lattice_spacing;
-        let mut next = vec![if compat { f64::MAX } else { f64::INFINITY }; self.limit.len()];
-        let mut broken = Vec::new();
-        for i in 0..self.limit.len() {
-            let mut first = true;
-            for b in self.start[i]..self.start[i + 1] {
-                if !self.alive[b] {
-                    continue;
-                }
-                let j = self.partner[b] as usize;
-                let Some(coeff) = self.table.get(view.kind[i], view.kind[j]) else { continue };
-                let (d, r0) = (between(view.x, i as u32, j as u32, view), self.r0[b]);
-                let r = squared(d).sqrt();
-                let mut dr = r - r0;
-                let tiny = if compat { NEAR_ZERO } else { DEAD_BAND * r0 };
-                if dr.abs() < tiny {
-                    dr = 0.0;
-                }
-                let stretch = dr / r0;
-                let weight = self.options.volume.weight(r0, coeff.horizon, lc);
-                let rk = coeff.c * self.volumes(view, i, j) * weight * stretch;
-                let pull = if r > 0.0 { -(rk / r) } else { 0.0 };
-                for k in 0..3 {
-                    f[i][k] += d[k] * pull;
-                }
-                if let Some(t) = tally.as_deref_mut() {
-                    add(
-                        t,
-                        0.25 * rk * dr,
-                        0.25 * rk * dr,
-                        (i, i),
-                        0.5 * pull * self.virial_volume(view, i),
-                        d,
-                    );
-                }
-                if self.armed && stretch > self.critical(coeff.s00, coeff.alpha, i, j) {
-                    broken.push(b);
-                }
-                let own = coeff.s00 - coeff.alpha * stretch;
-                next[i] = match (compat, first) {
-                    (true, true) => own,
-                    (true, false) => next[i].max(own),
-                    (false, _) => next[i].min(stretch),
-                };
-                first = false;
-            }
+        #[cfg(target_arch = "x86_64")]
+        if !self.options.portable && has_avx2() {
+            return self.force_with::<Wide>(view, f, advance, tally);
+        }
+        self.force_with::<Plain>(view, f, advance, tally);
+    }
+
+    fn force_with<K: Kernels + RowKernels>(
+        &mut self,
+        view: &PeriView,
+        f: &mut [[f64; 3]],
+        advance: bool,
+        mut tallied: Option<&mut PeriTally>,
+    ) {
+        self.welcome(view);
+        let period = periods(&view.bounds);
+        let reference = self.reference.as_deref().unwrap_or(view.x0);
+        for body in &mut self.lattices {
+            lattice::gather(body, view, reference);
+        }
+        let moved = list::gather(&mut self.list, view);
+        self.sweep::<K>(f, advance, period);
+        self.contact(view, f, &moved, advance, tallied.as_deref_mut());
+        if let Some(t) = tallied {
+            tally(self, view, t, period);
         }
         if advance {
-            broken.into_iter().for_each(|b| self.alive[b] = false);
-            self.limit = next;
-            self.armed = true;
+            self.advance(view, period);
         }
     }
 
-    /// The stretch at which the bond between `i` and `j` breaks.
-    fn critical(&self, s00: f64, alpha: f64, i: usize, j: usize) -> f64 {
-        if self.options.compat_lammps {
-            return self.limit[i].min(self.limit[j]);
+    /// Adds the forces of all bonds, slab by slab in two colours.
+    fn sweep<K: Kernels + RowKernels>(&mut self, f: &mut [[f64; 3]], advance: bool, period: [f64; 3]) {
+        let mode = Mode { advance, armed: self.armed, skip: self.options.skip_rest };
+        let newton = self.options.unit == ForceUnit::Newton;
+        let Self { lattices, list, scratch, options, .. } = self;
+        scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
+        let window = || scratch.windows[par::slot()].lock().unwrap_or_else(PoisonError::into_inner);
+        let f = Shared::new(f);
+        for body in lattices {
+            let mut columns = ChunkColumns::take(body);
+            let sweep = lattice::Sweep::new(body, &mut columns, mode, newton);
+            par::two_colours(body.slabs(), |slab| sweep.slab::<K>(slab, &mut window(), &f));
+            columns.give(body);
         }
-        s00 - alpha * self.limit[i].max(self.limit[j])
-    }
-
-    fn volumes(&self, view: &PeriView, i: usize, j: usize) -> f64 {
-        match self.options.unit {
-            ForceUnit::Density => view.volume[j],
-            ForceUnit::Newton => view.volume[i] * view.volume[j],
-        }
-    }
-
-    fn virial_volume(&self, view: &PeriView, i: usize) -> f64 {
-        match self.options.unit {
-            ForceUnit::Density => view.volume[i],
-            ForceUnit::Newton => 1.0,
-        }
-    }
-
-    /// Repulsion of all pairs closer than min(0.9 of their distance at creation, 1.35 lattice spacings).
-    fn short_range(&self, view: &PeriView, f: &mut [[f64; 3]], mut tally: Option<&mut PeriTally>) {
-        let lc = self.options.lattice_spacing;
-        let mut cells = Cells::default();
-        cells.fill(view.x, 0..view.x.len() as u32, &view.bounds, 1.35 * lc);
-        cells.pairs(|a, b| {
-            let (i, j) = (a.min(b) as usize, a.max(b) as usize);
-            let Some(coeff) = self.table.get(view.kind[i], view.kind[j]) else { return };
-            let d = between(view.x, i as u32, j as u32, view);
-            let rsq = squared(d);
-            let d0 = between(view.x0, i as u32, j as u32, view);
-            let contact = (0.9 * squared(d0).sqrt()).min(1.35 * lc);
-            if rsq >= contact * contact {
-                return;
-            }
-            let r = rsq.sqrt();
-            let k = 15.0 * coeff.c * (r - contact) / coeff.horizon;
-            let vj = self.volumes(view, i, j);
-            let compat_density = self.options.compat_lammps && self.options.unit == ForceUnit::Density;
-            let vi = if compat_density { vj } else { self.volumes(view, j, i) };
-            let pull = if r > 0.0 { -(k / r) } else { 0.0 };
-            for m in 0..3 {
-                f[i][m] += d[m] * pull * vj;
-                f[j][m] -= d[m] * pull * vi;
-            }
-            if let Some(t) = tally.as_deref_mut() {
-                let e = 0.25 * k * (r - contact);
-                add(t, e * vj, e * vi, (i, j), pull * vj * self.virial_volume(view, i), d);
-            }
-        });
-    }
-
-    /// The share of a particle's family (by volume) whose bonds are broken.
-    pub fn damage(&self, i: usize, volume: &[f64]) -> f64 {
-        if i >= self.family_volume.len() || self.family_volume[i] == 0.0 {
-            return 0.0;
-        }
-        let live: f64 = self.neighbours(i).filter(|n| n.alive).map(|n| volume[n.partner as usize]).sum();
-        1.0 - live / self.family_volume[i]
-    }
-
-    /// The damage of the particles `0..out.len()`.
-    pub fn damage_all(&self, volume: &[f64], out: &mut [f64]) {
-        for (i, d) in out.iter_mut().enumerate() {
-            *d = self.damage(i, volume);
-        }
-    }
-
-    /// Bonds at the start, each counted from both ends as LAMMPS prints them.
-    pub fn bonds(&self) -> usize {
-        self.partner.len()
-    }
-
-    /// Bonds that still live, each counted from both ends.
-    pub fn live_bonds(&self) -> usize {
-        self.alive.iter().filter(|&&a| a).count()
-    }
-
-    /// All partners of a particle, broken bonds included.
-    pub fn neighbours(&self, i: usize) -> impl Iterator<Item = Neighbour> + '_ {
-        let row = if i < self.limit.len() { self.start[i]..self.start[i + 1] } else { 0..0 };
-        row.map(|b| Neighbour { partner: self.partner[b], r0: self.r0[b], alive: self.alive[b] })
-    }
-
-    /// Renumbers particles; `None` marks a removed one, whose bonds end (and count as damage of its partners).
-    pub fn remap(&mut self, old_to_new: &[Option<u32>]) {
-        let kept = self.limit.len();
-        let mut rows: Vec<(u32, usize)> =
-            (0..kept).filter_map(|i| old_to_new[i].map(|new| (new, i))).collect();
-        rows.sort_unstable();
-        let n = rows.last().map_or(0, |r| r.0 as usize + 1);
-        let mut new = Self {
-            table: self.table.clone(),
-            options: self.options,
-            armed: self.armed,
-            start: vec![0; n + 1],
-            partner: vec![],
-            r0: vec![],
-            alive: vec![],
-            family_volume: vec![0.0; n],
-            limit: vec![0.0; n],
+        let (mut tension, mut flagged) =
+            (std::mem::take(&mut list.tension), std::mem::take(&mut list.flagged));
+        let sweep = list::Sweep {
+            body: list,
+            tension: Shared::new(&mut tension),
+            flagged: Shared::new(&mut flagged),
+            mode,
+            options: *options,
+            period,
         };
-        for (to, i) in rows {
-            let to = to as usize;
-            new.family_volume[to] = self.family_volume[i];
-            new.limit[to] = self.limit[i];
-            for n in self.neighbours(i) {
-                if let Some(partner) = old_to_new[n.partner as usize] {
-                    new.partner.push(partner);
-                    new.r0.push(n.r0);
-                    new.alive.push(n.alive);
-                }
-            }
-            new.start[to + 1] = new.partner.len();
+        // A ring of an odd number of slabs cannot be coloured with two colours: its last one goes alone.
+        let slabs = list.slabs();
+        let odd = list.ring && slabs % 2 == 1;
+        par::two_colours(slabs - usize::from(odd), |slab| sweep.slab::<K>(slab, &mut window(), &f));
+        if odd {
+            sweep.slab::<K>(slabs - 1, &mut window(), &f);
         }
-        for i in 0..n {
-            new.start[i + 1] = new.start[i + 1].max(new.start[i]);
+        (list.tension, list.flagged) = (tension, flagged);
+    }
+
+    fn contact(
+        &mut self,
+        view: &PeriView,
+        f: &mut [[f64; 3]],
+        moved: &RowMotion,
+        advance: bool,
+        tally: Option<&mut PeriTally>,
+    ) {
+        let (within, all) = self.ranges(view, moved, advance);
+        self.update_near(view, within, all, advance);
+        let mut repulsion = Repulsion { view, table: &self.table, options: &self.options, f, tally };
+        repel(self, &mut repulsion);
+    }
+
+    /// Breaks bonds and makes this step the previous one.
+    fn advance(&mut self, view: &PeriView, period: [f64; 3]) {
+        if self.armed {
+            self.break_bonds(view, period);
         }
-        *self = new;
+        self.armed = true;
+        for body in &mut self.lattices {
+            body.u.swap(0, 1);
+        }
+        list::keep(&mut self.list);
     }
 
-    /// Memory held.
-    pub fn bytes(&self) -> usize {
-        self.partner.len() * 13 + self.start.len() * 24
+    fn break_bonds(&mut self, view: &PeriView, period: [f64; 3]) {
+        let mut found: Vec<Candidate> = std::mem::take(&mut self.scratch.candidates);
+        let mut ends = std::mem::take(&mut self.scratch.ends);
+        ends.clear();
+        for body in &mut self.lattices {
+            break_bonds(body, &self.options, &mut found);
+            ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
+        }
+        break_bonds(&mut Periodic(&mut self.list, period), &self.options, &mut found);
+        ends.extend(found.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
+        for &[i, j] in &ends {
+            self.add_broken(view, i, j);
+        }
+        self.scratch.candidates = found;
+        self.scratch.ends = ends;
     }
 }
 
-/// One partner of a particle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Neighbour {
-    /// The partner's index.
-    pub partner: u32,
-    /// Reference length of the bond.
-    pub r0: f64,
-    /// Whether the bond still lives.
-    pub alive: bool,
+/// Lengths of the periodic directions; infinite in open ones.
+pub(super) fn periods(bounds: &Bounds) -> [f64; 3] {
+    [0, 1, 2].map(|k| if bounds.periodic[k] { bounds.hi[k] - bounds.lo[k] } else { f64::INFINITY })
 }
 
-fn between(x: &[[f64; 3]], i: u32, j: u32, view: &PeriView) -> [f64; 3] {
-    let (a, b) = (x[i as usize], x[j as usize]);
-    view.bounds.nearest([a[0] - b[0], a[1] - b[1], a[2] - b[2]])
-}
-
-fn squared(d: [f64; 3]) -> f64 {
-    d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
-}
-
-/// Adds energies `e_i`, `e_j` of a pair and the virial of the force `pull` times `d`.
-fn add(t: &mut PeriTally, e_i: f64, e_j: f64, (i, j): (usize, usize), pull: f64, d: [f64; 3]) {
-    t.energy += e_i;
-    if i != j {
-        t.energy += e_j;
-    }
-    for (v, (a, b)) in t.virial.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {
-        *v += pull * d[a] * d[b];
-    }
-    if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
-        atoms[i] += e_i;
-        if i != j {
-            atoms[j] += e_j;
+fn check_box(view: &PeriView, reach: f64) -> Result<()> {
+    let bounds = &view.bounds;
+    for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let length = bounds.hi[k] - bounds.lo[k];
+        if bounds.periodic[k] && length < 2.0 * reach {
+            let message = format!(
+                "the periodic box is {length} long in {name}, less than twice the horizon {reach}: \
+                 bonds would meet their own images"
+            );
+            let help = "make the box longer, the horizon shorter, or this boundary f, s or m";
+            return Err(Diagnostic::error(Code::CONFLICT, None, message).help(help).into());
         }
     }
+    Ok(())
 }

@@ -1,5 +1,6 @@
 //! Who belongs to whose peridynamic family, and who comes close without belonging.
 
-mod cells;
-
-pub use cells::Cells;
+pub mod detect;
+pub mod lattice;
+pub mod list;
+pub mod near;

@@ -1,6 +1,6 @@
 //! A grid of cells for finding all pairs closer than a distance, each once, in a fixed order.
 
-use crate::world::families::Bounds;
+use super::Bounds;
 
 /// Points sorted into cells; in periodic directions cells tile the box exactly.
 #[derive(Clone, Debug, Default)]

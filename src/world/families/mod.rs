@@ -1,6 +1,14 @@
 //! Peridynamic families: what bonds exist, what they are made of, and which still live.
 
+use std::sync::Mutex;
+
 use crate::diag::{Code, Diagnostic, Result};
+
+mod cells;
+pub mod lattice;
+pub mod list;
+
+pub use cells::Cells;
 
 /// Coefficients of the prototype microelastic brittle model for one pair of types.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,7 +147,26 @@ pub struct FamilyOptions {
     pub portable: bool,
 }
 
+/// Bond length changes below this count as none under `compat lammps`: an absolute length.
+const NEAR_ZERO: f64 = 2.2204e-16;
+/// Stretches below this carry exactly no force.
+const DEAD_BAND: f64 = 4e-13;
+
 impl FamilyOptions {
+    /// The |z| (twice the stretch) below which a bond of this reference length counts as unstretched.
+    pub fn dead_band(&self, length: f64) -> f64 {
+        if self.compat_lammps { 2.0 * NEAR_ZERO / length } else { 2.0 * DEAD_BAND }
+    }
+
+    /// The distance below which two particles repel each other, bonded or not:
+    /// min(0.9 of their distance at creation, 1.35 lattice spacings) (LAMMPS' peri styles).
+    #[inline]
+    pub fn contact_range(&self, view: &PeriView, i: u32, j: u32) -> f64 {
+        let (a, b) = (view.x0[i as usize], view.x0[j as usize]);
+        let d = view.bounds.nearest([a[0] - b[0], a[1] - b[1], a[2] - b[2]]);
+        (0.9 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()).min(1.35 * self.lattice_spacing)
+    }
+
     /// The defaults for a lattice spacing.
     pub fn new(lattice_spacing: f64) -> Self {
         Self {
@@ -214,16 +241,81 @@ pub struct Families {
     pub options: FamilyOptions,
     /// Whether a step has been advanced: nothing breaks before.
     pub armed: bool,
-    /// Row starts, one more than there are rows.
-    pub start: Vec<usize>,
-    /// Partners, rows in order.
-    pub partner: Vec<u32>,
-    /// Reference length per partner.
-    pub r0: Vec<f64>,
-    /// Whether the bond still lives.
-    pub alive: Vec<bool>,
+    /// Bodies on a lattice.
+    pub lattices: Vec<lattice::LatticeBody>,
+    /// All other bonds.
+    pub list: list::ListBody,
+    /// Reference positions, per particle, where they are not the positions at creation.
+    pub reference: Option<Vec<[f64; 3]>>,
+    /// Where each particle is: a cell of a lattice or a record of the list, counted through all bodies;
+    /// `u32::MAX` for particles without a family.
+    pub place: Vec<u32>,
     /// Sum of the volumes of all partners at the start, per particle.
     pub family_volume: Vec<f64>,
-    /// Smallest stretch of each family in the previous step; LAMMPS' critical stretch under compat.
-    pub limit: Vec<f64>,
+    /// Number of partners at the start, per particle.
+    pub family_size: Vec<u16>,
+    /// Pairs without a living bond that may come into short-range contact.
+    pub near: NearPairs,
+    /// Scratch that is not state.
+    pub scratch: Scratch,
+}
+
+/// Pairs without a living bond that may come into short-range contact before they are looked for again.
+#[derive(Clone, Debug, Default)]
+pub struct NearPairs {
+    /// Pairs within a body (the list counts as one), and pairs across bodies.
+    pub pairs: [Vec<(u32, u32)>; 2],
+    /// How much closer than at the last search two particles of the same body, and of different ones, may be.
+    pub spent: [f64; 2],
+    /// How much closer they may come before pairs must be searched anew.
+    pub allowed: [f64; 2],
+    /// How much farther than contact pairs are kept.
+    pub skin: f64,
+    /// Particles without a family whose type has short-range contact, and where they were.
+    pub loose: Vec<(u32, [f64; 3])>,
+}
+
+/// Memory kept between steps that holds nothing a step depends on; a clone starts empty.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    /// One per thread.
+    pub windows: Vec<Mutex<Window>>,
+    /// Cells of the search for near pairs.
+    pub cells: Cells,
+    /// Energy and virial of rows.
+    pub rows: Vec<[f64; 7]>,
+    /// Bonds that may break.
+    pub candidates: Vec<Candidate>,
+    /// Particles whose bonds have broken in this step.
+    pub ends: Vec<[u32; 2]>,
+}
+
+impl Clone for Scratch {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+/// A bond that may break.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// Cells or records.
+    pub ends: [u32; 2],
+    /// Stencil vector, or place in the list.
+    pub bond: u32,
+    /// Present stretch.
+    pub stretch: f64,
+    /// Critical stretch.
+    pub s00: f64,
+    /// Its rise under compression.
+    pub alpha: f64,
+}
+
+/// What one thread needs for a slab.
+#[derive(Debug, Default)]
+pub struct Window {
+    /// Forces of a slab and of what it reaches.
+    pub force: Vec<f64>,
+    /// Where the bonds of a row lead, and their constants.
+    pub to: Vec<(i32, u32)>,
 }

@@ -1,0 +1,125 @@
+//! Peridynamic forces on the scene of `bench/pd_elastic.in` (a glass disc of 102,034 particles): CPU time per
+//! half bond and step for both layouts. Run `cargo bench --bench kernels`; `-- 30 1 lattice` for 30 steps on one
+//! thread with the lattice layout alone.
+
+use std::time::Instant;
+
+use perigrain::par;
+use perigrain::world::families::*;
+
+struct Disc {
+    x: Vec<[f64; 3]>,
+    x0: Vec<[f64; 3]>,
+    v: Vec<[f64; 3]>,
+    f: Vec<[f64; 3]>,
+    kind: Vec<u16>,
+    volume: Vec<f64>,
+    bounds: Bounds,
+}
+
+const DX: f64 = 5.0e-4;
+const DT: f64 = 1.0e-8;
+const DENSITY: f64 = 2230.0;
+
+fn disc() -> Disc {
+    let mut x = Vec::new();
+    for k in -33..=0 {
+        for j in -31..=31 {
+            for i in -31..=31 {
+                let p = [i, j, k].map(|c| f64::from(c) * DX);
+                let inside = p[0] * p[0] + p[1] * p[1] <= 0.0155 * 0.0155;
+                if inside && (-0.01651..=0.00001).contains(&p[2]) {
+                    x.push(p);
+                }
+            }
+        }
+    }
+    let n = x.len();
+    let speed = |p: &[f64; 3]| {
+        let r2 = (p[0] * p[0] + p[1] * p[1]) / (0.006 * 0.006);
+        [0.0, 0.0, -0.3 * (-r2).exp() * (p[2] / 0.002).exp()]
+    };
+    Disc {
+        v: x.iter().map(speed).collect(),
+        f: vec![[0.0; 3]; n],
+        kind: vec![1; n],
+        volume: vec![1.25e-10; n],
+        bounds: Bounds { lo: [-0.018; 3], hi: [0.018; 3], periodic: [false; 3] },
+        x0: x.clone(),
+        x,
+    }
+}
+
+/// Runs the scene; returns (whole step, force alone) in seconds of process time per step.
+fn run(steps: usize, layout: Layout) -> (f64, f64, usize, f64) {
+    let delta = 3.0 * DX + 1.0e-8;
+    let c = 18.0 * 35.0e9 / (std::f64::consts::PI * delta.powi(4));
+    let mut table = PmbTable::new(1);
+    if table.set(1, 1, PmbCoeff { c, horizon: delta, s00: 0.0007, alpha: 0.25 }).is_err() {
+        return (0.0, 0.0, 0, 0.0);
+    }
+    let mut s = disc();
+    let mut options = FamilyOptions::new(DX);
+    options.layout = layout;
+    options.skip_rest = std::env::var("NOSKIP").is_err();
+    let view = PeriView { x: &s.x, x0: &s.x0, kind: &s.kind, volume: &s.volume, bounds: s.bounds };
+    let Ok(mut families) = Families::build(&view, &table, options) else { return (0.0, 0.0, 0, 0.0) };
+    let mut whole = f64::INFINITY;
+    let mut force = f64::INFINITY;
+    for _ in 0..steps {
+        let (cpu, _) = (cpu_time(), Instant::now());
+        let half = 0.5 * DT / DENSITY;
+        par::each((&mut s.x[..], &mut s.v[..], &mut s.f[..]), |_, (x, v, f)| {
+            for ((x, v), f) in x.iter_mut().zip(v).zip(f) {
+                for k in 0..3 {
+                    v[k] += half * f[k];
+                    x[k] += DT * v[k];
+                    f[k] = 0.0;
+                }
+            }
+        });
+        let before = cpu_time();
+        let view = PeriView { x: &s.x, x0: &s.x0, kind: &s.kind, volume: &s.volume, bounds: s.bounds };
+        families.force(&view, &mut s.f, true, None);
+        force = force.min(cpu_time() - before);
+        par::each((&mut s.v[..], &s.f[..]), |_, (v, f)| {
+            for (v, f) in v.iter_mut().zip(f) {
+                for k in 0..3 {
+                    v[k] += half * f[k];
+                }
+            }
+        });
+        whole = whole.min(cpu_time() - cpu);
+    }
+    let kinetic: f64 = s.v.iter().map(|v| 0.5 * DENSITY * v.iter().map(|v| v * v).sum::<f64>()).sum();
+    (whole, force, s.x.len(), kinetic)
+}
+
+/// CPU time of this process in seconds, all threads together.
+fn cpu_time() -> f64 {
+    let text = std::fs::read_to_string("/proc/self/schedstat").unwrap_or_default();
+    text.split_whitespace().next().and_then(|w| w.parse::<f64>().ok()).map_or(0.0, |ns| ns * 1e-9)
+}
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).filter(|w| w != "--bench").collect();
+    let steps = words.first().and_then(|w| w.parse().ok()).unwrap_or(30);
+    let threads = words.get(1).and_then(|w| w.parse().ok()).unwrap_or(1);
+    par::set_threads(threads);
+    for (name, layout) in [("lattice", Layout::Auto), ("list", Layout::List)] {
+        if words.get(2).is_some_and(|w| w != name) {
+            continue;
+        }
+        let clock = Instant::now();
+        let (whole, force, n, kinetic) = run(steps, layout);
+        let hb = 5_785_568.0;
+        println!(
+            "{name}: {n} particles, step {:.3} ms ({:.2} ns per half bond), force {:.3} ms ({:.2}), kinetic {kinetic:.15e}, wall {:.2} s",
+            whole * 1e3,
+            whole * 1e9 / hb,
+            force * 1e3,
+            force * 1e9 / hb,
+            clock.elapsed().as_secs_f64(),
+        );
+    }
+}

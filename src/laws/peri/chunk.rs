@@ -1,0 +1,265 @@
+//! The innermost loop of the lattice layout: all bonds of eight neighbouring cells.
+
+use super::lanes::{Lanes, Portable};
+use super::pmb::closed;
+use crate::world::families::lattice::CONSTANTS;
+
+/// Places in a table of constants of one stencil vector.
+pub mod constant {
+    /// The reference bond, three components.
+    pub const XI: usize = 0;
+    /// |q| below which the bond counts as unstretched.
+    pub const DEAD: usize = 3;
+    /// c w V/|xi| SERIES[k]/|xi|^(2 k + 2), eight numbers.
+    pub const SERIES: usize = 4;
+    /// 1/|xi|^2.
+    pub const INVERSE: usize = 12;
+    /// c w V/|xi|.
+    pub const FACTOR: usize = 13;
+    /// w |xi| c V/2: energy density of one end per squared stretch, twice.
+    pub const ENERGY: usize = 14;
+}
+
+/// An expression for each of the three components. Not a closure: closures do not inherit the instruction set
+/// of the kernel around them.
+macro_rules! xyz {
+    (|$k:ident| $e:expr) => {
+        [
+            {
+                let $k = 0usize;
+                $e
+            },
+            {
+                let $k = 1usize;
+                $e
+            },
+            {
+                let $k = 2usize;
+                $e
+            },
+        ]
+    };
+}
+
+/// What a chunk's loop needs; pointers are at the chunk's first cell.
+#[derive(Clone, Copy)]
+pub struct Chunk<'a> {
+    /// Displacements.
+    pub u: [*const f64; 3],
+    /// Forces, added to.
+    pub f: [*mut f64; 3],
+    /// Alive bits of the chunk, one byte per stencil vector.
+    pub alive: &'a [u8],
+    /// Per stencil vector: how many cells further the partner is, and the place of its constants.
+    pub to: &'a [(i32, u32)],
+    /// Constants.
+    pub tables: &'a [f64],
+    /// Per-cell data of bodies with mixed rows or various volumes.
+    pub various: Option<Various<'a>>,
+}
+
+/// Per-cell data of bodies with mixed rows or various volumes; pointers at the chunk's first cell.
+#[derive(Clone, Copy)]
+pub struct Various<'a> {
+    /// Local types.
+    pub kind: *const u8,
+    /// Volumes.
+    pub volume: *const f64,
+    /// Micromodulus, s00 and alpha of pairs of local types.
+    pub pairs: &'a [[f64; 3]],
+    /// Number of local types.
+    pub kinds: usize,
+    /// Whether both ends get V_i V_j.
+    pub newton: bool,
+}
+
+/// Degree that stands for the closed form.
+pub const CLOSED: usize = 8;
+
+/// Adds the forces of a chunk's bonds to both ends. Returns the largest z and the largest −z if `TRACK`.
+/// Without `MASKED` all bonds of all eight cells must live.
+///
+/// # Safety
+/// Live bonds must lead to cells within seven of cells that exist in `u` and `f`, all memory between readable
+/// and, in `f`, writable and not touched by others; the processor must have what `L` needs.
+#[inline(always)]
+pub unsafe fn force<
+    L: Lanes,
+    const DEGREE: usize,
+    const MASKED: bool,
+    const TRACK: bool,
+    const VARIOUS: bool,
+>(
+    a: &Chunk,
+) -> (f64, f64) {
+    // SAFETY: the caller's promise covers every address formed below.
+    unsafe {
+        let zero = L::splat(0.0);
+        let u = [xyz!(|k| L::load(a.u[k])), xyz!(|k| L::load(a.u[k].add(4)))];
+        let mut sum = [[zero; 3]; 2];
+        let (mut high, mut low) = (zero, zero);
+        let mut e = 0;
+        while e < a.to.len() {
+            let (to, place) = *a.to.get_unchecked(e);
+            let bits = *a.alive.get_unchecked(e);
+            e += 1;
+            if MASKED && bits == 0 {
+                continue;
+            }
+            let to = to as isize;
+            let c = a.tables.as_ptr().add(place as usize);
+            let xi = xyz!(|k| L::splat(*c.add(constant::XI + k)));
+            let dead = L::splat(*c.add(constant::DEAD));
+            let mut v = 0;
+            while v < 2 {
+                let other = to + 4 * v as isize;
+                let eta = xyz!(|k| L::load(a.u[k].offset(other)).sub(u[v][k]));
+                let bond = xyz!(|k| eta[k].add(xi[k]));
+                let twice = xyz!(|k| bond[k].add(xi[k]));
+                let q = eta[0].fma(twice[0], eta[1].fma(twice[1], eta[2].mul(twice[2])));
+                let factor = if DEGREE == CLOSED {
+                    let z = q.mul(L::splat(*c.add(constant::INVERSE)));
+                    z.mul(closed(z)).mul(L::splat(*c.add(constant::FACTOR)))
+                } else {
+                    let mut h = L::splat(*c.add(constant::SERIES + DEGREE));
+                    let mut k = DEGREE;
+                    while k > 0 {
+                        k -= 1;
+                        h = h.fma(q, L::splat(*c.add(constant::SERIES + k)));
+                    }
+                    h.mul(q)
+                };
+                let mut live = q.abs().ge(dead);
+                if MASKED {
+                    live = live.keep(L::mask(bits >> (4 * v)));
+                }
+                let factor = factor.keep(live);
+                if TRACK {
+                    let z = q.mul(L::splat(*c.add(constant::INVERSE))).keep(live);
+                    high = z.max(high);
+                    low = z.min(low);
+                }
+                let (own, back) = if VARIOUS { various::<L>(a, factor, to, v) } else { (factor, factor) };
+                sum[v] = xyz!(|k| own.fma(bond[k], sum[v][k]));
+                let target = xyz!(|k| a.f[k].offset(other));
+                let left = xyz!(|k| back.fnma(bond[k], L::load(target[k])));
+                left[0].store(target[0]);
+                left[1].store(target[1]);
+                left[2].store(target[2]);
+                v += 1;
+            }
+        }
+        let mut v = 0;
+        while v < 2 {
+            let total = xyz!(|k| L::load(a.f[k].add(4 * v)).add(sum[v][k]));
+            total[0].store(a.f[0].add(4 * v));
+            total[1].store(a.f[1].add(4 * v));
+            total[2].store(a.f[2].add(4 * v));
+            v += 1;
+        }
+        if !TRACK {
+            return (0.0, 0.0);
+        }
+        let (high, low) = (high.array(), low.array());
+        (
+            high[0].max(high[1]).max(high[2]).max(high[3]).max(0.0),
+            -low[0].min(low[1]).min(low[2]).min(low[3]).min(0.0),
+        )
+    }
+}
+
+/// The factor times micromodulus and volumes, for the two ends.
+#[inline(always)]
+unsafe fn various<L: Lanes>(a: &Chunk, factor: L, to: isize, v: usize) -> (L, L) {
+    // SAFETY: per-cell data cover the cells that displacements cover.
+    unsafe {
+        let Some(cells) = a.various else { return (factor, factor) };
+        let mut c = [0.0; 4];
+        let mut lane = 0;
+        while lane < 4 {
+            let at = (4 * v + lane) as isize;
+            let (i, j) = (*cells.kind.offset(at), *cells.kind.offset(at + to));
+            c[lane] = cells.pairs[usize::from(i) * cells.kinds + usize::from(j)][0];
+            lane += 1;
+        }
+        let factor = factor.mul(L::load(c.as_ptr()));
+        let own = L::load(cells.volume.add(4 * v));
+        let other = L::load(cells.volume.offset(to).add(4 * v));
+        if cells.newton {
+            let both = factor.mul(own.mul(other));
+            return (both, both);
+        }
+        (factor.mul(other), factor.mul(own))
+    }
+}
+
+/// The kernels of one instruction set, chosen once per sweep.
+pub trait Kernels: Sync {
+    /// [`force`] for this instruction set.
+    ///
+    /// # Safety
+    /// As for [`force`].
+    unsafe fn force<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
+        a: &Chunk,
+    ) -> (f64, f64);
+}
+
+/// Any processor.
+pub struct Plain;
+
+impl Kernels for Plain {
+    unsafe fn force<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
+        a: &Chunk,
+    ) -> (f64, f64) {
+        // SAFETY: the caller's promise.
+        unsafe { force::<Portable, DEGREE, MASKED, TRACK, VARIOUS>(a) }
+    }
+}
+
+/// Processors with AVX2 and FMA.
+#[cfg(target_arch = "x86_64")]
+pub struct Wide;
+
+#[cfg(target_arch = "x86_64")]
+impl Kernels for Wide {
+    unsafe fn force<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
+        a: &Chunk,
+    ) -> (f64, f64) {
+        #[target_feature(enable = "avx2,fma")]
+        unsafe fn wide<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
+            a: &Chunk,
+        ) -> (f64, f64) {
+            // SAFETY: the caller's promise.
+            unsafe { force::<super::lanes::Avx2, DEGREE, MASKED, TRACK, VARIOUS>(a) }
+        }
+        // SAFETY: the caller's promise includes the instruction set.
+        unsafe { wide::<DEGREE, MASKED, TRACK, VARIOUS>(a) }
+    }
+}
+
+/// Runs the kernel for a degree and the other choices.
+///
+/// # Safety
+/// As for [`force`].
+#[inline]
+pub unsafe fn run<K: Kernels>(a: &Chunk, degree: usize, masked: bool, track: bool) -> (f64, f64) {
+    macro_rules! pick {
+        ($($degree:literal)*) => {
+            match (degree, masked, track, a.various.is_some()) {
+                $(
+                    ($degree, false, false, false) => K::force::<$degree, false, false, false>(a),
+                    ($degree, false, true, false) => K::force::<$degree, false, true, false>(a),
+                    ($degree, true, false, false) => K::force::<$degree, true, false, false>(a),
+                    ($degree, true, true, false) => K::force::<$degree, true, true, false>(a),
+                    ($degree, _, _, true) => K::force::<$degree, true, true, true>(a),
+                )*
+                (_, _, _, false) => K::force::<CLOSED, true, true, false>(a),
+                (_, _, _, true) => K::force::<CLOSED, true, true, true>(a),
+            }
+        };
+    }
+    // SAFETY: the caller's promise.
+    unsafe { pick!(3 5 7) }
+}
+
+const _: () = assert!(constant::ENERGY < CONSTANTS);

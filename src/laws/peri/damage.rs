@@ -1,0 +1,159 @@
+//! What has become of families: damage, counts, partners, and what happens to them when particles are deleted.
+
+use crate::par;
+use crate::world::families::Families;
+use crate::world::families::list::{DEAD, ListBody};
+
+/// One partner of a particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbour {
+    /// The partner's index.
+    pub partner: u32,
+    /// Length of the bond at the start.
+    pub r0: f64,
+    /// Whether the bond still lives.
+    pub alive: bool,
+}
+
+impl Families {
+    /// The share of a particle's family (by volume) whose bonds are broken (Silling and Askari 2005, eq. 27).
+    pub fn damage(&self, i: usize, volume: &[f64]) -> f64 {
+        let size = self.family_size.get(i).copied().unwrap_or(0);
+        if size == 0 || self.family_volume[i] == 0.0 {
+            return 0.0;
+        }
+        let (mut live, mut sum) = (0, 0.0);
+        self.each(i, |n| {
+            if n.alive {
+                live += 1;
+                sum += volume[n.partner as usize];
+            }
+        });
+        if live == size { 0.0 } else { 1.0 - sum / self.family_volume[i] }
+    }
+
+    /// The damage of the particles `0..out.len()`.
+    pub fn damage_all(&self, volume: &[f64], out: &mut [f64]) {
+        par::each(out, |start, out| {
+            for (k, d) in out.iter_mut().enumerate() {
+                *d = self.damage(start + k, volume);
+            }
+        });
+    }
+
+    /// Bonds at the start, each counted from both ends as LAMMPS prints them.
+    pub fn bonds(&self) -> usize {
+        self.family_size.iter().map(|&s| usize::from(s)).sum()
+    }
+
+    /// Bonds that still live, each counted from both ends.
+    pub fn live_bonds(&self) -> usize {
+        let bits: usize =
+            self.lattices.iter().flat_map(|b| &b.alive).map(|byte| byte.count_ones() as usize).sum();
+        2 * (bits + self.list.partner.iter().filter(|&&j| j & DEAD == 0).count())
+    }
+
+    /// All partners of a particle, broken bonds included, by index.
+    pub fn neighbours(&self, i: usize) -> Vec<Neighbour> {
+        let mut found = Vec::new();
+        self.each(i, |n| found.push(n));
+        found.sort_unstable_by_key(|n| n.partner);
+        found
+    }
+
+    /// Calls `f` for all partners of a particle.
+    fn each(&self, i: usize, mut f: impl FnMut(Neighbour)) {
+        let place = self.place.get(i).copied().unwrap_or(u32::MAX);
+        if place == u32::MAX {
+            return;
+        }
+        let body = self.lattices.partition_point(|b| b.first_place + b.particle.len() as u32 <= place);
+        if let Some(body) = self.lattices.get(body) {
+            let cell = (place - body.first_place) as usize;
+            body.around(cell, |other, owner, e| {
+                let partner = body.particle[other];
+                if partner != u32::MAX {
+                    let r0 = body.xi(e).iter().map(|x| x * x).sum::<f64>().sqrt();
+                    f(Neighbour { partner, r0, alive: body.lives(owner, e) });
+                }
+            });
+            return;
+        }
+        let record = (place - self.list.first_place) as usize;
+        self.list.around(record, |other, b| {
+            let partner = self.list.particle[other];
+            if partner != u32::MAX {
+                let (_, r0) = self.list.z(false, record, other, [f64::INFINITY; 3]);
+                f(Neighbour { partner, r0, alive: self.list.partner[b] & DEAD == 0 });
+            }
+        });
+    }
+
+    /// Renumbers particles; `None` marks a removed one, whose bonds end (and count as damage of its partners).
+    pub fn remap(&mut self, old_to_new: &[Option<u32>]) {
+        let n = old_to_new.iter().flatten().count();
+        for body in &mut self.lattices {
+            for cell in 0..body.particle.len() {
+                let old = body.particle[cell];
+                if old == u32::MAX {
+                    continue;
+                }
+                body.particle[cell] = old_to_new[old as usize].unwrap_or(u32::MAX);
+                if body.particle[cell] == u32::MAX {
+                    body.vacate(cell);
+                }
+            }
+        }
+        for r in 0..self.list.particle.len() {
+            let old = self.list.particle[r];
+            if old == u32::MAX {
+                continue;
+            }
+            self.list.particle[r] = old_to_new[old as usize].unwrap_or(u32::MAX);
+            if self.list.particle[r] == u32::MAX {
+                end_bonds(&mut self.list, r);
+            }
+        }
+        self.family_volume = moved(&self.family_volume, old_to_new, n, 0.0);
+        self.family_size = moved(&self.family_size, old_to_new, n, 0);
+        self.place = moved(&self.place, old_to_new, n, u32::MAX);
+        self.reference = self.reference.take().map(|r| moved(&r, old_to_new, n, [0.0; 3]));
+        let loose = self.near.loose.iter();
+        self.near.loose = loose.filter_map(|&(p, x)| old_to_new[p as usize].map(|p| (p, x))).collect();
+        self.forget_near();
+    }
+
+    /// Memory held.
+    pub fn bytes(&self) -> usize {
+        let windows: usize =
+            self.scratch.windows.iter().map(|w| w.lock().map_or(0, |w| 8 * w.force.len())).sum();
+        let reference = self.reference.as_ref().map_or(0, |r| 24 * r.len());
+        let near: usize = self.near.pairs.iter().map(|p| 8 * p.capacity()).sum();
+        self.lattices.iter().map(crate::world::families::lattice::LatticeBody::bytes).sum::<usize>()
+            + self.list.bytes()
+            + 14 * self.place.len()
+            + windows
+            + reference
+            + near
+    }
+}
+
+/// A column under new numbers.
+fn moved<T: Copy>(column: &[T], old_to_new: &[Option<u32>], n: usize, empty: T) -> Vec<T> {
+    let mut out = vec![empty; n];
+    for (value, new) in column.iter().zip(old_to_new) {
+        if let Some(new) = new {
+            out[*new as usize] = *value;
+        }
+    }
+    out
+}
+
+/// Ends all bonds of a record.
+fn end_bonds(list: &mut ListBody, record: usize) {
+    let mut ended = Vec::new();
+    list.around(record, |_, b| ended.push(b));
+    for b in ended {
+        list.partner[b] |= DEAD;
+    }
+}

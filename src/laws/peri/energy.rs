@@ -1,0 +1,133 @@
+//! Energy and virial of all bonds: asked for at some steps only, so a pass of its own.
+
+use super::contact::add;
+use super::pmb::stretch;
+use crate::par::{self, Shared};
+use crate::world::families::lattice::{LANES, LatticeBody};
+use crate::world::families::list::{DEAD, ListBody};
+use crate::world::families::{Families, FamilyOptions, ForceUnit, PeriTally, PeriView};
+
+/// Energy and virial of one row of cells or one record.
+type Sums = [f64; 7];
+
+/// Rows per part when rows are summed.
+const ROWS: usize = 16;
+
+/// Adds energy and virial of the bonds as they were during the force evaluation: LAMMPS gives each end half of
+/// 1/2 c w V s² |xi|, and the virial one factor V.
+pub fn tally(families: &mut Families, view: &PeriView, t: &mut PeriTally, period: [f64; 3]) {
+    let mut rows = std::mem::take(&mut families.scratch.rows);
+    let options = families.options;
+    for body in &families.lattices {
+        sum(body.rows.len(), &mut rows, t, |slot, f| lattice_row(body, slot, view, families, &options, f));
+    }
+    let list = &families.list;
+    sum(list.record.len(), &mut rows, t, |i, f| list_row(list, i, period, &options, f));
+    families.scratch.rows = rows;
+}
+
+/// Adds up `row(k, add)` for `k` below `n` in a fixed order, and per particle if asked for.
+fn sum(
+    n: usize,
+    rows: &mut Vec<Sums>,
+    t: &mut PeriTally,
+    row: impl Fn(usize, &mut dyn FnMut((usize, f64), (usize, f64), f64, [f64; 3])) + Sync,
+) {
+    if t.per_atom_energy.is_some() {
+        for k in 0..n {
+            row(k, &mut |i, j, pull, d| add(t, i, j, pull, d));
+        }
+        return;
+    }
+    rows.clear();
+    rows.resize(n, [0.0; 7]);
+    let shared = Shared::new(rows);
+    par::for_rows(n.div_ceil(ROWS), |part| {
+        for k in part * ROWS..n.min((part + 1) * ROWS) {
+            let mut own = PeriTally::default();
+            row(k, &mut |i, j, pull, d| add(&mut own, i, j, pull, d));
+            let v = own.virial;
+            // SAFETY: each row belongs to one part.
+            unsafe { shared.get(k..k + 1)[0] = [own.energy, v[0], v[1], v[2], v[3], v[4], v[5]] };
+        }
+    });
+    for row in rows.iter() {
+        t.energy += row[0];
+        for k in 0..6 {
+            t.virial[k] += row[k + 1];
+        }
+    }
+}
+
+/// Energies of both ends and the pull on the first, from z, |xi|, c w and the volumes.
+fn bond(z: f64, length: f64, cw: f64, (vi, vj): (f64, f64), options: &FamilyOptions) -> (f64, f64, f64) {
+    if z.abs() < options.dead_band(length) {
+        return (0.0, 0.0, 0.0);
+    }
+    let s = stretch(z);
+    let (own, other) = match options.unit {
+        ForceUnit::Density => (vj, vi),
+        ForceUnit::Newton => (vi * vj, vi * vj),
+    };
+    let e = 0.25 * cw * s * s * length;
+    // Force density times the one volume of the virial, or the force itself: c w V_i V_j s/r either way.
+    (e * own, e * other, -cw * vi * vj * s / (length * (1.0 + s)))
+}
+
+fn lattice_row(
+    body: &LatticeBody,
+    slot: usize,
+    view: &PeriView,
+    families: &Families,
+    options: &FamilyOptions,
+    f: &mut dyn FnMut((usize, f64), (usize, f64), f64, [f64; 3]),
+) {
+    let row = body.rows[slot];
+    let entries = body.stencil.len();
+    for e in 0..entries {
+        let xi = body.xi(e);
+        let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let weight = options.volume.weight(length, body.horizon, options.lattice_spacing);
+        for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
+            let bits = body.alive[chunk * entries + e];
+            for cell in (0..LANES).filter(|lane| bits >> lane & 1 == 1).map(|lane| chunk * LANES + lane) {
+                let Some(to) = body.ahead(slot, cell, e) else { continue };
+                let (i, j) = (body.particle[cell] as usize, body.particle[to] as usize);
+                let Some(coeff) = families.table.get(view.kind[i], view.kind[j]) else { continue };
+                let volumes = (view.volume[i], view.volume[j]);
+                let (e_i, e_j, pull) =
+                    bond(body.z(1, cell, to, e), length, coeff.c * weight, volumes, options);
+                let u = |k: usize, c: usize| {
+                    body.u[1][k * body.stride + crate::world::families::lattice::PAD + c]
+                };
+                let d = [0, 1, 2].map(|k| -(xi[k] + u(k, to) - u(k, cell)));
+                f((i, e_i), (j, e_j), pull, d);
+            }
+        }
+    }
+}
+
+fn list_row(
+    list: &ListBody,
+    i: usize,
+    period: [f64; 3],
+    options: &FamilyOptions,
+    f: &mut dyn FnMut((usize, f64), (usize, f64), f64, [f64; 3]),
+) {
+    for b in list.own(i).filter(|&b| list.partner[b] & DEAD == 0) {
+        let j = list.partner[b] as usize;
+        let pair = &list.pairs[usize::from(list.kind[i]) * list.kinds.len() + usize::from(list.kind[j])];
+        let (z, length) = list.z(false, i, j, period);
+        let weight = (pair.weight[0] - pair.weight[1] * length).min(1.0);
+        let (own, other) = (&list.record[i], &list.record[j]);
+        let (e_i, e_j, pull) = bond(z, length, pair.c * weight, (own.volume, other.volume), options);
+        let d = [0, 1, 2].map(|k| {
+            let mut xi = other.reference[k] - own.reference[k];
+            if xi.abs() > 0.5 * period[k] {
+                xi -= period[k] * (xi / period[k]).round();
+            }
+            -(xi + other.u[k] - own.u[k])
+        });
+        f((list.particle[i] as usize, e_i), (list.particle[j] as usize, e_j), pull, d);
+    }
+}

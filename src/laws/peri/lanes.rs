@@ -1,0 +1,387 @@
+//! Four numbers at a time: the portable form and AVX2+FMA behind one trait, so that a law is written once.
+
+/// Four `f64` lanes. Masks are lanes whose bits are all ones (yes) or all zeros (no).
+///
+/// All methods are inlined into kernels; the AVX2 form may only be used inside functions compiled for it.
+pub trait Lanes: Copy {
+    /// The same number in every lane.
+    ///
+    /// # Safety
+    /// As for every method here: the processor must have what the form needs.
+    unsafe fn splat(a: f64) -> Self;
+    /// Four consecutive numbers, aligned or not.
+    ///
+    /// # Safety
+    /// `p` must be readable for four numbers.
+    unsafe fn load(p: *const f64) -> Self;
+    /// Writes four consecutive numbers.
+    ///
+    /// # Safety
+    /// `p` must be writable for four numbers.
+    unsafe fn store(self, p: *mut f64);
+    /// Lanes `k` from bit `k` of `bits`.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn mask(bits: u8) -> Self;
+    /// Lane values as an array.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn array(self) -> [f64; 4];
+    /// Sum.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn add(self, b: Self) -> Self;
+    /// Difference.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn sub(self, b: Self) -> Self;
+    /// Product.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn mul(self, b: Self) -> Self;
+    /// Quotient.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn div(self, b: Self) -> Self;
+    /// `self * b + c`, rounded once where the processor can.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn fma(self, b: Self, c: Self) -> Self;
+    /// `c - self * b`, rounded once where the processor can.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn fnma(self, b: Self, c: Self) -> Self;
+    /// Square root.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn sqrt(self) -> Self;
+    /// The larger; `b` where either is NaN.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn max(self, b: Self) -> Self;
+    /// The smaller; `b` where either is NaN.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn min(self, b: Self) -> Self;
+    /// Magnitude.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn abs(self) -> Self;
+    /// Mask of the lanes where `self >= b`.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn ge(self, b: Self) -> Self;
+    /// Zero where the mask says no.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn keep(self, mask: Self) -> Self;
+    /// Whether any lane of a mask says yes.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn any(self) -> bool;
+    /// Mask of the four numbers whose highest bit is not set.
+    ///
+    /// # Safety
+    /// `p` must be readable for four numbers.
+    unsafe fn living(p: *const u32) -> Self;
+    /// Four rows of four consecutive numbers as columns.
+    ///
+    /// # Safety
+    /// Each pointer must be readable for four numbers.
+    unsafe fn transposed(rows: [*const f64; 4]) -> [Self; 4];
+    /// Subtracts three columns from the first three numbers of four rows (and zero from the fourth).
+    ///
+    /// # Safety
+    /// Each pointer must be writable for four numbers, different rows apart unless lanes are zero.
+    unsafe fn subtract_transposed(columns: [Self; 3], rows: [*mut f64; 4]);
+}
+
+/// Lanes as an array: any processor.
+#[derive(Clone, Copy)]
+pub struct Portable([f64; 4]);
+
+impl Portable {
+    #[inline(always)]
+    fn zip(self, b: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self([f(self.0[0], b.0[0]), f(self.0[1], b.0[1]), f(self.0[2], b.0[2]), f(self.0[3], b.0[3])])
+    }
+}
+
+impl Lanes for Portable {
+    #[inline(always)]
+    unsafe fn splat(a: f64) -> Self {
+        Self([a; 4])
+    }
+    #[inline(always)]
+    unsafe fn load(p: *const f64) -> Self {
+        // SAFETY: readable by the caller's promise.
+        Self(unsafe { p.cast::<[f64; 4]>().read() })
+    }
+    #[inline(always)]
+    unsafe fn store(self, p: *mut f64) {
+        // SAFETY: writable by the caller's promise.
+        unsafe { p.cast::<[f64; 4]>().write(self.0) }
+    }
+    #[inline(always)]
+    unsafe fn mask(bits: u8) -> Self {
+        Self(MASKS[usize::from(bits & 15)].map(f64::from_bits))
+    }
+    #[inline(always)]
+    unsafe fn array(self) -> [f64; 4] {
+        self.0
+    }
+    #[inline(always)]
+    unsafe fn add(self, b: Self) -> Self {
+        self.zip(b, |a, b| a + b)
+    }
+    #[inline(always)]
+    unsafe fn sub(self, b: Self) -> Self {
+        self.zip(b, |a, b| a - b)
+    }
+    #[inline(always)]
+    unsafe fn mul(self, b: Self) -> Self {
+        self.zip(b, |a, b| a * b)
+    }
+    #[inline(always)]
+    unsafe fn div(self, b: Self) -> Self {
+        self.zip(b, |a, b| a / b)
+    }
+    #[inline(always)]
+    unsafe fn fma(self, b: Self, c: Self) -> Self {
+        self.zip(b, |a, b| a * b).zip(c, |p, c| p + c)
+    }
+    #[inline(always)]
+    unsafe fn fnma(self, b: Self, c: Self) -> Self {
+        self.zip(b, |a, b| a * b).zip(c, |p, c| c - p)
+    }
+    #[inline(always)]
+    unsafe fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+    #[inline(always)]
+    unsafe fn max(self, b: Self) -> Self {
+        self.zip(b, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    unsafe fn min(self, b: Self) -> Self {
+        self.zip(b, |a, b| if a < b { a } else { b })
+    }
+    #[inline(always)]
+    unsafe fn abs(self) -> Self {
+        Self(self.0.map(f64::abs))
+    }
+    #[inline(always)]
+    unsafe fn ge(self, b: Self) -> Self {
+        self.zip(b, |a, b| f64::from_bits(if a >= b { u64::MAX } else { 0 }))
+    }
+    #[inline(always)]
+    unsafe fn keep(self, mask: Self) -> Self {
+        self.zip(mask, |a, m| f64::from_bits(a.to_bits() & m.to_bits()))
+    }
+    #[inline(always)]
+    unsafe fn any(self) -> bool {
+        self.0.iter().any(|m| m.to_bits() != 0)
+    }
+    #[inline(always)]
+    unsafe fn living(p: *const u32) -> Self {
+        // SAFETY: readable by the caller's promise.
+        let raw = unsafe { p.cast::<[u32; 4]>().read() };
+        Self(raw.map(|j| f64::from_bits(if j >> 31 == 0 { u64::MAX } else { 0 })))
+    }
+    #[inline(always)]
+    unsafe fn transposed(rows: [*const f64; 4]) -> [Self; 4] {
+        // SAFETY: readable by the caller's promise.
+        let r = rows.map(|p| unsafe { p.cast::<[f64; 4]>().read() });
+        [0, 1, 2, 3].map(|k| Self([r[0][k], r[1][k], r[2][k], r[3][k]]))
+    }
+    #[inline(always)]
+    unsafe fn subtract_transposed(columns: [Self; 3], rows: [*mut f64; 4]) {
+        for (lane, row) in rows.into_iter().enumerate() {
+            for (k, column) in columns.iter().enumerate() {
+                // SAFETY: writable by the caller's promise.
+                unsafe { *row.add(k) -= column.0[lane] };
+            }
+        }
+    }
+}
+
+/// Lane masks of all four-bit numbers.
+static MASKS: [[u64; 4]; 16] = {
+    let mut masks = [[0; 4]; 16];
+    let mut bits = 0;
+    while bits < 16 {
+        let mut lane = 0;
+        while lane < 4 {
+            if bits >> lane & 1 == 1 {
+                masks[bits][lane] = u64::MAX;
+            }
+            lane += 1;
+        }
+        bits += 1;
+    }
+    masks
+};
+
+/// Whether the processor has AVX2 and FMA.
+pub fn has_avx2() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    {
+        is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        false
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub use x86::Avx2;
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use std::arch::x86_64::*;
+
+    use super::{Lanes, MASKS};
+
+    /// Lanes in one AVX register.
+    #[derive(Clone, Copy)]
+    pub struct Avx2(pub(in super::super) __m256d);
+
+    // SAFETY (all blocks): the caller promises that the processor has AVX2 and FMA, and that pointers are good.
+    impl Lanes for Avx2 {
+        #[inline(always)]
+        unsafe fn splat(a: f64) -> Self {
+            Self(unsafe { _mm256_set1_pd(a) })
+        }
+        #[inline(always)]
+        unsafe fn load(p: *const f64) -> Self {
+            Self(unsafe { _mm256_loadu_pd(p) })
+        }
+        #[inline(always)]
+        unsafe fn store(self, p: *mut f64) {
+            unsafe { _mm256_storeu_pd(p, self.0) }
+        }
+        #[inline(always)]
+        unsafe fn mask(bits: u8) -> Self {
+            Self(unsafe { _mm256_loadu_pd(MASKS.get_unchecked(usize::from(bits & 15)).as_ptr().cast()) })
+        }
+        #[inline(always)]
+        unsafe fn array(self) -> [f64; 4] {
+            let mut out = [0.0; 4];
+            unsafe { _mm256_storeu_pd(out.as_mut_ptr(), self.0) }
+            out
+        }
+        #[inline(always)]
+        unsafe fn add(self, b: Self) -> Self {
+            Self(unsafe { _mm256_add_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        unsafe fn sub(self, b: Self) -> Self {
+            Self(unsafe { _mm256_sub_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        unsafe fn mul(self, b: Self) -> Self {
+            Self(unsafe { _mm256_mul_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        unsafe fn div(self, b: Self) -> Self {
+            Self(unsafe { _mm256_div_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        unsafe fn fma(self, b: Self, c: Self) -> Self {
+            Self(unsafe { _mm256_fmadd_pd(self.0, b.0, c.0) })
+        }
+        #[inline(always)]
+        unsafe fn fnma(self, b: Self, c: Self) -> Self {
+            Self(unsafe { _mm256_fnmadd_pd(self.0, b.0, c.0) })
+        }
+        #[inline(always)]
+        unsafe fn sqrt(self) -> Self {
+            Self(unsafe { _mm256_sqrt_pd(self.0) })
+        }
+        #[inline(always)]
+        unsafe fn max(self, b: Self) -> Self {
+            Self(unsafe { _mm256_max_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        unsafe fn min(self, b: Self) -> Self {
+            Self(unsafe { _mm256_min_pd(self.0, b.0) })
+        }
+        #[inline(always)]
+        unsafe fn abs(self) -> Self {
+            Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+        }
+        #[inline(always)]
+        unsafe fn ge(self, b: Self) -> Self {
+            Self(unsafe { _mm256_cmp_pd::<_CMP_GE_OQ>(self.0, b.0) })
+        }
+        #[inline(always)]
+        unsafe fn keep(self, mask: Self) -> Self {
+            Self(unsafe { _mm256_and_pd(self.0, mask.0) })
+        }
+        #[inline(always)]
+        unsafe fn any(self) -> bool {
+            unsafe { _mm256_movemask_pd(self.0) != 0 }
+        }
+        #[inline(always)]
+        unsafe fn living(p: *const u32) -> Self {
+            unsafe {
+                let raw = _mm_loadu_si128(p.cast());
+                let dead = _mm256_cvtepi32_epi64(_mm_srai_epi32::<31>(raw));
+                Self(_mm256_castsi256_pd(_mm256_xor_si256(dead, _mm256_set1_epi64x(-1))))
+            }
+        }
+        #[inline(always)]
+        unsafe fn transposed(rows: [*const f64; 4]) -> [Self; 4] {
+            unsafe {
+                let [a, b, c, d] = rows;
+                macro_rules! halves {
+                    ($p:expr, $q:expr) => {
+                        _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(_mm_loadu_pd($p)), _mm_loadu_pd($q))
+                    };
+                }
+                let (ac, bd) = (halves!(a, c), halves!(b, d));
+                let (ac2, bd2) = (halves!(a.add(2), c.add(2)), halves!(b.add(2), d.add(2)));
+                [
+                    Self(_mm256_unpacklo_pd(ac, bd)),
+                    Self(_mm256_unpackhi_pd(ac, bd)),
+                    Self(_mm256_unpacklo_pd(ac2, bd2)),
+                    Self(_mm256_unpackhi_pd(ac2, bd2)),
+                ]
+            }
+        }
+        #[inline(always)]
+        unsafe fn subtract_transposed(columns: [Self; 3], rows: [*mut f64; 4]) {
+            unsafe {
+                let [x, y, z] = columns;
+                let zero = _mm256_setzero_pd();
+                let (xy0, xy1) = (_mm256_unpacklo_pd(x.0, y.0), _mm256_unpackhi_pd(x.0, y.0));
+                let (z0, z1) = (_mm256_unpacklo_pd(z.0, zero), _mm256_unpackhi_pd(z.0, zero));
+                let [a, b, c, d] = rows;
+                let f = _mm256_sub_pd(_mm256_loadu_pd(a), _mm256_permute2f128_pd::<0x20>(xy0, z0));
+                _mm256_storeu_pd(a, f);
+                let f = _mm256_sub_pd(_mm256_loadu_pd(b), _mm256_permute2f128_pd::<0x20>(xy1, z1));
+                _mm256_storeu_pd(b, f);
+                let f = _mm256_sub_pd(_mm256_loadu_pd(c), _mm256_permute2f128_pd::<0x31>(xy0, z0));
+                _mm256_storeu_pd(c, f);
+                let f = _mm256_sub_pd(_mm256_loadu_pd(d), _mm256_permute2f128_pd::<0x31>(xy1, z1));
+                _mm256_storeu_pd(d, f);
+            }
+        }
+    }
+}

@@ -1,0 +1,282 @@
+//! A peridynamic body on a simple cubic lattice: cells in rows, rows in planes, one bit per bond.
+
+/// Cells per chunk: alive bits of a chunk's bonds along one stencil vector are one byte.
+pub const LANES: usize = 8;
+
+/// Numbers per stencil vector in a table of constants.
+pub const CONSTANTS: usize = 16;
+
+/// A row of cells; vacant cells at its end fill the last chunk.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Row {
+    /// First cell.
+    pub start: u32,
+    /// Number of cells, a multiple of [`LANES`]; 0 for a row without particles.
+    pub len: u32,
+    /// Lattice coordinate of the first cell.
+    pub lo: i32,
+    /// Local type (from 0) of all its particles; [`MIXED`] where they differ.
+    pub kind: u16,
+}
+
+/// The kind of a row with particles of several types.
+pub const MIXED: u16 = u16::MAX;
+
+/// Stencil vectors with the same steps across rows: they meet the same other row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Group {
+    /// Step across rows within a plane.
+    pub across: i32,
+    /// Step across planes; not negative.
+    pub up: i32,
+    /// First stencil vector.
+    pub first: usize,
+    /// Number of stencil vectors.
+    pub count: usize,
+}
+
+/// What moved in a row since the step before, and where it is not at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowMotion {
+    /// First coordinate with a displacement that is not zero; above `hi` if there is none.
+    pub lo: i32,
+    /// Last such coordinate.
+    pub hi: i32,
+    /// Smallest change of displacement since the step before, per component.
+    pub least: [f64; 3],
+    /// Largest change.
+    pub most: [f64; 3],
+}
+
+impl RowMotion {
+    /// Nothing there.
+    pub const NONE: Self =
+        Self { lo: i32::MAX, hi: i32::MIN, least: [f64::INFINITY; 3], most: [f64::NEG_INFINITY; 3] };
+
+    /// Both together.
+    #[must_use]
+    pub fn with(&self, o: &Self) -> Self {
+        Self {
+            lo: self.lo.min(o.lo),
+            hi: self.hi.max(o.hi),
+            least: [0, 1, 2].map(|k| self.least[k].min(o.least[k])),
+            most: [0, 1, 2].map(|k| self.most[k].max(o.most[k])),
+        }
+    }
+}
+
+/// A body on a lattice. Bond `e` of cell `c` goes to the cell one stencil vector further; half the stencil
+/// is kept, so each bond once.
+#[derive(Clone, Debug, Default)]
+pub struct LatticeBody {
+    /// Lattice spacing.
+    pub spacing: f64,
+    /// Which coordinate runs along rows, across rows, across planes.
+    pub axes: [usize; 3],
+    /// The stencil's reach in cells.
+    pub reach: i32,
+    /// The horizon of all its bonds.
+    pub horizon: f64,
+    /// Stencil vectors (along, across, up): the half after (0, 0, 0) in the order of cells.
+    pub stencil: Vec<[i32; 3]>,
+    /// Their groups.
+    pub groups: Vec<Group>,
+    /// Planes, not counting `reach` empty ones above.
+    pub planes: usize,
+    /// Row slots per plane: those with particles, between `reach` empty ones on both sides.
+    pub width: usize,
+    /// `(planes + reach) * width` rows.
+    pub rows: Vec<Row>,
+    /// Planes per slab.
+    pub thickness: usize,
+    /// Particle in each cell; `u32::MAX` where vacant.
+    pub particle: Vec<u32>,
+    /// Alive bits: byte `chunk * stencil.len() + e`, bit = cell in the chunk.
+    pub alive: Vec<u8>,
+    /// Whether every bond of every cell of a chunk lives.
+    pub intact: Vec<bool>,
+    /// Upper bounds of z = |xi + eta|^2/|xi|^2 - 1 over a chunk's bonds (tension), per chunk.
+    pub tension: Vec<f32>,
+    /// Upper bounds of -z (compression), per chunk.
+    pub compression: Vec<f32>,
+    /// Value of either bound at which a chunk is measured anew.
+    pub measure: Vec<f32>,
+    /// What a chunk's bonds may need besides forces this step: bits known to the sweep.
+    pub flagged: Vec<u8>,
+    /// Displacements, components `stride` apart, [`PAD`] unused cells before the first: now, and at the
+    /// last step that advanced.
+    pub u: [Vec<f64>; 2],
+    /// Distance of components in `u`.
+    pub stride: usize,
+    /// Motion per row slot.
+    pub motion: Vec<RowMotion>,
+    /// Constants of the stencil vectors for each pair of local types, [`CONSTANTS`] each.
+    pub tables: Vec<f64>,
+    /// Type (1-based) of each local type.
+    pub kinds: Vec<u16>,
+    /// Local type of each cell; empty unless types are mixed in a row or volumes differ.
+    pub cell_kind: Vec<u8>,
+    /// Volume of each cell; empty unless types are mixed in a row or volumes differ.
+    pub cell_volume: Vec<f64>,
+    /// Micromodulus, s00 and alpha for each pair of local types.
+    pub pairs: Vec<[f64; 3]>,
+    /// Largest z at which a bonded pair can be in short-range contact.
+    pub contact: f64,
+    /// Place of the first cell among all cells and records of all bodies.
+    pub first_place: u32,
+    /// Bonds (cell, stencil vector) that broke in the last step that advanced.
+    pub broken: Vec<(u32, u16)>,
+    /// Critical measure of each cell's family in the step before, where it was asked for this step; NaN
+    /// elsewhere. Empty until bonds come near breaking.
+    pub measured: Vec<f64>,
+}
+
+/// Unused cells around the cells of a body: kernels read beyond the ends of rows.
+pub const PAD: usize = 64;
+
+/// Numbers per page of memory.
+pub const PAGE: usize = 512;
+/// Numbers between the page offsets of components.
+pub const STAGGER: usize = 88;
+
+/// The distance of components with `cells` cells each and [`PAD`] around, so that they do not share page
+/// offsets: loads would wait for stores to other arrays (measured: 1.8 times as fast).
+pub fn staggered(cells: usize) -> usize {
+    (cells + 2 * PAD).next_multiple_of(PAGE) + STAGGER
+}
+
+impl LatticeBody {
+    /// The row slot of a plane and a row in it.
+    pub fn slot(&self, plane: usize, row: usize) -> usize {
+        plane * self.width + row
+    }
+
+    /// The row slot of a cell.
+    pub fn slot_of(&self, cell: usize) -> usize {
+        self.rows.partition_point(|r| r.start as usize <= cell) - 1
+    }
+
+    /// The slabs' number.
+    pub fn slabs(&self) -> usize {
+        self.planes.div_ceil(self.thickness)
+    }
+
+    /// The cell one stencil vector beyond `cell` (in row slot `slot`), vacant or not.
+    pub fn ahead(&self, slot: usize, cell: usize, e: usize) -> Option<usize> {
+        let [along, across, up] = self.stencil[e];
+        self.at(slot, (slot + up as usize * self.width).wrapping_add_signed(across as isize), cell, along)
+    }
+
+    /// The cell one stencil vector before `cell`.
+    pub fn behind(&self, slot: usize, cell: usize, e: usize) -> Option<usize> {
+        let [along, across, up] = self.stencil[e];
+        let back = slot.wrapping_add_signed(-(across as isize)).checked_sub(up as usize * self.width)?;
+        self.at(slot, back, cell, -along)
+    }
+
+    fn at(&self, slot: usize, other: usize, cell: usize, along: i32) -> Option<usize> {
+        let (row, other) = (self.rows[slot], self.rows.get(other)?);
+        let to = (cell - row.start as usize) as i32 + row.lo + along - other.lo;
+        (to >= 0 && to < other.len as i32).then(|| other.start as usize + to as usize)
+    }
+
+    /// The lattice vector (along, across, up) from one cell to another.
+    pub fn step(&self, from: usize, to: usize) -> [i32; 3] {
+        let at = |cell: usize| {
+            let slot = self.slot_of(cell);
+            let row = &self.rows[slot];
+            let along = (cell - row.start as usize) as i32 + row.lo;
+            [along, (slot % self.width) as i32, (slot / self.width) as i32]
+        };
+        let (a, b) = (at(from), at(to));
+        [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
+    }
+
+    /// Whether bond `e` of a cell lives.
+    pub fn lives(&self, cell: usize, e: usize) -> bool {
+        self.alive[cell / LANES * self.stencil.len() + e] >> (cell % LANES) & 1 == 1
+    }
+
+    /// Sets whether bond `e` of a cell lives.
+    pub fn set(&mut self, cell: usize, e: usize, lives: bool) {
+        let byte = &mut self.alive[cell / LANES * self.stencil.len() + e];
+        if lives {
+            *byte |= 1 << (cell % LANES);
+        } else {
+            *byte &= !(1 << (cell % LANES));
+        }
+    }
+
+    /// Ends all bonds of a cell and leaves it vacant and at rest.
+    pub fn vacate(&mut self, cell: usize) {
+        let slot = self.slot_of(cell);
+        for e in 0..self.stencil.len() {
+            self.set(cell, e, false);
+            if let Some(back) = self.behind(slot, cell, e) {
+                self.set(back, e, false);
+                self.intact[back / LANES] = false;
+            }
+        }
+        self.intact[cell / LANES] = false;
+        self.particle[cell] = u32::MAX;
+        for u in &mut self.u {
+            for k in 0..3 {
+                u[k * self.stride + PAD + cell] = 0.0;
+            }
+        }
+    }
+
+    /// Calls `f(partner's cell, owner's cell, stencil vector)` for every site that a cell's bonds lead to or
+    /// come from, bonded or not.
+    pub fn around(&self, cell: usize, mut f: impl FnMut(usize, usize, usize)) {
+        let slot = self.slot_of(cell);
+        for e in 0..self.stencil.len() {
+            if let Some(back) = self.behind(slot, cell, e) {
+                f(back, back, e);
+            }
+        }
+        for e in 0..self.stencil.len() {
+            if let Some(to) = self.ahead(slot, cell, e) {
+                f(to, cell, e);
+            }
+        }
+    }
+
+    /// The reference bond of a stencil vector.
+    pub fn xi(&self, e: usize) -> [f64; 3] {
+        let mut xi = [0.0; 3];
+        for k in 0..3 {
+            xi[self.axes[k]] = f64::from(self.stencil[e][k]) * self.spacing;
+        }
+        xi
+    }
+
+    /// z = |xi + eta|^2/|xi|^2 - 1 of the bond from cell `i` to cell `j`, from displacements `u[which]`.
+    pub fn z(&self, which: usize, i: usize, j: usize, e: usize) -> f64 {
+        let xi = self.xi(e);
+        let u = |k: usize, c: usize| self.u[which][k * self.stride + PAD + c];
+        let (mut q, mut square) = (0.0, 0.0);
+        for (k, xi) in xi.into_iter().enumerate() {
+            let eta = u(k, j) - u(k, i);
+            q += eta * (2.0 * xi + eta);
+            square += xi * xi;
+        }
+        q / square
+    }
+
+    /// Memory held.
+    pub fn bytes(&self) -> usize {
+        let doubles = self.u[0].len()
+            + self.u[1].len()
+            + self.tables.len()
+            + self.cell_volume.len()
+            + self.measured.len();
+        let chunk = 4 * 3 + 2;
+        8 * (doubles + self.broken.capacity())
+            + self.particle.len() * 4
+            + self.alive.len()
+            + self.intact.len() * chunk
+            + self.cell_kind.len()
+            + self.rows.len() * (size_of::<Row>() + size_of::<RowMotion>())
+    }
+}

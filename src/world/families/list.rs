@@ -1,0 +1,115 @@
+//! Bonds of all bodies that sit on no lattice: records in slab order, each with its bonds to later ones.
+
+/// What a bond needs to know of one end; one cache line.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Record {
+    /// Reference position.
+    pub reference: [f64; 3],
+    /// Volume.
+    pub volume: f64,
+    /// Displacement.
+    pub u: [f64; 3],
+    /// Unused.
+    pub spare: f64,
+}
+
+/// A partner whose bond is broken, or that only fills a group.
+pub const DEAD: u32 = 1 << 31;
+
+/// Bonds that share one row of constants: four partners.
+pub const GROUP: usize = 4;
+
+/// Constants of a pair of local types.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PairConstants {
+    /// Micromodulus.
+    pub c: f64,
+    /// Critical stretch.
+    pub s00: f64,
+    /// Its rise under compression.
+    pub alpha: f64,
+    /// Weight of partial volumes: min(1, `weight[0] - weight[1] |xi|`).
+    pub weight: [f64; 2],
+}
+
+/// Records of particles in slab order, and for each the bonds to later ones in groups of four.
+#[derive(Clone, Debug, Default)]
+pub struct ListBody {
+    /// Particle of each record; `u32::MAX` once it is gone.
+    pub particle: Vec<u32>,
+    /// The records.
+    pub record: Vec<Record>,
+    /// Displacements at the last step that advanced.
+    pub last: Vec<[f64; 3]>,
+    /// First record of each slab, and the end. Bonds lead to the same or the next slab; those of the last
+    /// slab may lead to the first if `ring`.
+    pub slab: Vec<u32>,
+    /// See `slab`.
+    pub ring: bool,
+    /// Whether a slab has displacements that are not zero.
+    pub moving: Vec<bool>,
+    /// Local type of each record.
+    pub kind: Vec<u8>,
+    /// Type of each local type.
+    pub kinds: Vec<u16>,
+    /// Constants by pairs of local types.
+    pub pairs: Vec<PairConstants>,
+    /// First group of each record, and the end.
+    pub start: Vec<u32>,
+    /// Partners' records, [`GROUP`] per group, [`DEAD`] set where the bond does not live.
+    pub partner: Vec<u32>,
+    /// Local type of a group's partners.
+    pub group_kind: Vec<u8>,
+    /// The record whose group it is.
+    pub owner: Vec<u32>,
+    /// First entry of each record in `back`, and the end.
+    pub back_start: Vec<u32>,
+    /// Places in `partner` that lead to a record.
+    pub back: Vec<u32>,
+    /// Largest z of each record's own bonds at the last step that advanced (tension).
+    pub tension: Vec<f32>,
+    /// What a record's bonds may need besides forces this step.
+    pub flagged: Vec<u8>,
+    /// Largest z at which a bonded pair can be in short-range contact.
+    pub contact: f64,
+    /// Place of the first record among all cells and records of all bodies.
+    pub first_place: u32,
+    /// Bonds (places in `partner`) that broke in the last step that advanced.
+    pub broken: Vec<u32>,
+    /// See [`super::lattice::LatticeBody::measured`].
+    pub measured: Vec<f64>,
+}
+
+impl ListBody {
+    /// The number of slabs.
+    pub fn slabs(&self) -> usize {
+        self.slab.len().saturating_sub(1)
+    }
+
+    /// Places in `partner` of a record's own bonds, fillers included.
+    pub fn own(&self, i: usize) -> std::ops::Range<usize> {
+        GROUP * self.start[i] as usize..GROUP * self.start[i + 1] as usize
+    }
+
+    /// Calls `f(other record, place in partner)` for every bond of a record, living or not.
+    pub fn around(&self, i: usize, mut f: impl FnMut(usize, usize)) {
+        for &b in &self.back[self.back_start[i] as usize..self.back_start[i + 1] as usize] {
+            f(self.owner[b as usize / GROUP] as usize, b as usize);
+        }
+        for b in self.own(i) {
+            let j = (self.partner[b] & !DEAD) as usize;
+            if j != i {
+                f(j, b);
+            }
+        }
+    }
+
+    /// Memory held.
+    pub fn bytes(&self) -> usize {
+        self.record.len() * (size_of::<Record>() + 24 + 4 + 1 + 4 + 4 + 4 + 1)
+            + 4 * (self.partner.len() + self.back.len() + self.owner.len())
+            + self.group_kind.len()
+            + 8 * self.measured.len()
+    }
+}
