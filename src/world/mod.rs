@@ -67,6 +67,8 @@ pub struct World {
     pub rebuild: Rebuild,
     /// Peridynamic bonds, from the first run on.
     pub families: Option<families::Families>,
+    /// What touching grains remember, by pair style: accumulated tangential displacement.
+    pub contacts: BTreeMap<String, contacts::Contacts<[f64; 3]>>,
     /// Materials by ID.
     pub materials: BTreeMap<String, material::Material>,
     /// What the deck's folder is, for files beside it.

@@ -1,6 +1,7 @@
 //! Which particle stands where: deletion and renumbering.
 
 use super::World;
+use std::collections::BTreeMap;
 
 impl World {
     /// Deletes the marked particles as LAMMPS does: the last particle moves into the first hole, and so on.
@@ -8,9 +9,20 @@ impl World {
     pub fn delete(&mut self, marked: &[bool], renumber: bool) {
         self.gather(&left_after(marked));
         if renumber {
-            for (tag, k) in self.particles.tag.iter_mut().zip(1..) {
-                *tag = k;
-            }
+            self.renumber();
+        }
+    }
+
+    /// Gives every particle its place in storage + 1 as id; contacts follow.
+    fn renumber(&mut self) {
+        let old = std::mem::take(&mut self.particles.tag);
+        self.particles.tag = (1..=old.len() as u32).collect();
+        if self.contacts.is_empty() {
+            return;
+        }
+        let new: BTreeMap<u32, u32> = old.into_iter().zip(1..).collect();
+        for c in self.contacts.values_mut() {
+            c.rename(|tag| new.get(&tag).copied(), |h| h.map(|a| -a));
         }
     }
 }

@@ -3,7 +3,9 @@
 //! A law is a pure function of local data: [`Geometry`] of the contact, the [`Motion`] of both sides and
 //! the contact's history give a [`Wrench`]. Pair and wall drivers call the same laws.
 
+pub mod bodies;
 pub mod damping;
+pub mod driver;
 pub mod law;
 pub mod normal;
 pub mod tangential;

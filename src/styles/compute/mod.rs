@@ -2,6 +2,7 @@
 
 mod com;
 mod damage_atom;
+mod erotate_sphere;
 mod ke;
 mod ke_atom;
 mod momentum;
@@ -65,6 +66,7 @@ pub trait Compute: Send {
 pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &com::Com,
     &damage_atom::DamageAtom,
+    &erotate_sphere::ErotateSphere,
     &ke::Ke,
     &ke_atom::KeAtom,
     &momentum::Momentum,

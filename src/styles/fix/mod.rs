@@ -7,6 +7,7 @@ mod gravity;
 mod indent;
 mod move_fix;
 mod nve;
+mod nve_sphere;
 mod setforce;
 mod viscous;
 
@@ -89,6 +90,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &indent::Indent,
     &move_fix::Move,
     &nve::Nve,
+    &nve_sphere::NveSphere,
     &setforce::SetForce,
     &viscous::Viscous,
 ];

@@ -1,5 +1,7 @@
 //! Pair styles: forces between particles.
 
+mod granular;
+mod hybrid;
 pub mod materials;
 mod peri_pmb;
 
@@ -75,4 +77,10 @@ pub trait Pair: Send {
 }
 
 /// Every pair style.
-pub const PAIRS: &[&dyn PairStyle] = &[&peri_pmb::PeriPmb];
+#[rustfmt::skip]
+pub const PAIRS: &[&dyn PairStyle] = &[
+    &granular::GranularStyle,
+    &hybrid::Hybrid,
+    &hybrid::Overlay,
+    &peri_pmb::PeriPmb,
+];

@@ -148,6 +148,17 @@ impl Pair for Pmb {
         (i.max(j) as usize) <= self.table.types() && self.table.get(i, j).is_some()
     }
 
+    fn restrict(&mut self, pairs: &TypePairs) {
+        let mut table = PmbTable::new(self.table.types());
+        for &(i, j) in pairs {
+            // These coefficients were accepted before.
+            if let Some(Err(_)) = self.table.get(i, j).map(|c| table.set(i, j, *c)) {
+                return;
+            }
+        }
+        self.table = table;
+    }
+
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let span = cx.span();
         let w = cx.world();

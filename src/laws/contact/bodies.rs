@@ -1,0 +1,31 @@
+//! Which peridynamic solid each particle belongs to.
+
+use super::driver::NO_BODY;
+use crate::world::families::Families;
+
+/// The solid of each of `n` particles: the smallest index among all that bonds connected at the start, broken ones
+/// included; `NO_BODY` for particles that never had a bond.
+pub fn solids(families: &Families, n: usize) -> Vec<u32> {
+    let mut root: Vec<u32> = (0..n as u32).collect();
+    let mut bonded = vec![false; n];
+    for i in 0..n {
+        for bond in families.neighbours(i) {
+            bonded[i] = true;
+            join(&mut root, i as u32, bond.partner);
+        }
+    }
+    (0..n as u32).map(|i| if bonded[i as usize] { find(&mut root, i) } else { NO_BODY }).collect()
+}
+
+fn find(root: &mut [u32], mut i: u32) -> u32 {
+    while root[i as usize] != i {
+        root[i as usize] = root[root[i as usize] as usize];
+        i = root[i as usize];
+    }
+    i
+}
+
+fn join(root: &mut [u32], a: u32, b: u32) {
+    let (a, b) = (find(root, a), find(root, b));
+    root[a.max(b) as usize] = a.min(b);
+}

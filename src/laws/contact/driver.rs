@@ -1,0 +1,272 @@
+//! The loop over contacts: who touches, what each remembers, what each does, added up in a fixed order.
+
+use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
+use crate::math::vec3::{Vec3, add, sub};
+use crate::neigh::list::{Pair, difference};
+use crate::par;
+use crate::world::contacts::Contacts;
+
+/// Among how many simultaneous contacts a force is shared out (Walayat et al., eq. 14 and 19, made
+/// momentum-conserving: every contact's force and its reaction are divided by the same N).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Average {
+    /// N = 1: forces add up.
+    #[default]
+    None,
+    /// N = the larger of the two particles' numbers of contacts.
+    Particle,
+    /// N = the number of contacts between the two bodies; a body is a grain or a peridynamic solid.
+    Body,
+}
+
+/// The effective radius R̄ of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Curvature {
+    /// R_i R_j / (R_i + R_j).
+    #[default]
+    Both,
+    /// The grain's radius where it meets a peridynamic solid, whose surface counts as flat.
+    Impactor,
+}
+
+/// What contacts of one pair of types obey.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rule<L> {
+    /// The law.
+    pub law: L,
+    /// Sharing.
+    pub average: Average,
+    /// Effective radius.
+    pub curvature: Curvature,
+}
+
+/// Rules by pair of types (from 1), symmetric.
+#[derive(Clone, Debug)]
+pub struct Rules<L> {
+    types: usize,
+    table: Vec<Option<Rule<L>>>,
+}
+
+impl<L: Copy> Rules<L> {
+    /// No rules yet.
+    pub fn new(types: usize) -> Self {
+        Self { types, table: vec![None; types * types] }
+    }
+
+    /// Sets the rule of two types.
+    pub fn set(&mut self, a: u16, b: u16, rule: Rule<L>) {
+        let (a, b) = (usize::from(a) - 1, usize::from(b) - 1);
+        self.table[a * self.types + b] = Some(rule);
+        self.table[b * self.types + a] = Some(rule);
+    }
+
+    /// The rule of two types.
+    #[inline]
+    pub fn get(&self, a: u16, b: u16) -> Option<&Rule<L>> {
+        self.table[(usize::from(a) - 1) * self.types + usize::from(b) - 1].as_ref()
+    }
+
+    /// Whether some rule is of this kind.
+    pub fn any(&self, is: impl Fn(&Rule<L>) -> bool) -> bool {
+        self.table.iter().flatten().any(is)
+    }
+}
+
+/// The particles as contacts see them: columns of equal length.
+#[derive(Clone, Copy)]
+pub struct Grains<'a> {
+    /// Positions [length].
+    pub x: &'a [Vec3],
+    /// Velocities [length/time].
+    pub v: &'a [Vec3],
+    /// Angular velocities [1/time].
+    pub omega: &'a [Vec3],
+    /// Radii [length].
+    pub radius: &'a [f64],
+    /// Masses.
+    pub mass: &'a [f64],
+    /// Types, from 1.
+    pub kind: &'a [u16],
+    /// Identities.
+    pub tag: &'a [u32],
+    /// Edge lengths of the box; zero where it does not repeat.
+    pub period: [f64; 3],
+    /// The solid each particle belongs to, `NO_BODY` for grains; may be empty where no rule asks.
+    pub body: &'a [u32],
+}
+
+/// The body of a particle that belongs to no solid.
+pub const NO_BODY: u32 = u32::MAX;
+
+impl Grains<'_> {
+    fn body(&self, i: u32) -> u32 {
+        self.body.get(i as usize).copied().unwrap_or(NO_BODY)
+    }
+
+    /// A name for the body of particle `i`, unlike all others: solids first, then grains.
+    fn body_name(&self, i: u32) -> u64 {
+        match self.body(i) {
+            NO_BODY => (1 << 32) + u64::from(i),
+            solid => u64::from(solid),
+        }
+    }
+
+    fn motion(&self, i: u32) -> Motion {
+        Motion { velocity: self.v[i as usize], spin: self.omega[i as usize] }
+    }
+
+    /// Whether the two touch.
+    #[inline]
+    fn touching(&self, p: &Pair) -> bool {
+        let d = difference(self.x, &self.period, p);
+        let sum = self.radius[p.i as usize] + self.radius[p.j as usize];
+        d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < sum * sum
+    }
+
+    fn geometry<L>(&self, p: &Pair, rule: &Rule<L>) -> Option<Geometry> {
+        let (i, j) = (p.i as usize, p.j as usize);
+        let d = difference(self.x, &self.period, p);
+        let g = Geometry::of_spheres(d, [self.radius[i], self.radius[j]], [self.mass[i], self.mass[j]])?;
+        if rule.curvature == Curvature::Both {
+            return Some(g);
+        }
+        match (self.body(p.i) == NO_BODY, self.body(p.j) == NO_BODY) {
+            (true, false) => Some(g.with_curvature(g.radii[0])),
+            (false, true) => Some(g.with_curvature(g.radii[1])),
+            _ => Some(g),
+        }
+    }
+}
+
+/// One evaluation of all contacts; keeps its room from step to step.
+#[derive(Clone, Debug, Default)]
+pub struct Sweep<H> {
+    flags: Vec<bool>,
+    touching: Vec<Pair>,
+    keys: Vec<[u32; 2]>,
+    shares: Vec<f64>,
+    counts: Vec<u32>,
+    names: Vec<[u64; 2]>,
+    wrenches: Vec<Wrench>,
+    spare: Vec<H>,
+}
+
+impl<H: Copy + Default + Send> Sweep<H> {
+    /// Evaluates the contacts among the pairs of `list`; `memory` follows: contacts that ended are forgotten.
+    pub fn run<L: ContactLaw<History = H>>(
+        &mut self,
+        list: &[Pair],
+        grains: &Grains,
+        rules: &Rules<L>,
+        memory: &mut Contacts<H>,
+        step: Advance,
+    ) {
+        self.find(list, grains);
+        memory.carry(&self.keys, &mut self.spare);
+        self.share(grains, rules);
+        self.wrenches.clear();
+        self.wrenches.resize(self.touching.len(), Wrench::default());
+        let columns = (&mut self.wrenches[..], &mut memory.history[..], &self.touching[..], &self.shares[..]);
+        par::each(columns, |_, (wrenches, history, pairs, shares)| {
+            for (((w, h), p), share) in wrenches.iter_mut().zip(history).zip(pairs).zip(shares) {
+                let (a, b) = (grains.kind[p.i as usize], grains.kind[p.j as usize]);
+                let Some(rule) = rules.get(a, b) else { continue };
+                let Some(g) = grains.geometry(p, rule) else { continue };
+                *w = rule.law.contact(&g, &grains.motion(p.i), &grains.motion(p.j), h, step);
+                if *share != 1.0 {
+                    *w = w.scaled(*share);
+                }
+            }
+        });
+    }
+
+    /// Number of contacts of the last evaluation.
+    pub fn len(&self) -> usize {
+        self.touching.len()
+    }
+
+    /// Whether nothing touched.
+    pub fn is_empty(&self) -> bool {
+        self.touching.is_empty()
+    }
+
+    /// Adds forces and torques to their particles, in the order of the list.
+    pub fn scatter(&self, f: &mut [Vec3], torque: &mut [Vec3]) {
+        for (p, w) in self.touching.iter().zip(&self.wrenches) {
+            let (i, j) = (p.i as usize, p.j as usize);
+            f[i] = add(f[i], w.force);
+            f[j] = sub(f[j], w.force);
+            torque[i] = add(torque[i], w.torque_i);
+            torque[j] = add(torque[j], w.torque_j);
+        }
+    }
+
+    /// Virial Σ d ⊗ F over contacts: xx yy zz xy xz yz.
+    pub fn virial(&self, x: &[Vec3], period: &[f64; 3]) -> [f64; 6] {
+        let mut sum = [0.0; 6];
+        for (p, w) in self.touching.iter().zip(&self.wrenches) {
+            let (d, f) = (difference(x, period, p), w.force);
+            for (s, (a, b)) in sum.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {
+                *s += d[a] * f[b];
+            }
+        }
+        sum
+    }
+
+    fn find(&mut self, list: &[Pair], grains: &Grains) {
+        self.flags.clear();
+        self.flags.resize(list.len(), false);
+        par::each((&mut self.flags[..], list), |_, (flags, list)| {
+            for (flag, p) in flags.iter_mut().zip(list) {
+                *flag = grains.touching(p);
+            }
+        });
+        let hits = list.iter().zip(&self.flags).filter(|(_, hit)| **hit).map(|(p, _)| *p);
+        self.touching.clear();
+        self.touching.extend(hits);
+        let tags = |p: &Pair| [grains.tag[p.i as usize], grains.tag[p.j as usize]];
+        self.keys.clear();
+        self.keys.extend(self.touching.iter().map(tags));
+    }
+
+    /// 1/N for every contact.
+    fn share<L: Copy>(&mut self, grains: &Grains, rules: &Rules<L>) {
+        self.shares.clear();
+        self.shares.resize(self.touching.len(), 1.0);
+        let average = |p: &Pair| {
+            rules
+                .get(grains.kind[p.i as usize], grains.kind[p.j as usize])
+                .map_or(Average::None, |r| r.average)
+        };
+        if rules.any(|r| r.average == Average::Particle) {
+            self.counts.clear();
+            self.counts.resize(grains.x.len(), 0);
+            for p in &self.touching {
+                self.counts[p.i as usize] += 1;
+                self.counts[p.j as usize] += 1;
+            }
+            for (s, p) in self.shares.iter_mut().zip(&self.touching) {
+                if average(p) == Average::Particle {
+                    *s = 1.0 / f64::from(self.counts[p.i as usize].max(self.counts[p.j as usize]));
+                }
+            }
+        }
+        if rules.any(|r| r.average == Average::Body) {
+            let name = |p: &Pair| {
+                let (a, b) = (grains.body_name(p.i), grains.body_name(p.j));
+                [a.min(b), a.max(b)]
+            };
+            self.names.clear();
+            self.names.extend(self.touching.iter().map(name));
+            self.names.sort_unstable();
+            for (s, p) in self.shares.iter_mut().zip(&self.touching) {
+                if average(p) == Average::Body {
+                    let key = name(p);
+                    let first = self.names.partition_point(|n| *n < key);
+                    let past = self.names.partition_point(|n| *n <= key);
+                    *s = 1.0 / (past - first) as f64;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! fix nve/sphere: velocity Verlet of spheres, translation and rotation.
+
+use super::nve::{kick, kick_and_drift};
+use super::{Fix, FixStyle};
+use crate::diag::{Code, Diagnostic, Result, fail};
+use crate::lang::Args;
+use crate::par;
+use crate::plan::{Access, Op, Stage};
+use crate::styles::step_op::StepOp;
+use crate::styles::{BuildCx, Doc, SealCx, Style};
+use crate::world::{GroupId, World};
+
+/// I / (m R²) of a solid sphere.
+const INERTIA: f64 = 0.4;
+
+/// The style.
+pub struct NveSphere;
+
+impl Style for NveSphere {
+    fn name(&self) -> &'static str {
+        "nve/sphere"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group nve/sphere",
+            summary: "moves and turns the group's spheres by velocity Verlet",
+            text: "As `fix nve`, and with each half kick ω += Δt/2 · torque/I, I = 2/5 m R² (solid spheres). Every \
+                   particle of the group needs a radius.",
+            example: "fix 1 all nve/sphere",
+        }
+    }
+}
+
+impl FixStyle for NveSphere {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        if let Some(word) = args.next() {
+            let text = match word.text.as_str() {
+                "update" | "disc" => {
+                    format!("fix nve/sphere {} is not in perigrain yet", word.text)
+                }
+                _ => return Err(args.unknown(word, &["update", "disc"])),
+            };
+            return fail(Code::NOT_SUPPORTED, word.span, text);
+        }
+        if !cx.world.particles.style.sphere {
+            return Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, "fix nve/sphere needs spheres")
+                .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
+                .into());
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (group, span) = (self.group, cx.span());
+        let p = &cx.world().particles;
+        let member = |i: &usize| p.mask[*i] & group.bit() != 0;
+        if let Some(i) = (0..p.len()).filter(member).find(|&i| !(p.radius[i] > 0.0)) {
+            let text = format!("fix nve/sphere needs spheres, but particle {} has no radius", p.tag[i]);
+            return Err(Diagnostic::error(Code::INCOMPLETE, span, text)
+                .help("add `set … diameter …`, or move this particle with `fix nve`")
+                .into());
+        }
+        let name = format!("fix {} nve/sphere", self.id);
+        let access = || Access::new("f torque mass radius mask", "x v omega");
+        let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
+            kick_and_drift(w, group, t.dt);
+            turn(w, group, t.dt);
+            Ok(())
+        });
+        let second = StepOp::new(name, Stage::FinalIntegrate, access(), move |w, t| {
+            kick(w, group, t.dt);
+            turn(w, group, t.dt);
+            Ok(())
+        });
+        Ok(vec![first.boxed(), second.boxed()])
+    }
+
+    fn integrates(&self) -> bool {
+        true
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+/// Half a step of rotation: ω += Δt/2 · torque/I.
+fn turn(w: &mut World, group: GroupId, dt: f64) {
+    let half = 0.5 * dt * w.settings.units.constants().ftm2v / INERTIA;
+    let p = &mut w.particles;
+    let bit = group.bit();
+    let columns = (&mut p.omega[..], &p.torque[..], &p.radius[..], &p.mass[..], &p.mask[..]);
+    par::each(columns, |_, (omega, torque, radius, mass, mask)| {
+        for ((((omega, torque), r), m), mask) in omega.iter_mut().zip(torque).zip(radius).zip(mass).zip(mask)
+        {
+            if mask & bit != 0 {
+                let factor = half / (r * r * m);
+                for d in 0..3 {
+                    omega[d] += factor * torque[d];
+                }
+            }
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+    use crate::world::AtomStyle;
+
+    fn bench() -> Bench {
+        let mut b = Bench::new(AtomStyle { sphere: true, ..AtomStyle::default() }, &[[1.0, 0.0, 0.0]; 2]);
+        b.world.particles.radius = vec![0.5; 2];
+        b
+    }
+
+    #[test]
+    fn spheres_turn_with_the_inertia_of_solid_ones() {
+        let mut b = bench();
+        b.world.clock.dt = 0.5;
+        b.world.particles.f = vec![[4.0, 0.0, 0.0]; 2];
+        b.world.particles.torque = vec![[0.0, 0.4, 0.0]; 2];
+        b.world.particles.mask[1] = 0;
+        let fix = b.fix(&NveSphere, "").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::InitialIntegrate).unwrap();
+        b.stage(&mut ops, Stage::FinalIntegrate).unwrap();
+        // m = 2, R = 0.5: I = 0.2, so dω = 0.5 · 0.4/0.2 = 1 over the whole step.
+        let p = &b.world.particles;
+        assert!((p.omega[0][1] - 1.0).abs() < 1e-15 && p.omega[1] == [0.0; 3]);
+        assert_eq!((p.v[0][0], p.x[0][0]), (1.0, 1.25));
+    }
+
+    #[test]
+    fn points_and_unknown_words_are_refused() {
+        let mut b = bench();
+        b.world.particles.radius[1] = 0.0;
+        let fix = b.fix(&NveSphere, "").unwrap();
+        let e = b.seal(&*fix).err().unwrap();
+        assert_eq!(e.0[0].message, "fix nve/sphere needs spheres, but particle 2 has no radius");
+        assert_eq!(b.fix(&NveSphere, "disc").err().unwrap().0[0].code, Code::NOT_SUPPORTED);
+        assert_eq!(b.fix(&NveSphere, "dics").err().unwrap().0[0].code, Code::UNKNOWN_KEYWORD);
+        b.world.particles.style.sphere = false;
+        assert!(b.fix(&NveSphere, "").is_err());
+    }
+}

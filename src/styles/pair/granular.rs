@@ -1,0 +1,187 @@
+//! `pair_style granular`: contacts of spheres, with models chosen per pair of types.
+
+mod force;
+mod words;
+
+use super::{Pair, PairStyle, TypePairs};
+use crate::diag::{Code, Diagnostic, Result, Span};
+use crate::lang::Args;
+use crate::laws::contact::driver::{Average, Curvature, Rule, Rules};
+use crate::laws::contact::{Damping, Granular, Model};
+use crate::neigh::list::{Reach, Wanted};
+use crate::plan::Op;
+use crate::styles::{BuildCx, Doc, SealCx, Style};
+use crate::world::Compat;
+use std::collections::BTreeMap;
+
+/// The style.
+pub struct GranularStyle;
+
+impl Style for GranularStyle {
+    fn name(&self) -> &'static str {
+        "granular"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "pair_style granular [cutoff]\n\
+                     pair_coeff i j hertz kn eta | hertz/material E eta nu  tangential mindlin kt|NULL x_gamma mu \
+                     [damping velocity|mass_velocity|viscoelastic|tsuji|coeff_restitution] [limit_damping] \
+                     [rolling none] [twisting none] [cutoff C] [average none|particle|body] [curvature both|impactor]",
+            summary: "Contacts of spheres: Hertz, damping, Mindlin friction with history.",
+            text: "Spheres with overlap δ = R_i + R_j − r > 0 push each other along the normal with \
+                F_n = k a δ − η v_n, a = √(R̄ δ), R̄ = R_i R_j/(R_i + R_j): k = `kn` for `hertz`, k = 4/3 E* for \
+                `hertz/material`, 1/E* = (1−ν_i²)/E_i + (1−ν_j²)/E_j. `limit_damping` cuts F_n off at zero.\n\n\
+                `damping`: η = eta (`velocity`), eta m̄ (`mass_velocity`), eta a m̄ (`viscoelastic`, the default), \
+                √2 α_T(e) √(m̄ k a) (`tsuji`), −√5 ln e/√(π²+ln²e) √(m̄ k a) (`coeff_restitution`); for the last two \
+                `eta` is the coefficient of restitution e, 0 < e ≤ 1.\n\n\
+                `tangential mindlin`: F_t = −k_t a ξ − x_gamma η v_t, at most `mu` |F_n|; ξ is the slip accumulated \
+                while the contact lasts, turned with the tangent plane and shortened to what slides (Luding 2008). \
+                `NULL` takes k_t = 8 G*, 1/G* = (2−ν_i)/G_i + (2−ν_j)/G_j. Torques act at the middle of the overlap.\n\n\
+                Type pairs without a line of their own mix those of the like pairs: geometric means, E* and G* as \
+                above. `cutoff` sets the reach of the neighbour list by hand.\n\n\
+                Not in LAMMPS: `average` divides the force of each contact by the number N of simultaneous ones, \
+                of the two particles (the larger number) or of the two bodies; action and reaction stay equal. \
+                `curvature impactor` takes R̄ = R of the grain where it meets a peridynamic solid, whose surface \
+                counts as flat (Walayat et al., table 1).",
+            example: "pair_style granular\n\
+                      pair_coeff * * hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4",
+        }
+    }
+}
+
+impl PairStyle for GranularStyle {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
+        if !cx.world.particles.style.sphere {
+            return Err(Diagnostic::error(
+                Code::WRONG_ORDER,
+                cx.span,
+                "pair_style granular needs particles with a radius",
+            )
+            .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
+            .into());
+        }
+        let number = args.peek_text().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+        let cutoff = if number { Some(args.positive("the global cutoff")?) } else { None };
+        Ok(Box::new(Declared { cutoff, given: BTreeMap::new(), only: None, memory: "granular".to_string() }))
+    }
+}
+
+/// What one `pair_coeff` line says of its pairs of types.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Coeff {
+    model: Model,
+    average: Average,
+    curvature: Curvature,
+    cutoff: Option<f64>,
+    /// The word with the normal model, for messages.
+    span: Span,
+}
+
+/// The style with its coefficients.
+#[derive(Clone)]
+struct Declared {
+    cutoff: Option<f64>,
+    given: BTreeMap<(u16, u16), Coeff>,
+    /// As a sub-style: the pairs of types it acts on.
+    only: Option<Vec<(u16, u16)>>,
+    /// Where contact history is kept in the world.
+    memory: String,
+}
+
+impl Declared {
+    /// The law of a pair of types and its reach: given, or mixed from the like pairs.
+    fn rule(&self, i: u16, j: u16, compat: Compat) -> Result<Option<(Rule<Granular>, Reach)>> {
+        let reach = |c: Option<f64>| c.or(self.cutoff).map_or(Reach::Touch, Reach::Fixed);
+        if let Some(c) = self.given.get(&(i, j)) {
+            let rule = Rule { law: c.model.law(compat), average: c.average, curvature: c.curvature };
+            return Ok(Some((rule, reach(c.cutoff))));
+        }
+        let (Some(a), Some(b)) = (self.given.get(&(i, i)), self.given.get(&(j, j))) else { return Ok(None) };
+        let refuse = |one: &str, other: &str| {
+            let text = format!("types {i} and {j} cannot be mixed: `{one}` and `{other}` differ");
+            Diagnostic::error(Code::CONFLICT, b.span, text)
+                .label(a.span, "the other one")
+                .help(format!("give this pair a line of its own: `pair_coeff {i} {j} …`"))
+        };
+        if a.average != b.average || a.curvature != b.curvature {
+            return Err(refuse("average/curvature", "average/curvature").into());
+        }
+        let law = a.model.mixed(&b.model, compat).map_err(|e| refuse(e.0, e.1))?;
+        let cutoff = a.cutoff.zip(b.cutoff).map(|(p, q)| (p * q).sqrt());
+        Ok(Some((Rule { law, average: a.average, curvature: a.curvature }, reach(cutoff))))
+    }
+
+    fn acts_on(&self, i: u16, j: u16) -> bool {
+        self.only.as_ref().is_none_or(|pairs| pairs.contains(&(i, j)))
+    }
+
+    /// Rules and reaches of all pairs of types it acts on.
+    fn tables(&self, types: usize, compat: Compat) -> Result<(Rules<Granular>, Wanted)> {
+        let (mut rules, mut wanted) = (Rules::new(types), Wanted::new(types));
+        for i in 1..=types as u16 {
+            for j in i..=types as u16 {
+                if !self.acts_on(i, j) {
+                    continue;
+                }
+                if let Some((rule, reach)) = self.rule(i, j, compat)? {
+                    rules.set(i, j, rule);
+                    wanted.set(i, j, reach);
+                }
+            }
+        }
+        Ok((rules, wanted))
+    }
+}
+
+impl Pair for Declared {
+    fn name(&self) -> &'static str {
+        "granular"
+    }
+
+    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        let coeff = words::coeff(args)?;
+        self.given.extend(pairs.iter().map(|&p| (p, coeff)));
+        Ok(())
+    }
+
+    fn covers(&self, i: u16, j: u16) -> bool {
+        let has = |a: u16, b: u16| self.given.contains_key(&(a.min(b), a.max(b)));
+        has(i, j) || (has(i, i) && has(j, j))
+    }
+
+    fn restrict(&mut self, pairs: &TypePairs) {
+        self.only = Some(pairs.to_vec());
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let w = cx.world();
+        let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
+        Ok(vec![Box::new(force::Force::new(rules, wanted, self.memory.clone()))])
+    }
+
+    fn needs(&self) -> &'static [&'static str] {
+        &["diameter", "density"]
+    }
+
+    fn check(&self, cx: &BuildCx) {
+        let w = cx.world;
+        if let Err(e) = self.tables(w.types, w.settings.compat) {
+            e.0.into_iter().for_each(|d| cx.note(d));
+        }
+        if !w.settings.lammps() {
+            return;
+        }
+        if let Some(c) = self.given.values().find(|c| c.model.damping == Damping::Tsuji) {
+            let text = "compat lammps: damping tsuji without its factor √2";
+            cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Pair> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests;

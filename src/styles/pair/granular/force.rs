@@ -1,0 +1,123 @@
+//! The op of granular contacts: list when it is due, contacts, forces and torques.
+
+use crate::diag::Result;
+use crate::laws::contact::bodies::solids;
+use crate::laws::contact::driver::{Average, Curvature, Grains, Rules, Sweep};
+use crate::laws::contact::{Advance, Granular};
+use crate::math::vec3::Vec3;
+use crate::neigh::list::{Pair, View, Wanted, pairs};
+use crate::plan::{Access, Op, Stage, Tick};
+use crate::world::contacts::Contacts;
+use crate::world::{NeighborSettings, World};
+
+/// Forces and torques of all granular contacts of one pair style.
+pub struct Force {
+    rules: Rules<Granular>,
+    wanted: Wanted,
+    memory: String,
+    list: Vec<Pair>,
+    /// The rebuild the list was made at.
+    generation: Option<u64>,
+    body: Vec<u32>,
+    sweep: Sweep<Vec3>,
+}
+
+impl Force {
+    /// With nothing computed yet.
+    pub fn new(rules: Rules<Granular>, wanted: Wanted, memory: String) -> Self {
+        let sweep = Sweep::default();
+        Self { rules, wanted, memory, list: vec![], generation: None, body: vec![], sweep }
+    }
+
+    /// Which solid each particle belongs to, where some rule asks.
+    fn find_bodies(&mut self, w: &World) {
+        self.body.clear();
+        let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
+        if let (true, Some(families)) = (asked, &w.families) {
+            self.body = solids(families, w.n());
+        }
+    }
+
+    /// The list, from the positions of the last rebuild: later positions are within half a skin of those.
+    fn find_pairs(&mut self, w: &World) -> Result<()> {
+        let p = &w.particles;
+        let held = &w.rebuild.held;
+        let x = if held.len() == p.len() { held } else { &p.x };
+        let v = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: period(w)? };
+        let s = &w.settings.neighbor;
+        let keep = |i: usize, j: usize| allowed(s, [p.mask[i], p.mask[j]], [p.kind[i], p.kind[j]]);
+        self.list = pairs(&v, &self.wanted, s.skin, &keep);
+        self.generation = Some(w.rebuild.generation);
+        Ok(())
+    }
+}
+
+impl Op for Force {
+    fn name(&self) -> &str {
+        "pair granular"
+    }
+
+    fn stage(&self) -> Stage {
+        Stage::Force
+    }
+
+    fn access(&self) -> Access {
+        Access::new("x v omega radius mass type contacts", "f torque contacts tally")
+    }
+
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if t.setup {
+            self.find_bodies(w);
+        }
+        if self.generation != Some(w.rebuild.generation) {
+            self.find_pairs(w)?;
+        }
+        let period = period(w)?;
+        let mut memory = w.contacts.remove(&self.memory).unwrap_or_default();
+        // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
+        let kept: Option<Contacts<Vec3>> = (t.setup && !w.settings.lammps()).then(|| memory.clone());
+        let p = &w.particles;
+        let grains = Grains {
+            x: &p.x,
+            v: &p.v,
+            omega: &p.omega,
+            radius: &p.radius,
+            mass: &p.mass,
+            kind: &p.kind,
+            tag: &p.tag,
+            period,
+            body: &self.body,
+        };
+        let step = Advance { dt: t.dt, history: !t.setup };
+        self.sweep.run(&self.list, &grains, &self.rules, &mut memory, step);
+        self.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
+        if t.virial {
+            let virial = self.sweep.virial(&w.particles.x, &period);
+            for (total, part) in w.tally.virial.iter_mut().zip(virial) {
+                *total += part;
+            }
+        }
+        w.contacts.insert(self.memory.clone(), kept.unwrap_or(memory));
+        Ok(())
+    }
+
+    fn bytes(&self, _w: &World) -> u64 {
+        // Pairs read with both ends (12 + 2 × 32 bytes); per contact both ends' state, wrench and history.
+        (self.list.len() * 76 + self.sweep.len() * 400) as u64
+    }
+}
+
+/// Edge lengths of the box; zero where it does not repeat.
+fn period(w: &World) -> Result<Vec3> {
+    let domain = w.domain()?;
+    let (lengths, periodic) = (domain.lengths(), domain.periodic());
+    Ok(std::array::from_fn(|d| if periodic[d] { lengths[d] } else { 0.0 }))
+}
+
+/// `neigh_modify exclude`.
+fn allowed(s: &NeighborSettings, mask: [u32; 2], kind: [u16; 2]) -> bool {
+    let [a, b] = mask;
+    let groups = |&(g, h): &(u32, u32)| (a & g != 0 && b & h != 0) || (a & h != 0 && b & g != 0);
+    let types = |&(g, h): &(u16, u16)| (kind[0] == g && kind[1] == h) || (kind[0] == h && kind[1] == g);
+    !s.exclude_groups.iter().any(groups) && !s.exclude_types.iter().any(types)
+}
