@@ -171,14 +171,6 @@ impl Names for Graph {
         self.variables.get(name).copied()
     }
 
-    fn extensive(&self, r: &ValueRef) -> bool {
-        match r.kind {
-            RefKind::Compute => self.find_compute(&r.name).is_some_and(|c| c.compute.extensive()),
-            RefKind::Fix => self.find_fix(&r.name).is_some_and(|f| f.fix.extensive()),
-            _ => false,
-        }
-    }
-
     fn all(&self, kind: UseKind) -> Vec<String> {
         match kind {
             UseKind::Compute => self.computes.iter().map(|c| c.id.clone()).collect(),

@@ -54,9 +54,14 @@ pub trait Names {
     fn fix(&self, id: &str) -> Option<Shape>;
     /// Whether a variable is atom-style (`Some(true)`), any other style (`Some(false)`), or absent.
     fn variable(&self, name: &str) -> Option<bool>;
-    /// Whether the global values of a compute or fix grow with the number of particles (`thermo_modify norm`).
-    fn extensive(&self, _r: &ValueRef) -> bool {
-        false
+    /// Whether this global value of a compute or fix grows with the number of particles (`thermo_modify norm`).
+    fn extensive(&self, r: &ValueRef) -> bool {
+        let shape = match r.kind {
+            RefKind::Compute => self.compute(&r.name),
+            RefKind::Fix => self.fix(&r.name),
+            _ => None,
+        };
+        shape.is_some_and(|s| if r.index.is_empty() { s.scalar_extensive } else { s.vector_extensive })
     }
     /// All names of a kind, for "did you mean".
     fn all(&self, kind: UseKind) -> Vec<String>;

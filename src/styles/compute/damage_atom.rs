@@ -73,6 +73,28 @@ mod tests {
     use super::*;
     use crate::styles::testing::Bench;
     use crate::world::AtomStyle;
+    use crate::world::families::{Bounds, Families, FamilyOptions, PeriView, PmbCoeff, PmbTable};
+
+    #[test]
+    fn lost_volume_over_all_volume() {
+        let places = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &places);
+        let c = b.compute(&DamageAtom, "").unwrap();
+        b.world.particles.volume = vec![1.0, 2.0, 6.0];
+        let mut table = PmbTable::new(1);
+        table.set(1, 1, PmbCoeff { c: 1.0, horizon: 1.2, s00: 1.0, alpha: 0.0 }).unwrap();
+        let p = &b.world.particles;
+        let bounds = Bounds { lo: [-10.0; 3], hi: [10.0; 3], periodic: [false; 3] };
+        let view = PeriView { x: &p.x, x0: &p.x0, kind: &p.kind, volume: &p.volume, bounds };
+        let mut families = Families::build(&view, &table, FamilyOptions::new(1.0)).unwrap();
+        // Only 1-2 and 1-3 are within 1.2; without particle 2 they end: 2 of 8 volumes lost.
+        families.remap(&[Some(0), None, Some(1)]);
+        b.world.particles.gather(&[0, 2]);
+        b.world.families = Some(families);
+        assert_eq!(b.evaluate(&*c).unwrap().atom, [0.25, 0.0]);
+        b.world.particles.mask[0] = 0;
+        assert_eq!(b.evaluate(&*c).unwrap().atom, [0.0, 0.0]);
+    }
 
     // Broken bonds are compared with LAMMPS' damage in tests/lammps.
     #[test]

@@ -30,11 +30,6 @@ pub trait ComputeStyle: Style {
 
 /// A declared compute.
 pub trait Compute: Send {
-    /// Whether its global values grow with the number of particles (`thermo_modify norm yes` divides them).
-    fn extensive(&self) -> bool {
-        false
-    }
-
     /// Which values it offers.
     fn shape(&self) -> Shape;
 

@@ -45,11 +45,6 @@ pub trait Fix: Send {
     /// Forgets what `declare` captured.
     fn remove(&self, _w: &mut World) {}
 
-    /// Whether its global values grow with the number of particles (`thermo_modify norm yes` divides them).
-    fn extensive(&self) -> bool {
-        false
-    }
-
     /// Which values it offers.
     fn shape(&self) -> Shape {
         Shape::default()
