@@ -171,6 +171,14 @@ impl Names for Graph {
         self.variables.get(name).copied()
     }
 
+    fn users(&self, name: &Use) -> Vec<String> {
+        let uses = |span: Span| self.nodes.iter().any(|n| n.span == span && n.uses.contains(name));
+        let fixes = self.fixes.iter().filter(|f| uses(f.span)).map(|f| format!("fix {}", f.id));
+        let computes = self.computes.iter().filter(|c| uses(c.span)).map(|c| format!("compute {}", c.id));
+        let dumps = self.dumps.iter().filter(|d| uses(d.span)).map(|d| format!("dump {}", d.id));
+        fixes.chain(computes).chain(dumps).collect()
+    }
+
     fn all(&self, kind: UseKind) -> Vec<String> {
         match kind {
             UseKind::Compute => self.computes.iter().map(|c| c.id.clone()).collect(),

@@ -63,6 +63,10 @@ pub trait Names {
         };
         shape.is_some_and(|s| if r.index.is_empty() { s.scalar_extensive } else { s.vector_extensive })
     }
+    /// The fixes, computes and dumps in force that use a name, as `fix ball`.
+    fn users(&self, _name: &Use) -> Vec<String> {
+        vec![]
+    }
     /// All names of a kind, for "did you mean".
     fn all(&self, kind: UseKind) -> Vec<String>;
 }
@@ -96,6 +100,19 @@ impl BuildCx<'_> {
     /// Records that this line uses a name.
     pub fn uses(&self, kind: UseKind, name: &str) {
         self.uses.borrow_mut().push(Use { kind, name: name.to_string() });
+    }
+
+    /// Checks that no fix, compute or dump in force needs what is about to be deleted.
+    ///
+    /// # Errors
+    /// Somebody does.
+    pub fn unused(&self, kind: UseKind, word: &Word) -> Result<()> {
+        let users = self.names.users(&Use { kind, name: word.text.clone() });
+        if users.is_empty() {
+            return Ok(());
+        }
+        let text = format!("`{}` is still used by {}", word.text, users.join(", "));
+        Err(Diagnostic::error(Code::CONFLICT, word.span, text).help("delete those first").into())
     }
 
     /// The group a word names.

@@ -4,7 +4,7 @@ use super::common::{self, atom_variable, id, not_here, setting, unknown_style, w
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Param, ValueRef, Word};
-use crate::styles::{ActCx, BuildCx, Doc, Style};
+use crate::styles::{ActCx, BuildCx, Doc, Style, UseKind};
 use crate::world::{GroupId, Particles, Region};
 
 /// The command.
@@ -92,6 +92,11 @@ fn delete(cx: &BuildCx, word: &Word, name: String) -> Result<Box<dyn Act>> {
     let group = cx.group(word)?;
     if group == GroupId::ALL {
         return fail(Code::BAD_VALUE, word.span, "the group `all` cannot be deleted");
+    }
+    cx.unused(UseKind::Group, word)?;
+    if cx.world.settings.neighbor.exclude_groups.iter().any(|&(a, b)| a == group.bit() || b == group.bit()) {
+        let text = format!("group `{name}` is still used by neigh_modify exclude");
+        return fail(Code::CONFLICT, word.span, text);
     }
     Ok(setting(move |cx| {
         if let Some(group) = cx.world.groups.find(&name) {

@@ -4,7 +4,7 @@ use super::common::{self, constant, id, not_here, scales, setting, units_lattice
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Word};
-use crate::styles::{BuildCx, Doc, Style};
+use crate::styles::{BuildCx, Doc, Style, UseKind};
 use crate::world::Region;
 use crate::world::region::{INFINITE, Shape, across};
 
@@ -86,6 +86,7 @@ fn delete(cx: &BuildCx, name: String, word: &Word) -> Result<Box<dyn Act>> {
     if !cx.world.regions.contains_key(&name) {
         return fail(Code::UNKNOWN_NAME, word.span, format!("there is no region `{name}`"));
     }
+    cx.unused(UseKind::Region, word)?;
     Ok(setting(move |cx| {
         cx.world.regions.remove(&name);
         Ok(())

@@ -113,6 +113,16 @@ impl Pmb {
     }
 }
 
+impl Pmb {
+    /// Whether `neigh_modify exclude` concerns pairs that this style acts on.
+    fn loses_pairs(&self, w: &World) -> bool {
+        let (rules, p) = (&w.settings.neighbor, &w.particles);
+        let has = |bit: u32| (0..w.n()).any(|i| p.mask[i] & bit != 0 && self.covers(p.kind[i], p.kind[i]));
+        rules.exclude_types.iter().any(|&(a, b)| self.covers(a, b))
+            || rules.exclude_groups.iter().any(|&(a, b)| has(a) && has(b))
+    }
+}
+
 impl Pair for Pmb {
     fn name(&self) -> &'static str {
         "peri/pmb"
@@ -165,6 +175,10 @@ impl Pair for Pmb {
         let [a, b, c] = w.lattice.spacing;
         if !(a == b && b == c) {
             return fail(Code::CONFLICT, span, "peri/pmb needs a lattice that is the same in x, y and z");
+        }
+        if self.loses_pairs(w) {
+            let text = "neigh_modify exclude takes pairs away from peri/pmb: perigrain cannot do that yet";
+            return fail(Code::NOT_SUPPORTED, span, text);
         }
         let s = &w.settings;
         let options = FamilyOptions {
