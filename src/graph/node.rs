@@ -2,7 +2,6 @@
 
 use super::thermo::Thermo;
 use crate::diag::Span;
-use crate::lang::{RefKind, ValueRef};
 use crate::styles::{Compute, Dump, Fix, Names, Pair, Shape, Use, UseKind};
 use crate::world::GroupId;
 use std::collections::BTreeMap;
