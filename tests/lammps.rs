@@ -1,0 +1,125 @@
+//! The decks that LAMMPS has run before: the same numbers from perigrain, whatever the layout, the threads or the skipping.
+#![allow(clippy::unwrap_used)] // a test fails by panicking
+
+#[path = "lammps/artefacts.rs"]
+mod artefacts;
+#[path = "common/compare.rs"]
+mod compare;
+
+use compare::{Row, Rule, compare, read};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Switches that may change how a result is computed but not what it is.
+#[derive(Clone, Copy)]
+struct Variant {
+    layout: &'static str,
+    threads: &'static str,
+    rest: &'static str,
+    portable: bool,
+}
+
+/// What a run leaves: its thermo table and its last dump, as text for bits and as numbers for tolerances.
+struct Outcome {
+    thermo_lines: Vec<String>,
+    dump: String,
+    thermo: Vec<Row>,
+    state: Vec<Row>,
+}
+
+const LAYOUTS: [&str; 2] = ["list", "auto"];
+
+fn check(deck: &str) {
+    let rules: BTreeMap<String, Rule> = toml::from_str(&stored("tolerances.toml")).unwrap();
+    let rule = &rules[deck];
+    let last = rule.last.as_deref().unwrap_or(rule);
+    let golden = read(&stored(&format!("golden/{deck}.csv")));
+    let golden_state = read(&stored(&format!("golden/{deck}.final.csv")));
+
+    let mut by_layout = vec![];
+    for layout in LAYOUTS {
+        let first = Variant { layout, threads: "1", rest: "full", portable: false };
+        let base = run(deck, first);
+        let context = |what: &str| format!("{deck}, layout {layout}, {what}");
+        let thermo = compare(&base.thermo, &golden, rule);
+        let state = compare(&base.state, &golden_state, last);
+        println!(
+            "{}: {:?}, final {:?}",
+            context("deviation from LAMMPS"),
+            thermo.as_ref().ok(),
+            state.as_ref().ok()
+        );
+        assert!(thermo.is_ok(), "{}:\n{}", context("thermo"), thermo.unwrap_err());
+        assert!(state.is_ok(), "{}:\n{}", context("final state"), state.unwrap_err());
+
+        for (threads, rest) in [("1", "skip"), ("2", "full"), ("2", "skip")] {
+            let other = run(deck, Variant { threads, rest, ..first });
+            let what =
+                context(&format!("{threads} threads, rest {rest}: not the same bits as 1 thread, rest full"));
+            assert!(base.thermo_lines == other.thermo_lines, "{what} (thermo)");
+            assert!(base.dump == other.dump, "{what} (dump)");
+        }
+        let portable = run(deck, Variant { portable: true, ..first });
+        agree(&base, &portable, rule, &context("AVX2 path against portable path"));
+        by_layout.push(base);
+    }
+    agree(&by_layout[0], &by_layout[1], rule, &format!("{deck}, list layout against lattice layout"));
+}
+
+/// Two ways to compute one thing agree to ten times the deck's intrinsic noise, at least 1e-11.
+fn agree(a: &Outcome, b: &Outcome, rule: &Rule, what: &str) {
+    let last = rule.last.as_deref().unwrap_or(rule);
+    let near = |r: &Rule| Rule { rtol: (10.0 * r.intrinsic).max(1e-11), ..Rule::default() };
+    for (x, y, rule) in [(&a.thermo, &b.thermo, rule), (&a.state, &b.state, last)] {
+        if let Err(report) = compare(x, y, &near(rule)) {
+            panic!("{what}:\n{report}");
+        }
+    }
+}
+
+fn run(deck: &str, v: Variant) -> Outcome {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("in.deck"), stored(&format!("decks/{deck}.in"))).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_perigrain"));
+    command.current_dir(folder.path());
+    command.args(["-in", "in.deck", "-log", "log.deck", "-screen", "none", "-compat", "lammps"]);
+    command.args(["-threads", v.threads, "-layout", v.layout, "-rest", v.rest]);
+    command.args(v.portable.then_some("-portable"));
+    let output = command.output().unwrap();
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{deck}: {command:?} ended with {}:\n{complaint}", output.status);
+    let log = fs::read_to_string(folder.path().join("log.deck")).unwrap();
+    let dump = fs::read_to_string(folder.path().join(format!("{deck}.final.dump"))).unwrap();
+    let thermo_lines = log.lines().filter(|l| is_row(l)).map(String::from).collect();
+    Outcome { thermo_lines, thermo: read(&log), state: read(&dump), dump }
+}
+
+/// A line of numbers only: timings stand in lines with words.
+fn is_row(line: &str) -> bool {
+    line.split_whitespace().count() > 1 && line.split_whitespace().all(|w| w.parse::<f64>().is_ok())
+}
+
+fn stored(name: &str) -> String {
+    let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lammps").join(name);
+    fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+macro_rules! decks {
+    ($($name:ident)*) => { $(#[test] fn $name() { check(stringify!($name)); })* };
+}
+
+decks! {
+    pd_pmb_wave
+    pd_pmb_indent
+    pd_pmb_tension
+    pd_pmb_collide
+    pd_pmb_alpha
+    pd_pmb_periodic
+    pd_pmb_lj_units
+    pd_pmb_dtreset
+    pd_pmb_laminate
+    gr2_g_mindlin
+    hyb_pmb_granular
+}
