@@ -2,6 +2,7 @@
 
 mod camera;
 mod colour;
+mod glyphs;
 mod overlay;
 mod raster;
 mod shade;

@@ -108,3 +108,11 @@ fn png_reads_back() {
     reader.next_frame(&mut pixels).unwrap();
     assert_eq!(pixels, image.pixels.as_flattened());
 }
+#[test]
+fn letters_show() {
+    for c in ' '..='~' {
+        let mut one = Image { width: 40, height: 40, pixels: vec![[255; 3]; 1600] };
+        text::draw(&mut one, &c.to_string(), 10.0, 5.0, 20.0, Colour::hex(0));
+        assert_eq!(one.pixels.iter().any(|p| p[0] < 128), c != ' ', "{c}");
+    }
+}
