@@ -174,7 +174,7 @@ fn stuff(args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
         .into());
     }
     if s.solid.defies_bonds() {
-        cx.note(poisson(m, &s, id.span));
+        cx.note(poisson(&id.text, &s, id.span));
     }
     Ok(s)
 }
@@ -203,15 +203,15 @@ fn spacing(at: Span, cx: &BuildCx) -> Result<f64> {
 }
 
 /// The warning that bonds fix Poisson's ratio.
-fn poisson(m: &Material, s: &Stuff, at: Span) -> Diagnostic {
+fn poisson(id: &str, s: &Stuff, at: Span) -> Diagnostic {
     let (kept, lost) = match s.form {
         Form::Bulk => ("the bulk modulus K", "E and G are"),
         Form::Shear => ("the shear modulus G", "E and K are"),
         Form::Young => ("Young's modulus E", "K and G are"),
     };
-    let text = format!("bonds fix Poisson's ratio at {BOND_NU}, but `{}` has nu = {}", m.name.trim(), m.nu);
+    let text = format!("bonds fix Poisson's ratio at {BOND_NU}, but material `{id}` has nu = {}", s.solid.nu);
     Diagnostic::warning(Code::MATERIAL, at, text)
-        .help(format!("`form` bulk, shear or young says which modulus is kept: here {kept}; {lost} off"))
+        .help(format!("`form` bulk, shear or young says which modulus is kept: now {kept}, while {lost} off"))
 }
 
 #[cfg(test)]

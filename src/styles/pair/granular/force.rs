@@ -66,7 +66,8 @@ impl Op for Force {
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        if t.setup {
+        // A run that continues an unchanged scene has no setup.
+        if t.setup || self.generation.is_none() {
             self.find_bodies(w);
         }
         if self.generation != Some(w.rebuild.generation) {
