@@ -73,6 +73,9 @@ pub struct Various<'a> {
     pub newton: bool,
 }
 
+/// Cells of a chunk: a byte of alive bits per stencil vector.
+const CELLS: usize = 8;
+
 /// Degree that stands for the closed form.
 pub const CLOSED: usize = 8;
 
@@ -95,7 +98,10 @@ pub unsafe fn force<
     // SAFETY: the caller's promise covers every address formed below.
     unsafe {
         let zero = L::splat(0.0);
-        let u = [xyz!(|k| L::load(a.u[k])), xyz!(|k| L::load(a.u[k].add(4)))];
+        // Two vectors of four cells, or one of eight (the second then stays unused).
+        let vectors = CELLS / L::WIDTH;
+        let half = CELLS - L::WIDTH;
+        let u = [xyz!(|k| L::load(a.u[k])), xyz!(|k| L::load(a.u[k].add(half)))];
         let mut sum = [[zero; 3]; 2];
         let (mut high, mut low) = (zero, zero);
         let mut e = 0;
@@ -111,8 +117,8 @@ pub unsafe fn force<
             let xi = xyz!(|k| L::splat(*c.add(constant::XI + k)));
             let dead = L::splat(*c.add(constant::DEAD));
             let mut v = 0;
-            while v < 2 {
-                let other = to + 4 * v as isize;
+            while v < vectors {
+                let other = to + (L::WIDTH * v) as isize;
                 let eta = xyz!(|k| L::load(a.u[k].offset(other)).sub(u[v][k]));
                 let bond = xyz!(|k| eta[k].add(xi[k]));
                 let twice = xyz!(|k| bond[k].add(xi[k]));
@@ -131,7 +137,7 @@ pub unsafe fn force<
                 };
                 let mut live = q.abs().ge(dead);
                 if MASKED {
-                    live = live.keep(L::mask(bits >> (4 * v)));
+                    live = live.keep(L::mask(bits >> (L::WIDTH * v)));
                 }
                 let factor = factor.keep(live);
                 if TRACK {
@@ -150,21 +156,20 @@ pub unsafe fn force<
             }
         }
         let mut v = 0;
-        while v < 2 {
-            let total = xyz!(|k| L::load(a.f[k].add(4 * v)).add(sum[v][k]));
-            total[0].store(a.f[0].add(4 * v));
-            total[1].store(a.f[1].add(4 * v));
-            total[2].store(a.f[2].add(4 * v));
+        while v < vectors {
+            let total = xyz!(|k| L::load(a.f[k].add(L::WIDTH * v)).add(sum[v][k]));
+            total[0].store(a.f[0].add(L::WIDTH * v));
+            total[1].store(a.f[1].add(L::WIDTH * v));
+            total[2].store(a.f[2].add(L::WIDTH * v));
             v += 1;
         }
         if !TRACK {
             return (0.0, 0.0);
         }
-        let (high, low) = (high.array(), low.array());
-        (
-            high[0].max(high[1]).max(high[2]).max(high[3]).max(0.0),
-            -low[0].min(low[1]).min(low[2]).min(low[3]).min(0.0),
-        )
+        let mut most = [[0.0f64; CELLS]; 2];
+        high.store(most[0].as_mut_ptr());
+        low.store(most[1].as_mut_ptr());
+        (most[0].iter().copied().fold(0.0, f64::max), -most[1].iter().copied().fold(0.0, f64::min))
     }
 }
 
@@ -174,17 +179,17 @@ unsafe fn various<L: Lanes>(a: &Chunk, factor: L, to: isize, v: usize) -> (L, L)
     // SAFETY: per-cell data cover the cells that displacements cover.
     unsafe {
         let Some(cells) = a.various else { return (factor, factor) };
-        let mut c = [0.0; 4];
+        let mut c = [0.0; CELLS];
         let mut lane = 0;
-        while lane < 4 {
-            let at = (4 * v + lane) as isize;
+        while lane < L::WIDTH {
+            let at = (L::WIDTH * v + lane) as isize;
             let (i, j) = (*cells.kind.offset(at), *cells.kind.offset(at + to));
             c[lane] = cells.pairs[usize::from(i) * cells.kinds + usize::from(j)][0];
             lane += 1;
         }
         let factor = factor.mul(L::load(c.as_ptr()));
-        let own = L::load(cells.volume.add(4 * v));
-        let other = L::load(cells.volume.offset(to).add(4 * v));
+        let own = L::load(cells.volume.add(L::WIDTH * v));
+        let other = L::load(cells.volume.offset(to).add(L::WIDTH * v));
         if cells.newton {
             let both = factor.mul(own.mul(other));
             return (both, both);
@@ -234,6 +239,27 @@ impl Kernels for Wide {
         }
         // SAFETY: the caller's promise includes the instruction set.
         unsafe { wide::<DEGREE, MASKED, TRACK, VARIOUS>(a) }
+    }
+}
+
+/// Processors with AVX-512: the same bits as [`Wide`], eight cells at once.
+#[cfg(target_arch = "x86_64")]
+pub struct Widest;
+
+#[cfg(target_arch = "x86_64")]
+impl Kernels for Widest {
+    unsafe fn force<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
+        a: &Chunk,
+    ) -> (f64, f64) {
+        #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
+        unsafe fn widest<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
+            a: &Chunk,
+        ) -> (f64, f64) {
+            // SAFETY: the caller's promise.
+            unsafe { force::<super::lanes512::Avx512, DEGREE, MASKED, TRACK, VARIOUS>(a) }
+        }
+        // SAFETY: the caller's promise includes the instruction set.
+        unsafe { widest::<DEGREE, MASKED, TRACK, VARIOUS>(a) }
     }
 }
 

@@ -3,12 +3,14 @@
 use std::sync::{Mutex, PoisonError};
 
 use super::breaking::{Periodic, break_bonds};
-#[cfg(target_arch = "x86_64")]
-use super::chunk::Wide;
 use super::chunk::{Kernels, Plain};
+#[cfg(target_arch = "x86_64")]
+use super::chunk::{Wide, Widest};
 use super::contact::{Repulsion, repel};
 use super::energy::tally;
 use super::lanes::has_avx2;
+#[cfg(target_arch = "x86_64")]
+use super::lanes512::has_avx512;
 use super::lattice::{self, ChunkColumns, Mode};
 use super::list::{self, RowKernels};
 use crate::diag::{Code, Diagnostic, Result};
@@ -138,6 +140,10 @@ impl Families {
         advance: bool,
         tally: Option<&mut PeriTally>,
     ) {
+        #[cfg(target_arch = "x86_64")]
+        if !self.options.portable && has_avx512() {
+            return self.force_with::<Widest>(view, f, advance, tally);
+        }
         #[cfg(target_arch = "x86_64")]
         if !self.options.portable && has_avx2() {
             return self.force_with::<Wide>(view, f, advance, tally);

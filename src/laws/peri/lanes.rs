@@ -1,34 +1,31 @@
-//! Four numbers at a time: the portable form and AVX2+FMA behind one trait, so that a law is written once.
+//! Several numbers at a time: the portable form and AVX2+FMA (AVX-512 elsewhere) behind one trait, so that a law is written once.
 
-/// Four `f64` lanes. Masks are lanes whose bits are all ones (yes) or all zeros (no).
+/// Some `f64` lanes, four or eight. Masks are lanes whose bits are all ones (yes) or all zeros (no).
 ///
 /// All methods are inlined into kernels; the AVX2 form may only be used inside functions compiled for it.
 pub trait Lanes: Copy {
+    /// How many lanes.
+    const WIDTH: usize;
     /// The same number in every lane.
     ///
     /// # Safety
     /// As for every method here: the processor must have what the form needs.
     unsafe fn splat(a: f64) -> Self;
-    /// Four consecutive numbers, aligned or not.
+    /// As many consecutive numbers as there are lanes, aligned or not.
     ///
     /// # Safety
-    /// `p` must be readable for four numbers.
+    /// `p` must be readable for that many.
     unsafe fn load(p: *const f64) -> Self;
-    /// Writes four consecutive numbers.
+    /// Writes as many consecutive numbers as there are lanes.
     ///
     /// # Safety
-    /// `p` must be writable for four numbers.
+    /// `p` must be writable for that many.
     unsafe fn store(self, p: *mut f64);
     /// Lanes `k` from bit `k` of `bits`.
     ///
     /// # Safety
     /// See [`Lanes::splat`].
     unsafe fn mask(bits: u8) -> Self;
-    /// Lane values as an array.
-    ///
-    /// # Safety
-    /// See [`Lanes::splat`].
-    unsafe fn array(self) -> [f64; 4];
     /// Sum.
     ///
     /// # Safety
@@ -94,6 +91,15 @@ pub trait Lanes: Copy {
     /// # Safety
     /// See [`Lanes::splat`].
     unsafe fn any(self) -> bool;
+}
+
+/// What rows of four need besides.
+pub trait Rows: Lanes {
+    /// Lane values as an array.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    unsafe fn array(self) -> [f64; 4];
     /// Mask of the four numbers whose highest bit is not set.
     ///
     /// # Safety
@@ -123,6 +129,7 @@ impl Portable {
 }
 
 impl Lanes for Portable {
+    const WIDTH: usize = 4;
     #[inline(always)]
     unsafe fn splat(a: f64) -> Self {
         Self([a; 4])
@@ -140,10 +147,6 @@ impl Lanes for Portable {
     #[inline(always)]
     unsafe fn mask(bits: u8) -> Self {
         Self(MASKS[usize::from(bits & 15)].map(f64::from_bits))
-    }
-    #[inline(always)]
-    unsafe fn array(self) -> [f64; 4] {
-        self.0
     }
     #[inline(always)]
     unsafe fn add(self, b: Self) -> Self {
@@ -196,6 +199,13 @@ impl Lanes for Portable {
     #[inline(always)]
     unsafe fn any(self) -> bool {
         self.0.iter().any(|m| m.to_bits() != 0)
+    }
+}
+
+impl Rows for Portable {
+    #[inline(always)]
+    unsafe fn array(self) -> [f64; 4] {
+        self.0
     }
     #[inline(always)]
     unsafe fn living(p: *const u32) -> Self {
@@ -256,7 +266,7 @@ pub use x86::Avx2;
 mod x86 {
     use std::arch::x86_64::*;
 
-    use super::{Lanes, MASKS};
+    use super::{Lanes, MASKS, Rows};
 
     /// Lanes in one AVX register.
     #[derive(Clone, Copy)]
@@ -264,6 +274,7 @@ mod x86 {
 
     // SAFETY (all blocks): the caller promises that the processor has AVX2 and FMA, and that pointers are good.
     impl Lanes for Avx2 {
+        const WIDTH: usize = 4;
         #[inline(always)]
         unsafe fn splat(a: f64) -> Self {
             Self(unsafe { _mm256_set1_pd(a) })
@@ -279,12 +290,6 @@ mod x86 {
         #[inline(always)]
         unsafe fn mask(bits: u8) -> Self {
             Self(unsafe { _mm256_loadu_pd(MASKS.get_unchecked(usize::from(bits & 15)).as_ptr().cast()) })
-        }
-        #[inline(always)]
-        unsafe fn array(self) -> [f64; 4] {
-            let mut out = [0.0; 4];
-            unsafe { _mm256_storeu_pd(out.as_mut_ptr(), self.0) }
-            out
         }
         #[inline(always)]
         unsafe fn add(self, b: Self) -> Self {
@@ -337,6 +342,15 @@ mod x86 {
         #[inline(always)]
         unsafe fn any(self) -> bool {
             unsafe { _mm256_movemask_pd(self.0) != 0 }
+        }
+    }
+
+    impl Rows for Avx2 {
+        #[inline(always)]
+        unsafe fn array(self) -> [f64; 4] {
+            let mut out = [0.0; 4];
+            unsafe { _mm256_storeu_pd(out.as_mut_ptr(), self.0) }
+            out
         }
         #[inline(always)]
         unsafe fn living(p: *const u32) -> Self {

@@ -1,6 +1,6 @@
 //! Forces of bonds kept as a list: four bonds of one particle at a time.
 
-use super::lanes::{Lanes, Portable};
+use super::lanes::{Lanes, Portable, Rows};
 use super::lattice::{MAY_BREAK, Mode, SQUEEZED};
 use super::pmb::{SERIES, UP_TO_7, closed, stretch, z_of};
 use crate::par::{self, Shared};
@@ -137,7 +137,7 @@ pub struct RowTask<'a> {
 /// Every partner must lie in the window behind `force`, untouched by others; the processor must have what `L`
 /// needs.
 #[inline(always)]
-unsafe fn force<L: Lanes, const PERIODIC: bool>(a: &RowTask) -> (f64, f64) {
+unsafe fn force<L: Rows, const PERIODIC: bool>(a: &RowTask) -> (f64, f64) {
     // SAFETY: partners are records; their places in the window exist by the caller's promise.
     unsafe {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
@@ -257,6 +257,14 @@ impl RowKernels for super::chunk::Wide {
         }
         // SAFETY: the caller's promise includes the instruction set.
         unsafe { wide::<PERIODIC>(a) }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl RowKernels for super::chunk::Widest {
+    unsafe fn row<const PERIODIC: bool>(a: &RowTask) -> (f64, f64) {
+        // SAFETY: the caller's promise; whoever has AVX-512 has AVX2.
+        unsafe { <super::chunk::Wide as RowKernels>::row::<PERIODIC>(a) }
     }
 }
 

@@ -7,6 +7,8 @@ pub mod damage;
 mod energy;
 pub mod families;
 mod lanes;
+#[cfg(target_arch = "x86_64")]
+mod lanes512;
 mod lattice;
 mod list;
 pub mod moduli;

@@ -52,7 +52,7 @@ pub fn z_of(stretch: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::lanes::Portable;
+    use super::super::lanes::{Portable, Rows};
     use super::*;
 
     #[test]
