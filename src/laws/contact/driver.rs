@@ -270,3 +270,6 @@ impl<H: Copy + Default + Send> Sweep<H> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
