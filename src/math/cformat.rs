@@ -1,5 +1,7 @@
 //! C's `printf` conversions, character for character: flags, width, precision, `inf`, `nan` and `-0`.
 
+mod digits;
+
 use std::io::Write;
 
 /// Largest width or precision that is accepted; C has no limit, a log line has.
@@ -298,15 +300,15 @@ impl Spec {
             let precision = self.precision.unwrap_or(6);
             match self.conversion {
                 Conversion::Fixed => {
-                    let _ = write!(out, "{size:.precision$}");
+                    digits::fixed(out, size, precision);
                     if self.alternate && precision == 0 {
                         out.push(b'.');
                     }
                 }
                 Conversion::Exponent => {
-                    let exponent = mantissa(out, size, precision);
-                    if self.alternate && precision == 0 {
-                        out.push(b'.');
+                    let exponent = digits::significant(out, size, precision + 1);
+                    if self.alternate || precision > 0 {
+                        out.insert(start + 1, b'.');
                     }
                     push_exponent(out, exponent, self.upper);
                 }
@@ -326,10 +328,7 @@ impl Spec {
     /// `%g`: `digits` significant ones; an exponent when it is below -4 or not below `digits`.
     fn general(&self, out: &mut Vec<u8>, size: f64, digits: usize) {
         let start = out.len();
-        let exponent = mantissa(out, size, digits - 1);
-        if digits > 1 {
-            out.remove(start + 1);
-        }
+        let exponent = digits::significant(out, size, digits);
         if !self.alternate {
             let zeros = out[start + 1..].iter().rev().take_while(|&&b| b == b'0').count();
             out.truncate(out.len() - zeros);
@@ -403,19 +402,6 @@ pub fn general(x: f64, digits: usize) -> String {
     let mut out = Vec::new();
     spec.float(&mut out, x);
     text_of(out)
-}
-
-/// Writes `d.ddd` with `decimals` after the point and returns the decimal exponent.
-fn mantissa(out: &mut Vec<u8>, size: f64, decimals: usize) -> i32 {
-    // Rust's `{:e}` rounds the exact binary value, ties to even, as glibc does; only the exponent is spelled otherwise.
-    let start = out.len();
-    let _ = write!(out, "{size:.decimals$e}");
-    let Some(mark) = out[start..].iter().rposition(|&b| b == b'e').map(|k| start + k) else {
-        return 0;
-    };
-    let exponent = std::str::from_utf8(&out[mark + 1..]).ok().and_then(|t| t.parse().ok());
-    out.truncate(mark);
-    exponent.unwrap_or(0)
 }
 
 /// Writes `e+05`, at least two digits.
