@@ -74,7 +74,10 @@ pub struct Various<'a> {
 }
 
 /// Cells of a chunk: a byte of alive bits per stencil vector.
-const CELLS: usize = 8;
+pub const CELLS: usize = 8;
+
+/// Energy and the six components of the virial.
+pub const SUMS: usize = 7;
 
 /// Degree that stands for the closed form.
 pub const CLOSED: usize = 8;
@@ -173,6 +176,65 @@ pub unsafe fn force<
     }
 }
 
+/// Energy and virial of a chunk's bonds, each end of a bond counted: Σ ½ c w V s² |xi| and
+/// −Σ (c w V/|xi|) z h(z) y_a y_b over the six products of y = xi + eta, cell by cell. The virial lacks the
+/// volume that densities need.
+///
+/// # Safety
+/// As for [`force`], without `f`; the chunk has no per-cell data.
+#[inline(always)]
+pub unsafe fn sums<L: Lanes>(a: &Chunk) -> [[f64; CELLS]; SUMS] {
+    // SAFETY: the caller's promise covers every address formed below.
+    unsafe {
+        let mut out = [[0.0; CELLS]; SUMS];
+        let mut v = 0;
+        while v < CELLS / L::WIDTH {
+            let here = L::WIDTH * v;
+            let u = xyz!(|k| L::load(a.u[k].add(here)));
+            let mut sum = [L::splat(0.0); SUMS];
+            let mut e = 0;
+            while e < a.to.len() {
+                let (to, place) = *a.to.get_unchecked(e);
+                let bits = *a.alive.get_unchecked(e);
+                e += 1;
+                if bits == 0 {
+                    continue;
+                }
+                let other = here as isize + to as isize;
+                let c = a.tables.as_ptr().add(place as usize);
+                let xi = xyz!(|k| L::splat(*c.add(constant::XI + k)));
+                let eta = xyz!(|k| L::load(a.u[k].offset(other)).sub(u[k]));
+                let y = xyz!(|k| eta[k].add(xi[k]));
+                let twice = xyz!(|k| y[k].add(xi[k]));
+                let q = eta[0].fma(twice[0], eta[1].fma(twice[1], eta[2].mul(twice[2])));
+                let z = q.mul(L::splat(*c.add(constant::INVERSE)));
+                let live = q.abs().ge(L::splat(*c.add(constant::DEAD))).keep(L::mask(bits >> here));
+                let one = L::splat(1.0);
+                let root = one.add(z).sqrt();
+                let stretch = z.div(one.add(root)).keep(live);
+                let energy = stretch.mul(stretch).mul(L::splat(0.5 * *c.add(constant::ENERGY)));
+                // z h(z) = s/(1 + s)
+                let pull = stretch.div(root).mul(L::splat(-*c.add(constant::FACTOR)));
+                sum[0] = sum[0].add(energy);
+                let p = xyz!(|k| pull.mul(y[k]));
+                sum[1] = p[0].fma(y[0], sum[1]);
+                sum[2] = p[1].fma(y[1], sum[2]);
+                sum[3] = p[2].fma(y[2], sum[3]);
+                sum[4] = p[0].fma(y[1], sum[4]);
+                sum[5] = p[0].fma(y[2], sum[5]);
+                sum[6] = p[1].fma(y[2], sum[6]);
+            }
+            let mut k = 0;
+            while k < SUMS {
+                sum[k].store(out[k].as_mut_ptr().add(here));
+                k += 1;
+            }
+            v += 1;
+        }
+        out
+    }
+}
+
 /// The factor times micromodulus and volumes, for the two ends.
 #[inline(always)]
 unsafe fn various<L: Lanes>(a: &Chunk, factor: L, to: isize, v: usize) -> (L, L) {
@@ -207,6 +269,11 @@ pub trait Kernels: Sync {
     unsafe fn force<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
         a: &Chunk,
     ) -> (f64, f64);
+    /// [`sums`] for this instruction set.
+    ///
+    /// # Safety
+    /// As for [`sums`].
+    unsafe fn sums(a: &Chunk) -> [[f64; CELLS]; SUMS];
 }
 
 /// Any processor.
@@ -218,6 +285,10 @@ impl Kernels for Plain {
     ) -> (f64, f64) {
         // SAFETY: the caller's promise.
         unsafe { force::<Portable, DEGREE, MASKED, TRACK, VARIOUS>(a) }
+    }
+    unsafe fn sums(a: &Chunk) -> [[f64; CELLS]; SUMS] {
+        // SAFETY: the caller's promise.
+        unsafe { sums::<Portable>(a) }
     }
 }
 
@@ -240,6 +311,15 @@ impl Kernels for Wide {
         // SAFETY: the caller's promise includes the instruction set.
         unsafe { wide::<DEGREE, MASKED, TRACK, VARIOUS>(a) }
     }
+    unsafe fn sums(a: &Chunk) -> [[f64; CELLS]; SUMS] {
+        #[target_feature(enable = "avx2,fma")]
+        unsafe fn wide(a: &Chunk) -> [[f64; CELLS]; SUMS] {
+            // SAFETY: the caller's promise.
+            unsafe { sums::<super::lanes::Avx2>(a) }
+        }
+        // SAFETY: the caller's promise includes the instruction set.
+        unsafe { wide(a) }
+    }
 }
 
 /// Processors with AVX-512: the same bits as [`Wide`], eight cells at once.
@@ -260,6 +340,15 @@ impl Kernels for Widest {
         }
         // SAFETY: the caller's promise includes the instruction set.
         unsafe { widest::<DEGREE, MASKED, TRACK, VARIOUS>(a) }
+    }
+    unsafe fn sums(a: &Chunk) -> [[f64; CELLS]; SUMS] {
+        #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
+        unsafe fn widest(a: &Chunk) -> [[f64; CELLS]; SUMS] {
+            // SAFETY: the caller's promise.
+            unsafe { sums::<super::lanes512::Avx512>(a) }
+        }
+        // SAFETY: the caller's promise includes the instruction set.
+        unsafe { widest(a) }
     }
 }
 

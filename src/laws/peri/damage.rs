@@ -19,7 +19,7 @@ impl Families {
     /// The share of a particle's family (by volume) whose bonds are broken (Silling and Askari 2005, eq. 27).
     pub fn damage(&self, i: usize, volume: &[f64]) -> f64 {
         let size = self.family_size.get(i).copied().unwrap_or(0);
-        if size == 0 || self.family_volume[i] == 0.0 {
+        if size == 0 || self.family_volume[i] == 0.0 || !self.hurt[i] {
             return 0.0;
         }
         let (mut live, mut sum) = (0, 0.0);
@@ -116,6 +116,7 @@ impl Families {
         }
         self.family_volume = moved(&self.family_volume, old_to_new, n, 0.0);
         self.family_size = moved(&self.family_size, old_to_new, n, 0);
+        self.hurt = vec![true; n];
         self.place = moved(&self.place, old_to_new, n, u32::MAX);
         self.reference = self.reference.take().map(|r| moved(&r, old_to_new, n, [0.0; 3]));
         let loose = self.near.loose.iter();

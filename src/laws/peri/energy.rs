@@ -1,9 +1,11 @@
 //! Energy and virial of all bonds: asked for at some steps only, so a pass of its own.
 
+use super::chunk::{CELLS, Chunk, Kernels};
 use super::contact::add;
+use super::lattice::partners;
 use super::pmb::stretch;
 use crate::par::{self, Shared};
-use crate::world::families::lattice::{LANES, LatticeBody};
+use crate::world::families::lattice::{LANES, LatticeBody, PAD};
 use crate::world::families::list::{DEAD, ListBody};
 use crate::world::families::{Families, FamilyOptions, ForceUnit, PeriTally, PeriView};
 
@@ -15,10 +17,15 @@ const ROWS: usize = 16;
 
 /// Adds energy and virial of the bonds as they were during the force evaluation: LAMMPS gives each end half of
 /// 1/2 c w V s² |xi|, and the virial one factor V.
-pub fn tally(families: &mut Families, view: &PeriView, t: &mut PeriTally, period: [f64; 3]) {
+pub fn tally<K: Kernels>(families: &mut Families, view: &PeriView, t: &mut PeriTally, period: [f64; 3]) {
     let mut rows = std::mem::take(&mut families.scratch.rows);
     let options = families.options;
     for body in &families.lattices {
+        if t.per_atom_energy.is_none() && body.cell_kind.is_empty() {
+            whole_rows::<K>(body, view, &options, &mut rows);
+            collect(&rows, t);
+            continue;
+        }
         sum(body.rows.len(), &mut rows, t, |slot, f| lattice_row(body, slot, view, families, &options, f));
     }
     let list = &families.list;
@@ -51,12 +58,68 @@ fn sum(
             unsafe { shared.get(k..k + 1)[0] = [own.energy, v[0], v[1], v[2], v[3], v[4], v[5]] };
         }
     });
-    for row in rows.iter() {
+    collect(rows, t);
+}
+
+/// Adds up rows in their order.
+fn collect(rows: &[Sums], t: &mut PeriTally) {
+    for row in rows {
         t.energy += row[0];
         for k in 0..6 {
             t.virial[k] += row[k + 1];
         }
     }
+}
+
+/// Energy and virial of each row of a body whose constants are per row, several cells at a time.
+fn whole_rows<K: Kernels>(
+    body: &LatticeBody,
+    view: &PeriView,
+    options: &FamilyOptions,
+    rows: &mut Vec<Sums>,
+) {
+    let Some(&first) = body.particle.iter().find(|&&p| p != u32::MAX) else { return };
+    let volume = if options.unit == ForceUnit::Density { view.volume[first as usize] } else { 1.0 };
+    let n = body.rows.len();
+    rows.clear();
+    rows.resize(n, [0.0; 7]);
+    let shared = Shared::new(rows);
+    par::for_rows(n.div_ceil(ROWS), |part| {
+        let mut to = Vec::with_capacity(body.stencil.len());
+        for slot in part * ROWS..n.min((part + 1) * ROWS) {
+            to.clear();
+            if body.rows[slot].len > 0 {
+                body.groups.iter().for_each(|group| partners(body, slot, group, &mut to));
+            }
+            let mut row = whole_row::<K>(body, slot, &to);
+            row[1..].iter_mut().for_each(|v| *v *= volume);
+            // SAFETY: each row belongs to one part.
+            unsafe { shared.get(slot..slot + 1)[0] = row };
+        }
+    });
+}
+
+fn whole_row<K: Kernels>(body: &LatticeBody, slot: usize, to: &[(i32, u32)]) -> Sums {
+    let (row, entries) = (&body.rows[slot], body.stencil.len());
+    let u = body.u[1].as_ptr();
+    let mut lanes = [[0.0; CELLS]; 7];
+    for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
+        let data = Chunk {
+            // SAFETY: `u` has a place for each cell and PAD more around.
+            u: [0, 1, 2].map(|k| unsafe { u.add(k * body.stride + PAD + chunk * LANES) }),
+            f: [std::ptr::null_mut(); 3],
+            alive: &body.alive[chunk * entries..][..entries],
+            to,
+            tables: &body.tables,
+            various: None,
+        };
+        // SAFETY: live bonds lead to cells of the body; forces are not touched.
+        let part = unsafe { K::sums(&data) };
+        for (sum, part) in lanes.iter_mut().flatten().zip(part.iter().flatten()) {
+            *sum += part;
+        }
+    }
+    lanes.map(|l| l.iter().sum())
 }
 
 /// Energies of both ends and the pull on the first, from z, |xi|, c w and the volumes.

@@ -40,6 +40,7 @@ impl Families {
             place: vec![u32::MAX; n],
             family_volume: vec![0.0; n],
             family_size: vec![0; n],
+            hurt: vec![false; n],
             near: NearPairs::default(),
             scratch: Scratch::default(),
         };
@@ -124,6 +125,7 @@ impl Families {
         self.place.resize(n, u32::MAX);
         self.family_volume.resize(n, 0.0);
         self.family_size.resize(n, 0);
+        self.hurt.resize(n, false);
         if let Some(reference) = &mut self.reference {
             reference.extend_from_slice(&view.x[reference.len()..]);
         }
@@ -168,7 +170,7 @@ impl Families {
         self.sweep::<K>(f, advance, period);
         self.contact(view, f, &moved, advance, tallied.as_deref_mut());
         if let Some(t) = tallied {
-            tally(self, view, t, period);
+            tally::<K>(self, view, t, period);
         }
         if advance {
             self.advance(view, period);
@@ -246,6 +248,8 @@ impl Families {
         break_bonds(&mut Periodic(&mut self.list, period), &self.options, &mut found);
         ends.extend(found.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
         for &[i, j] in &ends {
+            self.hurt[i as usize] = true;
+            self.hurt[j as usize] = true;
             self.add_broken(view, i, j);
         }
         self.scratch.candidates = found;

@@ -4,7 +4,7 @@ use super::chunk::{self, Chunk, Kernels, Various, constant};
 use super::pmb::{UP_TO_3, UP_TO_5, UP_TO_7, stretch, z_of};
 use crate::par::{self, Shared};
 use crate::world::families::lattice::{
-    CONSTANTS, LANES, LatticeBody, MIXED, PAD, PAGE, RowMotion, STAGGER, staggered,
+    CONSTANTS, Group, LANES, LatticeBody, MIXED, PAD, PAGE, RowMotion, STAGGER, staggered,
 };
 use crate::world::families::{FamilyOptions, ForceUnit, PeriView, PmbTable, Window};
 
@@ -268,28 +268,18 @@ impl<'a> Sweep<'a> {
     /// Looks at the rows that a row's bonds lead to.
     fn plan(&self, slot: usize, to: &mut Vec<(i32, u32)>) -> RowPlan {
         let body = self.body;
-        let row = &body.rows[slot];
-        let kinds = body.kinds.len();
-        let various = !body.cell_kind.is_empty();
         let mut motion = body.motion[slot];
         let mut limit = (f64::INFINITY, 0.0f64);
         to.clear();
         for group in &body.groups {
-            let other = (slot + group.up as usize * body.width).wrapping_add_signed(group.across as isize);
+            let (other, uniform) = meet(body, slot, group);
             motion = motion.with(&body.motion[other]);
-            let other = &body.rows[other];
-            let offset =
-                if other.len == 0 { 0 } else { other.start as i32 - row.start as i32 + row.lo - other.lo };
-            let uniform = row.kind != MIXED && other.kind != MIXED;
-            let pair = if uniform { usize::from(row.kind) * kinds + usize::from(other.kind) } else { 0 };
-            let known = if uniform { &body.pairs[pair..=pair] } else { &body.pairs[..] };
+            let pair = uniform.unwrap_or(0);
+            let known = if uniform.is_some() { &body.pairs[pair..=pair] } else { &body.pairs[..] };
             for [_, s00, alpha] in known {
                 limit = (limit.0.min(*s00), limit.1.max(*alpha));
             }
-            let table = if various { 0 } else { pair * body.stencil.len() };
-            for e in group.first..group.first + group.count {
-                to.push((offset + body.stencil[e][0], ((table + e) * CONSTANTS) as u32));
-            }
+            partners(body, slot, group, to);
         }
         let range = [0, 1, 2].map(|k| (motion.most[k] - motion.least[k]).max(0.0) / body.spacing);
         let d = range.iter().map(|r| r * r).sum::<f64>().sqrt();
@@ -395,6 +385,26 @@ impl<'a> Sweep<'a> {
             tables: &body.tables,
             various,
         }
+    }
+}
+
+/// The row slot that a group of bonds leads to, and the pair of local types if both rows have one each.
+fn meet(body: &LatticeBody, slot: usize, group: &Group) -> (usize, Option<usize>) {
+    let other = (slot + group.up as usize * body.width).wrapping_add_signed(group.across as isize);
+    let (a, b) = (body.rows[slot].kind, body.rows[other].kind);
+    let uniform = a != MIXED && b != MIXED;
+    (other, uniform.then(|| usize::from(a) * body.kinds.len() + usize::from(b)))
+}
+
+/// Appends where the bonds of a group lead from a row, and the places of their constants.
+pub fn partners(body: &LatticeBody, slot: usize, group: &Group, to: &mut Vec<(i32, u32)>) {
+    let (other, uniform) = meet(body, slot, group);
+    let (row, other) = (&body.rows[slot], &body.rows[other]);
+    let offset = if other.len == 0 { 0 } else { other.start as i32 - row.start as i32 + row.lo - other.lo };
+    let various = !body.cell_kind.is_empty();
+    let table = if various { 0 } else { uniform.unwrap_or(0) * body.stencil.len() };
+    for e in group.first..group.first + group.count {
+        to.push((offset + body.stencil[e][0], ((table + e) * CONSTANTS) as u32));
     }
 }
 

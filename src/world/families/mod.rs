@@ -254,6 +254,8 @@ pub struct Families {
     pub family_volume: Vec<f64>,
     /// Number of partners at the start, per particle.
     pub family_size: Vec<u16>,
+    /// Whether a particle may have lost a bond: damage need not be counted elsewhere.
+    pub hurt: Vec<bool>,
     /// Pairs without a living bond that may come into short-range contact.
     pub near: NearPairs,
     /// Scratch that is not state.
