@@ -199,7 +199,9 @@ impl Body {
                     return None;
                 }
                 let size = if inside { -k * depth * depth } else { k * depth * depth };
-                Some((d.map(|d| d * size / r), -(k / 3.0 * depth * depth * depth)))
+                // Exactly at the centre no direction is away from it.
+                let force = if r > 0.0 { d.map(|d| d * size / r) } else { [0.0; 3] };
+                Some((force, -(k / 3.0 * depth * depth * depth)))
             }
         }
     }
@@ -292,6 +294,7 @@ mod tests {
         assert_eq!(force(&mut b, "6 plane z 3 lo units box").0, [0.0, 0.0, 24.0]);
         assert_eq!(force(&mut b, "6 plane z -1 hi units box").0, [0.0, 0.0, -24.0]);
         assert_eq!(force(&mut b, "6 plane z 3 hi units box").0, [0.0; 3]);
+        assert_eq!(force(&mut b, "6 sphere 3 0 v_z 5 units box").0, [0.0; 3]);
         // In lattice spacings of 0.5.
         assert_eq!(force(&mut b, "6 sphere 0 0 2 10").0, [24.0, 0.0, 0.0]);
         // The box repeats after 20: the sphere's image at -18 is 5 away from x = -13 … and 2 deep from x = 3.
