@@ -24,9 +24,9 @@ impl Style for Reduce {
             text: "Inputs: `x y z vx vy vz fx fy fz`, `c_ID`, `c_ID[k]`, `c_ID[*]`, `f_ID`, `f_ID[k]`, and `v_name` of an \
                    atom-style variable. One input gives a scalar, several a vector; sums are extensive, all else \
                    intensive. For an empty group: 0, but 1e20 for `min` and `minabs` and −1e20 for `max`. NaNs never \
-                   are extremes. The keywords `replace` and `inputs` are refused. LAMMPS 22Jul2025 gives 1e20 for every \
-                   `minabs` and does not divide `aveabs` by the number of particles; perigrain does so only under \
-                   `-compat lammps`.",
+                   are extremes. The keywords `replace` and `inputs` are refused. LAMMPS 22Jul2025 gives 1e20 for every `minabs` and, where there are \
+                   several inputs, does not divide `aveabs` by the number of particles; perigrain does so only under \
+                   `-compat lammps`. LAMMPS' `sumabs` of several inputs is unset memory; perigrain's is the sum.",
             example: "compute worst all reduce max c_dmg",
         }
     }
@@ -84,16 +84,25 @@ impl Mode {
     }
 
     /// The result from what all values together gave and their number.
-    fn finish(self, folded: f64, count: usize, lammps: bool) -> f64 {
+    fn finish(self, folded: f64, count: usize, artefact: Artefact) -> f64 {
         match self {
-            Mode::MinAbs if lammps => BIG,
-            Mode::AveAbs if lammps => folded,
+            Mode::MinAbs if artefact.lammps => BIG,
+            Mode::AveAbs if artefact.lammps && artefact.several => folded,
             Mode::Min | Mode::MinAbs if count == 0 => BIG,
             Mode::Max if count == 0 => -BIG,
             Mode::Ave | Mode::AveSquares | Mode::AveAbs if count > 0 => folded / count as f64,
             _ => folded,
         }
     }
+}
+
+/// What decides whether LAMMPS 22Jul2025 goes wrong.
+#[derive(Clone, Copy)]
+struct Artefact {
+    /// Its numbers are wanted.
+    lammps: bool,
+    /// There are several inputs.
+    several: bool,
 }
 
 /// A per-particle value.
@@ -131,6 +140,11 @@ impl ComputeStyle for Reduce {
         }
         if inputs.is_empty() {
             args.expect("at least one input, as `vx` or `c_ID`")?;
+        }
+        let touched = mode == Mode::MinAbs || (mode == Mode::AveAbs && inputs.len() > 1);
+        if touched && cx.world.settings.lammps() {
+            let text = "compat lammps: `minabs` is 1e20, and `aveabs` of several inputs is a sum";
+            cx.note(Diagnostic::note(Code::COMPAT, cx.span, text));
         }
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, mode, inputs }))
     }
@@ -224,13 +238,14 @@ impl Compute for Declared {
         }
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "x v f mask", move |w, _, out| {
             let n = count(w, group);
+            let artefact = Artefact { lammps: w.settings.lammps(), several: sources.len() > 1 };
             out.vector.clear();
             for source in &sources {
                 let folded = match source {
                     Source::Column(c, d) => reduced(w, group, mode, |i| c.of(w)[i][*d]),
                     Source::Reading(r) => reduced(w, group, mode, |i| r.atom(w, i)),
                 };
-                out.vector.push(mode.finish(folded, n, w.settings.lammps()));
+                out.vector.push(mode.finish(folded, n, artefact));
             }
             if let [one] = out.vector[..] {
                 out.scalar = one;
@@ -282,9 +297,11 @@ mod tests {
         for (mode, a) in MODES.iter().zip(expected) {
             assert_eq!(value(&mut b, &format!("{mode} x")), a, "{mode}");
         }
-        // Oracle: LAMMPS 22Jul2025 prints the sum for aveabs and 1e20 for minabs.
+        // Oracle: LAMMPS 22Jul2025 prints the sum for aveabs of several inputs, and 1e20 for minabs.
         b.world.settings.compat = Compat::Lammps;
-        assert_eq!((value(&mut b, "aveabs x"), value(&mut b, "minabs x")), (7.5, 1e20));
+        assert_eq!((value(&mut b, "aveabs x"), value(&mut b, "minabs x")), (2.5, 1e20));
+        let c = b.compute(&Reduce, "aveabs x x").unwrap();
+        assert_eq!(b.evaluate(&*c).unwrap().vector, [7.5, 7.5]);
     }
 
     // Oracle: an empty group gives 1e20, -1e20, 0, 0 for min, max, maxabs, ave.

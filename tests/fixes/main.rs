@@ -1,0 +1,126 @@
+//! Fixes and computes in small decks against LAMMPS' numbers.
+//!
+//! `golden/NAME.txt` holds the thermo table that LAMMPS 22Jul2025 prints for `NAME.in`, 15 digits per number.
+#![allow(clippy::unwrap_used)] // a test fails by panicking
+
+use std::fs;
+use std::path::Path;
+
+use perigrain::out::log::Log;
+use perigrain::session::{Options, Session, set_threads};
+
+/// Differences, as shares of the largest number of a column, that the order of additions explains: a few ulp, times the
+/// some tens of steps that carry them on.
+const TOLERANCE: f64 = 1e-13;
+
+/// Runs a deck and returns the session and its thermo table, header first.
+fn run(name: &str, deck: &str, compat: bool) -> (Session, Vec<Vec<String>>) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("log");
+    let log = Log::silent();
+    log.open(&path, false).unwrap();
+    let options = Options { compat, log: log.clone(), ..Options::default() };
+    let mut session = Session::new(options).unwrap();
+    if let Err(e) = session.run_text(name, deck) {
+        panic!("{name}: {e}");
+    }
+    log.close().unwrap();
+    (session, table(&fs::read_to_string(path).unwrap()))
+}
+
+/// The rows of all thermo tables of a log, the header once.
+fn table(log: &str) -> Vec<Vec<String>> {
+    let (mut rows, mut inside): (Vec<Vec<String>>, bool) = (vec![], false);
+    for line in log.lines() {
+        let words: Vec<String> = line.split_whitespace().map(String::from).collect();
+        let numbers = words.iter().all(|w| w.parse::<f64>().is_ok()) && !words.is_empty();
+        match words.first().map(String::as_str) {
+            Some("Step") => {
+                inside = true;
+                if rows.is_empty() {
+                    rows.push(words);
+                }
+            }
+            _ if inside && numbers => rows.push(words),
+            _ => inside = false,
+        }
+    }
+    rows
+}
+
+fn agrees(name: &str) {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixes");
+    let deck = fs::read_to_string(here.join(format!("{name}.in"))).unwrap();
+    let golden = table(&fs::read_to_string(here.join(format!("golden/{name}.txt"))).unwrap());
+    let (_, ours) = run(name, &deck, true);
+    assert_eq!((ours.len(), &ours[0]), (golden.len(), &golden[0]), "{name}");
+    for (k, column) in golden[0].iter().enumerate() {
+        let numbers =
+            |t: &[Vec<String>]| -> Vec<f64> { t[1..].iter().map(|r| r[k].parse().unwrap()).collect() };
+        let (ours, golden) = (numbers(&ours), numbers(&golden));
+        let largest = golden.iter().fold(0.0, |m: f64, a| m.max(a.abs()));
+        for (row, (a, b)) in ours.iter().zip(&golden).enumerate() {
+            assert!((a - b).abs() <= TOLERANCE * largest, "{name}, {column}, row {row}: {a} is not {b}");
+        }
+    }
+}
+
+#[test]
+fn forces_agree() {
+    agrees("forces");
+}
+
+#[test]
+fn indenters_agree() {
+    agrees("indenters");
+}
+
+#[test]
+fn adaptive_steps_agree() {
+    agrees("steps");
+}
+
+#[test]
+fn wiggle_agrees() {
+    agrees("wiggle");
+}
+
+#[test]
+fn spheres_agree() {
+    agrees("spheres");
+}
+
+/// `steps.in` with its runs replaced.
+fn steps(runs: &str) -> String {
+    let deck = include_str!("steps.in");
+    let begin = deck.lines().take_while(|l| !l.starts_with("run ")).collect::<Vec<_>>().join("\n");
+    format!("{begin}\n{runs}\n")
+}
+
+// The time step is looked at every 3 steps: 7 and 20 lie between.
+#[test]
+fn a_run_cut_in_three_is_one_run() {
+    let (one, _) = run("one", &steps("run 40"), false);
+    let (three, _) = run("three", &steps("run 7\nrun 13\nrun 20"), false);
+    assert_eq!(one.world.particles.x, three.world.particles.x);
+    assert_eq!(one.world.particles.v, three.world.particles.v);
+    assert_eq!(one.world.clock.dt.to_bits(), three.world.clock.dt.to_bits());
+}
+
+// 9261 particles are five chunks.
+#[test]
+fn threads_leave_every_bit_as_it_is() {
+    let deck = "units lj\natom_style atomic\nboundary s s s\nlattice sc 1.0\nregion b block 0 20 0 20 0 20\n\
+        create_box 1 b\ncreate_atoms 1 box\nmass 1 1.7\nvariable u atom sin(x*y+z)\nvariable w atom cos(z*y-x)\n\
+        velocity all set v_u v_w v_u units box\nfix 1 all nve\nfix i all indent 3.0 sphere 10 9 8 7.0\n\
+        fix d all viscous 0.3\nfix g all gravity 1.0 chute 24\nfix a all addforce 0.1 v_w 0\n\
+        fix t all dt/reset 2 NULL 0.01 0.02\nfix m all setforce NULL v_u NULL\ncompute r all reduce sumsq x vy fz v_u\n\
+        compute e all ke/atom\ncompute s all reduce ave c_e\nthermo_style custom step time temp ke press f_i f_i[3] f_a \
+        f_m[2] f_g c_r[*] c_s\nthermo_modify format float %.17g norm no\nthermo 2\nrun 10\n";
+    set_threads(1);
+    let (_, one) = run("one", deck, false);
+    set_threads(3);
+    let (_, three) = run("three", deck, false);
+    assert_eq!(one.len(), 7);
+    assert_eq!(one, three);
+}
