@@ -27,9 +27,10 @@ impl Style for Move {
                    x = x0 + V t, v = V; `wiggle` is x = x0 + A sin ω t, v = A ω cos ω t with ω = 2π/period. Where a \
                    component is `NULL` it is integrated as by fix nve. V and A are in lattice spacings unless `units \
                    box`. It moves the particles itself: they belong to no other integrator. Particles that join the \
-                   group later move on from where they are. Per-atom array: x0, 3 columns. Where the time step \
-                   changes, t goes on evenly; LAMMPS takes t = steps · Δt with the new Δt, which makes the particles \
-                   jump, and perigrain does so under `-compat lammps`. The motions `rotate`, `variable` and `transrot` \
+                   group later move on from where they are. Per-atom array: x0, 3 columns. `timestep`, \
+                   `fix dt/reset` and reset_timestep do not disturb the path. LAMMPS refuses the first two beside fix move; after \
+                   reset_timestep it takes the new steps since the declaration's old one, which makes the particles \
+                   jump, and so does perigrain under `-compat lammps`. The motions `rotate`, `variable` and `transrot` \
                    are refused.",
             example: "fix grip top move linear 0.0 0.0 3.0 units box",
         }
@@ -100,45 +101,54 @@ struct Declared {
     path: Path,
 }
 
-/// How much time has passed since the declaration, also where the time step changes.
+/// How much time has passed since the declaration, also where the time step changes or steps are renumbered.
 #[derive(Clone, Copy)]
 struct Elapsed {
     /// Step of the declaration.
     origin: f64,
-    /// Time from there to `step`.
+    /// Time up to `step`.
     time: f64,
     /// Since which step `dt` holds.
     step: f64,
     /// The present time step.
     dt: f64,
+    /// The latest step.
+    last: f64,
 }
 
 impl Elapsed {
     fn load(w: &World, key: &str) -> Self {
         match w.memo.get(key).map(Vec::as_slice) {
-            Some(&[origin, time, step, dt]) => Self { origin, time, step, dt },
-            _ => Self { origin: 0.0, time: 0.0, step: 0.0, dt: w.clock.dt },
+            Some(&[origin, time, step, dt, last]) => Self { origin, time, step, dt, last },
+            _ => {
+                let step = w.clock.step as f64;
+                Self { origin: step, time: 0.0, step, dt: w.clock.dt, last: step }
+            }
         }
     }
 
     fn store(self, w: &mut World, key: &str) {
-        let Self { origin, time, step, dt } = self;
-        w.memo.insert(key.to_string(), vec![origin, time, step, dt]);
-    }
-
-    /// The time at a step.
-    fn at(&self, step: i64) -> f64 {
-        self.time + (step as f64 - self.step) * self.dt
-    }
-
-    /// Takes note of the time step that leads to `step`; whether it is a new one.
-    fn follow(&mut self, step: i64, dt: f64) -> bool {
-        if dt == self.dt {
-            return false;
+        let Self { origin, time, step, dt, last } = self;
+        match w.memo.get_mut(key) {
+            Some(memo) => memo.copy_from_slice(&[origin, time, step, dt, last]),
+            None => drop(w.memo.insert(key.to_string(), vec![origin, time, step, dt, last])),
         }
+    }
+
+    /// The time at the latest step.
+    fn now(&self) -> f64 {
+        self.time + (self.last - self.step) * self.dt
+    }
+
+    /// Goes on to `step` by one time step `dt`.
+    fn follow(&mut self, step: i64, dt: f64) {
         let before = (step - 1) as f64;
-        *self = Self { time: self.at(step - 1), step: before, dt, ..*self };
-        true
+        self.step += before - self.last;
+        self.last = before;
+        if dt != self.dt {
+            *self = Self { time: self.now(), step: before, dt, ..*self };
+        }
+        self.last = step as f64;
     }
 }
 
@@ -150,7 +160,7 @@ impl Declared {
     /// Remembers where particles of the group that are not known yet would have started.
     fn capture(&self, w: &mut World) {
         let (key, n, bit) = (self.key(), w.n(), self.group.bit());
-        let path = self.path.at(Elapsed::load(w, &key).at(w.clock.step));
+        let path = self.path.at(Elapsed::load(w, &key).now());
         w.columns.vector(&key, n);
         let mut known = std::mem::take(w.columns.scalar(&key, n));
         for (i, known) in known.iter_mut().enumerate() {
@@ -168,9 +178,8 @@ impl Declared {
 
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
-        let (step, dt) = (w.clock.step as f64, w.clock.dt);
-        w.columns.remove(&self.key());
-        Elapsed { origin: step, time: 0.0, step, dt }.store(w, &self.key());
+        self.remove(w);
+        Elapsed::load(w, &self.key()).store(w, &self.key());
         self.capture(w);
         Ok(())
     }
@@ -234,10 +243,10 @@ fn show_starts(w: &mut World, key: &str, slot: SlotId, t: &Tick) {
 /// The path's positions and velocities at this step; free components kicked and drifted.
 fn advance(w: &mut World, group: GroupId, path: &Path, key: &str, t: &Tick) {
     let mut elapsed = Elapsed::load(w, key);
-    if elapsed.follow(t.step, t.dt) {
-        elapsed.store(w, key);
-    }
-    let time = if w.settings.lammps() { (t.step as f64 - elapsed.origin) * t.dt } else { elapsed.at(t.step) };
+    elapsed.follow(t.step, t.dt);
+    elapsed.store(w, key);
+    let lammps = (t.step as f64 - elapsed.origin) * t.dt;
+    let time = if w.settings.lammps() { lammps } else { elapsed.now() };
     let (at, bit, half) = (path.at(time), group.bit(), half_step(w, t.dt));
     let (domain, periodic) = (&w.domain, w.domain.as_ref().map_or([false; 3], |d| d.periodic()));
     let lengths = domain.as_ref().map_or([0.0; 3], |d| d.lengths());
@@ -345,29 +354,31 @@ mod tests {
     }
 
     #[test]
-    fn a_new_time_step_does_not_jump() {
+    fn new_time_steps_and_numbers_do_not_jump() {
         let mut b = scene();
         let mut ops = begin(&mut b, "linear 1 0 0 units box");
         b.world.clock.set_dt(0.25);
         step(&mut b, &mut ops);
         assert_eq!(b.world.particles.x[0][0], 1.75); // 1 + 0.5 + 0.25
+        b.world.clock.reset(0);
+        step(&mut b, &mut ops);
+        assert_eq!(b.world.particles.x[0][0], 2.0);
         b.world.settings.compat = Compat::Lammps;
         step(&mut b, &mut ops);
-        assert_eq!(b.world.particles.x[0][0], 1.75); // 1 + 3 · 0.25: LAMMPS forgets the longer first step
+        assert_eq!(b.world.particles.x[0][0], -1.0); // 1 + (2 − 10) · 0.25, as LAMMPS has it
     }
 
     #[test]
     fn latecomers_move_on_from_where_they_are() {
         let mut b = scene();
         let fix = b.fix(&Move, "linear 1 0 0 units box").unwrap();
-        fix.declare(&mut b.world).unwrap();
-        b.world.clock.step = 14;
+        begin(&mut b, "linear 1 0 0 units box");
         b.world.particles.push(2, 1, [5.0; 3]);
         b.world.columns.resize(2);
         let mut ops = b.seal(&*fix).unwrap();
         step(&mut b, &mut ops);
         assert_eq!(b.world.particles.x[1][0], 5.5);
-        assert_eq!(b.world.particles.x[0][0], 3.5);
+        assert_eq!(b.world.particles.x[0][0], 2.0);
         fix.remove(&mut b.world);
         assert!(b.world.columns.get_vector("move/f").is_none() && b.world.memo.is_empty());
     }
