@@ -3,6 +3,7 @@
 mod causes;
 mod checking;
 mod commands;
+pub mod manual;
 mod running;
 
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, Sources, Span, fail, nearest};

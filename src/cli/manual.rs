@@ -2,6 +2,7 @@
 
 use super::args::Usage;
 use crate::diag::nearest;
+use crate::session::manual::PAGES;
 use crate::styles::command::COMMANDS;
 use crate::styles::compute::COMPUTES;
 use crate::styles::dump::DUMPS;
@@ -46,13 +47,15 @@ impl Page {
     }
 }
 
-/// Every page, by kind and then in the order of the tables.
+/// Every page, by kind and then in the order of the tables: first what sets a scene, then what is done with it.
 pub fn pages() -> Vec<Page> {
     fn of<S: Style + ?Sized>(kind: &'static str, table: &[&S]) -> Vec<Page> {
         table.iter().map(|s| Page { kind, name: s.name(), doc: s.doc() }).collect()
     }
+    let others = PAGES.iter().map(|&(name, doc)| Page { kind: "command", name, doc }).collect();
     [
         of("command", COMMANDS),
+        others,
         of("pair_style", PAIRS),
         of("fix", FIXES),
         of("compute", COMPUTES),

@@ -22,7 +22,7 @@ impl Style for DamageAtom {
             text: "Per-atom vector: φ_i = 1 − Σ V_j over the live bonds / Σ V_j over the family at the first run \
                    (Silling & Askari 2005, equation 29), with plain volumes, without the partial-volume weights of the \
                    force. 0 for particles that never had a bond, before the first run, and outside the group.",
-            example: "compute dmg all damage/atom",
+            example: "compute broken all damage/atom",
         }
     }
 }
@@ -102,7 +102,7 @@ mod tests {
         let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &[[0.0; 3]; 2]);
         let c = b.compute(&DamageAtom, "").unwrap();
         assert_eq!(b.evaluate(&*c).unwrap().atom, [0.0, 0.0]);
-        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
+        let b = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
         assert!(b.compute(&DamageAtom, "").is_err());
     }
 }

@@ -23,7 +23,7 @@ impl Style for Image {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "dump ID group image N file.*.png colour diameter keyword value …",
-            summary: "draws the group's particles as shaded spheres every N steps",
+            summary: "Draws the group's particles as shaded spheres every N steps.",
             text: PAGE,
             example: "dump cut all image 200 cut_*.png c_damage auto view 70 -60 map damage range 0 1\n\
                       dump_modify cut region half title \"brittle plate\"",

@@ -36,7 +36,7 @@ impl Style for Atom {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "dump ID group atom N file",
-            summary: "writes id, type and position of the group's particles every N steps",
+            summary: "Writes id, type and position of the group's particles every N steps.",
             text: "Columns `id type xs ys zs`: positions are fractions of the box, 0 at the lower and 1 at the upper \
                    face. `dump_modify ID scale no` writes plain coordinates `x y z`, `image yes` adds the box \
                    crossings `ix iy iz`. Everything else is as for `dump custom`.",
@@ -52,7 +52,7 @@ impl Style for Custom {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "dump ID group custom N file attribute …",
-            summary: "writes chosen attributes of the group's particles every N steps as text",
+            summary: "Writes chosen attributes of the group's particles every N steps as text.",
             text: PAGE,
             example: "dump 1 all custom 100 plate.*.dump id type x y z c_damage\ndump_modify 1 thresh c_damage > 0.1",
         }

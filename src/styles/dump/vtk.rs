@@ -23,7 +23,7 @@ impl Style for Vtk {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "dump ID group vtk N file.*.vtu attribute …",
-            summary: "writes points with data for ParaView every N steps, compressed, with a time series",
+            summary: "Writes points with data for ParaView every N steps, compressed, with a time series.",
             text: "Attributes are those of `dump custom`. Positions are the points and need not be named. Three \
                    neighbouring attributes that differ in x, y, z become one vector: `vx vy vz` is `v`, `fx fy fz` is \
                    `f`, `omegax …` is `omega`, `tqx …` is `tq`, `ix …` is `i`, `xu …` is `unwrapped`, and `c_ID[1] c_ID[2] \

@@ -23,7 +23,7 @@ impl Style for NveSphere {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "fix ID group nve/sphere",
-            summary: "moves and turns the group's spheres by velocity Verlet",
+            summary: "Moves and turns the group's spheres by velocity Verlet.",
             text: "As `fix nve`, and with each half kick ω += Δt/2 · torque/I, I = 2/5 m R² (solid spheres). Every \
                    particle of the group needs a radius.",
             example: "fix 1 all nve/sphere",
