@@ -66,26 +66,27 @@ impl Session {
                     .help(format!("add `pair_coeff {} …`", missing[0].replace('-', " "))),
             );
         }
-        for fact in node.pair.needs() {
-            if !self.settled(fact) {
-                found.push(
-                    Diagnostic::warning(
-                        Code::SUSPICIOUS,
-                        span,
-                        format!(
-                            "the {fact} of particles was never set, and pair_style {} uses it",
-                            node.pair.name()
-                        ),
-                    )
-                    .help(format!("add `set group all {fact} …`")),
-                );
-            }
-        }
+        self.check_facts(node.pair.as_ref(), span, found);
+        node.pair.parts().into_iter().for_each(|part| self.check_facts(part, span, found));
         self.check_units_of_force(node.pair.as_ref(), node.span, found);
         let (notes, uses) = (RefCell::default(), RefCell::default());
         let cx = Context { span: node.span, checking: self.checking(), notes: &notes, uses: &uses };
         node.pair.check(&cx.build(&self.graph, &self.world, "", GroupId::ALL));
         found.append(notes.into_inner());
+    }
+
+    /// Facts of the scene that a pair style uses and nobody has set.
+    fn check_facts(&self, pair: &dyn Pair, span: Span, found: &mut Diagnostics) {
+        for fact in pair.needs() {
+            // `set … mass` is as good as a density.
+            if self.settled(fact) || (*fact == "density" && self.settled("mass")) {
+                continue;
+            }
+            let text =
+                format!("the {fact} of particles was never set, and pair_style {} uses it", pair.name());
+            let warning = Diagnostic::warning(Code::SUSPICIOUS, span, text);
+            found.push(warning.help(format!("add `set group all {fact} …`")));
+        }
     }
 
     /// Force densities and forces added up in one column.

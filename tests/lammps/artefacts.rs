@@ -71,6 +71,16 @@ fn tsuji_restitution_is_what_was_asked_for() {
 }
 
 #[test]
+fn unlike_grains_slide_with_the_shear_modulus_of_the_manual() {
+    // 8 G* a v dt (R - overlap/2) with 1/G* = sum of 2 (2 - nu)(1 + nu)/E, as LAMMPS' manual has it for mixed pairs:
+    // G* = 10680907.877 Pa, a = sqrt(2/900 m 2e-5 m), v = 0.25 m/s, dt = 1e-9 s, R - overlap/2 = 0.00499 m.
+    let slip = 4.503466182705602e-6;
+    assert!(near(last("mixed", "c_tz", &[]), -slip * 0.00499, SAME));
+    // LAMMPS 22Jul2025, this deck: both moduli are E* of the pair, both ratios the geometric mean.
+    assert!(near(last("mixed", "c_tz", &lammps(&[])), -1.26262723937792e-08, SAME));
+}
+
+#[test]
 fn a_lattice_of_micrometres_bears_small_strains() {
     // LAMMPS 22Jul2025 at a strain of 1e-6; energy goes with the square of the strain, so 1e-10 of it at 1e-11.
     let at_1e_6 = 2.53611408368086;

@@ -8,9 +8,9 @@ use crate::world::families::Families;
 pub fn solids(families: &Families, n: usize) -> Vec<u32> {
     let mut root: Vec<u32> = (0..n as u32).collect();
     let mut bonded = vec![false; n];
-    for i in 0..n {
+    for (i, has_bonds) in bonded.iter_mut().enumerate() {
         for bond in families.neighbours(i) {
-            bonded[i] = true;
+            *has_bonds = true;
             join(&mut root, i as u32, bond.partner);
         }
     }

@@ -62,7 +62,7 @@ impl Fix for Declared {
         let (group, span) = (self.group, cx.span());
         let p = &cx.world().particles;
         let member = |i: &usize| p.mask[*i] & group.bit() != 0;
-        if let Some(i) = (0..p.len()).filter(member).find(|&i| !(p.radius[i] > 0.0)) {
+        if let Some(i) = (0..p.len()).filter(member).find(|&i| p.radius[i] <= 0.0) {
             let text = format!("fix nve/sphere needs spheres, but particle {} has no radius", p.tag[i]);
             return Err(Diagnostic::error(Code::INCOMPLETE, span, text)
                 .help("add `set … diameter …`, or move this particle with `fix nve`")

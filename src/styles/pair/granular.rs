@@ -7,7 +7,7 @@ use super::{Pair, PairStyle, TypePairs};
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::lang::Args;
 use crate::laws::contact::driver::{Average, Curvature, Rule, Rules};
-use crate::laws::contact::{Damping, Granular, Model};
+use crate::laws::contact::{Damping, Granular, Model, Tangential};
 use crate::neigh::list::{Reach, Wanted};
 use crate::plan::Op;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
@@ -112,6 +112,17 @@ impl Declared {
         Ok(Some((Rule { law, average: a.average, curvature: a.curvature }, reach(cutoff))))
     }
 
+    /// A type whose Mindlin stiffness from its material is mixed with that of another material.
+    fn mixed_shear(&self) -> Option<&Coeff> {
+        let null = |c: &Coeff| matches!(c.model.tangential, Tangential::Mindlin { stiffness: None, .. });
+        let like = |k: &(u16, u16)| k.0 == k.1;
+        let types: Vec<_> = self.given.iter().filter(|(k, c)| like(k) && null(c)).collect();
+        let meets = |a: u16, b: u16| a < b && self.acts_on(a, b) && !self.given.contains_key(&(a, b));
+        let unlike = |a: &Coeff, b: &Coeff| a.model.normal.material() != b.model.normal.material();
+        let pairs = types.iter().flat_map(|a| types.iter().map(move |b| (a, b)));
+        pairs.into_iter().find(|(a, b)| meets(a.0.0, b.0.0) && unlike(a.1, b.1)).map(|(a, _)| a.1)
+    }
+
     fn acts_on(&self, i: u16, j: u16) -> bool {
         self.only.as_ref().is_none_or(|pairs| pairs.contains(&(i, j)))
     }
@@ -174,6 +185,11 @@ impl Pair for Declared {
         }
         if let Some(c) = self.given.values().find(|c| c.model.damping == Damping::Tsuji) {
             let text = "compat lammps: damping tsuji without its factor √2";
+            cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
+        }
+        if let Some(c) = self.mixed_shear() {
+            let text =
+                "compat lammps: shear stiffness of mixed type pairs from E* in the place of both moduli";
             cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
         }
     }
