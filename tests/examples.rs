@@ -79,9 +79,9 @@ fn run(deck: &Path, args: &str) -> String {
     text
 }
 
-/// The first number behind the label, in the last line that begins with it.
+/// The first number behind the label, in the first line that begins with it.
 fn number_after(printed: &str, label: &str) -> f64 {
-    let line = printed.lines().filter(|l| l.starts_with(label)).next_back();
+    let line = printed.lines().map(str::trim).find(|l| l.starts_with(label));
     let line = line.unwrap_or_else(|| panic!("nothing printed begins with `{label}`:\n{printed}"));
     let found = line[label.len()..].split_whitespace().find_map(|w| w.parse().ok());
     found.unwrap_or_else(|| panic!("no number in `{line}`"))
