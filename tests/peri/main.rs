@@ -1,4 +1,6 @@
 //! Peridynamic families on raw arrays: golden numbers, layouts against each other, patch tests, determinism.
 
 mod golden;
+mod layouts;
 mod scene;
+mod textbook;

@@ -94,20 +94,40 @@ impl Scene {
 
     /// One step of velocity Verlet.
     pub fn step(&mut self) {
-        for i in 0..self.x.len() {
-            let half = 0.5 * self.dt / self.density[i];
-            for k in 0..3 {
-                self.v[i][k] += half * self.f[i][k];
-                self.x[i][k] += self.dt * self.v[i][k];
-            }
-        }
+        self.drift_and_kick(true);
         self.forces(true);
+        self.drift_and_kick(false);
+    }
+
+    /// The first half of a step (half kick and drift), or the second (half kick).
+    pub fn drift_and_kick(&mut self, first: bool) {
         for i in 0..self.x.len() {
             let half = 0.5 * self.dt / self.density[i];
             for k in 0..3 {
                 self.v[i][k] += half * self.f[i][k];
+                if first {
+                    self.x[i][k] += self.dt * self.v[i][k];
+                }
             }
         }
+    }
+
+    /// Removes all other particles from the columns.
+    pub fn keep(&mut self, which: impl Fn(usize) -> bool) {
+        fn pick<T>(column: &mut Vec<T>, which: &impl Fn(usize) -> bool) {
+            let mut i = 0;
+            column.retain(|_| {
+                i += 1;
+                which(i - 1)
+            });
+        }
+        pick(&mut self.x, &which);
+        pick(&mut self.x0, &which);
+        pick(&mut self.v, &which);
+        pick(&mut self.f, &which);
+        pick(&mut self.kind, &which);
+        pick(&mut self.volume, &which);
+        pick(&mut self.density, &which);
     }
 
     /// Sum of 1/2 density v^2, LAMMPS' kinetic energy of peridynamic particles.

@@ -11,7 +11,7 @@ use super::lattice::MAY_BREAK;
 use super::pmb::stretch;
 use crate::par::{self, Shared};
 use crate::world::families::lattice::{LANES, LatticeBody};
-use crate::world::families::list::{DEAD, ListBody};
+use crate::world::families::list::ListBody;
 use crate::world::families::{Candidate, FamilyOptions};
 
 /// A layout, as breaking sees it. Sites are cells or records.
@@ -185,7 +185,7 @@ impl Bonds for Periodic<'_> {
     fn candidates(&self, found: &mut Vec<Candidate>) {
         let body = &*self.0;
         for i in (0..body.record.len()).filter(|&i| body.flagged[i] & MAY_BREAK != 0) {
-            for b in body.own(i).filter(|&b| body.partner[b] & DEAD == 0) {
+            for b in body.own(i).filter(|&b| body.lives(b)) {
                 let j = body.partner[b] as usize;
                 let pair =
                     &body.pairs[usize::from(body.kind[i]) * body.kinds.len() + usize::from(body.kind[j])];
@@ -202,7 +202,7 @@ impl Bonds for Periodic<'_> {
     fn family(&self, site: u32, options: &FamilyOptions, mut f: impl FnMut(f64, f64, f64)) {
         let body = &*self.0;
         body.around(site as usize, |other, b| {
-            if body.partner[b] & DEAD == 0 {
+            if body.lives(b) {
                 let kinds = [other, site as usize].map(|r| usize::from(body.kind[r]));
                 let pair = &body.pairs[kinds[0] * body.kinds.len() + kinds[1]];
                 let (z, length) = body.z(true, site as usize, other, self.1);
@@ -213,8 +213,7 @@ impl Bonds for Periodic<'_> {
 
     fn revive(&mut self, lives: bool) {
         for b in self.0.broken.clone() {
-            let partner = &mut self.0.partner[b as usize];
-            *partner = if lives { *partner & !DEAD } else { *partner | DEAD };
+            self.0.set(b as usize, lives);
         }
     }
 
@@ -222,7 +221,7 @@ impl Bonds for Periodic<'_> {
         self.0.broken.clear();
         for c in bonds {
             self.0.broken.push(c.bond);
-            self.0.partner[c.bond as usize] |= DEAD;
+            self.0.set(c.bond as usize, false);
         }
     }
 

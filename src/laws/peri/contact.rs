@@ -2,7 +2,6 @@
 
 use super::lattice::SQUEEZED;
 use crate::world::families::lattice::LANES;
-use crate::world::families::list::DEAD;
 use crate::world::families::{Families, FamilyOptions, ForceUnit, PeriTally, PeriView, PmbTable};
 
 /// Everything a pair's repulsion depends on, and where it goes.
@@ -93,7 +92,7 @@ pub fn repel(families: &Families, repulsion: &mut Repulsion) {
     }
     let list = &families.list;
     for i in (0..list.record.len()).filter(|&i| list.flagged[i] & SQUEEZED != 0) {
-        for b in list.own(i).filter(|&b| list.partner[b] & DEAD == 0) {
+        for b in list.own(i).filter(|&b| list.lives(b)) {
             repulsion.pair(list.particle[i], list.particle[list.partner[b] as usize]);
         }
     }

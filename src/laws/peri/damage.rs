@@ -2,7 +2,7 @@
 
 use crate::par;
 use crate::world::families::Families;
-use crate::world::families::list::{DEAD, ListBody};
+use crate::world::families::list::ListBody;
 
 /// One partner of a particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,7 +50,7 @@ impl Families {
     pub fn live_bonds(&self) -> usize {
         let bits: usize =
             self.lattices.iter().flat_map(|b| &b.alive).map(|byte| byte.count_ones() as usize).sum();
-        2 * (bits + self.list.partner.iter().filter(|&&j| j & DEAD == 0).count())
+        2 * (bits + self.list.alive.iter().map(|b| b.count_ones() as usize).sum::<usize>())
     }
 
     /// All partners of a particle, broken bonds included, by index.
@@ -84,7 +84,7 @@ impl Families {
             let partner = self.list.particle[other];
             if partner != u32::MAX {
                 let (_, r0) = self.list.z(false, record, other, [f64::INFINITY; 3]);
-                f(Neighbour { partner, r0, alive: self.list.partner[b] & DEAD == 0 });
+                f(Neighbour { partner, r0, alive: self.list.lives(b) });
             }
         });
     }
@@ -155,6 +155,6 @@ fn end_bonds(list: &mut ListBody, record: usize) {
     let mut ended = Vec::new();
     list.around(record, |_, b| ended.push(b));
     for b in ended {
-        list.partner[b] |= DEAD;
+        list.set(b, false);
     }
 }

@@ -1,13 +1,15 @@
 //! Energy and virial of all bonds: asked for at some steps only, so a pass of its own.
 
+use std::sync::{Mutex, PoisonError};
+
 use super::chunk::{CELLS, Chunk, Kernels};
 use super::contact::add;
 use super::lattice::partners;
 use super::pmb::stretch;
 use crate::par::{self, Shared};
 use crate::world::families::lattice::{LANES, LatticeBody, PAD};
-use crate::world::families::list::{DEAD, ListBody};
-use crate::world::families::{Families, FamilyOptions, ForceUnit, PeriTally, PeriView};
+use crate::world::families::list::ListBody;
+use crate::world::families::{Families, FamilyOptions, ForceUnit, PeriTally, PeriView, Window};
 
 /// Energy and virial of one row of cells or one record.
 type Sums = [f64; 7];
@@ -22,7 +24,7 @@ pub fn tally<K: Kernels>(families: &mut Families, view: &PeriView, t: &mut PeriT
     let options = families.options;
     for body in &families.lattices {
         if t.per_atom_energy.is_none() && body.cell_kind.is_empty() {
-            whole_rows::<K>(body, view, &options, &mut rows);
+            whole_rows::<K>(body, view, &options, &families.scratch.windows, &mut rows);
             collect(&rows, t);
             continue;
         }
@@ -76,6 +78,7 @@ fn whole_rows<K: Kernels>(
     body: &LatticeBody,
     view: &PeriView,
     options: &FamilyOptions,
+    windows: &[Mutex<Window>],
     rows: &mut Vec<Sums>,
 ) {
     let Some(&first) = body.particle.iter().find(|&&p| p != u32::MAX) else { return };
@@ -85,13 +88,14 @@ fn whole_rows<K: Kernels>(
     rows.resize(n, [0.0; 7]);
     let shared = Shared::new(rows);
     par::for_rows(n.div_ceil(ROWS), |part| {
-        let mut to = Vec::with_capacity(body.stencil.len());
+        let mut window = windows[par::slot()].lock().unwrap_or_else(PoisonError::into_inner);
+        let Window { meets, to, .. } = &mut *window;
         for slot in part * ROWS..n.min((part + 1) * ROWS) {
-            to.clear();
-            if body.rows[slot].len > 0 {
-                body.groups.iter().for_each(|group| partners(body, slot, group, &mut to));
+            if body.rows[slot].len == 0 {
+                continue;
             }
-            let mut row = whole_row::<K>(body, slot, &to);
+            partners(body, slot, meets, to);
+            let mut row = whole_row::<K>(body, slot, to);
             row[1..].iter_mut().for_each(|v| *v *= volume);
             // SAFETY: each row belongs to one part.
             unsafe { shared.get(slot..slot + 1)[0] = row };
@@ -177,7 +181,7 @@ fn list_row(
     options: &FamilyOptions,
     f: &mut dyn FnMut((usize, f64), (usize, f64), f64, [f64; 3]),
 ) {
-    for b in list.own(i).filter(|&b| list.partner[b] & DEAD == 0) {
+    for b in list.own(i).filter(|&b| list.lives(b)) {
         let j = list.partner[b] as usize;
         let pair = &list.pairs[usize::from(list.kind[i]) * list.kinds.len() + usize::from(list.kind[j])];
         let (z, length) = list.z(false, i, j, period);

@@ -100,11 +100,6 @@ pub trait Rows: Lanes {
     /// # Safety
     /// See [`Lanes::splat`].
     unsafe fn array(self) -> [f64; 4];
-    /// Mask of the four numbers whose highest bit is not set.
-    ///
-    /// # Safety
-    /// `p` must be readable for four numbers.
-    unsafe fn living(p: *const u32) -> Self;
     /// Four rows of four consecutive numbers as columns.
     ///
     /// # Safety
@@ -206,12 +201,6 @@ impl Rows for Portable {
     #[inline(always)]
     unsafe fn array(self) -> [f64; 4] {
         self.0
-    }
-    #[inline(always)]
-    unsafe fn living(p: *const u32) -> Self {
-        // SAFETY: readable by the caller's promise.
-        let raw = unsafe { p.cast::<[u32; 4]>().read() };
-        Self(raw.map(|j| f64::from_bits(if j >> 31 == 0 { u64::MAX } else { 0 })))
     }
     #[inline(always)]
     unsafe fn transposed(rows: [*const f64; 4]) -> [Self; 4] {
@@ -351,14 +340,6 @@ mod x86 {
             let mut out = [0.0; 4];
             unsafe { _mm256_storeu_pd(out.as_mut_ptr(), self.0) }
             out
-        }
-        #[inline(always)]
-        unsafe fn living(p: *const u32) -> Self {
-            unsafe {
-                let raw = _mm_loadu_si128(p.cast());
-                let dead = _mm256_cvtepi32_epi64(_mm_srai_epi32::<31>(raw));
-                Self(_mm256_castsi256_pd(_mm256_xor_si256(dead, _mm256_set1_epi64x(-1))))
-            }
         }
         #[inline(always)]
         unsafe fn transposed(rows: [*const f64; 4]) -> [Self; 4] {

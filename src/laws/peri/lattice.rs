@@ -4,7 +4,7 @@ use super::chunk::{self, Chunk, Kernels, Various, constant};
 use super::pmb::{UP_TO_3, UP_TO_5, UP_TO_7, stretch, z_of};
 use crate::par::{self, Shared};
 use crate::world::families::lattice::{
-    CONSTANTS, Group, LANES, LatticeBody, MIXED, PAD, PAGE, RowMotion, STAGGER, staggered,
+    CONSTANTS, LANES, LatticeBody, MIXED, PAD, PAGE, RowMotion, STAGGER, greater, lesser, staggered,
 };
 use crate::world::families::{FamilyOptions, ForceUnit, PeriView, PmbTable, Window};
 
@@ -132,32 +132,43 @@ fn gather_row(
     last: [&[f64]; 3],
     lo: i32,
 ) -> RowMotion {
-    let mut motion = RowMotion::NONE;
-    let wraps = view.bounds.periodic != [false; 3];
     let n = particle.len();
+    let wraps = view.bounds.periodic != [false; 3];
     let [ux, uy, uz] = u;
     let (ux, uy, uz) = (&mut ux[..n], &mut uy[..n], &mut uz[..n]);
-    let (lx, ly, lz) = (&last[0][..n], &last[1][..n], &last[2][..n]);
     for c in 0..n {
         let p = particle[c] as usize;
         let (Some(x), Some(x0)) = (view.x.get(p), reference.get(p)) else { continue };
         let mut now = [x[0] - x0[0], x[1] - x0[1], x[2] - x0[2]];
-        let before = [lx[c], ly[c], lz[c]];
         if wraps {
-            now = unwrap(now, before, view);
-        }
-        for k in 0..3 {
-            let change = now[k] - before[k];
-            motion.least[k] = motion.least[k].min(change);
-            motion.most[k] = motion.most[k].max(change);
-        }
-        if now != [0.0; 3] {
-            motion.lo = motion.lo.min(lo + c as i32);
-            motion.hi = lo + c as i32;
+            now = unwrap(now, [last[0][c], last[1][c], last[2][c]], view);
         }
         (ux[c], uy[c], uz[c]) = (now[0], now[1], now[2]);
     }
+    // Vacant cells stay at zero: they widen the ranges at most.
+    let mut motion = RowMotion::NONE;
+    for (k, (now, last)) in [&*ux, &*uy, &*uz].into_iter().zip(last).enumerate() {
+        (motion.least[k], motion.most[k]) = range_of_change(now, last);
+        if let Some(first) = now.iter().position(|&u| u != 0.0) {
+            motion.lo = motion.lo.min(lo + first as i32);
+            let last = now.iter().rposition(|&u| u != 0.0).unwrap_or(first);
+            motion.hi = motion.hi.max(lo + last as i32);
+        }
+    }
     motion
+}
+
+/// The smallest and the largest difference of two columns whose length is a multiple of [`LANES`].
+fn range_of_change(now: &[f64], last: &[f64]) -> (f64, f64) {
+    let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+    for (now, last) in now.chunks_exact(LANES).zip(last.chunks_exact(LANES)) {
+        for k in 0..LANES {
+            let change = now[k] - last[k];
+            least[k] = lesser(change, least[k]);
+            most[k] = greater(change, most[k]);
+        }
+    }
+    (least.into_iter().fold(f64::INFINITY, lesser), most.into_iter().fold(f64::NEG_INFINITY, greater))
 }
 
 /// The displacement among its periodic images that is nearest to the one before.
@@ -247,7 +258,7 @@ impl<'a> Sweep<'a> {
         let mut touched = false;
         for slot in body.slot(own.start, 0)..body.slot(own.end, 0) {
             if body.rows[slot].len > 0 {
-                let plan = self.plan(slot, &mut window.to);
+                let plan = self.plan(slot, &mut window.meets, &mut window.to);
                 touched |= self.row::<K>(slot, &plan, window, (base, stride, first));
             }
         }
@@ -266,20 +277,19 @@ impl<'a> Sweep<'a> {
     }
 
     /// Looks at the rows that a row's bonds lead to.
-    fn plan(&self, slot: usize, to: &mut Vec<(i32, u32)>) -> RowPlan {
+    fn plan(&self, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) -> RowPlan {
         let body = self.body;
         let mut motion = body.motion[slot];
         let mut limit = (f64::INFINITY, 0.0f64);
-        to.clear();
-        for group in &body.groups {
-            let (other, uniform) = meet(body, slot, group);
+        partners(body, slot, meets, to);
+        for &step in &body.steps {
+            let (other, uniform) = meet(body, slot, step);
             motion = motion.with(&body.motion[other]);
             let pair = uniform.unwrap_or(0);
             let known = if uniform.is_some() { &body.pairs[pair..=pair] } else { &body.pairs[..] };
             for [_, s00, alpha] in known {
                 limit = (limit.0.min(*s00), limit.1.max(*alpha));
             }
-            partners(body, slot, group, to);
         }
         let range = [0, 1, 2].map(|k| (motion.most[k] - motion.least[k]).max(0.0) / body.spacing);
         let d = range.iter().map(|r| r * r).sum::<f64>().sqrt();
@@ -388,23 +398,32 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// The row slot that a group of bonds leads to, and the pair of local types if both rows have one each.
-fn meet(body: &LatticeBody, slot: usize, group: &Group) -> (usize, Option<usize>) {
-    let other = (slot + group.up as usize * body.width).wrapping_add_signed(group.across as isize);
+/// The row slot that bonds with a row step lead to, and the pair of local types if both rows have one each.
+fn meet(body: &LatticeBody, slot: usize, (across, up): (i32, usize)) -> (usize, Option<usize>) {
+    let other = (slot + up * body.width).wrapping_add_signed(across as isize);
     let (a, b) = (body.rows[slot].kind, body.rows[other].kind);
     let uniform = a != MIXED && b != MIXED;
     (other, uniform.then(|| usize::from(a) * body.kinds.len() + usize::from(b)))
 }
 
-/// Appends where the bonds of a group lead from a row, and the places of their constants.
-pub fn partners(body: &LatticeBody, slot: usize, group: &Group, to: &mut Vec<(i32, u32)>) {
-    let (other, uniform) = meet(body, slot, group);
-    let (row, other) = (&body.rows[slot], &body.rows[other]);
-    let offset = if other.len == 0 { 0 } else { other.start as i32 - row.start as i32 + row.lo - other.lo };
+/// Finds for each stencil vector how many cells further it leads from a row's cells, and the place of its
+/// constants; `meets` is scratch.
+pub fn partners(body: &LatticeBody, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) {
+    let row = &body.rows[slot];
     let various = !body.cell_kind.is_empty();
-    let table = if various { 0 } else { uniform.unwrap_or(0) * body.stencil.len() };
-    for e in group.first..group.first + group.count {
-        to.push((offset + body.stencil[e][0], ((table + e) * CONSTANTS) as u32));
+    meets.clear();
+    for &step in &body.steps {
+        let (other, uniform) = meet(body, slot, step);
+        let other = &body.rows[other];
+        let offset =
+            if other.len == 0 { 0 } else { other.start as i32 - row.start as i32 + row.lo - other.lo };
+        let table = if various { 0 } else { uniform.unwrap_or(0) * body.stencil.len() };
+        meets.push((offset, (table * CONSTANTS) as u32));
+    }
+    to.clear();
+    for (e, (vector, &step)) in body.stencil.iter().zip(&body.step_of).enumerate() {
+        let (offset, table) = meets[usize::from(step)];
+        to.push((offset + vector[0], table + (e * CONSTANTS) as u32));
     }
 }
 

@@ -2,10 +2,10 @@
 
 use super::lanes::{Lanes, Portable, Rows};
 use super::lattice::{MAY_BREAK, Mode, SQUEEZED};
-use super::pmb::{SERIES, UP_TO_7, closed, stretch, z_of};
+use super::pmb::{SERIES, UP_TO_3, UP_TO_7, closed, stretch, z_of};
 use crate::par::{self, Shared};
 use crate::world::families::lattice::RowMotion;
-use crate::world::families::list::{DEAD, GROUP, ListBody, PairConstants, Record};
+use crate::world::families::list::{GROUP, ListBody, PairConstants, Record};
 use crate::world::families::{FamilyOptions, ForceUnit, PeriView, PmbTable, VolumeRule, Window};
 
 /// An expression for each of four partners; see `chunk::xyz` for why this is no closure.
@@ -120,24 +120,23 @@ pub struct Sweep<'a> {
 pub struct RowTask<'a> {
     body: &'a ListBody,
     i: usize,
-    /// Forces of the window's records, four numbers each.
+    /// Where the forces of record 0 would be in the window, four numbers per record.
     force: *mut f64,
-    /// First record of the window; records before it come after the last one.
+    /// First record of the window; in the last slab of a ring, records before it come after the others.
     first: usize,
     period: [f64; 3],
-    newton: bool,
-    /// |z| below which there is no force; times 1/|xi| under compat.
-    dead: f64,
-    compat: bool,
+    /// |z| below which there is no force: the first number plus the second over |xi|.
+    dead: [f64; 2],
 }
 
-/// Adds the forces of a record's own bonds to both ends; returns the largest z and the largest -z.
+/// Adds the forces of a record's own bonds, times the volumes of both ends, to both ends; returns the largest
+/// z and the largest -z. `PERIODIC`: bonds cross faces. `RING`: the window closes the ring.
 ///
 /// # Safety
 /// Every partner must lie in the window behind `force`, untouched by others; the processor must have what `L`
 /// needs.
 #[inline(always)]
-unsafe fn force<L: Rows, const PERIODIC: bool>(a: &RowTask) -> (f64, f64) {
+unsafe fn force<L: Rows, const PERIODIC: bool, const RING: bool>(a: &RowTask) -> (f64, f64) {
     // SAFETY: partners are records; their places in the window exist by the caller's promise.
     unsafe {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
@@ -147,20 +146,17 @@ unsafe fn force<L: Rows, const PERIODIC: bool>(a: &RowTask) -> (f64, f64) {
         let x = [L::splat(own.reference[0]), L::splat(own.reference[1]), L::splat(own.reference[2])];
         let u = [L::splat(own.u[0]), L::splat(own.u[1]), L::splat(own.u[2])];
         let volume = L::splat(own.volume);
-        let kinds = a.body.kinds.len();
-        let pairs = a.body.pairs.as_ptr().add(usize::from(a.body.kind[a.i]) * kinds);
+        let pairs = a.body.pairs.as_ptr().add(usize::from(a.body.kind[a.i]) * a.body.kinds.len());
         let (mut fx, mut fy, mut fz) = (zero, zero, zero);
         let (mut high, mut low) = (zero, zero);
         let mut group = a.body.start[a.i] as usize;
         let end = a.body.start[a.i + 1] as usize;
         while group < end {
             let partner = a.body.partner.as_ptr().add(GROUP * group);
-            let raw = [*partner, *partner.add(1), *partner.add(2), *partner.add(3)];
-            let j = [raw[0] & !DEAD, raw[1] & !DEAD, raw[2] & !DEAD, raw[3] & !DEAD];
-            let alive = L::living(partner);
+            let alive = L::mask(*a.body.alive.get_unchecked(group));
             let pair = &*pairs.add(usize::from(*a.body.group_kind.get_unchecked(group)));
             group += 1;
-            let p = four!(|k| record.add(j[k] as usize).cast::<f64>());
+            let p = four!(|k| record.add(*partner.add(k) as usize).cast::<f64>());
             let [xj, yj, zj, vj] = L::transposed(p);
             let [uj, wj, qj, _] = L::transposed([p[0].add(4), p[1].add(4), p[2].add(4), p[3].add(4)]);
             let (mut ax, mut ay, mut az) = (xj.sub(x[0]), yj.sub(x[1]), zj.sub(x[2]));
@@ -174,39 +170,33 @@ unsafe fn force<L: Rows, const PERIODIC: bool>(a: &RowTask) -> (f64, f64) {
             let (bx, by, bz) = (ax.add(ex), ay.add(ey), az.add(ez));
             let q = ex.fma(bx.add(ax), ey.fma(by.add(ay), ez.mul(bz.add(az))));
             let inverse = one.div(square.sqrt());
-            let z = q.mul(inverse).mul(inverse);
+            let z = q.mul(inverse.mul(inverse));
             let size = z.abs();
-            let h = if size.ge(L::splat(UP_TO_7)).keep(alive).any() {
-                closed(z)
+            let h = if !size.ge(L::splat(UP_TO_3)).keep(alive).any() {
+                series::<L, 3>(z)
+            } else if !size.ge(L::splat(UP_TO_7)).keep(alive).any() {
+                series::<L, 7>(z)
             } else {
-                let mut h = L::splat(SERIES[7]);
-                let mut k = 7;
-                while k > 0 {
-                    k -= 1;
-                    h = h.fma(z, L::splat(SERIES[k]));
-                }
-                h
+                closed(z)
             };
-            let length = square.mul(inverse);
-            let weight = L::splat(pair.weight[1]).fnma(length, L::splat(pair.weight[0])).min(one);
-            let dead = if a.compat { inverse.mul(L::splat(a.dead)) } else { L::splat(a.dead) };
-            let live = size.ge(dead).keep(alive);
+            let weight =
+                L::splat(pair.weight[1]).fnma(square.mul(inverse), L::splat(pair.weight[0])).min(one);
+            let live = size.ge(inverse.fma(L::splat(a.dead[1]), L::splat(a.dead[0]))).keep(alive);
             let z = z.keep(live);
             high = z.max(high);
             low = z.min(low);
-            let factor = L::splat(pair.c).mul(weight).mul(inverse).mul(z.mul(h)).keep(live);
-            let forth = if a.newton { factor.mul(volume.mul(vj)) } else { factor.mul(vj) };
-            let back = if a.newton { forth } else { factor.mul(volume) };
-            fx = forth.fma(bx, fx);
-            fy = forth.fma(by, fy);
-            fz = forth.fma(bz, fz);
+            let scale = L::splat(pair.c).mul(inverse).mul(weight).mul(volume.mul(vj)).keep(live);
+            let factor = scale.mul(z.mul(h)).keep(live);
+            fx = factor.fma(bx, fx);
+            fy = factor.fma(by, fy);
+            fz = factor.fma(bz, fz);
             let place = four!(|k| {
-                let j = j[k] as usize;
-                a.force.add(4 * (if j < a.first { j + n } else { j } - a.first))
+                let j = *partner.add(k) as usize;
+                a.force.wrapping_add(4 * if RING && j < a.first { j + n } else { j })
             });
-            L::subtract_transposed([back.mul(bx), back.mul(by), back.mul(bz)], place);
+            L::subtract_transposed([factor.mul(bx), factor.mul(by), factor.mul(bz)], place);
         }
-        let own = a.force.add(4 * (a.i - a.first));
+        let own = a.force.wrapping_add(4 * a.i);
         let (fx, fy, fz) = (fx.array(), fy.array(), fz.array());
         *own += (fx[0] + fx[1]) + (fx[2] + fx[3]);
         *own.add(1) += (fy[0] + fy[1]) + (fy[2] + fy[3]);
@@ -216,6 +206,21 @@ unsafe fn force<L: Rows, const PERIODIC: bool>(a: &RowTask) -> (f64, f64) {
             high[0].max(high[1]).max(high[2]).max(high[3]).max(0.0),
             -low[0].min(low[1]).min(low[2]).min(low[3]).min(0.0),
         )
+    }
+}
+
+/// h(z) by its series up to z^`DEGREE`.
+#[inline(always)]
+unsafe fn series<L: Lanes, const DEGREE: usize>(z: L) -> L {
+    // SAFETY: passed on to the caller.
+    unsafe {
+        let mut h = L::splat(SERIES[DEGREE]);
+        let mut k = DEGREE;
+        while k > 0 {
+            k -= 1;
+            h = h.fma(z, L::splat(SERIES[k]));
+        }
+        h
     }
 }
 
@@ -237,34 +242,34 @@ pub trait RowKernels: Sync {
     ///
     /// # Safety
     /// As for [`force`].
-    unsafe fn row<const PERIODIC: bool>(a: &RowTask) -> (f64, f64);
+    unsafe fn row<const PERIODIC: bool, const RING: bool>(a: &RowTask) -> (f64, f64);
 }
 
 impl RowKernels for super::chunk::Plain {
-    unsafe fn row<const PERIODIC: bool>(a: &RowTask) -> (f64, f64) {
+    unsafe fn row<const PERIODIC: bool, const RING: bool>(a: &RowTask) -> (f64, f64) {
         // SAFETY: the caller's promise.
-        unsafe { force::<Portable, PERIODIC>(a) }
+        unsafe { force::<Portable, PERIODIC, RING>(a) }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 impl RowKernels for super::chunk::Wide {
-    unsafe fn row<const PERIODIC: bool>(a: &RowTask) -> (f64, f64) {
+    unsafe fn row<const PERIODIC: bool, const RING: bool>(a: &RowTask) -> (f64, f64) {
         #[target_feature(enable = "avx2,fma")]
-        unsafe fn wide<const PERIODIC: bool>(a: &RowTask) -> (f64, f64) {
+        unsafe fn wide<const PERIODIC: bool, const RING: bool>(a: &RowTask) -> (f64, f64) {
             // SAFETY: the caller's promise.
-            unsafe { force::<super::lanes::Avx2, PERIODIC>(a) }
+            unsafe { force::<super::lanes::Avx2, PERIODIC, RING>(a) }
         }
         // SAFETY: the caller's promise includes the instruction set.
-        unsafe { wide::<PERIODIC>(a) }
+        unsafe { wide::<PERIODIC, RING>(a) }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 impl RowKernels for super::chunk::Widest {
-    unsafe fn row<const PERIODIC: bool>(a: &RowTask) -> (f64, f64) {
+    unsafe fn row<const PERIODIC: bool, const RING: bool>(a: &RowTask) -> (f64, f64) {
         // SAFETY: the caller's promise; whoever has AVX-512 has AVX2.
-        unsafe { <super::chunk::Wide as RowKernels>::row::<PERIODIC>(a) }
+        unsafe { <super::chunk::Wide as RowKernels>::row::<PERIODIC, RING>(a) }
     }
 }
 
@@ -301,21 +306,20 @@ impl Sweep<'_> {
         let periodic = self.period.iter().any(|p| p.is_finite());
         let limit =
             body.pairs.iter().fold((f64::INFINITY, 0.0f64), |l, p| (l.0.min(p.s00), l.1.max(p.alpha)));
-        let compat = self.options.compat_lammps;
+        let closes = body.ring && slab + 1 == slabs;
+        let band = self.options.dead_band(1.0);
+        let dead = if self.options.compat_lammps { [0.0, band] } else { [band, 0.0] };
+        let force = window.force.as_mut_ptr().wrapping_sub(4 * own.start);
         for (k, i) in own.clone().enumerate() {
-            let task = RowTask {
-                body,
-                i,
-                force: window.force.as_mut_ptr(),
-                first: own.start,
-                period: self.period,
-                newton: self.options.unit == ForceUnit::Newton,
-                dead: self.options.dead_band(1.0),
-                compat,
-            };
+            let task = RowTask { body, i, force, first: own.start, period: self.period, dead };
             // SAFETY: bonds lead to this slab or the next, which the window covers in this order.
-            let (high, low) =
-                unsafe { if periodic { K::row::<true>(&task) } else { K::row::<false>(&task) } };
+            let (high, low) = unsafe {
+                match (periodic, closes) {
+                    (false, _) => K::row::<false, false>(&task),
+                    (true, false) => K::row::<true, false>(&task),
+                    (true, true) => K::row::<true, true>(&task),
+                }
+            };
             let floor = z_of(limit.0 - limit.1 * stretch(f64::from(tension[k]))) * (1.0 - 1e-6);
             if self.mode.armed && self.mode.advance && high >= floor {
                 flagged[k] |= MAY_BREAK;
@@ -333,7 +337,11 @@ impl Sweep<'_> {
                 // SAFETY: in bounds; slabs that reach a particle run one after the other.
                 let f = unsafe { &mut *f.as_ptr().add(p) };
                 let w = &window.force[4 * k..4 * k + 3];
-                *f = [f[0] + w[0], f[1] + w[1], f[2] + w[2]];
+                let share = match self.options.unit {
+                    ForceUnit::Density => 1.0 / body.record[i].volume,
+                    ForceUnit::Newton => 1.0,
+                };
+                *f = [f[0] + share * w[0], f[1] + share * w[1], f[2] + share * w[2]];
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Laying out a body on a lattice: rows, slabs, half stencil, alive bits.
 
 use super::detect::{Sites, distance};
-use crate::world::families::lattice::{Group, LANES, LatticeBody, Row, RowMotion, staggered};
+use crate::world::families::lattice::{LANES, LatticeBody, Row, RowMotion, staggered};
 use crate::world::families::{FamilyOptions, PeriView, PmbTable};
 
 /// Types mixed in a row cost this many cells' worth each when the direction of rows is chosen.
@@ -79,23 +79,24 @@ fn cost(view: &PeriView, members: &[u32], sites: &Sites, axes: [usize; 3]) -> (u
     (cells, changes)
 }
 
-/// All lattice vectors within the cut that come after (0, 0, 0), grouped by the row they lead to.
+/// Half of all lattice vectors within the cut, and the row steps among them.
 fn stencil(body: &mut LatticeBody, cut: f64) {
     let reach = (cut / body.spacing * (1.0 + 1e-9)).floor() as i32;
     let most = (cut / body.spacing).powi(2) * (1.0 + 2e-9);
     body.reach = reach;
-    for up in 0..=reach {
-        for across in -reach..=reach {
-            for along in -reach..=reach {
+    for along in -reach..=reach {
+        for up in 0..=reach {
+            for across in -reach..=reach {
                 let after = (up, across, along) > (0, 0, 0);
                 if !after || f64::from(up * up + across * across + along * along) > most {
                     continue;
                 }
-                let e = body.stencil.len();
                 body.stencil.push([along, across, up]);
-                match body.groups.last_mut() {
-                    Some(g) if g.up == up && g.across == across => g.count += 1,
-                    _ => body.groups.push(Group { across, up, first: e, count: 1 }),
+                let step = (across, up as usize);
+                let known = body.steps.iter().position(|&s| s == step);
+                body.step_of.push(known.unwrap_or(body.steps.len()) as u16);
+                if known.is_none() {
+                    body.steps.push(step);
                 }
             }
         }
@@ -107,8 +108,8 @@ fn rows(body: &mut LatticeBody, members: &[u32], sites: &Sites) {
     let reach = body.reach as usize;
     body.planes = up;
     body.width = across + 2 * reach;
-    // Slabs are as thin as the reach allows until there are many: forces handed over twice cost little.
-    body.thickness = (up / 24).clamp(reach, 2 * reach).max(1);
+    // Thick slabs hand over fewer forces twice, many slabs keep threads equally busy.
+    body.thickness = up.div_ceil(16).clamp(reach, 2 * reach).max(1);
     let mut extent = vec![(i32::MAX, i32::MIN); body.width * (up + reach + 1)];
     let slot = |at: &[i32; 3]| {
         let [_, y, z] = body.axes.map(|a| at[a] as usize);

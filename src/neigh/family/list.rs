@@ -1,7 +1,7 @@
 //! Laying out bonds as a list: records by slabs, half of the bonds with each.
 
 use super::detect::{bonds, reach};
-use crate::world::families::list::{DEAD, GROUP, ListBody, Record};
+use crate::world::families::list::{GROUP, ListBody, Record};
 use crate::world::families::{FamilyOptions, PeriView, PmbTable};
 
 /// The list layout of the bonds among `members`, and the sums of initial partners' volumes and numbers.
@@ -124,11 +124,12 @@ fn fill(body: &mut ListBody, pairs: &[(u32, u8, u32)]) {
             let same = |p: &&(u32, u8, u32)| p.0 == i && p.1 == kind;
             let count = rest.iter().take(GROUP).take_while(same).count();
             for k in 0..GROUP {
-                body.partner.push(if k < count { rest[k].2 } else { i | DEAD });
+                body.partner.push(if k < count { rest[k].2 } else { i });
                 if k < count {
                     body.back_start[rest[k].2 as usize + 1] += 1;
                 }
             }
+            body.alive.push((1 << count) - 1);
             body.group_kind.push(kind);
             body.owner.push(i);
             rest = &rest[count..];
@@ -141,7 +142,7 @@ fn fill(body: &mut ListBody, pairs: &[(u32, u8, u32)]) {
     let mut place = body.back_start.clone();
     body.back = vec![0; pairs.len()];
     for (b, &j) in body.partner.iter().enumerate() {
-        if j & DEAD == 0 {
+        if body.lives(b) {
             body.back[place[j as usize] as usize] = b as u32;
             place[j as usize] += 1;
         }

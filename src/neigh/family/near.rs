@@ -127,7 +127,9 @@ impl Families {
         let body = self.body_of(i) as usize;
         let Some(lattice) = self.lattices.get(body) else {
             let (a, b) = (a - self.list.first_place, b - self.list.first_place);
-            let joins = |i: u32, j: u32| self.list.own(i as usize).any(|k| self.list.partner[k] == j);
+            let joins = |i: u32, j: u32| {
+                self.list.own(i as usize).any(|k| self.list.partner[k] == j && self.list.lives(k))
+            };
             return joins(a, b) || joins(b, a);
         };
         let (a, b) = ((a - lattice.first_place) as usize, (b - lattice.first_place) as usize);
@@ -135,7 +137,7 @@ impl Families {
         let after = (step[2], step[1], step[0]) > (0, 0, 0);
         let (from, step) = if after { (a, step) } else { (b, step.map(|s| -s)) };
         let found =
-            lattice.stencil.binary_search_by_key(&(step[2], step[1], step[0]), |s| (s[2], s[1], s[0]));
+            lattice.stencil.binary_search_by_key(&(step[0], step[2], step[1]), |s| (s[0], s[2], s[1]));
         found.is_ok_and(|e| lattice.lives(from, e))
     }
 

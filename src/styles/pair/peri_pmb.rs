@@ -321,16 +321,15 @@ impl Force {
         if self.options.unit == ForceUnit::Newton {
             self.true_masses(w)?;
         }
-        match &mut w.families {
-            Some(families) => {
-                families.table = self.style.table.clone();
+        let families = match w.families.take() {
+            Some(mut families) => {
                 families.options = self.options;
+                families.refresh(&view(w)?, &self.style.table);
+                families
             }
-            None => {
-                let families = Families::build(&view(w)?, &self.style.table, self.options)?;
-                w.families = Some(families);
-            }
-        }
+            None => Families::build(&view(w)?, &self.style.table, self.options)?,
+        };
+        w.families = Some(families);
         Ok(())
     }
 

@@ -14,9 +14,6 @@ pub struct Record {
     pub spare: f64,
 }
 
-/// A partner whose bond is broken, or that only fills a group.
-pub const DEAD: u32 = 1 << 31;
-
 /// Bonds that share one row of constants: four partners.
 pub const GROUP: usize = 4;
 
@@ -57,8 +54,10 @@ pub struct ListBody {
     pub pairs: Vec<PairConstants>,
     /// First group of each record, and the end.
     pub start: Vec<u32>,
-    /// Partners' records, [`GROUP`] per group, [`DEAD`] set where the bond does not live.
+    /// Partners' records, [`GROUP`] per group; the last group of a row is filled up with its owner.
     pub partner: Vec<u32>,
+    /// Which bonds of a group live: bit k for the k-th; never for fillers.
+    pub alive: Vec<u8>,
     /// Local type of a group's partners.
     pub group_kind: Vec<u8>,
     /// The record whose group it is.
@@ -92,13 +91,27 @@ impl ListBody {
         GROUP * self.start[i] as usize..GROUP * self.start[i + 1] as usize
     }
 
+    /// Whether the bond at a place in `partner` lives.
+    pub fn lives(&self, b: usize) -> bool {
+        self.alive[b / GROUP] >> (b % GROUP) & 1 == 1
+    }
+
+    /// Sets whether the bond at a place in `partner` lives.
+    pub fn set(&mut self, b: usize, lives: bool) {
+        if lives {
+            self.alive[b / GROUP] |= 1 << (b % GROUP);
+        } else {
+            self.alive[b / GROUP] &= !(1 << (b % GROUP));
+        }
+    }
+
     /// Calls `f(other record, place in partner)` for every bond of a record, living or not.
     pub fn around(&self, i: usize, mut f: impl FnMut(usize, usize)) {
         for &b in &self.back[self.back_start[i] as usize..self.back_start[i + 1] as usize] {
             f(self.owner[b as usize / GROUP] as usize, b as usize);
         }
         for b in self.own(i) {
-            let j = (self.partner[b] & !DEAD) as usize;
+            let j = self.partner[b] as usize;
             if j != i {
                 f(j, b);
             }

@@ -318,6 +318,8 @@ pub struct Candidate {
 pub struct Window {
     /// Forces of a slab and of what it reaches.
     pub force: Vec<f64>,
-    /// Where the bonds of a row lead, and their constants.
+    /// Which rows a row meets: how many cells further the same place is, and the place of constants.
+    pub meets: Vec<(i32, u32)>,
+    /// The same for each stencil vector.
     pub to: Vec<(i32, u32)>,
 }
