@@ -12,7 +12,7 @@ mod setforce;
 mod viscous;
 
 use super::{BuildCx, SealCx, Shape, Style};
-use crate::diag::{Code, Result, fail};
+use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
 use crate::plan::Op;
 use crate::world::World;
@@ -65,10 +65,15 @@ pub trait Fix: Send {
     /// # Errors
     /// Unknown keywords; by default there are none.
     fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        match args.next() {
-            None => Ok(()),
-            Some(w) => fail(Code::UNKNOWN_KEYWORD, w.span, format!("this fix has no option `{}`", w.text)),
+        let Some(w) = args.next() else { return Ok(()) };
+        let elsewhere = ["virial", "temp", "press", "respa", "dynamic/dof", "bodyforces"];
+        if elsewhere.contains(&w.text.as_str()) {
+            let text = format!("the option `{}` of fix_modify is not in perigrain", w.text);
+            return fail(Code::NOT_SUPPORTED, w.span, text);
         }
+        let d =
+            Diagnostic::error(Code::UNKNOWN_KEYWORD, w.span, format!("this fix has no option `{}`", w.text));
+        Err(d.help("fix_modify knows `energy yes|no`").into())
     }
 
     /// A copy, so that a failing `fix_modify` changes nothing.
