@@ -82,8 +82,18 @@ pub(super) fn line_height(look: &Look) -> usize {
 pub(super) fn words(image: &mut Image, scene: &Scene<'_>, look: &Look) {
     let size = text_size(look);
     let below = look.height as f32 - 2.0 * size;
-    text::draw(image, scene.title, size, size, 1.15 * size, look.ink);
-    text::draw(image, scene.caption, size, below, size, look.ink);
+    for (words, y, size) in [(scene.title, size, 1.15 * size), (scene.caption, below, size)] {
+        let x = text_size(look);
+        if !words.is_empty() {
+            panel(
+                image,
+                look,
+                [0.6 * x, x + text::width(words, size) + 0.4 * x],
+                [y - 0.4 * x, y + size + 0.4 * x],
+            );
+        }
+        text::draw(image, words, x, y, size, look.ink);
+    }
     if let Some(legend) = scene.legend {
         draw_legend(image, legend, look, size);
     }
@@ -93,6 +103,11 @@ fn draw_legend(image: &mut Image, legend: &Legend, look: &Look, size: f32) {
     let left = look.width.saturating_sub(legend.width(look)) as f32;
     let height = (0.5 * look.height as f32).round();
     let top = (0.27 * look.height as f32).round();
+    let rows = match legend {
+        Legend::Scale { .. } => height + size,
+        Legend::Names { entries, .. } => 2.0 * size * entries.len() as f32,
+    };
+    panel(image, look, [left - 0.6 * size, look.width as f32 - 0.4 * size], [top - 2.6 * size, top + rows]);
     text::draw(image, legend.title(), left, top - 2.0 * size, size, look.ink);
     match legend {
         Legend::Scale { map, range, .. } => draw_scale(image, map, *range, [left, top, height], look, size),
@@ -122,6 +137,16 @@ fn draw_scale(image: &mut Image, map: &Map, range: [f64; 2], place: [f32; 3], lo
         let tick = (0.4 * size) as i64;
         image.fill([right as i64, right as i64 + tick], [y as i64, y as i64 + 1], look.ink);
         text::draw(image, &label, right + 0.8 * size, y - 0.5 * size, size, look.ink);
+    }
+}
+
+/// Lets the background through a rectangle, so that words can be read over spheres.
+fn panel(image: &mut Image, look: &Look, x: [f32; 2], y: [f32; 2]) {
+    for row in y[0].max(0.0) as i64..y[1] as i64 {
+        let ground = look.background[0].mix(look.background[1], row as f32 / look.height as f32);
+        for column in x[0].max(0.0) as i64..x[1] as i64 {
+            image.blend(column, row, ground, 0.85);
+        }
     }
 }
 

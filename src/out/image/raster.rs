@@ -232,5 +232,5 @@ pub(super) fn spirals() -> &'static [[[f32; 2]; RAYS]; ROTATIONS] {
 /// Samples per spiral.
 pub(super) const RAYS: usize = 11;
 
-/// Different spirals, in a 4 × 4 pattern.
+/// Different spirals, shared out among the samples of a pixel.
 pub(super) const ROTATIONS: usize = 16;

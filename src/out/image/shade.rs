@@ -13,9 +13,6 @@ const FILL: [f32; 3] = [0.7, 0.14, 0.7003];
 /// Halfway between the main light and the viewer, for the highlight. Normalised.
 const HALF: [f32; 3] = [-0.2470, 0.3459, 0.9052];
 
-/// A 4 × 4 arrangement of the spirals that spreads neighbours.
-const PATTERN: [usize; ROTATIONS] = [0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5];
-
 /// Colours every pixel.
 pub(super) fn shade(scene: &Scene<'_>, raster: &Raster, look: &Look, frame: &Frame) -> Image {
     let n = look.samples.max(1);
@@ -29,7 +26,8 @@ pub(super) fn shade(scene: &Scene<'_>, raster: &Raster, look: &Look, frame: &Fra
                 let colour = match raster.seen(sx, sy) {
                     NOTHING => ground,
                     i => {
-                        let lit = Sample::new(raster, i, sx, sy);
+                        // Every pixel has the same spirals, so that no pattern shows.
+                        let lit = Sample::new(raster, i, [sx, sy], sample * ROTATIONS / (n * n));
                         lit.colour(scene.colours[i as usize], raster, look, reach, ground)
                     }
                 };
@@ -55,17 +53,18 @@ fn reach(raster: &Raster, frame: &Frame, n: usize) -> [f32; 2] {
 struct Sample {
     x: usize,
     y: usize,
+    spiral: usize,
     depth: f32,
     /// Outward, x to the right, y up, z towards the viewer.
     normal: [f32; 3],
 }
 
 impl Sample {
-    fn new(raster: &Raster, i: u32, x: usize, y: usize) -> Self {
+    fn new(raster: &Raster, i: u32, [x, y]: [usize; 2], spiral: usize) -> Self {
         let Disc { x: cx, y: cy, r, .. } = raster.discs[i as usize];
         let (nx, ny) = ((x as f32 + 0.5 - cx) / r, (cy - y as f32 - 0.5) / r);
         let nz = (1.0 - nx * nx - ny * ny).max(0.0).sqrt();
-        Self { x, y, depth: raster.depth(x, y), normal: [nx, ny, nz] }
+        Self { x, y, spiral, depth: raster.depth(x, y), normal: [nx, ny, nz] }
     }
 
     fn colour(&self, base: Colour, raster: &Raster, look: &Look, reach: [f32; 2], ground: Colour) -> Colour {
@@ -86,7 +85,7 @@ impl Sample {
     /// The part of the sky that is not hidden by what lies within `reach`, by points of the depth buffer
     /// (after McGuire et al., "Scalable Ambient Obscurance", HPG 2012).
     fn openness(&self, raster: &Raster, reach: f32) -> f32 {
-        let rays = &spirals()[PATTERN[self.y % 4 * 4 + self.x % 4]];
+        let rays = &spirals()[self.spiral % ROTATIONS];
         let limit = reach * reach;
         let mut hidden = 0.0;
         for [ox, oy] in rays {

@@ -42,7 +42,8 @@ const PAGE: &str = "`colour` is `type` or any attribute of `dump custom`, `diame
     * `map NAME` (damage viridis plasma inferno coolwarm grey), `range lo hi` (numbers, `min`, `max`), \
       `acolor TYPE COLOUR` (a fixed colour for a type, also beside values), `adiam d` (here) or `adiam TYPE d` (in \
       `dump_modify`), colours by name or `#rrggbb`;\n\
-    * `legend yes|no`, `legend \"text\"`, `title \"text\"`, `time yes|no` (the line below the picture), `box yes|no d`, \
+    * `legend yes|no|text`, `title text` (in quotes, or with `_` for blanks where variables are to be put in), \
+      `time yes|no` (the line below the picture), `box yes|no d`, \
       `backcolor C`, `backcolor2 C`, `boxcolor C` (lines and text), `shiny 0…1`, `ssao yes|no seed 0…1` (shade in gaps), \
       `depthcue yes|no 0…1`, `fsaa yes|no`, `atom yes`.\n\n\
     `dump_modify … region ID` cuts, `thresh` hides, as for `dump custom`. Only PNG is written.";
@@ -79,6 +80,20 @@ impl DumpStyle for Image {
 
 fn positive(d: f64, word: &crate::lang::Word) -> Result<f64> {
     if d > 0.0 { Ok(d) } else { fail(Code::BAD_VALUE, word.span, "a diameter must be greater than zero") }
+}
+
+/// The diameter of a sphere. Cubes of a body, and spheres as wide as their cube, are drawn a little larger, so
+/// that the body looks solid.
+fn auto_diameter(w: &World, i: usize) -> f64 {
+    const OVERLAP: f64 = 1.16;
+    let p = &w.particles;
+    let edge = if p.style.peri { p.volume[i].cbrt() } else { 0.0 };
+    match (p.style.sphere, p.style.peri) {
+        (true, _) if (2.0 * p.radius[i] - edge).abs() <= 0.01 * edge => OVERLAP * edge,
+        (true, _) => 2.0 * p.radius[i],
+        (false, true) => OVERLAP * edge,
+        (false, false) => 1.0,
+    }
 }
 
 /// How large spheres are drawn.
@@ -168,10 +183,7 @@ impl Declared {
             Size::Number(d) => *d,
             Size::ByType => 1.0,
             Size::Attribute(_) => data[1].number(i),
-            Size::Auto if p.style.sphere => 2.0 * p.radius[i],
-            // Cubes that touch are drawn as spheres that overlap a little.
-            Size::Auto if p.style.peri => 1.14 * p.volume[i].cbrt(),
-            Size::Auto => 1.0,
+            Size::Auto => auto_diameter(w, i),
         }
     }
 

@@ -183,9 +183,9 @@ impl Options {
             "legend" => match args.expect("yes, no or a text")? {
                 w if w.text == "yes" => self.legend = true,
                 w if w.text == "no" => self.legend = false,
-                w => (self.legend, self.legend_text) = (true, Some(w.text.clone())),
+                w => (self.legend, self.legend_text) = (true, Some(spoken(w))),
             },
-            "title" => self.title = args.expect("the title in quotes")?.text.clone(),
+            "title" => self.title = spoken(args.expect("the title")?),
             "time" => self.time = args.flag("time")?,
             "box" => {
                 self.box_edges = args.flag("box")?;
@@ -301,6 +301,11 @@ pub fn time_line(w: &World) -> String {
         "real" | "electron" => format!("t = {} fs", general(time, 4)),
         _ => format!("t = {}", general(time, 4)),
     }
+}
+
+/// Text for the picture. LAMMPS puts no variables into quotes, so outside of them `_` stands for a blank.
+fn spoken(word: &Word) -> String {
+    if word.quoted { word.text.clone() } else { word.text.replace('_', " ") }
 }
 
 fn three(args: &mut Args, what: &str) -> Result<[f64; 3]> {
