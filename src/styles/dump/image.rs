@@ -82,10 +82,10 @@ fn positive(d: f64, word: &crate::lang::Word) -> Result<f64> {
     if d > 0.0 { Ok(d) } else { fail(Code::BAD_VALUE, word.span, "a diameter must be greater than zero") }
 }
 
-/// The diameter of a sphere. Cubes of a body, and spheres as wide as their cube, are drawn a little larger, so
-/// that the body looks solid.
+/// The diameter of a sphere. Cubes of a body, and spheres as wide as their cube, are drawn as wide as their diagonal, so
+/// that no light falls through the body.
 fn auto_diameter(w: &World, i: usize) -> f64 {
-    const OVERLAP: f64 = 1.16;
+    const OVERLAP: f64 = std::f64::consts::SQRT_2;
     let p = &w.particles;
     let edge = if p.style.peri { p.volume[i].cbrt() } else { 0.0 };
     match (p.style.sphere, p.style.peri) {
