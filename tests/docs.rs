@@ -174,3 +174,21 @@ fn examples_on_the_pages_are_accepted() {
 /// What an example of the manual may stand upon: nothing, or one of these scenes.
 const SCENES: [&str; 4] =
     ["", include_str!("docs/start.in"), include_str!("docs/atomic.in"), include_str!("docs/scene.in")];
+
+#[test]
+fn every_dependency_has_its_sentence() {
+    let manifest: toml::Table = fs::read_to_string(docs().join("../Cargo.toml")).unwrap().parse().unwrap();
+    let text = fs::read_to_string(docs().join("decisions/dependencies.md")).unwrap();
+    let mut wrong = String::new();
+    for section in ["dependencies", "dev-dependencies"] {
+        for name in manifest[section].as_table().unwrap().keys() {
+            let explained = text
+                .lines()
+                .any(|l| l.starts_with("| `") && l.split('|').nth(1).unwrap().contains(&format!("`{name}`")));
+            if !explained {
+                let _ = writeln!(wrong, "{name}");
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "without a sentence in docs/decisions/dependencies.md:\n{wrong}");
+}

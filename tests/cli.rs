@@ -1,0 +1,137 @@
+//! The program from outside: where the deck comes from, switches, exit codes, what is left behind.
+#![allow(clippy::unwrap_used)] // a test fails by panicking
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+const SCENE: &str = include_str!("scripts/scene.in");
+
+fn perigrain(folder: &Path, args: &[&str], stdin: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_perigrain"))
+        .args(args)
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A program that ends before it has read everything is no failure here.
+    let _ = child.stdin.take().unwrap().write_all(stdin.as_bytes());
+    child.wait_with_output().unwrap()
+}
+
+fn out(o: &Output) -> String {
+    String::from_utf8_lossy(&o.stdout).into_owned()
+}
+
+fn err(o: &Output) -> String {
+    String::from_utf8_lossy(&o.stderr).into_owned()
+}
+
+#[test]
+fn a_deck_is_an_argument_a_switch_or_standard_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let deck = "print \"seven is $(3+4:%g)\"\n";
+    fs::write(folder.path().join("in.deck"), deck).unwrap();
+    for (args, stdin) in
+        [(&["in.deck"][..], ""), (&["-in", "in.deck"], ""), (&["run", "in.deck"], ""), (&[], deck)]
+    {
+        let o = perigrain(folder.path(), args, stdin);
+        assert_eq!(o.status.code(), Some(0), "{args:?}: {}", err(&o));
+        assert!(out(&o).lines().any(|l| l == "seven is 7"), "{args:?}: {}", out(&o));
+    }
+    assert!(fs::read_to_string(folder.path().join("log.lammps")).unwrap().contains("seven is 7"));
+}
+
+#[test]
+fn screen_log_echo_and_variables_go_where_the_switches_say() {
+    let folder = tempfile::tempdir().unwrap();
+    let args =
+        ["-log", "a.log", "-screen", "none", "-echo", "none", "-var", "v", "35", "70", "-nc", "-sf", "omp"];
+    let o = perigrain(folder.path(), &args, "variable v index 1\nprint \"v = $v\"\n");
+    assert_eq!((o.status.code(), out(&o).as_str()), (Some(0), ""));
+    let log = fs::read_to_string(folder.path().join("a.log")).unwrap();
+    assert!(log.contains("v = 35") && !log.contains("variable v"), "{log}");
+    let o = perigrain(folder.path(), &["-log", "none", "-echo", "screen"], "print \"text\"\n");
+    assert!(out(&o).contains("print \"text\""), "{}", out(&o));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "only a.log");
+}
+
+#[test]
+fn exit_codes_say_how_it_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let code = |args: &[&str], deck: &str| perigrain(folder.path(), args, deck).status.code();
+    assert_eq!(code(&["-log", "none"], "quit 3\n"), Some(3));
+    assert_eq!(code(&["-log", "none"], "unita si\n"), Some(1));
+    assert_eq!(code(&["in.missing"], ""), Some(1));
+    assert_eq!(code(&["-log", "no/such/folder/log"], ""), Some(1));
+    assert_eq!(code(&["-unknown"], ""), Some(2));
+    assert_eq!(code(&["explain", "PG9999"], ""), Some(2));
+    assert_eq!(code(&["explain", "PG0102"], ""), Some(0));
+    assert_eq!(code(&["-help"], ""), Some(0));
+    assert_eq!(code(&["-version"], ""), Some(0));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is left behind");
+}
+
+#[test]
+fn a_refusal_stands_in_the_log_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let o = perigrain(folder.path(), &["-log", "a.log"], "units si\npair_sytle peri/pmb\n");
+    let shown = "error[PG0102]: unknown command `pair_sytle`\n  --> <stdin>:2:1\n";
+    assert!(err(&o).contains(shown) && err(&o).contains("did you mean `pair_style`?"), "{}", err(&o));
+    assert!(!err(&o).contains('\u{1b}'), "colours belong on a terminal");
+    assert!(fs::read_to_string(folder.path().join("a.log")).unwrap().contains(shown));
+}
+
+#[test]
+fn plans_are_printed_measured_and_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("in.deck"), format!("{SCENE}run 3\n")).unwrap();
+    let print = |args: &[&str]| {
+        let o = perigrain(folder.path(), args, "");
+        assert_eq!(o.status.code(), Some(0), "{args:?}: {}", err(&o));
+        out(&o)
+    };
+    let plan = print(&["plan", "in.deck"]);
+    assert!(
+        plan.contains("pair peri/pmb") && plan.contains("fix 1 nve") && plan.contains("left out"),
+        "{plan}"
+    );
+    assert!(print(&["plan", "--dot", "in.deck"]).starts_with("digraph"));
+    assert!(print(&["check", "in.deck"]).ends_with('\n'));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "looking at a deck leaves nothing");
+    let measured = print(&["plan", "--measure", "in.deck", "-log", "none"]);
+    assert!(measured.contains("3 calls"), "{measured}");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_the_run_at_a_whole_step_with_all_files_closed() {
+    let folder = tempfile::tempdir().unwrap();
+    let deck = format!(
+        "{SCENE}dump 1 all custom 100 a.dump id x\nthermo 100\nthermo_modify flush yes\nrun 100000000\nprint \"not reached\"\n"
+    );
+    fs::write(folder.path().join("in.deck"), deck).unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_perigrain"))
+        .args(["in.deck", "-screen", "none", "-threads", "1"])
+        .current_dir(folder.path())
+        .spawn()
+        .unwrap();
+    let log = folder.path().join("log.lammps");
+    let table = |text: &str| text.lines().skip_while(|l| !l.trim_start().starts_with("Step")).count();
+    // The run is on its way when the table has a few rows.
+    while table(&fs::read_to_string(&log).unwrap_or_default()) < 4 {
+        assert!(child.try_wait().unwrap().is_none(), "ended by itself");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let log = fs::read_to_string(log).unwrap();
+    assert!(log.contains("Loop time of") && !log.contains("not reached"), "{log}");
+    let dump = fs::read_to_string(folder.path().join("a.dump")).unwrap();
+    assert!(dump.ends_with('\n'));
+    let rows = dump.rsplit("ITEM: ATOMS").next().unwrap().lines().skip(1).count();
+    assert_eq!(rows, 125, "the last snapshot is whole");
+}
