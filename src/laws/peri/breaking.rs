@@ -7,19 +7,31 @@
 //! Both measures are needed for few particles only. They are computed when a bond's stretch exceeds
 //! s00 − alpha times its own previous stretch: never less than the true limit, for a bond belongs to both families.
 
-use super::lattice::MAY_BREAK;
+use super::lattice::{MAY_BREAK, partners};
 use super::pmb::stretch;
+use super::stretching::{Side, StretchKernels};
 use crate::par::{self, Shared};
-use crate::world::families::lattice::{LANES, LatticeBody};
+use crate::world::families::lattice::{CONSTANTS, LANES, LatticeBody, PAD};
 use crate::world::families::list::ListBody;
 use crate::world::families::{Candidate, FamilyOptions};
 
 /// A layout, as breaking sees it. Sites are cells or records.
-pub trait Bonds: Sync {
+pub trait Bonds: Sync + Sized {
     /// Finds bonds stretched beyond what their own previous stretch allows, in order.
-    fn candidates(&self, found: &mut Vec<Candidate>);
+    fn candidates<K: StretchKernels>(&self, found: &mut Vec<Candidate>);
     /// Calls `f(previous stretch, s00, alpha)` for each living bond of a site.
     fn family(&self, site: u32, options: &FamilyOptions, f: impl FnMut(f64, f64, f64));
+    /// The smallest previous stretch of the families of `asked` sites (in order, each once), or LAMMPS'
+    /// critical stretch.
+    fn measure<K: StretchKernels>(&self, asked: &[u32], options: &FamilyOptions, measured: &Shared<f64>) {
+        par::for_chunks(asked.len(), |range| {
+            for &site in &asked[range] {
+                let value = measure(self, site, options);
+                // SAFETY: sites are asked for once.
+                unsafe { measured.get(site as usize..site as usize + 1)[0] = value };
+            }
+        });
+    }
     /// Sets whether the bonds that broke in the previous step live.
     fn revive(&mut self, lives: bool);
     /// Breaks bonds and remembers them as those of this step.
@@ -31,40 +43,34 @@ pub trait Bonds: Sync {
 }
 
 /// Breaks what has to break; `found` is scratch.
-pub fn break_bonds<B: Bonds>(body: &mut B, options: &FamilyOptions, found: &mut Vec<Candidate>) {
+pub fn break_bonds<K: StretchKernels, B: Bonds>(
+    body: &mut B,
+    options: &FamilyOptions,
+    found: &mut Vec<Candidate>,
+) {
     found.clear();
-    body.candidates(found);
+    body.candidates::<K>(found);
     if options.compat_lammps || found.iter().any(|c| c.alpha != 0.0) {
-        judge(body, options, found);
+        judge::<K, B>(body, options, found);
     }
     body.break_all(found);
 }
 
 /// Keeps the candidates that exceed their limit.
-fn judge<B: Bonds>(body: &mut B, options: &FamilyOptions, found: &mut Vec<Candidate>) {
+fn judge<K: StretchKernels, B: Bonds>(body: &mut B, options: &FamilyOptions, found: &mut Vec<Candidate>) {
     let mut measured = std::mem::take(body.measured());
-    measured.resize(body.sites(), f64::NAN);
+    measured.resize(body.sites(), 0.0);
     let mut asked: Vec<u32> = found.iter().flat_map(|c| c.ends).collect();
     asked.sort_unstable();
     asked.dedup();
     body.revive(true);
-    let shared = Shared::new(&mut measured);
-    par::for_chunks(asked.len(), |range| {
-        for &site in &asked[range] {
-            let value = measure(body, site, options);
-            // SAFETY: sites are asked for once.
-            unsafe { shared.get(site as usize..site as usize + 1)[0] = value };
-        }
-    });
+    body.measure::<K>(&asked, options, &Shared::new(&mut measured));
     body.revive(false);
     found.retain(|c| {
         let [a, b] = c.ends.map(|site| measured[site as usize]);
         let limit = if options.compat_lammps { a.min(b) } else { c.s00 - c.alpha * a.max(b) };
         c.stretch > limit
     });
-    for site in asked {
-        measured[site as usize] = f64::NAN;
-    }
     *body.measured() = measured;
 }
 
@@ -91,36 +97,163 @@ impl LatticeBody {
             if self.cell_kind.is_empty() {
                 usize::from(row.kind)
             } else {
-                usize::from(self.cell_kind[crate::world::families::lattice::PAD + cell])
+                usize::from(self.cell_kind[PAD + cell])
             }
         };
         self.pairs[kind(i) * self.kinds.len() + kind(j)]
     }
 }
 
-impl Bonds for LatticeBody {
-    fn candidates(&self, found: &mut Vec<Candidate>) {
+/// Memory for one thread's rows.
+#[derive(Default)]
+struct Scratch {
+    meets: Vec<(i32, u32)>,
+    to: Vec<(i32, u32)>,
+    sides: Vec<Side>,
+}
+
+/// Chunks measured in one go.
+const CHUNKS_PER_PART: usize = 32;
+
+impl LatticeBody {
+    /// Displacements of this step (1) or of the one before (0), at a cell.
+    fn at_cell(&self, which: usize, cell: usize) -> [*const f64; 3] {
+        let u = self.u[which].as_ptr();
+        // SAFETY: the column has a place for each cell and PAD more around.
+        [0, 1, 2].map(|k| unsafe { u.add(k * self.stride + PAD + cell) })
+    }
+
+    /// The bonds ahead of a row's chunk.
+    fn sides_ahead(&self, chunk: usize, scratch: &mut Scratch) {
         let entries = self.stencil.len();
-        for (slot, row) in self.rows.iter().enumerate() {
-            for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
-                if self.flagged[chunk] & MAY_BREAK == 0 {
-                    continue;
+        for (e, &(to, place)) in scratch.to.iter().enumerate() {
+            let [_, s00, alpha] = self.pairs[place as usize / CONSTANTS / entries];
+            let bits = self.alive[chunk * entries + e];
+            if bits != 0 {
+                scratch.sides.push(Side { to, place, bits, sign: 1.0, s00, alpha });
+            }
+        }
+    }
+
+    /// The bonds that lead to a chunk (of row slot `slot`) from cells behind it.
+    fn sides_behind(&self, slot: usize, chunk: usize, sides: &mut Vec<Side>) {
+        let (row, entries) = (&self.rows[slot], self.stencil.len());
+        for (e, &[along, across, up]) in self.stencil.iter().enumerate() {
+            let back = slot.wrapping_add_signed(-(across as isize)).checked_sub(up as usize * self.width);
+            let Some(back) = back.and_then(|back| self.rows.get(back)).filter(|back| back.len > 0) else {
+                continue;
+            };
+            // The owner of the bond to the chunk's first cell, counted from its row's start.
+            let first = (chunk * LANES) as i32 - row.start as i32 + row.lo - along - back.lo;
+            let (owner, shift) = (first.div_euclid(LANES as i32), first.rem_euclid(LANES as i32));
+            let byte = |owner: i32| match owner >= 0 && owner < (back.len as usize / LANES) as i32 {
+                true => self.alive[(back.start as usize / LANES + owner as usize) * entries + e],
+                false => 0,
+            };
+            let bits = (u16::from(byte(owner)) | u16::from(byte(owner + 1)) << 8) >> shift;
+            if bits as u8 != 0 {
+                let pair = usize::from(back.kind) * self.kinds.len() + usize::from(row.kind);
+                let [_, s00, alpha] = self.pairs[pair];
+                let to = back.start as i32 + first - (chunk * LANES) as i32;
+                let place = ((pair * entries + e) * CONSTANTS) as u32;
+                sides.push(Side { to, place, bits: bits as u8, sign: -1.0, s00, alpha });
+            }
+        }
+    }
+
+    /// Per cell of a chunk the smallest previous stretch, and LAMMPS' critical stretch.
+    fn extremes<K: StretchKernels>(&self, chunk: usize, scratch: &mut Scratch) -> [[f64; LANES]; 2] {
+        let slot = self.slot_of(chunk * LANES);
+        partners(self, slot, &mut scratch.meets, &mut scratch.to);
+        scratch.sides.clear();
+        self.sides_ahead(chunk, scratch);
+        self.sides_behind(slot, chunk, &mut scratch.sides);
+        // SAFETY: living bonds lead to cells of the body; kernels read at most seven cells further.
+        unsafe { K::extremes(self.at_cell(0, chunk * LANES), &scratch.sides, &self.tables) }
+    }
+
+    /// Bonds of a row's flagged chunks that are stretched beyond what their own previous stretch allows.
+    fn strained_in_row<K: StretchKernels>(
+        &self,
+        slot: usize,
+        scratch: &mut Scratch,
+        found: &mut Vec<Candidate>,
+    ) {
+        let (row, entries) = (&self.rows[slot], self.stencil.len());
+        let chunks = row.start as usize / LANES..(row.start + row.len) as usize / LANES;
+        let mixed = !self.cell_kind.is_empty();
+        let mut known = false;
+        for chunk in chunks.filter(|&chunk| self.flagged[chunk] & MAY_BREAK != 0) {
+            if !std::mem::replace(&mut known, true) {
+                partners(self, slot, &mut scratch.meets, &mut scratch.to);
+            }
+            for e in 0..entries {
+                let (to, place) = scratch.to[e];
+                let pair = if mixed { 0 } else { place as usize / CONSTANTS / entries };
+                let [_, s00, alpha] = self.pairs[pair];
+                let bits = self.alive[chunk * entries + e];
+                let mut side = [Side { to, place, bits, sign: 1.0, s00, alpha }];
+                if bits != 0 && !mixed {
+                    let (now, before) = (self.at_cell(1, chunk * LANES), self.at_cell(0, chunk * LANES));
+                    // SAFETY: living bonds lead to cells of the body.
+                    unsafe { K::strained(now, before, &mut side, &self.tables) };
                 }
-                for e in 0..entries {
-                    let bits = self.alive[chunk * entries + e];
-                    for lane in (0..LANES).filter(|lane| bits >> lane & 1 == 1) {
-                        let i = chunk * LANES + lane;
-                        let Some(j) = self.ahead(slot, i, e) else { continue };
-                        let [_, s00, alpha] = self.pair(i, j);
-                        let stretch_now = stretch(self.z(1, i, j, e));
-                        if stretch_now > s00 - alpha * stretch(self.z(0, i, j, e)).max(0.0) {
-                            let ends = [i as u32, j as u32];
-                            found.push(Candidate { ends, bond: e as u32, stretch: stretch_now, s00, alpha });
-                        }
-                    }
+                for lane in (0..LANES).filter(|lane| side[0].bits >> lane & 1 == 1) {
+                    self.examine(chunk * LANES + lane, slot, e, found);
                 }
             }
         }
+    }
+
+    /// Lists a bond if it is stretched beyond what its own previous stretch allows.
+    fn examine(&self, i: usize, slot: usize, e: usize, found: &mut Vec<Candidate>) {
+        let Some(j) = self.ahead(slot, i, e) else { return };
+        let [_, s00, alpha] = self.pair(i, j);
+        let now = stretch(self.z(1, i, j, e));
+        if now > s00 - alpha * stretch(self.z(0, i, j, e)).max(0.0) {
+            found.push(Candidate { ends: [i as u32, j as u32], bond: e as u32, stretch: now, s00, alpha });
+        }
+    }
+}
+
+impl Bonds for LatticeBody {
+    fn candidates<K: StretchKernels>(&self, found: &mut Vec<Candidate>) {
+        if !self.flagged.iter().any(|flag| flag & MAY_BREAK != 0) {
+            return;
+        }
+        let mut lists = vec![vec![]; self.planes];
+        let shared = Shared::new(&mut lists);
+        par::for_rows(self.planes, |plane| {
+            // SAFETY: each plane has its own list.
+            let list = unsafe { &mut shared.get(plane..plane + 1)[0] };
+            let mut scratch = Scratch::default();
+            for slot in self.slot(plane, 0)..self.slot(plane + 1, 0) {
+                self.strained_in_row::<K>(slot, &mut scratch, list);
+            }
+        });
+        lists.into_iter().for_each(|mut list| found.append(&mut list));
+    }
+
+    fn measure<K: StretchKernels>(&self, asked: &[u32], options: &FamilyOptions, measured: &Shared<f64>) {
+        let mixed = !self.cell_kind.is_empty();
+        let mut chunks: Vec<u32> = asked.iter().map(|&cell| cell / LANES as u32).collect();
+        chunks.dedup();
+        let parts = chunks.chunks(CHUNKS_PER_PART).collect::<Vec<_>>();
+        par::for_rows(parts.len(), |part| {
+            let mut scratch = Scratch::default();
+            for &chunk in parts[part] {
+                let cells = chunk as usize * LANES..(chunk as usize + 1) * LANES;
+                let values = match mixed {
+                    // Types differ within rows: constants by cell.
+                    true => std::array::from_fn(|lane| measure(self, (cells.start + lane) as u32, options)),
+                    false => {
+                        self.extremes::<K>(chunk as usize, &mut scratch)[usize::from(options.compat_lammps)]
+                    }
+                };
+                // SAFETY: chunks are listed once.
+                unsafe { measured.get(cells).copy_from_slice(&values) };
+            }
+        });
     }
 
     fn family(&self, site: u32, options: &FamilyOptions, mut f: impl FnMut(f64, f64, f64)) {
@@ -182,7 +315,7 @@ impl ListBody {
 pub struct Periodic<'a>(pub &'a mut ListBody, pub [f64; 3]);
 
 impl Bonds for Periodic<'_> {
-    fn candidates(&self, found: &mut Vec<Candidate>) {
+    fn candidates<K: StretchKernels>(&self, found: &mut Vec<Candidate>) {
         let body = &*self.0;
         for i in (0..body.record.len()).filter(|&i| body.flagged[i] & MAY_BREAK != 0) {
             for b in body.own(i).filter(|&b| body.lives(b)) {

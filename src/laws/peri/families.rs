@@ -13,6 +13,7 @@ use super::lanes::has_avx2;
 use super::lanes512::has_avx512;
 use super::lattice::{self, ChunkColumns, Mode};
 use super::list::{self, RowKernels};
+use super::stretching::StretchKernels;
 use crate::diag::{Code, Diagnostic, Result};
 use crate::neigh::family::{detect, lattice as cells, list as records};
 use crate::par::{self, Shared};
@@ -153,7 +154,7 @@ impl Families {
         self.force_with::<Plain>(view, f, advance, tally);
     }
 
-    fn force_with<K: Kernels + RowKernels>(
+    fn force_with<K: Kernels + RowKernels + StretchKernels>(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
@@ -173,7 +174,7 @@ impl Families {
             tally::<K>(self, view, t, period);
         }
         if advance {
-            self.advance(view, period);
+            self.advance::<K>(view, period);
         }
     }
 
@@ -226,9 +227,9 @@ impl Families {
     }
 
     /// Breaks bonds and makes this step the previous one.
-    fn advance(&mut self, view: &PeriView, period: [f64; 3]) {
+    fn advance<K: StretchKernels>(&mut self, view: &PeriView, period: [f64; 3]) {
         if self.armed {
-            self.break_bonds(view, period);
+            self.break_bonds::<K>(view, period);
         }
         self.armed = true;
         for body in &mut self.lattices {
@@ -237,15 +238,15 @@ impl Families {
         list::keep(&mut self.list);
     }
 
-    fn break_bonds(&mut self, view: &PeriView, period: [f64; 3]) {
+    fn break_bonds<K: StretchKernels>(&mut self, view: &PeriView, period: [f64; 3]) {
         let mut found: Vec<Candidate> = std::mem::take(&mut self.scratch.candidates);
         let mut ends = std::mem::take(&mut self.scratch.ends);
         ends.clear();
         for body in &mut self.lattices {
-            break_bonds(body, &self.options, &mut found);
+            break_bonds::<K, _>(body, &self.options, &mut found);
             ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
         }
-        break_bonds(&mut Periodic(&mut self.list, period), &self.options, &mut found);
+        break_bonds::<K, _>(&mut Periodic(&mut self.list, period), &self.options, &mut found);
         ends.extend(found.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
         for &[i, j] in &ends {
             self.hurt[i as usize] = true;

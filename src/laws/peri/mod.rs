@@ -13,3 +13,4 @@ mod lattice;
 mod list;
 pub mod moduli;
 mod pmb;
+mod stretching;
