@@ -110,6 +110,7 @@ struct Scratch {
     meets: Vec<(i32, u32)>,
     to: Vec<(i32, u32)>,
     sides: Vec<Side>,
+    stretches: Vec<[f64; LANES]>,
 }
 
 /// Chunks measured in one go.
@@ -179,39 +180,51 @@ impl LatticeBody {
         scratch: &mut Scratch,
         found: &mut Vec<Candidate>,
     ) {
-        let (row, entries) = (&self.rows[slot], self.stencil.len());
+        let row = &self.rows[slot];
         let chunks = row.start as usize / LANES..(row.start + row.len) as usize / LANES;
-        let mixed = !self.cell_kind.is_empty();
         let mut known = false;
         for chunk in chunks.filter(|&chunk| self.flagged[chunk] & MAY_BREAK != 0) {
+            if !self.cell_kind.is_empty() {
+                self.examine(chunk, slot, found);
+                continue;
+            }
             if !std::mem::replace(&mut known, true) {
                 partners(self, slot, &mut scratch.meets, &mut scratch.to);
             }
-            for e in 0..entries {
-                let (to, place) = scratch.to[e];
-                let pair = if mixed { 0 } else { place as usize / CONSTANTS / entries };
-                let [_, s00, alpha] = self.pairs[pair];
-                let bits = self.alive[chunk * entries + e];
-                let mut side = [Side { to, place, bits, sign: 1.0, s00, alpha }];
-                if bits != 0 && !mixed {
-                    let (now, before) = (self.at_cell(1, chunk * LANES), self.at_cell(0, chunk * LANES));
-                    // SAFETY: living bonds lead to cells of the body.
-                    unsafe { K::strained(now, before, &mut side, &self.tables) };
-                }
-                for lane in (0..LANES).filter(|lane| side[0].bits >> lane & 1 == 1) {
-                    self.examine(chunk * LANES + lane, slot, e, found);
+            scratch.sides.clear();
+            scratch.stretches.clear();
+            self.sides_ahead(chunk, scratch);
+            let (now, before) = (self.at_cell(1, chunk * LANES), self.at_cell(0, chunk * LANES));
+            let Scratch { sides, stretches, .. } = scratch;
+            // SAFETY: living bonds lead to cells of the body; kernels read at most seven cells further.
+            unsafe { K::strained(now, before, sides, &self.tables, stretches) };
+            for (side, stretches) in sides.iter().zip(stretches.iter()).filter(|(side, _)| side.bits != 0) {
+                let bond = (side.place as usize / CONSTANTS % self.stencil.len()) as u32;
+                for lane in (0..LANES).filter(|lane| side.bits >> lane & 1 == 1) {
+                    let i = chunk * LANES + lane;
+                    let ends = [i as u32, i.wrapping_add_signed(side.to as isize) as u32];
+                    let (stretch, s00, alpha) = (stretches[lane], side.s00, side.alpha);
+                    found.push(Candidate { ends, bond, stretch, s00, alpha });
                 }
             }
         }
     }
 
-    /// Lists a bond if it is stretched beyond what its own previous stretch allows.
-    fn examine(&self, i: usize, slot: usize, e: usize, found: &mut Vec<Candidate>) {
-        let Some(j) = self.ahead(slot, i, e) else { return };
-        let [_, s00, alpha] = self.pair(i, j);
-        let now = stretch(self.z(1, i, j, e));
-        if now > s00 - alpha * stretch(self.z(0, i, j, e)).max(0.0) {
-            found.push(Candidate { ends: [i as u32, j as u32], bond: e as u32, stretch: now, s00, alpha });
+    /// The same for a chunk of a body with several types in a row, bond by bond.
+    fn examine(&self, chunk: usize, slot: usize, found: &mut Vec<Candidate>) {
+        let entries = self.stencil.len();
+        for e in 0..entries {
+            let bits = self.alive[chunk * entries + e];
+            for lane in (0..LANES).filter(|lane| bits >> lane & 1 == 1) {
+                let i = chunk * LANES + lane;
+                let Some(j) = self.ahead(slot, i, e) else { continue };
+                let [_, s00, alpha] = self.pair(i, j);
+                let now = stretch(self.z(1, i, j, e));
+                if now > s00 - alpha * stretch(self.z(0, i, j, e)).max(0.0) {
+                    let ends = [i as u32, j as u32];
+                    found.push(Candidate { ends, bond: e as u32, stretch: now, s00, alpha });
+                }
+            }
         }
     }
 }

@@ -31,11 +31,18 @@ pub trait StretchKernels: Sync {
     /// ends; the processor must have the instruction set.
     unsafe fn extremes(u: [*const f64; 3], sides: &[Side], tables: &[f64]) -> [[f64; CELLS]; 2];
 
-    /// Keeps of each side's bits those with a stretch of at least s00 − alpha max(previous stretch, 0).
+    /// Keeps of each side's bits those with a stretch of at least s00 − alpha max(previous stretch, 0), and
+    /// appends all stretches to `now`, a row per side.
     ///
     /// # Safety
     /// As for `extremes`, for the present displacements and those `before`.
-    unsafe fn strained(u: [*const f64; 3], before: [*const f64; 3], sides: &mut [Side], tables: &[f64]);
+    unsafe fn strained(
+        u: [*const f64; 3],
+        before: [*const f64; 3],
+        sides: &mut [Side],
+        tables: &[f64],
+        now: &mut Vec<[f64; CELLS]>,
+    );
 }
 
 /// The stretch of a side's bonds from `here` on, 0 inside the dead band.
@@ -91,14 +98,17 @@ unsafe fn strained<L: Lanes>(
     before: [*const f64; 3],
     sides: &mut [Side],
     tables: &[f64],
+    stretches: &mut Vec<[f64; CELLS]>,
 ) {
     // SAFETY: the caller's promise.
     unsafe {
         for side in sides {
             let mut bits = 0;
+            let mut row = [0.0; CELLS];
             let mut here = 0;
             while here < CELLS {
                 let now = stretch::<L>(u, here, side, tables);
+                now.store(row.as_mut_ptr().add(here));
                 let last = stretch::<L>(before, here, side, tables).max(L::splat(0.0));
                 let limit = L::splat(side.s00).sub(L::splat(side.alpha).mul(last));
                 let over = now.ge(limit);
@@ -112,6 +122,7 @@ unsafe fn strained<L: Lanes>(
                 here += L::WIDTH;
             }
             side.bits &= bits;
+            stretches.push(row);
         }
     }
 }
@@ -121,9 +132,15 @@ impl StretchKernels for Plain {
         // SAFETY: the caller's promise.
         unsafe { extremes::<Portable>(u, sides, tables) }
     }
-    unsafe fn strained(u: [*const f64; 3], before: [*const f64; 3], sides: &mut [Side], tables: &[f64]) {
+    unsafe fn strained(
+        u: [*const f64; 3],
+        before: [*const f64; 3],
+        sides: &mut [Side],
+        tables: &[f64],
+        now: &mut Vec<[f64; CELLS]>,
+    ) {
         // SAFETY: the caller's promise.
-        unsafe { strained::<Portable>(u, before, sides, tables) }
+        unsafe { strained::<Portable>(u, before, sides, tables, now) }
     }
 }
 
@@ -145,6 +162,7 @@ macro_rules! compiled_for {
                 before: [*const f64; 3],
                 sides: &mut [Side],
                 tables: &[f64],
+                now: &mut Vec<[f64; CELLS]>,
             ) {
                 #[target_feature(enable = $features)]
                 unsafe fn inner(
@@ -152,12 +170,13 @@ macro_rules! compiled_for {
                     before: [*const f64; 3],
                     sides: &mut [Side],
                     tables: &[f64],
+                    now: &mut Vec<[f64; CELLS]>,
                 ) {
                     // SAFETY: the caller's promise.
-                    unsafe { strained::<$lanes>(u, before, sides, tables) }
+                    unsafe { strained::<$lanes>(u, before, sides, tables, now) }
                 }
                 // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner(u, before, sides, tables) }
+                unsafe { inner(u, before, sides, tables, now) }
             }
         }
     };

@@ -129,7 +129,7 @@ pub struct LatticeBody {
     pub first_place: u32,
     /// Bonds (cell, stencil vector) that broke in the last step that advanced.
     pub broken: Vec<(u32, u16)>,
-    /// Critical measure of each cell's family in the step before, where it was asked for this step; NaN
+    /// Critical measure of each cell's family in the step before, where it was asked for this step; anything
     /// elsewhere. Empty until bonds come near breaking.
     pub measured: Vec<f64>,
 }
