@@ -33,8 +33,8 @@ impl Style for Image {
 
 /// The page.
 const PAGE: &str = "`colour` is `type` or any attribute of `dump custom`, `diameter` is a number [length], `type`, an \
-    attribute, or `auto`: the diameter of spheres, the edge of a peridynamic particle's cube of volume (a little more, so \
-    that bodies look solid), else 1.\n\n\
+    attribute, or `auto`: the diameter of spheres, the edge of a peridynamic particle's cube of volume times √2 (so \
+    that no light falls through a body), else 1.\n\n\
     Keywords, here and in `dump_modify`:\n\n\
     * `size W H` pixels (1280 960), `view theta phi` degrees from the z axis and around it (60 30), `up x y z`, `zoom f`, \
       `perspective degrees` (0: orthographic), `center s x y z` as fractions of the box, `frame first|each|box`: what the \
