@@ -3,7 +3,6 @@
 mod causes;
 mod checking;
 mod commands;
-pub mod manual;
 mod running;
 
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, Sources, Span, fail, nearest};
@@ -18,6 +17,7 @@ pub use crate::run::Watch;
 use crate::styles::command::COMMANDS;
 use crate::styles::{ActCx, Use, UseKind};
 use crate::world::{Compat, GroupId, World};
+pub use commands::OWN;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -100,6 +100,8 @@ pub struct Session {
     ran: bool,
     shown: usize,
     interrupted: bool,
+    /// `quit` was said, here or inside `run … every`.
+    quit: Option<i32>,
 }
 
 /// Files as the system has them.
@@ -137,6 +139,7 @@ impl Session {
             ran: false,
             shown: 0,
             interrupted: false,
+            quit: None,
         };
         for (name, values) in s.options.vars.clone() {
             s.vars.set_index(&name, &values)?;
@@ -197,7 +200,6 @@ impl Session {
     fn work_off(&mut self, script: &mut Script) -> Result<Ending> {
         let mut problems = Diagnostics::default();
         let mut refused = causes::Refused::default();
-        let mut status = 0;
         loop {
             let line = match self.next_line(script) {
                 Ok(None) => break,
@@ -213,18 +215,16 @@ impl Session {
                 Err(e) => return Err(e),
             };
             match self.line(script, &line) {
-                Ok(Some(code)) => {
-                    status = code;
-                    break;
-                }
+                Ok(Some(code)) => self.quit = Some(code),
                 Ok(None) => {}
                 Err(e) if self.checking() => problems.append(refused.causes(&line.raw, e)),
                 Err(e) => return Err(e),
             }
-            if self.interrupted {
+            if self.interrupted || self.quit.is_some() {
                 break;
             }
         }
+        let status = self.quit.unwrap_or(0);
         if problems.is_empty() { Ok(Ending { status, interrupted: self.interrupted }) } else { Err(problems) }
     }
 

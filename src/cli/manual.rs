@@ -1,8 +1,8 @@
 //! The manual: one page per command and style, made from the tables they are registered in.
 
 use super::args::Usage;
+use super::pages;
 use crate::diag::nearest;
-use crate::session::manual::PAGES;
 use crate::styles::command::COMMANDS;
 use crate::styles::compute::COMPUTES;
 use crate::styles::dump::DUMPS;
@@ -14,7 +14,7 @@ use std::fmt::Write;
 /// One page: what it is about and where it belongs.
 #[derive(Clone, Copy)]
 pub struct Page {
-    /// `command`, or the command that takes the style: `pair_style`, `fix`, `compute`, `dump`.
+    /// `topic`, `command`, or the command that takes the style: `pair_style`, `fix`, `compute`, `dump`.
     pub kind: &'static str,
     /// The word in the deck.
     pub name: &'static str,
@@ -25,7 +25,10 @@ pub struct Page {
 impl Page {
     /// As it is asked for and headed: `fix nve`, `run`.
     pub fn title(&self) -> String {
-        if self.kind == "command" { self.name.to_string() } else { format!("{} {}", self.kind, self.name) }
+        match self.kind {
+            "topic" | "command" => self.name.to_string(),
+            kind => format!("{kind} {}", self.name),
+        }
     }
 
     /// The page's file below `docs/styles`.
@@ -47,15 +50,18 @@ impl Page {
     }
 }
 
-/// Every page, by kind and then in the order of the tables: first what sets a scene, then what is done with it.
+/// Every page, by kind and then in the order of the tables.
 pub fn pages() -> Vec<Page> {
     fn of<S: Style + ?Sized>(kind: &'static str, table: &[&S]) -> Vec<Page> {
         table.iter().map(|s| Page { kind, name: s.name(), doc: s.doc() }).collect()
     }
-    let others = PAGES.iter().map(|&(name, doc)| Page { kind: "command", name, doc }).collect();
+    fn own(kind: &'static str, table: &[pages::Entry]) -> Vec<Page> {
+        table.iter().map(|&(name, doc)| Page { kind, name, doc }).collect()
+    }
     [
+        own("topic", pages::TOPICS),
         of("command", COMMANDS),
-        others,
+        own("command", pages::COMMANDS),
         of("pair_style", PAIRS),
         of("fix", FIXES),
         of("compute", COMPUTES),
@@ -80,7 +86,11 @@ pub fn list() -> String {
 
 /// What a kind of page is called in a list.
 pub fn heading(kind: &str) -> &str {
-    if kind == "command" { "commands" } else { kind }
+    match kind {
+        "topic" => "topics",
+        "command" => "commands",
+        _ => kind,
+    }
 }
 
 /// The page of a name, as `fix nve`, `nve` or `run`.

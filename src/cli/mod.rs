@@ -3,6 +3,7 @@
 pub mod args;
 pub mod deck;
 pub mod manual;
+mod pages;
 pub mod progress;
 pub mod tasks;
 

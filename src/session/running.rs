@@ -55,6 +55,9 @@ impl Session {
                     }
                     let mut script = Script::of_commands(&commands);
                     self.work_off(&mut script)?;
+                    if self.quit.is_some() {
+                        break;
+                    }
                 }
                 Ok(())
             }

@@ -36,7 +36,7 @@ impl Style for CreateBox {
             summary: "Creates the simulation box from a block region, for N particle types.",
             text: "The region must be a block with finite bounds and `side in`. Shrink-wrapped faces start 1e-4 of the \
                    edge length outside it, as in LAMMPS.",
-            example: "create_box 1 world",
+            example: "create_box 3 world",
         }
     }
 }

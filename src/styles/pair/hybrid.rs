@@ -29,6 +29,7 @@ impl Style for Hybrid {
             summary: "Different pair styles for different pairs of types.",
             text: TEXT,
             example: "pair_style hybrid peri/pmb granular\n\
+                      pair_coeff * * granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4\n\
                       pair_coeff 1 1 peri/pmb 1.6863e22 0.0015001 5.0e-4 0.25",
         }
     }
@@ -44,6 +45,7 @@ impl Style for Overlay {
             summary: "Several pair styles whose forces add up.",
             text: TEXT,
             example: "pair_style hybrid/overlay peri/pmb granular\n\
+                      pair_coeff * * granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4\n\
                       pair_coeff 1 1 peri/pmb 1.6863e22 0.0015001 5.0e-4 0.25",
         }
     }

@@ -1,0 +1,152 @@
+//! Pages of the commands that declare: pair styles, fixes, computes, dumps, and their options.
+
+use super::Entry;
+use crate::styles::Doc;
+
+pub(super) const PAIR_STYLE: Entry = (
+    "pair_style",
+    Doc {
+        syntax: "pair_style STYLE word …\npair_style none",
+        summary: "Chooses the forces between particles.",
+        text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc pair_style peri/pmb`. A new \
+            `pair_style` forgets the coefficients of the old one. With `none`, or without the command, particles do not \
+            feel each other; a run then draws a warning.",
+        example: "pair_style peri/pmb\npair_coeff * * 1.6863e22 0.0030001 5.0e-4 0.25",
+    },
+);
+
+pub(super) const PAIR_COEFF: Entry = (
+    "pair_coeff",
+    Doc {
+        syntax: "pair_coeff I J word …",
+        summary: "Gives the coefficients of the pair style for some types.",
+        text: "`I` and `J` are types or ranges: `2`, `*`, `2*`, `*4`, `2*4`. Only pairs with i ≤ j count, so the smaller \
+            type comes first; a line that names none is refused. A later line replaces what an earlier one gave. What the \
+            words are is on the page of the pair style. It needs `pair_style` and the box before it, and every pair of \
+            types must have coefficients when a run begins.",
+        example: "pair_style peri/pmb\npair_coeff * * 1.6863e22 0.0030001 5.0e-4 0.25\npair_coeff 1 2*3 1.0e22 0.0030001 1.0e-4 0.0",
+    },
+);
+
+pub(super) const PERI_MODIFY: Entry = (
+    "peri_modify",
+    Doc {
+        syntax: "peri_modify [force density|newton] [volume lammps|none|full]",
+        summary: "Sets options of the peridynamic pair styles.",
+        text: "`force density` keeps LAMMPS' force densities with the density in the place of mass; `newton` makes forces \
+            true forces and masses ρV, so that grains and bodies exchange momentum and energies add up in one scene. \
+            `volume` chooses how bonds near the horizon are weighted. See `pair_style peri/pmb`. LAMMPS has no such \
+            command.",
+        example: "peri_modify force newton volume full",
+    },
+);
+
+pub(super) const FIX: Entry = (
+    "fix",
+    Doc {
+        syntax: "fix ID group STYLE word …",
+        summary: "Declares something that is done to particles in every step.",
+        text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc fix nve`. The ID has \
+            letters, digits and underscores. Within a stage of the step, fixes act in the order of their lines. The same \
+            ID with the same style and group replaces the old fix in its place; with another style or group it is \
+            refused. Values of a fix are `f_ID` and `f_ID[i]` in formulas, thermo output and dumps.",
+        example: "fix 1 all nve\nfix calm plate viscous 1.0e-3",
+    },
+);
+
+pub(super) const FIX_MODIFY: Entry = (
+    "fix_modify",
+    Doc {
+        syntax: "fix_modify ID [energy yes|no] [keyword value …]",
+        summary: "Sets options of a fix.",
+        text: "`energy yes` adds the energy of the fix to the potential energy `pe`; it is refused for a fix that has \
+            none. Other keywords belong to the fix and stand on its page. LAMMPS' `virial`, `temp`, `press`, `respa`, \
+            `dynamic/dof` and `bodyforces` are refused unless the page names them.",
+        example: "fix tip all indent 1.0e9 sphere 0 0 0.006 0.004 units box\nfix_modify tip energy yes",
+    },
+);
+
+pub(super) const UNFIX: Entry = (
+    "unfix",
+    Doc {
+        syntax: "unfix ID",
+        summary: "Removes a fix.",
+        text: "What it has done to the particles stays. Thermo columns, dumps and variables that name it are refused at \
+            the next run.",
+        example: "fix calm all viscous 1.0e-3\nunfix calm",
+    },
+);
+
+pub(super) const COMPUTE: Entry = (
+    "compute",
+    Doc {
+        syntax: "compute ID group STYLE word …",
+        summary: "Declares a quantity to be computed from the particles.",
+        text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc compute reduce`. A compute \
+            costs nothing until something asks for it, and is computed at most once in a step. `c_ID` is its number or its \
+            value per particle, `c_ID[i]` an element of its vector or a column of values per particle. An ID that exists \
+            is refused.\n\n\
+            Three are there by themselves once there is a box: `thermo_temp` (temp), `thermo_press` (pressure) and \
+            `thermo_pe` (pe).",
+        example: "compute energy plate ke\nthermo_style custom step c_energy c_thermo_pe",
+    },
+);
+
+pub(super) const COMPUTE_MODIFY: Entry = (
+    "compute_modify",
+    Doc {
+        syntax: "compute_modify ID keyword value …",
+        summary: "Sets options of a compute.",
+        text: "Only `compute temp` has options: `extra/dof N` (or `extra`) sets the number of degrees of freedom that are \
+            taken off, 3 without it; `dynamic/dof yes|no` (or `dynamic`) is read, and the particles are counted anew each \
+            time anyway.",
+        example: "compute_modify thermo_temp extra/dof 0",
+    },
+);
+
+pub(super) const UNCOMPUTE: Entry = (
+    "uncompute",
+    Doc {
+        syntax: "uncompute ID",
+        summary: "Removes a compute.",
+        text: "Thermo columns, dumps and variables that name it are refused at the next run.",
+        example: "compute energy all ke\nuncompute energy",
+    },
+);
+
+pub(super) const DUMP: Entry = (
+    "dump",
+    Doc {
+        syntax: "dump ID group STYLE N FILE word …",
+        summary: "Writes snapshots of particles every N steps.",
+        text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc dump custom`. Snapshots are \
+            written at steps that are multiples of `N`, the first step of a run among them. A `*` in the file name becomes \
+            the step. Name and options are checked when the line is read; the file is made with the first snapshot. An ID \
+            that exists is refused.",
+        example: "dump 1 all custom 2 flow.*.txt id type x y z vx vy vz",
+    },
+);
+
+pub(super) const DUMP_MODIFY: Entry = (
+    "dump_modify",
+    Doc {
+        syntax: "dump_modify ID keyword value …",
+        summary: "Sets options of a dump.",
+        text: "All dumps understand `append`, `every`, `first`, `pad`, `region`, `sort` and `thresh`, explained on the page \
+            of `dump custom`; `flush` and `buffer` are read, snapshots are handed over whole anyway. The other keywords \
+            stand on the page of the style. LAMMPS' further keywords are refused by name. In LAMMPS one dump is unsorted \
+            unless told otherwise; here rows are sorted by id.",
+        example: "dump 1 all custom 2 plate.*.txt id type x y z c_dmg\n\
+            dump_modify 1 region half sort -1 pad 6 first yes format float %.8g thresh c_dmg >= 0",
+    },
+);
+
+pub(super) const UNDUMP: Entry = (
+    "undump",
+    Doc {
+        syntax: "undump ID",
+        summary: "Ends a dump.",
+        text: "Its file is complete and stays.",
+        example: "dump 1 all atom 1 flow.txt\nrun 1\nundump 1",
+    },
+);

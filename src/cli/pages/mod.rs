@@ -1,0 +1,51 @@
+//! Manual pages of what no table of styles holds: the language, the session, the declarations, the program itself.
+
+mod declarations;
+mod formulas;
+mod language;
+mod program;
+mod session;
+mod thermo;
+
+use crate::styles::Doc;
+
+/// A page's name and text.
+pub type Entry = (&'static str, Doc);
+
+/// What is no command: how decks are written, what formulas know, how the program is called.
+pub const TOPICS: &[Entry] = &[program::PERIGRAIN, language::DECKS, formulas::FORMULAS];
+
+/// Commands that act by themselves, in the order of the manual.
+pub const COMMANDS: &[Entry] = &[
+    language::VARIABLE,
+    language::IF,
+    language::LABEL,
+    language::JUMP,
+    language::NEXT,
+    language::INCLUDE,
+    language::QUIT,
+    declarations::PAIR_STYLE,
+    declarations::PAIR_COEFF,
+    declarations::PERI_MODIFY,
+    declarations::FIX,
+    declarations::FIX_MODIFY,
+    declarations::UNFIX,
+    declarations::COMPUTE,
+    declarations::COMPUTE_MODIFY,
+    declarations::UNCOMPUTE,
+    declarations::DUMP,
+    declarations::DUMP_MODIFY,
+    declarations::UNDUMP,
+    session::WRITE_DUMP,
+    thermo::THERMO,
+    thermo::THERMO_STYLE,
+    thermo::THERMO_MODIFY,
+    session::RUN,
+    session::PRINT,
+    session::LOG,
+    session::ECHO,
+    session::CLEAR,
+    session::COMPAT,
+    session::SUFFIX,
+    session::PACKAGE,
+];

@@ -1,0 +1,59 @@
+//! The page about the program: its subcommands, switches and exit codes.
+
+use super::Entry;
+use crate::styles::Doc;
+
+pub(super) const PERIGRAIN: Entry = (
+    "perigrain",
+    Doc {
+        syntax: "perigrain DECK [switch …]\n\
+            perigrain [switch …] < DECK\n\
+            perigrain check|plan|run DECK [switch …]\n\
+            perigrain doc [name]\n\
+            perigrain explain CODE",
+        summary: "The program: how it is called, its switches and exit codes.",
+        text: TEXT,
+        example: "perigrain in.plate -var v 70 -log plate.log\n\
+            perigrain check in.plate\n\
+            perigrain plan in.plate --measure\n\
+            perigrain plan --dot in.plate\n\
+            perigrain -in in.plate -screen none -threads 2 -compat lammps\n\
+            perigrain doc fix nve\n\
+            perigrain explain PG0102",
+    },
+);
+
+const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off. `check` reads it, changes and writes \
+    nothing, and reports every problem at once. `plan` prints what each step of the deck's runs will do, in which order, \
+    and what was left out and why; with `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
+    prints the command graph for graphviz. `doc` prints a page of this manual, `explain` the story behind the code of a \
+    message.\n\n\
+    Switches, after the deck or before it (then with `-in`):\n\n\
+    - `-in FILE`, `-i`: the deck; without a deck or with `none` it is read from standard input;\n\
+    - `-log FILE|none`, `-l`: the log file (`log.lammps`);\n\
+    - `-screen FILE|none`, `-sc`: where the screen's text goes;\n\
+    - `-echo none|screen|log|both`, `-e`: where each line of the deck is repeated (`log`);\n\
+    - `-var NAME value …`, `-v`: defines an index variable; the deck's own `variable NAME index …` then does nothing. It \
+    takes all words up to the next switch, so put the deck first;\n\
+    - `-threads N`: uses N threads (all cores); results are the same bits for any N;\n\
+    - `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md);\n\
+    - `-suffix omp`, `-sf` and `-nocite`, `-nc`: taken for LAMMPS' command lines, without effect;\n\
+    - `-package omp N`, `-pk`: the same as `-threads N`;\n\
+    - `-help`, `-h` and `-version`: print and end.\n\n\
+    LAMMPS' other switches are refused by name.\n\n\
+    Exit codes: 0 all well (or the status of `quit`), 1 the deck was refused or its run failed, 2 the command line is \
+    wrong, 130 ended by Ctrl-C. The first Ctrl-C ends a run at a whole step with all files complete, a second one ends the \
+    program at once. On a terminal a bar shows steps, speed and time left; messages have colours unless `NO_COLOR` is set.";
+
+#[cfg(test)]
+mod tests {
+    use super::TEXT;
+    use crate::cli::args::SWITCHES;
+
+    #[test]
+    fn every_switch_is_on_the_page() {
+        for switch in SWITCHES.iter().filter(|s| !s.about.is_empty()) {
+            assert!(TEXT.contains(switch.names[0]), "{}", switch.names[0]);
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Pages of the step table: thermo, thermo_style, thermo_modify.
+
+use super::Entry;
+use crate::styles::Doc;
+
+pub(super) const THERMO: Entry = (
+    "thermo",
+    Doc {
+        syntax: "thermo N",
+        summary: "Prints a row of the step table every N steps.",
+        text: "Rows are printed at the multiples of `N`, and always at the first and last step of a run; with 0 (as \
+            without the command) only there. A variable as interval (`thermo v_name`) is not there yet.",
+        example: "thermo 2",
+    },
+);
+
+pub(super) const THERMO_STYLE: Entry = (
+    "thermo_style",
+    Doc {
+        syntax: "thermo_style one|multi|yaml\nthermo_style custom column …",
+        summary: "Chooses the columns of the step table.",
+        text: COLUMNS,
+        example: "compute d all reduce max c_dmg\n\
+            variable height equal xcm(ball,z)\n\
+            thermo_style custom step time dt pe ke etotal press c_d c_thermo_press[*] v_height",
+    },
+);
+
+const COLUMNS: &str = "`one` is `step temp epair emol etotal press`, the default; `multi` prints several lines per row with \
+    `etotal ke temp pe ebond eangle edihed eimp evdwl ecoul elong press`, `yaml` writes a YAML document with `step temp ke pe \
+    ebond eangle edihed eimp evdwl ecoul elong press`. Where the box follows the particles these three show `vol` too. A new \
+    `thermo_style` forgets formats, names and `norm` given before.\n\n\
+    Columns of `custom`:\n\n\
+    - steps and time: `step`, `elapsed` (steps of this run), `elaplong` (steps since `run … start`), `dt`, `time`, `cpu` \
+    (seconds of this run), `tpcpu` (simulated time per second), `spcpu` (steps per second), `cpuremain` (seconds left), \
+    `part` (0);\n\
+    - energy, over all particles: `pe` (potential, with that of fixes that were told so), `ke`, `etotal` (their sum), \
+    `econserve` (the same), `enthalpy` (etotal + press·vol), `evdwl` and `epair` (of the pair style);\n\
+    - `temp`, `press`, `pxx pyy pzz pxy pxz pyz`, by the computes `thermo_temp` and `thermo_press` or those `thermo_modify` \
+    names;\n\
+    - the scene: `atoms`, `vol`, `density`, box `lx ly lz xlo xhi ylo yhi zlo zhi cella cellb cellc cellalpha cellbeta \
+    cellgamma` (angles 90) and `xy xz yz` (0), `fmax` (largest force component), `fnorm` (root of the sum of squared force \
+    components), `nbuild` and `ndanger` (neighbour lists built, and built perhaps too late);\n\
+    - always 0 here, for LAMMPS' decks: `ecoul ebond eangle edihed eimp emol elong etail ecouple`;\n\
+    - `c_ID`, `c_ID[i]`, `c_ID[i][j]` of a compute, `f_ID …` of a fix, `v_NAME` of an equal-style variable; `c_ID[*]` and \
+    `c_ID[2*3]` stand for one column per element.\n\n\
+    Values per particle have to go through `compute reduce`. LAMMPS' `timeremain`, `xlat ylat zlat`, `bonds angles dihedrals \
+    impropers` are not there yet.";
+
+pub(super) const THERMO_MODIFY: Entry = (
+    "thermo_modify",
+    Doc {
+        syntax: "thermo_modify [norm yes|no] [flush yes|no] [line one|multi|yaml] [format …] [colname …] [temp ID] [press ID] [lost error]",
+        summary: "Sets how the step table looks and what it uses.",
+        text: "- `norm`: energies per particle; without it yes in `units lj` and no elsewhere;\n\
+            - `flush yes`: every row reaches the log file at once;\n\
+            - `line`: the layout of the row;\n\
+            - `format line \"…\"` (one conversion per column), `format int %d`, `format float %g`, `format N %g` or `format \
+            NAME %g` (one column; N counts from 1, from -1 backwards), `format none`. A column's own format wins over `int` and \
+            `float`, these over `line`;\n\
+            - `colname N|NAME text` renames a column, `colname default` takes all names back;\n\
+            - `temp ID`, `press ID`: the computes behind temperature (also `ke`) and pressure;\n\
+            - `lost error` is what always holds: a lost particle ends the run; `lost ignore` and `lost warn` are refused;\n\
+            - `lost/bond` and `warn` are read for LAMMPS' decks, and a note says that they have no effect.\n\n\
+            Formats and names belong to the present columns: put the line behind `thermo_style`.",
+        example: "thermo_style custom step pe ke\nthermo_modify norm no flush yes format float %20.12g format step %8d colname pe energy",
+    },
+);
