@@ -91,3 +91,15 @@ fn a_lattice_of_micrometres_bears_small_strains() {
     // LAMMPS takes an elongation below 2.2e-16 (whatever the unit) for none.
     assert_eq!(pe("5.0e-17", &["-compat", "lammps"]), 0.0);
 }
+
+#[test]
+fn least_and_mean_of_absolute_values_are_what_they_say() {
+    let row = |switches: &[&str]| {
+        let rows = run("reduced", switches);
+        ["c_least", "c_mean[1]", "c_mean[2]"].map(|c| rows[0][c])
+    };
+    // Of x = 1, 4 and y = 2, 5 by hand.
+    assert_eq!(row(&[]), [1.0, 2.5, 3.5]);
+    // LAMMPS 22Jul2025, this deck.
+    assert_eq!(row(&lammps(&[])), [1e20, 5.0, 7.0]);
+}
