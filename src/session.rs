@@ -94,7 +94,7 @@ pub struct Session {
     /// Warnings and notes so far.
     pub notes: Diagnostics,
     options: Options,
-    /// The last run's plan, kept while nothing it depends on has changed.
+    /// The last run's plan, with its meters.
     pub plan: Option<StepPlan>,
     watch: Box<dyn Watch>,
     ran: bool,

@@ -314,6 +314,17 @@ fn the_page_of_thermo_style_names_every_keyword() {
 }
 
 #[test]
+fn the_tour_shows_the_message_that_comes() {
+    let tour = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/tour.md")).unwrap();
+    let blocks: Vec<&str> =
+        tour.split("```text\n").skip(1).filter_map(|block| block.split("```").next()).collect();
+    let deck = blocks.iter().find(|b| b.starts_with("units")).unwrap();
+    let shown = blocks.iter().find(|b| b.starts_with("error")).unwrap();
+    let said = works("in.fall", &deck.replacen("diameter", "diametre", 1)).unwrap_err();
+    assert_eq!(said.trim(), shown.trim());
+}
+
+#[test]
 fn every_command_has_one_page() {
     let commands = DECLARATIONS.iter().chain(&OWN);
     // pair_modify is refused by name: no pair style here has its options.

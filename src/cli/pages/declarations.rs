@@ -23,7 +23,8 @@ pub(super) const PAIR_COEFF: Entry = (
         text: "`I` and `J` are types or ranges: `2`, `*`, `2*`, `*4`, `2*4`. Only pairs with i ≤ j count, so the smaller \
             type comes first; a line that names none is refused. A later line replaces what an earlier one gave. What the \
             words are is on the page of the pair style. It needs `pair_style` and the box before it, and every pair of \
-            types must have coefficients when a run begins.",
+            types must have coefficients, its own or mixed ones where the style can mix, when a run begins. With `hybrid` the \
+            words begin with the name of the sub-style.",
         example: "pair_style peri/pmb\npair_coeff * * 1.6863e22 0.0030001 5.0e-4 0.25\npair_coeff 1 2*3 1.0e22 0.0030001 1.0e-4 0.0",
     },
 );

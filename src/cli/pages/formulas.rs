@@ -22,8 +22,8 @@ const TEXT: &str = "**Operators**, from loose to tight: `||` and `|^` (exclusive
     LAMMPS `-2^2` is 4. Comparisons and logic yield 1 or 0.\n\n\
     **Numbers** are written as in decks; `PI`, `version` (20250722: the LAMMPS whose decks are read), `yes on true` (1) and \
     `no off false` (0) are known by name.\n\n\
-    **Functions.** A result that is no finite number (a root of a negative number, a division by zero) is an error at its \
-    place.\n\n\
+    **Functions.** A root of a negative number, a logarithm of one that is not positive, a division by zero and the like are \
+    errors at their place.\n\n\
     - `sqrt(a)` `exp(a)` `ln(a)` `log(a)` (base 10) `abs(a)` `sin(a)` `cos(a)` `tan(a)` `asin(a)` `acos(a)` `atan(a)` \
     `atan2(a,b)`; angles in radians;\n\
     - `ceil(a)` `floor(a)` `round(a)` (halves go up) `sign(a)` (1 or -1; 1 for 0) `ternary(a,b,c)` (b if a is not 0, else \

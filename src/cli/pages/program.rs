@@ -28,13 +28,13 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     and what was left out and why; with `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
     prints the command graph for graphviz. `doc` prints a page of this manual, `explain` the story behind the code of a \
     message.\n\n\
-    Switches, after the deck or before it (then with `-in`):\n\n\
+    Switches, before or behind the deck:\n\n\
     - `-in FILE`, `-i`: the deck; without a deck or with `none` it is read from standard input;\n\
     - `-log FILE|none`, `-l`: the log file (`log.lammps`);\n\
     - `-screen FILE|none`, `-sc`: where the screen's text goes;\n\
     - `-echo none|screen|log|both`, `-e`: where each line of the deck is repeated (`log`);\n\
     - `-var NAME value …`, `-v`: defines an index variable; the deck's own `variable NAME index …` then does nothing. It \
-    takes all words up to the next switch, so put the deck first;\n\
+    takes all words up to the next switch, so put the deck first or write `-in`;\n\
     - `-threads N`: uses N threads (all cores); results are the same bits for any N;\n\
     - `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md);\n\
     - `-suffix omp`, `-sf` and `-nocite`, `-nc`: taken for LAMMPS' command lines, without effect;\n\

@@ -23,9 +23,9 @@ impl Style for NeighModify {
             syntax: "neigh_modify [every N] [delay N] [check yes|no] [once yes|no] [exclude type I J | group A B | none] …",
             summary: "Says when neighbour lists are rebuilt and which pairs they leave out.",
             text: "A rebuild is considered every N steps, not before `delay` steps after the last one, and with `check yes` \
-                   only if some particle has moved half the skin. Wrapping into the box, shrink-wrapping and the test for \
+                   only if some particle has moved half the skin; the delay must be a multiple of N. Wrapping into the box, shrink-wrapping and the test for \
                    lost particles happen then too. `exclude type I J` and `exclude group A B` leave pairs out, `exclude \
-                   none` forgets all such rules. `page`, `one`, `binsize` and `cluster` are accepted without effect. \
+                   none` forgets all such rules; pairs of `peri/pmb` cannot be left out yet. `page`, `one`, `binsize` and `cluster` are accepted without effect. \
                    Defaults: every 1 delay 0 check yes once no.",
             example: "neigh_modify every 5 delay 0 check yes exclude group wall wall",
         }

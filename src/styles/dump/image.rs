@@ -41,7 +41,7 @@ const PAGE: &str = "`colour` is `type` or any attribute of `dump custom`, `diame
       picture shows when no centre is given: what was drawn first (kept), what is drawn each time, or the box;\n\
     * `map NAME` (damage viridis plasma inferno coolwarm grey), `range lo hi` (numbers, `min`, `max`), \
       `acolor TYPE COLOUR` (a fixed colour for a type, also beside values), `adiam d` (here) or `adiam TYPE d` (in \
-      `dump_modify`), colours by name or `#rrggbb`;\n\
+      `dump_modify`), colours by name or `\"#rrggbb\"` (in quotes: `#` starts a comment);\n\
     * `legend yes|no|text`, `title text` (in quotes, or with `_` for blanks where variables are to be put in), \
       `time yes|no` (the line below the picture), `box yes|no d`, \
       `backcolor C`, `backcolor2 C`, `boxcolor C` (lines and text), `shiny 0…1`, `ssao yes|no seed 0…1` (shade in gaps), \

@@ -36,7 +36,10 @@ impl Style for PeriPmb {
                 Units: c energy/length⁷ (force per volume²), horizon length, s00 and alpha without dimension. \
                 With numbers as coefficients forces are force densities and `mass` is the density, as in LAMMPS. \
                 A `material` turns engineering data into c and s00, its horizon counted in lattice spacings, and makes \
-                forces true forces and masses ρV (`peri_modify force newton`).\n\n\
+                forces true forces and masses ρV (`peri_modify force newton`). `form` says which modulus the bonds keep, as they fix \
+                ν = 1/4: c = 18K/(πδ⁴) (`bulk`, the default), 30G/(πδ⁴) (`shear`, Walayat et al. 2023) or 12E/(πδ⁴) (`young`); \
+                s00 = √(10 G_c/(π c δ⁵)), or what is said here or by the material. `mix`, for two types that both have a \
+                material (no ranges), takes means of their data. Materials and plain numbers do not go together in one body.\n\n\
                 `peri_modify volume`: `lammps` weighs bonds within half a spacing of the horizon by \
                 (δ + dx/2 − |ξ|)/dx, `none` not at all, `full` extends the family to δ + dx/2, where that weight \
                 vanishes.",
