@@ -7,6 +7,12 @@ use crate::world::families::{FamilyOptions, PeriView, PmbTable};
 /// Types mixed in a row cost this many cells' worth each when the direction of rows is chosen.
 const TYPE_CHANGE: usize = 64;
 
+/// Horizons beyond so many spacings have stencils that no body fills.
+const FARTHEST: f64 = 12.0;
+
+/// A body's bounding box may have this many sites per particle.
+const SPARSEST: usize = 64;
+
 /// The lattice layout of a body, and initial partners' volumes and numbers added up; `None`
 /// if the body has several horizons, or leaves so many sites vacant that a list is better.
 pub fn lay_out(
@@ -20,6 +26,10 @@ pub fn lay_out(
 ) -> Option<LatticeBody> {
     let horizon = one_horizon(view, members, table)?;
     let cut = options.volume.reach(horizon, options.lattice_spacing);
+    let volume: usize = sites.size.iter().map(|&n| n as usize).product();
+    if cut > FARTHEST * sites.spacing || volume > SPARSEST * members.len() + 65_536 {
+        return None;
+    }
     let axes = (0..3).map(|row| axes(row, sites.size)).min_by_key(|&axes| {
         let (cells, changes) = cost(view, members, sites, axes);
         // Along x, LAMMPS' creation order makes gathering cheaper.
