@@ -1,7 +1,7 @@
 //! Forces of a body on a lattice: displacements gathered into rows, slabs swept, forces handed back.
 
 use super::chunk::{self, Chunk, Kernels, Various, constant};
-use super::pmb::{UP_TO_3, UP_TO_5, UP_TO_7, stretch, z_of};
+use super::pmb::{UP_TO_3, UP_TO_5, UP_TO_7};
 use crate::par::{self, Shared};
 use crate::world::families::lattice::{
     CONSTANTS, LANES, LatticeBody, MIXED, PAD, PAGE, RowMotion, STAGGER, greater, lesser, staggered,
@@ -280,17 +280,11 @@ impl<'a> Sweep<'a> {
     fn plan(&self, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) -> RowPlan {
         let body = self.body;
         let mut motion = body.motion[slot];
-        let mut limit = (f64::INFINITY, 0.0f64);
         partners(body, slot, meets, to);
         for &step in &body.steps {
-            let (other, uniform) = meet(body, slot, step);
-            motion = motion.with(&body.motion[other]);
-            let pair = uniform.unwrap_or(0);
-            let known = if uniform.is_some() { &body.pairs[pair..=pair] } else { &body.pairs[..] };
-            for [_, s00, alpha] in known {
-                limit = (limit.0.min(*s00), limit.1.max(*alpha));
-            }
+            motion = motion.with(&body.motion[meet(body, slot, step).0]);
         }
+        let limit = row_limit(body, slot);
         let range = [0, 1, 2].map(|k| (motion.most[k] - motion.least[k]).max(0.0) / body.spacing);
         let d = range.iter().map(|r| r * r).sum::<f64>().sqrt();
         // |z' - z| <= (|eta' - eta|/|xi|) (r + r')/|xi| with r < 1.007 |xi|, r' <= r + |eta' - eta|.
@@ -339,7 +333,7 @@ impl<'a> Sweep<'a> {
             let (mut high, mut low) = (before + plan.growth, f64::from(compression[k]) + plan.growth);
             let bound = high.max(low);
             let degree = degree(bound);
-            let floor = z_of(plan.limit.0 - plan.limit.1 * stretch(before)) * (1.0 - 1e-6);
+            let floor = least_critical(plan.limit, before);
             let fragile = self.mode.armed && self.mode.advance && high >= floor;
             let track = !rest && (fragile || bound >= f64::from(measure[k]) || !self.mode.advance);
             let cell = chunk * LANES;
@@ -406,6 +400,19 @@ fn meet(body: &LatticeBody, slot: usize, (across, up): (i32, usize)) -> (usize, 
     (other, uniform.then(|| usize::from(a) * body.kinds.len() + usize::from(b)))
 }
 
+/// The smallest s00 and the largest alpha of a row's bonds.
+pub fn row_limit(body: &LatticeBody, slot: usize) -> (f64, f64) {
+    let mut limit = (f64::INFINITY, 0.0f64);
+    for &step in &body.steps {
+        let pair = meet(body, slot, step).1;
+        let known = pair.map_or(&body.pairs[..], |pair| &body.pairs[pair..=pair]);
+        for [_, s00, alpha] in known {
+            limit = (limit.0.min(*s00), limit.1.max(*alpha));
+        }
+    }
+    limit
+}
+
 /// Finds for each stencil vector how many cells further it leads from a row's cells, and the place of its
 /// constants; `meets` is scratch.
 pub fn partners(body: &LatticeBody, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) {
@@ -440,6 +447,12 @@ fn open(window: &mut Window, body: &LatticeBody, first: usize, cells: usize) -> 
     let base = PAD + (want + 2 * PAGE - page(window.force.as_ptr()) - PAD) % PAGE;
     window.force[base - PAD..base + 3 * stride - PAD].fill(0.0);
     (base, stride)
+}
+
+/// A z no bond can break below, for (s00, alpha) and a bound of the bonds' z at the step before: the critical
+/// stretch is s00 − alpha s_min with s_min no larger than the bond's own previous stretch, z ≥ 2 s, s ≤ z/2.
+pub fn least_critical((s00, alpha): (f64, f64), before: f64) -> f64 {
+    (2.0 * s00 - alpha * before) * (1.0 - 1e-6)
 }
 
 fn degree(bound: f64) -> usize {

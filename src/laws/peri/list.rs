@@ -1,8 +1,8 @@
 //! Forces of bonds kept as a list: four bonds of one particle at a time.
 
 use super::lanes::{Lanes, Portable, Rows};
-use super::lattice::{MAY_BREAK, Mode, SQUEEZED};
-use super::pmb::{SERIES, UP_TO_3, UP_TO_7, closed, stretch, z_of};
+use super::lattice::{MAY_BREAK, Mode, SQUEEZED, least_critical};
+use super::pmb::{SERIES, UP_TO_3, UP_TO_7, closed};
 use crate::par::{self, Shared};
 use crate::world::families::lattice::RowMotion;
 use crate::world::families::list::{GROUP, ListBody, PairConstants, Record};
@@ -49,7 +49,9 @@ pub fn refresh(body: &mut ListBody, view: &PeriView, table: &PmbTable, options: 
     }
     for (r, &p) in body.particle.iter().enumerate() {
         if p != u32::MAX {
-            body.record[r].volume = view.volume[p as usize];
+            let volume = view.volume[p as usize];
+            body.record[r].volume = volume;
+            body.record[r].share = if options.unit == ForceUnit::Density { 1.0 / volume } else { 1.0 };
         }
     }
 }
@@ -147,14 +149,17 @@ unsafe fn force<L: Rows, const PERIODIC: bool, const RING: bool>(a: &RowTask) ->
         let u = [L::splat(own.u[0]), L::splat(own.u[1]), L::splat(own.u[2])];
         let volume = L::splat(own.volume);
         let pairs = a.body.pairs.as_ptr().add(usize::from(a.body.kind[a.i]) * a.body.kinds.len());
+        let (partners, alive_bits) = (a.body.partner.as_ptr(), a.body.alive.as_ptr());
+        let group_kind = a.body.group_kind.as_ptr();
+        let force = a.force;
         let (mut fx, mut fy, mut fz) = (zero, zero, zero);
         let (mut high, mut low) = (zero, zero);
         let mut group = a.body.start[a.i] as usize;
         let end = a.body.start[a.i + 1] as usize;
         while group < end {
-            let partner = a.body.partner.as_ptr().add(GROUP * group);
-            let alive = L::mask(*a.body.alive.get_unchecked(group));
-            let pair = &*pairs.add(usize::from(*a.body.group_kind.get_unchecked(group)));
+            let partner = partners.add(GROUP * group);
+            let alive = L::mask(*alive_bits.add(group));
+            let pair = &*pairs.add(usize::from(*group_kind.add(group)));
             group += 1;
             let p = four!(|k| record.add(*partner.add(k) as usize).cast::<f64>());
             let [xj, yj, zj, vj] = L::transposed(p);
@@ -169,8 +174,8 @@ unsafe fn force<L: Rows, const PERIODIC: bool, const RING: bool>(a: &RowTask) ->
             let square = ax.fma(ax, ay.fma(ay, az.mul(az)));
             let (bx, by, bz) = (ax.add(ex), ay.add(ey), az.add(ez));
             let q = ex.fma(bx.add(ax), ey.fma(by.add(ay), ez.mul(bz.add(az))));
-            let inverse = one.div(square.sqrt());
-            let z = q.mul(inverse.mul(inverse));
+            let (inverse_square, length) = (one.div(square), square.sqrt());
+            let z = q.mul(inverse_square);
             let size = z.abs();
             let h = if !size.ge(L::splat(UP_TO_3)).keep(alive).any() {
                 series::<L, 3>(z)
@@ -179,24 +184,24 @@ unsafe fn force<L: Rows, const PERIODIC: bool, const RING: bool>(a: &RowTask) ->
             } else {
                 closed(z)
             };
-            let weight =
-                L::splat(pair.weight[1]).fnma(square.mul(inverse), L::splat(pair.weight[0])).min(one);
+            let inverse = length.mul(inverse_square);
+            let weight = L::splat(pair.weight[1]).fnma(length, L::splat(pair.weight[0])).min(one);
             let live = size.ge(inverse.fma(L::splat(a.dead[1]), L::splat(a.dead[0]))).keep(alive);
             let z = z.keep(live);
             high = z.max(high);
             low = z.min(low);
-            let scale = L::splat(pair.c).mul(inverse).mul(weight).mul(volume.mul(vj)).keep(live);
-            let factor = scale.mul(z.mul(h)).keep(live);
+            let scale = L::splat(pair.c).mul(inverse).mul(weight).mul(volume.mul(vj)).mul(z);
+            let factor = scale.mul(h).keep(live);
             fx = factor.fma(bx, fx);
             fy = factor.fma(by, fy);
             fz = factor.fma(bz, fz);
             let place = four!(|k| {
                 let j = *partner.add(k) as usize;
-                a.force.wrapping_add(4 * if RING && j < a.first { j + n } else { j })
+                force.wrapping_add(4 * if RING && j < a.first { j + n } else { j })
             });
             L::subtract_transposed([factor.mul(bx), factor.mul(by), factor.mul(bz)], place);
         }
-        let own = a.force.wrapping_add(4 * a.i);
+        let own = force.wrapping_add(4 * a.i);
         let (fx, fy, fz) = (fx.array(), fy.array(), fz.array());
         *own += (fx[0] + fx[1]) + (fx[2] + fx[3]);
         *own.add(1) += (fy[0] + fy[1]) + (fy[2] + fy[3]);
@@ -268,8 +273,14 @@ impl RowKernels for super::chunk::Wide {
 #[cfg(target_arch = "x86_64")]
 impl RowKernels for super::chunk::Widest {
     unsafe fn row<const PERIODIC: bool, const RING: bool>(a: &RowTask) -> (f64, f64) {
-        // SAFETY: the caller's promise; whoever has AVX-512 has AVX2.
-        unsafe { <super::chunk::Wide as RowKernels>::row::<PERIODIC, RING>(a) }
+        // Four lanes still, but twice as many registers.
+        #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
+        unsafe fn widest<const PERIODIC: bool, const RING: bool>(a: &RowTask) -> (f64, f64) {
+            // SAFETY: the caller's promise.
+            unsafe { force::<super::lanes::Avx2, PERIODIC, RING>(a) }
+        }
+        // SAFETY: the caller's promise includes the instruction set.
+        unsafe { widest::<PERIODIC, RING>(a) }
     }
 }
 
@@ -320,7 +331,7 @@ impl Sweep<'_> {
                     (true, true) => K::row::<true, true>(&task),
                 }
             };
-            let floor = z_of(limit.0 - limit.1 * stretch(f64::from(tension[k]))) * (1.0 - 1e-6);
+            let floor = least_critical(limit, f64::from(tension[k]));
             if self.mode.armed && self.mode.advance && high >= floor {
                 flagged[k] |= MAY_BREAK;
             }
@@ -337,10 +348,7 @@ impl Sweep<'_> {
                 // SAFETY: in bounds; slabs that reach a particle run one after the other.
                 let f = unsafe { &mut *f.as_ptr().add(p) };
                 let w = &window.force[4 * k..4 * k + 3];
-                let share = match self.options.unit {
-                    ForceUnit::Density => 1.0 / body.record[i].volume,
-                    ForceUnit::Newton => 1.0,
-                };
+                let share = body.record[i].share;
                 *f = [f[0] + share * w[0], f[1] + share * w[1], f[2] + share * w[2]];
             }
         }

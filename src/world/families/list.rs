@@ -10,8 +10,8 @@ pub struct Record {
     pub volume: f64,
     /// Displacement.
     pub u: [f64; 3],
-    /// Unused.
-    pub spare: f64,
+    /// What turns the force on the particle into what `f` holds: 1, or 1 over the volume.
+    pub share: f64,
 }
 
 /// Bonds that share one row of constants: four partners.
