@@ -53,7 +53,7 @@ fn farthest(w: &World, t: &Tick) -> Result<f64> {
         if s.is_finite() { s } else { f64::INFINITY }
     };
     let most = par::max(x.len(), square);
-    if most.is_finite() {
+    if x.is_empty() || most.is_finite() {
         return Ok(most.max(0.0));
     }
     let bad = (0..x.len()).find(|&i| !square(i).is_finite()).unwrap_or(0);
