@@ -2,5 +2,6 @@
 
 mod golden;
 mod layouts;
+mod patch;
 mod scene;
 mod textbook;

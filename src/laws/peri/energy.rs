@@ -88,7 +88,7 @@ fn whole_rows<K: Kernels>(
     rows.resize(n, [0.0; 7]);
     let shared = Shared::new(rows);
     par::for_rows(n.div_ceil(ROWS), |part| {
-        let mut window = windows[par::slot()].lock().unwrap_or_else(PoisonError::into_inner);
+        let mut window = windows[par::slot() % windows.len()].lock().unwrap_or_else(PoisonError::into_inner);
         let Window { meets, to, .. } = &mut *window;
         for slot in part * ROWS..n.min((part + 1) * ROWS) {
             if body.rows[slot].len == 0 {

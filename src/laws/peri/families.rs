@@ -184,7 +184,11 @@ impl Families {
         let newton = self.options.unit == ForceUnit::Newton;
         let Self { lattices, list, scratch, options, .. } = self;
         scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
-        let window = || scratch.windows[par::slot()].lock().unwrap_or_else(PoisonError::into_inner);
+        let window = || {
+            scratch.windows[par::slot() % scratch.windows.len()]
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+        };
         let f = Shared::new(f);
         for body in lattices {
             let mut columns = ChunkColumns::take(body);
