@@ -18,6 +18,9 @@
 //! outputs              out::*               thermo, dumps, pictures
 //! ```
 
+// Units stand in brackets in doc comments, as [length]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
+
 pub mod cli;
 pub mod diag;
 pub mod graph;

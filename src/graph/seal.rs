@@ -141,8 +141,8 @@ impl<'a> Sealer<'a> {
         let slot = self.world.slots.id(&format!("v_{}#{}", r.name, self.uses));
         let atom = self.graph.variables.get(&r.name).copied().unwrap_or(false);
         let op = Evaluate {
-            title: format!("variable {}", r.name),
-            name: r.name.clone(),
+            name: format!("variable {}", r.name),
+            variable: r.name.clone(),
             span: r.span,
             vars,
             from,
@@ -342,8 +342,8 @@ impl Op for Keyword {
 
 /// A variable on its way into a slot.
 struct Evaluate {
-    title: String,
     name: String,
+    variable: String,
     span: Span,
     vars: Arc<Vars>,
     from: BTreeMap<String, SlotId>,
@@ -353,7 +353,7 @@ struct Evaluate {
 
 impl Op for Evaluate {
     fn name(&self) -> &str {
-        &self.title
+        &self.name
     }
     fn stage(&self) -> Stage {
         self.stage
@@ -368,7 +368,7 @@ impl Op for Evaluate {
         OpClass::Output
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let value = self.vars.value(&self.name, self.span, &mut RunEnv { w, from: &self.from })?;
+        let value = self.vars.value(&self.variable, self.span, &mut RunEnv { w, from: &self.from })?;
         let slot = w.slots.get_mut(self.slot);
         slot.step = Some(t.step);
         match value {
@@ -378,7 +378,7 @@ impl Op for Evaluate {
                 return fail(
                     Code::WRONG_KIND,
                     self.span,
-                    format!("variable `{}` has no number here", self.name),
+                    format!("variable `{}` has no number here", self.variable),
                 );
             }
         }

@@ -1,5 +1,7 @@
 //! Tests of formulas; expected values come from LAMMPS 22Jul2025 (`print "$(…)"`) unless said otherwise.
 
+#![allow(clippy::approx_constant)] // LAMMPS' twenty digits as it printed them
+
 use super::super::tests::{Run, World};
 use super::super::{Clock, Value, Vars};
 use super::*;

@@ -11,6 +11,9 @@ use crate::world::families::lattice::{LANES, LatticeBody, PAD};
 use crate::world::families::list::ListBody;
 use crate::world::families::{Families, FamilyOptions, ForceUnit, PeriTally, PeriView, Window};
 
+/// Takes a bond: both ends with their energies, the pull on the first and the vector it acts along.
+type Add<'a> = dyn FnMut((usize, f64), (usize, f64), f64, [f64; 3]) + 'a;
+
 /// Energy and virial of one row of cells or one record.
 type Sums = [f64; 7];
 
@@ -36,12 +39,7 @@ pub fn tally<K: Kernels>(families: &mut Families, view: &PeriView, t: &mut PeriT
 }
 
 /// Adds up `row(k, add)` for `k` below `n` in a fixed order, and per particle if asked for.
-fn sum(
-    n: usize,
-    rows: &mut Vec<Sums>,
-    t: &mut PeriTally,
-    row: impl Fn(usize, &mut dyn FnMut((usize, f64), (usize, f64), f64, [f64; 3])) + Sync,
-) {
+fn sum(n: usize, rows: &mut Vec<Sums>, t: &mut PeriTally, row: impl Fn(usize, &mut Add) + Sync) {
     if t.per_atom_energy.is_some() {
         for k in 0..n {
             row(k, &mut |i, j, pull, d| add(t, i, j, pull, d));
@@ -147,7 +145,7 @@ fn lattice_row(
     view: &PeriView,
     families: &Families,
     options: &FamilyOptions,
-    f: &mut dyn FnMut((usize, f64), (usize, f64), f64, [f64; 3]),
+    f: &mut Add,
 ) {
     let row = body.rows[slot];
     let entries = body.stencil.len();
@@ -174,13 +172,7 @@ fn lattice_row(
     }
 }
 
-fn list_row(
-    list: &ListBody,
-    i: usize,
-    period: [f64; 3],
-    options: &FamilyOptions,
-    f: &mut dyn FnMut((usize, f64), (usize, f64), f64, [f64; 3]),
-) {
+fn list_row(list: &ListBody, i: usize, period: [f64; 3], options: &FamilyOptions, f: &mut Add) {
     for b in list.own(i).filter(|&b| list.lives(b)) {
         let j = list.partner[b] as usize;
         let pair = &list.pairs[usize::from(list.kind[i]) * list.kinds.len() + usize::from(list.kind[j])];

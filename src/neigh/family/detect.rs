@@ -121,7 +121,7 @@ pub fn sites(view: &PeriView, members: &[u32], nearest: f64) -> Option<Sites> {
     // The longest extent gives the spacing with the fewest digits lost.
     let longest = [0, 1, 2].map(|k| hi[k] - lo[k]).into_iter().fold(0.0, f64::max);
     let steps = (longest / nearest).round();
-    if !(steps >= 1.0 && steps < 1e6) {
+    if !(1.0..1e6).contains(&steps) {
         return None;
     }
     let spacing = longest / steps;

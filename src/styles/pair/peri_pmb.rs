@@ -345,7 +345,7 @@ impl Force {
                 continue;
             }
             let density = self.style.materials.density(kind).unwrap_or(p.density[i]);
-            if !(density > 0.0) {
+            if density.is_nan() || density <= 0.0 {
                 return Err(Diagnostic::error(
                     Code::INCOMPLETE,
                     None,
