@@ -84,15 +84,16 @@ fn from_slot(w: &World, slot: SlotId, r: &ValueRef) -> Result<Value> {
         return if c < s.cols { Ok(Value::Number(s.atom_value(i, c))) } else { missing() };
     }
     let atom = |c: usize| Value::Atom((0..w.n()).map(|i| s.atom_value(i, c)).collect());
+    let number = |a: Option<f64>| a.map_or_else(missing, |a| Ok(Value::Number(a)));
+    let o = s.offers;
     match r.index.as_slice() {
-        [] if s.cols == 1 => Ok(atom(0)),
-        [] if s.cols > 1 => missing(),
-        [] => Ok(Value::Number(s.scalar)),
-        [k] if s.cols > 1 && *k <= s.cols => Ok(atom(k - 1)),
-        [k] => match s.vector.get(k - 1) {
-            Some(a) => Ok(Value::Number(*a)),
-            None => missing(),
-        },
+        [] if o.scalar => Ok(Value::Number(s.scalar)),
+        [] if o.vector => Ok(Value::Vector(s.vector.clone())),
+        [] if o.atom && s.cols == 1 => Ok(atom(0)),
+        [k] if o.vector => number(s.vector.get(k - 1).copied()),
+        [k] if o.array && *k <= s.array_cols => Ok(Value::Vector(s.array_column(k - 1))),
+        [k] if o.atom && s.cols > 1 && *k <= s.cols => Ok(atom(k - 1)),
+        [i, j] if o.array => number(s.cell(i - 1, j - 1)),
         _ => missing(),
     }
 }

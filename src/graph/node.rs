@@ -103,8 +103,8 @@ pub struct Graph {
     pub thermo: Thermo,
     /// Every line.
     pub nodes: Vec<Node>,
-    /// Variables by name: whether atom-style. Kept in step with the variable table for look-ups.
-    pub variables: BTreeMap<String, bool>,
+    /// Variables by name and what they offer. Kept in step with the variable table for look-ups.
+    pub variables: BTreeMap<String, Shape>,
 }
 
 impl Clone for PairNode {
@@ -166,7 +166,7 @@ impl Names for Graph {
         self.find_fix(id).map(|f| f.fix.shape())
     }
 
-    fn variable(&self, name: &str) -> Option<bool> {
+    fn variable_shape(&self, name: &str) -> Option<Shape> {
         self.variables.get(name).copied()
     }
 

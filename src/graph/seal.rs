@@ -6,7 +6,7 @@ use super::node::Graph;
 use crate::diag::{Code, Result, Span, fail};
 use crate::lang::{Dep, RefKind, Value, ValueRef, Vars};
 use crate::plan::{Access, LeftOut, Op, OpClass, Placed, Stage, StepPlan, Tick, When};
-use crate::styles::{Reading, SealCx};
+use crate::styles::{Reading, SealCx, Shape, Wants};
 use crate::world::{SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -93,6 +93,7 @@ impl<'a> Sealer<'a> {
         };
         let key = format!("c_{id}");
         let slot = self.world.slots.id(&key);
+        self.world.slots.get_mut(slot).offers = node.compute.shape().offers();
         if self.placed.contains(&(key.clone(), stage)) {
             // Already there: it only has to act at these times too, and so must what it reads.
             self.widen(&key, stage, when);
@@ -139,7 +140,7 @@ impl<'a> Sealer<'a> {
         self.trail.pop();
         self.uses += 1;
         let slot = self.world.slots.id(&format!("v_{}#{}", r.name, self.uses));
-        let atom = self.graph.variables.get(&r.name).copied().unwrap_or(false);
+        let shape = self.graph.variables.get(&r.name).copied().unwrap_or_default();
         let op = Evaluate {
             name: format!("variable {}", r.name),
             variable: r.name.clone(),
@@ -150,7 +151,13 @@ impl<'a> Sealer<'a> {
             stage,
         };
         self.provide(Box::new(op), when.clone(), String::new());
-        Ok(if atom { Reading::Atom(slot, 0) } else { Reading::Scalar(slot) })
+        self.world.slots.get_mut(slot).offers = shape.offers();
+        Ok(match r.index.as_slice() {
+            _ if shape.atom.is_some() => Reading::Atom(slot, 0),
+            [] if shape.vector > 0 => Reading::Vector(slot),
+            [k] if shape.vector > 0 => Reading::Element(slot, k - 1),
+            _ => Reading::Scalar(slot),
+        })
     }
 
     /// A thermo keyword's value over all particles, never divided by their number.
@@ -197,16 +204,33 @@ impl<'a> Sealer<'a> {
         self.source(r, Stage::Output, &When::Always)
     }
 
+    /// What the compute, fix or variable of a reference offers.
+    fn shape_of(&self, r: &ValueRef) -> Shape {
+        let graph = self.graph;
+        match r.kind {
+            RefKind::Variable => graph.variables.get(&r.name).copied(),
+            RefKind::Compute | RefKind::ComputeAtom => graph.find_compute(&r.name).map(|c| c.compute.shape()),
+            RefKind::Fix | RefKind::FixAtom => graph.find_fix(&r.name).map(|f| f.fix.shape()),
+        }
+        .unwrap_or_default()
+    }
+
     /// The slot of a compute or fix that a formula reads.
     fn source(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<SlotId> {
         match r.kind {
             RefKind::Compute | RefKind::ComputeAtom => self.compute(&r.name, r.span, stage, when),
             RefKind::Fix | RefKind::FixAtom => match self.graph.find_fix(&r.name) {
-                Some(_) => Ok(self.world.slots.id(&format!("f_{}", r.name))),
+                Some(node) => {
+                    let slot = self.world.slots.id(&format!("f_{}", r.name));
+                    self.world.slots.get_mut(slot).offers = node.fix.shape().offers();
+                    Ok(slot)
+                }
                 None => fail(Code::UNKNOWN_NAME, r.span, format!("there is no fix `{}`", r.name)),
             },
             RefKind::Variable => match self.variable(r, stage, when)? {
-                Reading::Scalar(s) | Reading::Atom(s, _) => Ok(s),
+                Reading::Scalar(s) | Reading::Atom(s, _) | Reading::Vector(s) | Reading::Element(s, _) => {
+                    Ok(s)
+                }
                 _ => fail(Code::WRONG_KIND, r.span, "this variable has no value here"),
             },
         }
@@ -227,24 +251,46 @@ impl SealCx for Sealer<'_> {
     }
 
     fn value(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<Reading> {
+        let shape = self.shape_of(r);
+        let number = match r.index.as_slice() {
+            [] => shape.scalar,
+            [k] => *k <= shape.vector,
+            _ => true,
+        };
+        self.reading(r, if number { Wants::Number } else { Wants::PerAtom }, stage, when)
+    }
+
+    fn reading(&mut self, r: &ValueRef, wants: Wants, stage: Stage, when: &When) -> Result<Reading> {
         let wrong = |text: String| fail(Code::WRONG_KIND, r.span, text);
-        let shape = match r.kind {
-            RefKind::Variable => return self.variable(r, stage, when),
-            RefKind::Compute => self.graph.find_compute(&r.name).map(|c| c.compute.shape()),
-            RefKind::Fix => self.graph.find_fix(&r.name).map(|f| f.fix.shape()),
+        match r.kind {
             RefKind::ComputeAtom | RefKind::FixAtom => {
                 return wrong(format!("`{r}` belongs in a formula: use an equal-style variable"));
             }
-        };
-        let slot = self.source(r, stage, when)?;
-        let shape = shape.unwrap_or_default();
-        match (r.index.as_slice(), shape.atom) {
-            ([], _) if shape.scalar => Ok(Reading::Scalar(slot)),
-            ([], Some(1)) => Ok(Reading::Atom(slot, 0)),
-            ([k], _) if shape.vector > 0 && *k <= shape.vector => Ok(Reading::Element(slot, k - 1)),
-            ([k], Some(cols)) if *k <= cols => Ok(Reading::Atom(slot, k - 1)),
-            _ => wrong(format!("`{r}` has no such value")),
+            RefKind::Variable => {
+                let reading = self.variable(r, stage, when)?;
+                return match (wants, &reading) {
+                    (Wants::Vector, Reading::Vector(_)) | (Wants::Number | Wants::PerAtom, _) => Ok(reading),
+                    _ => wrong(format!("`{r}` has no such value")),
+                };
+            }
+            RefKind::Compute | RefKind::Fix => {}
         }
+        let shape = self.shape_of(r);
+        let slot = self.source(r, stage, when)?;
+        Ok(match (wants, r.index.as_slice()) {
+            (Wants::Number, []) if shape.scalar => Reading::Scalar(slot),
+            (Wants::Number, [k]) if *k <= shape.vector => Reading::Element(slot, k - 1),
+            (Wants::Number, [i, j]) if *i <= shape.array_rows && *j <= shape.array => {
+                Reading::Cell(slot, i - 1, j - 1)
+            }
+            (Wants::PerAtom, []) if shape.atom == Some(1) => Reading::Atom(slot, 0),
+            (Wants::PerAtom, [k]) if shape.atom.is_some_and(|c| *k <= c) => Reading::Atom(slot, k - 1),
+            (Wants::Vector, []) if shape.vector > 0 => Reading::Vector(slot),
+            (Wants::Vector, [k]) if *k <= shape.array => Reading::Column(slot, k - 1),
+            (Wants::Local, []) if shape.local == 1 => Reading::Local(slot, 0),
+            (Wants::Local, [k]) if *k <= shape.local => Reading::Local(slot, k - 1),
+            _ => return wrong(format!("`{r}` has no such value")),
+        })
     }
 
     fn keyword(&mut self, name: &str, span: Span, stage: Stage, when: &When) -> Result<Reading> {
@@ -374,7 +420,8 @@ impl Op for Evaluate {
         match value {
             Value::Number(a) => slot.scalar = a,
             Value::Atom(list) => (slot.atom, slot.cols) = (list, 1),
-            Value::Vector(_) | Value::Unknown => {
+            Value::Vector(list) => slot.vector = list,
+            Value::Unknown => {
                 return fail(
                     Code::WRONG_KIND,
                     self.span,

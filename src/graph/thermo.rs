@@ -8,7 +8,7 @@ use crate::math::cformat::Value;
 use crate::out::log::Log;
 use crate::out::thermo::{Column, Layout, Line};
 use crate::plan::{Access, Op, Stage, Tick, When};
-use crate::styles::{BuildCx, Reading, SealCx};
+use crate::styles::{BuildCx, Reading, SealCx, Wants};
 use crate::world::{Face, World};
 
 /// What the step table shows and when.
@@ -268,10 +268,10 @@ fn columns(words: &[Word], cx: &BuildCx) -> Result<(Layout, Vec<Source>)> {
             sources.push(Source::Keyword(word.text.clone(), word.span));
             continue;
         }
-        for text in expand(&word.text, cx) {
-            let Some(r) = ValueRef::parse(&text, word.span)? else { return Err(unknown(word)) };
+        for word in cx.expand(word, Wants::Number)? {
+            let Some(r) = ValueRef::parse(&word.text, word.span)? else { return Err(unknown(&word)) };
             cx.value(&r, false)?;
-            list.push(Column::reference(&text, cx.names.extensive(&r)));
+            list.push(Column::reference(&word.text, cx.names.extensive(&r)));
             sources.push(Source::Ref(r));
         }
     }
@@ -279,22 +279,6 @@ fn columns(words: &[Word], cx: &BuildCx) -> Result<(Layout, Vec<Source>)> {
         return fail(Code::MISSING_ARGUMENT, cx.span, "thermo_style custom needs at least one column");
     }
     Ok((Layout::new(list, Line::One), sources))
-}
-
-/// `c_x[*]` as one word per element of the vector; `c_x[2*3]` likewise.
-fn expand(text: &str, cx: &BuildCx) -> Vec<String> {
-    let whole = vec![text.to_string()];
-    let Some((head, range)) = text.strip_suffix(']').and_then(|t| t.split_once('[')) else { return whole };
-    let Some((lo, hi)) = range.split_once('*') else { return whole };
-    let shape = match head.get(..2) {
-        Some("c_") => cx.names.compute(&head[2..]),
-        Some("f_") => cx.names.fix(&head[2..]),
-        _ => None,
-    };
-    let Some(shape) = shape else { return whole };
-    let lo = lo.parse().unwrap_or(1);
-    let hi = hi.parse().unwrap_or(shape.vector);
-    (lo..=hi).map(|k: usize| format!("{head}[{k}]")).collect()
 }
 
 fn unknown(word: &Word) -> crate::diag::Diagnostics {

@@ -7,7 +7,7 @@ use crate::graph::{ComputeNode, Role};
 use crate::lang::{Args, Command, Kind, RefKind, ValueRef, Vars, Word, substitute};
 use crate::out::log::Echo;
 use crate::styles::compute::COMPUTES;
-use crate::styles::{BuildCx, Use, UseKind};
+use crate::styles::{BuildCx, Shape, Use, UseKind};
 use crate::world::{Compat, GroupId};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -72,9 +72,13 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "write_restart",
 ];
 
-/// Which variables are atom-style, by name.
-pub fn variable_kinds(vars: &Vars) -> BTreeMap<String, bool> {
-    vars.names().map(|n| (n.to_string(), vars.kind(n) == Some(Kind::Atom))).collect()
+/// What each variable offers, by name.
+pub fn variable_kinds(vars: &Vars) -> BTreeMap<String, Shape> {
+    let shape = |n: &str| match vars.kind(n) {
+        Some(Kind::Atom) => Shape { atom: Some(1), ..Shape::default() },
+        _ => Shape { scalar: true, ..Shape::default() },
+    };
+    vars.names().map(|n| (n.to_string(), shape(n))).collect()
 }
 
 /// The computes, fixes and variables that the words of a line refer to.

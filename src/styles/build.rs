@@ -2,8 +2,10 @@
 
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail, nearest};
 use crate::lang::{Param, RefKind, ValueRef, Word};
-use crate::world::{GroupId, Region, World};
+use crate::world::{GroupId, Offers, Region, World};
 use std::cell::RefCell;
+
+use super::Wants;
 
 /// What kind of thing a line refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -36,14 +38,38 @@ pub struct Use {
 pub struct Shape {
     /// A single number.
     pub scalar: bool,
-    /// Length of the global vector; 0 for none.
+    /// Length of the global vector; 0 for none, [`Shape::OPEN`] if only a run can tell.
     pub vector: usize,
+    /// Columns of the global array; 0 for none.
+    pub array: usize,
+    /// Rows of the global array, if it has one; [`Shape::OPEN`] if only a run can tell.
+    pub array_rows: usize,
+    /// Columns of local values (of pairs, bonds …); 0 for none, 1 is a local vector.
+    pub local: usize,
     /// Columns per particle; `Some(1)` is a per-atom vector.
     pub atom: Option<usize>,
     /// The number grows with the scene: `thermo_modify norm yes` divides it by the number of particles.
     pub scalar_extensive: bool,
     /// The global vector grows with the scene.
     pub vector_extensive: bool,
+    /// The global array grows with the scene.
+    pub array_extensive: bool,
+}
+
+impl Shape {
+    /// A length that only a run can tell, and that may change from step to step.
+    pub const OPEN: usize = usize::MAX;
+
+    /// The kinds of values, for the slot.
+    pub fn offers(&self) -> Offers {
+        Offers {
+            scalar: self.scalar,
+            vector: self.vector > 0,
+            array: self.array > 0,
+            atom: self.atom.is_some(),
+            local: self.local > 0,
+        }
+    }
 }
 
 /// What has been declared so far, by name.
@@ -52,8 +78,12 @@ pub trait Names {
     fn compute(&self, id: &str) -> Option<Shape>;
     /// The values a fix offers.
     fn fix(&self, id: &str) -> Option<Shape>;
+    /// The values a variable offers: one per particle of atom style, a vector, else one number.
+    fn variable_shape(&self, name: &str) -> Option<Shape>;
     /// Whether a variable is atom-style (`Some(true)`), any other style (`Some(false)`), or absent.
-    fn variable(&self, name: &str) -> Option<bool>;
+    fn variable(&self, name: &str) -> Option<bool> {
+        self.variable_shape(name).map(|s| s.atom.is_some())
+    }
     /// Whether this global value of a compute or fix grows with the number of particles (`thermo_modify norm`).
     fn extensive(&self, r: &ValueRef) -> bool {
         let shape = match r.kind {
@@ -61,7 +91,11 @@ pub trait Names {
             RefKind::Fix => self.fix(&r.name),
             _ => None,
         };
-        shape.is_some_and(|s| if r.index.is_empty() { s.scalar_extensive } else { s.vector_extensive })
+        shape.is_some_and(|s| match r.index.len() {
+            0 => s.scalar_extensive,
+            1 => s.vector_extensive,
+            _ => s.array_extensive,
+        })
     }
     /// The fixes, computes and dumps in force that use a name, as `fix ball`.
     fn users(&self, _name: &Use) -> Vec<String> {
@@ -157,21 +191,16 @@ impl BuildCx<'_> {
     /// # Errors
     /// Unknown names, missing or superfluous indices.
     pub fn value(&self, r: &ValueRef, per_atom: bool) -> Result<()> {
-        let (kind, what) = match r.kind {
-            RefKind::Variable => (UseKind::Variable, "variable"),
-            RefKind::Compute | RefKind::ComputeAtom => (UseKind::Compute, "compute"),
-            RefKind::Fix | RefKind::FixAtom => (UseKind::Fix, "fix"),
-        };
-        let shape = match r.kind {
-            RefKind::Variable => self.names.variable(&r.name).map(|atom| Shape {
-                scalar: !atom,
-                atom: atom.then_some(1),
-                ..Shape::default()
-            }),
-            RefKind::Compute | RefKind::ComputeAtom => self.names.compute(&r.name),
-            RefKind::Fix | RefKind::FixAtom => self.names.fix(&r.name),
-        };
-        let Some(shape) = shape else {
+        self.reading(r, if per_atom { Wants::PerAtom } else { Wants::Number })
+    }
+
+    /// As `value`, for any kind of value.
+    ///
+    /// # Errors
+    /// As `value`.
+    pub fn reading(&self, r: &ValueRef, wants: Wants) -> Result<()> {
+        let (kind, what) = kind_of(r);
+        let Some(shape) = self.shape(r) else {
             let known = self.names.all(kind);
             let mut d =
                 Diagnostic::error(Code::UNKNOWN_NAME, r.span, format!("there is no {what} `{}`", r.name));
@@ -181,7 +210,56 @@ impl BuildCx<'_> {
             return Err(d.into());
         };
         self.uses(kind, &r.name);
-        check_index(r, what, shape, per_atom)
+        check_index(r, what, &shape, wants)
+    }
+
+    /// The values of what a reference names, if it exists.
+    pub fn shape(&self, r: &ValueRef) -> Option<Shape> {
+        match r.kind {
+            RefKind::Variable => self.names.variable_shape(&r.name),
+            RefKind::Compute | RefKind::ComputeAtom => self.names.compute(&r.name),
+            RefKind::Fix | RefKind::FixAtom => self.names.fix(&r.name),
+        }
+    }
+
+    /// The words that a reference with a wildcard stands for, as `c_ID[*]` or `f_ID[2*4]`: one for each element of a
+    /// vector where one number is wanted, else one for each column. Any other word stands for itself.
+    ///
+    /// # Errors
+    /// Bounds outside the vector or array, and lengths that only a run can tell.
+    pub fn expand(&self, word: &Word, wants: Wants) -> Result<Vec<Word>> {
+        let whole = || Ok(vec![word.clone()]);
+        let Some((head, rest)) = word.text.split_once('[') else { return whole() };
+        let Some((range, tail)) = rest.split_once(']') else { return whole() };
+        let (Some((lo, hi)), Ok(Some(r))) = (range.split_once('*'), ValueRef::parse(head, word.span)) else {
+            return whole();
+        };
+        let Some(shape) = self.shape(&r) else { return whole() };
+        let all = match wants {
+            Wants::Number if tail.is_empty() => shape.vector,
+            Wants::Number => shape.array_rows,
+            Wants::PerAtom => shape.atom.unwrap_or(0),
+            Wants::Vector => shape.array,
+            Wants::Local => shape.local,
+        };
+        let bound = |text: &str, default| if text.is_empty() { Ok(default) } else { text.parse::<usize>() };
+        let wrong = |text: String| fail(Code::BAD_VALUE, word.span, text);
+        let (Ok(lo), Ok(hi)) = (bound(lo, 1), bound(hi, all)) else {
+            return wrong(format!("`{range}` is no range such as `2*4`"));
+        };
+        if hi == Shape::OPEN {
+            return wrong(format!(
+                "how many values `{head}` has is only known in a run: say up to which, as `[1*4]`"
+            ));
+        }
+        // What has a single column is named without an index, and nothing has no columns: the reader says so.
+        if all == 0 || (all == 1 && wants != Wants::Number) {
+            return Ok(vec![Word { text: format!("{head}{tail}"), ..word.clone() }]);
+        }
+        if lo < 1 || lo > hi || hi > all {
+            return wrong(format!("`{range}` is no range from 1 to {all}"));
+        }
+        Ok((lo..=hi).map(|k| Word { text: format!("{head}[{k}]{tail}"), ..word.clone() }).collect())
     }
 
     /// As `value` for a number or a reference.
@@ -200,28 +278,91 @@ impl BuildCx<'_> {
     }
 }
 
-fn check_index(r: &ValueRef, what: &str, shape: Shape, per_atom: bool) -> Result<()> {
+/// What a reference names, as a kind and as a word.
+fn kind_of(r: &ValueRef) -> (UseKind, &'static str) {
+    match r.kind {
+        RefKind::Variable => (UseKind::Variable, "variable"),
+        RefKind::Compute | RefKind::ComputeAtom => (UseKind::Compute, "compute"),
+        RefKind::Fix | RefKind::FixAtom => (UseKind::Fix, "fix"),
+    }
+}
+
+fn check_index(r: &ValueRef, what: &str, shape: &Shape, wants: Wants) -> Result<()> {
+    match wants {
+        Wants::Number => check_number(r, what, shape),
+        Wants::PerAtom => {
+            check_columns(r, what, shape.atom.unwrap_or(0), "per-atom values", "value per atom")
+        }
+        Wants::Local => check_columns(r, what, shape.local, "local values", "local value each"),
+        Wants::Vector => check_vector(r, what, shape),
+    }
+}
+
+/// A column of values that there are many of.
+fn check_columns(r: &ValueRef, what: &str, columns: usize, values: &str, one: &str) -> Result<()> {
     let wrong = |text: String| fail(Code::WRONG_KIND, r.span, text);
     let name = &r.name;
-    if per_atom {
-        return match (shape.atom, r.index.as_slice()) {
-            (None, _) => wrong(format!("{what} `{name}` has no per-atom values")),
-            (Some(1), []) => Ok(()),
-            (Some(1), [_]) => {
-                wrong(format!("{what} `{name}` has one value per atom: write it without an index"))
-            }
-            (Some(c), []) => wrong(format!("{what} `{name}` has {c} columns: say which, as `[1]`")),
-            (Some(c), [k]) if *k >= 1 && *k <= c => Ok(()),
-            (Some(c), _) => wrong(format!("{what} `{name}` has columns 1 to {c}")),
-        };
+    match (columns, r.index.as_slice()) {
+        (0, _) => wrong(format!("{what} `{name}` has no {values}")),
+        (1, []) => Ok(()),
+        (1, [_]) => wrong(format!("{what} `{name}` has one {one}: write it without an index")),
+        (c, []) => wrong(format!("{what} `{name}` has {c} columns: say which, as `[1]`")),
+        (c, [k]) if *k >= 1 && *k <= c => Ok(()),
+        (c, _) => wrong(format!("{what} `{name}` has columns 1 to {c}")),
     }
+}
+
+/// A whole vector, or a column of an array.
+fn check_vector(r: &ValueRef, what: &str, shape: &Shape) -> Result<()> {
+    let wrong = |text: String| fail(Code::WRONG_KIND, r.span, text);
+    let name = &r.name;
+    match r.index.as_slice() {
+        [] if shape.vector > 0 => Ok(()),
+        [] if shape.array > 0 => {
+            wrong(format!("{what} `{name}` has an array of {} columns: say which, as `[1]`", shape.array))
+        }
+        [] => wrong(format!("{what} `{name}` has no global vector")),
+        [k] if *k >= 1 && *k <= shape.array => Ok(()),
+        [_] if shape.array > 0 => {
+            wrong(format!("the array of {what} `{name}` has columns 1 to {}", shape.array))
+        }
+        [_] if shape.vector > 0 => {
+            wrong(format!("{what} `{name}` has a vector and no array: write it without an index"))
+        }
+        _ => wrong(format!("{what} `{name}` has no global array")),
+    }
+}
+
+/// A single number.
+fn check_number(r: &ValueRef, what: &str, shape: &Shape) -> Result<()> {
+    let wrong = |text: String| fail(Code::WRONG_KIND, r.span, text);
+    let name = &r.name;
     match r.index.as_slice() {
         [] if shape.scalar => Ok(()),
+        [] if shape.vector > 0 && shape.vector < Shape::OPEN => wrong(format!(
+            "{what} `{name}` has no single value here: say which of {}, as `[1]`",
+            shape.vector
+        )),
+        [] if shape.array > 0 => {
+            wrong(format!("{what} `{name}` has no single value here: say row and column, as `[1][1]`"))
+        }
         [] => wrong(format!("{what} `{name}` has no single value here")),
         [k] if *k >= 1 && *k <= shape.vector => Ok(()),
         [_] if shape.vector > 0 => {
             wrong(format!("the vector of {what} `{name}` has elements 1 to {}", shape.vector))
         }
+        [i, j] if *i >= 1 && *j >= 1 && *i <= shape.array_rows && *j <= shape.array => Ok(()),
+        [_, _] if shape.array > 0 && shape.array_rows < Shape::OPEN => wrong(format!(
+            "the array of {what} `{name}` has rows 1 to {} and columns 1 to {}",
+            shape.array_rows, shape.array
+        )),
+        [_, _] if shape.array > 0 => {
+            wrong(format!("the array of {what} `{name}` has columns 1 to {}", shape.array))
+        }
+        [_] if shape.array > 0 => {
+            wrong(format!("{what} `{name}` has an array: say row and column, as `[1][1]`"))
+        }
+        [_, _] => wrong(format!("{what} `{name}` has no global array")),
         _ => wrong(format!("{what} `{name}` has no global vector")),
     }
 }

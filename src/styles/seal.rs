@@ -16,16 +16,29 @@ pub enum Reading {
     Element(SlotId, usize),
     /// A column (from 0) of a slot's per-particle values.
     Atom(SlotId, usize),
+    /// Row and column (from 0) of a slot's global array.
+    Cell(SlotId, usize, usize),
+    /// A slot's whole global vector.
+    Vector(SlotId),
+    /// A column (from 0) of a slot's global array, as a vector.
+    Column(SlotId, usize),
+    /// A column (from 0) of a slot's local values.
+    Local(SlotId, usize),
 }
 
 impl Reading {
-    /// The number; of a per-particle reading the first particle's.
+    /// The number; of a per-particle reading the first particle's, of a vector its first element. 0 for an element that
+    /// a vector of varying length does not have at present, as in LAMMPS.
     pub fn get(&self, w: &World) -> f64 {
         match *self {
             Reading::Const(a) => a,
             Reading::Scalar(s) => w.slots.get(s).scalar,
             Reading::Element(s, k) => w.slots.get(s).vector.get(k).copied().unwrap_or(0.0),
             Reading::Atom(..) => self.atom(w, 0),
+            Reading::Cell(s, r, c) => w.slots.get(s).cell(r, c).unwrap_or(0.0),
+            Reading::Vector(..) | Reading::Column(..) | Reading::Local(..) => {
+                self.list(w).first().copied().unwrap_or(0.0)
+            }
         }
     }
 
@@ -40,10 +53,52 @@ impl Reading {
         }
     }
 
+    /// All its values: a vector's elements, an array column's, local values, those of the particles by index; the one
+    /// number of everything else.
+    pub fn list(&self, w: &World) -> Vec<f64> {
+        match *self {
+            Reading::Vector(s) => w.slots.get(s).vector.clone(),
+            Reading::Column(s, c) => w.slots.get(s).array_column(c),
+            Reading::Local(s, c) => w.slots.get(s).local_column(c),
+            Reading::Atom(..) => (0..w.n()).map(|i| self.atom(w, i)).collect(),
+            _ => vec![self.get(w)],
+        }
+    }
+
+    /// How many values `list` gives.
+    pub fn len(&self, w: &World) -> usize {
+        let rows = |values: usize, cols: usize| if cols == 0 { 0 } else { values / cols };
+        match *self {
+            Reading::Vector(s) => w.slots.get(s).vector.len(),
+            Reading::Column(s, _) => rows(w.slots.get(s).array.len(), w.slots.get(s).array_cols),
+            Reading::Local(s, _) => rows(w.slots.get(s).local.len(), w.slots.get(s).local_cols),
+            Reading::Atom(..) => w.n(),
+            _ => 1,
+        }
+    }
+
+    /// Whether `list` gives no value.
+    pub fn is_empty(&self, w: &World) -> bool {
+        self.len(w) == 0
+    }
+
     /// Whether particles differ.
     pub fn per_atom(&self) -> bool {
         matches!(self, Reading::Atom(..))
     }
+}
+
+/// What kind of value a reader wants of a reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wants {
+    /// One number: `c_ID`, `c_ID[k]` of a vector, `c_ID[i][j]` of an array.
+    Number,
+    /// One number per particle: `c_ID`, `c_ID[k]`.
+    PerAtom,
+    /// A global vector: `c_ID`, or a column `c_ID[k]` of a global array.
+    Vector,
+    /// Local values: `c_ID`, or a column `c_ID[k]` of several.
+    Local,
 }
 
 /// What a style may ask for while a run is sealed.
@@ -59,6 +114,12 @@ pub trait SealCx {
     /// # Errors
     /// Unknown names, wrong kinds, circles.
     fn value(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<Reading>;
+    /// As `value`, for a reader that wants this kind and no other: `c_ID` is a number, a whole vector or a value per
+    /// particle, and `c_ID[2]` an element, a column of an array, of per-particle or of local values.
+    ///
+    /// # Errors
+    /// As `value`.
+    fn reading(&mut self, r: &ValueRef, wants: Wants, stage: Stage, when: &When) -> Result<Reading>;
     /// As `value` for a number or a reference.
     ///
     /// # Errors

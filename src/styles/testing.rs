@@ -1,6 +1,6 @@
 //! A bench for unit tests of styles: a small world, lines as a deck has them, and a sealing without a graph.
 
-use super::{BuildCx, Compute, ComputeStyle, Fix, FixStyle, Names, Reading, SealCx, Shape, UseKind};
+use super::{BuildCx, Compute, ComputeStyle, Fix, FixStyle, Names, Reading, SealCx, Shape, UseKind, Wants};
 use crate::diag::{Code, Diagnostics, FileId, Result, Span, fail};
 use crate::lang::{Args, Command, RefKind, ValueRef, Word};
 use crate::plan::{Op, Stage, Tick, When};
@@ -138,11 +138,11 @@ impl Names for Bench {
     fn fix(&self, _id: &str) -> Option<Shape> {
         None
     }
-    fn variable(&self, name: &str) -> Option<bool> {
+    fn variable_shape(&self, name: &str) -> Option<Shape> {
         if self.atom.contains_key(name) {
-            return Some(true);
+            return Some(Shape { atom: Some(1), ..Shape::default() });
         }
-        self.equal.contains_key(name).then_some(false)
+        self.equal.contains_key(name).then_some(Shape { scalar: true, ..Shape::default() })
     }
     fn all(&self, _kind: UseKind) -> Vec<String> {
         self.equal.keys().chain(self.atom.keys()).cloned().collect()
@@ -176,6 +176,16 @@ impl SealCx for Bench {
             (Some(_), None) => Ok(Reading::Scalar(slot)),
             (Some(_), Some(k)) => Ok(Reading::Element(slot, k - 1)),
             (None, _) => fail(Code::UNKNOWN_NAME, r.span, format!("no {r}")),
+        }
+    }
+    fn reading(&mut self, r: &ValueRef, wants: Wants, stage: Stage, when: &When) -> Result<Reading> {
+        let slot = self.world.slots.id(&ValueRef { index: vec![], ..r.clone() }.to_string());
+        match (wants, r.index.as_slice()) {
+            (Wants::Vector, []) => Ok(Reading::Vector(slot)),
+            (Wants::Vector, [k, ..]) => Ok(Reading::Column(slot, k - 1)),
+            (Wants::Local, k) => Ok(Reading::Local(slot, k.first().map_or(0, |k| k - 1))),
+            (Wants::Number, [i, j]) => Ok(Reading::Cell(slot, i - 1, j - 1)),
+            _ => self.value(r, stage, when),
         }
     }
     fn keyword(&mut self, name: &str, span: Span, _stage: Stage, _when: &When) -> Result<Reading> {

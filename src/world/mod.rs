@@ -31,7 +31,7 @@ pub use particles::{AtomStyle, Particles};
 pub use rebuild::Rebuild;
 pub use region::Region;
 pub use settings::{Compat, NeighborSettings, Settings};
-pub use slots::{Slot, SlotId, Slots};
+pub use slots::{Offers, Slot, SlotId, Slots};
 pub use tally::Tally;
 
 /// Everything that outlives a step. It decides nothing: commands change it, ops advance it.

@@ -4,6 +4,21 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SlotId(pub usize);
 
+/// Which kinds of values a producer has; what else stands in its slot means nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Offers {
+    /// A single number.
+    pub scalar: bool,
+    /// A global vector.
+    pub vector: bool,
+    /// A global array.
+    pub array: bool,
+    /// Values per particle.
+    pub atom: bool,
+    /// Local values.
+    pub local: bool,
+}
+
 /// One producer's latest values.
 #[derive(Clone, Debug, Default)]
 pub struct Slot {
@@ -19,6 +34,18 @@ pub struct Slot {
     pub atom: Vec<f64>,
     /// Columns of `atom` (1 for a per-atom vector, 0 for none).
     pub cols: usize,
+    /// The global array, row by row; its number of rows may change from step to step, as may a vector's length.
+    pub array: Vec<f64>,
+    /// Columns of `array`.
+    pub array_cols: usize,
+    /// Local values (of pairs, bonds …), row by row, as many rows as there are such things now.
+    pub local: Vec<f64>,
+    /// Columns of `local` (1 for a local vector, 0 for none).
+    pub local_cols: usize,
+    /// What other styles need of it and decks cannot name.
+    pub inner: Vec<f64>,
+    /// Which of all these the producer has; set when a plan is sealed.
+    pub offers: Offers,
 }
 
 impl Slot {
@@ -26,6 +53,25 @@ impl Slot {
     pub fn atom_value(&self, i: usize, c: usize) -> f64 {
         self.atom[i * self.cols + c]
     }
+
+    /// Row `r`, column `c` (from 0) of the global array; `None` outside.
+    pub fn cell(&self, r: usize, c: usize) -> Option<f64> {
+        (c < self.array_cols).then(|| self.array.get(r * self.array_cols + c).copied()).flatten()
+    }
+
+    /// Column `c` (from 0) of the global array.
+    pub fn array_column(&self, c: usize) -> Vec<f64> {
+        column(&self.array, self.array_cols, c)
+    }
+
+    /// Column `c` (from 0) of the local values.
+    pub fn local_column(&self, c: usize) -> Vec<f64> {
+        column(&self.local, self.local_cols, c)
+    }
+}
+
+fn column(rows: &[f64], cols: usize, c: usize) -> Vec<f64> {
+    if c < cols { rows.iter().skip(c).step_by(cols).copied().collect() } else { vec![] }
 }
 
 /// All slots; ids stay valid while their producer exists.
@@ -76,5 +122,18 @@ impl Slots {
         for s in &mut self.slots {
             s.step = None;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrays_are_read_by_cell_and_by_column() {
+        let s = Slot { array: vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0], array_cols: 2, ..Slot::default() };
+        assert_eq!((s.cell(2, 1), s.cell(3, 0), s.cell(0, 2)), (Some(6.0), None, None));
+        assert_eq!(s.array_column(1), [2.0, 4.0, 6.0]);
+        assert!(s.array_column(2).is_empty() && s.local_column(0).is_empty());
     }
 }

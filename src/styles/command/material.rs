@@ -189,7 +189,7 @@ mod tests {
         fn fix(&self, _: &str) -> Option<Shape> {
             None
         }
-        fn variable(&self, _: &str) -> Option<bool> {
+        fn variable_shape(&self, _: &str) -> Option<crate::styles::Shape> {
             None
         }
         fn all(&self, _: UseKind) -> Vec<String> {

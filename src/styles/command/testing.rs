@@ -19,8 +19,9 @@ impl Names for Table<'_> {
     fn fix(&self, _id: &str) -> Option<Shape> {
         None
     }
-    fn variable(&self, name: &str) -> Option<bool> {
-        self.0.iter().any(|(n, _)| *n == name).then_some(true)
+    fn variable_shape(&self, name: &str) -> Option<Shape> {
+        let shape = Shape { atom: Some(1), ..Shape::default() };
+        self.0.iter().any(|(n, _)| *n == name).then_some(shape)
     }
     fn all(&self, _kind: UseKind) -> Vec<String> {
         self.0.iter().map(|(n, _)| n.to_string()).collect()

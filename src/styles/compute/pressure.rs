@@ -1,6 +1,6 @@
 //! compute pressure: pressure and its tensor from kinetic energy and virial.
 
-use super::{Compute, ComputeStyle, temp};
+use super::{Compute, ComputeStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, RefKind, ValueRef, Word};
 use crate::plan::{Op, Stage, When};
@@ -138,7 +138,7 @@ fn virial(w: &World, step: i64) -> Result<[f64; 6]> {
 fn kinetic_part(w: &World, reading: &Reading, r: &ValueRef) -> Result<(f64, [f64; 6])> {
     if let Reading::Scalar(slot) = reading {
         let slot = w.slots.get(*slot);
-        if let (Some(&dof), Some(&tensor)) = (slot.vector.get(temp::DOF), slot.vector.first_chunk::<6>()) {
+        if let (Some(&dof), Some(&tensor)) = (slot.inner.first(), slot.vector.first_chunk::<6>()) {
             return Ok((dof * w.settings.units.constants().boltz * slot.scalar, tensor));
         }
     }
@@ -157,7 +157,7 @@ mod tests {
         b.world.tally.virial = [8.0, 16.0, 24.0, 32.0, 40.0, 48.0];
         let s = b.world.slots.id("c_t");
         let slot = b.world.slots.get_mut(s);
-        (slot.scalar, slot.vector) = (4.0, vec![2.0, 8.0, 14.0, 4.0, 0.0, 0.0, 6.0]);
+        (slot.scalar, slot.inner, slot.vector) = (4.0, vec![6.0], vec![2.0, 8.0, 14.0, 4.0, 0.0, 0.0]);
         b.computes.insert("t".into(), Shape { scalar: true, vector: 6, ..Shape::default() });
         b
     }

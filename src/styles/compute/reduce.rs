@@ -7,7 +7,7 @@ use crate::par;
 use crate::plan::{Op, Stage, When};
 use crate::styles::matter::count;
 use crate::styles::step_op::{Wanted, fill};
-use crate::styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use crate::styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use crate::world::{GroupId, SlotId, World};
 
 /// The style.
@@ -166,8 +166,8 @@ fn read_input(word: &Word, cx: &BuildCx, inputs: &mut Vec<Input>) -> Result<()> 
             format!("the keyword `{text}` of compute reduce is not in perigrain"),
         );
     }
-    for text in expanded(word, cx) {
-        match ValueRef::parse(&text, word.span)? {
+    for word in cx.expand(word, Wants::PerAtom)? {
+        match ValueRef::parse(&word.text, word.span)? {
             Some(r) if !matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom) => {
                 cx.value(&r, true)?;
                 inputs.push(Input::Value(r));
@@ -176,7 +176,7 @@ fn read_input(word: &Word, cx: &BuildCx, inputs: &mut Vec<Input>) -> Result<()> 
                 return Err(Diagnostic::error(
                     Code::UNKNOWN_KEYWORD,
                     word.span,
-                    format!("`{text}` is no input of compute reduce"),
+                    format!("`{}` is no input of compute reduce", word.text),
                 )
                 .help("inputs are x y z vx vy vz fx fy fz, c_ID, c_ID[k], f_ID, f_ID[k] and v_name")
                 .into());
@@ -184,21 +184,6 @@ fn read_input(word: &Word, cx: &BuildCx, inputs: &mut Vec<Input>) -> Result<()> 
         }
     }
     Ok(())
-}
-
-/// The references that `c_ID[*]` stands for; any other word stands for itself.
-fn expanded(word: &Word, cx: &BuildCx) -> Vec<String> {
-    let whole = vec![word.text.clone()];
-    let Some(head) = word.text.strip_suffix("[*]") else { return whole };
-    let shape = match head.split_at_checked(2) {
-        Some(("c_", id)) => cx.names.compute(id),
-        Some(("f_", id)) => cx.names.fix(id),
-        _ => None,
-    };
-    match shape.and_then(|s| s.atom) {
-        Some(columns) if columns > 1 => (1..=columns).map(|k| format!("{head}[{k}]")).collect(),
-        _ => vec![head.to_string()],
-    }
 }
 
 #[derive(Clone)]

@@ -9,9 +9,6 @@ use crate::styles::step_op::{Wanted, fill};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 use crate::world::{GroupId, SlotId};
 
-/// Where the slot of a temperature keeps its degrees of freedom: behind the six elements decks may see.
-pub const DOF: usize = 6;
-
 /// The style.
 pub struct Temp;
 
@@ -67,7 +64,9 @@ impl Compute for Declared {
             out.scalar = if dof > 0.0 { mv2 * (units.mvv2e / (dof * units.boltz)) } else { 0.0 };
             out.vector.clear();
             out.vector.extend(tensor.map(|k| k * units.mvv2e));
-            out.vector.push(dof);
+            // The pressure reads the degrees of freedom here.
+            out.inner.clear();
+            out.inner.push(dof);
             Ok(())
         }))
     }
@@ -100,7 +99,7 @@ mod tests {
         let mut c = b.compute(&Temp, "").unwrap();
         let slot = b.evaluate(&*c).unwrap();
         // By hand, m = 2: Σ m v² = 44 over 3 · 3 − 3 degrees of freedom.
-        assert_eq!(slot.vector, [2.0, 8.0, 34.0, 4.0, 0.0, 0.0, 6.0]);
+        assert_eq!((&slot.vector[..], slot.inner[0]), (&[2.0, 8.0, 34.0, 4.0, 0.0, 0.0][..], 6.0));
         assert!((slot.scalar - 44.0 / 6.0).abs() < 1e-14);
         b.modify("extra/dof 1 dynamic/dof yes", |a, cx| c.modify(a, cx)).unwrap();
         assert!((b.evaluate(&*c).unwrap().scalar - 44.0 / 8.0).abs() < 1e-14);

@@ -1,12 +1,12 @@
 //! Per-particle attributes that dumps can show: `id`, `x`, `vx`, `radius`, `c_ID[2]`, `v_name` ….
 
-use crate::diag::{Code, Result, fail};
+use crate::diag::{Code, Result};
 use crate::lang::args::blame;
-use crate::lang::{RefKind, ValueRef, Word};
+use crate::lang::{ValueRef, Word};
 use crate::out::dump::Data;
 use crate::out::formats::Kind;
 use crate::plan::{Stage, When};
-use crate::styles::{BuildCx, Reading, SealCx};
+use crate::styles::{BuildCx, Reading, SealCx, Wants};
 use crate::world::{Domain, World};
 
 /// An attribute as a deck names it.
@@ -109,24 +109,7 @@ const ELSEWHERE: &[&str] =
 
 /// What `c_ID[*]` becomes: one attribute per column.
 pub fn expand(word: &Word, cx: &BuildCx) -> Result<Vec<Attribute>> {
-    let Some(stem) = word.text.strip_suffix("[*]") else {
-        return Ok(vec![attribute(word, cx)?]);
-    };
-    let Some(r) = ValueRef::parse(stem, word.span)? else {
-        return fail(
-            Code::SYNTAX,
-            word.span,
-            format!("`{}`: only computes and fixes have columns", word.text),
-        );
-    };
-    let shape = match r.kind {
-        RefKind::Compute => cx.names.compute(&r.name),
-        RefKind::Fix => cx.names.fix(&r.name),
-        _ => None,
-    };
-    let columns = shape.and_then(|s| s.atom).unwrap_or(1);
-    let one = |k: usize| attribute(&Word { text: format!("{stem}[{k}]"), ..word.clone() }, cx);
-    (1..=columns).map(one).collect()
+    cx.expand(word, Wants::PerAtom)?.iter().map(|word| attribute(word, cx)).collect()
 }
 
 /// Reads one attribute.
