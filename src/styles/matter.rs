@@ -84,11 +84,37 @@ pub fn add<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
     std::array::from_fn(|k| a[k] + b[k])
 }
 
+/// Mass and centre of mass of a group, unwrapped; the centre of nothing is the origin.
+pub fn centre(w: &World, group: GroupId) -> (f64, [f64; 3]) {
+    let masses = Masses::of(w);
+    let [mass, moment @ ..] = sum::<4>(&w.particles.mask, group, |i| {
+        let (x, m) = (unwrapped(w, i), masses.get(i));
+        [m, m * x[0], m * x[1], m * x[2]]
+    });
+    (mass, if mass > 0.0 { moment.map(|a| a / mass) } else { [0.0; 3] })
+}
+
 /// Where particle `i` would be had it never been wrapped into a periodic box.
 pub fn unwrapped(w: &World, i: usize) -> [f64; 3] {
     let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
     let (x, image) = (w.particles.x[i], w.particles.image[i]);
     std::array::from_fn(|k| x[k] + f64::from(image[k]) * lengths[k])
+}
+
+/// Keeps `what` of every particle of a group in a vector column, for those it does not hold yet; a scalar column of the
+/// same name says who they are.
+pub fn keep_places(w: &mut World, key: &str, group: GroupId, what: impl Fn(&World, usize) -> [f64; 3]) {
+    let (n, bit) = (w.n(), group.bit());
+    w.columns.vector(key, n);
+    let mut known = std::mem::take(w.columns.scalar(key, n));
+    for (i, known) in known.iter_mut().enumerate() {
+        if *known == 0.0 && w.particles.mask[i] & bit != 0 {
+            *known = 1.0;
+            let kept = what(w, i);
+            w.columns.vector(key, n)[i] = kept;
+        }
+    }
+    *w.columns.scalar(key, n) = known;
 }
 
 /// Who a force acts on: a group, or its members inside a region.

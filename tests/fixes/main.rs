@@ -90,6 +90,11 @@ fn spheres_agree() {
     agrees("spheres");
 }
 
+#[test]
+fn springs_lines_and_limits_agree() {
+    agrees("holds");
+}
+
 /// `steps.in` with its runs replaced.
 fn steps(runs: &str) -> String {
     let deck = include_str!("steps.in");

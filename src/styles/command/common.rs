@@ -81,6 +81,11 @@ pub fn param_or_null(a: &mut Args, what: &str) -> Result<Option<Param>> {
     variable_param(a, what).map(Some)
 }
 
+/// Takes a number or `NULL` (nothing).
+pub fn number_or_null(a: &mut Args, what: &str) -> Result<Option<f64>> {
+    if a.eat("NULL") { Ok(None) } else { a.number(what).map(Some) }
+}
+
 /// Takes a number or `v_name`; references of other kinds are an error here.
 pub fn variable_param(a: &mut Args, what: &str) -> Result<Param> {
     match a.param(what)? {

@@ -14,7 +14,7 @@ mod group;
 mod lattice;
 mod mass;
 mod material;
-mod momentum;
+pub mod momentum;
 mod neigh_modify;
 mod neighbor;
 mod newton;

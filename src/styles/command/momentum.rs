@@ -97,7 +97,7 @@ fn unfolded(w: &World, i: usize) -> Vec3 {
 }
 
 /// Angular velocity ω with I ω = L. A body on a line has no rotation about it: small moments are left out.
-fn rotation(inertia: [[f64; 3]; 3], l: Vec3) -> Vec3 {
+pub fn rotation(inertia: [[f64; 3]; 3], l: Vec3) -> Vec3 {
     let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = inertia;
     let determinant = xx * yy * zz + xy * yz * xz + xz * xy * yz - xx * yz * yz - xy * xy * zz - xz * yy * xz;
     if determinant > 1e-6 {

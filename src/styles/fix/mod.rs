@@ -1,14 +1,24 @@
 //! Fixes: what is done to particles during the steps besides their mutual forces.
 
 mod addforce;
+mod aveforce;
+mod drag;
 mod dt_reset;
 mod extremes;
 mod gravity;
 mod indent;
+mod lineforce;
+mod momentum;
 mod move_fix;
 mod nve;
+mod nve_limit;
+mod nve_noforce;
 mod nve_sphere;
+mod planeforce;
+mod recenter;
 mod setforce;
+mod spring;
+mod spring_self;
 mod viscous;
 
 use super::{BuildCx, SealCx, Shape, Style};
@@ -83,15 +93,25 @@ pub trait Fix: Send {
 /// Every fix style.
 #[rustfmt::skip]
 pub const FIXES: &[&dyn FixStyle] = &[
-    &extremes::ExtremesStyle,
     &addforce::AddForce,
+    &aveforce::AveForce,
+    &drag::Drag,
     &dt_reset::DtReset,
+    &extremes::ExtremesStyle,
     &gravity::Gravity,
     &indent::Indent,
+    &lineforce::LineForce,
+    &momentum::Momentum,
     &move_fix::Move,
     &nve::Nve,
+    &nve_limit::NveLimit,
+    &nve_noforce::NveNoForce,
     &nve_sphere::NveSphere,
+    &planeforce::PlaneForce,
+    &recenter::Recenter,
     &setforce::SetForce,
+    &spring::Spring,
+    &spring_self::SpringSelf,
     &viscous::Viscous,
 ];
 

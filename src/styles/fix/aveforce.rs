@@ -1,0 +1,120 @@
+//! fix aveforce: every particle of a group feels the mean force of the group.
+
+use super::{Fix, FixStyle, region_keyword};
+use crate::diag::Result;
+use crate::lang::{Args, Param};
+use crate::plan::{Access, Op, Stage, When};
+use crate::styles::command::common::param_or_null;
+use crate::styles::matter::{Chosen, change_forces, publish};
+use crate::styles::step_op::StepOp;
+use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
+use crate::world::GroupId;
+
+/// The style.
+pub struct AveForce;
+
+impl Style for AveForce {
+    fn name(&self) -> &'static str {
+        "aveforce"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group aveforce fx fy fz [region ID]",
+            summary: "Gives all particles of the group the mean of their forces, plus a given force.",
+            text: "f ← ⟨f⟩ + (fx, fy, fz): masses do not count. Each of fx fy fz is a number, `NULL` (this component stays) or \
+                   `v_name` of an equal-style variable, evaluated each step. With `region` only particles inside it at \
+                   that moment. Forces of fixes declared later are not seen. Acts in the setup of a run too. Vector of 3 \
+                   (extensive): the total force before the change.",
+            example: "fix stiff foot aveforce NULL NULL 0.0",
+        }
+    }
+}
+
+impl FixStyle for AveForce {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let mut force = [const { None }; 3];
+        for (force, what) in force.iter_mut().zip(["fx", "fy", "fz"]) {
+            *force = param_or_null(args, what)?;
+            force.iter().try_for_each(|p| cx.param(p, false))?;
+        }
+        let mut region = None;
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "region" => region = Some(region_keyword(args, cx)?),
+                _ => return Err(args.unknown(word, &["region"])),
+            }
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, force, region }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    force: [Option<Param>; 3],
+    region: Option<String>,
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        let chosen = Chosen::new(cx.world(), self.group, self.region.as_deref(), span)?;
+        let mut force = [None; 3];
+        for (reading, param) in force.iter_mut().zip(&self.force) {
+            if let Some(p) = param {
+                *reading = Some(cx.param(p, Stage::PostForce, &When::Always)?);
+            }
+        }
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let access = Access::new("x mask", "f");
+        let op = StepOp::new(format!("fix {} aveforce", self.id), Stage::PostForce, access, move |w, t| {
+            if t.unchanged {
+                return Ok(());
+            }
+            let [count, before @ ..] = change_forces::<4>(w, &chosen, |_, _, f| [1.0, f[0], f[1], f[2]]);
+            if count > 0.0 {
+                let mean: [Option<f64>; 3] =
+                    std::array::from_fn(|d| force[d].map(|r| before[d] / count + r.get(w)));
+                change_forces::<0>(w, &chosen, |_, _, f| {
+                    (0..3).for_each(|d| f[d] = mean[d].unwrap_or(f[d]));
+                    []
+                });
+            }
+            publish(w, slot, t, 0.0, &before);
+            Ok(())
+        });
+        Ok(vec![op.boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { vector: 3, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+    use crate::world::AtomStyle;
+
+    #[test]
+    fn the_mean_of_the_group() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 3]);
+        b.world.particles.f = vec![[1.0, 2.0, 3.0], [3.0, 4.0, 5.0], [9.0; 3]];
+        b.world.particles.mask[2] = 0;
+        b.equal.insert("e".into(), 10.0);
+        let fix = b.fix(&AveForce, "0 NULL v_e").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        assert_eq!(b.world.particles.f, [[2.0, 2.0, 14.0], [2.0, 4.0, 14.0], [9.0; 3]]);
+        assert_eq!(b.slot_of("f_f").vector, [4.0, 6.0, 8.0]);
+        for words in ["0 0", "0 0 v_no", "0 0 0 region q", "0 0 0 foo"] {
+            assert!(b.fix(&AveForce, words).is_err(), "{words}");
+        }
+    }
+}
