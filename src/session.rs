@@ -3,24 +3,28 @@
 mod causes;
 mod checking;
 mod commands;
+mod interactive;
 mod running;
 
-use crate::diag::{Code, Diagnostic, Diagnostics, Result, Sources, Span, fail, nearest};
+use crate::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Sources, Span, fail, nearest};
 use crate::graph::build::{Context, DECLARATIONS, declare};
 use crate::graph::env::{DeckEnv, DeckValues};
+pub use crate::graph::keywords::KEYWORDS as THERMO;
 use crate::graph::{Graph, Node, Role};
 use crate::lang::{Command, Files, Flow, Line, Script, Vars};
 use crate::out::log::Log;
 pub use crate::par::{set_threads, threads};
 use crate::plan::StepPlan;
-pub use crate::run::Watch;
+pub use crate::run::{Made, Watch};
 use crate::styles::command::COMMANDS;
 use crate::styles::{ActCx, Use, UseKind};
 use crate::world::{Compat, GroupId, World};
 pub use commands::OWN;
+pub use interactive::{Heard, Known, Snapshot};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 /// What a session is asked to do with a deck.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -102,6 +106,10 @@ pub struct Session {
     interrupted: bool,
     /// `quit` was said, here or inside `run … every`.
     quit: Option<i32>,
+    /// The cursor that read what was typed last.
+    typed: Option<Script>,
+    /// What is being worked off was typed, and is this text.
+    prompt: Option<FileId>,
 }
 
 /// Files as the system has them.
@@ -118,7 +126,7 @@ impl Files for RealFiles {
 struct Unwatched;
 
 impl Watch for Unwatched {
-    fn step(&mut self, _done: i64, _total: i64) {}
+    fn step(&mut self, _made: &Made) {}
 }
 
 impl Session {
@@ -140,6 +148,8 @@ impl Session {
             shown: 0,
             interrupted: false,
             quit: None,
+            typed: None,
+            prompt: None,
         };
         for (name, values) in s.options.vars.clone() {
             s.vars.set_index(&name, &values)?;
@@ -220,6 +230,7 @@ impl Session {
                 Err(e) if self.checking() => problems.append(refused.causes(&line.raw, e)),
                 Err(e) => return Err(e),
             }
+            self.interrupted |= self.stop_flag().load(Ordering::Relaxed);
             if self.interrupted || self.quit.is_some() {
                 break;
             }
@@ -287,6 +298,7 @@ impl Session {
     }
 
     fn flow(&mut self, script: &mut Script, cmd: &Command) -> Result<Flow> {
+        self.refuse_jump(cmd)?;
         let snapshot = Arc::new(self.vars.clone());
         let redefines = cmd.name.text == "variable"
             && cmd.args.first().is_some_and(|w| {

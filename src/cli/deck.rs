@@ -6,7 +6,7 @@ use super::{FAILED, INTERRUPTED, OK};
 use crate::diag::{Code, Diagnostics, Result, Severity, Sources, fail, render};
 use crate::out::log::{Echo, Log};
 use crate::out::thermo::wall_time;
-use crate::session::{self, Mode, Session, Watch, folder_of};
+use crate::session::{self, Made, Mode, Session, Watch, folder_of};
 use std::io::{IsTerminal, LineWriter, Read, Write, stderr, stdin, stdout};
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -15,8 +15,8 @@ use std::time::Instant;
 /// Works a deck off in some mode; the exit code.
 pub fn work_off(o: &Options, mode: Mode) -> u8 {
     let begin = Instant::now();
-    let progress = Progress::new();
     let log = Log::silent();
+    let progress = Progress::new(Some(log.clone()));
     let mut sources = Sources::default();
     let outcome = attempt(o, mode, &progress, &log, &mut sources);
     progress.clear();
@@ -77,7 +77,11 @@ pub fn draw(o: &Options) -> u8 {
     }
 }
 
-fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
+/// A session as the switches want it.
+///
+/// # Errors
+/// Variables of the command line that cannot be set.
+pub(super) fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
     session::set_threads(o.threads.unwrap_or(0));
     Session::new(session::Options {
         mode,
@@ -110,11 +114,22 @@ fn catch_interrupt(session: &Session) {
     });
 }
 
-struct Bar(Progress);
+/// Ctrl-C ends what is going on at a whole step, however often it comes.
+pub(super) fn catch_interrupts(session: &Session) {
+    let stop = session.stop_flag();
+    let _ = ctrlc::set_handler(move || {
+        if stop.swap(true, Ordering::Relaxed) {
+            eprintln!("stopping at the end of this step; Ctrl-\\ ends the program at once");
+        }
+    });
+}
+
+/// Shows each step in the live line.
+pub(super) struct Bar(pub Progress);
 
 impl Watch for Bar {
-    fn step(&mut self, done: i64, total: i64) {
-        self.0.step(done, total);
+    fn step(&mut self, made: &Made) {
+        self.0.step(made);
     }
 }
 
@@ -136,15 +151,7 @@ fn open(log: &Log, o: &Options, mode: Mode, progress: &Progress) -> Result<()> {
     if mode == Mode::Check {
         return Ok(());
     }
-    log.set_screen(match &o.screen {
-        Target::None => None,
-        Target::Usual if stdout().is_terminal() => Some(Box::new(LineWriter::new(progress.around(stdout())))),
-        Target::Usual => Some(Box::new(stdout())),
-        Target::File(path) => match std::fs::File::create(path) {
-            Ok(file) => Some(Box::new(file)),
-            Err(e) => return fail(Code::NO_FILE, None, format!("cannot write `{}`: {e}", path.display())),
-        },
-    });
+    open_screen(log, o, progress)?;
     match &o.log {
         Target::Usual if runs(mode) => log.open(Path::new("log.lammps"), false)?,
         Target::File(path) => log.open(path, false)?,
@@ -156,6 +163,23 @@ fn open(log: &Log, o: &Options, mode: Mode, progress: &Progress) -> Result<()> {
     Ok(())
 }
 
+/// Opens the screen.
+///
+/// # Errors
+/// A file that cannot be written.
+pub(super) fn open_screen(log: &Log, o: &Options, progress: &Progress) -> Result<()> {
+    log.set_screen(match &o.screen {
+        Target::None => None,
+        Target::Usual if stdout().is_terminal() => Some(Box::new(LineWriter::new(progress.around(stdout())))),
+        Target::Usual => Some(Box::new(stdout())),
+        Target::File(path) => match std::fs::File::create(path) {
+            Ok(file) => Some(Box::new(file)),
+            Err(e) => return fail(Code::NO_FILE, None, format!("cannot write `{}`: {e}", path.display())),
+        },
+    });
+    Ok(())
+}
+
 /// Problems go to standard error, and to the log without colours.
 fn complain(problems: &Diagnostics, sources: &Sources, log: &Log) {
     // When the log cannot be written the terminal has it all the same.
@@ -163,7 +187,8 @@ fn complain(problems: &Diagnostics, sources: &Sources, log: &Log) {
     print(problems, sources);
 }
 
-fn print(problems: &Diagnostics, sources: &Sources) {
+/// Problems on standard error, with colours on a terminal.
+pub(super) fn print(problems: &Diagnostics, sources: &Sources) {
     let err = stderr();
     let text = if progress::colors(&err) {
         render::colored(problems, sources)

@@ -5,6 +5,8 @@ pub mod deck;
 pub mod manual;
 mod pages;
 pub mod progress;
+pub mod repl;
+pub mod syntax;
 pub mod tasks;
 
 use crate::diag::{CODES, nearest};
@@ -42,6 +44,7 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Doc(None) => show(&manual::list()),
         Task::Doc(Some(name)) => show(&manual::page(&name)?),
         Task::Run(o) => return Ok(deck::work_off(&o, Mode::Run)),
+        Task::Repl(o) => return Ok(repl::run(&o)),
         Task::Check(o) => return Ok(deck::work_off(&o, Mode::Check)),
         Task::Plan { options, dot: true, .. } => return Ok(deck::draw(&options)),
         Task::Plan { options, measure: true, .. } => return Ok(deck::work_off(&options, Mode::Measure)),

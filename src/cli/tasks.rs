@@ -8,6 +8,8 @@ use clap::{CommandFactory, Parser};
 pub enum Task {
     /// Run a deck.
     Run(Options),
+    /// Work off lines as they are typed.
+    Repl(Options),
     /// Report every problem of a deck without acting.
     Check(Options),
     /// Print a deck's step plan.
@@ -33,6 +35,12 @@ enum Sub {
     /// Run a deck, like `perigrain DECK`
     Run {
         /// The deck and LAMMPS' switches
+        #[arg(value_name = "DECK [SWITCH]", trailing_var_arg = true, allow_hyphen_values = true)]
+        rest: Vec<String>,
+    },
+    /// Work off lines as they are typed, after a deck if one is given; `perigrain` on a terminal does the same
+    Repl {
+        /// A deck to begin with, and LAMMPS' switches
         #[arg(value_name = "DECK [SWITCH]", trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
@@ -76,14 +84,18 @@ pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
     let task =
         if is_sub || first == Some("help") { subcommand(words)? } else { Task::Run(args::parse(words)?) };
     match &task {
-        Task::Run(o) | Task::Check(o) | Task::Plan { options: o, .. } if o.help => Ok(Task::Text(help())),
-        Task::Run(o) | Task::Check(o) | Task::Plan { options: o, .. } if o.version => {
+        Task::Run(o) | Task::Repl(o) | Task::Check(o) | Task::Plan { options: o, .. } if o.help => {
+            Ok(Task::Text(help()))
+        }
+        Task::Run(o) | Task::Repl(o) | Task::Check(o) | Task::Plan { options: o, .. } if o.version => {
             Ok(Task::Text(version()))
         }
         Task::Check(o) | Task::Plan { options: o, .. } if o.deck == Deck::Stdin && is_terminal() => {
             Err(Usage { message: "no deck".into(), help: Some("name one: `perigrain check in.deck`".into()) })
         }
-        Task::Run(o) if o.deck == Deck::Stdin && is_terminal() => Err(no_deck(o)),
+        Task::Run(o) if o.deck == Deck::Stdin && is_terminal() => {
+            swallowed(o).map_or(Ok(Task::Repl(o.clone())), Err)
+        }
         _ => Ok(task),
     }
 }
@@ -107,6 +119,7 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
     };
     Ok(match sub {
         Sub::Run { rest } => Task::Run(args::parse(rest)?),
+        Sub::Repl { rest } => Task::Repl(args::parse(rest)?),
         Sub::Check { rest } => Task::Check(args::parse(rest)?),
         Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
         Sub::Explain { code } => Task::Explain(code),
@@ -118,15 +131,14 @@ fn is_terminal() -> bool {
     std::io::IsTerminal::is_terminal(&std::io::stdin())
 }
 
-fn no_deck(options: &Options) -> Usage {
-    let swallowed = options.vars.last().filter(|(_, values)| values.len() > 1);
-    let help = match swallowed.and_then(|(name, values)| Some((name, values.last()?))) {
-        Some((name, last)) => format!(
-            "`{last}` was read as a value of variable `{name}`: put the deck first, or write `-in {last}`"
-        ),
-        None => "name one: `perigrain in.deck`; `perigrain -help` tells more".into(),
-    };
-    Usage { message: "no deck".into(), help: Some(help) }
+/// A deck that `-var` has taken for a value.
+fn swallowed(options: &Options) -> Option<Usage> {
+    let (name, values) = options.vars.last().filter(|(_, values)| values.len() > 1)?;
+    let last = values.last().filter(|last| std::path::Path::new(last).is_file())?;
+    let help = format!(
+        "`{last}` was read as a value of variable `{name}`: put the deck first, or write `-in {last}`"
+    );
+    Some(Usage { message: "no deck".into(), help: Some(help) })
 }
 
 /// Name and version.
@@ -138,7 +150,7 @@ pub fn version() -> String {
 pub fn help() -> String {
     let mut text = String::from(
         "perigrain: LAMMPS-style decks for fracture, erosion, grains and agglomerates\n\n\
-         usage: perigrain DECK [SWITCH…]\n       perigrain SUBCOMMAND …\n       perigrain [SWITCH…] < DECK\n\nsubcommands:\n",
+         usage: perigrain DECK [SWITCH…]\n       perigrain [SWITCH…]            (interactive, on a terminal)\n       perigrain SUBCOMMAND …\n       perigrain [SWITCH…] < DECK\n\nsubcommands:\n",
     );
     for sub in Sub::command().get_subcommands() {
         let about = sub.get_about().map(ToString::to_string).unwrap_or_default();

@@ -5,6 +5,7 @@ use super::seal::Sealer;
 use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use crate::lang::{Args, RefKind, ValueRef, Word};
 use crate::math::cformat::Value;
+use crate::out;
 use crate::out::log::Log;
 use crate::out::thermo::{Column, Layout, Line};
 use crate::plan::{Access, Op, Stage, Tick, When};
@@ -292,6 +293,17 @@ fn unknown(word: &Word) -> crate::diag::Diagnostics {
     .into()
 }
 
+impl Row {
+    /// The row as numbers, per particle where it is printed so.
+    fn kept(&self, w: &World, t: &Tick) -> (Vec<String>, out::rows::Row) {
+        let columns = self.layout.columns.iter().map(|c| c.name.clone()).collect();
+        let share = |c: &Column| if self.layout.norm && c.extensive { w.n().max(1) as f64 } else { 1.0 };
+        let values =
+            self.readings.iter().zip(&self.layout.columns).map(|(r, c)| r.get(w) / share(c)).collect();
+        (columns, out::rows::Row { step: t.step, time: w.clock.time(), values })
+    }
+}
+
 /// Prints a row.
 struct Row {
     layout: Layout,
@@ -328,6 +340,7 @@ impl Op for Row {
             .collect();
         let cpu = w.clock.began.map_or(0.0, |b| b.elapsed().as_secs_f64());
         self.log.line(&self.layout.row(t.step, cpu, w.n() as u64, &values))?;
+        self.log.row(|| self.kept(w, t));
         if self.layout.flush { self.log.flush() } else { Ok(()) }
     }
     fn finish(&mut self, _w: &mut World) -> Result<()> {

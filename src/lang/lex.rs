@@ -131,6 +131,16 @@ pub(super) fn logical(source: &str, file: FileId, start: usize) -> Result<Option
     Ok(Some(Logical { text, code, next: place(source, rest) }))
 }
 
+/// Whether a text typed so far ends inside a logical line: `&` at its end, or `"""` still open.
+pub fn is_unfinished(text: &str) -> bool {
+    let (mut mode, mut open) = (Mode::Plain, false);
+    for line in text.split('\n') {
+        mode = scan(line, 0, if open { mode } else { Mode::Plain });
+        open = matches!(mode, Mode::Quote(Quote::Triple, _)) || line.trim_end().ends_with('&');
+    }
+    open
+}
+
 /// A line that does not come from a file: the comment is found, quotes are checked.
 pub(super) fn standalone(text: Mapped) -> Result<Logical> {
     let mode = scan(&text.text, 0, Mode::Plain);

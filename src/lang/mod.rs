@@ -22,6 +22,7 @@ pub use args::Args;
 pub use command::{Command, Line, Word};
 pub use expr::{Dep, Expr};
 pub use flow::{Files, Flow};
+pub use lex::is_unfinished;
 pub use number::{printf, value_text};
 pub use reference::{Param, RefKind, ValueRef};
 pub use script::Script;

@@ -41,6 +41,12 @@ impl Script {
         Self::with(Frame::File { file, at: 0 })
     }
 
+    /// A cursor through a text typed after the one this cursor has read: a `next` that has run out there
+    /// still passes over the first `jump` here.
+    pub fn then(&self, file: FileId) -> Self {
+        Self { skip_jump: self.skip_jump, ..Self::new(file) }
+    }
+
     /// A cursor through commands given as words, as in `run … every N "command"`.
     pub fn of_commands(words: &[Word]) -> Self {
         Self::with(Frame::Commands { queue: words.iter().cloned().collect(), speculative: false })

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::file;
+use super::rows::{Row, Tables};
 use crate::diag::Result;
 
 /// Where the lines of a deck are repeated.
@@ -43,6 +44,8 @@ struct Inner {
     screen: Option<Box<dyn Write + Send>>,
     file: Option<(PathBuf, BufWriter<File>)>,
     echo: Echo,
+    /// Rows of step tables, once somebody wants them kept.
+    tables: Option<Tables>,
 }
 
 impl std::fmt::Debug for Log {
@@ -59,7 +62,7 @@ impl std::fmt::Debug for Log {
 impl Log {
     /// A log with this screen (`None`: silent) and no file yet.
     pub fn new(screen: Option<Box<dyn Write + Send>>) -> Self {
-        Self(Arc::new(Mutex::new(Inner { screen, file: None, echo: Echo::default() })))
+        Self(Arc::new(Mutex::new(Inner { screen, file: None, echo: Echo::default(), tables: None })))
     }
 
     /// A log that goes nowhere.
@@ -128,6 +131,24 @@ impl Log {
     /// A line for the file alone.
     pub fn to_log(&self, line: &str) -> Result<()> {
         self.inner().record(line)
+    }
+
+    /// From now on the rows of step tables are kept as numbers too.
+    pub fn keep_rows(&self) {
+        self.inner().tables.get_or_insert_default();
+    }
+
+    /// A row of a step table, kept if [`Log::keep_rows`] asked for it.
+    pub fn row(&self, make: impl FnOnce() -> (Vec<String>, Row)) {
+        if let Some(tables) = &mut self.inner().tables {
+            let (columns, row) = make();
+            tables.push(columns, row);
+        }
+    }
+
+    /// Looks at the rows kept, and may change them.
+    pub fn tables<T>(&self, look: impl FnOnce(&mut Tables) -> T) -> T {
+        look(self.inner().tables.get_or_insert_default())
     }
 
     /// Hands everything written so far to the system.

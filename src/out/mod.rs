@@ -7,6 +7,7 @@ pub mod file;
 pub mod formats;
 pub mod image;
 pub mod log;
+pub mod rows;
 pub mod table;
 pub mod thermo;
 pub mod vtu;

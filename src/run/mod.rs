@@ -2,4 +2,4 @@
 
 pub mod verlet;
 
-pub use verlet::{Outcome, Watch, verlet};
+pub use verlet::{Made, Outcome, Watch, verlet};

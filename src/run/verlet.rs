@@ -19,10 +19,25 @@ pub struct Outcome {
     pub interrupted: bool,
 }
 
+/// Where a run stands after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Made {
+    /// Steps of this run that are made.
+    pub done: i64,
+    /// Steps of this run.
+    pub total: i64,
+    /// The step counter.
+    pub step: i64,
+    /// Elapsed time [time units of the deck].
+    pub time: f64,
+    /// Step size [time units of the deck].
+    pub dt: f64,
+}
+
 /// Told after every step, for a progress bar.
 pub trait Watch {
-    /// `done` of `total` steps are made.
-    fn step(&mut self, done: i64, total: i64);
+    /// A step is made.
+    fn step(&mut self, made: &Made);
 }
 
 /// Computes forces at the start of a run and makes its first outputs.
@@ -80,7 +95,9 @@ pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Resu
         let mut t = tick(w, false);
         plan.ask(&mut t);
         plan.run(w, &t, &Stage::ALL)?;
-        watch.step(w.clock.step - first, w.clock.last - first);
+        let c = &w.clock;
+        let (done, total) = (c.step - first, c.last - first);
+        watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });
     }
     let steps = w.clock.step - first;
     Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })

@@ -4,6 +4,7 @@ mod declarations;
 mod formulas;
 mod language;
 mod program;
+mod prompt;
 mod session;
 mod thermo;
 
@@ -13,7 +14,7 @@ use crate::styles::Doc;
 pub type Entry = (&'static str, Doc);
 
 /// What is no command: how decks are written, what formulas know, how the program is called.
-pub const TOPICS: &[Entry] = &[program::PERIGRAIN, language::DECKS, formulas::FORMULAS];
+pub const TOPICS: &[Entry] = &[program::PERIGRAIN, prompt::PROMPT, language::DECKS, formulas::FORMULAS];
 
 /// Commands that act by themselves, in the order of the manual.
 pub const COMMANDS: &[Entry] = &[

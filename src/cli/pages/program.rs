@@ -9,6 +9,7 @@ pub(super) const PERIGRAIN: Entry = (
         syntax: "perigrain DECK [switch …]\n\
             perigrain [switch …] < DECK\n\
             perigrain check|plan|run DECK [switch …]\n\
+            perigrain repl [DECK] [switch …]\n\
             perigrain doc [name]\n\
             perigrain explain CODE",
         summary: "The program: how it is called, its switches and exit codes.",
@@ -27,7 +28,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     nothing, and reports every problem at once. `plan` prints what each step of the deck's runs will do, in which order, \
     and what was left out and why; with `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
     prints the command graph for graphviz. `doc` prints a page of this manual, `explain` the story behind the code of a \
-    message.\n\n\
+    message. `repl`, and `perigrain` alone on a terminal, work lines off as they are typed: see [the \
+    prompt](prompt.md).\n\n\
     Switches, before or behind the deck:\n\n\
     - `-in FILE`, `-i`: the deck; without a deck or with `none` it is read from standard input;\n\
     - `-log FILE|none`, `-l`: the log file (`log.lammps`);\n\
@@ -43,7 +45,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     LAMMPS' other switches are refused by name.\n\n\
     Exit codes: 0 all well (or the status of `quit`), 1 the deck was refused or its run failed, 2 the command line is \
     wrong, 130 ended by Ctrl-C. The first Ctrl-C ends a run at a whole step with all files complete, a second one ends the \
-    program at once. On a terminal a bar shows steps, speed and time left; messages have colours unless `NO_COLOR` is set.";
+    program at once. On a terminal a live line shows step, time, thermo columns, speed and time left; messages have colours unless `NO_COLOR` is set.";
 
 #[cfg(test)]
 mod tests {

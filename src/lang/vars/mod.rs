@@ -109,6 +109,12 @@ impl Vars {
         Self::default()
     }
 
+    /// A copy that shares nothing with this table: its random streams stand where these stand now.
+    pub fn detached(&self) -> Self {
+        let streams = Arc::new(Mutex::new(self.streams().clone()));
+        Self { streams, ..self.clone() }
+    }
+
     pub(super) fn streams(&self) -> MutexGuard<'_, Streams> {
         self.streams.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,0 +1,198 @@
+//! A session that is typed: one text after the other, looked at and taken back in between.
+
+use super::Session;
+use crate::diag::{Code, Diagnostic, Result, Span, fail};
+use crate::graph::env::DeckEnv;
+use crate::graph::{Graph, Role};
+use crate::lang::{Command, Expr, Script, Vars};
+use crate::plan::explain;
+use crate::world::World;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+/// What became of a text that was typed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Heard {
+    /// `quit` was said, with this status.
+    pub quit: Option<i32>,
+    /// Ended from outside: a run at a whole step, anything else between two lines.
+    pub interrupted: bool,
+}
+
+/// Names that exist at the moment, in the order a list shows them.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Known {
+    /// Groups.
+    pub groups: Vec<String>,
+    /// Regions.
+    pub regions: Vec<String>,
+    /// Fixes.
+    pub fixes: Vec<String>,
+    /// Computes.
+    pub computes: Vec<String>,
+    /// Dumps.
+    pub dumps: Vec<String>,
+    /// Variables.
+    pub variables: Vec<String>,
+    /// Materials.
+    pub materials: Vec<String>,
+    /// The pair style.
+    pub pair: Option<String>,
+}
+
+/// A session's state at some moment.
+pub struct Snapshot {
+    vars: Vars,
+    graph: Graph,
+    world: Arc<World>,
+    compat: bool,
+    ran: bool,
+    /// Bytes of the world; 0 where it is shared with an earlier snapshot.
+    pub bytes: u64,
+}
+
+/// Commands after which particles and everything that goes with them are as before.
+const LIGHT: [&str; 9] =
+    ["variable", "next", "print", "echo", "log", "label", "thermo", "thermo_style", "thermo_modify"];
+
+impl Session {
+    /// Works off a text that was typed; `name` stands in messages about it.
+    ///
+    /// # Errors
+    /// The first line that is refused or fails. What it and the lines before it have done stays;
+    /// [`Session::restore`] takes it back.
+    pub fn eval(&mut self, name: &str, text: &str) -> Result<Heard> {
+        (self.interrupted, self.quit) = (false, None);
+        self.stop_flag().store(false, Ordering::Relaxed);
+        let file = self.sources.add(name, text);
+        let mut script = self.typed.take().map_or_else(|| Script::new(file), |before| before.then(file));
+        self.prompt = Some(file);
+        let outcome = self.work_off(&mut script);
+        self.prompt = None;
+        self.typed = Some(script);
+        let flushed = self.options.log.flush();
+        outcome?;
+        flushed?;
+        Ok(Heard { quit: self.quit, interrupted: self.interrupted })
+    }
+
+    /// A `jump` within what is typed has nowhere to go.
+    ///
+    /// # Errors
+    /// `jump SELF` in a typed line.
+    pub(super) fn refuse_jump(&self, cmd: &Command) -> Result<()> {
+        let to_self = cmd.name.text == "jump" && cmd.args.first().is_some_and(|w| w.text == "SELF");
+        if !to_self || self.prompt != Some(cmd.span.file) {
+            return Ok(());
+        }
+        Err(Diagnostic::error(Code::WRONG_ORDER, cmd.span, "there is no file here to jump in")
+            .help("put the loop into a file and `include` it: `jump SELF` works there")
+            .into())
+    }
+
+    /// The state now. A snapshot of an earlier moment lends its world if no line since has changed particles.
+    pub fn snapshot(&self, earlier: Option<&Snapshot>) -> Snapshot {
+        let shared = earlier.filter(|e| self.same_particles(e)).map(|e| e.world.clone());
+        let bytes = if shared.is_some() { 0 } else { self.bytes() };
+        Snapshot {
+            vars: self.vars.detached(),
+            graph: self.graph.clone(),
+            world: shared.unwrap_or_else(|| Arc::new(self.world.clone())),
+            compat: self.options.compat,
+            ran: self.ran,
+            bytes,
+        }
+    }
+
+    fn same_particles(&self, e: &Snapshot) -> bool {
+        let (old, now) = (&e.graph.nodes, &self.graph.nodes);
+        let goes_on =
+            now.len() >= old.len() && old.last().map(|n| n.span) == now[..old.len()].last().map(|n| n.span);
+        let light = |text: &str| text.split_whitespace().next().is_some_and(|c| LIGHT.contains(&c));
+        goes_on && now[old.len()..].iter().all(|n| light(&n.text))
+    }
+
+    /// Goes back to a snapshot. Files that were written stay, and so do the settings of the log.
+    pub fn restore(&mut self, s: &Snapshot) {
+        self.vars = s.vars.detached();
+        self.graph = s.graph.clone();
+        self.world = World::clone(&s.world);
+        self.options.compat = s.compat;
+        self.ran = s.ran;
+        self.plan = None;
+    }
+
+    /// Bytes the scene takes.
+    pub fn bytes(&self) -> u64 {
+        crate::world::memory::bytes(&self.world)
+    }
+
+    /// The names that exist.
+    pub fn known(&self) -> Known {
+        let keys = |map: &mut dyn Iterator<Item = &String>| map.cloned().collect();
+        Known {
+            groups: self.world.groups.names().map(String::from).collect(),
+            regions: keys(&mut self.world.regions.keys()),
+            fixes: self.graph.fixes.iter().map(|f| f.id.clone()).collect(),
+            computes: self.graph.computes.iter().map(|c| c.id.clone()).collect(),
+            dumps: self.graph.dumps.iter().map(|d| d.id.clone()).collect(),
+            variables: self.vars.names().map(String::from).collect(),
+            materials: keys(&mut self.world.materials.keys()),
+            pair: self.graph.pair.as_ref().map(|p| p.pair.name().to_string()),
+        }
+    }
+
+    /// The plan that a `run` now would make steps with.
+    ///
+    /// # Errors
+    /// What a run would be refused for.
+    pub fn plan_text(&mut self) -> Result<String> {
+        if self.world.domain.is_none() {
+            return fail(Code::WRONG_ORDER, None, "there is nothing to plan: no box has been defined");
+        }
+        let span = self.graph.nodes.last().map_or(Span::default(), |n| n.span);
+        self.thermo_computes();
+        Ok(explain::text(&self.seal(span)?, false))
+    }
+
+    /// The lines worked off so far: number, kind, text, numbers of the lines whose names it uses.
+    pub fn lines(&self) -> Vec<(usize, &'static str, &str, Vec<usize>)> {
+        let nodes = &self.graph.nodes;
+        let from = |k: usize| {
+            let earlier = |u| nodes[..k].iter().rposition(|m| m.provides.as_ref() == Some(u));
+            nodes[k].uses.iter().filter_map(earlier).map(|n| n + 1).collect()
+        };
+        let kind = |role| match role {
+            Role::Declare => "declare",
+            Role::Act => "act",
+            Role::Run => "run",
+        };
+        nodes.iter().enumerate().map(|(k, n)| (k + 1, kind(n.role), n.text.as_str(), from(k))).collect()
+    }
+
+    /// The value of a formula for every particle, as an atom-style variable would have it.
+    ///
+    /// # Errors
+    /// A formula that cannot be read or evaluated now.
+    pub fn per_particle(&mut self, formula: &str) -> Result<Vec<f64>> {
+        let file = self.sources.add("formula", formula);
+        let expr = Expr::parse(formula, Span::new(file, 0, formula.len()))?;
+        let vars = Arc::new(self.vars.clone());
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, vars: vars.clone(), checking: false };
+        Ok(expr.per_particle(&vars, &mut env)?.unwrap_or_default())
+    }
+
+    /// How wide each particle is: its diameter, else the edge of its volume, else of its share of the box.
+    pub fn widths(&self) -> Vec<f64> {
+        let p = &self.world.particles;
+        let room: f64 =
+            self.world.domain.as_ref().map_or(1.0, |d| (0..3).map(|k| d.hi[k] - d.lo[k]).product());
+        let spacing = (room / p.len().max(1) as f64).cbrt();
+        let of = |i: usize| match (p.radius.get(i), p.volume.get(i)) {
+            (Some(r), _) if *r > 0.0 => 2.0 * r,
+            (_, Some(v)) if *v > 0.0 => v.cbrt(),
+            _ => spacing,
+        };
+        (0..p.len()).map(of).collect()
+    }
+}
