@@ -180,7 +180,9 @@ impl Session {
             true => Compat::Lammps,
             false => Compat::Perigrain,
         };
+        let promised = std::mem::take(&mut self.world.parts.promised);
         self.world = World::default();
+        self.world.parts.promised = promised;
         let s = &mut self.world.settings;
         s.compat = compat;
         s.stop = stop;
@@ -259,7 +261,7 @@ impl Session {
         let Some(cmd) = &line.command else { return Ok(None) };
         let outcome = self.command(script, cmd);
         self.say_notes()?;
-        outcome.map_err(|e| e.at(cmd.span))
+        outcome.map_err(|e| self.sources.adopt(e).at(cmd.span))
     }
 
     /// Warnings go to screen and log as they come.
@@ -348,7 +350,7 @@ impl Session {
     fn act(&mut self, cmd: &Command, style: &'static dyn crate::styles::CommandStyle) -> Result<()> {
         let (notes, uses) = (RefCell::default(), RefCell::default());
         let cx = Context { span: cmd.span, checking: self.checking(), notes: &notes, uses: &uses };
-        let mut said = vec![];
+        let (mut said, mut then) = (vec![], vec![]);
         let outcome: Result<Vec<&'static str>> = (|| {
             let mut args = crate::lang::Args::new(cmd);
             let act = style.parse(&mut args, &cx.build(&self.graph, &self.world, "", GroupId::ALL))?;
@@ -365,18 +367,23 @@ impl Session {
                 values: &mut values,
                 span: cmd.span,
                 said: &mut said,
+                then: &mut then,
                 notes: &notes,
             })?;
             self.world.touch();
             Ok(settles)
         })();
-        self.notes.append(notes.into_inner());
+        let notes = self.sources.adopt(notes.into_inner());
+        self.notes.append(notes);
         for line in &said {
             self.options.log.line(line)?;
         }
         let settles = outcome?;
         let provides = commands::provided(cmd);
         self.record(cmd, Role::Act, provides, uses.into_inner(), settles);
+        for (line, text) in then {
+            self.declare(&line).map_err(|e| e.at(line.span).within(&text))?;
+        }
         Ok(())
     }
 }

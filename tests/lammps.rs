@@ -81,7 +81,11 @@ fn agree(a: &Outcome, b: &Outcome, rule: &Rule, what: &str) {
 
 fn run(deck: &str, v: Variant) -> Outcome {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("in.deck"), stored(&format!("decks/{deck}.in"))).unwrap();
+    let text = stored(&format!("decks/{deck}.in"));
+    if text.contains("data.peri") {
+        fs::write(folder.path().join("data.peri"), stored("decks/data.peri")).unwrap();
+    }
+    fs::write(folder.path().join("in.deck"), text).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_perigrain"));
     command.current_dir(folder.path());
     command.args(["-in", "in.deck", "-log", "log.deck", "-screen", "none", "-compat", "lammps"]);
@@ -120,6 +124,7 @@ decks! {
     pd_pmb_lj_units
     pd_pmb_dtreset
     pd_pmb_laminate
+    pd_data
     gr2_g_mindlin
     hyb_pmb_granular
 }

@@ -5,6 +5,8 @@ mod nearest;
 pub mod render;
 mod source;
 
+use std::sync::Arc;
+
 pub use code::{CODES, Code};
 pub use nearest::nearest;
 pub use source::{FileId, Source, Sources, Span};
@@ -44,6 +46,8 @@ pub struct Diagnostic {
     pub labels: Vec<Label>,
     /// What to do about it.
     pub help: Vec<String>,
+    /// A text read on the way, where spans in [`FileId::BROUGHT`] point.
+    pub text: Option<Arc<Source>>,
 }
 
 impl Diagnostic {
@@ -68,7 +72,15 @@ impl Diagnostic {
         span: impl Into<Option<Span>>,
         message: impl Into<String>,
     ) -> Self {
-        Self { severity, code, message: message.into(), span: span.into(), labels: vec![], help: vec![] }
+        Self {
+            severity,
+            code,
+            message: message.into(),
+            span: span.into(),
+            labels: vec![],
+            help: vec![],
+            text: None,
+        }
     }
 
     /// Adds a sentence of advice.
@@ -116,6 +128,17 @@ impl Diagnostics {
     /// Whether one of them refuses.
     pub fn has_errors(&self) -> bool {
         self.0.iter().any(|d| d.severity == Severity::Error)
+    }
+
+    /// Says in which text places in [`FileId::BROUGHT`] are.
+    #[must_use]
+    pub fn within(mut self, text: &Arc<Source>) -> Self {
+        let points = |d: &Diagnostic| {
+            d.span.is_some_and(|s| s.file == FileId::BROUGHT)
+                || d.labels.iter().any(|l| l.span.file == FileId::BROUGHT)
+        };
+        self.0.iter_mut().filter(|d| points(d)).for_each(|d| d.text = Some(text.clone()));
+        self
     }
 
     /// Gives those without a place this one.

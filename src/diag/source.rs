@@ -1,8 +1,15 @@
 //! Source texts and places in them.
 
+use std::sync::Arc;
+
 /// Which text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct FileId(pub u32);
+
+impl FileId {
+    /// A text that is not among the sources: a diagnostic brings it along ([`super::Diagnostic::text`]).
+    pub const BROUGHT: FileId = FileId(u32::MAX);
+}
 
 /// A run of bytes in a source text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -32,7 +39,7 @@ impl Span {
 }
 
 /// One text with its name.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Source {
     /// The file's path, or `<stdin>`.
     pub name: String,
@@ -42,18 +49,38 @@ pub struct Source {
 
 /// Every text read so far.
 #[derive(Clone, Debug, Default)]
-pub struct Sources(Vec<Source>);
+pub struct Sources(Vec<Arc<Source>>);
 
 impl Sources {
     /// Takes a text in and names it.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> FileId {
-        self.0.push(Source { name: name.into(), text: text.into() });
-        FileId(self.0.len() as u32 - 1)
+        self.share(Arc::new(Source { name: name.into(), text: text.into() }))
+    }
+
+    fn share(&mut self, source: Arc<Source>) -> FileId {
+        let known = self.0.iter().position(|s| Arc::ptr_eq(s, &source));
+        let k = known.unwrap_or_else(|| {
+            self.0.push(source);
+            self.0.len() - 1
+        });
+        FileId(k as u32)
+    }
+
+    /// Takes in the texts that diagnostics bring along, so that their places can be shown.
+    #[must_use]
+    pub fn adopt(&mut self, mut list: super::Diagnostics) -> super::Diagnostics {
+        for d in &mut list.0 {
+            let Some(text) = d.text.take() else { continue };
+            let file = self.share(text);
+            let spans = d.span.iter_mut().chain(d.labels.iter_mut().map(|l| &mut l.span));
+            spans.filter(|s| s.file == FileId::BROUGHT).for_each(|s| s.file = file);
+        }
+        list
     }
 
     /// The text with this id; the empty text if there is none.
     pub fn get(&self, id: FileId) -> Option<&Source> {
-        self.0.get(id.0 as usize)
+        self.0.get(id.0 as usize).map(AsRef::as_ref)
     }
 
     /// Line and column (both from 1, column in characters) of a span's start.

@@ -404,6 +404,26 @@ pub fn general(x: f64, digits: usize) -> String {
     text_of(out)
 }
 
+/// A number in the shortest form that is read back to the same bits.
+pub fn shortest(x: f64) -> impl std::fmt::Display {
+    struct Shortest(f64);
+    impl std::fmt::Display for Shortest {
+        fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+            let size = self.0.abs();
+            // Where C's %g would leave the exponent away.
+            if size == 0.0 || (1e-4..1e16).contains(&size) {
+                write!(f, "{}", self.0)
+            } else {
+                let text = format!("{:e}", self.0);
+                let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+                let (sign, size) = exponent.strip_prefix('-').map_or(('+', exponent), |size| ('-', size));
+                write!(f, "{digits}e{sign}{size:0>2}")
+            }
+        }
+    }
+    Shortest(x)
+}
+
 /// Writes `e+05`, at least two digits.
 fn push_exponent(out: &mut Vec<u8>, exponent: i32, upper: bool) {
     let letter = if upper { 'E' } else { 'e' };

@@ -8,7 +8,7 @@ use crate::lang::{Args, Command, Kind, RefKind, ValueRef, Vars, Word, substitute
 use crate::out::log::Echo;
 use crate::styles::compute::COMPUTES;
 use crate::styles::{BuildCx, Shape, Use, UseKind};
-use crate::world::{Compat, GroupId};
+use crate::world::{Compat, GroupId, Promise};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -52,7 +52,6 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "plugin",
     "prd",
     "python",
-    "read_data",
     "read_dump",
     "read_restart",
     "replicate",
@@ -68,7 +67,6 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "third_order",
     "timer",
     "write_coeff",
-    "write_data",
     "write_restart",
 ];
 
@@ -207,6 +205,9 @@ impl Session {
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, vars, checking };
         let text = substitute(&word.text, word.span, &self.vars, &mut env)?;
         if checking {
+            if let Some(name) = file {
+                self.promise(&name.text, text, append);
+            }
             return Ok(());
         }
         match screen {
@@ -221,6 +222,16 @@ impl Session {
             failed.map_err(|e| crate::out::file::trouble("write", path, &e).at(name.span))?;
         }
         Ok(())
+    }
+
+    /// Keeps what a checked deck would have printed into a file, for the lines that read it.
+    fn promise(&mut self, name: &str, text: String, append: bool) {
+        let promised = &mut self.world.parts.promised;
+        let before = match promised.remove(name) {
+            Some(Promise::Text(before)) if append => before,
+            _ => String::new(),
+        };
+        promised.insert(name.to_string(), Promise::Text(format!("{before}{text}\n")));
     }
 
     fn log(&mut self, args: &mut Args) -> Result<()> {

@@ -1,9 +1,10 @@
 //! What styles may know while a line of the deck is read, and what acts may use while they act.
 
-use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail, nearest};
-use crate::lang::{Param, RefKind, ValueRef, Word};
+use crate::diag::{Code, Diagnostic, Diagnostics, Result, Source, Span, fail, nearest};
+use crate::lang::{Command, Param, RefKind, ValueRef, Word};
 use crate::world::{GroupId, Offers, Region, World};
 use std::cell::RefCell;
+use std::sync::Arc;
 
 use super::Wants;
 
@@ -391,6 +392,8 @@ pub struct ActCx<'a> {
     pub span: Span,
     /// Lines for screen and log, as `Created 64 atoms`.
     pub said: &'a mut Vec<String>,
+    /// Declaring lines that a file held, with its text: worked off right after the act.
+    pub then: &'a mut Vec<(Command, Arc<Source>)>,
     /// Warnings.
     pub notes: &'a RefCell<Diagnostics>,
 }

@@ -60,6 +60,18 @@ impl Domain {
         Self { lo, hi, boundary, small, min_lo: lo, min_hi: hi }
     }
 
+    /// Moves shrink-wrapped faces a little outside, so that particles on the faces as given are inside (LAMMPS).
+    pub fn open_shrinking_faces(&mut self) {
+        for d in 0..3 {
+            if self.boundary.0[d][0] == Face::Shrink {
+                self.lo[d] -= self.small[d];
+            }
+            if self.boundary.0[d][1] == Face::Shrink {
+                self.hi[d] += self.small[d];
+            }
+        }
+    }
+
     /// Edge lengths [length].
     pub fn lengths(&self) -> [f64; 3] {
         [0, 1, 2].map(|d| self.hi[d] - self.lo[d])

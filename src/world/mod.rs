@@ -84,6 +84,17 @@ pub struct Parts {
     pub changed: bool,
     /// Text facts that styles leave for the log's end, by name.
     pub facts: BTreeMap<String, Arc<str>>,
+    /// While a deck is only checked: files that its lines so far would have written, by name.
+    pub promised: BTreeMap<String, Promise>,
+}
+
+/// What a checked deck would have written into a file.
+#[derive(Clone, Debug)]
+pub enum Promise {
+    /// This text.
+    Text(String),
+    /// This scene, which holds no particles.
+    Scene(Arc<World>),
 }
 
 impl World {

@@ -11,12 +11,24 @@ pub struct AtomStyle {
     pub peri: bool,
     /// Masses start as those of spheres: `sphere`, unless `peri` follows it in `hybrid`.
     pub sphere_mass: bool,
+    /// Named as `hybrid …`, which decides the columns of data files.
+    pub hybrid: bool,
 }
 
 impl AtomStyle {
     /// Whether each particle has its own mass (else masses go by type).
     pub fn own_mass(&self) -> bool {
         self.sphere || self.peri
+    }
+
+    /// The word after `atom_style`.
+    pub fn name(&self) -> &'static str {
+        match (self.hybrid, self.sphere, self.peri) {
+            (false, true, false) => "sphere",
+            (false, false, true) => "peri",
+            (false, false, false) => "atomic",
+            _ => "hybrid",
+        }
     }
 }
 
@@ -112,6 +124,32 @@ impl Particles {
         }
         if sphere || peri {
             self.density.push(f64::NAN);
+        }
+    }
+
+    /// Puts particles with the same columns behind the present ones.
+    pub fn append(&mut self, mut more: Particles) {
+        self.tag.append(&mut more.tag);
+        self.kind.append(&mut more.kind);
+        self.mask.append(&mut more.mask);
+        self.image.append(&mut more.image);
+        for (own, new) in [
+            (&mut self.x, &mut more.x),
+            (&mut self.v, &mut more.v),
+            (&mut self.f, &mut more.f),
+            (&mut self.omega, &mut more.omega),
+            (&mut self.torque, &mut more.torque),
+            (&mut self.x0, &mut more.x0),
+        ] {
+            own.append(new);
+        }
+        for (own, new) in [
+            (&mut self.mass, &mut more.mass),
+            (&mut self.radius, &mut more.radius),
+            (&mut self.volume, &mut more.volume),
+            (&mut self.density, &mut more.density),
+        ] {
+            own.append(new);
         }
     }
 

@@ -68,3 +68,23 @@ fn nonsense_is_refused() {
     assert!(Spec::parse("%d ").is_err());
     assert!(Spec::parse("%-12.4e").is_ok());
 }
+
+// As LAMMPS 22Jul2025 writes these numbers into a data file.
+#[test]
+fn shortest_form_is_read_back() {
+    let oracle = [
+        (-5.500000000000001e-05, "-5.500000000000001e-05"),
+        (0.500055, "0.500055"),
+        (1e-9, "1e-09"),
+        (2400.0, "2400"),
+        (0.0, "0"),
+        (1.2599210498948732, "1.2599210498948732"),
+        (1.6e21, "1.6e+21"),
+    ];
+    for (x, text) in oracle {
+        assert_eq!(shortest(x).to_string(), text);
+    }
+    for x in [f64::MIN_POSITIVE, f64::MAX, 1.0 / 3.0, -1e-5, 123456789012345678.0] {
+        assert_eq!(shortest(x).to_string().parse::<f64>(), Ok(x));
+    }
+}

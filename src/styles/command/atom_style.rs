@@ -59,6 +59,7 @@ impl CommandStyle for AtomStyleCommand {
             }
             return Ok(choose(style));
         }
+        style.hybrid = true;
         add(&mut style, a.expect("a style")?)?;
         while let Some(word) = a.next() {
             if style.sphere && matches!(word.text.as_str(), "0" | "1") {

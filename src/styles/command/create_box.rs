@@ -6,8 +6,8 @@ use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
 use crate::math::cformat::general;
 use crate::styles::{BuildCx, Doc, Style};
+use crate::world::Domain;
 use crate::world::region::{INFINITE, Shape};
-use crate::world::{Domain, Face};
 
 /// The command.
 pub struct CreateBox;
@@ -71,24 +71,12 @@ impl CommandStyle for CreateBox {
             let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
             cx.say(format!("Created orthogonal box = ({}) to ({})", text(domain.lo), text(domain.hi)));
             cx.say("  1 by 1 by 1 MPI processor grid");
-            open_shrinking_faces(&mut domain);
+            domain.open_shrinking_faces();
             cx.world.domain = Some(domain);
             cx.world.types = types as usize;
             cx.world.type_mass = vec![None; types as usize];
             Ok(())
         }))
-    }
-}
-
-/// Shrink-wrapped faces start a little outside the region, so that particles on it are inside.
-fn open_shrinking_faces(domain: &mut Domain) {
-    for d in 0..3 {
-        if domain.boundary.0[d][0] == Face::Shrink {
-            domain.lo[d] -= domain.small[d];
-        }
-        if domain.boundary.0[d][1] == Face::Shrink {
-            domain.hi[d] += domain.small[d];
-        }
     }
 }
 

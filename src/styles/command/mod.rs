@@ -7,6 +7,7 @@ mod comm_modify;
 pub(super) mod common;
 mod create_atoms;
 mod create_box;
+pub mod data;
 mod delete_atoms;
 mod dimension;
 mod displace_atoms;
@@ -20,6 +21,7 @@ mod neighbor;
 mod newton;
 mod places;
 mod processors;
+mod read_data;
 mod region;
 mod reset_timestep;
 mod set;
@@ -28,6 +30,7 @@ mod testing;
 mod timestep;
 mod units;
 mod velocity;
+mod write_data;
 
 use super::{ActCx, BuildCx, Style};
 use crate::diag::Result;
@@ -74,6 +77,7 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &lattice::LatticeCommand,
     &region::RegionCommand,
     &create_box::CreateBox,
+    &read_data::ReadData,
     &create_atoms::CreateAtoms,
     &group::Group,
     &set::Set,
@@ -86,4 +90,5 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &reset_timestep::ResetTimestep,
     &neighbor::Neighbor,
     &neigh_modify::NeighModify,
+    &write_data::WriteData,
 ];

@@ -75,8 +75,15 @@ pub fn act(world: &mut World, line: &str, variables: &[AtomVariable]) -> Result<
     };
     let parsed = style.parse(&mut args, &cx)?;
     args.finish()?;
-    let mut said = vec![];
-    let mut cx = ActCx { world, values: &mut table, span: command.span, said: &mut said, notes: &notes };
+    let (mut said, mut then) = (vec![], vec![]);
+    let mut cx = ActCx {
+        world,
+        values: &mut table,
+        span: command.span,
+        said: &mut said,
+        then: &mut then,
+        notes: &notes,
+    };
     parsed.apply(&mut cx)?;
     Ok(said)
 }

@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn attributes_of_all_kinds() {
-        let style = AtomStyle { chosen: true, sphere: true, peri: true, sphere_mass: false };
+        let style = AtomStyle { chosen: true, sphere: true, peri: true, sphere_mass: false, hybrid: true };
         let mut b = Bench::new(style, &[[1.0, 5.0, -10.0], [0.0; 3]]);
         b.world.particles.image[0] = [1, 0, -1];
         b.world.particles.volume[0] = 0.125;

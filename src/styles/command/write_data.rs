@@ -1,0 +1,81 @@
+//! `write_data`: the scene as a LAMMPS data file.
+
+use super::common::{domain, not_here, settle};
+use super::data::write;
+use super::{Act, CommandStyle};
+use crate::diag::{Result, Span};
+use crate::lang::Args;
+use crate::out::file::{Pattern, replace};
+use crate::styles::{ActCx, BuildCx, Doc, Style};
+use crate::world::Promise;
+use std::sync::Arc;
+
+/// The command.
+pub struct WriteData;
+
+impl Style for WriteData {
+    fn name(&self) -> &'static str {
+        "write_data"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "write_data FILE [pair ii|ij] [nocoeff] [nofix]",
+            summary: "Writes box, particles, velocities and masses as a LAMMPS data file.",
+            text: "A `*` in the name becomes the step. The file has LAMMPS' sections and columns (see read_data) and \
+                   appears whole or not at all. Numbers are written in the shortest form that is read back to the same \
+                   bits. Positions are wrapped and shrink-wrapped faces follow the particles first, as in LAMMPS. None of \
+                   the pair styles here writes coefficients into data files, in LAMMPS neither: `pair` and `nocoeff` make \
+                   no difference, nor does `nofix`, as no fix adds a section. Bonds, damage, contact history, forces and \
+                   the clock are not in a data file: write_restart has them. `types labels` and `triclinic/general` are \
+                   refused.",
+            example: "write_data plate.*.data nocoeff",
+        }
+    }
+}
+
+struct Writing {
+    file: Pattern,
+    span: Span,
+    checking: bool,
+}
+
+impl CommandStyle for WriteData {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        domain(cx)?;
+        let word = a.expect("a file name")?;
+        let file = Pattern::new(&word.text).map_err(|e| e.at(word.span))?;
+        while let Some(key) = a.next() {
+            match key.text.as_str() {
+                "pair" => drop(a.choice("value of pair", &["ii", "ij"])?),
+                "nocoeff" | "nofix" => {}
+                "types" => match a.peek() {
+                    Some(w) if w.text == "labels" => return Err(not_here(w, "write_data types")),
+                    _ => drop(a.choice("value of types", &["numeric"])?),
+                },
+                "triclinic/general" => return Err(not_here(key, "keyword of write_data")),
+                _ => return Err(a.unknown(key, &["pair", "nocoeff", "nofix", "types"])),
+            }
+        }
+        Ok(Box::new(Writing { file, span: word.span, checking: cx.checking }))
+    }
+}
+
+impl Act for Writing {
+    fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
+        let w = &mut *cx.world;
+        if self.checking {
+            let scene = Promise::Scene(Arc::new(w.clone()));
+            w.parts.promised.insert(self.file.text().to_string(), scene);
+            return Ok(());
+        }
+        w.spread_type_masses();
+        settle(w);
+        let path = self.file.at(w.clock.step);
+        replace(&path, |out| write::write(out, w)).map_err(|e| e.at(self.span))
+    }
+
+    fn needs_particles(&self) -> bool {
+        false
+    }
+}
