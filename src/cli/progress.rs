@@ -53,8 +53,8 @@ impl Progress {
             return;
         }
         if made.done <= 1 {
-            self.bar.reset();
             self.bar.set_length(made.total.max(0) as u64);
+            self.bar.reset();
         }
         self.bar.set_position(made.done.max(0) as u64);
         if made.done >= made.total {
