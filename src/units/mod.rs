@@ -1,7 +1,7 @@
 //! Unit systems and the constants each defines.
 
 /// LAMMPS' eight unit systems.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum UnitSystem {
     /// Lennard-Jones: everything reduced.
     #[default]

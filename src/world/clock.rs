@@ -1,7 +1,7 @@
 //! Time: the step counter, the step size and what has elapsed.
 
 /// Where a run stands in time.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Clock {
     /// Present step.
     pub step: i64,
@@ -20,6 +20,7 @@ pub struct Clock {
     /// Step at which `run … stop` ends (for ramps); the last step by default.
     pub stop: i64,
     /// When the present run's steps began, for the keyword `cpu`.
+    #[serde(skip)]
     pub began: Option<std::time::Instant>,
     /// Whether a run is going on.
     pub running: bool,
@@ -50,6 +51,9 @@ impl Clock {
 
     /// Changes dt from the next step on; elapsed time keeps the old one up to here.
     pub fn set_dt(&mut self, dt: f64) {
+        if dt == self.dt {
+            return; // the sum of the time so far keeps its bits
+        }
         self.time_base = self.time();
         self.time_step = self.step;
         self.dt = dt;

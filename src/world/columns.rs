@@ -1,69 +1,81 @@
 //! Named per-particle columns beyond the core ones: they follow every reordering and deletion.
 
+use std::collections::BTreeMap;
+
 /// Named scalar and vector columns, kept in step with the particles.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Columns {
-    scalars: Vec<(String, Vec<f64>)>,
-    vectors: Vec<(String, Vec<[f64; 3]>)>,
+    scalars: BTreeMap<String, Vec<f64>>,
+    vectors: BTreeMap<String, Vec<[f64; 3]>>,
 }
 
 impl Columns {
     /// The scalar column of this name, made of zeros for `n` particles if it is new.
     pub fn scalar(&mut self, name: &str, n: usize) -> &mut Vec<f64> {
-        let k = match self.scalars.iter().position(|(s, _)| s == name) {
-            Some(k) => k,
-            None => {
-                self.scalars.push((name.to_string(), vec![0.0; n]));
-                self.scalars.len() - 1
-            }
-        };
-        &mut self.scalars[k].1
+        self.scalars.entry(name.to_string()).or_insert_with(|| vec![0.0; n])
     }
 
     /// The vector column of this name, made of zeros for `n` particles if it is new.
     pub fn vector(&mut self, name: &str, n: usize) -> &mut Vec<[f64; 3]> {
-        let k = match self.vectors.iter().position(|(s, _)| s == name) {
-            Some(k) => k,
-            None => {
-                self.vectors.push((name.to_string(), vec![[0.0; 3]; n]));
-                self.vectors.len() - 1
-            }
-        };
-        &mut self.vectors[k].1
+        self.vectors.entry(name.to_string()).or_insert_with(|| vec![[0.0; 3]; n])
     }
 
     /// The vector column of this name, if there is one.
     pub fn get_vector(&self, name: &str) -> Option<&[[f64; 3]]> {
-        self.vectors.iter().find(|(s, _)| s == name).map(|(_, v)| v.as_slice())
+        self.vectors.get(name).map(Vec::as_slice)
     }
 
     /// The scalar column of this name, if there is one.
     pub fn get_scalar(&self, name: &str) -> Option<&[f64]> {
-        self.scalars.iter().find(|(s, _)| s == name).map(|(_, v)| v.as_slice())
+        self.scalars.get(name).map(Vec::as_slice)
     }
 
     /// Forgets a column of either kind.
     pub fn remove(&mut self, name: &str) {
-        self.scalars.retain(|(s, _)| s != name);
-        self.vectors.retain(|(s, _)| s != name);
+        self.scalars.remove(name);
+        self.vectors.remove(name);
+    }
+
+    /// Takes out the columns whose names `keep` does not hold.
+    pub fn split_off(&mut self, keep: impl Fn(&str) -> bool) -> Columns {
+        let mut out = Columns::default();
+        for name in self.names().into_iter().filter(|n| !keep(n)) {
+            out.scalars.extend(self.scalars.remove_entry(&name));
+            out.vectors.extend(self.vectors.remove_entry(&name));
+        }
+        out
+    }
+
+    /// Puts columns in, in place of those of the same names.
+    pub fn put(&mut self, more: Columns) {
+        self.scalars.extend(more.scalars);
+        self.vectors.extend(more.vectors);
+    }
+
+    /// All names.
+    pub fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> = self.scalars.keys().chain(self.vectors.keys()).cloned().collect();
+        names.dedup();
+        names
+    }
+
+    /// Whether every column has `n` entries.
+    pub fn have(&self, n: usize) -> bool {
+        self.scalars.values().all(|c| c.len() == n) && self.vectors.values().all(|c| c.len() == n)
     }
 
     /// Gives every column room for `n` particles, zeros for new ones.
     pub fn resize(&mut self, n: usize) {
-        for (_, c) in &mut self.scalars {
-            c.resize(n, 0.0);
-        }
-        for (_, c) in &mut self.vectors {
-            c.resize(n, [0.0; 3]);
-        }
+        self.scalars.values_mut().for_each(|c| c.resize(n, 0.0));
+        self.vectors.values_mut().for_each(|c| c.resize(n, [0.0; 3]));
     }
 
     /// Keeps `old[new_index]` at each new index.
     pub fn gather(&mut self, old: &[usize]) {
-        for (_, c) in &mut self.scalars {
+        for c in self.scalars.values_mut() {
             *c = old.iter().map(|&k| c[k]).collect();
         }
-        for (_, c) in &mut self.vectors {
+        for c in self.vectors.values_mut() {
             *c = old.iter().map(|&k| c[k]).collect();
         }
     }

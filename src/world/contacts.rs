@@ -1,7 +1,7 @@
 //! Contact history by pair of tags: what grains remember while they touch.
 
 /// Contacts of the last step in the order of their tags, with what each remembers.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Contacts<H> {
     /// Tags of both grains, the smaller one first; sorted.
     pub keys: Vec<[u32; 2]>,

@@ -1,7 +1,7 @@
 //! The simulation box: faces, periodicity, wrapping, shrink-wrapping.
 
 /// What a face of the box does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Face {
     /// `p`: periodic.
     #[default]
@@ -15,7 +15,7 @@ pub enum Face {
 }
 
 /// The two faces (lo, hi) of each dimension, as the `boundary` command gives them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Boundary(pub [[Face; 2]; 3]);
 
 impl Boundary {
@@ -37,7 +37,7 @@ impl Boundary {
 }
 
 /// An orthogonal box.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Domain {
     /// Lower corner [length].
     pub lo: [f64; 3],

@@ -15,7 +15,7 @@ impl GroupId {
 }
 
 /// The names of the groups in use (at most 32, as LAMMPS).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Groups {
     names: [Option<String>; 32],
 }

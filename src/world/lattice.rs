@@ -81,7 +81,7 @@ impl Placing {
 }
 
 /// A lattice as the box sees it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Lattice {
     /// Lengths along x, y, z that `units lattice` stands for.
     pub spacing: [f64; 3],

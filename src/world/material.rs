@@ -6,7 +6,7 @@ use toml::Spanned;
 use crate::diag::{Code, Diagnostic, FileId, Result, Span};
 
 /// One material: in SI units when read from a file, in those of the deck once it is in the world.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Material {
     /// What it is.
     pub name: String,
@@ -27,7 +27,7 @@ pub struct Material {
 }
 
 /// The two ways to say when a bond breaks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Strength {
     /// Fracture energy G_c, J/m² in SI; the critical stretch depends on the horizon.
     FractureEnergy(f64),

@@ -35,7 +35,7 @@ pub use slots::{Offers, Slot, SlotId, Slots};
 pub use tally::Tally;
 
 /// Everything that outlives a step. It decides nothing: commands change it, ops advance it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct World {
     /// Time, step and step size.
     pub clock: Clock,
@@ -72,8 +72,10 @@ pub struct World {
     /// Materials by ID.
     pub materials: BTreeMap<String, material::Material>,
     /// What the deck's folder is, for files beside it.
+    #[serde(skip)]
     pub folder: PathBuf,
     /// State that rooms above own: families, contact histories, materials.
+    #[serde(skip)]
     pub parts: Parts,
 }
 

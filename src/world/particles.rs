@@ -1,7 +1,7 @@
 //! The particles' core columns as plain fields.
 
 /// Which optional columns exist (`atom_style`).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct AtomStyle {
     /// A style has been chosen.
     pub chosen: bool,
@@ -33,7 +33,7 @@ impl AtomStyle {
 }
 
 /// Structure of arrays; every non-empty column has one entry per particle.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Particles {
     /// Which columns exist.
     pub style: AtomStyle,

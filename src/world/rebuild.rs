@@ -1,7 +1,7 @@
 //! When neighbour lists were last rebuilt, and where everybody was then.
 
 /// The state behind LAMMPS' reneighbouring rule.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Rebuild {
     /// Counts rebuilds since the program began; lists compare it with the one they were made at.
     pub generation: u64,

@@ -4,7 +4,7 @@
 pub const INFINITE: f64 = 1.0e20;
 
 /// A named volume.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Region {
     /// Its shape.
     pub shape: Shape,
@@ -15,7 +15,7 @@ pub struct Region {
 }
 
 /// The shapes there are.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Shape {
     /// An axis-parallel box, faces included.
     Block {

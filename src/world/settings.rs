@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Whose numbers are wanted where LAMMPS 22Jul2025 is wrong.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Compat {
     /// The right ones.
     #[default]
@@ -15,7 +15,7 @@ pub enum Compat {
 }
 
 /// When neighbour lists are rebuilt (`neighbor`, `neigh_modify`).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct NeighborSettings {
     /// Extra reach of the lists [length].
     pub skin: f64,
@@ -48,7 +48,7 @@ impl Default for NeighborSettings {
 }
 
 /// Choices of a deck that concern everybody.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Settings {
     /// The deck's units.
     pub units: UnitSystem,
@@ -61,12 +61,16 @@ pub struct Settings {
     /// Neighbour-list policy.
     pub neighbor: NeighborSettings,
     /// The list layout for every peridynamic body (`-layout list`).
+    #[serde(skip)]
     pub force_list: bool,
     /// Work also where everything is at rest (`-rest full`).
+    #[serde(skip)]
     pub no_skipping: bool,
     /// The portable kernels even where faster ones would run.
+    #[serde(skip)]
     pub portable: bool,
     /// Set from outside (Ctrl-C): end the run at the next whole step.
+    #[serde(skip)]
     pub stop: Arc<AtomicBool>,
 }
 

@@ -5,7 +5,7 @@
 pub struct SlotId(pub usize);
 
 /// Which kinds of values a producer has; what else stands in its slot means nothing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Offers {
     /// A single number.
     pub scalar: bool,
@@ -20,7 +20,7 @@ pub struct Offers {
 }
 
 /// One producer's latest values.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Slot {
     /// What it belongs to: `c_dmg`, `f_ball`, `v_zc`.
     pub name: String,
@@ -75,9 +75,16 @@ fn column(rows: &[f64], cols: usize, c: usize) -> Vec<f64> {
 }
 
 /// All slots; ids stay valid while their producer exists.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Slots {
+    #[serde(serialize_with = "of_fixes")]
     slots: Vec<Slot>,
+}
+
+/// A restart file holds what fixes offer: they act within steps, all others are evaluated anew.
+fn of_fixes<S: serde::Serializer>(slots: &[Slot], to: S) -> Result<S::Ok, S::Error> {
+    let kept: Vec<&Slot> = slots.iter().filter(|s| s.name.starts_with("f_")).collect();
+    to.collect_seq(kept)
 }
 
 impl Slots {

@@ -1,7 +1,7 @@
 //! Energy and virial of the present step, as force ops add them up.
 
 /// What the force ops of a step have tallied.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Tally {
     /// The step the sums belong to; `None` when they were not asked for.
     pub step: Option<i64>,

@@ -7,7 +7,7 @@ pub const LANES: usize = 8;
 pub const CONSTANTS: usize = 16;
 
 /// A row of cells; vacant cells at its end fill the last chunk.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Row {
     /// First cell.
     pub start: u32,
@@ -23,7 +23,7 @@ pub struct Row {
 pub const MIXED: u16 = u16::MAX;
 
 /// What moved in a row since the step before, and where it is not at rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RowMotion {
     /// First coordinate with a displacement that is not zero; above `hi` if there is none.
     pub lo: i32,
@@ -66,7 +66,7 @@ pub fn greater(a: f64, b: f64) -> f64 {
 
 /// A body on a lattice. Bond `e` of cell `c` goes to the cell one stencil vector further; half the stencil
 /// is kept, so each bond once.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct LatticeBody {
     /// Lattice spacing.
     pub spacing: f64,

@@ -2,7 +2,7 @@
 
 /// What a bond needs to know of one end; one cache line.
 #[repr(C, align(64))]
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Record {
     /// Reference position.
     pub reference: [f64; 3],
@@ -18,7 +18,7 @@ pub struct Record {
 pub const GROUP: usize = 4;
 
 /// Constants of a pair of local types.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PairConstants {
     /// Micromodulus.
     pub c: f64,
@@ -31,7 +31,7 @@ pub struct PairConstants {
 }
 
 /// Records of particles in slab order, and for each the bonds to later ones in groups of four.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct ListBody {
     /// Particle of each record; `u32::MAX` once it is gone.
     pub particle: Vec<u32>,

@@ -11,7 +11,7 @@ pub mod list;
 pub use cells::Cells;
 
 /// Coefficients of the prototype microelastic brittle model for one pair of types.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PmbCoeff {
     /// Micromodulus, energy per distance and volume squared.
     pub c: f64,
@@ -24,7 +24,7 @@ pub struct PmbCoeff {
 }
 
 /// Coefficients by pair of types (1-based), symmetric; unset pairs belong to other styles or to none.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PmbTable {
     types: usize,
     pairs: Vec<Option<PmbCoeff>>,
@@ -81,7 +81,7 @@ impl PmbTable {
 }
 
 /// How the volume of a partner near the horizon counts (`peri_modify volume`).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum VolumeRule {
     /// Weight (delta + dx/2 - |xi|)/dx within dx/2 of the horizon, where families end: LAMMPS.
     #[default]
@@ -109,7 +109,7 @@ impl VolumeRule {
 }
 
 /// What `f` holds (`peri_modify force`).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum ForceUnit {
     /// Force per volume, as LAMMPS' peri styles.
     #[default]
@@ -119,7 +119,7 @@ pub enum ForceUnit {
 }
 
 /// Which layout bonds are kept in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Layout {
     /// The lattice where a body is one, the list elsewhere.
     #[default]
@@ -129,7 +129,7 @@ pub enum Layout {
 }
 
 /// Everything about families that is not a coefficient.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FamilyOptions {
     /// Partial volumes.
     pub volume: VolumeRule,
@@ -233,7 +233,7 @@ pub struct PeriView<'a> {
 }
 
 /// All families of a scene: state only; `laws::peri` builds and sweeps them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Families {
     /// Coefficients in force.
     pub table: PmbTable,
@@ -259,11 +259,12 @@ pub struct Families {
     /// Pairs without a living bond that may come into short-range contact.
     pub near: NearPairs,
     /// Scratch that is not state.
+    #[serde(skip)]
     pub scratch: Scratch,
 }
 
 /// Pairs without a living bond that may come into short-range contact before they are looked for again.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct NearPairs {
     /// Pairs within a body (the list counts as one), and pairs across bodies.
     pub pairs: [Vec<(u32, u32)>; 2],
