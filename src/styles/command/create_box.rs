@@ -7,7 +7,7 @@ use crate::lang::Args;
 use crate::math::cformat::general;
 use crate::styles::{BuildCx, Doc, Style};
 use crate::world::Domain;
-use crate::world::region::{INFINITE, Shape};
+use crate::world::region::INFINITE;
 
 /// The command.
 pub struct CreateBox;
@@ -33,9 +33,9 @@ impl Style for CreateBox {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "create_box N REGION",
-            summary: "Creates the simulation box from a block region, for N particle types.",
-            text: "The region must be a block with finite bounds and `side in`. Shrink-wrapped faces start 1e-4 of the \
-                   edge length outside it, as in LAMMPS.",
+            summary: "Creates the simulation box from a bounded region, for N particle types.",
+            text: "The box is the smallest one along the axes that holds the region, which must have finite bounds and \
+                   `side in`. Shrink-wrapped faces start 1e-4 of the edge length outside it, as in LAMMPS.",
             example: "create_box 3 world",
         }
     }
@@ -56,9 +56,8 @@ impl CommandStyle for CreateBox {
             return Err(common::not_here(word, "a general triclinic box: create_box"));
         }
         let region = cx.region(word)?;
-        let (lo, hi) = match (&region.shape, region.outside) {
-            (Shape::Block { lo, hi }, false) => (*lo, *hi),
-            _ => return fail(Code::WRONG_KIND, word.span, "the box must be a block with `side in`"),
+        let Some((lo, hi)) = region.bounds() else {
+            return fail(Code::WRONG_KIND, word.span, "the box must be a bounded region with `side in`");
         };
         if (0..3).any(|d| hi[d] <= lo[d] || lo[d].abs() >= INFINITE || hi[d].abs() >= INFINITE) {
             return fail(Code::BAD_VALUE, word.span, "the box must have finite edges longer than zero");
@@ -98,8 +97,9 @@ mod tests {
 
     #[test]
     fn refuses_what_is_no_box() {
-        let w =
-            scene("region s sphere 0 0 0 1\nregion o block 0 1 0 1 0 1 side out\nregion f block 0 0 0 1 0 1");
+        let w = scene(
+            "region s sphere 0 0 0 1 side out\nregion o block 0 1 0 1 0 1 side out\nregion f block 0 0 0 1 0 1",
+        );
         for (region, blamed) in [("s", "s"), ("o", "o"), ("f", "f"), ("q", "q")] {
             assert_eq!(refused(&w, &format!("create_box 1 {region}")).0, blamed);
         }
