@@ -87,14 +87,7 @@ const LAMMPS_STYLES: &[(&str, &str)] = &[
     ("compute", "stress/atom"),
     ("compute", "dilatation/atom"),
     ("compute", "plasticity/atom"),
-    ("compute", "coord/atom"),
     ("compute", "contact/atom"),
-    ("compute", "displace/atom"),
-    ("compute", "cluster/atom"),
-    ("compute", "fragment/atom"),
-    ("compute", "chunk/atom"),
-    ("compute", "gyration"),
-    ("compute", "msd"),
     ("compute", "pair/local"),
     ("compute", "property/local"),
     ("compute", "erotate/sphere/atom"),
@@ -131,7 +124,7 @@ pub fn declare(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) ->
         "unfix" => unfix(graph, w, &mut args),
         "fix_modify" => fix_modify(graph, w, &mut args, cx),
         "compute" => compute(graph, w, &mut args, cx),
-        "uncompute" => uncompute(graph, &mut args),
+        "uncompute" => uncompute(graph, w, &mut args),
         "compute_modify" => compute_modify(graph, w, &mut args, cx),
         "dump" => dump(graph, w, &mut args, cx),
         "undump" => undump(graph, &mut args),
@@ -382,6 +375,7 @@ fn compute(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> R
     let style = style(COMPUTES, "compute", args)?;
     let compute = style.build(args, &cx.build(graph, w, id, group))?;
     args.finish()?;
+    compute.declare(w)?;
     graph.computes.push(ComputeNode { id: id.to_string(), style: style.name(), compute, span: cx.span });
     forget_values(w, &format!("c_{id}"));
     Ok(provides(UseKind::Compute, id))
@@ -393,11 +387,11 @@ fn forget_values(w: &mut World, name: &str) {
     *w.slots.get_mut(slot) = crate::world::Slot { name: name.to_string(), ..Default::default() };
 }
 
-fn uncompute(graph: &mut Graph, args: &mut Args) -> Result<Declared> {
+fn uncompute(graph: &mut Graph, w: &mut World, args: &mut Args) -> Result<Declared> {
     let (id, span) = id_of(args, "compute")?;
     let k = find_compute(graph, id, span)?;
     args.finish()?;
-    graph.computes.remove(k);
+    graph.computes.remove(k).compute.remove(w);
     Ok(Declared::default())
 }
 

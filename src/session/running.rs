@@ -119,6 +119,7 @@ impl Session {
     /// What styles miss in the scene.
     pub fn seal(&mut self, span: Span) -> Result<StepPlan> {
         let vars = Arc::new(self.vars.clone());
+        self.graph.computes.iter().for_each(|c| c.compute.welcome(&mut self.world));
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
         s.at(span);
         s.add(vec![Box::new(Reneighbor), Box::new(ClearForces)], span);

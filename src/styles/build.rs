@@ -55,6 +55,17 @@ pub struct Shape {
     pub vector_extensive: bool,
     /// The global array grows with the scene.
     pub array_extensive: bool,
+    /// Its values number particles into chunks.
+    pub chunks: Option<Chunking>,
+}
+
+/// What chunks of particles have besides particles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Chunking {
+    /// Coordinates of each.
+    pub coordinates: usize,
+    /// Chunks without particles are left out: each has an original number.
+    pub compressed: bool,
 }
 
 impl Shape {

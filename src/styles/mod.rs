@@ -15,7 +15,7 @@ pub mod step_op;
 #[cfg(test)]
 mod testing;
 
-pub use build::{ActCx, BuildCx, Names, Shape, Use, UseKind, Values};
+pub use build::{ActCx, BuildCx, Chunking, Names, Shape, Use, UseKind, Values};
 pub use command::{Act, CommandStyle};
 pub use compute::{Compute, ComputeStyle};
 pub use dump::{Dump, DumpStyle};

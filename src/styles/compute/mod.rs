@@ -1,11 +1,20 @@
 //! Computes: quantities read from the world, never changing it.
 
+pub(super) mod chunk;
+mod cluster_atom;
 mod com;
+mod coord_atom;
 mod damage_atom;
+mod displace_atom;
 mod erotate_sphere;
+mod global_atom;
+mod gyration;
 mod ke;
 mod ke_atom;
 mod momentum;
+mod msd;
+mod near;
+mod origin;
 mod pe;
 mod pe_atom;
 mod pressure;
@@ -14,10 +23,10 @@ mod reduce;
 mod temp;
 
 use super::{BuildCx, SealCx, Shape, Style};
-use crate::diag::{Code, Result, fail};
+use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
 use crate::plan::{Op, Stage, When};
-use crate::world::SlotId;
+use crate::world::{SlotId, World};
 
 /// A compute style: one file, one line in `COMPUTES`.
 pub trait ComputeStyle: Style {
@@ -39,17 +48,42 @@ pub trait Compute: Send {
     /// What is missing in the scene.
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>>;
 
-    /// `compute_modify ID …`.
+    /// Captures what it must know of the moment it is declared (positions).
     ///
     /// # Errors
-    /// Unknown keywords; by default there are none.
-    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        match args.next() {
-            None => Ok(()),
-            Some(w) => {
-                fail(Code::UNKNOWN_KEYWORD, w.span, format!("this compute has no option `{}`", w.text))
-            }
+    /// What is missing in the scene.
+    fn declare(&self, _w: &mut World) -> Result<()> {
+        Ok(())
+    }
+
+    /// Captures the same for particles made since, when a run begins.
+    fn welcome(&self, _w: &mut World) {}
+
+    /// Forgets what `declare` captured.
+    fn remove(&self, _w: &mut World) {}
+
+    /// The op that takes the present state as a new beginning after a snapshot of a dump (`dump_modify refresh`), for
+    /// computes that have one.
+    ///
+    /// # Errors
+    /// As `op`.
+    fn refresh(&self, _cx: &mut dyn SealCx, _stage: Stage, _when: &When) -> Result<Option<Box<dyn Op>>> {
+        Ok(None)
+    }
+
+    /// `compute_modify ID …`. The options of temperatures concern no other compute.
+    ///
+    /// # Errors
+    /// Unknown keywords.
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let span = args.here();
+        match args.choice("option of a compute", &["extra/dof", "extra", "dynamic/dof", "dynamic"])? {
+            "extra/dof" | "extra" => drop(args.number("the number of degrees of freedom")?),
+            _ => drop(args.flag("dynamic/dof")?),
         }
+        let text = "without effect: only temperatures have degrees of freedom";
+        cx.note(Diagnostic::note(Code::NO_EFFECT, span, text));
+        Ok(())
     }
 
     /// A copy, so that a failing `compute_modify` changes nothing.
@@ -59,12 +93,25 @@ pub trait Compute: Send {
 /// Every compute style.
 #[rustfmt::skip]
 pub const COMPUTES: &[&dyn ComputeStyle] = &[
+    &chunk::atom::ChunkAtom,
+    &chunk::com::ComChunk,
+    &chunk::property::PropertyChunk,
+    &chunk::reduce::ReduceChunk,
+    &chunk::vcm::VcmChunk,
+    &cluster_atom::AggregateAtom,
+    &cluster_atom::ClusterAtom,
+    &cluster_atom::FragmentAtom,
     &com::Com,
+    &coord_atom::CoordAtom,
     &damage_atom::DamageAtom,
+    &displace_atom::DisplaceAtom,
     &erotate_sphere::ErotateSphere,
+    &global_atom::GlobalAtom,
+    &gyration::Gyration,
     &ke::Ke,
     &ke_atom::KeAtom,
     &momentum::Momentum,
+    &msd::Msd,
     &pe::Pe,
     &pe_atom::PeAtom,
     &pressure::Pressure,

@@ -1,0 +1,82 @@
+//! Pairs of particles within a distance of each other, and clusters of them.
+
+use crate::neigh::list::{Pair, Reach, View, Wanted, pairs};
+use crate::world::World;
+
+/// Edge lengths of the box, zero where it does not repeat.
+pub fn periods(w: &World) -> [f64; 3] {
+    w.domain.as_ref().map_or([0.0; 3], |d| {
+        let l = d.lengths();
+        std::array::from_fn(|k| if d.boundary.periodic(k) { l[k] } else { 0.0 })
+    })
+}
+
+/// Every pair closer than `reach` that `keep` lets pass, once, in the order of their ids.
+pub fn within(w: &World, reach: Reach, keep: &(impl Fn(usize, usize) -> bool + Sync)) -> Vec<Pair> {
+    let p = &w.particles;
+    let mut wanted = Wanted::new(w.types);
+    for a in 1..=w.types as u16 {
+        (a..=w.types as u16).for_each(|b| wanted.set(a, b, reach));
+    }
+    let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: periods(w) };
+    pairs(&view, &wanted, 0.0, keep)
+}
+
+/// Sets that grow together: each has the smallest id of its members as its name.
+pub struct Clusters<'a> {
+    parent: Vec<u32>,
+    tag: &'a [u32],
+}
+
+impl<'a> Clusters<'a> {
+    /// Every particle by itself.
+    pub fn new(tag: &'a [u32]) -> Self {
+        Self { parent: (0..tag.len() as u32).collect(), tag }
+    }
+
+    fn root(&mut self, mut i: u32) -> u32 {
+        while self.parent[i as usize] != i {
+            self.parent[i as usize] = self.parent[self.parent[i as usize] as usize];
+            i = self.parent[i as usize];
+        }
+        i
+    }
+
+    /// Joins the sets of two particles.
+    pub fn join(&mut self, i: u32, j: u32) {
+        let (a, b) = (self.root(i), self.root(j));
+        let (low, high) = if self.tag[a as usize] <= self.tag[b as usize] { (a, b) } else { (b, a) };
+        self.parent[high as usize] = low;
+    }
+
+    /// The smallest id in the set of a particle.
+    pub fn name(&mut self, i: usize) -> f64 {
+        f64::from(self.tag[self.root(i as u32) as usize])
+    }
+}
+
+/// Calls `f(i, j)` for every unbroken peridynamic bond, `i` < `j`.
+pub fn bonds(w: &World, mut f: impl FnMut(u32, u32)) {
+    let Some(families) = &w.families else { return };
+    for i in 0..w.n() {
+        for n in families.neighbours(i) {
+            if n.alive && n.partner > i as u32 {
+                f(i as u32, n.partner);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clusters_are_named_by_their_smallest_id() {
+        let tag = [5, 3, 9, 1];
+        let mut c = Clusters::new(&tag);
+        c.join(0, 2);
+        c.join(2, 1);
+        assert_eq!([0, 1, 2, 3].map(|i| c.name(i)), [3.0, 3.0, 3.0, 1.0]);
+    }
+}
