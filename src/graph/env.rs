@@ -270,7 +270,12 @@ impl Values for DeckValues<'_> {
 
     fn per_atom(&mut self, w: &mut World, r: &ValueRef) -> Result<Vec<f64>> {
         let reading = self.reading(w, r)?;
-        Ok((0..w.n()).map(|i| reading.atom(w, i)).collect())
+        let values = (0..w.n()).map(|i| reading.atom(w, i)).collect();
+        if let (Reading::Atom(slot, _), RefKind::Variable) = (reading, r.kind) {
+            // Variables are reckoned anew at each use: what acts asked for needs no place during runs.
+            w.slots.get_mut(slot).empty();
+        }
+        Ok(values)
     }
 }
 

@@ -45,7 +45,7 @@ impl Op for Reneighbor {
 
 /// Largest squared displacement since the last rebuild.
 fn farthest(w: &World, t: &Tick) -> Result<f64> {
-    let (x, held) = (&w.particles.x, &w.rebuild.held);
+    let (x, held) = (&w.particles.x, w.held());
     let square = |i: usize| {
         let d = [x[i][0] - held[i][0], x[i][1] - held[i][1], x[i][2] - held[i][2]];
         let s = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
@@ -81,9 +81,7 @@ fn rebuild(w: &mut World, t: &Tick) -> Result<()> {
     if let Some(bad) = (0..n).find(|&i| p.x[i].iter().any(|a| !a.is_finite())) {
         return Err(not_finite(w, bad, t));
     }
-    for (x, image) in p.x.iter_mut().zip(&mut p.image) {
-        domain.wrap(x, image);
-    }
+    p.image.wrap(domain, &mut p.x);
     domain.shrink(&p.x);
     let domain = &*domain;
     let lost: Vec<usize> = (0..n).filter(|&i| !domain.keeps(&p.x[i])).take(5).collect();
@@ -106,8 +104,19 @@ fn rebuild(w: &mut World, t: &Tick) -> Result<()> {
     }
     w.rebuild.generation += 1;
     w.rebuild.step = t.step;
-    w.rebuild.held.clone_from(&w.particles.x);
+    hold(w);
     Ok(())
+}
+
+/// Keeps the present positions; those of creation are kept already.
+fn hold(w: &mut World) {
+    let (p, rebuild) = (&w.particles, &mut w.rebuild);
+    rebuild.unmoved = p.x == p.x0;
+    if rebuild.unmoved {
+        rebuild.held = Vec::new();
+    } else {
+        rebuild.held.clone_from(&p.x);
+    }
 }
 
 /// Forces and torques to zero; the tally starts.

@@ -9,7 +9,8 @@ pub fn bytes(w: &World) -> u64 {
         (v.capacity() * size_of::<T>()) as u64
     }
     let p = &w.particles;
-    let columns = of(&p.tag) + of(&p.kind) + of(&p.mask) + of(&p.image) + of(&p.x) + of(&p.v) + of(&p.f);
+    let columns =
+        of(&p.tag) + of(&p.kind) + of(&p.mask) + p.image.bytes() as u64 + of(&p.x) + of(&p.v) + of(&p.f);
     let own = of(&p.mass)
         + of(&p.radius)
         + of(&p.omega)
@@ -37,7 +38,7 @@ pub fn forecast(w: &World, more: f64) -> Result<Option<String>> {
     let style = w.particles.style;
     let sphere = if style.sphere { 8 + 24 + 24 } else { 0 };
     let peri = if style.peri { 8 + 24 } else { 0 };
-    let columns = 4 + 2 + 4 + 12 + 3 * 24 + 8 + 24 + 8 + sphere + peri;
+    let columns = 4 + 2 + 4 + 3 * 24 + 8 + 24 + 8 + sphere + peri;
     let n = w.n() as f64 + more;
     let bytes = n * (f64::from(columns) + FORCES_PER_PARTICLE);
     if let Some(free) = available()

@@ -6,6 +6,7 @@ pub mod contacts;
 pub mod domain;
 pub mod families;
 pub mod groups;
+pub mod images;
 pub mod lattice;
 pub mod material;
 pub mod memory;
@@ -26,6 +27,7 @@ pub use clock::Clock;
 pub use columns::Columns;
 pub use domain::{Boundary, Domain, Face};
 pub use groups::{GroupId, Groups};
+pub use images::Images;
 pub use lattice::Lattice;
 pub use particles::{AtomStyle, Particles};
 pub use rebuild::Rebuild;
@@ -118,6 +120,11 @@ impl World {
     /// Number of particles.
     pub fn n(&self) -> usize {
         self.particles.len()
+    }
+
+    /// Positions at the last rebuild of neighbour lists; none before the first.
+    pub fn held(&self) -> &[[f64; 3]] {
+        if self.rebuild.unmoved { &self.particles.x0 } else { &self.rebuild.held }
     }
 
     /// Keeps the particle `old[k]` at each new index `k`, with all that belongs to it; bonds of those

@@ -1,5 +1,7 @@
 //! The particles' core columns as plain fields.
 
+use super::Images;
+
 /// Which optional columns exist (`atom_style`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct AtomStyle {
@@ -44,7 +46,7 @@ pub struct Particles {
     /// Group bits.
     pub mask: Vec<u32>,
     /// Periodic image counts.
-    pub image: Vec<[i32; 3]>,
+    pub image: Images,
     /// Position [length].
     pub x: Vec<[f64; 3]>,
     /// Velocity [length/time].
@@ -163,7 +165,7 @@ impl Particles {
         pick(&mut self.tag, old);
         pick(&mut self.kind, old);
         pick(&mut self.mask, old);
-        pick(&mut self.image, old);
+        self.image.gather(old);
         pick(&mut self.x, old);
         pick(&mut self.v, old);
         pick(&mut self.f, old);

@@ -7,8 +7,10 @@ pub struct Rebuild {
     pub generation: u64,
     /// Step of the last rebuild.
     pub step: i64,
-    /// Positions at the last rebuild [length].
+    /// Positions at the last rebuild [length]; read them by [`World::held`](super::World::held).
     pub held: Vec<[f64; 3]>,
+    /// Everybody was where it was created, and `held` is empty.
+    pub unmoved: bool,
     /// Rebuilds in the present run, setup not counted.
     pub builds: u64,
     /// Rebuilds in the present run that came at the first step allowed, so perhaps too late.

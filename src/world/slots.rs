@@ -49,6 +49,11 @@ pub struct Slot {
 }
 
 impl Slot {
+    /// Forgets the values and gives their memory back.
+    pub fn empty(&mut self) {
+        *self = Self { name: std::mem::take(&mut self.name), ..Self::default() };
+    }
+
     /// The per-particle value of particle `i`, column `c` (from 0).
     pub fn atom_value(&self, i: usize, c: usize) -> f64 {
         self.atom[i * self.cols + c]

@@ -50,7 +50,7 @@ pub fn break_bonds<K: StretchKernels, B: Bonds>(
 ) {
     found.clear();
     body.candidates::<K>(found);
-    if options.compat_lammps || found.iter().any(|c| c.alpha != 0.0) {
+    if !found.is_empty() && (options.compat_lammps || found.iter().any(|c| c.alpha != 0.0)) {
         judge::<K, B>(body, options, found);
     }
     body.break_all(found);

@@ -174,9 +174,7 @@ pub fn ramp(at: f64, between: [f64; 2], by: [f64; 2]) -> f64 {
 /// Wraps particles into the box and lets shrink-wrapped faces follow, as LAMMPS does after it has moved them.
 pub fn settle(world: &mut World) {
     let Some(domain) = &mut world.domain else { return };
-    for (x, image) in world.particles.x.iter_mut().zip(&mut world.particles.image) {
-        domain.wrap(x, image);
-    }
+    world.particles.image.wrap(domain, &mut world.particles.x);
     domain.shrink(&world.particles.x);
 }
 

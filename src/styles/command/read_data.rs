@@ -273,13 +273,15 @@ impl Reading {
                 return fail(Code::TOO_LARGE, span(k, Column::Id), text);
             };
             p.tag[k] = tag;
+            let mut image = p.image[k];
             for d in 0..3 {
                 p.x[k][d] += self.shift[d];
-                if !periodic[d] && std::mem::take(&mut p.image[k][d]) != 0 {
+                if !periodic[d] && std::mem::take(&mut image[d]) != 0 {
                     flags = true;
                 }
             }
-            domain.wrap(&mut p.x[k], &mut p.image[k]);
+            domain.wrap(&mut p.x[k], &mut image);
+            p.image.set(k, image);
             if let Some(d) = (0..3).find(|&d| !(p.x[k][d] >= domain.lo[d] && p.x[k][d] < domain.hi[d])) {
                 return Err(outside(&domain, d, &p.x[k], span(k, Column::X(d)), p.tag[k]));
             }

@@ -297,7 +297,7 @@ impl<'a> Reader<'a> {
         let p = &mut self.data.particles;
         p.push(tag, kind, x);
         let last = p.x.len() - 1;
-        p.image[last] = image;
+        p.image.set(last, image);
         if p.style.sphere {
             p.radius[last] = 0.5 * diameter;
         }

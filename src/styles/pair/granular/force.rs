@@ -41,7 +41,7 @@ impl Force {
     /// The list, from the positions of the last rebuild: later positions are within half a skin of those.
     fn find_pairs(&mut self, w: &World) -> Result<()> {
         let p = &w.particles;
-        let held = &w.rebuild.held;
+        let held = w.held();
         let x = if held.len() == p.len() { held } else { &p.x };
         let v = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: period(w)? };
         let s = &w.settings.neighbor;
