@@ -5,6 +5,8 @@ mod checking;
 mod commands;
 mod interactive;
 mod running;
+mod stability;
+mod unused;
 
 use crate::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Sources, Span, fail, nearest};
 use crate::graph::build::{Context, DECLARATIONS, declare};
@@ -203,6 +205,10 @@ impl Session {
         let file = self.sources.add(name, text);
         let mut script = Script::new(file);
         let outcome = self.work_off(&mut script);
+        if self.checking() {
+            let given: Vec<String> = self.options.vars.iter().map(|v| v.0.clone()).collect();
+            self.notes.append(unused::unused(&self.sources, &given));
+        }
         let flushed = self.options.log.flush();
         let ending = outcome?;
         flushed?;
@@ -261,7 +267,7 @@ impl Session {
         let Some(cmd) = &line.command else { return Ok(None) };
         let outcome = self.command(script, cmd);
         self.say_notes()?;
-        outcome.map_err(|e| self.sources.adopt(e).at(cmd.span))
+        outcome.map_err(|e| checking::with_origins(self.sources.adopt(e).at(cmd.span), cmd))
     }
 
     /// Warnings go to screen and log as they come.
@@ -280,7 +286,10 @@ impl Session {
 
     fn command(&mut self, script: &mut Script, cmd: &Command) -> Result<Option<i32>> {
         match self.flow(script, cmd)? {
-            Flow::Quit(status) => return Ok(Some(status)),
+            Flow::Quit(status) => {
+                self.check_rest(script);
+                return Ok(Some(status));
+            }
             Flow::Done => return Ok(None),
             Flow::NotMine => {}
         }

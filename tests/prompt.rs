@@ -94,7 +94,7 @@ mod terminal {
         // completion: a style, then a name of the session
         type_in(&mut p, "pair_sty\t");
         p.exp_string("pair_style").unwrap();
-        type_in(&mut p, " peri\t");
+        type_in(&mut p, " peri/pm\t");
         p.exp_string("peri/pmb").unwrap();
         give_up(&mut p);
 

@@ -276,28 +276,38 @@ fn is_switch(word: &str) -> bool {
 /// # Errors
 /// A word that is not understood, with the nearest known one.
 pub fn parse(words: Vec<String>) -> Result<Options, Usage> {
+    let (mut options, mut decks) = parse_many(words)?;
+    if let Some(second) = decks.get(1) {
+        let Deck::File(path) = second else { return Err(Usage::new("one deck at a time")) };
+        let message = format!("`{}`: there is a deck already", path.display());
+        return Err(Usage::new(message).help("one deck at a time; quote a name with spaces"));
+    }
+    options.deck = decks.pop().unwrap_or_default();
+    Ok(options)
+}
+
+/// Reads a command line that may name several decks; they come beside the options.
+///
+/// # Errors
+/// A word that is not understood, with the nearest known one.
+pub fn parse_many(words: Vec<String>) -> Result<(Options, Vec<Deck>), Usage> {
     let mut options = Options::default();
-    let mut deck_given = false;
+    let mut decks = vec![];
     let mut words = words.into_iter().peekable();
     while let Some(word) = words.next() {
         if !is_switch(&word) {
-            if deck_given {
-                let message = format!("`{word}`: there is a deck already");
-                return Err(Usage::new(message).help("one deck at a time; quote a name with spaces"));
-            }
-            deck_given = true;
-            options.deck = Deck::File(word.into());
+            decks.push(Deck::File(word.into()));
             continue;
         }
         let Some(switch) = SWITCHES.iter().find(|s| s.names.contains(&word.as_str())) else {
             return Err(unknown(&word));
         };
-        if switch.names[0] == "-in" && std::mem::replace(&mut deck_given, true) {
-            return Err(Usage::new(format!("`{word}`: there is a deck already")).help("one deck at a time"));
-        }
         (switch.set)(&mut options, &mut Values { switch: word, words: &mut words })?;
+        if switch.names[0] == "-in" {
+            decks.push(std::mem::take(&mut options.deck));
+        }
     }
-    Ok(options)
+    Ok((options, decks))
 }
 
 fn unknown(word: &str) -> Usage {

@@ -3,7 +3,7 @@
 use super::args::{Deck, Options, Target};
 use super::progress::{self, Progress};
 use super::{FAILED, INTERRUPTED, OK};
-use crate::diag::{Code, Diagnostics, Result, Severity, Sources, fail, render};
+use crate::diag::{Code, Diagnostics, Result, Sources, fail, render};
 use crate::out::log::{Echo, Log};
 use crate::out::thermo::wall_time;
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
@@ -45,15 +45,6 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
     }
     let outcome = session.run_text(&name, &text);
     sources.clone_from(&session.sources);
-    if mode == Mode::Check {
-        let mut all = session.notes.clone();
-        if let Err(problems) = outcome {
-            all.append(problems);
-        }
-        print(&all, sources);
-        summary(&name, &all);
-        return Ok(if all.has_errors() { FAILED } else { OK });
-    }
     let ending = outcome?;
     Ok(if ending.interrupted { INTERRUPTED } else { ending.status.clamp(0, 255) as u8 })
 }
@@ -134,23 +125,29 @@ impl Watch for Bar {
 }
 
 /// The deck's name and text; bytes that are no UTF-8 become the replacement character and are refused where they matter.
-fn read(deck: &Deck) -> Result<(String, String)> {
+pub(super) fn read(deck: &Deck) -> Result<(String, String)> {
     let mut bytes = vec![];
-    let (name, outcome) = match deck {
-        Deck::Stdin => ("<stdin>".to_string(), stdin().read_to_end(&mut bytes).map(drop)),
-        Deck::File(path) => (path.display().to_string(), std::fs::read(path).map(|all| bytes = all)),
+    let outcome = match deck {
+        Deck::Stdin => stdin().read_to_end(&mut bytes).map(drop),
+        Deck::File(path) => std::fs::read(path).map(|all| bytes = all),
     };
+    let name = name(deck);
     match outcome {
         Ok(()) => Ok((name, String::from_utf8_lossy(&bytes).into_owned())),
         Err(e) => fail(Code::NO_FILE, None, format!("cannot read the deck `{name}`: {e}")),
     }
 }
 
-/// Opens screen and log file. Looking at a deck leaves no log unless one is asked for.
-fn open(log: &Log, o: &Options, mode: Mode, progress: &Progress) -> Result<()> {
-    if mode == Mode::Check {
-        return Ok(());
+/// What a deck is called in messages.
+pub(super) fn name(deck: &Deck) -> String {
+    match deck {
+        Deck::Stdin => "<stdin>".into(),
+        Deck::File(path) => path.display().to_string(),
     }
+}
+
+/// Opens screen and log file. Looking at a plan leaves no log unless one is asked for.
+fn open(log: &Log, o: &Options, mode: Mode, progress: &Progress) -> Result<()> {
     open_screen(log, o, progress)?;
     match &o.log {
         Target::Usual if runs(mode) => log.open(Path::new("log.lammps"), false)?,
@@ -196,19 +193,4 @@ pub(super) fn print(problems: &Diagnostics, sources: &Sources) {
         render::plain(problems, sources)
     };
     let _ = err.lock().write_all(text.as_bytes());
-}
-
-/// The last line of `perigrain check`: how many problems of which kind.
-fn summary(name: &str, problems: &Diagnostics) {
-    let count = |severity, word: &str| {
-        let n = problems.0.iter().filter(|d| d.severity == severity).count();
-        (n > 0).then(|| format!("{n} {word}{}", if n == 1 { "" } else { "s" }))
-    };
-    let parts: Vec<String> =
-        [count(Severity::Error, "error"), count(Severity::Warning, "warning"), count(Severity::Note, "note")]
-            .into_iter()
-            .flatten()
-            .collect();
-    let found = if parts.is_empty() { "no problems found".into() } else { parts.join(", ") };
-    super::show(&format!("{name}: {found}\n"));
 }

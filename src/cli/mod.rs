@@ -1,6 +1,7 @@
 //! The command line: what was asked for, done, and turned into an exit code.
 
 pub mod args;
+pub mod checking;
 pub mod deck;
 pub mod manual;
 mod pages;
@@ -45,7 +46,7 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Doc(Some(name)) => show(&manual::page(&name)?),
         Task::Run(o) => return Ok(deck::work_off(&o, Mode::Run)),
         Task::Repl(o) => return Ok(repl::run(&o)),
-        Task::Check(o) => return Ok(deck::work_off(&o, Mode::Check)),
+        Task::Check { decks, json } => return Ok(checking::check(&decks, json)),
         Task::Plan { options, dot: true, .. } => return Ok(deck::draw(&options)),
         Task::Plan { options, measure: true, .. } => return Ok(deck::work_off(&options, Mode::Measure)),
         Task::Plan { options, .. } => return Ok(deck::work_off(&options, Mode::Plan)),

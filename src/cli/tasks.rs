@@ -1,6 +1,7 @@
 //! What the program is asked to do: a subcommand, or a deck as LAMMPS would be given it.
 
 use super::args::{self, Deck, Options, SWITCHES, Usage};
+use super::checking;
 use clap::{CommandFactory, Parser};
 
 /// One call of the program.
@@ -10,8 +11,13 @@ pub enum Task {
     Run(Options),
     /// Work off lines as they are typed.
     Repl(Options),
-    /// Report every problem of a deck without acting.
-    Check(Options),
+    /// Report every problem of decks without acting.
+    Check {
+        /// The decks, each with the switches.
+        decks: Vec<Options>,
+        /// For editors.
+        json: bool,
+    },
     /// Print a deck's step plan.
     Plan {
         /// The deck and its switches.
@@ -44,10 +50,13 @@ enum Sub {
         #[arg(value_name = "DECK [SWITCH]", trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
-    /// Report every problem of a deck at once, without acting
+    /// Report every problem of decks at once, without acting
     Check {
-        /// The deck and LAMMPS' switches
-        #[arg(value_name = "DECK [SWITCH]", trailing_var_arg = true, allow_hyphen_values = true)]
+        /// Print them as JSON, for editors
+        #[arg(long)]
+        json: bool,
+        /// The decks and LAMMPS' switches
+        #[arg(value_name = "DECK… [SWITCH]", trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
     /// Print what each step of a deck's runs will do, in which order, and what was left out and why
@@ -83,27 +92,40 @@ pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
     let is_sub = Sub::command().get_subcommands().any(|c| Some(c.get_name()) == first);
     let task =
         if is_sub || first == Some("help") { subcommand(words)? } else { Task::Run(args::parse(words)?) };
+    let Some(o) = task.options() else { return Ok(task) };
+    if o.help {
+        return Ok(Task::Text(help()));
+    }
+    if o.version {
+        return Ok(Task::Text(version()));
+    }
+    if o.deck != Deck::Stdin || !is_terminal() {
+        return Ok(task);
+    }
     match &task {
-        Task::Run(o) | Task::Repl(o) | Task::Check(o) | Task::Plan { options: o, .. } if o.help => {
-            Ok(Task::Text(help()))
-        }
-        Task::Run(o) | Task::Repl(o) | Task::Check(o) | Task::Plan { options: o, .. } if o.version => {
-            Ok(Task::Text(version()))
-        }
-        Task::Check(o) | Task::Plan { options: o, .. } if o.deck == Deck::Stdin && is_terminal() => {
+        Task::Check { .. } | Task::Plan { .. } => {
             Err(Usage { message: "no deck".into(), help: Some("name one: `perigrain check in.deck`".into()) })
         }
-        Task::Run(o) if o.deck == Deck::Stdin && is_terminal() => {
-            swallowed(o).map_or(Ok(Task::Repl(o.clone())), Err)
-        }
+        Task::Run(o) => swallowed(o).map_or(Ok(Task::Repl(o.clone())), Err),
         _ => Ok(task),
+    }
+}
+
+impl Task {
+    /// The switches, those of the first deck if there are several.
+    fn options(&self) -> Option<&Options> {
+        match self {
+            Task::Run(o) | Task::Repl(o) | Task::Plan { options: o, .. } => Some(o),
+            Task::Check { decks, .. } => decks.first(),
+            _ => None,
+        }
     }
 }
 
 fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
     // `plan deck --measure` reads as well as `plan --measure deck`.
-    if words[0] == "plan" {
-        words[1..].sort_by_key(|w| !matches!(w.as_str(), "--measure" | "--dot"));
+    if ["plan", "check"].contains(&words[0].as_str()) {
+        words[1..].sort_by_key(|w| !matches!(w.as_str(), "--measure" | "--dot" | "--json"));
     }
     let sub = match Sub::try_parse_from(std::iter::once("perigrain".to_string()).chain(words)) {
         Ok(sub) => sub,
@@ -120,7 +142,10 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
     Ok(match sub {
         Sub::Run { rest } => Task::Run(args::parse(rest)?),
         Sub::Repl { rest } => Task::Repl(args::parse(rest)?),
-        Sub::Check { rest } => Task::Check(args::parse(rest)?),
+        Sub::Check { json, rest } => {
+            let (options, decks) = args::parse_many(rest)?;
+            Task::Check { decks: checking::each(&options, decks), json }
+        }
         Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
         Sub::Explain { code } => Task::Explain(code),
         Sub::Doc { name } => Task::Doc((!name.is_empty()).then(|| name.join(" "))),
@@ -183,8 +208,16 @@ mod tests {
         let vars = vec![("v".to_string(), vec!["35".to_string()])];
         assert_eq!(
             read("check in.plate -var v 35").unwrap(),
-            Task::Check(Options { vars, ..deck("in.plate") })
+            Task::Check { decks: vec![Options { vars, ..deck("in.plate") }], json: false }
         );
+    }
+
+    #[test]
+    fn several_decks_are_checked_with_the_same_switches() {
+        let with = |name: &str| Options { compat: true, ..deck(name) };
+        let task = Task::Check { decks: vec![with("a"), with("b")], json: true };
+        assert_eq!(read("check a b --json -compat lammps").unwrap(), task);
+        assert!(read("run a b").is_err());
     }
 
     #[test]

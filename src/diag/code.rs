@@ -37,6 +37,10 @@ codes! {
     NO_EFFECT = 116, "without effect", "The line is accepted for the sake of LAMMPS decks but changes nothing here.";
     SUSPICIOUS = 117, "runs, but probably not as meant", "LAMMPS would run this too; a second look is worth it.";
     NO_FILE = 118, "file cannot be opened", "The file does not exist or may not be read or written.";
+    UNUSED = 119, "never used", "A variable or group is defined and no line of the deck names it again. Often a name was mistyped where it was meant.";
+    UNREACHABLE = 120, "never reached", "A `quit` that is always carried out stands before this line.";
+    UNSTABLE = 121, "time step too long", "The step is longer than the stiffest bonds allow: the shortest waves would grow from step to step until numbers are out of control.";
+    HORIZON = 122, "horizon on a shell of neighbours", "The horizon equals a distance between lattice sites to the last digits, so that rounding decides which neighbours at that distance have bonds. A horizon a little larger, 3.015 spacings instead of 3, is what the literature uses.";
     LOST = 201, "particles lost", "A particle left a box with fixed faces. Enlarge the box, use boundary s or m, or shorten the time step.";
     NOT_FINITE = 202, "numbers out of control", "A position, velocity or force is no longer finite: the time step is too long for the stiffness, or particles overlap heavily.";
     TOO_LARGE = 203, "scene does not fit", "The forecast says that memory will not suffice.";

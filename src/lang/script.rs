@@ -69,6 +69,14 @@ impl Script {
         &self.raw
     }
 
+    /// What is left of the file that the line at hand stands in; `None` if it is a command of an `if`.
+    pub fn unread(&self) -> Option<(FileId, usize)> {
+        match self.frames.last() {
+            Some(Frame::File { file, at }) => Some((*file, *at)),
+            _ => None,
+        }
+    }
+
     /// Whether the command at hand may or may not be reached (`check` mode).
     pub fn is_speculative(&self) -> bool {
         self.speculative

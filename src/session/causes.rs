@@ -8,6 +8,8 @@ use std::collections::BTreeSet;
 pub(super) struct Refused {
     names: BTreeSet<String>,
     scene: bool,
+    /// A step table was refused, so that its columns are unknown.
+    table: bool,
 }
 
 /// Commands that name what they make in their first word.
@@ -23,6 +25,7 @@ impl Refused {
         let causes = problems.0.into_iter().filter(|d| !self.explains(d)).collect();
         let mut words = line.split_whitespace();
         let (command, first) = (words.next().unwrap_or(""), words.next());
+        self.table |= command == "thermo_style";
         if NAMING.contains(&command) {
             self.names.extend(first.map(String::from));
         } else if !HARMLESS.contains(&command) {
@@ -33,6 +36,7 @@ impl Refused {
 
     fn explains(&self, d: &Diagnostic) -> bool {
         match d.code {
+            Code::UNKNOWN_NAME if self.table && d.message.starts_with("no thermo column") => true,
             Code::UNKNOWN_NAME => self.names.iter().any(|n| d.message.contains(&format!("`{n}`"))),
             Code::WRONG_ORDER | Code::INCOMPLETE => self.scene,
             _ => false,

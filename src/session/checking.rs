@@ -1,28 +1,69 @@
 //! Checks across nodes before a run: errors where LAMMPS refuses, warnings where it would run all the same.
 
 use super::Session;
-use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
+use crate::diag::{Code, Diagnostic, Diagnostics, Label, Result, Span};
 use crate::graph::build::Context;
+use crate::lang::{Command, Script, Word};
 use crate::styles::Pair;
 use crate::world::GroupId;
 use std::cell::RefCell;
 
+/// Problems with words that came out of a variable say where that variable was defined.
+pub(super) fn with_origins(mut problems: Diagnostics, cmd: &Command) -> Diagnostics {
+    for d in &mut problems.0 {
+        let at_fault = |w: &&Word| Some(w.span) == d.span && w.origin.is_some();
+        let Some(word) = cmd.args.iter().chain([&cmd.name]).find(at_fault) else { continue };
+        if let Some(origin) = word.origin.filter(|o| d.labels.iter().all(|l| l.span != *o)) {
+            d.labels.push(Label { span: origin, text: format!("`{}` comes from here", word.text) });
+        }
+    }
+    problems
+}
+
 impl Session {
-    /// Looks at all declarations together; warnings are noted, errors returned.
+    /// Looks at all declarations together; warnings are noted, errors returned. A run that `moves` nothing, of no
+    /// steps, needs no integrator.
     ///
     /// # Errors
     /// What LAMMPS would refuse too: missing coefficients, masses.
-    pub(super) fn check_run(&mut self, span: Span) -> Result<()> {
+    pub(super) fn check_run(&mut self, span: Span, moves: bool) -> Result<()> {
         let mut found = Diagnostics::default();
         self.check_pair(span, &mut found);
         self.check_masses(span, &mut found);
-        self.check_integrators(span, &mut found);
+        if moves {
+            self.check_integrators(span, &mut found);
+            self.check_step(span, &mut found);
+        }
         let (errors, notes) = found.0.into_iter().partition(|d| d.severity == crate::diag::Severity::Error);
         for note in Vec::into_iter(notes) {
             self.note_once(note);
         }
         let errors: Vec<Diagnostic> = errors;
         if errors.is_empty() { Ok(()) } else { Err(Diagnostics(errors)) }
+    }
+
+    /// Warns where commands stand behind a `quit` that is always reached.
+    pub(super) fn check_rest(&mut self, script: &Script) {
+        let Some((file, at)) = script.unread().filter(|_| self.checking()) else { return };
+        let Some(text) = self.sources.get(file).map(|s| s.text.as_str()) else { return };
+        let (mut start, mut first) = (at, None);
+        for line in text[at..].split_inclusive('\n') {
+            let code = line.trim();
+            if code.starts_with("label") {
+                // Some jump may lead there.
+                return;
+            }
+            if first.is_none() && !code.is_empty() && !code.starts_with('#') {
+                let begin = start + line.len() - line.trim_start().len();
+                first = Some(Span::new(file, begin, begin + code.len()));
+            }
+            start += line.len();
+        }
+        if let Some(span) = first {
+            let text = "this line is never reached: `quit` comes before it";
+            let help = "leave out what follows `quit`, or put the `quit` behind an `if`";
+            self.notes.push(Diagnostic::warning(Code::UNREACHABLE, span, text).help(help));
+        }
     }
 
     /// A deck with a loop around `run` is told once.

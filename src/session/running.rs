@@ -31,7 +31,7 @@ impl Session {
         self.thermo_computes();
         self.record(cmd, Role::Run, None, vec![], vec![]);
         self.ready(cmd.span)?;
-        self.check_run(cmd.span)?;
+        self.check_run(cmd.span, args.steps > 0)?;
         if self.checking() {
             return Ok(());
         }

@@ -8,7 +8,8 @@ pub(super) const PERIGRAIN: Entry = (
     Doc {
         syntax: "perigrain DECK [switch …]\n\
             perigrain [switch …] < DECK\n\
-            perigrain check|plan|run DECK [switch …]\n\
+            perigrain plan|run DECK [switch …]\n\
+            perigrain check DECK … [--json] [switch …]\n\
             perigrain repl [DECK] [switch …]\n\
             perigrain doc [name]\n\
             perigrain explain CODE",
@@ -16,6 +17,7 @@ pub(super) const PERIGRAIN: Entry = (
         text: TEXT,
         example: "perigrain in.plate -var v 70 -log plate.log\n\
             perigrain check in.plate\n\
+            perigrain check --json in.plate\n\
             perigrain plan in.plate --measure\n\
             perigrain plan --dot in.plate\n\
             perigrain -in in.plate -screen none -threads 2 -compat lammps\n\
@@ -25,8 +27,8 @@ pub(super) const PERIGRAIN: Entry = (
 );
 
 const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off. `check` reads it, changes and writes \
-    nothing, and reports every problem at once. `plan` prints what each step of the deck's runs will do, in which order, \
-    and what was left out and why; with `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
+    nothing, and reports every problem of one or more decks at once, with `--json` as JSON. `plan` prints what each step of \
+    the deck's runs will do, in which order, and what was left out and why; with `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
     prints the command graph for graphviz. `doc` prints a page of this manual, `explain` the story behind the code of a \
     message. `repl`, and `perigrain` alone on a terminal, work lines off as they are typed: see [the \
     prompt](prompt.md).\n\n\

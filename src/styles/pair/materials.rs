@@ -1,7 +1,7 @@
 //! Coefficients of peridynamic bonds from materials: `pair_coeff … material ID …` and `pair_coeff … mix RULE`.
 
 use super::TypePairs;
-use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
+use crate::diag::{Code, Diagnostic, Result, Severity, Span, fail, nearest};
 use crate::lang::Args;
 use crate::laws::peri::moduli::{self, BOND_NU, Elastic, Form, Mix};
 use crate::styles::{BuildCx, UseKind};
@@ -150,12 +150,19 @@ fn stuff(args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
     cx.uses(UseKind::Material, &id.text);
     let mut horizon = None;
     let mut s = of(m);
+    let mut chosen = false;
     while let Some(word) = args.peek() {
         match args.choice("keyword of a material", &["horizon", "form", "s00", "alpha"])? {
-            "horizon" => horizon = Some(args.positive("the horizon in lattice spacings")?),
+            "horizon" => {
+                let span = args.here();
+                let ratio = args.positive("the horizon in lattice spacings")?;
+                super::horizon::warn(ratio, 1.0, span, cx);
+                horizon = Some(ratio);
+            }
             "form" => {
                 let name = args.choice("form of the micro-modulus", &Form::NAMES.map(|f| f.0))?;
                 s.form = Form::from_name(name).unwrap_or_default();
+                chosen = true;
             }
             "s00" => s.strength = Some(Strength::Stretch(args.positive("s00")?)),
             _ => s.alpha = args.non_negative("alpha")?,
@@ -174,7 +181,9 @@ fn stuff(args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
         .into());
     }
     if s.solid.defies_bonds() {
-        cx.note(poisson(&id.text, &s, id.span));
+        let said = poisson(&id.text, &s, id.span);
+        // Who names the modulus to keep knows that the others are off.
+        cx.note(if chosen { Diagnostic { severity: Severity::Note, ..said } } else { said });
     }
     Ok(s)
 }

@@ -1,6 +1,7 @@
 //! Pair styles: forces between particles.
 
 mod granular;
+mod horizon;
 mod hybrid;
 pub mod materials;
 mod peri_pmb;
@@ -9,6 +10,7 @@ use super::{BuildCx, SealCx, Style};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
 use crate::plan::Op;
+use crate::world::World;
 
 /// Type pairs (i ≤ j, from 1) that a `pair_coeff` line speaks of.
 pub type TypePairs = [(u16, u16)];
@@ -57,6 +59,12 @@ pub trait Pair: Send {
     /// Facts of the scene it needs (`volume`, `density`, `diameter` …), for checks.
     fn needs(&self) -> &'static [&'static str] {
         &[]
+    }
+
+    /// The longest time step that is stable, by its own estimate, for particles of this density where a type has
+    /// none of its own [time units]; `None` if it cannot tell.
+    fn stable_step(&self, _w: &World, _density: Option<f64>) -> Option<f64> {
+        None
     }
 
     /// For peridynamic styles: whether forces are true forces (else force densities, as LAMMPS).

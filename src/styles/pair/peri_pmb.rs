@@ -1,5 +1,6 @@
 //! `pair_style peri/pmb`: bond-based peridynamics with the prototype microelastic brittle model.
 
+use super::horizon;
 use super::materials::Materials;
 use super::{Pair, PairStyle, TypePairs};
 use crate::diag::{Code, Diagnostic, Result, fail};
@@ -111,6 +112,9 @@ impl Pmb {
                 )
                 .help("a horizon of about 3 spacings is usual"),
             );
+        }
+        if !cx.world.lattice.basis.is_empty() && lc > 0.0 {
+            horizon::warn(horizon / lc, lc, span, cx);
         }
         Ok(PmbCoeff { c, horizon, s00, alpha })
     }
@@ -242,6 +246,21 @@ impl Pair for Pmb {
 
     fn needs(&self) -> &'static [&'static str] {
         if self.materials.is_empty() { &["volume", "density"] } else { &["volume"] }
+    }
+
+    fn stable_step(&self, w: &World, density: Option<f64>) -> Option<f64> {
+        let types = self.table.types() as u16;
+        let stiffest = |i: u16| {
+            let all = (1..=types).filter_map(|j| self.table.get(i, j));
+            all.map(|p| p.c * p.horizon * p.horizon).reduce(f64::max)
+        };
+        // Bonds sum up to 2π c δ² over a whole ball (Silling & Askari 2005, equation 34).
+        let ftm2v = w.settings.units.constants().ftm2v;
+        let step = |i: u16| {
+            let rho = self.materials.density(i).or(density)?;
+            Some((rho / (ftm2v * std::f64::consts::PI * stiffest(i)?)).sqrt())
+        };
+        (1..=types).filter_map(step).reduce(f64::min)
     }
 
     fn true_forces(&self) -> Option<bool> {

@@ -1,0 +1,145 @@
+//! Variables and groups that a deck defines and never uses, found in its text.
+
+use crate::diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span, nearest};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A word of letters, digits and underscores.
+struct Token<'a> {
+    text: &'a str,
+    at: usize,
+    /// It stands at the beginning of a line or of a quoted text.
+    opens: bool,
+    /// `$` follows at once: only a part of a name.
+    part: bool,
+}
+
+/// A warning for each name that all texts together only define. `given` are variables from the command line.
+pub(super) fn unused(sources: &Sources, given: &[String]) -> Diagnostics {
+    let mut defined: BTreeMap<(&str, &str), Span> = BTreeMap::new();
+    let (mut used, mut parts) = (BTreeSet::new(), vec![]);
+    for (file, text) in (0..).map_while(|k| Some((FileId(k), sources.get(FileId(k))?.text.as_str()))) {
+        let mut kind = None;
+        for t in tokens(text) {
+            let defines = kind.take();
+            if t.opens && (t.text == "variable" || t.text == "group") {
+                kind = Some(t.text);
+            } else if let Some(kind) = defines.filter(|_| !t.part) {
+                defined.entry((kind, t.text)).or_insert(Span::new(file, t.at, t.at + t.text.len()));
+            } else if t.part {
+                parts.push(t.text);
+            } else {
+                used.insert(t.text);
+            }
+        }
+    }
+    let is_used = |name: &str| {
+        let referred = |u: &&str| u.strip_prefix("v_").is_some_and(|u| u == name);
+        used.contains(name) || used.iter().any(referred)
+    };
+    let mut found = Diagnostics::default();
+    for (&(kind, name), &span) in &defined {
+        let built = parts.iter().any(|p| name.starts_with(p.strip_prefix("v_").unwrap_or(p)));
+        if is_used(name) || built || given.iter().any(|g| g == name) || name == "all" {
+            continue;
+        }
+        let d = Diagnostic::warning(Code::UNUSED, span, format!("{kind} `{name}` is never used"));
+        // Something that is used and never defined is probably what was meant.
+        let undefined =
+            used.iter().filter_map(|u| u.strip_prefix("v_")).filter(|u| !defined.contains_key(&(kind, u)));
+        found.push(match nearest(name, undefined) {
+            Some(near) if kind == "variable" => {
+                d.help(format!("the deck uses `{near}`, which it does not define"))
+            }
+            _ => d.help("leave the line out, or use the name where it was meant"),
+        });
+    }
+    found.0.sort_by_key(|d| d.span.map(|s| (s.file, s.start)));
+    found
+}
+
+/// The words of a deck outside comments.
+fn tokens(text: &str) -> Vec<Token<'_>> {
+    let bytes = text.as_bytes();
+    let mut out = vec![];
+    let (mut k, mut opens, mut quote) = (0, true, None);
+    while k < bytes.len() {
+        let c = bytes[k];
+        if c.is_ascii_alphanumeric() || c == b'_' {
+            let end = k + bytes[k..].iter().take_while(|b| b.is_ascii_alphanumeric() || **b == b'_').count();
+            // `${name}`: the braces are no part of it; `name$x` and `name${x}` go on.
+            out.push(Token { text: &text[k..end], at: k, opens, part: bytes.get(end) == Some(&b'$') });
+            (k, opens) = (end, false);
+            continue;
+        }
+        match c {
+            b'#' if quote.is_none() => k += bytes[k..].iter().take_while(|b| **b != b'\n').count(),
+            b'"' | b'\'' => {
+                if quote == Some(c) {
+                    quote = None;
+                } else if quote.is_none() {
+                    quote = Some(c);
+                }
+                opens = true;
+                k += 1;
+            }
+            b'\n' => {
+                // A quote that is still open there is a mistake of its own.
+                quote = None;
+                opens = !text[..k].trim_end().ends_with('&');
+                k += 1;
+            }
+            _ => {
+                opens &= c.is_ascii_whitespace();
+                k += 1;
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(deck: &str, wanted: &[&str]) {
+        let mut sources = Sources::default();
+        sources.add("in.deck", deck);
+        let found = unused(&sources, &["given".into()]);
+        let said: Vec<String> =
+            found.0.iter().map(|d| format!("{} {}", d.span.unwrap().start, d.message)).collect();
+        assert_eq!(said, wanted, "{deck}");
+    }
+
+    #[test]
+    fn names_that_are_only_defined() {
+        check("variable a equal 1\nprint a # ${b}\nvariable b equal 2\n", &["43 variable `b` is never used"]);
+        check("group g type 1\ngroup g region r\n", &["6 group `g` is never used"]);
+        check("variable given index 1\n", &[]);
+    }
+
+    #[test]
+    fn every_way_to_use_a_name() {
+        for usage in [
+            "print \"${long}\"",
+            "fix 1 all move v_long",
+            "variable b equal v_long\nprint $b",
+            "next long",
+            "print ${x}long",
+        ] {
+            check(&format!("variable long equal 1\n{usage}\n"), &[]);
+        }
+        check("variable x equal 1\nprint $x", &[]);
+        check("group g type 1\nfix 1 g nve", &[]);
+        check("group g1 type 1\nfix 1 g$n nve", &[]);
+        check("if \"1 > 0\" then \"variable k equal 1\"\nprint $k", &[]);
+        check("group g union a b\nset group g density 1", &[]);
+    }
+
+    #[test]
+    fn a_misspelt_use_is_named() {
+        let mut sources = Sources::default();
+        sources.add("in.deck", "variable depth equal 1\nfix 1 all setforce v_dept 0 0\n");
+        assert!(unused(&sources, &[]).0[0].help[0].contains("`dept`"));
+    }
+}

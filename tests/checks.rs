@@ -1,0 +1,186 @@
+//! `perigrain check`: all mistakes of a deck at once, in no time, and no warning where nothing is wrong.
+#![allow(clippy::unwrap_used)] // a test fails by panicking
+
+use perigrain::diag::{Diagnostic, Severity};
+use perigrain::out::log::Log;
+use perigrain::session::{Mode, Options, Session};
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+/// Ten mistakes, each with the columns of the word at fault and a part of what is said.
+const PLANTED: &[(usize, usize, usize, &str, &str)] = &[
+    (9, 1, 8, "PG0102", "unknown command `boundery`"),
+    (15, 34, 37, "PG0109", "there is no region `blok`"),
+    (17, 28, 35, "PG0104", "unknown keyword of set: `diametre`"),
+    (20, 17, 25, "PG0103", "unknown fix style `nve/spher`"),
+    (21, 7, 13, "PG0109", "there is no group `boundry`"),
+    (22, 23, 26, "PG0107", "the velocity must be a number, not `-1.O`"),
+    (23, 26, 30, "PG0104", "no column `epiar`"),
+    (25, 18, 29, "PG0103", "unknown compute style `damage/atoms`"),
+    (26, 10, 17, "PG0109", "variable `spedd` is not defined"),
+    (28, 7, 11, "PG0107", "the number of steps must be a whole number, not `1000x`"),
+];
+
+#[test]
+fn ten_planted_mistakes_are_all_found_at_once() {
+    let deck = include_str!("checks/ten.in");
+    // Once to load what is loaded once; then as long as a check of an open file in an editor takes.
+    check(deck, Path::new("."));
+    let begin = Instant::now();
+    let (said, session) = check(deck, Path::new("."));
+    let time = begin.elapsed();
+    let mut found = String::new();
+    for d in said.iter().filter(|d| d.severity == Severity::Error) {
+        let span = d.span.unwrap();
+        let (line, column) = session.sources.place(span);
+        let _ = writeln!(
+            found,
+            "{line}:{column}-{} {} {}",
+            column + (span.end - span.start) as usize - 1,
+            d.code,
+            d.message
+        );
+    }
+    for (line, from, to, code, part) in PLANTED {
+        let begin = format!("{line}:{from}-{to} {code} ");
+        assert!(
+            found.lines().any(|l| l.starts_with(&begin) && l.contains(part)),
+            "{begin}{part} is not among\n{found}"
+        );
+    }
+    assert_eq!(found.lines().count(), PLANTED.len(), "{found}");
+    assert!(time < Duration::from_millis(50), "{time:?}");
+}
+
+fn check(deck: &str, folder: &Path) -> (Vec<Diagnostic>, Session) {
+    let options =
+        Options { mode: Mode::Check, log: Log::silent(), folder: folder.into(), ..Options::default() };
+    let mut session = Session::new(options).unwrap();
+    let outcome = session.run_text("in.deck", deck);
+    let mut all = session.notes.0.clone();
+    all.extend(outcome.err().into_iter().flat_map(|e| e.0));
+    (all, session)
+}
+
+/// Decks that draw a warning rightly: name, a part of it.
+const RIGHTLY: &[(&str, &str)] = &[
+    // `clear` went back to units lj, so that `lattice sc 0.001` has a spacing of 10.
+    ("pd_data.in", "shorter than the lattice spacing"),
+    // Half of an impact is one sphere that flies.
+    ("reduced.in", "no pair_style"),
+];
+
+#[test]
+fn nothing_is_said_against_decks_that_are_right() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let below = |folder: &str| {
+        let entries = fs::read_dir(root.join(folder)).unwrap();
+        entries.map(|e| e.unwrap().path()).collect::<Vec<PathBuf>>()
+    };
+    let examples = below("examples").into_iter().filter(|p| p.is_dir()).flat_map(|p| {
+        let entries = fs::read_dir(p).unwrap();
+        entries
+            .map(|e| e.unwrap().path())
+            .filter(|p| p.file_name().unwrap().to_string_lossy().starts_with("in."))
+            .collect::<Vec<_>>()
+    });
+    let decks = examples.chain(below("tests/lammps/decks")).chain(below("tests/lammps/artefacts"));
+    let (mut wrong, mut count) = (String::new(), 0);
+    for path in decks.filter(|p| !p.to_string_lossy().contains("data.")) {
+        let text = fs::read_to_string(&path).unwrap();
+        let (said, _) = check(&text, path.parent().unwrap());
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        count += 1;
+        for d in said.iter().filter(|d| d.severity == Severity::Warning) {
+            if !RIGHTLY.iter().any(|(n, part)| *n == name && d.message.contains(part)) {
+                let _ = writeln!(wrong, "{name}: {}", d.message);
+            }
+        }
+    }
+    assert!(count > 15, "only {count} decks");
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+/// Warnings of one deck as `line:from-to message`.
+#[track_caller]
+fn warns(deck: &str, wanted: &[&str]) {
+    let (said, session) = check(deck, Path::new("."));
+    let text = |d: &Diagnostic| {
+        let span = d.span.unwrap();
+        let (line, column) = session.sources.place(span);
+        format!("{line}:{column} {}", d.message)
+    };
+    let found: Vec<String> = said.iter().filter(|d| d.severity > Severity::Note).map(text).collect();
+    assert_eq!(found.len(), wanted.len(), "{found:?}");
+    for w in wanted {
+        assert!(found.iter().any(|f| f.starts_with(w)), "{w} is not among {found:?}");
+    }
+}
+
+const SCENE: &str = include_str!("scripts/scene.in");
+
+#[test]
+fn the_time_step_is_held_against_the_stiffest_bonds() {
+    // √(ρ/(π c δ²)) = √(2500/(π 2e21 0.0030001²)) = 2.1e-7
+    warns(&format!("{SCENE}\ntimestep 2e-7\nrun 10\n"), &[]);
+    warns(&format!("{SCENE}\ntimestep 2.2e-7\nrun 10\n"), &["16:1 the time step 2.2e-7 is longer"]);
+    warns(&format!("{SCENE}\ntimestep 2.2e-7\nfix t all dt/reset 10 NULL NULL 0.1\nrun 10\n"), &[]);
+}
+
+#[test]
+fn horizons_on_a_shell_of_neighbours_are_seen() {
+    let with = |h: &str| SCENE.replace("0.0030001", h) + "\nrun 1\n";
+    warns(&with("0.0030001"), &[]);
+    warns(
+        &with("0.003"),
+        &["12:26 the horizon is exactly 3 lattice spacings, where each particle has 30 neighbours"],
+    );
+}
+
+#[test]
+fn lines_behind_quit_and_names_nobody_uses() {
+    warns("units si\nquit\n# the rest\n\nrun 100\nrun 200\n", &["5:1 this line is never reached"]);
+    warns("units si\nif \"1 > 2\" then quit\nprint a\n", &[]);
+    warns("jump SELF end\nquit\nlabel end\nprint a\n", &[]);
+    warns("quit\nlabel end\nprint a\n", &[]);
+    warns("variable a index 1 2\nprint b\n", &["1:10 variable `a` is never used"]);
+    warns(&format!("{SCENE}\ngroup left id 1\nrun 1\n"), &["16:7 group `left` is never used"]);
+}
+
+#[test]
+fn a_value_put_in_shows_where_it_comes_from() {
+    let (said, session) =
+        check(&format!("variable s string nve/spher\n{SCENE}\nfix 2 all $s\n"), Path::new("."));
+    let d = said.iter().find(|d| d.severity == Severity::Error).unwrap();
+    assert_eq!(session.sources.place(d.span.unwrap()), (17, 11));
+    assert_eq!(session.sources.place(d.labels[0].span).0, 1);
+}
+
+#[test]
+fn several_decks_and_json() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("in.a"), "unita si\n").unwrap();
+    fs::write(folder.path().join("in.b"), "units si\n").unwrap();
+    let run = |args: &[&str]| {
+        let o = Command::new(env!("CARGO_BIN_EXE_perigrain"))
+            .args(args)
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        (o.status.code(), String::from_utf8(o.stdout).unwrap(), String::from_utf8(o.stderr).unwrap())
+    };
+    let (code, out, err) = run(&["check", "in.a", "in.b"]);
+    assert_eq!((code, out.as_str()), (Some(1), "in.a: 1 error\nin.b: no problems found\n"), "{err}");
+    let (code, out, err) = run(&["check", "--json", "in.a", "in.b", "in.c"]);
+    assert_eq!((code, err.as_str()), (Some(1), ""));
+    let lines: Vec<&str> = out.lines().collect();
+    assert_eq!(lines.len(), 2, "{out}");
+    assert!(lines[0].starts_with(
+        "[{\"file\": \"in.a\", \"line\": 1, \"column\": 1, \"end_column\": 6, \"severity\": \"error\""
+    ));
+    assert!(lines[1].contains("\"file\": \"in.c\", \"line\": null") && lines[1].ends_with("}]"), "{out}");
+    assert_eq!(run(&["check", "--json", "in.b"]), (Some(0), "[]\n".into(), String::new()));
+}
