@@ -12,6 +12,7 @@ use crate::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Sources, Span, 
 use crate::graph::build::{Context, DECLARATIONS, declare};
 use crate::graph::env::{DeckEnv, DeckValues};
 pub use crate::graph::keywords::KEYWORDS as THERMO;
+use crate::graph::regions::place_now;
 use crate::graph::{Graph, Node, Role};
 use crate::lang::{Command, Files, Flow, Line, Script, Vars};
 use crate::out::log::Log;
@@ -361,6 +362,10 @@ impl Session {
         let cx = Context { span: cmd.span, checking: self.checking(), notes: &notes, uses: &uses };
         let (mut said, mut then) = (vec![], vec![]);
         let outcome: Result<Vec<&'static str>> = (|| {
+            let vars = Arc::new(self.vars.clone());
+            let named = |name: &str| cmd.args.iter().any(|w| w.text == name);
+            let checking = self.checking();
+            place_now(&mut self.world, &self.graph, &vars, checking, named)?;
             let mut args = crate::lang::Args::new(cmd);
             let act = style.parse(&mut args, &cx.build(&self.graph, &self.world, "", GroupId::ALL))?;
             args.finish()?;
@@ -368,7 +373,7 @@ impl Session {
             if self.checking() && act.needs_particles() {
                 return Ok(settles);
             }
-            let mut values = DeckValues { graph: &self.graph, vars: Arc::new(self.vars.clone()) };
+            let mut values = DeckValues { graph: &self.graph, vars };
             self.world.spread_type_masses();
             let world = &mut self.world;
             act.apply(&mut ActCx {

@@ -3,6 +3,7 @@
 use super::keywords;
 use super::measure;
 use super::node::Graph;
+use super::regions;
 use super::seal::Sealer;
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::{Clock, Env, RefKind, Value, ValueRef, Vars};
@@ -171,6 +172,8 @@ impl DeckEnv<'_> {
         ask: impl FnOnce(&mut Sealer) -> Result<T>,
     ) -> Result<(T, StepPlan, Tick)> {
         self.w.spread_type_masses();
+        // A region without a place now stays where it was; whoever names it in a line or formula is told.
+        let _ = regions::place_now(self.w, self.graph, &self.vars, self.checking, |_| true);
         let mut sealer = Sealer::new(self.w, self.graph, self.vars.clone());
         sealer.at(span);
         let answer = ask(&mut sealer)?;
@@ -231,6 +234,9 @@ impl Env for DeckEnv<'_> {
 
     fn group_function(&mut self, name: &str, args: &[String], span: Span) -> Result<Value> {
         self.w.spread_type_masses();
+        regions::place_now(self.w, self.graph, &self.vars, self.checking, |name| {
+            args.iter().any(|a| a == name)
+        })?;
         let value = measure::group_function(self.w, name, args, span)?;
         Ok(if self.checking { Value::Unknown } else { Value::Number(value) })
     }
@@ -257,6 +263,11 @@ pub struct DeckValues<'a> {
 }
 
 impl Values for DeckValues<'_> {
+    fn with_internal(&mut self, _w: &mut World, _r: &ValueRef, set: &[(&ValueRef, f64)]) -> Result<f64> {
+        let span = set.first().map(|(v, _)| v.span);
+        fail(Code::NOT_SUPPORTED, span, "internal-style variables are not in perigrain yet")
+    }
+
     fn scalar(&mut self, w: &mut World, r: &ValueRef) -> Result<f64> {
         match self.reading(w, r)? {
             reading if reading.per_atom() => fail(

@@ -1,11 +1,13 @@
 //! Commands as a graph of declarations, acts and runs.
 
 pub mod build;
+pub mod dynamic;
 pub mod env;
 pub mod keywords;
 pub mod measure;
 pub mod node;
 pub mod ops;
+pub mod regions;
 pub mod seal;
 pub mod show;
 pub mod thermo;

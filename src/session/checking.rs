@@ -34,6 +34,8 @@ impl Session {
             self.check_integrators(span, &mut found);
             self.check_step(span, &mut found);
         }
+        self.check_integrators(span, &mut found);
+        crate::graph::dynamic::check(&self.graph, &self.world, &mut found);
         let (errors, notes) = found.0.into_iter().partition(|d| d.severity == crate::diag::Severity::Error);
         for note in Vec::into_iter(notes) {
             self.note_once(note);

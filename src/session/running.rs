@@ -123,11 +123,14 @@ impl Session {
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
         s.at(span);
         s.add(vec![Box::new(Reneighbor), Box::new(ClearForces)], span);
+        crate::graph::regions::seal(&mut s)?;
         if let Some(node) = &self.graph.pair {
             s.at(node.span);
             let ops = node.pair.ops(&mut s)?;
             s.add(ops, node.span);
         }
+        s.at(span);
+        crate::graph::dynamic::seal(&mut s)?;
         for f in &self.graph.fixes {
             s.at(f.span);
             let ops = f.fix.ops(&mut s)?;

@@ -391,6 +391,11 @@ pub trait Values {
     /// # Errors
     /// As `scalar`.
     fn per_atom(&mut self, w: &mut World, r: &ValueRef) -> Result<Vec<f64>>;
+    /// One number, after internal-style variables have been given these values.
+    ///
+    /// # Errors
+    /// As `scalar`, and variables that are not internal-style.
+    fn with_internal(&mut self, w: &mut World, r: &ValueRef, set: &[(&ValueRef, f64)]) -> Result<f64>;
 }
 
 /// What an act may use.

@@ -121,7 +121,7 @@ pub fn keep_places(w: &mut World, key: &str, group: GroupId, what: impl Fn(&Worl
 #[derive(Clone)]
 pub struct Chosen {
     bit: u32,
-    region: Option<Region>,
+    region: Option<String>,
 }
 
 impl Chosen {
@@ -130,27 +130,39 @@ impl Chosen {
     /// # Errors
     /// The region no longer exists.
     pub fn new(w: &World, group: GroupId, region: Option<&str>, span: Span) -> Result<Self> {
-        let region = match region {
-            None => None,
-            Some(name) => match w.regions.get(name) {
-                Some(r) => Some(r.clone()),
-                None => {
-                    return Err(Diagnostic::error(
-                        Code::UNKNOWN_NAME,
-                        span,
-                        format!("there is no region `{name}` any more"),
-                    )
-                    .into());
-                }
-            },
-        };
-        Ok(Self { bit: group.bit(), region })
+        if let Some(name) = region
+            && !w.regions.contains_key(name)
+        {
+            let text = format!("there is no region `{name}` any more");
+            return Err(Diagnostic::error(Code::UNKNOWN_NAME, span, text).into());
+        }
+        Ok(Self { bit: group.bit(), region: region.map(String::from) })
     }
 
+    /// Who is meant at this moment: regions may move. Of a region that is gone nobody.
+    pub fn now<'w>(&self, w: &'w World) -> ChosenNow<'w> {
+        match &self.region {
+            None => ChosenNow { bit: self.bit, region: None },
+            Some(name) => {
+                let region = w.regions.get(name);
+                ChosenNow { bit: if region.is_some() { self.bit } else { 0 }, region }
+            }
+        }
+    }
+}
+
+/// Who is meant at one moment.
+#[derive(Clone, Copy)]
+pub struct ChosenNow<'w> {
+    bit: u32,
+    region: Option<&'w Region>,
+}
+
+impl ChosenNow<'_> {
     /// Whether a particle with these group bits at this place is meant.
     #[inline]
     pub fn has(&self, mask: u32, x: [f64; 3]) -> bool {
-        mask & self.bit != 0 && self.region.as_ref().is_none_or(|r| r.contains(x))
+        mask & self.bit != 0 && self.region.is_none_or(|r| r.contains(x))
     }
 }
 
@@ -163,6 +175,7 @@ pub fn change_forces<const N: usize>(
 ) -> [f64; N] {
     let mut forces = std::mem::take(&mut w.particles.f);
     let world = &*w;
+    let chosen = chosen.now(world);
     let columns = (&mut forces[..], &world.particles.x[..], &world.particles.mask[..]);
     let chunk = |start: usize, (f, x, mask): (&mut [[f64; 3]], &[[f64; 3]], &[u32])| {
         let mut total = [0.0; N];

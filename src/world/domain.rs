@@ -51,13 +51,15 @@ pub struct Domain {
     pub min_lo: [f64; 3],
     /// See `min_lo`.
     pub min_hi: [f64; 3],
+    /// Whether the scene lies in the plane z = 0: particles see no images along z.
+    pub flat: bool,
 }
 
 impl Domain {
     /// A box between two corners with these faces.
     pub fn new(lo: [f64; 3], hi: [f64; 3], boundary: Boundary) -> Self {
         let small = [0, 1, 2].map(|d| 1e-4 * (hi[d] - lo[d]));
-        Self { lo, hi, boundary, small, min_lo: lo, min_hi: hi }
+        Self { lo, hi, boundary, small, min_lo: lo, min_hi: hi, flat: false }
     }
 
     /// Moves shrink-wrapped faces a little outside, so that particles on the faces as given are inside (LAMMPS).
@@ -83,9 +85,9 @@ impl Domain {
         l[0] * l[1] * l[2]
     }
 
-    /// Which dimensions are periodic.
+    /// Along which dimensions particles see images of each other: the periodic ones, without z in a flat scene.
     pub fn periodic(&self) -> [bool; 3] {
-        [0, 1, 2].map(|d| self.boundary.periodic(d))
+        [0, 1, 2].map(|d| self.boundary.periodic(d) && !(self.flat && d == 2))
     }
 
     /// Wraps a position into the box along periodic dimensions and counts the crossings in `image`.
@@ -156,6 +158,11 @@ impl Domain {
                 _ => {}
             }
         }
+    }
+
+    /// Whether a point is inside the box, lower faces inclusive.
+    pub fn holds(&self, x: &[f64; 3]) -> bool {
+        (0..3).all(|d| x[d] >= self.lo[d] && x[d] < self.hi[d])
     }
 
     /// Whether a point is inside all fixed faces (upper faces exclusive, as LAMMPS loses particles).

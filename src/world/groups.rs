@@ -1,7 +1,9 @@
-//! Named sets of particles, one bit each.
+//! Named sets of particles, one bit each, and how dynamic ones choose theirs.
+
+use super::region::Variable;
 
 /// Index of a group; its bit in every particle's mask.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 pub struct GroupId(pub u8);
 
 impl GroupId {
@@ -14,17 +16,31 @@ impl GroupId {
     }
 }
 
+/// Whom a dynamic group takes, again and again during runs.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Dynamic {
+    /// Only members of this group.
+    pub parent: GroupId,
+    /// Only inside this region.
+    pub region: Option<String>,
+    /// Only where this atom-style variable is not zero.
+    pub variable: Option<Variable>,
+    /// At steps that are multiples of this, and at the start of a run.
+    pub every: i64,
+}
+
 /// The names of the groups in use (at most 32, as LAMMPS).
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Groups {
     names: [Option<String>; 32],
+    dynamic: [Option<Dynamic>; 32],
 }
 
 impl Default for Groups {
     fn default() -> Self {
         let mut names = [const { None }; 32];
         names[0] = Some("all".to_string());
-        Self { names }
+        Self { names, dynamic: [const { None }; 32] }
     }
 }
 
@@ -47,6 +63,35 @@ impl Groups {
     /// Forgets a group (its bit must be cleared in the masks by the caller).
     pub fn remove(&mut self, id: GroupId) {
         self.names[id.0 as usize] = None;
+        self.dynamic[id.0 as usize] = None;
+    }
+
+    /// How a dynamic group chooses; nothing for static groups.
+    pub fn dynamic(&self, id: GroupId) -> Option<&Dynamic> {
+        self.dynamic[id.0 as usize].as_ref()
+    }
+
+    /// Makes a group dynamic, or static with `None`.
+    pub fn set_dynamic(&mut self, id: GroupId, rule: Option<Dynamic>) {
+        self.dynamic[id.0 as usize] = rule;
+    }
+
+    /// The dynamic groups in order of definition.
+    pub fn dynamics(&self) -> impl Iterator<Item = (GroupId, &Dynamic)> {
+        (0..32).zip(&self.dynamic).filter_map(|(k, d)| d.as_ref().map(|d| (GroupId(k), d)))
+    }
+
+    /// The name of a dynamic group that asks this region.
+    pub fn follower(&self, region: &str) -> Option<&str> {
+        let (id, _) = self.dynamics().find(|(_, d)| d.region.as_deref() == Some(region))?;
+        Some(self.name(id))
+    }
+
+    /// The name of a dynamic group that chooses from the one of this name.
+    pub fn child_of(&self, parent: &str) -> Option<&str> {
+        let parent = self.find(parent)?;
+        let (id, _) = self.dynamics().find(|(_, d)| d.parent == parent)?;
+        Some(self.name(id))
     }
 
     /// The group's name.

@@ -18,7 +18,7 @@ impl Cell {
         Self { edges: [[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]], basis: basis.to_vec() }
     }
 
-    /// The cell of a named three-dimensional style (`sc bcc fcc hcp diamond`); `None` for other words.
+    /// The cell of a named style (`sc bcc fcc hcp diamond`, in two dimensions `sq sq2 hex`); `None` for other words.
     pub fn named(style: &str) -> Option<Self> {
         const CUBE: [f64; 3] = [1.0, 1.0, 1.0];
         const FACES: [[f64; 3]; 3] = [[0.0, 0.5, 0.5], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]];
@@ -45,6 +45,9 @@ impl Cell {
                     [0.75, 0.75, 0.25],
                 ],
             ),
+            "sq" => Self::orthogonal(CUBE, &[corner]),
+            "sq2" => Self::orthogonal(CUBE, &[corner, xy]),
+            "hex" => Self::orthogonal([1.0, 3f64.sqrt(), 1.0], &[corner, xy]),
             _ => return None,
         })
     }
@@ -70,13 +73,15 @@ pub struct Placing {
     pub orient: [[i32; 3]; 3],
     /// Spacings in units of the scale, where the cell's own extent is not wanted.
     pub spacing: Option<[f64; 3]>,
+    /// Whether a reduced density counts points per area.
+    pub flat: bool,
 }
 
 impl Placing {
     /// No shift, no turn, spacings from the cell.
     pub fn plain(scale: f64, reduced: bool) -> Self {
         let orient = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-        Self { scale, reduced, origin: [0.0; 3], orient, spacing: None }
+        Self { scale, reduced, origin: [0.0; 3], orient, spacing: None, flat: false }
     }
 }
 
@@ -94,6 +99,8 @@ pub struct Lattice {
     /// Unit vectors of the box axes in the lattice, as rows.
     turn: [[f64; 3]; 3],
     shift: [f64; 3],
+    /// Whether there are sites in the plane z = 0 only.
+    flat: bool,
 }
 
 impl Default for Lattice {
@@ -115,7 +122,8 @@ impl Lattice {
     /// Turns cell and placing into a lattice; every length and determinant must be checked before.
     pub fn new(cell: &Cell, placing: &Placing) -> Self {
         let scale = if placing.reduced {
-            (cell.basis.len() as f64 / cell.volume() / placing.scale).powf(1.0 / 3.0)
+            let dimension = if placing.flat { 2.0 } else { 3.0 };
+            (cell.basis.len() as f64 / cell.volume() / placing.scale).powf(1.0 / dimension)
         } else {
             placing.scale
         };
@@ -128,6 +136,7 @@ impl Lattice {
             inverse: inverted(edges),
             turn: placing.orient.map(unit),
             shift: [0.0; 3],
+            flat: placing.flat,
         };
         lattice.spacing = match placing.spacing {
             Some(s) => s.map(|s| s * scale),
@@ -181,7 +190,11 @@ impl Lattice {
     /// First and last cell along each edge that the box `lo … hi` can touch.
     fn cells(&self, lo: [f64; 3], hi: [f64; 3]) -> ([i64; 3], [i64; 3]) {
         let (min, max) = bounds(corners(lo, hi).map(|x| self.from_box(x)));
-        (min.map(|x| x.floor() as i64 - 1), max.map(|x| x.ceil() as i64))
+        let (mut first, mut last) = (min.map(|x| x.floor() as i64 - 1), max.map(|x| x.ceil() as i64));
+        if self.flat {
+            (first[2], last[2]) = (0, 0);
+        }
+        (first, last)
     }
 
     /// Size along the axes of one unit cell in the box.

@@ -26,7 +26,7 @@ use std::sync::Arc;
 pub use clock::Clock;
 pub use columns::Columns;
 pub use domain::{Boundary, Domain, Face};
-pub use groups::{GroupId, Groups};
+pub use groups::{Dynamic, GroupId, Groups};
 pub use images::Images;
 pub use lattice::Lattice;
 pub use particles::{AtomStyle, Particles};

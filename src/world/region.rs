@@ -1,4 +1,12 @@
-//! Regions: volumes of space by shape, side and union, tested point by point.
+//! Regions: volumes of space by shape, side and union, tested point by point; they may follow variables.
+
+mod motion;
+mod shape;
+
+pub use motion::{Motion, Turn, Variable};
+pub use shape::{Shape, across};
+
+use crate::diag::{Code, Result, fail};
 
 /// What stands for an infinite face.
 pub const INFINITE: f64 = 1.0e20;
@@ -6,134 +14,96 @@ pub const INFINITE: f64 = 1.0e20;
 /// A named volume.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Region {
-    /// Its shape.
+    /// Its shape, where variables are numbers of it as they were last.
     pub shape: Shape,
     /// Whether the volume is what lies outside the shape (`side out`).
     pub outside: bool,
     /// Faces left open for walls, bit `k` for LAMMPS' face `k + 1`.
     pub open: u8,
+    /// Numbers of the shape that variables give.
+    pub given: Vec<Given>,
+    /// How the shape moves.
+    pub motion: Option<Motion>,
 }
 
-/// The shapes there are.
+/// A number of a shape that an equal-style variable gives anew whenever the region is used.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub enum Shape {
-    /// An axis-parallel box, faces included.
-    Block {
-        /// Lower corner.
-        lo: [f64; 3],
-        /// Upper corner.
-        hi: [f64; 3],
-    },
-    /// A cylinder along an axis, surface included.
-    Cylinder {
-        /// The axis, 0 to 2.
-        axis: usize,
-        /// Where the axis passes, in the two other coordinates (for axis y: x and z).
-        center: [f64; 2],
-        /// Its radius.
-        radius: f64,
-        /// Lower end.
-        lo: f64,
-        /// Upper end.
-        hi: f64,
-    },
-    /// A ball, surface included.
-    Sphere {
-        /// Its centre.
-        center: [f64; 3],
-        /// Its radius.
-        radius: f64,
-    },
-    /// Points in at least one.
-    Union(Vec<Region>),
-    /// Points in all.
-    Intersect(Vec<Region>),
+pub struct Given {
+    /// Which number, in the order in which `region` reads them.
+    pub number: usize,
+    /// The variable.
+    pub variable: Variable,
+    /// Factor from the variable's value to box units.
+    pub scale: f64,
 }
+
+/// Tells a variable's present value; nothing where it is not known (`perigrain check`).
+pub type Ask<'a> = dyn FnMut(&Variable) -> Result<Option<f64>> + 'a;
 
 impl Region {
-    /// The inside of a shape, all faces closed.
+    /// The inside of a shape, all faces closed, at rest.
     pub fn inside(shape: Shape) -> Self {
-        Self { shape, outside: false, open: 0 }
+        Self { shape, outside: false, open: 0, given: vec![], motion: None }
     }
 
     /// Whether the point belongs to the region.
+    #[inline]
     pub fn contains(&self, x: [f64; 3]) -> bool {
+        let x = match &self.motion {
+            Some(motion) => motion.undo(x),
+            None => x,
+        };
         self.shape.contains(x) != self.outside
     }
 
-    /// A box that holds the region, if a finite description gives one (`side out` does not).
+    /// A box that holds the region, if a finite description gives one (`side out` and what follows variables do not).
     pub fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
-        if self.outside {
+        if self.outside || self.motion.is_some() || !self.given.is_empty() {
             return None;
         }
         self.shape.bounds()
     }
-}
 
-/// The two coordinates across an axis, in LAMMPS' order.
-pub fn across(axis: usize) -> [usize; 2] {
-    match axis {
-        0 => [1, 2],
-        1 => [0, 2],
-        _ => [0, 1],
-    }
-}
-
-impl Shape {
-    /// Faces that `open` can name.
-    pub fn faces(&self) -> u8 {
-        match self {
-            Shape::Block { .. } => 6,
-            Shape::Cylinder { .. } => 3,
-            _ => 0,
+    /// The variables that the region follows, those of its parts included.
+    pub fn variables(&self) -> Vec<&Variable> {
+        let mut list: Vec<&Variable> = self.given.iter().map(|g| &g.variable).collect();
+        list.extend(self.motion.iter().flat_map(Motion::variables));
+        if let Shape::Union(parts) | Shape::Intersect(parts) = &self.shape {
+            list.extend(parts.iter().flat_map(Region::variables));
         }
+        list
     }
 
-    fn contains(&self, x: [f64; 3]) -> bool {
-        match self {
-            Shape::Block { lo, hi } => (0..3).all(|d| x[d] >= lo[d] && x[d] <= hi[d]),
-            Shape::Cylinder { axis, center, radius, lo, hi } => {
-                let [a, b] = across(*axis);
-                let (da, db) = (x[a] - center[0], x[b] - center[1]);
-                (da * da + db * db).sqrt() <= *radius && x[*axis] >= *lo && x[*axis] <= *hi
-            }
-            Shape::Sphere { center, radius } => {
-                let [dx, dy, dz] = [x[0] - center[0], x[1] - center[1], x[2] - center[2]];
-                (dx * dx + dy * dy + dz * dz).sqrt() <= *radius
-            }
-            Shape::Union(parts) => parts.iter().any(|r| r.contains(x)),
-            Shape::Intersect(parts) => parts.iter().all(|r| r.contains(x)),
-        }
+    /// Whether place or size follow variables.
+    pub fn follows(&self) -> bool {
+        !self.variables().is_empty()
     }
 
-    fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
-        match self {
-            Shape::Block { lo, hi } => Some((*lo, *hi)),
-            Shape::Cylinder { axis, center, radius, lo, hi } => {
-                let [a, b] = across(*axis);
-                let (mut low, mut high) = ([*lo; 3], [*hi; 3]);
-                (low[a], high[a]) = (center[0] - radius, center[0] + radius);
-                (low[b], high[b]) = (center[1] - radius, center[1] + radius);
-                Some((low, high))
-            }
-            Shape::Sphere { center, radius } => {
-                Some((center.map(|c| c - radius), center.map(|c| c + radius)))
-            }
-            Shape::Union(parts) => {
-                let all: Option<Vec<_>> = parts.iter().map(Region::bounds).collect();
-                all?.into_iter().reduce(|a, b| combine(a, b, f64::min, f64::max))
-            }
-            Shape::Intersect(parts) => {
-                parts.iter().filter_map(Region::bounds).reduce(|a, b| combine(a, b, f64::max, f64::min))
+    /// Puts the region where its variables say.
+    ///
+    /// # Errors
+    /// Variables that have no value, and values that make no shape.
+    pub fn place(&mut self, ask: &mut Ask) -> Result<()> {
+        for given in &self.given {
+            if let Some(value) = ask(&given.variable)? {
+                self.shape.set(given.number, given.scale * value);
             }
         }
+        if let (Some(first), Some(fault)) = (self.given.first(), self.shape.fault()) {
+            return fail(
+                Code::BAD_VALUE,
+                first.variable.span,
+                format!("with its variables' values, {fault}"),
+            );
+        }
+        if let Some(motion) = &mut self.motion {
+            motion.place(ask)?;
+        }
+        if let Shape::Union(parts) | Shape::Intersect(parts) = &mut self.shape {
+            parts.iter_mut().try_for_each(|part| part.place(ask))?;
+        }
+        Ok(())
     }
-}
-
-type Bounds = ([f64; 3], [f64; 3]);
-
-fn combine(a: Bounds, b: Bounds, low: fn(f64, f64) -> f64, high: fn(f64, f64) -> f64) -> Bounds {
-    (std::array::from_fn(|d| low(a.0[d], b.0[d])), std::array::from_fn(|d| high(a.1[d], b.1[d])))
 }
 
 #[cfg(test)]

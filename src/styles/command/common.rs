@@ -4,8 +4,9 @@ use super::Act;
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, fail, nearest};
 use crate::lang::args::blame;
 use crate::lang::{Args, Param, RefKind, ValueRef, Word};
+use crate::math::rng::Marsaglia;
 use crate::styles::{ActCx, BuildCx};
-use crate::world::{Domain, Particles, World};
+use crate::world::{Boundary, Domain, Particles, World};
 
 /// The refusal of a word that LAMMPS understands and perigrain does not.
 pub fn not_here(word: &Word, what: &str) -> Diagnostics {
@@ -73,6 +74,30 @@ pub fn seed(a: &mut Args) -> Result<u32> {
     fail(Code::BAD_VALUE, span, format!("the random seed must be below 2147483647, not {k}"))
 }
 
+/// Takes a seed of Marsaglia's stream.
+pub fn marsaglia_seed(a: &mut Args) -> Result<u32> {
+    let span = a.here();
+    let k = a.integer_from(1, "the random seed")?;
+    match u32::try_from(k) {
+        Ok(seed) if seed <= Marsaglia::MAX_SEED => Ok(seed),
+        _ => fail(
+            Code::BAD_VALUE,
+            span,
+            format!("the random seed must be at most {}, not {k}", Marsaglia::MAX_SEED),
+        ),
+    }
+}
+
+/// Takes a number from 0 to 1.
+pub fn fraction(a: &mut Args) -> Result<f64> {
+    let span = a.here();
+    let x = a.number("the fraction")?;
+    if (0.0..=1.0).contains(&x) {
+        return Ok(x);
+    }
+    fail(Code::BAD_VALUE, span, format!("the fraction must lie between 0 and 1: {x}"))
+}
+
 /// Takes a number, `NULL` (nothing) or a variable.
 pub fn param_or_null(a: &mut Args, what: &str) -> Result<Option<Param>> {
     if a.eat("NULL") {
@@ -96,12 +121,19 @@ pub fn variable_param(a: &mut Args, what: &str) -> Result<Param> {
     }
 }
 
-/// Takes a plain number where LAMMPS would also take a variable that changes with time.
-pub fn constant(a: &mut Args, what: &str) -> Result<f64> {
-    match a.peek() {
-        Some(w) if w.text.starts_with("v_") => Err(not_here(w, &format!("a variable as {what}:"))),
-        _ => a.number(what),
+/// Checks that a flat scene repeats along z and holds the plane z = 0.
+pub fn check_flat(boundary: Boundary, (lo, hi): (f64, f64), flat: bool) -> Result<()> {
+    if !flat {
+        return Ok(());
     }
+    if !boundary.periodic(2) {
+        return fail(Code::CONFLICT, None, "the z faces of a flat scene (`dimension 2`) must be periodic");
+    }
+    if lo >= 0.0 || hi <= 0.0 {
+        let text = format!("the box of a flat scene must hold the plane z = 0, not run from {lo} to {hi}");
+        return fail(Code::BAD_VALUE, None, text);
+    }
+    Ok(())
 }
 
 /// The box, or the error that it is missing.

@@ -1,20 +1,27 @@
-//! `create_atoms`: particles on lattice sites, single ones, or at random places.
+//! `create_atoms`: particles on lattice sites, single ones, at random places, or on a surface.
+
+mod mesh;
+mod places;
+mod subset;
 
 use super::common::{self, bad_keyword, not_here, on_particles, scales, seed, units_lattice, unknown_style};
-use super::places::{New, Place};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
-use crate::lang::Args;
+use crate::lang::{Args, RefKind, ValueRef, Word};
 use crate::math::cformat::general;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
 use crate::world::{World, memory};
+use mesh::{Mesh, Mode};
+use places::{Maker, New, Place, Test};
+use subset::{Amount, Subset};
 
 /// The command.
 pub struct CreateAtoms;
 
-const KEYWORDS: [&str; 5] = ["basis", "units", "remap", "overlap", "maxtry"];
-const ELSEWHERE: [&str; 10] =
-    ["mol", "ratio", "subset", "var", "set", "rotate", "group", "radscale", "meshmode", "radthresh"];
+const KEYWORDS: [&str; 14] = [
+    "basis", "ratio", "subset", "units", "remap", "overlap", "maxtry", "var", "set", "group", "meshmode",
+    "radscale", "mol", "rotate",
+];
 
 impl Style for CreateAtoms {
     fn name(&self) -> &'static str {
@@ -23,18 +30,30 @@ impl Style for CreateAtoms {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "create_atoms TYPE box | region ID | single X Y Z | random N SEED ID|NULL  [basis M TYPE] \
-                     [units lattice|box] [remap yes|no] [overlap D] [maxtry N]",
-            summary: "Creates particles on the sites of the lattice, at one place, or at random places.",
+            syntax: "create_atoms TYPE box | region ID | single X Y Z | random N SEED ID|NULL | mesh FILE  \
+                     [basis M TYPE] [ratio P SEED] [subset N SEED] [var NAME] [set x|y|z NAME] … [group ID] \
+                     [units lattice|box] [remap yes|no] [overlap D] [maxtry N] [meshmode bisect R|qrand D] [radscale S]",
+            summary: "Creates particles on the sites of the lattice, at one place, at random places, or on a surface.",
             text: "Sites are taken in LAMMPS' order (third lattice edge slowest, basis points fastest) and must lie in \
                    lo ≤ x < hi of the box; along periodic dimensions both faces move down by about 1e-6 of the edge \
                    length, so that exactly one of two equivalent sites is taken. `region` also asks the region. `single` \
                    takes lattice spacings unless `units box` is said; `remap yes` wraps its place into a periodic box. \
                    `random` draws from LAMMPS' Park–Miller stream; `overlap D` keeps new particles D away from all \
                    others, within `maxtry` attempts each (default 1000). `basis M TYPE` gives the M-th point of the unit \
-                   cell another type. New ids follow the largest one in use. A sphere starts with diameter 1 and \
-                   density 1, a peridynamic particle with volume 1 and mass 1.",
-            example: "create_atoms 1 region disc",
+                   cell another type. `ratio` and `subset` take a random part of the sites, exact in number, the sites \
+                   that LAMMPS takes.\n\n\
+                   `var` names an equal-style variable that decides about each place of `box`, `region` and `random`: no \
+                   particle where it is zero. `set x NAME` gives the internal-style variable NAME the coordinate before \
+                   it is asked.\n\n\
+                   `mesh` reads triangles from an STL file, ASCII or binary, in box units (`units box` must be said). \
+                   `meshmode bisect R` (default, with the lattice spacing of x) halves triangles at their longest side \
+                   until their corners are on average no farther than R from the centre, and puts a particle there; \
+                   `qrand D` puts D particles per area at places of a quasi-random sequence. Spheres take their radius \
+                   from the triangle, times `radscale`.\n\n\
+                   New ids follow the largest one in use; `group` puts the new particles into a group, made if it is not \
+                   there. A sphere starts with diameter 1 and density 1, a peridynamic particle with volume 1 and mass \
+                   1. Molecules (`mol`, `rotate`) are refused.",
+            example: "create_atoms 1 region disc subset 20 4711",
         }
     }
 }
@@ -46,6 +65,10 @@ struct Creation {
     /// Type of each basis point.
     basis: Vec<u16>,
     lattice_units: bool,
+    test: Option<Test>,
+    group: Option<String>,
+    /// Said before the particles are made.
+    note: Vec<String>,
 }
 
 impl CommandStyle for CreateAtoms {
@@ -53,52 +76,110 @@ impl CommandStyle for CreateAtoms {
         common::domain(cx)?;
         let types = cx.world.types;
         let kind = one_type(a, types)?;
-        let style = a.expect("box, region, single or random")?;
-        let mut place = match style.text.as_str() {
-            "box" => Place::Lattice(None),
-            "region" => Place::Lattice(Some(cx.region(a.expect("a region")?)?.clone())),
-            "single" => {
-                let x = [a.number("x")?, a.number("y")?, a.number("z")?];
-                Place::Single { x, remap: false }
-            }
-            "random" => random(a, cx)?,
-            "mesh" => return Err(not_here(style, "create_atoms")),
-            _ => {
-                const KNOWN: [&str; 4] = ["box", "region", "single", "random"];
-                return Err(unknown_style(style, "style of create_atoms", &KNOWN));
-            }
-        };
-        let on_sites = matches!(place, Place::Lattice(_));
-        if on_sites && cx.world.lattice.basis.is_empty() {
-            let d = Diagnostic::error(
-                Code::WRONG_ORDER,
-                style.span,
-                "there is no lattice to create particles on",
-            );
-            return Err(d.help("write for example `lattice sc 0.5` before this line").into());
-        }
-        let mut basis = vec![kind; cx.world.lattice.basis.len()];
-        let mut lattice_units = true;
-        while let Some(word) = a.next() {
-            match (word.text.as_str(), &mut place) {
-                ("basis", _) => basis_type(a, &mut basis, types)?,
-                ("units", _) => lattice_units = units_lattice(a)?,
-                ("remap", Place::Single { remap, .. }) => *remap = a.flag("remap")?,
-                ("overlap", Place::Random { overlap, .. }) => *overlap = a.positive("the distance")?,
-                ("maxtry", Place::Random { tries, .. }) => *tries = a.integer_from(1, "maxtry")?,
-                ("remap" | "overlap" | "maxtry", _) => {
-                    let text = format!("`{}` does not go with create_atoms {}", word.text, style.text);
-                    return fail(Code::CONFLICT, word.span, text);
-                }
-                _ => return Err(bad_keyword(a, word, &KEYWORDS, &ELSEWHERE)),
-            }
-        }
-        if let Place::Single { x, .. } = &mut place {
-            let scale = scales(cx.world, lattice_units);
+        let style = a.expect("box, region, single, random or mesh")?;
+        let (place, note) = place(style, a, cx)?;
+        let basis = vec![kind; cx.world.lattice.basis.len()];
+        let mut c = Creation { kind, place, basis, lattice_units: true, test: None, group: None, note };
+        keywords(a, cx, style, &mut c)?;
+        if let Place::Single { x, .. } = &mut c.place {
+            let scale = scales(cx.world, c.lattice_units);
             *x = [0, 1, 2].map(|d| x[d] * scale[d]);
         }
-        let creation = Creation { kind, place, basis, lattice_units };
-        Ok(on_particles(vec!["particles"], move |cx| create(cx, &creation)))
+        if matches!(c.place, Place::Mesh(_)) && c.lattice_units {
+            let d = Diagnostic::error(Code::INCOMPLETE, style.span, "triangles are in box units: say so");
+            return Err(d.help("add `units box` to this line").into());
+        }
+        Ok(on_particles(vec!["particles"], move |cx| create(cx, &c)))
+    }
+}
+
+/// Where particles are made, and what is said about it.
+fn place(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<(Place, Vec<String>)> {
+    let place = match style.text.as_str() {
+        "box" => Place::Lattice { region: None, subset: None },
+        "region" => {
+            let region = Some(cx.region(a.expect("a region")?)?.clone());
+            Place::Lattice { region, subset: None }
+        }
+        "single" => Place::Single { x: [a.number("x")?, a.number("y")?, a.number("z")?], remap: false },
+        "random" => random(a, cx)?,
+        "mesh" => return mesh(a, cx),
+        _ => {
+            const KNOWN: [&str; 5] = ["box", "region", "single", "random", "mesh"];
+            return Err(unknown_style(style, "style of create_atoms", &KNOWN));
+        }
+    };
+    if matches!(place, Place::Lattice { .. }) && cx.world.lattice.basis.is_empty() {
+        let text = "there is no lattice to create particles on";
+        let d = Diagnostic::error(Code::WRONG_ORDER, style.span, text);
+        return Err(d.help("write for example `lattice sc 0.5` before this line").into());
+    }
+    Ok((place, vec![]))
+}
+
+fn keywords(a: &mut Args, cx: &BuildCx, style: &Word, c: &mut Creation) -> Result<()> {
+    let (mut variable, mut sets) = (None, [None, None, None]);
+    let mut start = style.span;
+    while let Some(word) = a.next() {
+        match (word.text.as_str(), &mut c.place) {
+            ("basis", Place::Lattice { .. }) => basis_type(a, &mut c.basis, cx.world.types)?,
+            ("ratio" | "subset", Place::Lattice { subset, .. }) => *subset = Some(some_sites(word, a)?),
+            ("units", _) => c.lattice_units = units_lattice(a)?,
+            ("remap", Place::Single { remap, .. }) => *remap = a.flag("remap")?,
+            ("overlap", Place::Random { overlap, .. }) => *overlap = a.positive("the distance")?,
+            ("maxtry", Place::Random { tries, .. }) => *tries = a.integer_from(1, "maxtry")?,
+            ("meshmode", Place::Mesh(mesh)) => mesh.mode = mode(a)?,
+            ("radscale", Place::Mesh(mesh)) => mesh.radius_scale = a.positive("the factor of radii")?,
+            ("var", Place::Lattice { .. } | Place::Random { .. }) => {
+                start = word.span;
+                variable = Some(deciding(a, cx, "an equal-style variable")?);
+            }
+            ("set", Place::Lattice { .. } | Place::Random { .. }) => {
+                start = word.span;
+                let d = common::axis(a, "the coordinate")?;
+                sets[d] = Some(deciding(a, cx, "an internal-style variable")?);
+            }
+            ("group", _) => c.group = Some(group(a, cx)?),
+            ("mol" | "rotate", _) => return Err(not_here(word, "molecules: the keyword")),
+            (name, _) if KEYWORDS.contains(&name) => {
+                let text = format!("`{name}` does not go with create_atoms {}", style.text);
+                return fail(Code::CONFLICT, word.span, text);
+            }
+            _ => return Err(bad_keyword(a, word, &KEYWORDS, &[])),
+        }
+    }
+    c.test = match (variable, sets.iter().any(Option::is_some)) {
+        (None, false) => None,
+        (Some(variable), true) => Some(Test { variable, sets }),
+        _ => {
+            let d = Diagnostic::error(Code::INCOMPLETE, start, "`var` and `set` belong together");
+            return Err(d.help("write for example `var test set x xx`").into());
+        }
+    };
+    Ok(())
+}
+
+/// A variable with one number, by its name.
+fn deciding(a: &mut Args, cx: &BuildCx, what: &str) -> Result<ValueRef> {
+    let word = a.expect(what)?;
+    let r = ValueRef { kind: RefKind::Variable, name: word.text.clone(), index: vec![], span: word.span };
+    cx.value(&r, false)?;
+    Ok(r)
+}
+
+/// A group that is there or can be made.
+fn group(a: &mut Args, cx: &BuildCx) -> Result<String> {
+    let word = a.expect("a group")?;
+    let name = common::id(word, "the group's ID")?;
+    match cx.world.groups.find(&name) {
+        Some(g) if cx.world.groups.dynamic(g).is_some() => {
+            let text = format!("the dynamic group `{name}` chooses its particles itself");
+            fail(Code::CONFLICT, word.span, text)
+        }
+        None if cx.world.groups.names().count() == 32 => {
+            fail(Code::TOO_LARGE, word.span, "there are 32 groups already; delete one first")
+        }
+        _ => Ok(name),
     }
 }
 
@@ -125,6 +206,14 @@ fn basis_type(a: &mut Args, basis: &mut [u16], types: usize) -> Result<()> {
     Ok(())
 }
 
+fn some_sites(word: &Word, a: &mut Args) -> Result<Subset> {
+    let amount = match word.text.as_str() {
+        "ratio" => Amount::Ratio(common::fraction(a)?),
+        _ => Amount::Count(a.integer_from(1, "the number of sites")?),
+    };
+    Ok(Subset { amount, seed: common::marsaglia_seed(a)?, span: word.span })
+}
+
 fn random(a: &mut Args, cx: &BuildCx) -> Result<Place> {
     let count = a.integer_from(0, "the number of particles")?;
     let seed = seed(a)?;
@@ -136,27 +225,66 @@ fn random(a: &mut Args, cx: &BuildCx) -> Result<Place> {
     Ok(Place::Random { count, seed, region, overlap: 0.0, tries: 1000 })
 }
 
+fn mode(a: &mut Args) -> Result<Mode> {
+    Ok(match a.choice("mode", &["bisect", "qrand"])? {
+        "bisect" => Mode::Bisect(a.positive("the largest mean distance of the corners")?),
+        _ => Mode::Quasi(a.positive("the number of particles per area")?),
+    })
+}
+
+fn mesh(a: &mut Args, cx: &BuildCx) -> Result<(Place, Vec<String>)> {
+    let word = a.expect("the name of an STL file")?;
+    let mesh = |triangles| {
+        Place::Mesh(Mesh { triangles, mode: Mode::Bisect(cx.world.lattice.spacing[0]), radius_scale: 1.0 })
+    };
+    let bad = |text: String| fail(Code::NO_FILE, word.span, text);
+    match std::fs::read(&word.text) {
+        Err(_) if cx.checking => Ok((mesh(vec![]), vec![])),
+        Err(e) => bad(format!("the file `{}` cannot be read: {e}", word.text)),
+        Ok(bytes) => match mesh::read(&bytes) {
+            Err(what) => bad(format!("`{}` is no STL file: {what}", word.text)),
+            Ok((name, binary, triangles)) => {
+                let kind = if binary { "binary" } else { "text" };
+                Ok((
+                    mesh(triangles),
+                    vec![format!("Reading STL object {name} from {kind} file {}", word.text)],
+                ))
+            }
+        },
+    }
+}
+
 fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {
     let domain = cx.world.domain()?.clone();
     if let Some(line) = memory::forecast(cx.world, c.place.expected(cx.world, &domain))? {
         cx.say(line);
     }
-    let places = c.place.find(cx.world, &domain, c.kind, &c.basis);
+    let maker = Maker { domain: &domain, kind: c.kind, basis: &c.basis, test: c.test.as_ref() };
+    let places = c.place.find(cx, &maker)?;
     if let Place::Random { count, .. } = c.place
         && (places.len() as i64) < count
     {
         let text = format!("only {} of {count} particles found a place", places.len());
         cx.note(Diagnostic::warning(Code::SUSPICIOUS, None, text));
     }
+    let first = cx.world.n();
     add(cx.world, &places)?;
+    if let Some(name) = &c.group
+        && let Some(group) = cx.world.groups.find_or_add(name)
+    {
+        cx.world.particles.mask[first..].iter_mut().for_each(|m| *m |= group.bit());
+    }
+    c.note.iter().for_each(|line| cx.say(line));
+    if let Place::Mesh(mesh) = &c.place {
+        let (each, mode) = (places.len() as f64 / mesh.triangles.len().max(1) as f64, mesh.mode.name());
+        let count = mesh.triangles.len();
+        cx.say(format!("  read {count} triangles with {each:.2} atoms per triangle added in {mode} mode"));
+    }
     let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
     let units = if c.lattice_units { "lattice" } else { "box" };
     cx.say(format!("Created {} atoms", places.len()));
-    cx.say(format!(
-        "  using {units} units in orthogonal box = ({}) to ({})",
-        text(domain.lo),
-        text(domain.hi)
-    ));
+    let (lo, hi) = (text(domain.lo), text(domain.hi));
+    cx.say(format!("  using {units} units in orthogonal box = ({lo}) to ({hi})"));
     Ok(())
 }
 
@@ -169,8 +297,11 @@ fn add(world: &mut World, places: &[New]) -> Result<()> {
     if places.len() > world.n() / 4 {
         world.particles.reserve(places.len());
     }
-    for (tag, &(kind, x)) in (last + 1..).zip(places) {
-        world.particles.push(tag, kind, x);
+    for (tag, new) in (last + 1..).zip(places) {
+        world.particles.push(tag, new.kind, new.x);
+        if let (Some(radius), Some(slot)) = (new.radius, world.particles.radius.last_mut()) {
+            *slot = radius;
+        }
     }
     let n = world.n();
     world.columns.resize(n);

@@ -7,7 +7,7 @@ use crate::lang::Args;
 use crate::math::cformat::general;
 use crate::styles::{BuildCx, Doc, Style};
 use crate::world::Domain;
-use crate::world::region::INFINITE;
+use crate::world::region::{INFINITE, Shape};
 
 /// The command.
 pub struct CreateBox;
@@ -56,17 +56,33 @@ impl CommandStyle for CreateBox {
             return Err(common::not_here(word, "a general triclinic box: create_box"));
         }
         let region = cx.region(word)?;
-        let Some((lo, hi)) = region.bounds() else {
+        if matches!(region.shape, Shape::Prism { .. }) {
+            return Err(common::not_here(word, "a triclinic box: the prism"));
+        }
+        if region.motion.is_some() || region.outside {
+            return fail(
+                Code::WRONG_KIND,
+                word.span,
+                "the box must be a bounded region at rest with `side in`",
+            );
+        }
+        let Some((lo, hi)) = region.shape.bounds() else {
             return fail(Code::WRONG_KIND, word.span, "the box must be a bounded region with `side in`");
         };
-        if (0..3).any(|d| hi[d] <= lo[d] || lo[d].abs() >= INFINITE || hi[d].abs() >= INFINITE) {
+        if (0..3).any(|d| {
+            hi[d].partial_cmp(&lo[d]) != Some(std::cmp::Ordering::Greater)
+                || lo[d].abs() >= INFINITE
+                || hi[d].abs() >= INFINITE
+        }) {
             return fail(Code::BAD_VALUE, word.span, "the box must have finite edges longer than zero");
         }
         if let Some(word) = a.next() {
             return Err(bad_keyword(a, word, &[], &ELSEWHERE));
         }
+        let flat = cx.world.settings.two_dimensional;
+        common::check_flat(cx.world.settings.boundary, (lo[2], hi[2]), flat).map_err(|d| d.at(word.span))?;
         Ok(setting(move |cx| {
-            let mut domain = Domain::new(lo, hi, cx.world.settings.boundary);
+            let mut domain = Domain { flat, ..Domain::new(lo, hi, cx.world.settings.boundary) };
             let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
             cx.say(format!("Created orthogonal box = ({}) to ({})", text(domain.lo), text(domain.hi)));
             cx.say("  1 by 1 by 1 MPI processor grid");

@@ -1,4 +1,4 @@
-//! `dimension`: three.
+//! `dimension`: three or two.
 
 use super::common::{before_box, setting};
 use super::{Act, CommandStyle};
@@ -16,9 +16,11 @@ impl Style for Dimension {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "dimension 3",
-            summary: "Says that the scene has three dimensions.",
-            text: "LAMMPS also knows two-dimensional scenes; perigrain refuses `dimension 2` for now.",
+            syntax: "dimension 2|3",
+            summary: "Says whether the scene has three dimensions or lies in the plane z = 0.",
+            text: "In two dimensions the z faces are periodic, the box holds z = 0, lattices are flat, temperatures and \
+                   pressures count two directions, and particles do not see images along z. Nothing keeps particles in the \
+                   plane but what acts on them: `fix enforce2d` takes velocities and forces along z away.",
             example: "dimension 3",
         }
     }
@@ -29,9 +31,11 @@ impl CommandStyle for Dimension {
         before_box(cx, "dimension")?;
         let span = a.here();
         match a.integer("the dimension")? {
-            3 => Ok(setting(|_| Ok(()))),
-            2 => fail(Code::NOT_SUPPORTED, span, "two-dimensional scenes are not in perigrain yet"),
-            n => fail(Code::BAD_VALUE, span, format!("the dimension is 3, not {n}")),
+            n @ (2 | 3) => Ok(setting(move |cx| {
+                cx.world.settings.two_dimensional = n == 2;
+                Ok(())
+            })),
+            n => fail(Code::BAD_VALUE, span, format!("the dimension is 2 or 3, not {n}")),
         }
     }
 }

@@ -1,11 +1,12 @@
 //! `group`: named sets of particles.
 
-use super::common::{self, atom_variable, id, not_here, setting, unknown_style, whole};
+use super::common::{self, atom_variable, bad_keyword, id, setting, unknown_style, whole};
 use super::{Act, CommandStyle};
-use crate::diag::{Code, Result, fail};
+use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Param, ValueRef, Word};
 use crate::styles::{ActCx, BuildCx, Doc, Style, UseKind};
-use crate::world::{GroupId, Particles, Region};
+use crate::world::region::Variable;
+use crate::world::{Dynamic, GroupId, Particles, Region};
 
 /// The command.
 pub struct Group;
@@ -18,12 +19,18 @@ impl Style for Group {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "group ID type|id A B:C D:E:F … | type|id < <= > >= == != N | type|id <> A B | region ID | \
-                     variable NAME | union ID … | intersect ID ID … | subtract ID ID … | empty | clear | delete",
+                     variable NAME | union ID … | intersect ID ID … | subtract ID ID … | empty | clear | delete | \
+                     dynamic PARENT [region ID] [var NAME] [every N] | static",
             summary: "Names a set of particles, or adds particles to it.",
-            text: "Membership is decided now and stays. A group that exists already gains the particles named. `A:B:C` \
-                   counts from A to B by C; `<> A B` is between, both included. `variable` takes those for which the \
-                   atom-style variable is not zero. `subtract` takes members of the first group that are in none of the \
-                   others. At most 32 groups, `all` among them. Dynamic groups are refused.",
+            text: "Membership is decided now and stays, but for dynamic groups. A group that exists already gains the \
+                   particles named. `A:B:C` counts from A to B by C; `<> A B` is between, both included. `variable` takes \
+                   those for which the atom-style variable is not zero. `subtract` takes members of the first group that \
+                   are in none of the others. At most 32 groups, `all` among them. `molecule` needs an atom style with \
+                   molecules, which perigrain does not have.\n\n\
+                   `dynamic` chooses the members anew at the start of each run and at every step that is a multiple of N \
+                   (default 1): those of PARENT that are inside the region and for which the atom-style variable is not \
+                   zero. It does so when forces have been computed, before fixes act on them. `static` lets the group stay \
+                   as it is.",
             example: "group bullet region ball",
         }
     }
@@ -75,6 +82,7 @@ impl CommandStyle for Group {
         match style.text.as_str() {
             "delete" => return delete(cx, word, name),
             "clear" => return clear(cx, word),
+            "static" => return make_static(cx, word),
             _ => {}
         }
         if name == "all" {
@@ -82,6 +90,14 @@ impl CommandStyle for Group {
         }
         if cx.world.groups.find(&name).is_none() && cx.world.groups.names().count() == 32 {
             return fail(Code::TOO_LARGE, word.span, "there are 32 groups already; delete one first");
+        }
+        if style.text == "dynamic" {
+            return dynamic(a, cx, name);
+        }
+        if cx.world.groups.find(&name).is_some_and(|g| cx.world.groups.dynamic(g).is_some()) {
+            let text = format!("the dynamic group `{name}` chooses its particles itself");
+            let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+            return Err(d.help(format!("write `group {name} static` first")).into());
         }
         let choice = choice(style, a, cx)?;
         Ok(setting(move |cx| join(cx, &name, &choice)))
@@ -94,6 +110,10 @@ fn delete(cx: &BuildCx, word: &Word, name: String) -> Result<Box<dyn Act>> {
         return fail(Code::BAD_VALUE, word.span, "the group `all` cannot be deleted");
     }
     cx.unused(UseKind::Group, word)?;
+    if let Some(child) = cx.world.groups.child_of(&name) {
+        let text = format!("group `{name}` is the parent of the dynamic group `{child}`");
+        return fail(Code::CONFLICT, word.span, text);
+    }
     if cx.world.settings.neighbor.exclude_groups.iter().any(|&(a, b)| a == group.bit() || b == group.bit()) {
         let text = format!("group `{name}` is still used by neigh_modify exclude");
         return fail(Code::CONFLICT, word.span, text);
@@ -118,8 +138,66 @@ fn clear(cx: &BuildCx, word: &Word) -> Result<Box<dyn Act>> {
     }))
 }
 
+fn make_static(cx: &BuildCx, word: &Word) -> Result<Box<dyn Act>> {
+    let group = cx.group(word)?;
+    let name = word.text.clone();
+    Ok(setting(move |cx| {
+        cx.world.groups.set_dynamic(group, None);
+        say_count(cx, group, &name);
+        Ok(())
+    }))
+}
+
+fn dynamic(a: &mut Args, cx: &BuildCx, name: String) -> Result<Box<dyn Act>> {
+    let parent_word = a.expect("the parent group")?;
+    let parent = cx.group(parent_word)?;
+    if parent_word.text == name || cx.world.groups.dynamic(parent).is_some() {
+        let text = format!("the parent `{}` of a dynamic group must be a static group", parent_word.text);
+        return fail(Code::CONFLICT, parent_word.span, text);
+    }
+    if let Some(child) = cx.world.groups.child_of(&name) {
+        let text = format!("`{name}` cannot be dynamic: the dynamic group `{child}` chooses from it");
+        return fail(Code::CONFLICT, cx.span, text);
+    }
+    let mut rule = Dynamic { parent, region: None, variable: None, every: 1 };
+    while let Some(word) = a.next() {
+        match word.text.as_str() {
+            "region" => {
+                let word = a.expect("a region")?;
+                cx.region(word)?;
+                rule.region = Some(word.text.clone());
+            }
+            "var" => {
+                let word = a.expect("a variable")?;
+                atom_variable(cx, word)?;
+                rule.variable = Some(Variable { name: word.text.clone(), span: word.span });
+            }
+            "every" => rule.every = a.integer_from(1, "the interval")?,
+            _ => {
+                const ELSEWHERE: [&str; 4] = ["property", "exclude", "include", "within"];
+                return Err(bad_keyword(a, word, &["region", "var", "every"], &ELSEWHERE));
+            }
+        }
+    }
+    Ok(setting(move |cx| {
+        let Some(group) = cx.world.groups.find_or_add(&name) else {
+            return fail(Code::TOO_LARGE, None, "there are 32 groups already; delete one first");
+        };
+        cx.world.groups.set_dynamic(group, Some(rule));
+        cx.say(format!("dynamic group {name} defined"));
+        Ok(())
+    }))
+}
+
+/// Says how many particles a group has now.
+fn say_count(cx: &mut ActCx, group: GroupId, name: &str) {
+    let count = cx.world.particles.mask.iter().filter(|m| **m & group.bit() != 0).count();
+    cx.say(format!("{count} atoms in group {name}"));
+}
+
 /// The ways to choose a group's particles.
-const KNOWN: [&str; 8] = ["empty", "type", "id", "region", "variable", "union", "intersect", "subtract"];
+const KNOWN: [&str; 10] =
+    ["empty", "type", "id", "region", "variable", "union", "intersect", "subtract", "dynamic", "static"];
 
 fn choice(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<Choice> {
     Ok(match style.text.as_str() {
@@ -131,7 +209,9 @@ fn choice(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<Choice> {
         "union" => Choice::Union(groups(a, cx, 1)?),
         "intersect" => Choice::Intersect(groups(a, cx, 2)?),
         "subtract" => Choice::Subtract(groups(a, cx, 2)?),
-        "dynamic" | "static" | "molecule" | "include" => return Err(not_here(style, "group")),
+        "molecule" | "include" => {
+            return fail(Code::CONFLICT, style.span, "particles of this atom_style belong to no molecules");
+        }
         _ => return Err(unknown_style(style, "style of group", &KNOWN)),
     })
 }
@@ -190,8 +270,7 @@ fn join(cx: &mut ActCx, name: &str, choice: &Choice) -> Result<()> {
     for (mask, _) in particles.mask.iter_mut().zip(joins).filter(|(_, j)| *j) {
         *mask |= group.bit();
     }
-    let count = particles.mask.iter().filter(|m| **m & group.bit() != 0).count();
-    cx.say(format!("{count} atoms in group {name}"));
+    say_count(cx, group, name);
     Ok(())
 }
 
@@ -255,7 +334,9 @@ mod tests {
         assert_eq!(refused(&w, "group g union a").0, "a");
         assert_eq!(refused(&w, "group g intersect all").1, "`group` ends too early: a group is missing");
         assert_eq!(refused(&w, "group g id 5:3").0, "5:3");
-        assert_eq!(refused(&w, "group g dynamic all every 2").0, "dynamic");
+        assert_eq!(refused(&w, "group g dynamic all every 0").0, "0");
+        assert_eq!(refused(&w, "group g dynamic all within 2").0, "within");
+        assert_eq!(refused(&w, "group g molecule 2").0, "molecule");
         assert_eq!(refused(&w, "group g variable nix").0, "nix");
         assert_eq!(refused(&w, "group all clear").0, "all");
         assert!(refused(&World::default(), "group g type 1").1.contains("box is not defined"));

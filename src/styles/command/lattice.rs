@@ -2,7 +2,7 @@
 
 use super::common::{not_here, setting, unknown_style};
 use super::{Act, CommandStyle};
-use crate::diag::{Code, Result, Span, fail};
+use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::{Args, Word};
 use crate::math::cformat::general;
 use crate::styles::{BuildCx, Doc, Style};
@@ -19,11 +19,12 @@ impl Style for LatticeCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "lattice none|sc|bcc|fcc|hcp|diamond|custom SCALE [origin X Y Z] [orient x|y|z I J K] \
+            syntax: "lattice none|sc|bcc|fcc|hcp|diamond|sq|sq2|hex|custom SCALE [origin X Y Z] [orient x|y|z I J K] \
                      [spacing DX DY DZ] [a1|a2|a3 X Y Z] [basis X Y Z] …",
             summary: "Defines the points particles are created on, and the unit of length of `units lattice`.",
             text: "SCALE is the lattice constant [length]; in units lj it is the reduced density ρ*, and the constant is \
-                   (N/V/ρ*)^(1/3) for N points in a cell of volume V. `origin` shifts by fractions (0 ≤ x < 1) of the \
+                   (N/V/ρ*)^(1/3) for N points in a cell of volume V (in flat scenes (N/A/ρ*)^(1/2)). `sq sq2 hex` are for \
+                   `dimension 2`, `sc bcc fcc hcp diamond` for three dimensions. `origin` shifts by fractions (0 ≤ x < 1) of the \
                    spacings. `orient x 1 1 0` puts the lattice direction [110] along x; the three directions must be \
                    orthogonal and right-handed. `spacing` sets the unit of length (times the scale) where the extent of \
                    the turned cell is not wanted. `a1 a2 a3 basis` belong to `custom`. `none` gives a unit of length \
@@ -38,13 +39,15 @@ const KEYWORDS: [&str; 7] = ["origin", "orient", "spacing", "a1", "a2", "a3", "b
 impl CommandStyle for LatticeCommand {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         let style = a.expect("a lattice style")?;
-        let cell = cell_of(style)?;
+        let flat = cx.world.settings.two_dimensional;
+        let cell = cell_of(style, flat)?;
         let custom = style.text == "custom";
         let scale = a.positive("the lattice constant")?;
         let Some(mut cell) = cell else {
             return Ok(set(Lattice::none(scale)));
         };
-        let mut placing = Placing::plain(scale, cx.world.settings.units.is_reduced());
+        let reduced = cx.world.settings.units.is_reduced();
+        let mut placing = Placing { flat, ..Placing::plain(scale, reduced) };
         let mut orient_span = None;
         while let Some(word) = a.next() {
             match word.text.as_str() {
@@ -64,6 +67,9 @@ impl CommandStyle for LatticeCommand {
             }
         }
         check(&cell, &placing, orient_span.unwrap_or(style.span), style.span)?;
+        if flat {
+            check_flat(&cell, &placing, orient_span.unwrap_or(style.span), style.span)?;
+        }
         Ok(set(Lattice::new(&cell, &placing)))
     }
 }
@@ -78,22 +84,48 @@ fn set(lattice: Lattice) -> Box<dyn Act> {
 }
 
 /// The unit cell of a style; `None` for `lattice none`.
-fn cell_of(style: &Word) -> Result<Option<Cell>> {
-    match style.text.as_str() {
+fn cell_of(style: &Word, flat: bool) -> Result<Option<Cell>> {
+    const SOLID: [&str; 5] = ["sc", "bcc", "fcc", "hcp", "diamond"];
+    const FLAT: [&str; 3] = ["sq", "sq2", "hex"];
+    let name = style.text.as_str();
+    let (here, dimension) =
+        if flat { (SOLID.contains(&name), "two") } else { (FLAT.contains(&name), "three") };
+    if here {
+        let d = Diagnostic::error(
+            Code::CONFLICT,
+            style.span,
+            format!("lattice {name} does not go with {dimension} dimensions"),
+        );
+        let known = if flat { FLAT.join(" ") } else { SOLID.join(" ") };
+        return Err(d.help(format!("write one of {known} none custom")).into());
+    }
+    match name {
         "none" => Ok(None),
         "custom" => Ok(Some(Cell::orthogonal([1.0; 3], &[]))),
-        "sq" | "sq2" | "hex" => {
-            let text = format!("lattice {} belongs to two-dimensional scenes", style.text);
-            fail(Code::NOT_SUPPORTED, style.span, text)
-        }
-        name => match Cell::named(name) {
+        _ => match Cell::named(name) {
             Some(cell) => Ok(Some(cell)),
             None => {
-                const KNOWN: [&str; 7] = ["none", "sc", "bcc", "fcc", "hcp", "diamond", "custom"];
+                const KNOWN: [&str; 10] =
+                    ["none", "sc", "bcc", "fcc", "hcp", "diamond", "sq", "sq2", "hex", "custom"];
                 Err(unknown_style(style, "lattice", &KNOWN))
             }
         },
     }
+}
+
+/// In a flat scene nothing of the lattice may leave the plane.
+fn check_flat(cell: &Cell, placing: &Placing, orient: Span, style: Span) -> Result<()> {
+    let [x, y, z] = placing.orient;
+    if x[2] != 0 || y[2] != 0 || z[0] != 0 || z[1] != 0 {
+        return fail(Code::BAD_VALUE, orient, "the lattice directions of a flat scene must keep z along z");
+    }
+    let [a1, a2, a3] = cell.edges;
+    let leaves = a1[2] != 0.0 || a2[2] != 0.0 || a3[0] != 0.0 || a3[1] != 0.0 || placing.origin[2] != 0.0;
+    if leaves || cell.basis.iter().any(|b| b[2] != 0.0) {
+        let text = "edges, points and origin of a flat scene's lattice must lie in the plane z = 0";
+        return fail(Code::BAD_VALUE, style, text);
+    }
+    Ok(())
 }
 
 fn refuse_or_unknown(a: &Args, word: &Word) -> crate::diag::Diagnostics {

@@ -19,7 +19,6 @@ pub mod momentum;
 mod neigh_modify;
 mod neighbor;
 mod newton;
-mod places;
 mod processors;
 mod read_data;
 mod region;

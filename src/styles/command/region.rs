@@ -1,18 +1,35 @@
 //! `region`: a named volume.
 
-use super::common::{self, constant, id, not_here, scales, setting, units_lattice, unknown_style};
+mod shapes;
+
+use super::common::{self, id, scales, setting, units_lattice, unknown_style};
 use super::{Act, CommandStyle};
-use crate::diag::{Code, Result, fail};
-use crate::lang::{Args, Word};
+use crate::diag::{Code, Diagnostic, Result, fail};
+use crate::lang::{Args, Param, Word};
+use crate::math::vec3::{length, scale};
 use crate::styles::{BuildCx, Doc, Style, UseKind};
 use crate::world::Region;
-use crate::world::region::{INFINITE, Shape, across};
+use crate::world::region::{Motion, Shape, Turn, Variable};
+use shapes::Reader;
 
 /// The command.
 pub struct RegionCommand;
 
-/// Shapes LAMMPS has besides.
-const ELSEWHERE: [&str; 6] = ["cone", "ellipsoid", "plane", "prism", "mesh", "tri"];
+/// Styles LAMMPS has besides.
+const ELSEWHERE: [&str; 3] = ["grid", "mesh", "tri"];
+
+/// The shapes and what combines them, with the faces that `open` can name.
+const SHAPES: [(&str, u8); 9] = [
+    ("block", 6),
+    ("cone", 3),
+    ("cylinder", 3),
+    ("ellipsoid", 0),
+    ("plane", 0),
+    ("prism", 6),
+    ("sphere", 0),
+    ("union", 0),
+    ("intersect", 0),
+];
 
 impl Style for RegionCommand {
     fn name(&self) -> &'static str {
@@ -21,16 +38,26 @@ impl Style for RegionCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "region ID block XLO XHI YLO YHI ZLO ZHI | cylinder x|y|z C1 C2 R LO HI | sphere X Y Z R | \
-                     union N ID ID … | intersect N ID ID … | delete  [side in|out] [units lattice|box] [open FACE] …",
+            syntax: "region ID block XLO XHI YLO YHI ZLO ZHI | cone x|y|z C1 C2 RLO RHI LO HI | \
+                     cylinder x|y|z C1 C2 R LO HI | ellipsoid X Y Z A B C | plane PX PY PZ NX NY NZ | \
+                     prism XLO XHI YLO YHI ZLO ZHI XY XZ YZ | sphere X Y Z R | union N ID ID … | \
+                     intersect N ID ID … | delete  [side in|out] [units lattice|box] [open FACE] … \
+                     [move v_X|NULL v_Y|NULL v_Z|NULL] [rotate v_THETA PX PY PZ RX RY RZ]",
             summary: "Names a volume of space.",
-            text: "Surfaces belong to the inside. `INF` is far away, `EDGE` the face of the box. Distances are in lattice \
-                   spacings unless `units box` is said; a radius takes the spacing of x (of y for a cylinder along x). \
-                   `side out` is everything else. `union` and `intersect` combine regions as they are now. `open` names \
-                   faces that walls made of the region leave open: for a block 1 to 6 (xlo xhi ylo yhi zlo zhi), for a \
-                   cylinder 1 (lower end) 2 (upper end) 3 (mantle). Moving and rotating regions, and variables as \
-                   parameters, are refused.",
-            example: "region disc cylinder z 0.0 0.0 0.037 EDGE EDGE units box",
+            text: "Surfaces belong to the inside. `INF` is far away, `EDGE` the face of the box as it is now. Distances are \
+                   in lattice spacings unless `units box` is said; a radius takes the spacing of x (of y for a cylinder or \
+                   cone along x). `side out` is everything else; the inside of a plane is the side of its normal. A prism \
+                   has the edges (XHI−XLO, 0, 0), (XY, YHI−YLO, 0) and (XZ, YZ, ZHI−ZLO).\n\n\
+                   Every number of a shape but the ends of a cylinder may be an equal-style variable `v_name`. `move` \
+                   shifts the region by variables and `rotate` turns it by a variable's angle in radians about an axis \
+                   through P along R, first turned, then shifted. Such a region is where its variables say at each \
+                   moment it is used: by a command, a formula, and in every step of a run by fixes, groups and dumps. \
+                   The displacement is in box units.\n\n\
+                   `union` and `intersect` combine regions as they are declared now, their motions included; they cannot \
+                   move by themselves. `open` names faces that walls made of the region leave open: for a block or prism 1 \
+                   to 6 (xlo xhi ylo yhi zlo zhi), for a cylinder or cone 1 (lower end) 2 (upper end) 3 (mantle).",
+            example: "variable lift equal 0.001*step\n\
+                      region disc cylinder z 0.0 0.0 0.037 EDGE EDGE units box move NULL NULL v_lift",
         }
     }
 }
@@ -40,6 +67,7 @@ struct Options {
     outside: bool,
     lattice: bool,
     open: u8,
+    motion: Option<Motion>,
 }
 
 impl CommandStyle for RegionCommand {
@@ -55,26 +83,27 @@ impl CommandStyle for RegionCommand {
             return fail(Code::DUPLICATE_NAME, word.span, text);
         }
         if ELSEWHERE.contains(&style.text.as_str()) {
-            return Err(not_here(style, "region"));
+            return Err(common::not_here(style, "region"));
         }
-        let options = options(a.clone(), faces_of(&style.text))?;
-        let scale = scales(cx.world, options.lattice);
-        let shape = match style.text.as_str() {
-            "block" => block(a, cx, scale)?,
-            "cylinder" => cylinder(a, cx, scale)?,
-            "sphere" => sphere(a, scale)?,
-            "union" => Shape::Union(parts(a, cx)?),
-            "intersect" => Shape::Intersect(parts(a, cx)?),
-            _ => {
-                return Err(unknown_style(
-                    style,
-                    "region style",
-                    &["block", "cylinder", "sphere", "union", "intersect"],
-                ));
-            }
+        let Some((_, faces)) = SHAPES.iter().find(|(s, _)| *s == style.text) else {
+            return Err(unknown_style(style, "region style", &SHAPES.map(|(s, _)| s)));
         };
+        let combined = matches!(style.text.as_str(), "union" | "intersect");
+        let options = options(a.clone(), cx, *faces, combined)?;
+        let mut reader = Reader::new(a, cx, scales(cx.world, options.lattice));
+        let shape = match style.text.as_str() {
+            "union" => Shape::Union(parts(reader.a, cx)?),
+            "intersect" => Shape::Intersect(parts(reader.a, cx)?),
+            name => reader.shape(name)?,
+        };
+        let given = reader.given;
+        no_more(a)?;
         a.rest();
-        let region = Region { shape, outside: options.outside, open: options.open };
+        if let Some(fault) = shape.fault() {
+            return fail(Code::BAD_VALUE, style.span, format!("this is no {}: {fault}", style.text));
+        }
+        let region =
+            Region { shape, outside: options.outside, open: options.open, given, motion: options.motion };
         Ok(setting(move |cx| {
             cx.world.regions.insert(name, region);
             Ok(())
@@ -87,32 +116,38 @@ fn delete(cx: &BuildCx, name: String, word: &Word) -> Result<Box<dyn Act>> {
         return fail(Code::UNKNOWN_NAME, word.span, format!("there is no region `{name}`"));
     }
     cx.unused(UseKind::Region, word)?;
+    if let Some(group) = cx.world.groups.follower(&name) {
+        let text = format!("region `{name}` is still used by the dynamic group `{group}`");
+        return fail(Code::CONFLICT, word.span, text);
+    }
     Ok(setting(move |cx| {
         cx.world.regions.remove(&name);
         Ok(())
     }))
 }
 
-fn faces_of(style: &str) -> u8 {
-    match style {
-        "block" => 6,
-        "cylinder" => 3,
-        _ => 0,
-    }
-}
-
 /// Reads the keywords, which stand behind the shape's own words; every word after the first keyword must fit.
-fn options(mut a: Args, faces: u8) -> Result<Options> {
-    let mut options = Options { outside: false, lattice: true, open: 0 };
+fn options(mut a: Args, cx: &BuildCx, faces: u8, combined: bool) -> Result<Options> {
+    let mut options = Options { outside: false, lattice: true, open: 0, motion: None };
     while !a.is_empty() && !KEYWORDS.contains(&a.peek_text()) {
         a.next();
     }
+    let lattice = units_of(a.clone())?;
     while let Some(word) = a.next() {
         match word.text.as_str() {
             "side" => options.outside = a.choice("side", &["in", "out"])? == "out",
             "units" => options.lattice = units_lattice(&mut a)?,
             "open" => options.open |= 1 << (face(&mut a, faces)? - 1),
-            "move" | "rotate" => return Err(not_here(word, "keyword of region")),
+            "move" | "rotate" if combined => {
+                let text = "a union or intersection cannot move by itself";
+                let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+                return Err(d.help("give `move` or `rotate` to the regions it is made of").into());
+            }
+            "move" => options.motion.get_or_insert_default().shift = shift(&mut a, cx)?,
+            "rotate" => {
+                let turn = turn(&mut a, cx, scales(cx.world, lattice))?;
+                options.motion.get_or_insert_default().turn = Some(turn);
+            }
             _ => return Err(a.unknown(word, &KEYWORDS)),
         }
     }
@@ -120,6 +155,16 @@ fn options(mut a: Args, faces: u8) -> Result<Options> {
 }
 
 const KEYWORDS: [&str; 5] = ["side", "units", "open", "move", "rotate"];
+
+/// What `units` says further on: it counts for a `rotate` before it too.
+fn units_of(mut a: Args) -> Result<bool> {
+    while let Some(word) = a.next() {
+        if word.text == "units" {
+            return units_lattice(&mut a);
+        }
+    }
+    Ok(true)
+}
 
 fn face(a: &mut Args, faces: u8) -> Result<u8> {
     let span = a.here();
@@ -131,71 +176,39 @@ fn face(a: &mut Args, faces: u8) -> Result<u8> {
     }
 }
 
-/// A bound along axis `d`: a number, `INF` or `EDGE`.
-fn bound(a: &mut Args, cx: &BuildCx, d: usize, upper: bool, scale: f64) -> Result<f64> {
-    let what = if upper { "the upper bound" } else { "the lower bound" };
-    match a.peek() {
-        Some(word) if word.text == "INF" || word.text == "EDGE" => {
-            let Some(domain) = &cx.world.domain else {
-                let text = format!("`{}` means nothing before the simulation box is defined", word.text);
-                return fail(Code::WRONG_ORDER, word.span, text);
-            };
-            a.next();
-            Ok(match (word.text == "INF", upper) {
-                (true, true) => INFINITE,
-                (true, false) => -INFINITE,
-                (false, true) => domain.hi[d],
-                (false, false) => domain.lo[d],
-            })
-        }
-        _ => Ok(scale * constant(a, what)?),
-    }
+fn shift(a: &mut Args, cx: &BuildCx) -> Result<[Option<Variable>; 3]> {
+    let mut next = || {
+        if a.eat("NULL") { Ok(None) } else { equal_variable(a, cx, "the displacement").map(Some) }
+    };
+    Ok([next()?, next()?, next()?])
 }
 
-fn range(a: &mut Args, cx: &BuildCx, d: usize, scale: f64) -> Result<(f64, f64)> {
+fn turn(a: &mut Args, cx: &BuildCx, spacing: [f64; 3]) -> Result<Turn> {
+    let variable = equal_variable(a, cx, "the angle")?;
+    let mut point = [0.0; 3];
+    for (x, s) in point.iter_mut().zip(spacing) {
+        *x = s * a.number("a point of the axis")?;
+    }
     let span = a.here();
-    let lo = bound(a, cx, d, false, scale)?;
-    let span = span.to(a.here());
-    let hi = bound(a, cx, d, true, scale)?;
-    if lo > hi {
-        return fail(Code::BAD_VALUE, span, format!("the lower bound {lo} lies above the upper bound {hi}"));
+    let along = [a.number("the axis")?, a.number("the axis")?, a.number("the axis")?];
+    if length(along) == 0.0 {
+        return fail(Code::BAD_VALUE, span, "the axis of rotation has no direction");
     }
-    Ok((lo, hi))
+    Ok(Turn { variable, point, axis: scale(1.0 / length(along), along), angle: 0.0 })
 }
 
-fn block(a: &mut Args, cx: &BuildCx, scale: [f64; 3]) -> Result<Shape> {
-    let (mut lo, mut hi) = ([0.0; 3], [0.0; 3]);
-    for d in 0..3 {
-        (lo[d], hi[d]) = range(a, cx, d, scale[d])?;
-    }
-    no_more(a)?;
-    Ok(Shape::Block { lo, hi })
-}
-
-fn cylinder(a: &mut Args, cx: &BuildCx, scale: [f64; 3]) -> Result<Shape> {
-    let axis = common::axis(a, "axis of the cylinder")?;
-    let [c, d] = across(axis);
-    let center = [scale[c] * constant(a, "the axis")?, scale[d] * constant(a, "the axis")?];
-    let radius = scale[if axis == 0 { 1 } else { 0 }] * radius(a)?;
-    let (lo, hi) = range(a, cx, axis, scale[axis])?;
-    no_more(a)?;
-    Ok(Shape::Cylinder { axis, center, radius, lo, hi })
-}
-
-fn sphere(a: &mut Args, scale: [f64; 3]) -> Result<Shape> {
-    let mut center = [0.0; 3];
-    for (c, s) in center.iter_mut().zip(scale) {
-        *c = s * constant(a, "the centre")?;
-    }
-    let radius = scale[0] * radius(a)?;
-    no_more(a)?;
-    Ok(Shape::Sphere { center, radius })
-}
-
-fn radius(a: &mut Args) -> Result<f64> {
-    match a.peek() {
-        Some(w) if w.text.starts_with("v_") => Err(not_here(w, "a variable as radius:")),
-        _ => a.non_negative("the radius"),
+/// Takes `v_name` of an equal-style variable.
+fn equal_variable(a: &mut Args, cx: &BuildCx, what: &str) -> Result<Variable> {
+    let span = a.here();
+    match common::variable_param(a, what)? {
+        Param::Ref(r) => {
+            cx.value(&r, false)?;
+            Ok(Variable { name: r.name, span: r.span })
+        }
+        Param::Number(x) => {
+            let text = format!("{what} must be an equal-style variable `v_name`, not the number {x}");
+            fail(Code::WRONG_KIND, span, text)
+        }
     }
 }
 
@@ -206,7 +219,6 @@ fn parts(a: &mut Args, cx: &BuildCx) -> Result<Vec<Region>> {
         let word = a.expect("a region")?;
         parts.push(cx.region(word)?.clone());
     }
-    no_more(a)?;
     Ok(parts)
 }
 
@@ -256,13 +268,19 @@ mod tests {
         assert_eq!(refused(&w, "region a block 0 1 EDGE 1 0 1").0, "EDGE");
         assert_eq!(refused(&w, "region a block 1 0 0 1 0 1").0, "1 0");
         assert_eq!(refused(&w, "region a sphere 0 0 0 v_r").0, "v_r");
-        assert_eq!(refused(&w, "region a sphere 0 0 0 1 rotate v_a 0 0 0 0 0 1").0, "rotate");
+        assert_eq!(refused(&w, "region a sphere 0 0 0 1 rotate v_a 0 0 0 0 0 1").0, "v_a");
+        assert_eq!(refused(&w, "region a sphere 0 0 0 1 rotate 0.1 0 0 0 0 0 1").0, "0.1");
+        assert_eq!(refused(&w, "region a grid c_x:grid:data gt 0.5").0, "grid");
         assert_eq!(refused(&w, "region a sphere 0 0 0 1 side inn").0, "inn");
         assert_eq!(refused(&w, "region a sphere 0 0 0 1 sidee in").0, "sidee");
-        assert_eq!(refused(&w, "region a cone x 0 0 1 1 0 1").0, "cone");
+        assert_eq!(refused(&w, "region a cone x 0 0 0 0 0 1").0, "cone");
+        assert_eq!(refused(&w, "region a plane 0 0 0 0 0 0").0, "plane");
+        assert_eq!(refused(&w, "region a prism 0 1 0 1 1 1 0 0 0").0, "prism");
         assert_eq!(refused(&w, "region a union 2 b c").0, "b");
         more(&mut w, "region a sphere 0 0 0 1");
         assert!(refused(&w, "region a sphere 0 0 0 1").1.contains("exists already"));
         assert_eq!(refused(&w, "region c block 0 1 0 1 0 1 open 7").0, "7");
+        more(&mut w, "region b sphere 0 0 0 1");
+        assert_eq!(refused(&w, "region c union 2 a b move NULL NULL NULL").0, "move");
     }
 }

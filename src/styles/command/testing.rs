@@ -29,6 +29,9 @@ impl Names for Table<'_> {
 }
 
 impl Values for Table<'_> {
+    fn with_internal(&mut self, w: &mut World, r: &ValueRef, _set: &[(&ValueRef, f64)]) -> Result<f64> {
+        self.scalar(w, r)
+    }
     fn scalar(&mut self, _w: &mut World, r: &ValueRef) -> Result<f64> {
         fail(crate::diag::Code::WRONG_KIND, r.span, "no single number")
     }

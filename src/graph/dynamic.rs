@@ -1,0 +1,98 @@
+//! Dynamic groups: who belongs to them is decided anew in each step, after forces and before the fixes that change them.
+
+use super::node::{FixNode, Graph};
+use super::seal::Sealer;
+use crate::diag::{Code, Diagnostic, Diagnostics, Result};
+use crate::lang::{RefKind, ValueRef};
+use crate::plan::{Access, Op, Stage, Tick, When};
+use crate::styles::{Reading, SealCx};
+use crate::world::{Dynamic, GroupId, World};
+
+/// Adds the ops that choose the members of dynamic groups.
+///
+/// # Errors
+/// Variables that are gone.
+pub fn seal(s: &mut Sealer) -> Result<()> {
+    let groups = &s.world().groups;
+    let list: Vec<_> =
+        groups.dynamics().map(|(id, d)| (id, groups.name(id).to_string(), d.clone())).collect();
+    for (group, name, rule) in list {
+        let when = When::First.or(When::Every(rule.every));
+        let chosen = match &rule.variable {
+            None => None,
+            Some(v) => {
+                let r =
+                    ValueRef { kind: RefKind::Variable, name: v.name.clone(), index: vec![], span: v.span };
+                Some(s.value(&r, Stage::PostForce, &when)?)
+            }
+        };
+        let op = Choose { title: format!("group {name} dynamic"), group, rule, chosen, when };
+        let span = s.span();
+        s.add(vec![Box::new(op)], span);
+    }
+    Ok(())
+}
+
+/// Fixes that remember the particles of their group, or ask for it in vain: LAMMPS lets no dynamic group have them.
+const FIXED_MEMBERS: [&str; 14] = [
+    "adapt",
+    "ave/atom",
+    "drag",
+    "freeze",
+    "halt",
+    "indent",
+    "move",
+    "nve/noforce",
+    "print",
+    "property/atom",
+    "spring/self",
+    "store/force",
+    "store/state",
+    "vector",
+];
+
+/// Reports fixes that cannot have a group whose members change.
+pub fn check(graph: &Graph, w: &World, found: &mut Diagnostics) {
+    let changing = |f: &&FixNode| w.groups.dynamic(f.group).is_some() && FIXED_MEMBERS.contains(&f.style);
+    for f in graph.fixes.iter().filter(changing) {
+        let text = format!("fix {} does not go with the dynamic group `{}`", f.style, w.groups.name(f.group));
+        let d = Diagnostic::error(Code::CONFLICT, f.span, text);
+        found.push(d.help("make the group static with `group ID static`, or give the fix another group"));
+    }
+}
+
+/// Chooses the members of one group.
+struct Choose {
+    title: String,
+    group: GroupId,
+    rule: Dynamic,
+    chosen: Option<Reading>,
+    when: When,
+}
+
+impl Op for Choose {
+    fn name(&self) -> &str {
+        &self.title
+    }
+    fn stage(&self) -> Stage {
+        Stage::PostForce
+    }
+    fn access(&self) -> Access {
+        Access::new("x regions", "mask")
+    }
+    fn when(&self) -> When {
+        self.when.clone()
+    }
+    fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
+        let mut mask = std::mem::take(&mut w.particles.mask);
+        let region = self.rule.region.as_ref().map(|name| w.regions.get(name));
+        let (parent, bit) = (self.rule.parent.bit(), self.group.bit());
+        for (i, mask) in mask.iter_mut().enumerate() {
+            let here = region.is_none_or(|r| r.is_some_and(|r| r.contains(w.particles.x[i])));
+            let meant = *mask & parent != 0 && here && self.chosen.is_none_or(|v| v.atom(w, i) != 0.0);
+            *mask = if meant { *mask | bit } else { *mask & !bit };
+        }
+        w.particles.mask = mask;
+        Ok(())
+    }
+}

@@ -1,0 +1,117 @@
+//! Regions that follow variables, put where they are now: between runs, and in every step.
+
+use super::env::DeckEnv;
+use super::node::Graph;
+use super::seal::Sealer;
+use crate::diag::{Code, Diagnostic, Result};
+use crate::lang::{RefKind, Value, ValueRef, Vars};
+use crate::plan::{Access, Op, Stage, Tick, When};
+use crate::styles::{Reading, SealCx};
+use crate::world::World;
+use crate::world::region::Variable;
+use std::sync::Arc;
+
+/// The stages whose ops find moving regions in their present places.
+const STAGES: [Stage; 2] = [Stage::PreForce, Stage::Output];
+
+/// Puts those regions that follow variables and are meant in their present places.
+///
+/// # Errors
+/// Variables that are gone, have no number, or give a region no shape.
+pub fn place_now(
+    w: &mut World,
+    graph: &Graph,
+    vars: &Arc<Vars>,
+    checking: bool,
+    meant: impl Fn(&str) -> bool,
+) -> Result<()> {
+    let follows = w.regions.iter().filter(|(name, region)| region.follows() && meant(name));
+    let names: Vec<String> = follows.map(|(name, _)| name.clone()).collect();
+    for name in names {
+        // Out of the world meanwhile: a formula that asks the region it places would never end.
+        let Some(mut region) = w.regions.remove(&name) else { continue };
+        let before = region.clone();
+        let outcome = region.place(&mut |v| number(w, graph, vars, checking, v));
+        let placed = outcome.is_ok();
+        w.regions.insert(name.clone(), if placed { region } else { before });
+        outcome.map_err(|mut e| {
+            e.0.iter_mut().for_each(|d| d.help.push(format!("region `{name}` follows this variable")));
+            e
+        })?;
+    }
+    Ok(())
+}
+
+fn number(
+    w: &mut World,
+    graph: &Graph,
+    vars: &Arc<Vars>,
+    checking: bool,
+    v: &Variable,
+) -> Result<Option<f64>> {
+    let mut env = DeckEnv { w, graph, vars: vars.clone(), checking };
+    match vars.value(&v.name, v.span, &mut env)? {
+        Value::Number(a) => Ok(Some(a)),
+        Value::Unknown => Ok(None),
+        _ => {
+            let text = format!("variable `{}` has no single number for a region", v.name);
+            Err(Diagnostic::error(Code::WRONG_KIND, v.span, text).into())
+        }
+    }
+}
+
+/// Adds the ops that put regions in their places in each step.
+///
+/// # Errors
+/// Variables that are gone.
+pub fn seal(s: &mut Sealer) -> Result<()> {
+    let following = s.world().regions.iter().filter(|(_, r)| r.follows());
+    let regions: Vec<(String, Vec<Variable>)> =
+        following.map(|(name, r)| (name.clone(), r.variables().into_iter().cloned().collect())).collect();
+    for (name, variables) in regions {
+        for stage in STAGES {
+            let mut readings = vec![];
+            for v in &variables {
+                let r =
+                    ValueRef { kind: RefKind::Variable, name: v.name.clone(), index: vec![], span: v.span };
+                readings.push(s.value(&r, stage, &When::Always)?);
+            }
+            let op = PlaceRegion { title: format!("region {name}"), name: name.clone(), readings, stage };
+            let span = s.span();
+            s.add(vec![Box::new(op)], span);
+        }
+    }
+    Ok(())
+}
+
+/// Puts one region where its variables say.
+struct PlaceRegion {
+    title: String,
+    name: String,
+    /// Values of its variables, in the order in which it asks for them.
+    readings: Vec<Reading>,
+    stage: Stage,
+}
+
+impl Op for PlaceRegion {
+    fn name(&self) -> &str {
+        &self.title
+    }
+    fn stage(&self) -> Stage {
+        self.stage
+    }
+    fn access(&self) -> Access {
+        Access::new("", "regions")
+    }
+    fn in_setup(&self) -> bool {
+        true
+    }
+    fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
+        let values: Vec<f64> = self.readings.iter().map(|r| r.get(w)).collect();
+        let mut next = values.into_iter();
+        match w.regions.get_mut(&self.name) {
+            Some(region) => region.place(&mut |_| Ok(next.next())),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Regions that are shifted and turned by variables.
+
+use super::Ask;
+use crate::diag::{Result, Span};
+use crate::math::vec3::{add, cross, dot, scale, sub};
+
+/// An equal-style variable and the place in the deck that names it.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Variable {
+    /// Its name, without `v_`.
+    pub name: String,
+    /// Where.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// A rotation by a variable's angle.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Turn {
+    /// Gives the angle [radians].
+    pub variable: Variable,
+    /// A point on the axis.
+    pub point: [f64; 3],
+    /// The axis' direction, of length 1.
+    pub axis: [f64; 3],
+    /// The present angle.
+    pub angle: f64,
+}
+
+/// How a region moves: first turned, then shifted.
+#[derive(Clone, Debug, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Motion {
+    /// Variables of the displacement along x, y, z.
+    pub shift: [Option<Variable>; 3],
+    /// The rotation.
+    pub turn: Option<Turn>,
+    /// The present displacement.
+    pub now: [f64; 3],
+}
+
+impl Motion {
+    /// Its variables.
+    pub fn variables(&self) -> impl Iterator<Item = &Variable> {
+        self.shift.iter().flatten().chain(self.turn.iter().map(|t| &t.variable))
+    }
+
+    /// Asks for displacement and angle.
+    pub(super) fn place(&mut self, ask: &mut Ask) -> Result<()> {
+        for (now, variable) in self.now.iter_mut().zip(&self.shift) {
+            if let Some(variable) = variable
+                && let Some(value) = ask(variable)?
+            {
+                *now = value;
+            }
+        }
+        if let Some(turn) = &mut self.turn
+            && let Some(angle) = ask(&turn.variable)?
+        {
+            turn.angle = angle;
+        }
+        Ok(())
+    }
+
+    /// Where a point would be had the region not moved, as seen from the region.
+    #[inline]
+    pub(super) fn undo(&self, x: [f64; 3]) -> [f64; 3] {
+        let x = sub(x, self.now);
+        match &self.turn {
+            Some(t) => add(t.point, turned(sub(x, t.point), t.axis, -t.angle)),
+            None => x,
+        }
+    }
+}
+
+/// A vector turned about a unit axis (Rodrigues).
+pub fn turned(v: [f64; 3], axis: [f64; 3], angle: f64) -> [f64; 3] {
+    let (sin, cos) = angle.sin_cos();
+    let along = scale((1.0 - cos) * dot(axis, v), axis);
+    add(add(scale(cos, v), scale(sin, cross(axis, v))), along)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::region::{Region, Shape};
+
+    #[test]
+    fn first_turned_then_shifted() {
+        let variable = Variable { name: "a".into(), span: Span::default() };
+        let turn = Turn {
+            variable: variable.clone(),
+            point: [1.0, 0.0, 0.0],
+            axis: [0.0, 0.0, 1.0],
+            angle: std::f64::consts::FRAC_PI_2,
+        };
+        let motion = Motion { shift: [None, None, None], turn: Some(turn), now: [0.0, 0.0, 5.0] };
+        let ball = Shape::Sphere { center: [3.0, 0.0, 0.0], radius: 0.1 };
+        let mut region = Region { motion: Some(motion), ..Region::inside(ball) };
+        // (3, 0, 0) is 2 from the axis along x: a quarter turn brings it to (1, 2, 0), the shift to (1, 2, 5).
+        assert!(region.contains([1.0, 2.0, 5.0]) && !region.contains([3.0, 0.0, 5.0]));
+        assert!(region.follows() && region.bounds().is_none());
+        region.place(&mut |v| Ok((v.name == "a").then_some(0.0))).unwrap();
+        assert!(region.contains([3.0, 0.0, 5.0]));
+    }
+}
