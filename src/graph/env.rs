@@ -160,6 +160,7 @@ impl DeckEnv<'_> {
     /// # Errors
     /// Values that are not available, and the op's own failures.
     pub fn once(&mut self, span: Span, ask: impl FnOnce(&mut Sealer) -> Result<Box<dyn Op>>) -> Result<()> {
+        regions::place_all(self.w, self.graph, &self.vars, self.checking);
         let (mut op, mut plan, t) = self.planned(span, ask)?;
         plan.run(self.w, &t, &Stage::ALL)?;
         op.run(self.w, &t)?;
@@ -172,8 +173,6 @@ impl DeckEnv<'_> {
         ask: impl FnOnce(&mut Sealer) -> Result<T>,
     ) -> Result<(T, StepPlan, Tick)> {
         self.w.spread_type_masses();
-        // A region without a place now stays where it was; whoever names it in a line or formula is told.
-        let _ = regions::place_now(self.w, self.graph, &self.vars, self.checking, |_| true);
         let mut sealer = Sealer::new(self.w, self.graph, self.vars.clone());
         sealer.at(span);
         let answer = ask(&mut sealer)?;
@@ -219,6 +218,7 @@ impl Env for DeckEnv<'_> {
         if self.checking {
             return Ok(Value::Unknown);
         }
+        regions::place_all(self.w, self.graph, &self.vars, self.checking);
         let slot = self.now(r.span, |s| s.reference(r))?;
         from_slot(self.w, slot, r)
     }
@@ -293,6 +293,7 @@ impl Values for DeckValues<'_> {
 impl DeckValues<'_> {
     fn reading(&mut self, w: &mut World, r: &ValueRef) -> Result<Reading> {
         let mut env = DeckEnv { w, graph: self.graph, vars: self.vars.clone(), checking: false };
+        regions::place_all(env.w, env.graph, &env.vars, env.checking);
         env.now(r.span, |s| s.value(r, Stage::Output, &When::Always))
     }
 }

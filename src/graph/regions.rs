@@ -7,8 +7,8 @@ use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::{RefKind, Value, ValueRef, Vars};
 use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::{Reading, SealCx};
-use crate::world::World;
 use crate::world::region::Variable;
+use crate::world::{Region, World};
 use std::sync::Arc;
 
 /// The stages whose ops find moving regions in their present places.
@@ -29,17 +29,34 @@ pub fn place_now(
     let names: Vec<String> = follows.map(|(name, _)| name.clone()).collect();
     for name in names {
         // Out of the world meanwhile: a formula that asks the region it places would never end.
-        let Some(mut region) = w.regions.remove(&name) else { continue };
-        let before = region.clone();
-        let outcome = region.place(&mut |v| number(w, graph, vars, checking, v));
-        let placed = outcome.is_ok();
-        w.regions.insert(name.clone(), if placed { region } else { before });
-        outcome.map_err(|mut e| {
+        let Some(region) = w.regions.remove(&name) else { continue };
+        let placed = placed(w, graph, vars, checking, &region);
+        w.regions.insert(name.clone(), placed.as_ref().unwrap_or(&region).clone());
+        placed.map_err(|mut e| {
             e.0.iter_mut().for_each(|d| d.help.push(format!("region `{name}` follows this variable")));
             e
         })?;
     }
     Ok(())
+}
+
+/// Puts all regions in their places that can be put now; the others stay where they were, and whoever names one of
+/// them in a line or formula is told.
+pub fn place_all(w: &mut World, graph: &Graph, vars: &Arc<Vars>, checking: bool) {
+    // All of them out of the world meanwhile: what their variables ask for comes here again.
+    let following: Vec<String> =
+        w.regions.iter().filter(|(_, r)| r.follows()).map(|(name, _)| name.clone()).collect();
+    let taken: Vec<_> = following.iter().filter_map(|name| w.regions.remove_entry(name)).collect();
+    for (name, region) in taken {
+        let placed = placed(w, graph, vars, checking, &region).unwrap_or(region);
+        w.regions.insert(name, placed);
+    }
+}
+
+fn placed(w: &mut World, graph: &Graph, vars: &Arc<Vars>, checking: bool, region: &Region) -> Result<Region> {
+    let mut region = region.clone();
+    region.place(&mut |v| number(w, graph, vars, checking, v))?;
+    Ok(region)
 }
 
 fn number(

@@ -62,6 +62,6 @@ mod tests {
         assert_eq!(refused(&empty, "comm_modify group all").0, "group");
         assert_eq!(refused(&empty, "newton maybe").0, "maybe");
         assert_eq!(refused(&empty, "processors 2 0 1").0, "0");
-        assert_eq!(refused(&empty, "dimension 2").0, "2");
+        assert_eq!(refused(&empty, "dimension 4").0, "4");
     }
 }

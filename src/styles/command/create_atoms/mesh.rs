@@ -219,7 +219,7 @@ mod tests {
     #[test]
     fn large_triangles_are_halved() {
         let mut found = vec![];
-        halve([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], 0.4, &mut found);
+        halve([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], 0.5, &mut found);
         // The right triangle halves at its hypotenuse: centres by hand, first half first.
         assert_eq!(found.len(), 2);
         let third = 1.0 / 3.0;
