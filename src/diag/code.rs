@@ -45,6 +45,7 @@ codes! {
     NOT_FINITE = 202, "numbers out of control", "A position, velocity or force is no longer finite: the time step is too long for the stiffness, or particles overlap heavily.";
     TOO_LARGE = 203, "scene does not fit", "The forecast says that memory will not suffice.";
     INTERRUPTED = 204, "interrupted", "The run was ended from outside at a whole step; files are complete.";
+    HALTED = 205, "halted", "A `fix halt … error hard` found its condition met: the deck ends here, as it asked for.";
     COMPAT = 301, "LAMMPS does otherwise", "A place where LAMMPS 22Jul2025 is wrong and perigrain is not, unless `-compat lammps` is on.";
     MATERIAL = 302, "material questionable", "The material data contradict the model, as nu other than 1/4 with bond-based peridynamics.";
 }

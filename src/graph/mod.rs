@@ -8,6 +8,7 @@ pub mod measure;
 pub mod node;
 pub mod ops;
 pub mod regions;
+mod said;
 pub mod seal;
 pub mod show;
 pub mod thermo;

@@ -2,6 +2,7 @@
 
 use super::thermo::Thermo;
 use crate::diag::Span;
+use crate::lang::{RefKind, ValueRef};
 use crate::styles::{Compute, Dump, Fix, Names, Pair, Shape, Use, UseKind};
 use crate::world::GroupId;
 use std::collections::BTreeMap;
@@ -168,6 +169,21 @@ impl Names for Graph {
 
     fn variable_shape(&self, name: &str) -> Option<Shape> {
         self.variables.get(name).copied()
+    }
+
+    fn extensive(&self, r: &ValueRef) -> bool {
+        let shape = match r.kind {
+            RefKind::Fix => {
+                return self.find_fix(&r.name).is_some_and(|f| f.fix.extensive(&r.index));
+            }
+            RefKind::Compute => self.find_compute(&r.name).map(|c| c.compute.shape()),
+            _ => None,
+        };
+        shape.is_some_and(|s| match r.index.len() {
+            0 => s.scalar_extensive,
+            1 => s.vector_extensive,
+            _ => s.array_extensive,
+        })
     }
 
     fn users(&self, name: &Use) -> Vec<String> {

@@ -3,10 +3,12 @@
 use super::env::RunEnv;
 use super::keywords::{self, Need, Sources};
 use super::node::Graph;
+use super::said;
 use crate::diag::{Code, Result, Span, fail};
 use crate::lang::{Dep, RefKind, Value, ValueRef, Vars};
+use crate::out::log::Log;
 use crate::plan::{Access, LeftOut, Op, OpClass, Placed, Stage, StepPlan, Tick, When};
-use crate::styles::{Reading, SealCx, Shape, Wants};
+use crate::styles::{Reading, SealCx, Shape, Text, Wants};
 use crate::world::{SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -25,6 +27,8 @@ pub struct Sealer<'a> {
     trail: Vec<String>,
     /// Variables placed so far, to give each use a slot of its own.
     uses: usize,
+    /// Where the run speaks.
+    pub log: Log,
 }
 
 impl<'a> Sealer<'a> {
@@ -39,6 +43,7 @@ impl<'a> Sealer<'a> {
             placed: vec![],
             trail: vec![],
             uses: 0,
+            log: Log::silent(),
         }
     }
 
@@ -216,7 +221,7 @@ impl<'a> Sealer<'a> {
     }
 
     /// The slot of a compute or fix that a formula reads.
-    fn source(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<SlotId> {
+    pub(super) fn source(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<SlotId> {
         match r.kind {
             RefKind::Compute | RefKind::ComputeAtom => self.compute(&r.name, r.span, stage, when),
             RefKind::Fix | RefKind::FixAtom => match self.graph.find_fix(&r.name) {
@@ -296,6 +301,19 @@ impl SealCx for Sealer<'_> {
     fn keyword(&mut self, name: &str, span: Span, stage: Stage, when: &When) -> Result<Reading> {
         let norm = self.graph.thermo.normalized(self.world);
         self.keyword_as(name, span, stage, when, norm)
+    }
+
+    fn text(&mut self, text: &str, span: Span, stage: Stage, when: &When) -> Result<Text> {
+        let vars = self.vars.clone();
+        said::text(self, vars, text, span, stage, when)
+    }
+
+    fn steps(&mut self, r: &ValueRef) -> Result<When> {
+        said::steps(self.world, &self.vars, r)
+    }
+
+    fn log(&self) -> Log {
+        self.log.clone()
     }
 
     fn ask_energy(&mut self, when: &When) {

@@ -7,7 +7,7 @@ use crate::lang::{Args, RefKind, ValueRef, Word};
 use crate::math::cformat::Value;
 use crate::out;
 use crate::out::log::Log;
-use crate::out::thermo::{Column, Layout, Line};
+use crate::out::thermo::{Column, Layout, Line, memory_line};
 use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::{BuildCx, Reading, SealCx, Wants};
 use crate::world::{Face, World};
@@ -326,6 +326,9 @@ impl Op for Row {
         self.when.clone()
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if t.setup {
+            self.log.line(&memory_line(crate::world::memory::bytes(w)))?;
+        }
         if t.setup && !self.layout.header().is_empty() {
             self.log.line(&self.layout.header())?;
         }

@@ -8,11 +8,14 @@ pub mod formats;
 pub mod image;
 pub mod log;
 pub mod rows;
+pub mod sheet;
 pub mod table;
 pub mod thermo;
 pub mod vtu;
 
 use std::sync::OnceLock;
+
+pub use sheet::Sheet;
 
 use crate::par;
 

@@ -2,6 +2,7 @@
 
 use crate::diag::Result;
 use crate::world::World;
+use std::sync::Arc;
 
 /// The stages of a step in their order, in LAMMPS' words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -75,6 +76,17 @@ pub enum When {
     First,
     /// The last step of a run.
     Last,
+    /// `repeat` steps, `every` apart, of which the last is a multiple of `freq` (averages over time).
+    Samples {
+        /// Distance of two samples.
+        every: i64,
+        /// Number of samples.
+        repeat: i64,
+        /// Distance of two averages.
+        freq: i64,
+    },
+    /// These steps (ascending).
+    At(Arc<[i64]>),
     /// Whenever one of these does.
     Any(Vec<When>),
     /// Only when asked between runs.
@@ -89,6 +101,11 @@ impl When {
             When::Every(n) => *n > 0 && t.step % n == 0,
             When::First => t.setup,
             When::Last => t.step == t.last,
+            When::Samples { every, repeat, freq } => {
+                let before = (-t.step).rem_euclid(*freq);
+                before % every == 0 && before / every < *repeat
+            }
+            When::At(steps) => steps.binary_search(&t.step).is_ok(),
             When::Any(list) => list.iter().any(|w| w.fires(t)),
             When::Never => false,
         }
@@ -123,6 +140,10 @@ impl std::fmt::Display for When {
             When::Every(n) => write!(f, "every {n} steps"),
             When::First => write!(f, "first"),
             When::Last => write!(f, "last"),
+            When::Samples { every, repeat, freq } => {
+                write!(f, "{repeat} samples every {every} steps up to each multiple of {freq}")
+            }
+            When::At(steps) => write!(f, "at {} chosen steps", steps.len()),
             When::Any(list) => {
                 write!(f, "{}", list.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))
             }

@@ -2,7 +2,7 @@
 
 use crate::diag::Result;
 use crate::plan::{Stage, StepPlan, Tick};
-use crate::world::World;
+use crate::world::{Halt, World};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
@@ -86,7 +86,7 @@ pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Resu
     let (begin, cpu) = (Instant::now(), cpu_seconds());
     let first = w.clock.step;
     let mut interrupted = false;
-    while w.clock.step < w.clock.last {
+    while w.clock.step < w.clock.last && w.clock.halt == Halt::No {
         if w.settings.stop.load(Ordering::Relaxed) {
             interrupted = true;
             break;

@@ -8,9 +8,10 @@ use crate::graph::env::DeckEnv;
 use crate::graph::ops::{ClearForces, Reneighbor};
 use crate::graph::seal::Sealer;
 use crate::lang::{Args, Command, Script, Word};
-use crate::out::thermo::{Finish, Section, memory_line};
+use crate::out::thermo::{Finish, Section};
 use crate::plan::{OpClass, StepPlan, explain};
 use crate::run::verlet;
+use crate::world::Halt;
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::time::Instant;
@@ -36,6 +37,9 @@ impl Session {
             return Ok(());
         }
         self.say_notes()?;
+        if self.world.clock.halt == Halt::All {
+            return Ok(());
+        }
         let c = &mut self.world.clock;
         let last = c.step + args.steps;
         c.start = args.start.unwrap_or(c.step);
@@ -50,7 +54,7 @@ impl Session {
                     left -= n;
                     self.leg(n, args.pre && first, args.post && left == 0, cmd.span)?;
                     first = false;
-                    if self.interrupted {
+                    if self.interrupted || self.world.clock.halt == Halt::All {
                         break;
                     }
                     let mut script = Script::of_commands(&commands);
@@ -121,6 +125,7 @@ impl Session {
         let vars = Arc::new(self.vars.clone());
         self.graph.computes.iter().for_each(|c| c.compute.welcome(&mut self.world));
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
+        s.log = self.options.log.clone();
         s.at(span);
         s.add(vec![Box::new(Reneighbor), Box::new(ClearForces)], span);
         crate::graph::regions::seal(&mut s)?;
@@ -151,7 +156,7 @@ impl Session {
     /// One uninterrupted stretch of steps.
     fn leg(&mut self, steps: i64, pre: bool, post: bool, span: Span) -> Result<()> {
         let c = &mut self.world.clock;
-        (c.first, c.last) = (c.step, c.step + steps);
+        (c.first, c.last, c.halt) = (c.step, c.step + steps, Halt::No);
         c.began = None;
         let unchanged = self.ran && !self.world.parts.changed && (!self.world.settings.lammps() || !pre);
         let mut plan = self.seal(span)?;
@@ -174,8 +179,6 @@ impl Session {
             );
             self.say_notes()?;
         }
-        let bytes = crate::world::memory::bytes(&self.world);
-        self.options.log.line(&memory_line(bytes))?;
         self.world.clock.running = true;
         let outcome = self.steps(&mut plan, unchanged);
         self.world.clock.running = false;

@@ -55,6 +55,8 @@ pub struct Shape {
     pub vector_extensive: bool,
     /// The global array grows with the scene.
     pub array_extensive: bool,
+    /// The values are new at multiples of this step only; 0 and 1: at every step.
+    pub every: i64,
     /// Its values number particles into chunks.
     pub chunks: Option<Chunking>,
 }

@@ -21,7 +21,7 @@ pub use compute::{Compute, ComputeStyle};
 pub use dump::{Dump, DumpStyle};
 pub use fix::{Fix, FixStyle};
 pub use pair::{Pair, PairStyle, TypePairs};
-pub use seal::{Reading, SealCx, Wants};
+pub use seal::{Reading, SealCx, Text, Wants};
 
 /// What the manual says of a style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,6 +2,7 @@
 
 use crate::diag::{Result, Span};
 use crate::lang::{Param, ValueRef};
+use crate::out::log::Log;
 use crate::plan::{Stage, When};
 use crate::world::{SlotId, World};
 
@@ -101,6 +102,9 @@ pub enum Wants {
     Local,
 }
 
+/// A text whose values are put in anew at each call.
+pub type Text = Box<dyn FnMut(&World) -> Result<String> + Send>;
+
 /// What a style may ask for while a run is sealed.
 pub trait SealCx {
     /// The world as the run starts: columns may be made here.
@@ -135,6 +139,18 @@ pub trait SealCx {
     /// # Errors
     /// Unknown keywords.
     fn keyword(&mut self, name: &str, span: Span, stage: Stage, when: &When) -> Result<Reading>;
+    /// A text with `$x`, `${name}` and `$(formula)` in it, its values fresh as with `value`.
+    ///
+    /// # Errors
+    /// Formulas that cannot be read, and what they name that is not there.
+    fn text(&mut self, text: &str, span: Span, stage: Stage, when: &When) -> Result<Text>;
+    /// The steps that a variable names one after another, each time from the step named before (`logfreq`, `stride` …).
+    ///
+    /// # Errors
+    /// Unknown variables, and a step that is not later than the one before.
+    fn steps(&mut self, r: &ValueRef) -> Result<When>;
+    /// Where a run speaks.
+    fn log(&self) -> Log;
     /// Energies must be tallied whenever `when` fires.
     fn ask_energy(&mut self, when: &When);
     /// The virial must be tallied whenever `when` fires.

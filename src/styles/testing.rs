@@ -1,8 +1,11 @@
 //! A bench for unit tests of styles: a small world, lines as a deck has them, and a sealing without a graph.
 
-use super::{BuildCx, Compute, ComputeStyle, Fix, FixStyle, Names, Reading, SealCx, Shape, UseKind, Wants};
+use super::{
+    BuildCx, Compute, ComputeStyle, Fix, FixStyle, Names, Reading, SealCx, Shape, Text, UseKind, Wants,
+};
 use crate::diag::{Code, Diagnostics, FileId, Result, Span, fail};
 use crate::lang::{Args, Command, RefKind, ValueRef, Word};
+use crate::out::log::Log;
 use crate::plan::{Op, Stage, Tick, When};
 use crate::world::{AtomStyle, Boundary, Domain, GroupId, SlotId, World};
 use std::cell::RefCell;
@@ -190,6 +193,16 @@ impl SealCx for Bench {
     }
     fn keyword(&mut self, name: &str, span: Span, _stage: Stage, _when: &When) -> Result<Reading> {
         fail(Code::UNKNOWN_KEYWORD, span, name.to_string())
+    }
+    fn text(&mut self, text: &str, _span: Span, _stage: Stage, _when: &When) -> Result<Text> {
+        let text = text.to_string();
+        Ok(Box::new(move |_| Ok(text.clone())))
+    }
+    fn steps(&mut self, _r: &ValueRef) -> Result<When> {
+        Ok(When::At([3, 5].into()))
+    }
+    fn log(&self) -> Log {
+        Log::silent()
     }
     fn ask_energy(&mut self, _when: &When) {}
     fn ask_virial(&mut self, _when: &When) {}

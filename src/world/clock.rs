@@ -24,6 +24,20 @@ pub struct Clock {
     pub began: Option<std::time::Instant>,
     /// Whether a run is going on.
     pub running: bool,
+    /// Whether a fix has ended the run.
+    pub halt: Halt,
+}
+
+/// What `fix halt` has said.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Halt {
+    /// Nothing.
+    #[default]
+    No,
+    /// This run is over.
+    Run,
+    /// This run is over, and there are no more.
+    All,
 }
 
 impl Default for Clock {
@@ -39,6 +53,7 @@ impl Default for Clock {
             stop: 0,
             began: None,
             running: false,
+            halt: Halt::No,
         }
     }
 }

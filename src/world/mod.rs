@@ -23,7 +23,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-pub use clock::Clock;
+pub use clock::{Clock, Halt};
 pub use columns::Columns;
 pub use domain::{Boundary, Domain, Face};
 pub use groups::{Dynamic, GroupId, Groups};
@@ -140,6 +140,7 @@ impl World {
             }
             families.remap(&to);
         }
+        self.slots.gather(old, n);
         self.slots.invalidate();
         self.touch();
     }

@@ -54,9 +54,9 @@ impl Slot {
         *self = Self { name: std::mem::take(&mut self.name), ..Self::default() };
     }
 
-    /// The per-particle value of particle `i`, column `c` (from 0).
+    /// The per-particle value of particle `i`, column `c` (from 0); 0 for particles that came later.
     pub fn atom_value(&self, i: usize, c: usize) -> f64 {
-        self.atom[i * self.cols + c]
+        self.atom.get(i * self.cols + c).copied().unwrap_or(0.0)
     }
 
     /// Row `r`, column `c` (from 0) of the global array; `None` outside.
@@ -127,6 +127,13 @@ impl Slots {
     pub fn put(&mut self, id: SlotId, mut slot: Slot, step: i64) {
         slot.step = Some(step);
         self.slots[id.0] = slot;
+    }
+
+    /// Keeps the values of particle `old[k]` at each new index `k`, of `n` particles before.
+    pub fn gather(&mut self, old: &[usize], n: usize) {
+        for s in self.slots.iter_mut().filter(|s| s.cols > 0 && s.atom.len() == n * s.cols) {
+            s.atom = old.iter().flat_map(|&k| s.atom[k * s.cols..(k + 1) * s.cols].to_vec()).collect();
+        }
     }
 
     /// Forgets which step every value belongs to (the scene has changed).

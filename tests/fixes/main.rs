@@ -5,6 +5,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 use perigrain::out::log::Log;
 use perigrain::session::{Options, Session, set_threads};
@@ -12,6 +13,9 @@ use perigrain::session::{Options, Session, set_threads};
 /// Differences, as shares of the largest number of a column, that the order of additions explains: a few ulp, times the
 /// some tens of steps that carry them on.
 const TOLERANCE: f64 = 1e-13;
+
+/// Decks write into the working folder, which belongs to the whole process: one at a time.
+static FOLDER: Mutex<()> = Mutex::new(());
 
 /// Runs a deck and returns the session and its thermo table, header first.
 fn run(name: &str, deck: &str, compat: bool) -> (Session, Vec<Vec<String>>) {
@@ -48,11 +52,19 @@ fn table(log: &str) -> Vec<Vec<String>> {
     rows
 }
 
-fn agrees(name: &str) {
+/// Compares a deck's thermo table with LAMMPS'; the files that the deck writes are in the folder returned.
+fn agrees(name: &str) -> tempfile::TempDir {
     let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixes");
     let deck = fs::read_to_string(here.join(format!("{name}.in"))).unwrap();
     let golden = table(&fs::read_to_string(here.join(format!("golden/{name}.txt"))).unwrap());
-    let (_, ours) = run(name, &deck, true);
+    let folder = tempfile::tempdir().unwrap();
+    let ours = {
+        let _alone = FOLDER.lock().unwrap_or_else(PoisonError::into_inner);
+        std::env::set_current_dir(&folder).unwrap();
+        let (_, ours) = run(name, &deck, true);
+        std::env::set_current_dir("/").unwrap();
+        ours
+    };
     assert_eq!((ours.len(), &ours[0]), (golden.len(), &golden[0]), "{name}");
     for (k, column) in golden[0].iter().enumerate() {
         let numbers =
@@ -63,6 +75,7 @@ fn agrees(name: &str) {
             assert!((a - b).abs() <= TOLERANCE * largest, "{name}, {column}, row {row}: {a} is not {b}");
         }
     }
+    folder
 }
 
 #[test]
@@ -93,6 +106,19 @@ fn spheres_agree() {
 #[test]
 fn springs_lines_and_limits_agree() {
     agrees("holds");
+}
+
+// `golden/averages` holds the files that LAMMPS 22Jul2025 writes for `averages.in`.
+#[test]
+fn averages_agree_and_their_files_are_the_same_bytes() {
+    let files = agrees("averages");
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixes/golden/averages");
+    for entry in fs::read_dir(golden).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap();
+        let ours = fs::read_to_string(files.path().join(name)).unwrap();
+        assert_eq!(ours, fs::read_to_string(&path).unwrap(), "{}", path.display());
+    }
 }
 
 /// `steps.in` with its runs replaced.

@@ -132,6 +132,14 @@ impl Vars {
         }
     }
 
+    /// The variable that a format-style variable shows.
+    pub fn formatted(&self, name: &str) -> Option<&str> {
+        match &self.table.get(name)?.data {
+            Data::Format { name, .. } => Some(name),
+            _ => None,
+        }
+    }
+
     /// Where a variable was defined; `None` also if on the command line.
     pub fn span(&self, name: &str) -> Option<Span> {
         self.table.get(name)?.span

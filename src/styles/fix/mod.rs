@@ -1,11 +1,16 @@
 //! Fixes: what is done to particles during the steps besides their mutual forces.
 
 mod addforce;
+mod ave_atom;
+mod ave_histo;
+mod ave_time;
 mod aveforce;
+mod bins;
 mod drag;
 mod dt_reset;
 mod extremes;
 mod gravity;
+mod halt;
 mod indent;
 mod lineforce;
 mod momentum;
@@ -15,15 +20,18 @@ mod nve_limit;
 mod nve_noforce;
 mod nve_sphere;
 mod planeforce;
+mod print;
 mod recenter;
 mod setforce;
 mod spring;
 mod spring_self;
+mod vector;
 mod viscous;
+mod window;
 
 use super::{BuildCx, SealCx, Shape, Style};
 use crate::diag::{Code, Diagnostic, Result, fail};
-use crate::lang::Args;
+use crate::lang::{Args, ValueRef};
 use crate::plan::Op;
 use crate::world::World;
 
@@ -60,6 +68,16 @@ pub trait Fix: Send {
         Shape::default()
     }
 
+    /// Whether one of its global values (element k, row and column) grows with the scene, as `shape` says of all.
+    fn extensive(&self, index: &[usize]) -> bool {
+        let shape = self.shape();
+        match index.len() {
+            0 => shape.scalar_extensive,
+            1 => shape.vector_extensive,
+            _ => shape.array_extensive,
+        }
+    }
+
     /// Whether it moves the particles of its group (two such fixes on one particle draw a warning).
     fn integrates(&self) -> bool {
         false
@@ -94,11 +112,16 @@ pub trait Fix: Send {
 #[rustfmt::skip]
 pub const FIXES: &[&dyn FixStyle] = &[
     &addforce::AddForce,
+    &ave_atom::AveAtom,
+    &ave_histo::AveHisto,
+    &ave_histo::AveHistoWeight,
+    &ave_time::AveTime,
     &aveforce::AveForce,
     &drag::Drag,
     &dt_reset::DtReset,
     &extremes::ExtremesStyle,
     &gravity::Gravity,
+    &halt::HaltFix,
     &indent::Indent,
     &lineforce::LineForce,
     &momentum::Momentum,
@@ -108,10 +131,12 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &nve_noforce::NveNoForce,
     &nve_sphere::NveSphere,
     &planeforce::PlaneForce,
+    &print::Print,
     &recenter::Recenter,
     &setforce::SetForce,
     &spring::Spring,
     &spring_self::SpringSelf,
+    &vector::VectorFix,
     &viscous::Viscous,
 ];
 
@@ -119,4 +144,15 @@ pub const FIXES: &[&dyn FixStyle] = &[
 fn region_keyword(args: &mut Args, cx: &BuildCx) -> Result<String> {
     let word = args.expect("the region's ID")?;
     cx.region(word).map(|_| word.text.clone())
+}
+
+/// Refuses a fix whose values are not new at all the steps they are wanted: multiples of `every`.
+fn compatible(r: &ValueRef, shape: &Shape, every: i64, what: &str) -> Result<()> {
+    if shape.every <= 1 || every % shape.every == 0 {
+        return Ok(());
+    }
+    let text = format!("`{r}` is new every {} steps only, and {what} is {every}", shape.every);
+    Err(Diagnostic::error(Code::CONFLICT, r.span, text)
+        .help(format!("let {what} be a multiple of {}", shape.every))
+        .into())
 }
