@@ -1,9 +1,6 @@
 //! C's `printf` conversions, character for character: flags, width, precision, `inf`, `nan` and `-0`.
 
 mod digits;
-mod shortest;
-
-pub use shortest::shortest;
 
 use std::io::Write;
 

@@ -29,7 +29,7 @@ pub struct Clock {
 }
 
 /// What `fix halt` has said.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Halt {
     /// Nothing.
     #[default]
