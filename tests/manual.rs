@@ -81,6 +81,9 @@ const CHANGED: &[(&str, &str, &str)] = &[
     ("mass", "pair_style", "pair_style none"),
     ("mass", "pair_coeff", ""),
     ("mass", "compute", ""),
+    // A flat scene is periodic along z.
+    ("fix enforce2d", "dimension", "dimension 2"),
+    ("fix enforce2d", "boundary", "boundary s s p"),
     // One integrator per particle: the fix moves these itself.
     ("fix move", "fix motion", "group rest subtract all top\nfix motion rest nve"),
 ];

@@ -76,8 +76,6 @@ const LAMMPS_STYLES: &[(&str, &str)] = &[
     ("fix", "langevin"),
     ("fix", "ave/chunk"),
     ("fix", "adapt"),
-    ("fix", "enforce2d"),
-    ("fix", "store/state"),
     ("fix", "wall/reflect"),
     ("fix", "property/atom"),
     ("compute", "stress/atom"),

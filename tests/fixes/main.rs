@@ -108,6 +108,11 @@ fn springs_lines_and_limits_agree() {
     agrees("holds");
 }
 
+#[test]
+fn motions_and_kept_states_agree() {
+    agrees("motions");
+}
+
 // `golden/averages` holds the files that LAMMPS 22Jul2025 writes for `averages.in`.
 #[test]
 fn averages_agree_and_their_files_are_the_same_bytes() {

@@ -18,7 +18,7 @@ mod origin;
 mod pe;
 mod pe_atom;
 mod pressure;
-mod property_atom;
+pub mod property_atom;
 mod reduce;
 mod temp;
 

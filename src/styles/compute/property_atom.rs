@@ -49,7 +49,8 @@ impl Needs {
     }
 }
 
-type Getter = fn(&World, usize) -> f64;
+/// Reads an attribute of a particle.
+pub type Getter = fn(&World, usize) -> f64;
 
 /// Name, needs and value of every attribute.
 const ATTRIBUTES: &[(&str, Needs, Getter)] = &[
@@ -156,7 +157,16 @@ impl ComputeStyle for PropertyAtom {
     }
 }
 
-fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
+/// The attribute's own name, if there is one.
+pub fn find_attribute(name: &str) -> Option<&'static str> {
+    ATTRIBUTES.iter().map(|a| a.0).find(|a| *a == name)
+}
+
+/// What reads the attribute that a word names.
+///
+/// # Errors
+/// Unknown attributes, and those that these particles do not have.
+pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
     let name = word.text.as_str();
     if let Some((_, needs, getter)) = ATTRIBUTES.iter().find(|a| a.0 == name) {
         if needs.met(cx.world.particles.style) {

@@ -8,6 +8,8 @@ mod aveforce;
 mod bins;
 mod drag;
 mod dt_reset;
+mod elapsed;
+mod enforce2d;
 mod extremes;
 mod gravity;
 mod halt;
@@ -19,12 +21,15 @@ mod nve;
 mod nve_limit;
 mod nve_noforce;
 mod nve_sphere;
+mod path;
 mod planeforce;
 mod print;
 mod recenter;
 mod setforce;
 mod spring;
 mod spring_self;
+mod store_force;
+mod store_state;
 mod vector;
 mod viscous;
 mod window;
@@ -119,6 +124,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &aveforce::AveForce,
     &drag::Drag,
     &dt_reset::DtReset,
+    &enforce2d::Enforce2d,
     &extremes::ExtremesStyle,
     &gravity::Gravity,
     &halt::HaltFix,
@@ -136,6 +142,8 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &setforce::SetForce,
     &spring::Spring,
     &spring_self::SpringSelf,
+    &store_force::StoreForce,
+    &store_state::StoreState,
     &vector::VectorFix,
     &viscous::Viscous,
 ];

@@ -1,16 +1,20 @@
 //! fix move: prescribed motion of particles, straight or swinging.
 
+use super::elapsed::Elapsed;
+use super::lineforce::direction;
 use super::nve::half_step;
+use super::path::{Path, Readings};
 use super::{Fix, FixStyle};
-use crate::diag::Result;
-use crate::lang::Args;
+use crate::diag::{Code, Result, fail};
+use crate::lang::{Args, Param, ValueRef};
 use crate::par;
-use crate::plan::{Access, Op, Stage, Tick};
-use crate::styles::command::common::{choice_or_refuse, scales, units_lattice};
-use crate::styles::matter::{Masses, check_masses, unwrapped};
+use crate::plan::{Access, Op, Stage, Tick, When};
+use crate::styles::command::common::{number_or_null, param_or_null, scales, units_lattice};
+use crate::styles::matter::{Masses, check_masses, keep_places, unwrapped};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 use crate::world::{GroupId, SlotId, World};
+use std::f64::consts::PI;
 
 /// The style.
 pub struct Move;
@@ -21,61 +25,47 @@ impl Style for Move {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group move linear Vx Vy Vz | wiggle Ax Ay Az period [units lattice|box]",
+            syntax: "fix ID group move linear Vx Vy Vz | wiggle Ax Ay Az period | rotate Px Py Pz Rx Ry Rz period | \
+                     transrot Vx Vy Vz Px Py Pz Rx Ry Rz period | variable v_dx v_dy v_dz v_vx v_vy v_vz \
+                     [units lattice|box]",
             summary: "Moves particles on a prescribed path, whatever the forces on them.",
             text: "With t the time since the fix was declared and x0 the position then (unwrapped): `linear` is \
-                   x = x0 + V t, v = V; `wiggle` is x = x0 + A sin ω t, v = A ω cos ω t with ω = 2π/period. Where a \
-                   component is `NULL` it is integrated as by fix nve. V and A are in lattice spacings unless `units \
-                   box`. It moves the particles itself: they belong to no other integrator. Particles that join the \
-                   group later move on from where they are. Per-atom array: x0, 3 columns. `timestep`, \
-                   `fix dt/reset` and reset_timestep do not disturb the path. LAMMPS refuses the first two beside fix move; after \
-                   reset_timestep it takes the new steps since the declaration's old one, which makes the particles \
-                   jump, and so does perigrain under `-compat lammps`. The motions `rotate`, `variable` and `transrot` \
-                   are refused.",
+                   x = x0 + V t, v = V; `wiggle` is x = x0 + A sin ω t, v = A ω cos ω t with ω = 2π/period; `rotate` turns \
+                   the particles about the axis R through P, right-handed, and gives spheres the angular velocity ω; \
+                   `transrot` is `rotate` about an axis that flies at V. `variable`: displacements from x0 and velocities by \
+                   equal- or atom-style variables; without a displacement the velocity moves the particle, without a velocity \
+                   the velocity stays. Where a component is `NULL` (for `variable`: both) it is integrated as by fix nve. V, A \
+                   and P are in lattice spacings unless `units box`. It moves the particles itself: they belong to no other \
+                   integrator. Particles that join the group later move on from where they are. Per-atom array: x0, 3 \
+                   columns. `timestep`, `fix dt/reset` and reset_timestep do not disturb the path. LAMMPS refuses the first \
+                   two beside fix move; after reset_timestep it takes the new steps since the declaration's old one, which \
+                   makes the particles jump, and so does perigrain under `-compat lammps`.",
             example: "fix grip top move linear 0.0 0.0 3.0 units box",
-        }
-    }
-}
-
-/// The path; components without a value are integrated.
-#[derive(Clone, Copy, Debug)]
-enum Path {
-    /// Velocity.
-    Linear([Option<f64>; 3]),
-    /// Amplitude and angular frequency 2π/period.
-    Wiggle([Option<f64>; 3], f64),
-}
-
-impl Path {
-    fn given(&self) -> [bool; 3] {
-        match self {
-            Path::Linear(a) | Path::Wiggle(a, _) => a.map(|a| a.is_some()),
-        }
-    }
-
-    /// Displacement and velocity at time `t` of the components that are given.
-    fn at(&self, t: f64) -> [Option<(f64, f64)>; 3] {
-        match *self {
-            Path::Linear(v) => v.map(|v| v.map(|v| (v * t, v))),
-            Path::Wiggle(a, omega) => {
-                let (sin, cos) = (omega * t).sin_cos();
-                a.map(|a| a.map(|a| (a * sin, a * omega * cos)))
-            }
         }
     }
 }
 
 impl FixStyle for Move {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let other = ["rotate", "variable", "transrot"];
-        let linear = choice_or_refuse(args, "motion", &["linear", "wiggle"], &other)? == "linear";
-        let mut vector = [None; 3];
-        for (component, axis) in vector.iter_mut().zip(["x", "y", "z"]) {
-            if !args.eat("NULL") {
-                *component = Some(args.number(&format!("the {axis} component"))?);
+        let kind = args.choice("motion", &["linear", "wiggle", "rotate", "transrot", "variable"])?;
+        let mut path = match kind {
+            "linear" => Path::Linear(components(args)?),
+            "wiggle" => {
+                let amplitude = components(args)?;
+                Path::Wiggle(amplitude, 2.0 * PI / args.positive("the period")?)
             }
-        }
-        let period = if linear { 1.0 } else { args.positive("the period")? };
+            "variable" => Path::Variables(
+                [variable(args, cx, "x")?, variable(args, cx, "y")?, variable(args, cx, "z")?],
+                [variable(args, cx, "vx")?, variable(args, cx, "vy")?, variable(args, cx, "vz")?],
+            ),
+            _ => {
+                let velocity = if kind == "transrot" { three(args, "V")? } else { [0.0; 3] };
+                let point = three(args, "P")?;
+                let axis = direction(args)?;
+                let omega = 2.0 * PI / args.positive("the period")?;
+                Path::Turn { point, axis, omega, velocity }
+            }
+        };
         let mut lattice = true;
         while let Some(word) = args.next() {
             match word.text.as_str() {
@@ -84,13 +74,47 @@ impl FixStyle for Move {
             }
         }
         let scale = scales(cx.world, lattice);
-        let vector = std::array::from_fn(|d| vector[d].map(|a: f64| a * scale[d]));
-        let path = if linear {
-            Path::Linear(vector)
-        } else {
-            Path::Wiggle(vector, 2.0 * std::f64::consts::PI / period)
-        };
+        match &mut path {
+            Path::Linear(a) | Path::Wiggle(a, _) => {
+                *a = std::array::from_fn(|d| a[d].map(|a| a * scale[d]));
+            }
+            Path::Turn { point, velocity, .. } => {
+                (0..3).for_each(|d| (point[d], velocity[d]) = (point[d] * scale[d], velocity[d] * scale[d]));
+            }
+            Path::Variables(..) => {}
+        }
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, path }))
+    }
+}
+
+/// Three numbers, each of which may be `NULL`.
+fn components(args: &mut Args) -> Result<[Option<f64>; 3]> {
+    let mut found = [None; 3];
+    for (found, axis) in found.iter_mut().zip(["x", "y", "z"]) {
+        *found = number_or_null(args, &format!("the {axis} component"))?;
+    }
+    Ok(found)
+}
+
+/// Three numbers.
+fn three(args: &mut Args, what: &str) -> Result<[f64; 3]> {
+    let mut number = |axis| args.number(&format!("{what}{axis}"));
+    Ok([number("x")?, number("y")?, number("z")?])
+}
+
+/// A variable or `NULL`.
+fn variable(args: &mut Args, cx: &BuildCx, what: &str) -> Result<Option<ValueRef>> {
+    let word = args.peek();
+    match param_or_null(args, &format!("the variable for {what}"))? {
+        None => Ok(None),
+        Some(Param::Ref(r)) => {
+            cx.param(&Param::Ref(r.clone()), true)?;
+            Ok(Some(r))
+        }
+        Some(Param::Number(_)) => {
+            let span = word.map(|w| w.span);
+            fail(Code::WRONG_KIND, span, format!("the variable for {what} is written v_name, or NULL"))
+        }
     }
 }
 
@@ -101,57 +125,6 @@ struct Declared {
     path: Path,
 }
 
-/// How much time has passed since the declaration, also where the time step changes or steps are renumbered.
-#[derive(Clone, Copy)]
-struct Elapsed {
-    /// Step of the declaration.
-    origin: f64,
-    /// Time up to `step`.
-    time: f64,
-    /// Since which step `dt` holds.
-    step: f64,
-    /// The present time step.
-    dt: f64,
-    /// The latest step.
-    last: f64,
-}
-
-impl Elapsed {
-    fn load(w: &World, key: &str) -> Self {
-        match w.memo.get(key).map(Vec::as_slice) {
-            Some(&[origin, time, step, dt, last]) => Self { origin, time, step, dt, last },
-            _ => {
-                let step = w.clock.step as f64;
-                Self { origin: step, time: 0.0, step, dt: w.clock.dt, last: step }
-            }
-        }
-    }
-
-    fn store(self, w: &mut World, key: &str) {
-        let Self { origin, time, step, dt, last } = self;
-        match w.memo.get_mut(key) {
-            Some(memo) => memo.copy_from_slice(&[origin, time, step, dt, last]),
-            None => drop(w.memo.insert(key.to_string(), vec![origin, time, step, dt, last])),
-        }
-    }
-
-    /// The time at the latest step.
-    fn now(&self) -> f64 {
-        self.time + (self.last - self.step) * self.dt
-    }
-
-    /// Goes on to `step` by one time step `dt`.
-    fn follow(&mut self, step: i64, dt: f64) {
-        let before = (step - 1) as f64;
-        self.step += before - self.last;
-        self.last = before;
-        if dt != self.dt {
-            *self = Self { time: self.now(), step: before, dt, ..*self };
-        }
-        self.last = step as f64;
-    }
-}
-
 impl Declared {
     fn key(&self) -> String {
         format!("move/{}", self.id)
@@ -159,20 +132,9 @@ impl Declared {
 
     /// Remembers where particles of the group that are not known yet would have started.
     fn capture(&self, w: &mut World) {
-        let (key, n, bit) = (self.key(), w.n(), self.group.bit());
-        let path = self.path.at(Elapsed::load(w, &key).now());
-        w.columns.vector(&key, n);
-        let mut known = std::mem::take(w.columns.scalar(&key, n));
-        for (i, known) in known.iter_mut().enumerate() {
-            if *known != 0.0 || w.particles.mask[i] & bit == 0 {
-                continue;
-            }
-            *known = 1.0;
-            let x = unwrapped(w, i);
-            let start = std::array::from_fn(|d| path[d].map_or(x[d], |(way, _)| x[d] - way));
-            w.columns.vector(&key, n)[i] = start;
-        }
-        *w.columns.scalar(&key, n) = known;
+        let key = self.key();
+        let now = Elapsed::load(w, &key).now();
+        keep_places(w, &key, self.group, |w, i| self.path.start(unwrapped(w, i), now));
     }
 }
 
@@ -190,12 +152,21 @@ impl Fix for Declared {
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let (group, path, key, span) = (self.group, self.path, self.key(), cx.span());
+        let (group, path, key, span) = (self.group, self.path.clone(), self.key(), cx.span());
         let free = path.given().map(|g| !g);
         if free.contains(&true) {
             check_masses(cx.world(), span)?;
         }
         self.capture(cx.world());
+        let mut readings = Readings::default();
+        for (readings, params) in readings.iter_mut().zip(path.params()) {
+            for (reading, param) in readings.iter_mut().zip(params) {
+                *reading = match param {
+                    Some(p) => Some(cx.param(&p, Stage::InitialIntegrate, &When::Always)?),
+                    None => None,
+                };
+            }
+        }
         let slot = cx.slot(&format!("f_{}", self.id));
         let name = format!("fix {} move", self.id);
         let access = Access::new("f mass mask", "x v");
@@ -203,7 +174,7 @@ impl Fix for Declared {
             if t.setup {
                 show_starts(w, &key, slot, t);
             } else {
-                advance(w, group, &path, &key, t);
+                advance(w, group, &path, &readings, &key, t);
             }
             Ok(())
         });
@@ -241,29 +212,39 @@ fn show_starts(w: &mut World, key: &str, slot: SlotId, t: &Tick) {
 }
 
 /// The path's positions and velocities at this step; free components kicked and drifted.
-fn advance(w: &mut World, group: GroupId, path: &Path, key: &str, t: &Tick) {
+fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key: &str, t: &Tick) {
     let mut elapsed = Elapsed::load(w, key);
     elapsed.follow(t.step, t.dt);
     elapsed.store(w, key);
     let lammps = (t.step as f64 - elapsed.origin) * t.dt;
     let time = if w.settings.lammps() { lammps } else { elapsed.now() };
-    let (at, bit, half) = (path.at(time), group.bit(), half_step(w, t.dt));
-    let (domain, periodic) = (&w.domain, w.domain.as_ref().map_or([false; 3], |d| d.periodic()));
-    let lengths = domain.as_ref().map_or([0.0; 3], |d| d.lengths());
-    let Some(start) = w.columns.get_vector(key) else { return };
-    let p = &mut w.particles;
-    let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
-    let columns = (&mut p.x[..], &mut p.v[..], &p.f[..], &p.mask[..], start);
+    let (bit, half) = (group.bit(), half_step(w, t.dt));
+    let periodic = w.domain.as_ref().map_or([false; 3], |d| d.periodic());
+    let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
+    if w.columns.get_vector(key).is_none() {
+        return;
+    }
+    let (mut places, mut velocities) =
+        (std::mem::take(&mut w.particles.x), std::mem::take(&mut w.particles.v));
+    let world = &*w;
+    let (start, masses) = (world.columns.get_vector(key).unwrap_or_default(), Masses::of(world));
+    let columns =
+        (&mut places[..], &mut velocities[..], &world.particles.f[..], &world.particles.mask[..], start);
     par::each(columns, |first, (x, v, f, mask, start)| {
         for (k, ((((x, v), f), mask), start)) in x.iter_mut().zip(v).zip(f).zip(mask).zip(start).enumerate() {
             if mask & bit == 0 {
                 continue;
             }
+            let given = path.at(world, first + k, *start, time, readings);
             for d in 0..3 {
                 let before = x[d];
-                match at[d] {
-                    Some((way, speed)) => (x[d], v[d]) = (start[d] + way, speed),
-                    None => {
+                match (given.x[d], given.v[d]) {
+                    (Some(place), speed) => (x[d], v[d]) = (place, speed.unwrap_or(v[d])),
+                    (None, Some(speed)) => {
+                        v[d] = speed;
+                        x[d] += t.dt * speed;
+                    }
+                    (None, None) => {
                         v[d] += half / masses.get(first + k) * f[d];
                         x[d] += t.dt * v[d];
                     }
@@ -275,6 +256,13 @@ fn advance(w: &mut World, group: GroupId, path: &Path, key: &str, t: &Tick) {
             }
         }
     });
+    (w.particles.x, w.particles.v) = (places, velocities);
+    if let Some(spin) = path.spin().filter(|_| w.particles.style.sphere) {
+        let p = &mut w.particles;
+        for (omega, _) in p.omega.iter_mut().zip(&p.mask).filter(|(_, m)| **m & bit != 0) {
+            *omega = spin;
+        }
+    }
 }
 
 /// Second half kick of the free components.
@@ -389,7 +377,11 @@ mod tests {
         for words in [
             "",
             "linear 1 2",
-            "rotate 0 0 0 0 0 1 5",
+            "rotate 0 0 0 0 0 0 5",
+            "rotate 0 0 0 0 0 1",
+            "transrot 1 0 0 0 0 0 1 5",
+            "variable v_no NULL NULL NULL NULL NULL",
+            "variable 1 NULL NULL NULL NULL NULL",
             "wiggle 1 1 1",
             "wiggle 1 1 1 0",
             "linear 1 1 1 unit box",
