@@ -3,6 +3,7 @@
 mod causes;
 mod checking;
 mod commands;
+mod files;
 mod interactive;
 mod running;
 mod stability;
@@ -14,7 +15,7 @@ use crate::graph::env::{DeckEnv, DeckValues};
 pub use crate::graph::keywords::KEYWORDS as THERMO;
 use crate::graph::regions::place_now;
 use crate::graph::{Graph, Node, Role};
-use crate::lang::{Command, Files, Flow, Line, Script, Vars};
+use crate::lang::{Command, Flow, Line, Script, Vars};
 use crate::out::log::Log;
 pub use crate::par::{set_threads, threads};
 use crate::plan::StepPlan;
@@ -23,6 +24,7 @@ use crate::styles::command::COMMANDS;
 use crate::styles::{ActCx, Use, UseKind};
 use crate::world::{Compat, GroupId, World};
 pub use commands::OWN;
+use files::RealFiles;
 pub use interactive::{Heard, Known, Snapshot};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -113,16 +115,10 @@ pub struct Session {
     typed: Option<Script>,
     /// What is being worked off was typed, and is this text.
     prompt: Option<FileId>,
-}
-
-/// Files as the system has them.
-struct RealFiles;
-
-impl Files for RealFiles {
-    fn read(&self, path: &str) -> std::io::Result<String> {
-        let bytes = std::fs::read(path)?;
-        Ok(String::from_utf8_lossy(&bytes).into_owned())
-    }
+    /// A shell command was passed over (`check` mode).
+    shelled: bool,
+    /// The variable table's names as the graph knows them.
+    seen_names: u64,
 }
 
 /// No progress shown.
@@ -153,6 +149,8 @@ impl Session {
             quit: None,
             typed: None,
             prompt: None,
+            shelled: false,
+            seen_names: 0,
         };
         for (name, values) in s.options.vars.clone() {
             s.vars.set_index(&name, &values)?;
@@ -253,9 +251,8 @@ impl Session {
     }
 
     fn next_line(&mut self, script: &mut Script) -> Result<Option<Line>> {
-        let vars = Arc::new(self.vars.clone());
         let checking = self.checking();
-        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, vars, checking };
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking };
         script.next(&mut self.sources, &self.vars, &mut env)
     }
 
@@ -295,6 +292,9 @@ impl Session {
             Flow::NotMine => {}
         }
         let name = cmd.name.text.as_str();
+        if !["print", "log", "echo", "info"].contains(&name) {
+            script.changed();
+        }
         if name == "run" {
             self.run_command(cmd)?;
         } else if name == "write_dump" {
@@ -311,25 +311,47 @@ impl Session {
 
     fn flow(&mut self, script: &mut Script, cmd: &Command) -> Result<Flow> {
         self.refuse_jump(cmd)?;
-        let snapshot = Arc::new(self.vars.clone());
-        let redefines = cmd.name.text == "variable"
-            && cmd.args.first().is_some_and(|w| {
-                self.vars.kind(&w.text).is_some() && self.graph.forces_use_variable(&w.text)
-            });
         let checking = self.checking();
-        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, vars: snapshot, checking };
-        let flow = script.flow(cmd, &mut self.sources, &mut self.vars, &mut env, &RealFiles)?;
-        if !matches!(flow, Flow::NotMine) {
-            if redefines || cmd.name.text == "next" {
-                self.world.touch();
-            }
-            self.graph.variables = commands::variable_kinds(&self.vars);
-            let provides = (cmd.name.text == "variable")
-                .then(|| cmd.args.first().map(|w| Use { kind: UseKind::Variable, name: w.text.clone() }))
-                .flatten();
-            self.record(cmd, Role::Declare, provides, commands::variable_uses(cmd), vec![]);
+        // taken out for the moment: the world is borrowed for the formulas in the line
+        let promised = std::mem::take(&mut self.world.parts.promised);
+        let files = RealFiles { promised: checking.then_some(&promised), anything: self.shelled };
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking };
+        let flow = script.flow(cmd, &mut self.sources, &mut self.vars, &mut env, &files);
+        self.world.parts.promised = promised;
+        let flow = flow?;
+        if flow == Flow::NotMine {
+            return Ok(flow);
         }
+        let moved: &[crate::lang::Word] = match cmd.name.text.as_str() {
+            "variable" => &cmd.args[..1],
+            "next" => &cmd.args,
+            _ => &[],
+        };
+        if moved.iter().any(|w| self.graph.forces_use_variable(&w.text)) {
+            self.world.touch();
+        }
+        if self.seen_names != self.vars.names_version() {
+            self.seen_names = self.vars.names_version();
+            self.graph.variables = commands::variable_kinds(&self.vars);
+        }
+        let defines = cmd.name.text == "variable";
+        let provides = cmd.args.first().filter(|_| defines);
+        let provides = provides.map(|w| Use { kind: UseKind::Variable, name: w.text.clone() });
+        self.record_once(cmd, if defines { Role::Declare } else { Role::Act }, provides);
         Ok(flow)
+    }
+
+    /// Records a line that loops may repeat a million times: one node for all its turns.
+    fn record_once(&mut self, cmd: &Command, role: Role, provides: Option<Use>) {
+        let text = cmd.text.trim();
+        if let Some(node) = self.graph.repeated(cmd.span, &provides) {
+            if node.text != text {
+                node.text = text.to_owned();
+                node.uses = commands::variable_uses(cmd);
+            }
+            return;
+        }
+        self.record(cmd, role, provides, commands::variable_uses(cmd), vec![]);
     }
 
     fn record(
@@ -343,7 +365,7 @@ impl Session {
         uses.sort();
         uses.dedup();
         let text = cmd.text.trim().to_string();
-        self.graph.nodes.push(Node { role, provides, text, span: cmd.span, uses, settles });
+        self.graph.add(Node { role, provides, text, span: cmd.span, uses, settles });
     }
 
     fn declare(&mut self, cmd: &Command) -> Result<()> {

@@ -15,10 +15,13 @@
 
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const SCENE: &str = include_str!("scripts/scene.in");
 
@@ -108,31 +111,45 @@ fn good_decks_run_and_print_what_they_promise() {
         }
         let said = messages(&err);
         report += &unmatched("run", &said, &block.expected, Kind::Warning, "warning");
+        // in the order of the expectations, other lines between them
+        let mut printed = out.lines();
         for line in &block.prints {
-            if !out.lines().any(|l| l.trim_end() == line) {
-                let _ = writeln!(report, "  does not print {line:?}; it prints\n{out}");
+            if !printed.any(|l| l.trim_end() == line) {
+                let _ = writeln!(report, "  does not print {line:?} here; it prints\n{out}");
+                break;
             }
         }
         report
     });
 }
 
-/// Runs `test` on every block of a folder and fails with all reports together.
-fn each(folder: &str, test: impl Fn(&Block) -> String) {
+/// Runs `test` on every block of a folder, several at a time, and fails with all reports together.
+fn each(folder: &str, test: impl Fn(&Block) -> String + Sync) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scripts").join(folder);
     let mut files: Vec<_> = fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()).collect();
     files.sort();
-    let (mut failed, mut count) = (String::new(), 0);
+    let mut todo = vec![];
     for file in files {
-        for block in blocks(&fs::read_to_string(&file).unwrap()) {
-            count += 1;
-            let report = test(&block);
+        let name = file.file_name().unwrap().to_string_lossy().into_owned();
+        let found = blocks(&fs::read_to_string(&file).unwrap());
+        todo.extend(found.into_iter().map(|block| (name.clone(), block)));
+    }
+    let count = todo.len();
+    let next = AtomicUsize::new(0);
+    let reports: Mutex<BTreeMap<usize, String>> = Mutex::default();
+    let work = || {
+        while let Some((k, (file, block))) =
+            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|k| Some((k, todo.get(k)?)))
+        {
+            let report = test(block);
             if !report.is_empty() {
-                let file = file.file_name().unwrap().to_string_lossy();
-                let _ = writeln!(failed, "{file}, {}:\n{report}", block.name);
+                reports.lock().unwrap().insert(k, format!("{file}, {}:\n{report}\n", block.name));
             }
         }
-    }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|s| (0..threads).for_each(|_| drop(s.spawn(work))));
+    let failed: String = reports.into_inner().unwrap().into_values().collect();
     println!("{count} decks");
     assert!(failed.is_empty(), "\n{failed}");
 }

@@ -1,12 +1,13 @@
 //! The world as formulas see it: while the deck is read, and inside a step.
 
+use super::answers::{self, Declared};
 use super::keywords;
 use super::measure;
 use super::node::Graph;
 use super::regions;
 use super::seal::Sealer;
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
-use crate::lang::{Clock, Env, RefKind, Value, ValueRef, Vars};
+use crate::lang::{Clock, Env, Question, RefKind, Value, ValueRef, Vars};
 use crate::plan::{Op, Stage, StepPlan, Tick, When};
 use crate::styles::{Reading, SealCx, Values};
 use crate::world::{SlotId, World};
@@ -99,20 +100,37 @@ fn from_slot(w: &World, slot: SlotId, r: &ValueRef) -> Result<Value> {
     }
 }
 
+/// The whole vector of a slot.
+fn whole_vector(w: &World, slot: SlotId, r: &ValueRef) -> Result<Value> {
+    let s = w.slots.get(slot);
+    match r.index.as_slice() {
+        [] if s.offers.vector => Ok(Value::Vector(s.vector.clone())),
+        [k] if s.offers.array && *k <= s.array_cols => Ok(Value::Vector(s.array_column(k - 1))),
+        [] if s.offers.atom => Ok(Value::Atom(vec![])),
+        _ => fail(
+            Code::WRONG_KIND,
+            r.span,
+            format!("`{r}` is no global vector and no column of a global array"),
+        ),
+    }
+}
+
 /// Inside a step: values come from slots that the plan has filled before.
 pub struct RunEnv<'a> {
     /// The world, read only.
     pub w: &'a World,
+    /// What is declared.
+    pub declared: &'a Declared,
     /// The slots of what the formula depends on.
     pub from: &'a BTreeMap<String, SlotId>,
 }
 
 impl Env for RunEnv<'_> {
-    fn keyword(&mut self, name: &str) -> Option<Result<Value>> {
+    fn keyword(&mut self, name: &str, _: &Vars) -> Option<Result<Value>> {
         let slot = self.from.get(name)?;
         Some(Ok(Value::Number(self.w.slots.get(*slot).scalar)))
     }
-    fn reference(&mut self, r: &ValueRef) -> Result<Value> {
+    fn reference(&mut self, r: &ValueRef, _: &Vars) -> Result<Value> {
         match self.from.get(&r.to_string()) {
             Some(slot) => from_slot(self.w, *slot, r),
             None => fail(Code::UNKNOWN_NAME, r.span, format!("`{r}` is not available in this step")),
@@ -124,8 +142,23 @@ impl Env for RunEnv<'_> {
     fn column(&mut self, attribute: &str) -> Option<Result<Vec<f64>>> {
         column(self.w, attribute)
     }
-    fn group_function(&mut self, name: &str, args: &[String], span: Span) -> Result<Value> {
+    fn group_function(&mut self, name: &str, args: &[String], span: Span, _: &Vars) -> Result<Value> {
         measure::group_function(self.w, name, args, span).map(Value::Number)
+    }
+    fn vector(&mut self, r: &ValueRef, _: &Vars) -> Result<Value> {
+        match self.from.get(&r.to_string()) {
+            Some(slot) => whole_vector(self.w, *slot, r),
+            None => fail(Code::UNKNOWN_NAME, r.span, format!("`{r}` is not available in this step")),
+        }
+    }
+    fn mask(&mut self, group: Option<&str>, region: Option<&str>, span: Span, _: &Vars) -> Result<Value> {
+        answers::mask(self.w, group, region, span).map(Value::Atom)
+    }
+    fn setting(&self, name: &str) -> Option<Value> {
+        answers::setting(self.w, false, name)
+    }
+    fn answer(&self, question: Question, category: &str, name: &str, span: Span) -> Result<bool> {
+        answers::answer(self.w, self.declared, question, category, name, span)
     }
     fn clock(&self) -> Clock {
         clock(self.w)
@@ -141,16 +174,14 @@ pub struct DeckEnv<'a> {
     pub w: &'a mut World,
     /// What is declared.
     pub graph: &'a Graph,
-    /// The variable table as it stands.
-    pub vars: Arc<Vars>,
     /// `perigrain check`: what only particles or a run can tell is unknown.
     pub checking: bool,
 }
 
 impl DeckEnv<'_> {
     /// Plans the values asked for by `ask` and runs that plan once.
-    fn now<T>(&mut self, span: Span, ask: impl FnOnce(&mut Sealer) -> Result<T>) -> Result<T> {
-        let (answer, mut plan, t) = self.planned(span, ask)?;
+    fn now<T>(&mut self, span: Span, vars: &Vars, ask: impl FnOnce(&mut Sealer) -> Result<T>) -> Result<T> {
+        let (answer, mut plan, t) = self.planned(span, vars, ask)?;
         plan.run(self.w, &t, &Stage::ALL)?;
         Ok(answer)
     }
@@ -159,9 +190,14 @@ impl DeckEnv<'_> {
     ///
     /// # Errors
     /// Values that are not available, and the op's own failures.
-    pub fn once(&mut self, span: Span, ask: impl FnOnce(&mut Sealer) -> Result<Box<dyn Op>>) -> Result<()> {
-        regions::place_all(self.w, self.graph, &self.vars, self.checking);
-        let (mut op, mut plan, t) = self.planned(span, ask)?;
+    pub fn once(
+        &mut self,
+        span: Span,
+        vars: &Vars,
+        ask: impl FnOnce(&mut Sealer) -> Result<Box<dyn Op>>,
+    ) -> Result<()> {
+        regions::place_all(self.w, self.graph, vars, self.checking);
+        let (mut op, mut plan, t) = self.planned(span, vars, ask)?;
         plan.run(self.w, &t, &Stage::ALL)?;
         op.run(self.w, &t)?;
         op.finish(self.w)
@@ -170,10 +206,11 @@ impl DeckEnv<'_> {
     fn planned<T>(
         &mut self,
         span: Span,
+        vars: &Vars,
         ask: impl FnOnce(&mut Sealer) -> Result<T>,
     ) -> Result<(T, StepPlan, Tick)> {
         self.w.spread_type_masses();
-        let mut sealer = Sealer::new(self.w, self.graph, self.vars.clone());
+        let mut sealer = Sealer::new(self.w, self.graph, Arc::new(vars.clone()));
         sealer.at(span);
         let answer = ask(&mut sealer)?;
         let plan = sealer.plan;
@@ -201,7 +238,7 @@ impl DeckEnv<'_> {
 }
 
 impl Env for DeckEnv<'_> {
-    fn keyword(&mut self, name: &str) -> Option<Result<Value>> {
+    fn keyword(&mut self, name: &str, vars: &Vars) -> Option<Result<Value>> {
         let (name, _, needs) = keywords::find(name)?;
         let particles = ["atoms", "density", "fmax", "fnorm"].contains(name);
         // A deck may loop until a time is reached; no run of a check ever reaches it.
@@ -210,16 +247,16 @@ impl Env for DeckEnv<'_> {
             return Some(Ok(Value::Unknown));
         }
         let span = Span::default();
-        let reading = self.now(span, |s| s.keyword(name, span, Stage::Output, &When::Always));
+        let reading = self.now(span, vars, |s| s.keyword(name, span, Stage::Output, &When::Always));
         Some(reading.map(|r| Value::Number(r.get(self.w))))
     }
 
-    fn reference(&mut self, r: &ValueRef) -> Result<Value> {
+    fn reference(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value> {
         if self.checking {
             return Ok(Value::Unknown);
         }
-        regions::place_all(self.w, self.graph, &self.vars, self.checking);
-        let slot = self.now(r.span, |s| s.reference(r))?;
+        regions::place_all(self.w, self.graph, vars, self.checking);
+        let slot = self.now(r.span, vars, |s| s.reference(r))?;
         from_slot(self.w, slot, r)
     }
 
@@ -232,13 +269,34 @@ impl Env for DeckEnv<'_> {
         column(self.w, attribute)
     }
 
-    fn group_function(&mut self, name: &str, args: &[String], span: Span) -> Result<Value> {
+    fn group_function(&mut self, name: &str, args: &[String], span: Span, vars: &Vars) -> Result<Value> {
         self.w.spread_type_masses();
-        regions::place_now(self.w, self.graph, &self.vars, self.checking, |name| {
-            args.iter().any(|a| a == name)
-        })?;
+        regions::place_now(self.w, self.graph, vars, self.checking, |name| args.iter().any(|a| a == name))?;
         let value = measure::group_function(self.w, name, args, span)?;
         Ok(if self.checking { Value::Unknown } else { Value::Number(value) })
+    }
+
+    fn vector(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value> {
+        if self.checking {
+            return Ok(Value::Unknown);
+        }
+        regions::place_all(self.w, self.graph, vars, self.checking);
+        let slot = self.now(r.span, vars, |s| s.reference(r))?;
+        whole_vector(self.w, slot, r)
+    }
+
+    fn mask(&mut self, group: Option<&str>, region: Option<&str>, span: Span, vars: &Vars) -> Result<Value> {
+        regions::place_now(self.w, self.graph, vars, self.checking, |name| region == Some(name))?;
+        let list = answers::mask(self.w, group, region, span)?;
+        Ok(if self.checking { Value::Unknown } else { Value::Atom(list) })
+    }
+
+    fn setting(&self, name: &str) -> Option<Value> {
+        answers::setting(self.w, self.checking, name)
+    }
+
+    fn answer(&self, question: Question, category: &str, name: &str, span: Span) -> Result<bool> {
+        answers::answer(self.w, &Declared::new(self.graph), question, category, name, span)
     }
 
     fn clock(&self) -> Clock {
@@ -292,8 +350,8 @@ impl Values for DeckValues<'_> {
 
 impl DeckValues<'_> {
     fn reading(&mut self, w: &mut World, r: &ValueRef) -> Result<Reading> {
-        let mut env = DeckEnv { w, graph: self.graph, vars: self.vars.clone(), checking: false };
-        regions::place_all(env.w, env.graph, &env.vars, env.checking);
-        env.now(r.span, |s| s.value(r, Stage::Output, &When::Always))
+        let mut env = DeckEnv { w, graph: self.graph, checking: false };
+        regions::place_all(env.w, env.graph, &self.vars, env.checking);
+        env.now(r.span, &self.vars, |s| s.value(r, Stage::Output, &When::Always))
     }
 }

@@ -1,5 +1,6 @@
 //! Commands as a graph of declarations, acts and runs.
 
+pub mod answers;
 pub mod build;
 pub mod dynamic;
 pub mod env;

@@ -5,7 +5,7 @@ use crate::diag::Span;
 use crate::lang::{RefKind, ValueRef};
 use crate::styles::{Compute, Dump, Fix, Names, Pair, Shape, Use, UseKind};
 use crate::world::GroupId;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Which node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -106,6 +106,8 @@ pub struct Graph {
     pub nodes: Vec<Node>,
     /// Variables by name and what they offer. Kept in step with the variable table for look-ups.
     pub variables: BTreeMap<String, Shape>,
+    /// The latest node of each place of a deck.
+    latest: HashMap<Span, usize>,
 }
 
 impl Clone for PairNode {
@@ -141,6 +143,18 @@ impl Graph {
     /// The compute with this ID.
     pub fn find_compute(&self, id: &str) -> Option<&ComputeNode> {
         self.computes.iter().find(|c| c.id == id)
+    }
+
+    /// Takes a line up.
+    pub fn add(&mut self, node: Node) {
+        self.latest.insert(node.span, self.nodes.len());
+        self.nodes.push(node);
+    }
+
+    /// The node of this place, if it provided the same.
+    pub fn repeated(&mut self, span: Span, provides: &Option<Use>) -> Option<&mut Node> {
+        let node = self.nodes.get_mut(*self.latest.get(&span)?)?;
+        (node.span == span && node.provides == *provides).then_some(node)
     }
 
     /// The latest node that provides a name.

@@ -9,7 +9,6 @@ use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::{Reading, SealCx};
 use crate::world::region::Variable;
 use crate::world::{Region, World};
-use std::sync::Arc;
 
 /// The stages whose ops find moving regions in their present places.
 const STAGES: [Stage; 2] = [Stage::PreForce, Stage::Output];
@@ -21,7 +20,7 @@ const STAGES: [Stage; 2] = [Stage::PreForce, Stage::Output];
 pub fn place_now(
     w: &mut World,
     graph: &Graph,
-    vars: &Arc<Vars>,
+    vars: &Vars,
     checking: bool,
     meant: impl Fn(&str) -> bool,
 ) -> Result<()> {
@@ -42,7 +41,7 @@ pub fn place_now(
 
 /// Puts all regions in their places that can be put now; the others stay where they were, and whoever names one of
 /// them in a line or formula is told.
-pub fn place_all(w: &mut World, graph: &Graph, vars: &Arc<Vars>, checking: bool) {
+pub fn place_all(w: &mut World, graph: &Graph, vars: &Vars, checking: bool) {
     // All of them out of the world meanwhile: what their variables ask for comes here again.
     let following: Vec<String> =
         w.regions.iter().filter(|(_, r)| r.follows()).map(|(name, _)| name.clone()).collect();
@@ -53,20 +52,14 @@ pub fn place_all(w: &mut World, graph: &Graph, vars: &Arc<Vars>, checking: bool)
     }
 }
 
-fn placed(w: &mut World, graph: &Graph, vars: &Arc<Vars>, checking: bool, region: &Region) -> Result<Region> {
+fn placed(w: &mut World, graph: &Graph, vars: &Vars, checking: bool, region: &Region) -> Result<Region> {
     let mut region = region.clone();
     region.place(&mut |v| number(w, graph, vars, checking, v))?;
     Ok(region)
 }
 
-fn number(
-    w: &mut World,
-    graph: &Graph,
-    vars: &Arc<Vars>,
-    checking: bool,
-    v: &Variable,
-) -> Result<Option<f64>> {
-    let mut env = DeckEnv { w, graph, vars: vars.clone(), checking };
+fn number(w: &mut World, graph: &Graph, vars: &Vars, checking: bool, v: &Variable) -> Result<Option<f64>> {
+    let mut env = DeckEnv { w, graph, checking };
     match vars.value(&v.name, v.span, &mut env)? {
         Value::Number(a) => Ok(Some(a)),
         Value::Unknown => Ok(None),

@@ -34,8 +34,11 @@ pub fn text(
         };
         from.insert(name, slot);
     }
-    let text = text.to_string();
-    Ok(Box::new(move |w| substitute(&text, span, &vars, &mut RunEnv { w, from: &from })))
+    let (text, declared) = (text.to_string(), s.declared());
+    Ok(Box::new(move |w| {
+        let mut env = RunEnv { w, declared: &declared, from: &from };
+        substitute(&text, span, &vars, &mut env)
+    }))
 }
 
 /// What the `$x`, `${name}` and `$(formula)` of a text need from outside.
@@ -122,7 +125,7 @@ impl ClockEnv<'_> {
 }
 
 impl Env for ClockEnv<'_> {
-    fn keyword(&mut self, name: &str) -> Option<Result<Value>> {
+    fn keyword(&mut self, name: &str, _: &Vars) -> Option<Result<Value>> {
         let (name, ..) = keywords::find(name)?;
         Some(match *name {
             "step" | "elapsed" | "elaplong" | "dt" | "time" => {
@@ -131,7 +134,7 @@ impl Env for ClockEnv<'_> {
             _ => Self::no(name, None),
         })
     }
-    fn reference(&mut self, r: &ValueRef) -> Result<Value> {
+    fn reference(&mut self, r: &ValueRef, _: &Vars) -> Result<Value> {
         match r.kind {
             RefKind::Variable => Self::no("a variable", r.span.into()),
             _ => Self::no(&r.to_string(), r.span.into()),
@@ -143,7 +146,7 @@ impl Env for ClockEnv<'_> {
     fn column(&mut self, attribute: &str) -> Option<Result<Vec<f64>>> {
         Some(Self::no(attribute, None))
     }
-    fn group_function(&mut self, name: &str, _args: &[String], span: Span) -> Result<Value> {
+    fn group_function(&mut self, name: &str, _args: &[String], span: Span, _: &Vars) -> Result<Value> {
         Self::no(name, span.into())
     }
     fn clock(&self) -> Clock {

@@ -1,5 +1,6 @@
 //! Declarations and world become a step plan: values before their readers, and only what somebody reads.
 
+use super::answers::Declared;
 use super::env::RunEnv;
 use super::keywords::{self, Need, Sources};
 use super::node::Graph;
@@ -29,6 +30,8 @@ pub struct Sealer<'a> {
     uses: usize,
     /// Where the run speaks.
     pub log: Log,
+    /// What formulas may ask about declarations.
+    declared: Option<Arc<Declared>>,
 }
 
 impl<'a> Sealer<'a> {
@@ -44,6 +47,7 @@ impl<'a> Sealer<'a> {
             trail: vec![],
             uses: 0,
             log: Log::silent(),
+            declared: None,
         }
     }
 
@@ -122,6 +126,12 @@ impl<'a> Sealer<'a> {
         }
     }
 
+    /// What formulas may ask about declarations.
+    pub fn declared(&mut self) -> Arc<Declared> {
+        let graph = self.graph;
+        self.declared.get_or_insert_with(|| Arc::new(Declared::new(graph))).clone()
+    }
+
     /// A variable's value; each use is evaluated by itself.
     fn variable(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<Reading> {
         let vars = self.vars.clone();
@@ -146,7 +156,9 @@ impl<'a> Sealer<'a> {
         self.uses += 1;
         let slot = self.world.slots.id(&format!("v_{}#{}", r.name, self.uses));
         let shape = self.graph.variables.get(&r.name).copied().unwrap_or_default();
+        let declared = self.declared();
         let op = Evaluate {
+            declared,
             name: format!("variable {}", r.name),
             variable: r.name.clone(),
             span: r.span,
@@ -406,6 +418,7 @@ impl Op for Keyword {
 
 /// A variable on its way into a slot.
 struct Evaluate {
+    declared: Arc<Declared>,
     name: String,
     variable: String,
     span: Span,
@@ -432,7 +445,8 @@ impl Op for Evaluate {
         OpClass::Output
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let value = self.vars.value(&self.variable, self.span, &mut RunEnv { w, from: &self.from })?;
+        let mut env = RunEnv { w, declared: &self.declared, from: &self.from };
+        let value = self.vars.value(&self.variable, self.span, &mut env)?;
         let slot = w.slots.get_mut(self.slot);
         slot.step = Some(t.step);
         match value {

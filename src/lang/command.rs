@@ -1,6 +1,7 @@
 //! One logical line of a deck: its text, its words, their places.
 
 use crate::diag::Span;
+use std::sync::Arc;
 
 /// One word of a command.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,11 +42,11 @@ pub struct Command {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     /// The line as it is echoed: continuations joined, comment kept.
-    pub raw: String,
+    pub raw: Arc<str>,
     /// The line after each substitution in turn; empty if there was none. Echoed after `raw`.
     pub echoes: Vec<String>,
     /// The command, unless the line is blank or a comment.
-    pub command: Option<Command>,
+    pub command: Option<Arc<Command>>,
     /// Whether a substitution changed the line.
     pub expanded: bool,
 }

@@ -13,10 +13,21 @@ use crate::diag::{Code, Diagnostic, FileId, Result, Sources, fail};
 /// How deep includes and then-commands may nest.
 const NESTING: usize = 100;
 
+/// How many turns of a loop `check` follows.
+const CHECKED_TURNS: u64 = 10_000;
+
 /// Reads files for `include` and `jump`.
 pub trait Files {
     /// The whole text of a file.
     fn read(&self, path: &str) -> std::io::Result<String>;
+    /// Whether an earlier line of the deck may have written this file (`check` mode, which writes nothing).
+    fn comes_later(&self, _path: &str) -> bool {
+        false
+    }
+    /// Whether the deck is only read (`check` mode), so that long loops need not be followed to their end.
+    fn only_checks(&self) -> bool {
+        false
+    }
 }
 
 /// What became of a command.
@@ -48,7 +59,7 @@ impl Script {
     ) -> Result<Flow> {
         match command.name.text.as_str() {
             "if" => self.branch(command, vars, env)?,
-            "jump" => self.jump(command, sources, files)?,
+            "jump" => self.jump(command, sources, vars, files)?,
             "include" => self.include(command, sources, files)?,
             "label" => {
                 let mut args = Args::new(command);
@@ -61,7 +72,7 @@ impl Script {
             }
             "quit" => return self.quit(command),
             "variable" => {
-                vars.define(command, env)?;
+                vars.define(command, env, files)?;
                 if let Some(name) = command.args.first().filter(|_| self.speculative) {
                     vars.mark_unknown(&name.text);
                 }
@@ -91,7 +102,13 @@ impl Script {
         Ok(())
     }
 
-    fn jump(&mut self, command: &Command, sources: &mut Sources, files: &dyn Files) -> Result<()> {
+    fn jump(
+        &mut self,
+        command: &Command,
+        sources: &mut Sources,
+        vars: &Vars,
+        files: &dyn Files,
+    ) -> Result<()> {
         let mut args = Args::new(command);
         let target = args.expect("a file, or SELF")?;
         let label = args.next();
@@ -103,20 +120,49 @@ impl Script {
             self.escaped = true;
             return Ok(());
         }
-        let again = !self.made.insert((command.span.file, command.span.start));
+        let place = (command.span.file, command.span.start);
+        let again = !self.made.insert(place);
         if self.escaped && again {
             return Ok(());
         }
         let Some((level, current)) = self.file() else {
             return fail(Code::WRONG_ORDER, command.span, "there is no file to jump in");
         };
-        let file = if target.text == "SELF" { current } else { load(target, sources, files)? };
-        self.frames[level] = Frame::File { file, at: 0 };
+        let file = if target.text == "SELF" { Some(current) } else { load(target, sources, files)? };
+        let Some(file) = file else {
+            self.escaped = true;
+            return Ok(());
+        };
+        self.comes_back(file);
+        let at = match label {
+            None => 0,
+            Some(l) => match self.behind_label(&l.text, file, sources)? {
+                Some(at) => at,
+                None => return no_label(l),
+            },
+        };
+        let Some(turns) = self.progress.turn(place, vars.fingerprint() ^ self.position()) else {
+            return stuck(command, target);
+        };
+        if turns > CHECKED_TURNS && files.only_checks() {
+            return Ok(());
+        }
+        self.frames[level] = Frame::File { file, at };
         if label.is_some() {
             self.frames.truncate(level + 1);
         }
-        self.seeking = label.cloned();
         Ok(())
+    }
+
+    /// A number for what waits to be read below and above the jump at hand.
+    fn position(&self) -> u64 {
+        self.frames.iter().fold(0, |h: u64, f| {
+            let part = match f {
+                Frame::File { file, at } => (u64::from(file.0) << 32) ^ *at as u64,
+                Frame::Commands { queue, .. } => !(queue.len() as u64),
+            };
+            h.rotate_left(13).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ part
+        })
     }
 
     fn include(&mut self, command: &Command, sources: &mut Sources, files: &dyn Files) -> Result<()> {
@@ -124,8 +170,9 @@ impl Script {
         let target = args.expect("a file")?;
         args.finish()?;
         self.room(command)?;
-        let file = load(target, sources, files)?;
-        self.frames.push(Frame::File { file, at: 0 });
+        if let Some(file) = load(target, sources, files)? {
+            self.frames.push(Frame::File { file, at: 0 });
+        }
         Ok(())
     }
 
@@ -205,22 +252,42 @@ fn evaluate(word: &Word, vars: &Vars, env: &mut dyn Env) -> Result<Option<bool>>
     truth.map(Some)
 }
 
-/// Reads a file into the sources, once per content.
-fn load(path: &Word, sources: &mut Sources, files: &dyn Files) -> Result<FileId> {
-    let text = files.read(&path.text).map_err(|e| {
-        let reason = match e.kind() {
-            std::io::ErrorKind::NotFound => "does not exist".to_owned(),
-            _ => format!("cannot be read: {e}"),
-        };
-        let d: Diagnostic = blame(path, Code::NO_FILE, format!("the file `{}` {reason}", path.text));
-        crate::diag::Diagnostics::from(d)
-    })?;
+/// A label that is nowhere.
+fn no_label<T>(label: &Word) -> Result<T> {
+    let message = format!("there is no `label {}` to jump to", label.text);
+    Err(blame(label, Code::UNKNOWN_NAME, message).into())
+}
+
+/// A loop in which nothing changes.
+fn stuck<T>(command: &Command, target: &Word) -> Result<T> {
+    let message =
+        format!("this loop never ends: nothing has changed since an earlier `jump {}` here", target.text);
+    let d = Diagnostic::error(Code::CONFLICT, command.span, message);
+    Err(d.help("move a variable by `next`, or leave by `if … then \"jump SELF LABEL\"` on something that changes").into())
+}
+
+/// Why a file could not be read.
+pub(super) fn unreadable(path: &Word, e: &std::io::Error) -> Diagnostic {
+    let reason = match e.kind() {
+        std::io::ErrorKind::NotFound => "does not exist".to_owned(),
+        _ => format!("cannot be read: {e}"),
+    };
+    blame(path, Code::NO_FILE, format!("the file `{}` {reason}", path.text))
+}
+
+/// Reads a file into the sources, once per content; `None` if it is not there yet (`check` mode).
+fn load(path: &Word, sources: &mut Sources, files: &dyn Files) -> Result<Option<FileId>> {
+    let text = match files.read(&path.text) {
+        Ok(text) => text,
+        Err(_) if path.unknown || files.comes_later(&path.text) => return Ok(None),
+        Err(e) => return Err(unreadable(path, &e).into()),
+    };
     let mut k = 0;
     while let Some(s) = sources.get(FileId(k)) {
         if s.name == path.text && s.text == text {
-            return Ok(FileId(k));
+            return Ok(Some(FileId(k)));
         }
         k += 1;
     }
-    Ok(sources.add(path.text.clone(), text))
+    Ok(Some(sources.add(path.text.clone(), text)))
 }

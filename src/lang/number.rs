@@ -46,6 +46,14 @@ pub fn value_text(value: f64) -> String {
     general(value + 0.0, 15)
 }
 
+/// A number as it is after a way through its text of 15 digits.
+pub(super) fn rounded(value: f64) -> f64 {
+    if value.abs() < 1e15 && value == value.trunc() {
+        return value + 0.0;
+    }
+    value_text(value).parse().unwrap_or(value)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -72,6 +80,10 @@ mod tests {
         assert_eq!(value_text(1.0 / 3.0), "0.333333333333333");
         assert_eq!(value_text(1e20), "1e+20");
         assert_eq!(value_text(123456789012.0), "123456789012");
+        // LAMMPS: variable x equal 2/3, print "$(v_x)"
+        assert_eq!(rounded(2.0 / 3.0), 0.66666666666666696273);
+        assert_eq!((rounded(-0.0), rounded(1e15 + 3.0), rounded(0.1 + 0.2)), (0.0, 1e15, 0.3));
+        assert!(rounded(f64::INFINITY).is_infinite());
         assert_eq!(printf("%8.3f", 1.0).as_deref(), Ok("   1.000"));
         assert!(printf("%d %d", 1.0).is_err());
         assert!(printf("none", 1.0).is_err());

@@ -1,6 +1,6 @@
 //! `$x`, `${name}`, `$(formula)` and `$(formula:%8.3f)` inside lines and inside quoted text.
 
-use super::expr::Expr;
+use super::expr::balanced;
 use super::lex::{Quote, close_quote, opening, unclosed};
 use super::number::printf;
 use super::scan::{place, taken};
@@ -98,20 +98,6 @@ fn dollar(input: &str) -> IResult<&str, Dollar<'_>> {
     preceded(char('$'), alt((braces, formula, single))).parse(input)
 }
 
-/// Everything up to the parenthesis that closes one already open.
-fn balanced(input: &str) -> IResult<&str, &str> {
-    let mut depth = 0usize;
-    for (k, c) in input.char_indices() {
-        match c {
-            '(' => depth += 1,
-            ')' if depth == 0 => return Ok((&input[k..], &input[..k])),
-            ')' => depth -= 1,
-            _ => {}
-        }
-    }
-    Err(nom::Err::Error(nom::error::Error::new(input, nom::error::ErrorKind::Char)))
-}
-
 /// A dollar sign that no variable follows.
 fn no_dollar(line: &Mapped, rest: &str) -> crate::diag::Diagnostics {
     let at = place(&line.text, rest);
@@ -147,7 +133,7 @@ fn lookup(
     };
     let place = line.span(at..(at + formula.len()).max(at + 1));
     let place = if formula.is_empty() { span } else { place };
-    let value = Expr::parse(formula, place)?.number(vars, env)?;
+    let value = vars.formula(formula, place)?.number(vars, env)?;
     let Some(value) = value else {
         return Ok(Text { text: String::new(), origin: None, unknown: true });
     };

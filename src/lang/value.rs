@@ -1,7 +1,8 @@
 //! Values of formulas, and what a formula asks of the world around it.
 
 use super::reference::ValueRef;
-use crate::diag::{Result, Span};
+use super::vars::Vars;
+use crate::diag::{Code, Result, Span, fail};
 
 /// Time as formulas see it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,18 +44,51 @@ impl Value {
     }
 }
 
+/// A question about the session: `is_active(category,name)` and its kin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Question {
+    /// `is_active`: is it in use?
+    Active,
+    /// `is_available`: could it be used?
+    Available,
+    /// `is_defined`: has the deck defined it?
+    Defined,
+}
+
 /// The world as formulas see it.
+///
+/// `vars` is the variable table of the formula at hand: what is computed for it may read variables too.
 pub trait Env {
     /// A thermo keyword (`step`, `pe`, `vol` …); `None` if there is no such keyword.
-    fn keyword(&mut self, name: &str) -> Option<Result<Value>>;
+    fn keyword(&mut self, name: &str, vars: &Vars) -> Option<Result<Value>>;
     /// The value of a compute or fix.
-    fn reference(&mut self, r: &ValueRef) -> Result<Value>;
+    fn reference(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value>;
+    /// The whole global vector of a compute or fix; with an index, that column of its global array.
+    fn vector(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value> {
+        self.reference(r, vars)
+    }
     /// One particle's `x`, `vx`, `mass`, `type` …; `tag` counts from 1.
     fn particle(&mut self, attribute: &str, tag: usize, span: Span) -> Result<Value>;
     /// An attribute of every particle, in storage order; `None` if there is no such attribute.
     fn column(&mut self, attribute: &str) -> Option<Result<Vec<f64>>>;
     /// `count(group)`, `xcm(group,dim[,region])` …; number and form of the arguments have been checked.
-    fn group_function(&mut self, name: &str, args: &[String], span: Span) -> Result<Value>;
+    fn group_function(&mut self, name: &str, args: &[String], span: Span, vars: &Vars) -> Result<Value>;
+    /// For every particle 1 if it is in the group and in the region, else 0.
+    fn mask(&mut self, _group: Option<&str>, _region: Option<&str>, span: Span, _: &Vars) -> Result<Value> {
+        fail(Code::WRONG_ORDER, span, "there are no particles here")
+    }
+    /// `extract_setting(name)`; `None` if there is no such setting.
+    fn setting(&self, _name: &str) -> Option<Value> {
+        None
+    }
+    /// `is_active`, `is_available`, `is_defined`; variables are looked up by the caller.
+    fn answer(&self, _question: Question, _category: &str, _name: &str, span: Span) -> Result<bool> {
+        fail(Code::UNKNOWN_NAME, span, "there is no scene here")
+    }
+    /// Whether the limit of `timer timeout` has passed.
+    fn timed_out(&self) -> bool {
+        false
+    }
     /// The present step and run.
     fn clock(&self) -> Clock;
     /// How many particles there are.

@@ -12,13 +12,9 @@ use crate::world::{Compat, GroupId, Promise};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
 
 /// The session's own commands and those of the cursor, for "did you mean".
-pub const OWN: [&str; 15] = [
-    "print", "log", "echo", "clear", "compat", "run", "variable", "if", "jump", "label", "next", "include",
-    "quit", "suffix", "package",
-];
+pub use crate::graph::answers::SESSION_COMMANDS as OWN;
 
 /// LAMMPS commands that come with later issues, named so that nobody searches for a typo.
 pub const LAMMPS_ONLY: &[&str] = &[
@@ -73,7 +69,8 @@ pub const LAMMPS_ONLY: &[&str] = &[
 /// What each variable offers, by name.
 pub fn variable_kinds(vars: &Vars) -> BTreeMap<String, Shape> {
     let shape = |n: &str| match vars.kind(n) {
-        Some(Kind::Atom) => Shape { atom: Some(1), ..Shape::default() },
+        Some(k) if k.per_particle() => Shape { atom: Some(1), ..Shape::default() },
+        Some(Kind::Vector) => Shape { vector: Shape::OPEN, ..Shape::default() },
         _ => Shape { scalar: true, ..Shape::default() },
     };
     vars.names().map(|n| (n.to_string(), shape(n))).collect()
@@ -181,7 +178,7 @@ impl Session {
             }
             _ => return Ok(false),
         }
-        self.record(cmd, Role::Act, None, variable_uses(cmd), vec![]);
+        self.record_once(cmd, Role::Act, None);
         Ok(true)
     }
 
@@ -200,9 +197,8 @@ impl Session {
             }
         }
         let _ = universe;
-        let vars = Arc::new(self.vars.clone());
         let checking = self.checking();
-        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, vars, checking };
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking };
         let text = substitute(&word.text, word.span, &self.vars, &mut env)?;
         if checking {
             if let Some(name) = file {

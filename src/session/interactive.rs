@@ -116,6 +116,7 @@ impl Session {
     pub fn restore(&mut self, s: &Snapshot) {
         self.vars = s.vars.detached();
         self.graph = s.graph.clone();
+        self.seen_names = self.vars.names_version();
         self.world = World::clone(&s.world);
         self.options.compat = s.compat;
         self.ran = s.ran;
@@ -177,9 +178,8 @@ impl Session {
     pub fn per_particle(&mut self, formula: &str) -> Result<Vec<f64>> {
         let file = self.sources.add("formula", formula);
         let expr = Expr::parse(formula, Span::new(file, 0, formula.len()))?;
-        let vars = Arc::new(self.vars.clone());
-        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, vars: vars.clone(), checking: false };
-        Ok(expr.per_particle(&vars, &mut env)?.unwrap_or_default())
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking: false };
+        Ok(expr.per_particle(&self.vars, &mut env)?.unwrap_or_default())
     }
 
     /// How wide each particle is: its diameter, else the edge of its volume, else of its share of the box.

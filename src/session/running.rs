@@ -257,8 +257,7 @@ impl Session {
             return Ok(());
         }
         self.world.spread_type_masses();
-        let vars = Arc::new(self.vars.clone());
-        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, vars, checking: false };
-        env.once(cmd.span, |s| dump.op(s, 0))
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking: false };
+        env.once(cmd.span, &self.vars, |s| dump.op(s, 0))
     }
 }

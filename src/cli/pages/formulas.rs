@@ -45,5 +45,15 @@ const TEXT: &str = "**Operators**, from loose to tight: `||` and `|^` (exclusive
     fix), `v_NAME` another variable, `v_NAME[i]` the value of particle i of an `atom` variable. A formula evaluated while the \
     deck is read computes what it needs of the present state; energies and pressures must have been computed in the last \
     step or by `run 0`.\n\n\
-    Not there yet: functions of vectors (`sum min max ave trap slope sort rsort`), masks (`gmask rmask grmask`), `next` and \
-    the `is_…` functions, vector-style variables. `charge(g)` is refused: no atom style here has charges.";
+    **Vectors**: `sum(v)` `min(v)` `max(v)` `ave(v)` `trap(v)` (the sum with half the first and last element) `slope(v)` \
+    (of the straight line through the elements, numbered from 1) yield a number, `sort(v)` and `rsort(v)` (falling) a vector; \
+    v is `c_ID`, `f_ID`, a column `c_ID[i]` or `f_ID[i]` of a global array, or `v_NAME` of a vector-style variable. Operators \
+    and functions of numbers act on each element; two vectors must have the same length. `[1,3,7]` is a vector.\n\n\
+    **Masks**, one value per particle: `gmask(group)` `rmask(region)` `grmask(group,region)` are 1 inside, else 0.\n\n\
+    **Files and the session**: `next(NAME)` is the present value of a file- or atomfile-style variable, which then moves on; \
+    `is_file(path)` `is_os(pattern)` (a regular expression, as `is_os(^Linux)`) `is_timeout()` (whether `timer timeout` has \
+    passed) `is_defined(category,name)` (compute dump fix group region variable) `is_available(category,name)` (command compute \
+    fix pair_style feature) `is_active(category,name)` (package newton pair comm_style min_style run_style atom_style pair_style \
+    bond_style …) yield 1 or 0; `extract_setting(name)` knows LAMMPS' settings such as `dimension box_exist ntypes nlocal \
+    nthreads`. `label2type` and `is_typelabel` are refused: there are no label maps. `charge(g)` is refused: no atom style here \
+    has charges.";

@@ -35,35 +35,58 @@ pub(super) const VARIABLE: Entry = (
     Doc {
         syntax: "variable NAME equal formula\n\
             variable NAME atom formula\n\
+            variable NAME vector formula | [1,3,7]\n\
             variable NAME index value …\n\
             variable NAME loop N | N1 N2 [pad]\n\
             variable NAME string \"text\"\n\
+            variable NAME file FILE\n\
+            variable NAME atomfile FILE\n\
             variable NAME getenv KEY\n\
             variable NAME format OTHER %.6g\n\
+            variable NAME timer\n\
+            variable NAME internal number\n\
+            variable NAME world value\n\
+            variable NAME universe value …\n\
+            variable NAME uloop N [pad]\n\
             variable NAME delete",
-        summary: "Defines a variable: a formula, a list to loop over, or a text.",
+        summary: "Defines a variable: a formula, a list to loop over, a text, a file.",
         text: "- `equal`: a [formula](formulas.md) that yields one number. It is kept as a formula and evaluated at \
             each use, so `${NAME}` after a run sees the new state; as text it has 15 digits (`%.15g`).\n\
             - `atom`: a formula with one value per particle, from attributes such as `x` or `vz`. Used by `group … \
             variable`, `set`, `velocity`, `dump custom`, `compute reduce`; it cannot be put into a line.\n\
+            - `vector`: a formula that yields a global vector, or its numbers in brackets. As text it is `[1,3,7]`; \
+            `v_NAME[2]` is its second element.\n\
             - `index`: a list of texts, `loop`: the whole numbers from 1 (or `N1`) to `N`; `next` moves to the next \
             one. `pad` writes all numbers with the digits of the last one.\n\
             - `string`: a text; values in it are put in now.\n\
-            - `getenv`: the environment variable `KEY` (empty if it is not set).\n\
-            - `format`: the equal-style variable `OTHER` in a C format.\n\
+            - `file`: the lines of a file one after the other, without comments and blank lines; `next NAME`, or \
+            `next(NAME)` in a formula, moves to the next one.\n\
+            - `atomfile`: values per particle from a file: a line with a number N, then N lines with a particle's id and \
+            its value; particles that are not named have 0. A file may hold several such sets, `next` moves through them. \
+            `clear` forgets the variable.\n\
+            - `getenv`: the environment variable `KEY` (empty if it is not set); `shell putenv` sets one.\n\
+            - `format`: a number of an equal, timer or internal variable in a C format, one `%g`, `%f` or `%e` and \
+            nothing else.\n\
+            - `timer`: the moment of this line in seconds; the difference of two is the time between them.\n\
+            - `internal`: a number that some commands change.\n\
+            - `world` `universe` `uloop`: for LAMMPS' several partitions, of which there is one here: `world` takes one \
+            value, `universe` and `uloop` are like `index` and `loop`.\n\
             - `delete` forgets the variable.\n\n\
-            Names have letters, digits and underscores. An `index` or `loop` line for a name that exists does nothing: \
-            that is how `-var NAME value` on the command line wins over the deck, and how a loop does not start over. \
-            The other styles replace a variable of the same style and refuse to replace one of another style.\n\n\
-            A formula may stand in quotes or, unlike LAMMPS, as several words. Not there yet: the styles `atomfile file \
-            internal python timer uloop universe vector world`.",
+            Names have letters, digits and underscores. An `index loop world universe uloop file` or `atomfile` line for \
+            a name that exists does nothing: that is how `-var NAME value` on the command line wins over the deck, and how \
+            a loop does not start over. The other styles replace a variable of the same style and refuse to replace one of \
+            another style.\n\n\
+            A formula may stand in quotes or, unlike LAMMPS, as several words. `variable … python` is refused: there is no \
+            Python inside.",
         example: "variable v index 35 70 160\n\
             variable n loop 3 pad\n\
             variable energy equal 0.5*mass(ball)*v_v^2\n\
             variable height atom z-0.001\n\
-            variable text string \"impact at $v m/s\"\n\
+            variable speeds vector [35,70,160]\n\
+            variable text string \"impact at $v m/s, the fastest at $(max(v_speeds)) m/s\"\n\
             variable short format energy %.3g\n\
-            print \"${text}: ${short} J, turn $n\"",
+            variable start timer\n\
+            print \"${text}: ${short} J, turn $n of ${speeds}\"",
     },
 );
 
@@ -103,7 +126,10 @@ pub(super) const JUMP: Entry = (
         text: "Reading goes on at the top of `FILE` (`SELF`: the present one), with `LABEL` at the first `label LABEL` \
             after that. There is no way back: `include` is the command that returns. A `jump` right after a `next` that \
             ran out is passed over, which is how loops end. From an included file it leaves the rest of that file only. \
-            A file is looked for in the working folder.\n\n\
+            A file is looked for in the working folder. As in LAMMPS no values are put into `label` lines while they are \
+            searched.\n\n\
+            A loop that can never end is refused: when a jump is made again and no variable, file or scene has changed \
+            since. `perigrain check` follows a loop for 10,000 turns.\n\n\
             `jump SELF` also works for a deck on standard input. Inside `run … every` it is refused.",
         example: "jump SELF later\nprint \"this line is passed over\"\nlabel later",
     },
@@ -113,9 +139,10 @@ pub(super) const NEXT: Entry = (
     "next",
     Doc {
         syntax: "next NAME …",
-        summary: "Moves loop and index variables to their next value.",
-        text: "All variables of one line must be of the same style, `index` or `loop`, and move together. When one of \
-            them has no further value it is deleted, and the next `jump` is passed over.",
+        summary: "Moves variables with several values to their next one.",
+        text: "All variables of one line must be of the same style, `index loop file atomfile universe` or `uloop`, and \
+            move together (`universe` and `uloop` count as one style). When one of them has no further value it is \
+            deleted, and the next `jump` is passed over.",
         example: "variable v index 35 70 160\nlabel impact\nprint \"at $v m/s\"\nnext v\njump SELF impact",
     },
 );

@@ -33,19 +33,20 @@ const COLUMNS: &str = "`one` is `step temp epair emol etotal press`, the default
     Columns of `custom`:\n\n\
     - steps and time: `step`, `elapsed` (steps of this run), `elaplong` (steps since `run … start`), `dt`, `time`, `cpu` \
     (seconds of this run), `tpcpu` (simulated time per second), `spcpu` (steps per second), `cpuremain` (seconds left), \
-    `part` (0);\n\
+    `timeremain` (seconds left by `timer timeout`, 0 without), `part` (0);\n\
     - energy, over all particles: `pe` (potential, with that of fixes that were told so), `ke`, `etotal` (their sum), \
     `econserve` (the same), `enthalpy` (etotal + press·vol), `evdwl` and `epair` (of the pair style);\n\
     - `temp`, `press`, `pxx pyy pzz pxy pxz pyz`, by the computes `thermo_temp` and `thermo_press` or those `thermo_modify` \
     names;\n\
     - the scene: `atoms`, `vol`, `density`, box `lx ly lz xlo xhi ylo yhi zlo zhi cella cellb cellc cellalpha cellbeta \
-    cellgamma` (angles 90) and `xy xz yz` (0), `fmax` (largest force component), `fnorm` (root of the sum of squared force \
+    cellgamma` (angles 90), its edges `avecx avecy avecz bvecx bvecy bvecz cvecx cvecy cvecz`, `xy xz yz` (0), the spacings \
+    of the lattice `xlat ylat zlat`, `fmax` (largest force component), `fnorm` (root of the sum of squared force \
     components), `nbuild` and `ndanger` (neighbour lists built, and built perhaps too late);\n\
-    - always 0 here, for LAMMPS' decks: `ecoul ebond eangle edihed eimp emol elong etail ecouple`;\n\
+    - always 0 here, for LAMMPS' decks: `ecoul ebond eangle edihed eimp emol elong etail ecouple bonds angles \
+    dihedrals impropers`;\n\
     - `c_ID`, `c_ID[i]`, `c_ID[i][j]` of a compute, `f_ID …` of a fix, `v_NAME` of an equal-style variable; `c_ID[*]` and \
     `c_ID[2*3]` stand for one column per element.\n\n\
-    Values per particle have to go through `compute reduce`. LAMMPS' `timeremain`, `xlat ylat zlat`, `bonds angles dihedrals \
-    impropers` are not there yet.";
+    Values per particle have to go through `compute reduce`.";
 
 pub(super) const THERMO_MODIFY: Entry = (
     "thermo_modify",

@@ -1,10 +1,11 @@
 //! Runs the program of a formula on a stack of values.
 
+use super::super::number;
 use super::super::reference::{RefKind, ValueRef};
 use super::super::value::{Env, Value};
-use super::super::vars::Vars;
+use super::super::vars::{Kind, Vars};
 use super::functions::{Body, Function};
-use super::{Binary, Expr, Index, Op, Step, unknown_word};
+use super::{Binary, Expr, Index, Op, Step, special, unknown_word};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::math::rng::Marsaglia;
 use std::cell::RefCell;
@@ -53,6 +54,7 @@ impl Expr {
         for step in &self.steps {
             let value = match &step.op {
                 Op::Number(v) => Value::Number(*v),
+                Op::Vector(list) => Value::Vector(list.clone()),
                 Op::Negate => self.each(step, stack.pop().as_slice(), |a| Ok(-a[0]))?,
                 Op::Not => self.each(step, stack.pop().as_slice(), |a| Ok(truth(a[0] == 0.0)))?,
                 Op::Binary(op) => {
@@ -111,10 +113,15 @@ impl Expr {
     fn leaf(&self, step: &Step, vars: &Vars, env: &mut dyn Env, trail: &mut Trail) -> Result<Value> {
         let span = self.place(&step.range);
         match &step.op {
-            Op::Word(name) => match env.keyword(name) {
-                Some(v) => v.map_err(|d| d.at(span)),
-                None => Err(unknown_word(name, span, env).into()),
-            },
+            Op::Word(name) => {
+                if name.contains("cpu") || name == "timeremain" {
+                    vars.event();
+                }
+                match env.keyword(name, vars) {
+                    Some(v) => v.map_err(|d| d.at(span)),
+                    None => Err(unknown_word(name, span, env).into()),
+                }
+            }
             Op::Column(name) => match env.column(name) {
                 Some(v) => v.map(Value::Atom).map_err(|d| d.at(span)),
                 None => fail(Code::WRONG_KIND, span, format!("the particles have no `{name}`")),
@@ -123,7 +130,10 @@ impl Expr {
                 Some(tag) => env.particle(name, tag, span).map_err(|d| d.at(span)),
                 None => Ok(Value::Unknown),
             },
-            Op::Group(name, args) => env.group_function(name, args, span).map_err(|d| d.at(span)),
+            Op::Special(row, args) => {
+                special::value(row, args, span, vars, env, trail).map_err(|d| d.at(span))
+            }
+            Op::Group(name, args) => env.group_function(name, args, span, vars).map_err(|d| d.at(span)),
             Op::Reference(kind, name, indices) => {
                 let mut index = Vec::with_capacity(indices.len());
                 for i in indices {
@@ -134,9 +144,15 @@ impl Expr {
                 }
                 let r = ValueRef { kind: *kind, name: name.clone(), index, span };
                 if *kind != RefKind::Variable {
-                    return env.reference(&r).map_err(|d| d.at(span));
+                    return env.reference(&r, vars).map_err(|d| d.at(span));
                 }
-                vars.reference(&r, env, trail)
+                // LAMMPS reads equal-style variables by way of their text
+                match vars.reference(&r, env, trail)? {
+                    Value::Number(v) if vars.kind(name) == Some(Kind::Equal) => {
+                        Ok(Value::Number(number::rounded(v)))
+                    }
+                    value => Ok(value),
+                }
             }
             _ => Ok(Value::Unknown),
         }

@@ -57,31 +57,6 @@ const GROUPS: &[Group] = &[
     Group { name: "omega", words: DIM },
 ];
 
-/// LAMMPS' functions that perigrain does not have yet.
-pub(super) const LATER: &[&str] = &[
-    "sum",
-    "min",
-    "max",
-    "ave",
-    "trap",
-    "slope",
-    "sort",
-    "rsort",
-    "gmask",
-    "rmask",
-    "grmask",
-    "next",
-    "is_file",
-    "is_os",
-    "extract_setting",
-    "label2type",
-    "is_typelabel",
-    "is_timeout",
-    "is_available",
-    "is_active",
-    "is_defined",
-];
-
 /// The words that stand for a number.
 pub(super) const CONSTANTS: &[&str] = &["PI", "version", "yes", "no", "on", "off", "true", "false"];
 
@@ -156,7 +131,8 @@ pub(super) fn group(name: &str) -> Option<&'static Group> {
 
 /// Every function there is.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
-    FUNCTIONS.iter().map(|f| f.name).chain(GROUPS.iter().map(|g| g.name))
+    let special = super::special::SPECIALS.iter().map(|s| s.name);
+    FUNCTIONS.iter().map(|f| f.name).chain(GROUPS.iter().map(|g| g.name)).chain(special)
 }
 
 /// The number a word stands for.

@@ -6,7 +6,7 @@
 use super::super::number;
 use super::super::scan::{place, taken};
 use super::functions::{self, Group};
-use super::{ATTRIBUTES, Binary, Index, Op, RefKind, Step};
+use super::{ATTRIBUTES, Binary, Index, Op, RefKind, Step, special};
 use crate::diag::{Code, nearest};
 use nom::branch::alt;
 use nom::bytes::complete::{tag, take_till, take_while};
@@ -92,6 +92,20 @@ fn index(input: &str) -> IResult<&str, Index> {
     delimited(char('['), alt((number, variable)), char(']')).parse(input)
 }
 
+/// Everything up to the parenthesis that closes one already open.
+pub(in super::super) fn balanced(input: &str) -> IResult<&str, &str> {
+    let mut depth = 0usize;
+    for (k, c) in input.char_indices() {
+        match c {
+            '(' => depth += 1,
+            ')' if depth == 0 => return Ok((&input[k..], &input[..k])),
+            ')' => depth -= 1,
+            _ => {}
+        }
+    }
+    Err(nom::Err::Error(nom::error::Error::new(input, nom::error::ErrorKind::Char)))
+}
+
 impl<'a> Program<'a> {
     /// Operands joined by operators of at least `level`.
     fn binary(&mut self, input: &'a str, level: u8, depth: usize) -> Parsed<'a> {
@@ -129,6 +143,9 @@ impl<'a> Program<'a> {
             self.deeper(at..at + 1, depth)?;
             let rest = self.binary(after, 0, depth + 1)?;
             return self.close(rest, at);
+        }
+        if input.starts_with('[') {
+            return self.vector(input, at);
         }
         if let Ok((after, digits)) = number::literal(input) {
             return self.number(after, digits, at);
@@ -216,6 +233,9 @@ impl<'a> Program<'a> {
         if let Some(g) = functions::group(word) {
             return self.group(&open[1..], g, at);
         }
+        if let Some(row) = special::find(word) {
+            return self.special(&open[1..], row, at);
+        }
         let Some(function) = functions::find(word) else { return Err(self.no_function(word, range)) };
         self.deeper(range.clone(), depth)?;
         let mut rest = &open[1..];
@@ -267,6 +287,49 @@ impl<'a> Program<'a> {
         Ok(rest)
     }
 
+    /// `sum(v_list)`, `is_active(pair,single)`: names between commas, up to the matching parenthesis.
+    fn special(&mut self, inside: &'a str, row: &'static special::Row, at: usize) -> Parsed<'a> {
+        let (rest, body) = balanced(inside).unwrap_or(("", inside));
+        let rest = self.close(rest, place(self.text, inside) - 1)?;
+        let range = at..place(self.text, rest);
+        let mut args: Vec<String> = body.split(',').map(|a| a.trim().to_owned()).collect();
+        if row.usage.is_empty() && body.trim().is_empty() {
+            args.clear();
+        }
+        // a pattern may hold commas of its own
+        if row.what == special::Special::IsOs {
+            args = vec![body.trim().to_owned()];
+        }
+        if args.len() != row.usage.len() || args.iter().any(String::is_empty) {
+            let message = format!("{0}() reads {0}({1})", row.name, row.usage.join(","));
+            return Err(self.fault(Code::SYNTAX, range, message));
+        }
+        self.emit(Op::Special(row, args), range)?;
+        Ok(rest)
+    }
+
+    /// `[1,3,7]`: numbers between commas.
+    fn vector(&mut self, input: &'a str, at: usize) -> Parsed<'a> {
+        let Some(end) = input.find(']') else {
+            return Err(self.fault(Code::SYNTAX, at..at + 1, "this bracket is never closed"));
+        };
+        let mut list = vec![];
+        let mut from = at + 1;
+        for word in input[1..end].split(',') {
+            let lead = word.len() - word.trim_start().len();
+            let range = from + lead..from + lead + word.trim().len();
+            from += word.len() + 1;
+            let Some(v) = number::parse(word.trim()) else {
+                let range = if range.is_empty() { at..at + end + 1 } else { range };
+                let message = format!("`{}` is not a number: a vector is written [1,3,7]", word.trim());
+                return Err(self.fault(Code::BAD_NUMBER, range, message));
+            };
+            list.push(v);
+        }
+        self.emit(Op::Vector(list), at..at + end + 1)?;
+        Ok(&input[end + 1..])
+    }
+
     /// The closing parenthesis of the one at byte `open`.
     fn close(&self, rest: &'a str, open: usize) -> Parsed<'a> {
         let closed: IResult<&str, char> = spaced(char(')')).parse(rest);
@@ -284,12 +347,9 @@ impl<'a> Program<'a> {
     }
 
     fn no_function(&self, word: &str, range: Range<usize>) -> Fault {
-        if functions::LATER.contains(&word) || word.starts_with("py_") {
-            return self.fault(
-                Code::NOT_SUPPORTED,
-                range,
-                format!("the function {word}() is not in perigrain yet"),
-            );
+        if word.starts_with("py_") {
+            let message = format!("perigrain has no Python inside, so no function {word}()");
+            return self.fault(Code::NOT_SUPPORTED, range, message);
         }
         let mut f = self.fault(Code::UNKNOWN_NAME, range, format!("there is no function {word}()"));
         if let Some(n) = nearest(word, functions::names()) {

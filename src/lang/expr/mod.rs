@@ -3,6 +3,8 @@
 mod eval;
 mod functions;
 mod grammar;
+mod pattern;
+mod special;
 mod time;
 
 #[cfg(test)]
@@ -17,6 +19,7 @@ use functions::Function;
 use std::ops::Range;
 
 pub(super) use eval::{Trail, element};
+pub(super) use grammar::balanced;
 
 /// Attributes of particles that formulas may name, as a column (`vx`) or for one particle (`vx[3]`).
 pub const ATTRIBUTES: &[&str] = &[
@@ -48,6 +51,8 @@ enum Op {
     Particle(String, Index),
     Reference(RefKind, String, Vec<Index>),
     Group(String, Vec<String>),
+    Special(&'static special::Row, Vec<String>),
+    Vector(Vec<f64>),
     Negate,
     Not,
     Binary(Binary),
@@ -147,6 +152,14 @@ impl Expr {
         }
     }
 
+    /// Its value as a global vector, or unknown.
+    pub(super) fn vector(&self, vars: &Vars, env: &mut dyn Env, trail: &mut Trail) -> Result<Value> {
+        match self.run(vars, env, trail)? {
+            v @ (Value::Unknown | Value::Vector(_)) => Ok(v),
+            other => self.wrong("a global vector", other.kind()),
+        }
+    }
+
     fn wrong<T>(&self, wanted: &str, got: &str) -> Result<T> {
         let text = &self.text;
         fail(Code::WRONG_KIND, self.at, format!("`{text}` yields {got}; {wanted} is needed here"))
@@ -167,26 +180,34 @@ impl Expr {
             match &step.op {
                 Op::Word(name) => add(Dep::Keyword(name.clone())),
                 Op::Reference(RefKind::Variable, name, index) => {
-                    names.push(name);
-                    names.extend(index.iter().filter_map(Index::variable));
+                    names.push(name.clone());
+                    names.extend(index.iter().filter_map(Index::variable).cloned());
                 }
                 Op::Reference(kind, name, index) => {
                     let fixed = |i: &Index| if let Index::Number(k) = i { *k } else { 1 };
                     let span = self.place(&step.range);
                     let index_numbers = index.iter().map(fixed).collect();
                     add(Dep::Ref(ValueRef { kind: *kind, name: name.clone(), index: index_numbers, span }));
-                    names.extend(index.iter().filter_map(Index::variable));
+                    names.extend(index.iter().filter_map(Index::variable).cloned());
                 }
-                Op::Particle(_, index) => names.extend(index.variable()),
+                Op::Particle(_, index) => names.extend(index.variable().cloned()),
+                Op::Special(row, args) if matches!(row.what, special::Special::Reduce(_)) => {
+                    match special::vector_of(args, self.place(&step.range)) {
+                        Some(r) if r.kind == RefKind::Variable => names.push(r.name),
+                        Some(r) => add(Dep::Ref(r)),
+                        None => {}
+                    }
+                }
                 _ => {}
             }
         }
         for name in names {
-            if seen.iter().any(|s| s == name) {
+            if seen.contains(&name) {
                 continue;
             }
+            let formula = vars.expr(&name);
             seen.push(name.clone());
-            if let Some(e) = vars.expr(name) {
+            if let Some(e) = formula {
                 e.collect(vars, out, seen);
             }
         }

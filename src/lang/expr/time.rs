@@ -3,7 +3,7 @@
 use super::super::value::Clock;
 
 /// What LAMMPS gives for "no further step" (`stride` past its end).
-const NEVER: f64 = 9_223_372_036_854_769_664.0;
+const NEVER: f64 = 9_223_372_036_854_774_784.0;
 
 /// Time since the run began.
 pub(super) fn elapsed(c: &Clock) -> f64 {

@@ -1,35 +1,57 @@
-//! The variable table: definition, value as text, value in formulas, `next`.
+//! The variable table: what there is, what has changed, and `next`.
 
 mod define;
+mod files;
+mod text;
 
 use super::args::blame;
 use super::command::Word;
-use super::expr::{Expr, Trail, element};
-use super::number::{self, printf, value_text};
+use super::expr::Expr;
 use super::reference::{RefKind, ValueRef};
 use super::value::{Env, Value};
 use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use crate::math::rng::Marsaglia;
-use std::collections::BTreeMap;
+use files::{AtomFile, Lines};
+use std::collections::{BTreeMap, HashMap};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+pub(super) use text::Text;
+
 /// The style of a variable.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// `index`: a list of texts.
     Index,
     /// `loop`: a run of whole numbers.
     Loop,
+    /// `world`: one text per partition, of which there is one.
+    World,
+    /// `universe`: a list of texts that partitions share.
+    Universe,
+    /// `uloop`: a run of whole numbers that partitions share.
+    Uloop,
     /// `string`: one text.
     Text,
     /// `getenv`: an environment variable.
     Getenv,
-    /// `format`: an equal-style variable in a C format.
+    /// `file`: the lines of a file, one after the other.
+    File,
+    /// `atomfile`: sets of values per particle from a file.
+    Atomfile,
+    /// `format`: a number of another variable in a C format.
     Format,
     /// `equal`: a formula that yields a number.
     Equal,
     /// `atom`: a formula that yields one number per particle.
     Atom,
+    /// `vector`: a formula that yields a global vector.
+    Vector,
+    /// `timer`: the moment of its definition.
+    Timer,
+    /// `internal`: a number that commands set.
+    Internal,
 }
 
 impl Kind {
@@ -38,66 +60,158 @@ impl Kind {
         match self {
             Kind::Index => "index",
             Kind::Loop => "loop",
+            Kind::World => "world",
+            Kind::Universe => "universe",
+            Kind::Uloop => "uloop",
             Kind::Text => "string",
             Kind::Getenv => "getenv",
+            Kind::File => "file",
+            Kind::Atomfile => "atomfile",
             Kind::Format => "format",
             Kind::Equal => "equal",
             Kind::Atom => "atom",
+            Kind::Vector => "vector",
+            Kind::Timer => "timer",
+            Kind::Internal => "internal",
         }
+    }
+
+    /// Whether it holds one value per particle.
+    pub fn per_particle(self) -> bool {
+        matches!(self, Kind::Atom | Kind::Atomfile)
+    }
+
+    /// Whether a line that defines it again is passed over, as LAMMPS does.
+    fn stays(self) -> bool {
+        matches!(
+            self,
+            Kind::Index
+                | Kind::Loop
+                | Kind::World
+                | Kind::Universe
+                | Kind::Uloop
+                | Kind::File
+                | Kind::Atomfile
+        )
+    }
+
+    /// Whether `next` can move it.
+    fn moves(self) -> bool {
+        self.stays() && self != Kind::World
     }
 }
 
 /// What a variable holds.
 #[derive(Clone, Debug)]
 enum Data {
-    Index { values: Vec<String>, at: usize },
-    Loop { now: i64, last: i64, width: usize },
+    List { values: Arc<[String]>, at: usize },
+    Range { now: i64, last: i64, width: usize },
     Text(String),
     Getenv(String),
+    Lines(Lines),
+    Atoms(AtomFile),
     Format { name: String, format: String },
-    Equal(Expr),
-    Atom(Expr),
+    Formula(Arc<Expr>),
+    Number(f64),
 }
 
 #[derive(Clone, Debug)]
 struct Variable {
+    kind: Kind,
     data: Data,
     /// Where it was defined; nowhere if on the command line.
     span: Option<Span>,
     /// Its definition holds an unknown value (`check` mode).
     unknown: bool,
+    /// A hash of its name and definition, the position in a list left out.
+    print: u64,
 }
 
 impl Variable {
-    fn kind(&self) -> Kind {
-        match self.data {
-            Data::Index { .. } => Kind::Index,
-            Data::Loop { .. } => Kind::Loop,
-            Data::Text(_) => Kind::Text,
-            Data::Getenv(_) => Kind::Getenv,
-            Data::Format { .. } => Kind::Format,
-            Data::Equal(_) => Kind::Equal,
-            Data::Atom(_) => Kind::Atom,
+    fn new(kind: Kind, data: Data) -> Self {
+        Self { kind, data, span: None, unknown: false, print: 0 }
+    }
+
+    /// Settles the hash, once everything else stands.
+    fn named(mut self, name: &str) -> Self {
+        let mut h = DefaultHasher::new();
+        (name, self.kind, self.unknown).hash(&mut h);
+        match &self.data {
+            Data::List { values, .. } => values.hash(&mut h),
+            Data::Range { last, width, .. } => (last, width).hash(&mut h),
+            Data::Text(t) | Data::Getenv(t) => t.hash(&mut h),
+            Data::Lines(l) => l.path().hash(&mut h),
+            Data::Atoms(a) => a.path().hash(&mut h),
+            Data::Format { name, format } => (name, format).hash(&mut h),
+            Data::Formula(e) => e.text().hash(&mut h),
+            Data::Number(v) => v.to_bits().hash(&mut h),
+        }
+        self.print = h.finish();
+        self
+    }
+
+    /// The hash with the position in a list.
+    fn state(&self) -> u64 {
+        let at = match self.data {
+            Data::List { at, .. } => at as u64,
+            Data::Range { now, .. } => now as u64,
+            _ => 0,
+        };
+        self.print.wrapping_add(at.wrapping_mul(0x9E37_79B9_7F4A_7C15)).rotate_left(17)
+    }
+
+    /// Its list or file has come to an end (by `next()` inside a formula).
+    fn exhausted(&self) -> bool {
+        match &self.data {
+            Data::Lines(l) => l.is_over(),
+            Data::Atoms(a) => a.is_over(),
+            _ => false,
+        }
+    }
+
+    /// Leaves the position in a file to those it was shared with, and goes on with one of its own.
+    fn detach(&mut self) {
+        match &mut self.data {
+            Data::Lines(l) => l.detach(),
+            Data::Atoms(a) => a.detach(),
+            _ => {}
+        }
+    }
+
+    /// Moves on; false if there is nothing further.
+    fn advance(&mut self) -> bool {
+        match &mut self.data {
+            Data::List { values, at } => {
+                *at += 1;
+                *at < values.len()
+            }
+            Data::Range { now, last, .. } => {
+                *now += 1;
+                *now <= *last
+            }
+            Data::Lines(l) => l.advance(),
+            Data::Atoms(a) => a.advance(),
+            _ => false,
         }
     }
 }
 
-/// A variable's value as text.
-#[derive(Clone, Debug)]
-pub(super) struct Text {
-    pub text: String,
-    /// Where the variable was defined.
-    pub origin: Option<Span>,
-    pub unknown: bool,
-}
-
-/// All variables of a session.
+/// All variables of a session. A copy is cheap and shares its random streams and open files with the original.
 #[derive(Clone, Debug, Default)]
 pub struct Vars {
-    table: BTreeMap<String, Variable>,
+    table: Arc<BTreeMap<String, Variable>>,
     /// What `random` and `normal` draw from: one stream for numbers, one for values per particle.
-    /// Copies of the table go on with the same streams.
     streams: Arc<Mutex<Streams>>,
+    /// Formulas by place, so that a loop parses each of them once.
+    formulas: Arc<Mutex<HashMap<Span, Arc<Expr>>>>,
+    /// Counts what formulas change by being evaluated: random numbers drawn, files read on.
+    events: Arc<AtomicU64>,
+    /// Environment variables set by `shell putenv`.
+    environment: Arc<BTreeMap<String, String>>,
+    /// The sum of all variables' hashes.
+    state: u64,
+    /// Counts changes of names and styles.
+    names: u64,
 }
 
 /// The streams of `random` and `normal`, once their first use has seeded them.
@@ -109,25 +223,60 @@ impl Vars {
         Self::default()
     }
 
-    /// A copy that shares nothing with this table: its random streams stand where these stand now.
+    /// A copy that shares nothing with this table: its random streams and files stand where these stand now.
     pub fn detached(&self) -> Self {
         let streams = Arc::new(Mutex::new(self.streams().clone()));
-        Self { streams, ..self.clone() }
+        let mut copy = Self { streams, ..self.clone() };
+        Arc::make_mut(&mut copy.table).values_mut().for_each(Variable::detach);
+        copy
     }
 
+    /// The random streams, about to be drawn from.
     pub(super) fn streams(&self) -> MutexGuard<'_, Streams> {
+        self.event();
         self.streams.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Notes that evaluating a formula has changed something, or depends on the moment.
+    pub(super) fn event(&self) {
+        self.events.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// A number that stays the same as long as no variable, stream or file has changed.
+    pub(super) fn fingerprint(&self) -> u64 {
+        let events = self.events.load(Ordering::Relaxed);
+        self.state ^ events.wrapping_mul(0xD6E8_FEB8_6659_FD93)
+    }
+
+    /// A number that stays the same as long as the same variables of the same styles exist.
+    pub fn names_version(&self) -> u64 {
+        self.names
+    }
+
+    /// The formula `text` at `at`, parsed at its first use.
+    pub(super) fn formula(&self, text: &str, at: Span) -> Result<Arc<Expr>> {
+        let mut known = self.formulas.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(e) = known.get(&at).filter(|e| e.text() == text) {
+            return Ok(e.clone());
+        }
+        let e = Arc::new(Expr::parse(text, at)?);
+        known.insert(at, e.clone());
+        Ok(e)
+    }
+
+    fn find(&self, name: &str) -> Option<&Variable> {
+        self.table.get(name).filter(|v| !v.exhausted())
     }
 
     /// The style of a variable.
     pub fn kind(&self, name: &str) -> Option<Kind> {
-        self.table.get(name).map(Variable::kind)
+        self.find(name).map(|v| v.kind)
     }
 
-    /// The formula of an equal- or atom-style variable.
+    /// The formula of an equal-, vector- or atom-style variable.
     pub fn expr(&self, name: &str) -> Option<&Expr> {
-        match &self.table.get(name)?.data {
-            Data::Equal(e) | Data::Atom(e) => Some(e),
+        match &self.find(name)?.data {
+            Data::Formula(e) => Some(e),
             _ => None,
         }
     }
@@ -142,12 +291,12 @@ impl Vars {
 
     /// Where a variable was defined; `None` also if on the command line.
     pub fn span(&self, name: &str) -> Option<Span> {
-        self.table.get(name)?.span
+        self.find(name)?.span
     }
 
     /// All names, sorted.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.table.keys().map(String::as_str)
+        self.table.iter().filter(|(_, v)| !v.exhausted()).map(|(n, _)| n.as_str())
     }
 
     /// `-var name value …`: an index variable that wins over the deck's own.
@@ -158,163 +307,131 @@ impl Vars {
         if values.is_empty() {
             return fail(Code::MISSING_ARGUMENT, None, format!("variable `{name}` needs at least one value"));
         }
-        let data = Data::Index { values: values.to_vec(), at: 0 };
-        let variable = Variable { data, span: None, unknown: false };
-        self.table.entry(name.to_owned()).or_insert(variable);
+        if self.find(name).is_none() {
+            self.put(name, Variable::new(Kind::Index, Data::List { values: values.into(), at: 0 }));
+        }
         Ok(())
+    }
+
+    /// `shell putenv`: what `getenv` sees from now on.
+    pub fn set_environment(&mut self, key: &str, value: &str) {
+        Arc::make_mut(&mut self.environment).insert(key.to_owned(), value.to_owned());
+        self.event();
+    }
+
+    /// The environment variables set by the deck.
+    pub fn environment(&self) -> &BTreeMap<String, String> {
+        &self.environment
+    }
+
+    /// `clear` forgets values per particle read from files.
+    pub fn clear_atomfiles(&mut self) {
+        let gone: Vec<String> =
+            self.table.iter().filter(|(_, v)| v.kind == Kind::Atomfile).map(|(n, _)| n.clone()).collect();
+        gone.iter().for_each(|n| self.remove(n));
     }
 
     /// Forgets what a variable's value is (`check` mode: a branch that may not be taken has set it).
     pub fn mark_unknown(&mut self, name: &str) {
-        if let Some(v) = self.table.get_mut(name) {
+        if let Some(v) = Arc::make_mut(&mut self.table).get_mut(name) {
             v.unknown = true;
+        }
+    }
+
+    /// Sets the number of an internal-style variable.
+    pub fn set_internal(&mut self, name: &str, value: f64) -> bool {
+        let Some(old) = self.find(name).filter(|v| v.kind == Kind::Internal) else { return false };
+        let new = Variable { data: Data::Number(value), ..old.clone() };
+        self.put(name, new);
+        true
+    }
+
+    fn put(&mut self, name: &str, variable: Variable) {
+        let variable = variable.named(name);
+        let kind = variable.kind;
+        self.state = self.state.wrapping_add(variable.state());
+        let old = match Arc::make_mut(&mut self.table).get_mut(name) {
+            Some(place) => Some(std::mem::replace(place, variable)),
+            None => Arc::make_mut(&mut self.table).insert(name.to_owned(), variable),
+        };
+        match old {
+            Some(old) => {
+                self.state = self.state.wrapping_sub(old.state());
+                self.names += u64::from(old.kind != kind);
+            }
+            None => self.names += 1,
+        }
+    }
+
+    fn remove(&mut self, name: &str) {
+        if let Some(old) = Arc::make_mut(&mut self.table).remove(name) {
+            self.state = self.state.wrapping_sub(old.state());
+            self.names += 1;
         }
     }
 
     /// `next`: moves all of `names` on; true if one of them has no further value (it is then forgotten).
     pub fn next(&mut self, names: &[Word]) -> Result<bool> {
-        let Some(first) = names.first() else { return Ok(false) };
+        let family = |k: Kind| if k == Kind::Uloop { Kind::Universe } else { k };
+        let mut first = None;
         for name in names {
             let Some(kind) = self.kind(&name.text) else {
                 return Err(self.unknown(&name.text, name.span).into());
             };
-            if !matches!(kind, Kind::Index | Kind::Loop) {
+            if !kind.moves() {
                 let message = format!(
-                    "`{}` is of style {}; next moves index and loop variables",
+                    "`{}` is of style {}; next moves index, loop, file, atomfile, universe and uloop variables",
                     name.text,
                     kind.name()
                 );
                 return Err(blame(name, Code::WRONG_KIND, message).into());
             }
-            if Some(kind) != self.kind(&first.text) {
+            if *first.get_or_insert(family(kind)) != family(kind) {
                 return fail(Code::CONFLICT, name.span, "all variables of one next must have the same style");
             }
         }
         let mut exhausted = false;
         for name in names {
-            let more = self.table.get_mut(&name.text).is_some_and(|v| match &mut v.data {
-                Data::Index { values, at } => {
-                    *at += 1;
-                    *at < values.len()
-                }
-                Data::Loop { now, last, .. } => {
-                    *now += 1;
-                    *now <= *last
-                }
-                _ => false,
-            });
+            let Some(v) = Arc::make_mut(&mut self.table).get_mut(&name.text) else { continue };
+            self.state = self.state.wrapping_sub(v.state());
+            let more = v.advance();
+            let in_file = matches!(v.data, Data::Lines(_) | Data::Atoms(_));
+            self.state = self.state.wrapping_add(v.state());
+            if in_file {
+                self.event();
+            }
             if !more {
-                self.table.remove(&name.text);
+                self.remove(&name.text);
                 exhausted = true;
             }
+        }
+        // all partitions of a universe end together
+        if exhausted && first == Some(Kind::Universe) {
+            names.iter().for_each(|n| self.remove(&n.text));
         }
         Ok(exhausted)
     }
 
-    /// The value that replaces `$name`. `longer` is what follows a `$` without braces.
-    pub(super) fn text(&self, name: &str, longer: &str, span: Span, env: &mut dyn Env) -> Result<Text> {
-        let Some(variable) = self.table.get(name) else {
-            let mut d = self.unknown(name, span);
-            let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-            let full = &longer[..longer.find(|c| !word(c)).unwrap_or(longer.len())];
-            if self.table.contains_key(full) {
-                d.help = vec![format!("names of more than one letter need braces: ${{{full}}}")];
-            }
-            return Err(d.into());
-        };
-        let origin = variable.span;
-        if variable.unknown {
-            return Ok(Text { text: String::new(), origin, unknown: true });
-        }
-        let mut trail = Trail::default();
-        let number = |v: Option<f64>, format: &dyn Fn(f64) -> Result<String>| match v {
-            Some(v) => Ok(Text { text: format(v)?, origin, unknown: false }),
-            None => Ok(Text { text: String::new(), origin, unknown: true }),
-        };
-        let text = match &variable.data {
-            Data::Index { values, at } => values.get(*at).cloned().unwrap_or_default(),
-            Data::Loop { now, width, .. } => format!("{now:0width$}"),
-            Data::Text(t) => t.clone(),
-            Data::Getenv(key) => std::env::var(key).unwrap_or_default(),
-            Data::Equal(e) => {
-                trail.enter(name, span)?;
-                let v = e.scalar(self, env, &mut trail).map_err(|d| used(d, name, span))?;
-                return number(v, &|v| Ok(value_text(v)));
-            }
-            Data::Format { name: of, format } => {
-                let r = ValueRef { kind: RefKind::Variable, name: of.clone(), index: vec![], span };
-                let v = match self.reference(&r, env, &mut trail)? {
-                    Value::Number(v) => Some(v),
-                    _ => None,
-                };
-                return number(v, &|v| printf(format, v + 0.0).or_else(|e| fail(Code::SYNTAX, span, e)));
-            }
-            Data::Atom(_) => {
-                let message = format!("variable `{name}` has one value per particle and cannot become text");
-                return fail(Code::WRONG_KIND, span, message);
-            }
-        };
-        Ok(Text { text, origin, unknown: false })
-    }
-
-    /// The value of `v_name` or `v_name[i]` in a formula.
-    pub(super) fn reference(&self, r: &ValueRef, env: &mut dyn Env, trail: &mut Trail) -> Result<Value> {
-        let Some(variable) = self.table.get(&r.name) else {
-            return Err(self.unknown(&r.name, r.span).into());
-        };
+    /// `next(name)` in a formula: the present value of a file- or atomfile-style variable, which then moves on.
+    pub(super) fn take_next(&self, name: &str, span: Span, env: &mut dyn Env) -> Result<Value> {
+        let r = ValueRef { kind: RefKind::Variable, name: name.to_owned(), index: vec![], span };
+        let Some(variable) = self.find(name) else { return Err(self.unknown(name, span).into()) };
         if variable.unknown {
             return Ok(Value::Unknown);
         }
-        match &variable.data {
-            Data::Equal(e) if r.index.is_empty() => {
-                trail.enter(&r.name, r.span)?;
-                let particles = std::mem::replace(&mut trail.particles, false);
-                let v = e.scalar(self, env, trail).map_err(|d| used(d, &r.name, r.span))?;
-                trail.particles = particles;
-                trail.leave();
-                Ok(v.map_or(Value::Unknown, Value::Number))
-            }
-            Data::Atom(e) => {
-                trail.enter(&r.name, r.span)?;
-                let particles = std::mem::replace(&mut trail.particles, true);
-                let v = e.run(self, env, trail).map_err(|d| used(d, &r.name, r.span))?;
-                trail.particles = particles;
-                trail.leave();
-                let all = match v {
-                    Value::Number(v) => Value::Atom(vec![v; env.natoms()]),
-                    other => other,
-                };
-                pick(all, r, env)
-            }
-            _ if !r.index.is_empty() => {
-                let style = variable.kind().name();
-                fail(
-                    Code::WRONG_KIND,
-                    r.span,
-                    format!("`{}` is of style {style} and has no elements", r.name),
-                )
-            }
-            _ => {
-                let text = self.text(&r.name, "", r.span, env)?;
-                if text.unknown {
-                    return Ok(Value::Unknown);
-                }
-                number::parse(text.text.trim()).map(Value::Number).ok_or_else(|| {
-                    let message = format!("variable `{}` holds `{}`, which is no number", r.name, text.text);
-                    let d = Diagnostic::error(Code::WRONG_KIND, r.span, message);
-                    match text.origin {
-                        Some(o) => d.label(o, "defined here").into(),
-                        None => d.into(),
-                    }
-                })
-            }
+        if !matches!(variable.kind, Kind::File | Kind::Atomfile) {
+            let style = variable.kind.name();
+            let message = format!("next() moves file and atomfile variables; `{name}` is of style {style}");
+            return fail(Code::WRONG_KIND, span, message);
         }
-    }
-
-    /// The value of a variable in formulas.
-    pub fn value(&self, name: &str, span: Span, env: &mut dyn Env) -> Result<Value> {
-        let r = ValueRef { kind: RefKind::Variable, name: name.to_owned(), index: vec![], span };
-        self.reference(&r, env, &mut Trail::default())
+        let value = self.reference(&r, env, &mut super::expr::Trail::default())?;
+        self.event();
+        match &variable.data {
+            Data::Lines(l) => l.advance(),
+            Data::Atoms(a) => a.advance(),
+            _ => false,
+        };
+        Ok(value)
     }
 
     fn unknown(&self, name: &str, span: Span) -> Diagnostic {
@@ -324,33 +441,6 @@ impl Vars {
             None => d,
         }
     }
-}
-
-/// One particle's element of an atom-style variable, if an index asks for it.
-fn pick(all: Value, r: &ValueRef, env: &mut dyn Env) -> Result<Value> {
-    let [tag] = r.index[..] else {
-        if r.index.is_empty() || all == Value::Unknown {
-            return Ok(all);
-        }
-        return fail(Code::WRONG_KIND, r.span, "an atom-style variable has one index");
-    };
-    if all == Value::Unknown {
-        return Ok(all);
-    }
-    let Some(ids) = env.column("id") else {
-        return fail(Code::WRONG_KIND, r.span, "the particles have no numbers");
-    };
-    let found = ids?.iter().position(|id| *id == tag as f64);
-    Ok(Value::Number(found.map_or(0.0, |k| element(&all, k))))
-}
-
-/// Marks a failure inside a variable's formula with the place that used the variable.
-fn used(d: crate::diag::Diagnostics, name: &str, span: Span) -> crate::diag::Diagnostics {
-    let mark = |d: Diagnostic| {
-        let d = d.at(span);
-        if d.span == Some(span) { d } else { d.label(span, format!("while `{name}` was evaluated here")) }
-    };
-    crate::diag::Diagnostics(d.0.into_iter().map(mark).collect())
 }
 
 fn is_name(name: &str) -> bool {

@@ -96,6 +96,15 @@ pub const KEYWORDS: &[Keyword] = &[
     float("cellalpha", "CellAlpha"),
     float("cellbeta", "CellBeta"),
     float("cellgamma", "CellGamma"),
+    float("avecx", "Avecx"),
+    float("avecy", "Avecy"),
+    float("avecz", "Avecz"),
+    float("bvecx", "Bvecx"),
+    float("bvecy", "Bvecy"),
+    float("bvecz", "Bvecz"),
+    float("cvecx", "Cvecx"),
+    float("cvecy", "Cvecy"),
+    float("cvecz", "Cvecz"),
 ];
 
 /// Looks a keyword up.
