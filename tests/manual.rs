@@ -85,7 +85,11 @@ const CHANGED: &[(&str, &str, &str)] = &[
     ("fix enforce2d", "dimension", "dimension 2"),
     ("fix enforce2d", "boundary", "boundary s s p"),
     ("fix enforce2d", "lattice", "lattice sq 0.001"),
-    ("fix enforce2d", "region world", "region world block -0.006 0.006 -0.006 0.006 -0.0005 0.0005 units box"),
+    (
+        "fix enforce2d",
+        "region world",
+        "region world block -0.006 0.006 -0.006 0.006 -0.0005 0.0005 units box",
+    ),
     ("fix enforce2d", "create_atoms 2", "create_atoms 2 single 0 0.005 0 units box"),
     ("fix enforce2d", "velocity", "velocity ball set 0 -1 0 units box"),
     // One integrator per particle: the fix moves these itself.
