@@ -13,14 +13,14 @@ use std::time::{Duration, Instant};
 /// Ten mistakes, each with the columns of the word at fault and a part of what is said.
 const PLANTED: &[(usize, usize, usize, &str, &str)] = &[
     (9, 1, 8, "PG0102", "unknown command `boundery`"),
-    (15, 34, 37, "PG0109", "there is no region `blok`"),
+    (15, 34, 37, "PG0124", "there is no region `blok`"),
     (17, 28, 35, "PG0104", "unknown keyword of set: `diametre`"),
     (20, 17, 25, "PG0103", "unknown fix style `nve/spher`"),
-    (21, 7, 13, "PG0109", "there is no group `boundry`"),
+    (21, 7, 13, "PG0123", "there is no group `boundry`"),
     (22, 23, 26, "PG0107", "the velocity must be a number, not `-1.O`"),
     (23, 26, 30, "PG0104", "no column `epiar`"),
     (25, 18, 29, "PG0103", "unknown compute style `damage/atoms`"),
-    (26, 10, 17, "PG0109", "variable `spedd` is not defined"),
+    (26, 10, 17, "PG0125", "variable `spedd` is not defined"),
     (28, 7, 11, "PG0107", "the number of steps must be a whole number, not `1000x`"),
 ];
 

@@ -2,7 +2,12 @@
 //! `PERIGRAIN_BLESS=1 cargo test --test docs` writes the pages anew.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
+use perigrain::cli::errors_page;
+use perigrain::cli::grammar::textmate;
 use perigrain::cli::manual::{heading, pages};
+use perigrain::diag::{CODES, Code};
+use perigrain::out::log::Log;
+use perigrain::session::{Mode, Options, Session};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -27,9 +32,42 @@ fn generated() -> Vec<(PathBuf, String)> {
         files.push((docs().join("styles").join(page.file()), page.markdown()));
     }
     files.push((docs().join("commands.md"), index));
+    files.push((docs().join("errors.md"), errors_page()));
+    files.push((docs().join("SUMMARY.md"), summary()));
+    files.push((docs().join("editor/perigrain.tmLanguage.json"), textmate()));
     let house = docs().join("architecture.md");
     files.push((house.clone(), with_code(&fs::read_to_string(house).unwrap())));
     files
+}
+
+/// What stands in the book before and behind the pages of commands and styles.
+const BOOK: [&str; 2] = [
+    "# perigrain\n\n\
+     [A short tour](tour.md)\n\n\
+     # How to\n\n\
+     - [Find what is wrong with a deck](howto/wrong-deck.md)\n\
+     - [Explore at the prompt](howto/prompt.md)\n\
+     - [Calibrate to a material](howto/material.md)\n\
+     - [Make a movie of a crack](howto/movie.md)\n\
+     - [Read results in ParaView, OVITO and pandas](howto/results.md)\n\
+     - [Make a long run](howto/long-runs.md)\n\
+     - [Colours in your editor](editor/README.md)\n\n\
+     # Reference\n\n\
+     - [Commands and styles](commands.md)\n",
+    "- [Error codes](errors.md)\n\
+     - [Coming from LAMMPS](coming-from-lammps.md)\n\n\
+     # The program inside\n\n\
+     - [The house](architecture.md)\n\
+     - [Decisions: dependencies](decisions/dependencies.md)\n",
+];
+
+/// The book's table of contents: every page once.
+fn summary() -> String {
+    let mut text = String::from(BOOK[0]);
+    for page in pages() {
+        let _ = writeln!(text, "  - [{}](styles/{})", page.title(), page.file());
+    }
+    text + BOOK[1]
 }
 
 /// The text with the code shown below each `<!-- src/FILE -->` and `<!-- line of src/FILE: WORD -->` as it is in the tree.
@@ -62,10 +100,16 @@ fn pages_are_up_to_date() {
     let bless = std::env::var_os("PERIGRAIN_BLESS").is_some();
     let wanted = generated();
     if bless {
-        let _ = fs::remove_dir_all(docs().join("styles"));
-        fs::create_dir_all(docs().join("styles")).unwrap();
+        for folder in ["styles", "editor"] {
+            fs::create_dir_all(docs().join(folder)).unwrap();
+        }
         for (path, text) in &wanted {
             fs::write(path, text).unwrap();
+        }
+        for entry in fs::read_dir(docs().join("styles")).unwrap().map(|e| e.unwrap().path()) {
+            if !wanted.iter().any(|(p, _)| *p == entry) {
+                fs::remove_file(entry).unwrap();
+            }
         }
     }
     let mut wrong = String::new();
@@ -81,6 +125,81 @@ fn pages_are_up_to_date() {
         }
     }
     assert!(wrong.is_empty(), "{wrong}\nPERIGRAIN_BLESS=1 cargo test --test docs writes them anew");
+}
+
+/// Every Markdown file below `docs`, but for the table of contents.
+fn texts() -> Vec<PathBuf> {
+    let mut found = vec![];
+    let mut folders = vec![docs()];
+    while let Some(folder) = folders.pop() {
+        for path in fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()) {
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "md") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn the_book_has_every_page_once() {
+    let text = fs::read_to_string(docs().join("SUMMARY.md")).unwrap();
+    let mut wrong = String::new();
+    for path in texts().iter().filter(|p| !p.ends_with("SUMMARY.md")) {
+        let name = path.strip_prefix(docs()).unwrap().to_string_lossy().into_owned();
+        let count = text.matches(&format!("({name})")).count();
+        if count != 1 {
+            let _ = writeln!(wrong, "{name}: {count} times");
+        }
+    }
+    assert!(wrong.is_empty(), "pages that SUMMARY.md does not have once:\n{wrong}");
+}
+
+/// The codes that a deck draws, whether read or run.
+fn codes(deck: &str) -> Vec<Code> {
+    let mut all = vec![];
+    for mode in [Mode::Check, Mode::Run] {
+        let mut session = Session::new(Options { mode, log: Log::silent(), ..Options::default() }).unwrap();
+        let outcome = session.run_text("in.deck", deck);
+        all.extend(session.notes.0.iter().chain(outcome.err().iter().flat_map(|e| &e.0)).map(|d| d.code));
+    }
+    all
+}
+
+#[test]
+fn every_code_is_drawn_by_its_wrong_lines_and_not_by_the_right_ones() {
+    // Beside the others, so that files of examples go nowhere else.
+    let folder = tempfile::tempdir().unwrap();
+    std::env::set_current_dir(&folder).unwrap();
+    let scene = include_str!("scripts/scene.in");
+    let deck = |lines: &str| {
+        if lines.starts_with("units") { lines.to_string() } else { format!("{scene}\n{lines}\n") }
+    };
+    let mut wrong = String::new();
+    for k in CODES.iter().filter(|k| !k.wrong.is_empty()) {
+        if !codes(&deck(k.wrong)).contains(&k.code) {
+            let _ = writeln!(wrong, "{} is not drawn by\n{}", k.code, k.wrong);
+        }
+        let severe = codes(&deck(k.right));
+        if !k.right.is_empty() && severe.contains(&k.code) {
+            let _ = writeln!(wrong, "{} is drawn by\n{}", k.code, k.right);
+        }
+    }
+    std::env::set_current_dir(env!("CARGO_MANIFEST_DIR")).unwrap();
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn the_editor_grammar_is_json() {
+    let text = fs::read_to_string(docs().join("editor/perigrain.tmLanguage.json")).unwrap();
+    // TOML's inline tables and strings are near enough to JSON's to find a missing brace or a bad escape.
+    let value = text.split_once("\"patterns\": ").unwrap().1.split_once("],\n  \"repository\"").unwrap().0;
+    let value = format!("patterns = {}]", value.replace("\": ", "\" = "));
+    let table: toml::Table = value.parse().unwrap();
+    assert!(table["patterns"].as_array().unwrap().len() > 10);
 }
 
 #[test]
@@ -106,10 +225,8 @@ fn links_lead_somewhere() {
     let mut wrong = String::new();
     let mut files: Vec<PathBuf> =
         ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].iter().map(|f| docs().join("..").join(f)).collect();
-    for folder in [docs(), docs().join("decisions"), docs().join("styles")] {
-        files.extend(fs::read_dir(folder).into_iter().flatten().map(|e| e.unwrap().path()));
-    }
-    for file in files.iter().filter(|f| f.extension().is_some_and(|e| e == "md")) {
+    files.extend(texts());
+    for file in &files {
         let text = fs::read_to_string(file).unwrap();
         for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
             let target = link.split('#').next().unwrap();
@@ -143,9 +260,10 @@ fn perigrain(args: &[&str], deck: &str) -> Option<String> {
 #[test]
 fn decks_in_the_text_run() {
     let mut wrong = String::new();
-    let mut files: Vec<PathBuf> = fs::read_dir(docs()).unwrap().map(|e| e.unwrap().path()).collect();
+    let own = |p: &PathBuf| !p.starts_with(docs().join("styles"));
+    let mut files: Vec<PathBuf> = texts().into_iter().filter(own).collect();
     files.push(docs().join("../README.md"));
-    for file in files.iter().filter(|f| f.extension().is_some_and(|e| e == "md")) {
+    for file in &files {
         for deck in decks(&fs::read_to_string(file).unwrap()) {
             if let Some(said) = perigrain(&["in.deck", "-screen", "none"], &deck) {
                 let _ = writeln!(wrong, "{}:\n{said}", file.display());

@@ -3,6 +3,7 @@
 pub mod args;
 pub mod checking;
 pub mod deck;
+pub mod grammar;
 pub mod manual;
 mod pages;
 pub mod progress;
@@ -10,7 +11,7 @@ pub mod repl;
 pub mod syntax;
 pub mod tasks;
 
-use crate::diag::{CODES, nearest};
+use crate::diag::{CODES, Kind, nearest};
 use crate::session::Mode;
 use args::Usage;
 use std::process::ExitCode;
@@ -43,6 +44,8 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Text(text) => show(&text),
         Task::Explain(code) => show(&explain(&code)?),
         Task::Doc(None) => show(&manual::list()),
+        Task::Help(None) => show(&(tasks::help() + "\n" + &manual::list())),
+        Task::Help(Some(name)) => show(&manual::page(&name)?),
         Task::Doc(Some(name)) => show(&manual::page(&name)?),
         Task::Run(o) => return Ok(deck::work_off(&o, Mode::Run)),
         Task::Repl(o) => return Ok(repl::run(&o)),
@@ -67,22 +70,54 @@ fn complain(usage: &Usage) {
     }
 }
 
-/// The paragraph about one diagnostic code, or the list of all for `all`.
+/// What there is to say about one diagnostic code, or the list of all for `all`.
 fn explain(word: &str) -> Result<String, Usage> {
-    let line = |(code, title, text): &(_, &str, &str)| format!("{code}: {title}\n\n{text}\n");
     if word == "all" {
-        return Ok(CODES.iter().map(line).collect::<Vec<_>>().join("\n"));
+        return Ok(CODES.iter().map(|k| explained(k)).collect::<Vec<_>>().join("\n"));
     }
     let wanted = word.to_uppercase();
-    if let Some(entry) = CODES.iter().find(|(code, ..)| code.to_string() == wanted) {
-        return Ok(line(entry));
+    if let Some(kind) = CODES.iter().find(|k| k.code.to_string() == wanted) {
+        return Ok(explained(kind));
     }
-    let known: Vec<String> = CODES.iter().map(|(code, ..)| code.to_string()).collect();
+    let known: Vec<String> = CODES.iter().map(|k| k.code.to_string()).collect();
     let help = match nearest(&wanted, known.iter().map(String::as_str)) {
         Some(code) => format!("did you mean {code}? `perigrain explain all` lists them"),
         None => "`perigrain explain all` lists them".into(),
     };
     Err(Usage { message: format!("no diagnostic has the code `{word}`"), help: Some(help) })
+}
+
+/// Code, title, paragraph, and the pair of lines.
+fn explained(k: &Kind) -> String {
+    let mut text = format!("{}: {}\n\n{}\n", k.code, k.title, k.text);
+    for (what, lines) in [("wrong", k.wrong), ("right", k.right)] {
+        for (n, line) in lines.lines().enumerate() {
+            text += &format!(
+                "{}    {:<7} {line}\n",
+                if n == 0 { "\n" } else { "" },
+                if n == 0 { what } else { "" }
+            );
+        }
+    }
+    text
+}
+
+/// The list of codes as a page of the manual.
+pub fn errors_page() -> String {
+    let mut text = String::from(
+        "# Error codes\n\nEvery message carries a code for its kind of mistake; `perigrain explain PG0102` prints what stands \
+         here. Errors refuse a line, warnings and notes let it pass. The lines are checked by the tests, in a small scene that \
+         has a block of particles, a pair style and an integrator.\n",
+    );
+    for k in CODES {
+        text += &format!("\n## {}: {}\n\n{}\n", k.code, k.title, k.text);
+        for (what, lines) in
+            [("Wrong", k.wrong), ("Right", k.right)].iter().filter(|(_, lines)| !lines.is_empty())
+        {
+            text += &format!("\n{what}:\n\n```perigrain\n{lines}\n```\n");
+        }
+    }
+    text
 }
 
 #[cfg(test)]
@@ -94,5 +129,10 @@ mod tests {
         assert!(explain("pg0102").unwrap().starts_with("PG0102: unknown command\n\nThe first word"));
         assert!(explain("PG01O2").unwrap_err().help.unwrap().contains("PG0102"));
         assert_eq!(explain("all").unwrap().matches("\nPG0").count(), CODES.len() - 1);
+        let text = explain("PG0110").unwrap();
+        assert!(
+            text.contains("\n    wrong   compute d all damage/atom\n            compute d all ke\n"),
+            "{text}"
+        );
     }
 }

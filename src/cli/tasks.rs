@@ -31,6 +31,8 @@ pub enum Task {
     Explain(String),
     /// Print the manual page of a command or style, or the list of all.
     Doc(Option<String>),
+    /// Print a page of the manual, or how the program is called and the list of pages.
+    Help(Option<String>),
     /// Print this text.
     Text(String),
 }
@@ -76,7 +78,7 @@ enum Sub {
         /// The code
         code: String,
     },
-    /// Print the manual page of a command or style, or the list of all
+    /// The same as `help`, without this page
     Doc {
         /// `pair_style peri/pmb`, `run`, …
         name: Vec<String>,
@@ -90,8 +92,13 @@ enum Sub {
 pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
     let first = words.first().map(String::as_str);
     let is_sub = Sub::command().get_subcommands().any(|c| Some(c.get_name()) == first);
-    let task =
-        if is_sub || first == Some("help") { subcommand(words)? } else { Task::Run(args::parse(words)?) };
+    let task = if first == Some("help") {
+        help_on(&words[1..])
+    } else if is_sub {
+        subcommand(words)?
+    } else {
+        Task::Run(args::parse(words)?)
+    };
     let Some(o) = task.options() else { return Ok(task) };
     if o.help {
         return Ok(Task::Text(help()));
@@ -119,6 +126,15 @@ impl Task {
             Task::Check { decks, .. } => decks.first(),
             _ => None,
         }
+    }
+}
+
+/// `help`, `help fix nve`, `help PG0102`.
+fn help_on(words: &[String]) -> Task {
+    match words {
+        [] => Task::Help(None),
+        [code] if code.to_uppercase().starts_with("PG0") => Task::Explain(code.clone()),
+        _ => Task::Help(Some(words.join(" "))),
     }
 }
 
@@ -181,6 +197,10 @@ pub fn help() -> String {
         let about = sub.get_about().map(ToString::to_string).unwrap_or_default();
         text += &format!("  {:<10} {about}\n", sub.get_name());
     }
+    text += &format!(
+        "  {:<10} {}\n",
+        "help", "Print the manual page of a command or style, or this page and the list of all"
+    );
     text += "\nswitches (what holds without them in brackets):\n";
     for s in SWITCHES.iter().filter(|s| !s.about.is_empty()) {
         let names = s.names[..s.names.len().min(2)].join(", ");
@@ -234,7 +254,9 @@ mod tests {
         assert_eq!(read("doc pair_style peri/pmb").unwrap(), Task::Doc(Some("pair_style peri/pmb".into())));
         assert_eq!(read("-version").unwrap(), Task::Text(version()));
         assert_eq!(read("check -help").unwrap(), Task::Text(help()));
-        assert!(matches!(read("help"), Ok(Task::Text(_))));
+        assert_eq!(read("help").unwrap(), Task::Help(None));
+        assert_eq!(read("help pair_style peri/pmb").unwrap(), Task::Help(Some("pair_style peri/pmb".into())));
+        assert_eq!(read("help pg0101").unwrap(), Task::Explain("pg0101".into()));
         assert!(read("check in.plate -logg x").unwrap_err().help.unwrap().contains("`-log`"));
         assert!(read("explain").is_err());
         for hidden in ["-layout", "-rest", "-portable"] {

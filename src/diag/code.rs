@@ -1,4 +1,4 @@
-//! The table of stable diagnostic codes, one per kind of mistake, each with an explanation.
+//! The table of stable diagnostic codes, one per kind of mistake, each with an explanation and a pair of lines.
 
 /// The kind of a mistake, as `PG0101`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -10,42 +10,182 @@ impl std::fmt::Display for Code {
     }
 }
 
+/// What there is to say about a code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kind {
+    /// The code.
+    pub code: Code,
+    /// In a few words.
+    pub title: &'static str,
+    /// What has happened and what to do.
+    pub text: &'static str,
+    /// Lines that draw it, in the small scene of `tests/scripts/scene.in` unless they begin with `units`.
+    pub wrong: &'static str,
+    /// The same lines put right.
+    pub right: &'static str,
+}
+
+impl Code {
+    /// The code for a name of some kind that nobody has defined.
+    pub fn unknown(kind: &str) -> Self {
+        match kind {
+            "group" => Self::UNKNOWN_GROUP,
+            "region" => Self::UNKNOWN_REGION,
+            "variable" => Self::UNKNOWN_VARIABLE,
+            "compute" => Self::UNKNOWN_COMPUTE,
+            "fix" => Self::UNKNOWN_FIX,
+            _ => Self::UNKNOWN_NAME,
+        }
+    }
+
+    /// Whether it is about a name that nobody has defined.
+    pub fn is_unknown_name(self) -> bool {
+        self == Self::UNKNOWN_NAME || (Self::UNKNOWN_GROUP..=Self::UNKNOWN_WORD).contains(&self)
+    }
+}
+
 macro_rules! codes {
-    ($($(#[$doc:meta])* $name:ident = $n:literal, $title:literal, $text:literal;)*) => {
-        impl Code { $($(#[$doc])* #[doc = $title] pub const $name: Code = Code($n);)* }
-        /// Code, short title and explanation of every kind of mistake.
-        pub const CODES: &[(Code, &str, &str)] = &[$((Code($n), $title, $text)),*];
+    ($($name:ident = $n:literal, $title:literal, $text:literal, $wrong:literal, $right:literal;)*) => {
+        impl Code { $(#[doc = $title] pub const $name: Code = Code($n);)* }
+        /// Every kind of mistake, by number.
+        pub const CODES: &[Kind] =
+            &[$(Kind { code: Code($n), title: $title, text: $text, wrong: $wrong, right: $right }),*];
     };
 }
 
 codes! {
-    SYNTAX = 101, "the text cannot be read", "A quote, brace or parenthesis is not closed, or a formula breaks off. The word that could not be read is underlined.";
-    UNKNOWN_COMMAND = 102, "unknown command", "The first word of the line is no command of perigrain. If it is a LAMMPS command that perigrain does not have yet, the message says so by name.";
-    UNKNOWN_STYLE = 103, "unknown style", "The command exists, the style named in it does not. The message lists the nearest known style.";
-    UNKNOWN_KEYWORD = 104, "unknown keyword", "The word is not an option of this command or style.";
-    MISSING_ARGUMENT = 105, "missing argument", "The line ends before everything the command needs was said.";
-    EXTRA_ARGUMENT = 106, "unexpected argument", "The line says more than the command understands; nothing is silently ignored.";
-    BAD_NUMBER = 107, "not a number", "A number was expected here.";
-    BAD_VALUE = 108, "value out of range", "The value can be read but makes no sense here: a negative radius, an empty range, a NaN.";
-    UNKNOWN_NAME = 109, "unknown name", "A group, region, variable, compute, fix, dump, material or file of this name has not been defined (yet).";
-    DUPLICATE_NAME = 110, "name already taken", "IDs of the same kind must differ.";
-    WRONG_ORDER = 111, "too early or too late", "The command needs something that comes first (a box, an atom style, coefficients), or must come before something that has already happened.";
-    NOT_SUPPORTED = 112, "not in perigrain", "LAMMPS has this; perigrain does not (yet). It is refused rather than ignored.";
-    WRONG_KIND = 113, "wrong kind of value", "A per-atom quantity where one number is needed, a scalar with an index, and the like.";
-    INCOMPLETE = 114, "scene incomplete", "A run needs something that was never set: a pair style, all coefficients, masses, volumes.";
-    CONFLICT = 115, "declarations contradict each other", "Two statements of the deck cannot both hold.";
-    NO_EFFECT = 116, "without effect", "The line is accepted for the sake of LAMMPS decks but changes nothing here.";
-    SUSPICIOUS = 117, "runs, but probably not as meant", "LAMMPS would run this too; a second look is worth it.";
-    NO_FILE = 118, "file cannot be opened", "The file does not exist or may not be read or written.";
-    UNUSED = 119, "never used", "A variable or group is defined and no line of the deck names it again. Often a name was mistyped where it was meant.";
-    UNREACHABLE = 120, "never reached", "A `quit` that is always carried out stands before this line.";
-    UNSTABLE = 121, "time step too long", "The step is longer than the stiffest bonds allow: the shortest waves would grow from step to step until numbers are out of control.";
-    HORIZON = 122, "horizon on a shell of neighbours", "The horizon equals a distance between lattice sites to the last digits, so that rounding decides which neighbours at that distance have bonds. A horizon a little larger, 3.015 spacings instead of 3, is what the literature uses.";
-    LOST = 201, "particles lost", "A particle left a box with fixed faces. Enlarge the box, use boundary s or m, or shorten the time step.";
-    NOT_FINITE = 202, "numbers out of control", "A position, velocity or force is no longer finite: the time step is too long for the stiffness, or particles overlap heavily.";
-    TOO_LARGE = 203, "scene does not fit", "The forecast says that memory will not suffice.";
-    INTERRUPTED = 204, "interrupted", "The run was ended from outside at a whole step; files are complete.";
-    HALTED = 205, "halted", "A `fix halt … error hard` found its condition met: the deck ends here, as it asked for.";
-    COMPAT = 301, "LAMMPS does otherwise", "A place where LAMMPS 22Jul2025 is wrong and perigrain is not, unless `-compat lammps` is on.";
-    MATERIAL = 302, "material questionable", "The material data contradict the model, as nu other than 1/4 with bond-based peridynamics.";
+    SYNTAX = 101, "the text cannot be read",
+        "A brace or a parenthesis is not closed, a name is missing after `$`, or a closing quote is glued to the next word. The place that could not be read is underlined.",
+        "print \"a\"b", "print \"a\" screen yes";
+    UNKNOWN_COMMAND = 102, "unknown command",
+        "The first word of the line is no command of perigrain. If it is a LAMMPS command that perigrain does not have yet, the message says so by name.",
+        "pair_sytle none", "pair_style none";
+    UNKNOWN_STYLE = 103, "unknown style",
+        "The command exists, the style named in it does not. The message offers the nearest known style; `perigrain help` lists all.",
+        "fix 2 all nve/spher", "fix 2 all nve";
+    UNKNOWN_KEYWORD = 104, "unknown keyword",
+        "The word is not an option of this command or style. Its page says which there are.",
+        "set group all diametre 1", "set group all volume 1e-9";
+    MISSING_ARGUMENT = 105, "missing argument",
+        "The line ends before everything the command needs was said. The message says what comes next; at the prompt it stands behind the cursor.",
+        "velocity all set 1 0", "velocity all set 1 0 0";
+    EXTRA_ARGUMENT = 106, "unexpected argument",
+        "The line says more than the command understands; nothing is silently ignored.",
+        "timestep 1e-8 s", "timestep 1e-8";
+    BAD_NUMBER = 107, "not a number",
+        "A number was expected here. A letter O for a zero, a comma for a point and a unit behind the number are the usual reasons.",
+        "timestep 1,0e-8", "timestep 1.0e-8";
+    BAD_VALUE = 108, "value out of range",
+        "The value can be read but makes no sense here: a negative radius, an empty range, a type that does not exist.",
+        "run -100", "run 100";
+    UNKNOWN_NAME = 109, "unknown name",
+        "A dump, column, colour or other thing of this name has not been defined (yet).",
+        "undump picture", "dump picture all atom 1 p.dump\nundump picture";
+    DUPLICATE_NAME = 110, "name already taken",
+        "IDs of the same kind must differ. The second label shows where the name was given first.",
+        "compute d all damage/atom\ncompute d all ke", "compute d all damage/atom\ncompute e all ke";
+    WRONG_ORDER = 111, "too early or too late",
+        "The command needs something that comes first (a box, an atom style, a pair style), or must come before something that has already happened.",
+        "units si\ncreate_atoms 1 single 0 0 0", "units si\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\ncreate_atoms 1 single 0 0 0";
+    NOT_SUPPORTED = 112, "not in perigrain",
+        "LAMMPS has this; perigrain does not (yet). It is refused rather than ignored.",
+        "kspace_style pppm 1e-4", "pair_style none";
+    WRONG_KIND = 113, "wrong kind of value",
+        "A per-atom quantity where one number is needed, a scalar with an index, and the like. `compute reduce` makes one number of many.",
+        "compute d all damage/atom\nthermo_style custom step c_d", "compute d all damage/atom\ncompute m all reduce max c_d\nthermo_style custom step c_m";
+    INCOMPLETE = 114, "scene incomplete",
+        "A run needs something that was never given: coefficients for all pairs of types, masses, volumes.",
+        "pair_style peri/pmb\nrun 1", "pair_style peri/pmb\npair_coeff * * 2e21 0.0030001 0.004 0\nrun 1";
+    CONFLICT = 115, "declarations contradict each other",
+        "Two statements of the deck cannot both hold. The second label shows the other one where there is one.",
+        "fix_modify 1 energy yes", "fix 2 all indent 1e9 sphere 0 0 0.1 0.01\nfix_modify 2 energy yes";
+    NO_EFFECT = 116, "without effect",
+        "The line is accepted for the sake of LAMMPS decks but changes nothing here.",
+        "processors 1 1 *", "";
+    SUSPICIOUS = 117, "runs, but probably not as meant",
+        "LAMMPS would run this too; a second look is worth it.",
+        "pair_coeff * * 2e21 0.0005 0.004 0", "pair_coeff * * 2e21 0.0030001 0.004 0";
+    NO_FILE = 118, "file cannot be opened",
+        "The file does not exist or may not be read or written. Relative names refer to the folder the program was started in.",
+        "include in.no_such_file", "";
+    UNUSED = 119, "never used",
+        "A variable or group is defined and no line of the deck names it again. Often the name was mistyped where it was meant.",
+        "variable depth equal 1", "variable depth equal 1\nprint \"${depth}\"";
+    UNREACHABLE = 120, "never reached",
+        "A `quit` that is always carried out stands before this line.",
+        "quit\nrun 100", "run 100\nquit";
+    UNSTABLE = 121, "time step too long",
+        "The step is longer than the stiffest bonds allow, √(ρ/(π c δ²)) for a peridynamic body of density ρ, micro-modulus c and horizon δ: the shortest waves would grow from step to step until numbers are out of control.",
+        "timestep 1e-6\nrun 10", "timestep 1e-7\nrun 10";
+    HORIZON = 122, "horizon on a shell of neighbours",
+        "The horizon equals a distance between lattice sites to the last digits, so that rounding decides which neighbours at that distance have bonds. A horizon a little larger, 3.015 spacings instead of 3, is what the literature uses.",
+        "pair_coeff * * 2e21 0.003 0.004 0", "pair_coeff * * 2e21 0.003015 0.004 0";
+    UNKNOWN_GROUP = 123, "unknown group",
+        "No `group` line before this one defines the name. Groups are `all` and what the deck has named.",
+        "velocity iner set 1 0 0", "group inner id 1:10\nvelocity inner set 1 0 0";
+    UNKNOWN_REGION = 124, "unknown region",
+        "No `region` line before this one defines the name.",
+        "group left region lefft", "region left block 0 1 INF INF INF INF\ngroup left region left\nvelocity left set 1 0 0";
+    UNKNOWN_VARIABLE = 125, "unknown variable",
+        "No `variable` line before this one, and no `-var` on the command line, defines the name. Names of more than one letter need braces: `${name}`.",
+        "timestep ${step}", "variable step equal 1e-8\ntimestep ${step}";
+    UNKNOWN_COMPUTE = 126, "unknown compute",
+        "No `compute` line before this one defines the ID.",
+        "thermo_style custom step c_dmg", "compute dmg all reduce max x\nthermo_style custom step c_dmg";
+    UNKNOWN_FIX = 127, "unknown fix",
+        "No `fix` line before this one defines the ID, or `unfix` has removed it.",
+        "unfix 7", "unfix 1";
+    UNKNOWN_MATERIAL = 128, "unknown material",
+        "No `material` line before this one defines the ID.",
+        "pair_style peri/pmb\npair_coeff * * material glas horizon 3.015", "material glass file soda-lime-glass.toml\npair_style peri/pmb\npair_coeff * * material glass horizon 3.015";
+    UNKNOWN_LABEL = 129, "unknown label",
+        "`jump` looks for a `label` of this name from the top of the file to its end, and there is none.",
+        "jump SELF agian", "jump SELF again\nlabel again";
+    UNKNOWN_WORD = 130, "unknown word in a formula",
+        "A formula knows numbers, thermo keywords, attributes of particles, functions and constants; variables are written v_name, computes c_ID, fixes f_ID.",
+        "print $(sqr(2))", "print $(sqrt(2))";
+    NO_FORCES = 131, "particles do not feel each other",
+        "There is a run but no pair_style. That is right for free flight only.",
+        "pair_style none\nrun 1", "run 1";
+    NO_MOTION = 132, "nothing moves",
+        "There is a run of some steps and no fix that integrates the motion of any particle.",
+        "unfix 1\nrun 1", "run 1";
+    MOVED_TWICE = 133, "particles are moved twice",
+        "Two fixes integrate the motion of the same particles, which then move twice as far in every step.",
+        "fix 2 all nve\nrun 1", "run 1";
+    NEVER_SET = 134, "a property was never set",
+        "The pair style uses a property of particles that keeps the value it has by default, because no line has set it.",
+        "units si\natom_style peri\nlattice sc 0.001\nregion b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 box\nset group all density 2500\npair_style peri/pmb\npair_coeff * * 2e21 0.0030001 0.004 0\nfix 1 all nve\nrun 1",
+        "run 1";
+    UNITS_OF_FORCE = 135, "forces and force densities meet",
+        "Peridynamic coefficients given as numbers mean force densities, granular ones forces; in one scene momentum is then not conserved. `peri_modify force newton` makes all of them forces.",
+        "", "";
+    OPEN_QUOTE = 136, "a quote is not closed",
+        "A quoted text ends with the line unless `&` stands at its end; only `\"\"\"` goes on over lines.",
+        "print \"never closed", "print \"closed\"";
+    FORMULA = 137, "the formula cannot be read",
+        "Something is missing or too much in a formula or condition: an operand, a parenthesis, a comma. The place is underlined.",
+        "print $(2*)", "print $(2*3)";
+    FORMAT = 138, "no format for a number",
+        "A C format for one number is wanted: `%g`, `%.3f`, `%12.5e` and the like.",
+        "print $(1/3:%d%d)", "print $(1/3:%.3f)";
+    LOST = 201, "particles lost",
+        "A particle left a box with fixed faces. Enlarge the box, use boundary s or m, or shorten the time step.",
+        "units si\natom_style sphere\nboundary f f f\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\ncreate_atoms 1 single 0.5 0.5 0.5\nvelocity all set 1 0 0\nfix 1 all nve\ntimestep 0.01\nrun 100",
+        "units si\natom_style sphere\nboundary s s s\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\ncreate_atoms 1 single 0.5 0.5 0.5\nvelocity all set 1 0 0\nfix 1 all nve\ntimestep 0.01\nrun 100";
+    NOT_FINITE = 202, "numbers out of control",
+        "A position, velocity or force is no longer finite: the time step is too long for the stiffness, or particles overlap heavily.",
+"velocity all set 1e10 0 0\ntimestep 1e300\nrun 3", "velocity all set 1 0 0\ntimestep 1e-8\nrun 3";
+    TOO_LARGE = 203, "scene does not fit",
+        "The forecast says that memory will not suffice.",
+        "units si\natom_style sphere\nlattice sc 1e-6\nregion b block 0 1 0 1 0 1 units box\ncreate_box 1 b\ncreate_atoms 1 box", "units si\natom_style sphere\nlattice sc 0.1\nregion b block 0 1 0 1 0 1 units box\ncreate_box 1 b\ncreate_atoms 1 box";
+    HALTED = 205, "halted",
+        "A `fix halt … error hard` found its condition met: the deck ends here, as it asked for. With `error soft` the run ends and the deck goes on.",
+        "variable late equal step\nfix 2 all halt 1 v_late > 5 error hard\nrun 10", "variable late equal step\nfix 2 all halt 1 v_late > 5 error soft\nrun 10";
+    COMPAT = 301, "LAMMPS does otherwise",
+        "A place where LAMMPS 22Jul2025 is wrong and perigrain is not, unless `-compat lammps` is on. `Coming from LAMMPS` lists all of them.",
+        "", "";
+    MATERIAL = 302, "material questionable",
+        "The material data contradict the model, as nu other than 1/4 with bond-based peridynamics. Where `form` says which modulus the bonds shall keep, this is a note, else a warning.",
+        "material m E 7e10 nu 0.3 rho 2500\npair_style peri/pmb\npair_coeff * * material m horizon 3.015", "material m E 7e10 nu 0.25 rho 2500\npair_style peri/pmb\npair_coeff * * material m horizon 3.015";
 }

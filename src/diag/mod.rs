@@ -7,7 +7,7 @@ mod source;
 
 use std::sync::Arc;
 
-pub use code::{CODES, Code};
+pub use code::{CODES, Code, Kind};
 pub use nearest::nearest;
 pub use source::{FileId, Source, Sources, Span};
 

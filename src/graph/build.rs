@@ -293,7 +293,7 @@ fn find(list: Option<usize>, known: Vec<&str>, what: &str, id: &str, span: Span)
     if let Some(k) = list {
         return Ok(k);
     }
-    let d = Diagnostic::error(Code::UNKNOWN_NAME, span, format!("there is no {what} `{id}`"));
+    let d = Diagnostic::error(Code::unknown(what), span, format!("there is no {what} `{id}`"));
     Err(match nearest(id, known) {
         Some(n) => d.help(format!("did you mean `{n}`?")),
         None => d,

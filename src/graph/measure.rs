@@ -22,7 +22,7 @@ pub fn group_function(w: &World, name: &str, args: &[String], span: Span) -> Res
     };
     let group = args.first().map(String::as_str).unwrap_or("");
     let Some(id) = w.groups.find(group) else {
-        let mut d = Diagnostic::error(Code::UNKNOWN_NAME, span, format!("there is no group `{group}`"));
+        let mut d = Diagnostic::error(Code::UNKNOWN_GROUP, span, format!("there is no group `{group}`"));
         if let Some(n) = nearest(group, w.groups.names()) {
             d = d.help(format!("did you mean `{n}`?"));
         }
@@ -32,7 +32,7 @@ pub fn group_function(w: &World, name: &str, args: &[String], span: Span) -> Res
         None => None,
         Some(r) => match w.regions.get(r) {
             Some(region) => Some(region.clone()),
-            None => return fail(Code::UNKNOWN_NAME, span, format!("there is no region `{r}`")),
+            None => return fail(Code::UNKNOWN_REGION, span, format!("there is no region `{r}`")),
         },
     };
     let p = &w.particles;
@@ -67,7 +67,7 @@ pub fn group_function(w: &World, name: &str, args: &[String], span: Span) -> Res
             };
             m.inertia()[(a, b)]
         }
-        _ => return fail(Code::UNKNOWN_NAME, span, format!("there is no group function `{name}`")),
+        _ => return fail(Code::UNKNOWN_WORD, span, format!("there is no group function `{name}`")),
     })
 }
 

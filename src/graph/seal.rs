@@ -98,7 +98,7 @@ impl<'a> Sealer<'a> {
     fn compute(&mut self, id: &str, span: Span, stage: Stage, when: &When) -> Result<SlotId> {
         let graph = self.graph;
         let Some(node) = graph.find_compute(id) else {
-            return fail(Code::UNKNOWN_NAME, span, format!("there is no compute `{id}`"));
+            return fail(Code::UNKNOWN_COMPUTE, span, format!("there is no compute `{id}`"));
         };
         let key = format!("c_{id}");
         let slot = self.world.slots.id(&key);
@@ -136,7 +136,7 @@ impl<'a> Sealer<'a> {
     fn variable(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<Reading> {
         let vars = self.vars.clone();
         if vars.kind(&r.name).is_none() {
-            return fail(Code::UNKNOWN_NAME, r.span, format!("there is no variable `{}`", r.name));
+            return fail(Code::UNKNOWN_VARIABLE, r.span, format!("there is no variable `{}`", r.name));
         }
         self.enter(format!("v_{}", r.name), r.span)?;
         let deps = vars.expr(&r.name).map_or(vec![], |e| e.depends(&vars));
@@ -242,7 +242,7 @@ impl<'a> Sealer<'a> {
                     self.world.slots.get_mut(slot).offers = node.fix.shape().offers();
                     Ok(slot)
                 }
-                None => fail(Code::UNKNOWN_NAME, r.span, format!("there is no fix `{}`", r.name)),
+                None => fail(Code::UNKNOWN_FIX, r.span, format!("there is no fix `{}`", r.name)),
             },
             RefKind::Variable => match self.variable(r, stage, when)? {
                 Reading::Scalar(s) | Reading::Atom(s, _) | Reading::Vector(s) | Reading::Element(s, _) => {

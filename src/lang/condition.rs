@@ -119,11 +119,11 @@ impl<'a> Reader<'a> {
         if let Some(inside) = input.strip_prefix('(') {
             let open = self.line.span(place(self.text, input)..place(self.text, inside));
             if depth >= DEPTH {
-                return fail(Code::SYNTAX, open, format!("parentheses nest deeper than {DEPTH}"));
+                return fail(Code::FORMULA, open, format!("parentheses nest deeper than {DEPTH}"));
             }
             let (rest, item) = self.binary(inside, 1, depth + 1)?;
             let Some(after) = rest.trim_start().strip_prefix(')') else {
-                return fail(Code::SYNTAX, open, "this parenthesis is never closed");
+                return fail(Code::FORMULA, open, "this parenthesis is never closed");
             };
             return Ok((after, item));
         }
@@ -183,7 +183,7 @@ impl<'a> Reader<'a> {
         let span = self.line.span(at.min(self.text.len().saturating_sub(1))..(at + len).max(1));
         let message =
             if rest.is_empty() { "the condition breaks off" } else { "this cannot stand in a condition" };
-        crate::diag::Diagnostic::error(Code::SYNTAX, span, message)
+        crate::diag::Diagnostic::error(Code::FORMULA, span, message)
             .help("conditions compare numbers or names; for a formula write \"$(…) > 0\"")
             .into()
     }

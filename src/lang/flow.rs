@@ -255,7 +255,7 @@ fn evaluate(word: &Word, vars: &Vars, env: &mut dyn Env) -> Result<Option<bool>>
 /// A label that is nowhere.
 fn no_label<T>(label: &Word) -> Result<T> {
     let message = format!("there is no `label {}` to jump to", label.text);
-    Err(blame(label, Code::UNKNOWN_NAME, message).into())
+    Err(blame(label, Code::UNKNOWN_LABEL, message).into())
 }
 
 /// A loop in which nothing changes.

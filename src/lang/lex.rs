@@ -153,7 +153,7 @@ pub(super) fn standalone(text: Mapped) -> Result<Logical> {
 
 /// The complaint about a quote without its partner.
 pub(super) fn unclosed(q: Quote, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::SYNTAX, span, format!("unmatched {} quote", q.name()))
+    Diagnostic::error(Code::OPEN_QUOTE, span, format!("unmatched {} quote", q.name()))
         .help(format!("close it with {}, or continue the line with & at its end", q.mark()))
 }
 

@@ -142,7 +142,7 @@ fn lookup(
         Some(f) => {
             let place = within(line.span(at..at + whole.len()), whole.len(), formula.len() + 1..whole.len());
             float_format(f, place)?;
-            printf(f, value + 0.0).or_else(|e| fail(Code::SYNTAX, place, e))?
+            printf(f, value + 0.0).or_else(|e| fail(Code::FORMAT, place, e))?
         }
     };
     Ok(Text { text, origin: None, unknown: false })
@@ -153,10 +153,10 @@ pub(super) fn float_format(format: &str, span: Span) -> Result<()> {
     let parsed = crate::math::cformat::Format::parse(format);
     let specs: Vec<_> = match &parsed {
         Ok(f) => f.specs().collect(),
-        Err(e) => return fail(Code::SYNTAX, span, format!("`{format}` is no format: {}", e.message)),
+        Err(e) => return fail(Code::FORMAT, span, format!("`{format}` is no format: {}", e.message)),
     };
     if specs.len() == 1 && specs[0].is_float() {
         return Ok(());
     }
-    fail(Code::SYNTAX, span, format!("`{format}` is no format for a number; one %g, %f or %e is expected"))
+    fail(Code::FORMAT, span, format!("`{format}` is no format for a number; one %g, %f or %e is expected"))
 }

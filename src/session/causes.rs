@@ -37,7 +37,9 @@ impl Refused {
     fn explains(&self, d: &Diagnostic) -> bool {
         match d.code {
             Code::UNKNOWN_NAME if self.table && d.message.starts_with("no thermo column") => true,
-            Code::UNKNOWN_NAME => self.names.iter().any(|n| d.message.contains(&format!("`{n}`"))),
+            code if code.is_unknown_name() => {
+                self.names.iter().any(|n| d.message.contains(&format!("`{n}`")))
+            }
             Code::WRONG_ORDER | Code::INCOMPLETE => self.scene,
             _ => false,
         }

@@ -34,7 +34,6 @@ impl Session {
             self.check_integrators(span, &mut found);
             self.check_step(span, &mut found);
         }
-        self.check_integrators(span, &mut found);
         crate::graph::dynamic::check(&self.graph, &self.world, &mut found);
         let (errors, notes) = found.0.into_iter().partition(|d| d.severity == crate::diag::Severity::Error);
         for note in Vec::into_iter(notes) {
@@ -82,12 +81,8 @@ impl Session {
     fn check_pair(&self, span: Span, found: &mut Diagnostics) {
         let Some(node) = &self.graph.pair else {
             found.push(
-                Diagnostic::warning(
-                    Code::SUSPICIOUS,
-                    span,
-                    "no pair_style: particles do not feel each other",
-                )
-                .help("this is right for free flight only"),
+                Diagnostic::warning(Code::NO_FORCES, span, "no pair_style: particles do not feel each other")
+                    .help("this is right for free flight only"),
             );
             return;
         };
@@ -127,7 +122,7 @@ impl Session {
             }
             let text =
                 format!("the {fact} of particles was never set, and pair_style {} uses it", pair.name());
-            let warning = Diagnostic::warning(Code::SUSPICIOUS, span, text);
+            let warning = Diagnostic::warning(Code::NEVER_SET, span, text);
             found.push(warning.help(format!("add `set group all {fact} …`")));
         }
     }
@@ -141,7 +136,7 @@ impl Session {
             let text = "peridynamic force densities (with the density as mass) and granular forces meet in one scene: \
                         momentum is not conserved, and grains meet bodies that hardly move";
             found.push(
-                Diagnostic::warning(Code::SUSPICIOUS, span, text)
+                Diagnostic::warning(Code::UNITS_OF_FORCE, span, text)
                     .help("say `peri_modify force newton` (implied by `material` coefficients): forces become newtons, masses ρV")
                     .help("or scale by hand as in LAMMPS: multiply c by the particle volume V and `set … mass` to ρV"),
             );
@@ -167,7 +162,7 @@ impl Session {
         let moving: Vec<_> = self.graph.fixes.iter().filter(|f| f.fix.integrates()).collect();
         if moving.is_empty() {
             found.push(
-                Diagnostic::warning(Code::SUSPICIOUS, span, "no fix moves any particle")
+                Diagnostic::warning(Code::NO_MOTION, span, "no fix moves any particle")
                     .help("add a time integrator, as `fix 1 all nve`"),
             );
         }
@@ -178,7 +173,7 @@ impl Session {
                 if shared || (self.checking() && a.group == b.group) {
                     found.push(
                         Diagnostic::warning(
-                            Code::SUSPICIOUS,
+                            Code::MOVED_TWICE,
                             b.span,
                             format!("fixes `{}` and `{}` both move some particles", a.id, b.id),
                         )

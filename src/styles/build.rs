@@ -173,7 +173,7 @@ impl BuildCx<'_> {
             return Ok(g);
         }
         let mut d =
-            Diagnostic::error(Code::UNKNOWN_NAME, word.span, format!("there is no group `{}`", word.text));
+            Diagnostic::error(Code::UNKNOWN_GROUP, word.span, format!("there is no group `{}`", word.text));
         d = match nearest(&word.text, self.world.groups.names()) {
             Some(n) => d.help(format!("did you mean `{n}`?")),
             None => d.help("define it before this line with `group ID …`"),
@@ -191,7 +191,7 @@ impl BuildCx<'_> {
             return Ok(r);
         }
         let d =
-            Diagnostic::error(Code::UNKNOWN_NAME, word.span, format!("there is no region `{}`", word.text));
+            Diagnostic::error(Code::UNKNOWN_REGION, word.span, format!("there is no region `{}`", word.text));
         Err(match nearest(&word.text, self.world.regions.keys().map(String::as_str)) {
             Some(n) => d.help(format!("did you mean `{n}`?")),
             None => d.help("define it before this line with `region ID style …`"),
@@ -216,8 +216,8 @@ impl BuildCx<'_> {
         let (kind, what) = kind_of(r);
         let Some(shape) = self.shape(r) else {
             let known = self.names.all(kind);
-            let mut d =
-                Diagnostic::error(Code::UNKNOWN_NAME, r.span, format!("there is no {what} `{}`", r.name));
+            let text = format!("there is no {what} `{}`", r.name);
+            let mut d = Diagnostic::error(Code::unknown(what), r.span, text);
             if let Some(n) = nearest(&r.name, known.iter().map(String::as_str)) {
                 d = d.help(format!("did you mean `{n}`?"));
             }

@@ -99,7 +99,12 @@ impl Expr {
     /// Reads the formula `text`, which stands at `at` in the deck.
     pub fn parse(text: &str, at: Span) -> Result<Self> {
         let steps = grammar::parse(text).map_err(|fault| {
-            let mut d = Diagnostic::error(fault.code, within(at, text.len(), fault.range), fault.message);
+            let code = match fault.code {
+                Code::SYNTAX => Code::FORMULA,
+                Code::UNKNOWN_NAME => Code::UNKNOWN_WORD,
+                other => other,
+            };
+            let mut d = Diagnostic::error(code, within(at, text.len(), fault.range), fault.message);
             d.help = fault.help;
             d
         })?;
@@ -226,7 +231,7 @@ impl Index {
 
 /// "no such thermo keyword", with the nearest one.
 fn unknown_word(name: &str, span: Span, env: &dyn Env) -> Diagnostic {
-    let d = Diagnostic::error(Code::UNKNOWN_NAME, span, format!("`{name}` is nothing a formula knows"));
+    let d = Diagnostic::error(Code::UNKNOWN_WORD, span, format!("`{name}` is nothing a formula knows"));
     let mut known = env.keywords();
     known.extend(ATTRIBUTES);
     known.extend(functions::CONSTANTS);

@@ -435,7 +435,7 @@ impl Vars {
     }
 
     fn unknown(&self, name: &str, span: Span) -> Diagnostic {
-        let d = Diagnostic::error(Code::UNKNOWN_NAME, span, format!("variable `{name}` is not defined"));
+        let d = Diagnostic::error(Code::UNKNOWN_VARIABLE, span, format!("variable `{name}` is not defined"));
         match nearest(name, self.names()) {
             Some(n) => d.help(format!("did you mean `{n}`?")),
             None => d,

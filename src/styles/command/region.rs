@@ -113,7 +113,7 @@ impl CommandStyle for RegionCommand {
 
 fn delete(cx: &BuildCx, name: String, word: &Word) -> Result<Box<dyn Act>> {
     if !cx.world.regions.contains_key(&name) {
-        return fail(Code::UNKNOWN_NAME, word.span, format!("there is no region `{name}`"));
+        return fail(Code::UNKNOWN_REGION, word.span, format!("there is no region `{name}`"));
     }
     cx.unused(UseKind::Region, word)?;
     if let Some(group) = cx.world.groups.follower(&name) {

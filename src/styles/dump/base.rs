@@ -266,7 +266,7 @@ impl Base {
             None => None,
             Some(name) => match w.regions.get(name) {
                 Some(region) => Some(region),
-                None => return fail(Code::UNKNOWN_NAME, None, format!("region `{name}` is gone")),
+                None => return fail(Code::UNKNOWN_REGION, None, format!("region `{name}` is gone")),
             },
         };
         let (bit, p) = (self.group.bit(), &w.particles);

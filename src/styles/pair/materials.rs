@@ -140,7 +140,8 @@ impl Stuff {
 fn stuff(args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
     let id = args.expect("the material's ID")?;
     let Some(m) = cx.world.materials.get(&id.text) else {
-        let d = Diagnostic::error(Code::UNKNOWN_NAME, id.span, format!("there is no material `{}`", id.text));
+        let d =
+            Diagnostic::error(Code::UNKNOWN_MATERIAL, id.span, format!("there is no material `{}`", id.text));
         return Err(match nearest(&id.text, cx.world.materials.keys().map(String::as_str)) {
             Some(n) => d.help(format!("did you mean `{n}`?")),
             None => d.help("define it before this line with `material ID …`"),
