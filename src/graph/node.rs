@@ -173,6 +173,10 @@ impl Graph {
 }
 
 impl Names for Graph {
+    fn compute_style(&self, id: &str) -> Option<&'static str> {
+        self.find_compute(id).map(|c| c.style)
+    }
+
     fn compute(&self, id: &str) -> Option<Shape> {
         self.find_compute(id).map(|c| c.compute.shape())
     }

@@ -90,6 +90,10 @@ impl Shape {
 pub trait Names {
     /// The values a compute offers.
     fn compute(&self, id: &str) -> Option<Shape>;
+    /// The style of a compute.
+    fn compute_style(&self, _id: &str) -> Option<&'static str> {
+        None
+    }
     /// The values a fix offers.
     fn fix(&self, id: &str) -> Option<Shape>;
     /// The values a variable offers: one per particle of atom style, a vector, else one number.

@@ -14,13 +14,17 @@ impl World {
     }
 
     /// Gives every particle its place in storage + 1 as id; contacts follow.
-    fn renumber(&mut self) {
-        let old = std::mem::take(&mut self.particles.tag);
-        self.particles.tag = (1..=old.len() as u32).collect();
+    pub fn renumber(&mut self) {
+        self.rename((1..=self.n() as u32).collect());
+    }
+
+    /// Gives particles these ids, in storage order; contacts follow.
+    pub fn rename(&mut self, ids: Vec<u32>) {
+        let old = std::mem::replace(&mut self.particles.tag, ids);
         if self.contacts.is_empty() {
             return;
         }
-        let new: BTreeMap<u32, u32> = old.into_iter().zip(1..).collect();
+        let new: BTreeMap<u32, u32> = old.into_iter().zip(self.particles.tag.iter().copied()).collect();
         for c in self.contacts.values_mut() {
             c.rename(|tag| new.get(&tag).copied(), |h| h.map(|a| -a));
         }

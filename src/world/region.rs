@@ -3,7 +3,7 @@
 mod motion;
 mod shape;
 
-pub use motion::{Motion, Turn, Variable};
+pub use motion::{Motion, Turn, Variable, turned};
 pub use shape::{Shape, across};
 
 use crate::diag::{Code, Result, fail};

@@ -41,7 +41,8 @@ impl CommandStyle for BoundaryCommand {
     }
 }
 
-fn pair_of_faces(word: &Word) -> Result<[Face; 2]> {
+/// Reads one or two letters for the faces of a dimension.
+pub fn pair_of_faces(word: &Word) -> Result<[Face; 2]> {
     let face = |c: char| match c {
         'p' => Some(Face::Periodic),
         'f' => Some(Face::Fixed),

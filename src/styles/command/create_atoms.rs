@@ -2,7 +2,7 @@
 
 mod mesh;
 mod places;
-mod subset;
+pub(super) mod subset;
 
 use super::common::{self, bad_keyword, not_here, on_particles, scales, seed, units_lattice, unknown_style};
 use super::{Act, CommandStyle};
@@ -46,7 +46,7 @@ impl Style for CreateAtoms {
                    particle where it is zero. `set x NAME` gives the internal-style variable NAME the coordinate before \
                    it is asked.\n\n\
                    `mesh` reads triangles from an STL file, ASCII or binary, in box units (`units box` must be said). \
-                   `meshmode bisect R` (default, with the lattice spacing of x) halves triangles at their longest side \
+                   `meshmode bisect R` (default, with R = 1) halves triangles at their longest side \
                    until their corners are on average no farther than R from the centre, and puts a particle there; \
                    `qrand D` puts D particles per area at places of a quasi-random sequence. Spheres take their radius \
                    from the triangle, times `radscale`.\n\n\
@@ -235,7 +235,7 @@ fn mode(a: &mut Args) -> Result<Mode> {
 fn mesh(a: &mut Args, cx: &BuildCx) -> Result<(Place, Vec<String>)> {
     let word = a.expect("the name of an STL file")?;
     let mesh = |triangles| {
-        Place::Mesh(Mesh { triangles, mode: Mode::Bisect(cx.world.lattice.spacing[0]), radius_scale: 1.0 })
+        Place::Mesh(Mesh { triangles, mode: Mode::Bisect(1.0), radius_scale: 1.0 })
     };
     let bad = |text: String| fail(Code::NO_FILE, word.span, text);
     match std::fs::read(&word.text) {

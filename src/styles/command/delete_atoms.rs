@@ -1,9 +1,11 @@
 //! `delete_atoms`: takes particles away.
 
 use super::common::{self, bad_keyword, not_here, on_particles, unknown_style};
+use super::create_atoms::subset::{Amount, Subset};
 use super::{Act, CommandStyle};
-use crate::diag::{Code, Result, fail};
+use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::{Args, Param, ValueRef};
+use crate::math::rng::Marsaglia;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
 use crate::world::{Domain, GroupId, Particles, Region};
 
@@ -17,11 +19,15 @@ impl Style for DeleteAtoms {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "delete_atoms group ID | region ID | variable NAME | overlap D ID ID  [compress yes|no]",
+            syntax: "delete_atoms group ID | region ID | variable NAME | overlap D ID ID | \
+                     random fraction P yes|no GROUP REGION|NULL SEED | random count N yes|no GROUP REGION|NULL SEED  \
+                     [compress yes|no]",
             summary: "Deletes the particles of a group or region, or those too near to others.",
             text: "As in LAMMPS the last particle moves into the hole, and with `compress yes` (default) ids become storage \
                    order + 1 afterwards. `overlap D A B` goes through the particles of A in order and deletes each that \
-                   is nearer than D to a particle of B that is still there. Bonds of deleted particles are gone.",
+                   is nearer than D to a particle of B that is still there. `random fraction` deletes a part of the \
+                   particles of a group inside a region, exactly with `yes`, about with `no`; `random count` deletes N of \
+                   them, or all if there are fewer (an error with `yes`), the ones that LAMMPS deletes. Bonds of deleted particles are gone.",
             example: "delete_atoms region notch",
         }
     }
@@ -32,6 +38,18 @@ enum Choice {
     Region(Region),
     Variable(ValueRef),
     Overlap { cutoff: f64, first: GroupId, second: GroupId },
+    Random(Random),
+}
+
+/// A random part of the particles of a group inside a region.
+struct Random {
+    amount: Amount,
+    /// The number is exact.
+    exact: bool,
+    group: GroupId,
+    region: Option<Region>,
+    seed: u32,
+    span: Span,
 }
 
 impl CommandStyle for DeleteAtoms {
@@ -43,9 +61,14 @@ impl CommandStyle for DeleteAtoms {
             "region" => Choice::Region(cx.region(a.expect("a region")?)?.clone()),
             "variable" => Choice::Variable(common::atom_variable(cx, a.expect("a variable")?)?),
             "overlap" => overlap(a, cx, domain)?,
-            "random" | "porosity" => return Err(not_here(style, "delete_atoms")),
+            "random" => Choice::Random(random(a, cx)?),
+            "porosity" => {
+                let text = "LAMMPS has no `delete_atoms porosity` any more";
+                let d = Diagnostic::error(Code::NOT_SUPPORTED, style.span, text);
+                return Err(d.help("write `delete_atoms random fraction P no GROUP REGION SEED`").into());
+            }
             _ => {
-                const KNOWN: [&str; 4] = ["group", "region", "variable", "overlap"];
+                const KNOWN: [&str; 5] = ["group", "region", "variable", "overlap", "random"];
                 return Err(unknown_style(style, "style of delete_atoms", &KNOWN));
             }
         };
@@ -66,6 +89,20 @@ impl CommandStyle for DeleteAtoms {
     }
 }
 
+fn random(a: &mut Args, cx: &BuildCx) -> Result<Random> {
+    let style = a.choice("random style", &["fraction", "count"])?;
+    let span = a.here();
+    let amount = match style {
+        "fraction" => Amount::Ratio(common::fraction(a)?),
+        _ => Amount::Count(a.integer_from(0, "the number of particles")?),
+    };
+    let exact = a.flag("exactness")?;
+    let group = cx.group(a.expect("a group")?)?;
+    let word = a.expect("a region or NULL")?;
+    let region = if word.text == "NULL" { None } else { Some(cx.region(word)?.clone()) };
+    Ok(Random { amount, exact, group, region, seed: common::marsaglia_seed(a)?, span })
+}
+
 fn overlap(a: &mut Args, cx: &BuildCx, domain: &Domain) -> Result<Choice> {
     let span = a.here();
     let cutoff = a.positive("the distance")?;
@@ -84,6 +121,7 @@ fn delete(cx: &mut ActCx, choice: &Choice, compress: bool) -> Result<()> {
         Choice::Variable(r) => {
             cx.per_atom(&Param::Ref(r.clone()))?.into_iter().map(|v| v != 0.0).collect::<Vec<_>>()
         }
+        Choice::Random(random) => drawn(cx, random)?,
         Choice::Overlap { cutoff, first, second } => {
             common::settle(cx.world);
             let domain = cx.world.domain()?;
@@ -95,6 +133,29 @@ fn delete(cx: &mut ActCx, choice: &Choice, compress: bool) -> Result<()> {
     let now = cx.world.n();
     cx.say(format!("Deleted {} atoms, new total = {now}", before - now));
     Ok(())
+}
+
+/// Marks the particles that the random stream chooses.
+fn drawn(cx: &mut ActCx, r: &Random) -> Result<Vec<bool>> {
+    let p = &cx.world.particles;
+    let meant =
+        |i: &usize| p.mask[*i] & r.group.bit() != 0 && r.region.as_ref().is_none_or(|g| g.contains(p.x[*i]));
+    let eligible: Vec<usize> = (0..p.len()).filter(meant).collect();
+    let mut marked = vec![false; p.len()];
+    let chosen = match r.amount {
+        Amount::Ratio(fraction) if !r.exact => {
+            let mut stream = Marsaglia::new(r.seed);
+            eligible.into_iter().filter(|_| stream.uniform() <= fraction).collect()
+        }
+        Amount::Count(n) if n > eligible.len() as i64 && !r.exact => {
+            let text = format!("only {} particles can be deleted, not {n}", eligible.len());
+            cx.note(Diagnostic::warning(Code::SUSPICIOUS, r.span, text));
+            eligible
+        }
+        amount => Subset { amount, seed: r.seed, span: r.span }.of(eligible)?,
+    };
+    chosen.into_iter().for_each(|i| marked[i] = true);
+    Ok(marked)
 }
 
 /// Marks each particle of the first group that is too near to one of the second that is not marked yet;
@@ -229,7 +290,9 @@ mod tests {
     fn blames_the_right_word() {
         let w = bar();
         assert_eq!(refused(&w, "delete_atoms group g").0, "g");
-        assert_eq!(refused(&w, "delete_atoms random fraction 0.1 yes all NULL 3").0, "random");
+        assert_eq!(refused(&w, "delete_atoms random fraction 1.1 yes all NULL 3").0, "1.1");
+        assert_eq!(refused(&w, "delete_atoms random count 2000 yes all NULL 3").0, "2000");
+        assert_eq!(refused(&w, "delete_atoms porosity all NULL 0.1 3").0, "porosity");
         assert_eq!(refused(&w, "delete_atoms group all bond yes").0, "yes");
         assert_eq!(refused(&w, "delete_atoms overlap 5 all all").0, "5");
         assert_eq!(

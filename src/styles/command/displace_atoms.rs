@@ -1,15 +1,17 @@
 //! `displace_atoms`: moves particles once.
 
 use super::common::{
-    self, axis, bad_keyword, not_here, on_particles, scales, seed, units_lattice, unknown_style,
-    variable_param,
+    self, axis, bad_keyword, on_particles, scales, seed, units_lattice, unknown_style, variable_param,
 };
 use super::{Act, CommandStyle};
-use crate::diag::Result;
+use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Param};
 use crate::math::rng::ParkMiller;
+use crate::math::vec3::length;
+use crate::styles::matter;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
 use crate::world::GroupId;
+use crate::world::region::turned;
 
 /// The command.
 pub struct DisplaceAtoms;
@@ -21,12 +23,13 @@ impl Style for DisplaceAtoms {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "displace_atoms GROUP move DX DY DZ | ramp x|y|z DLO DHI x|y|z CLO CHI | random DX DY DZ SEED \
-                     [units lattice|box]",
+            syntax: "displace_atoms GROUP move DX DY DZ | ramp x|y|z DLO DHI x|y|z CLO CHI | random DX DY DZ SEED | \
+                     rotate PX PY PZ RX RY RZ THETA  [units lattice|box]",
             summary: "Moves the particles of a group once.",
             text: "`move` takes numbers or variables. `ramp` moves by DLO where the coordinate is CLO, by DHI where it is \
                    CHI, linearly between and constant beyond. `random` moves by up to ±DX, ±DY, ±DZ, each particle by \
-                   numbers that belong to its place, as in LAMMPS. Distances are in lattice spacings unless `units box` \
+                   numbers that belong to its place, as in LAMMPS. `rotate` turns by THETA degrees about the axis through P \
+                   along R, particles unwrapped across periodic faces. Distances are in lattice spacings unless `units box` \
                    is said. Afterwards particles are wrapped into the box and shrink-wrapped faces follow.",
             example: "displace_atoms ball move 0 0 -0.001 units box",
         }
@@ -37,6 +40,7 @@ enum Motion {
     Shift([Param; 3]),
     Ramp { along: usize, by: [f64; 2], axis: usize, between: [f64; 2] },
     Random { by: [f64; 3], seed: u32 },
+    Rotate { point: [f64; 3], axis: [f64; 3], angle: f64 },
 }
 
 impl CommandStyle for DisplaceAtoms {
@@ -62,11 +66,16 @@ impl CommandStyle for DisplaceAtoms {
                 let by = [a.number("the range")?, a.number("the range")?, a.number("the range")?];
                 Motion::Random { by, seed: seed(a)? }
             }
-            "rotate" => return Err(not_here(style, "displace_atoms")),
+            "rotate" => rotation(a)?,
             _ => {
-                return Err(unknown_style(style, "style of displace_atoms", &["move", "ramp", "random"]));
+                const KNOWN: [&str; 4] = ["move", "ramp", "random", "rotate"];
+                return Err(unknown_style(style, "style of displace_atoms", &KNOWN));
             }
         };
+        if cx.world.settings.two_dimensional && leaves_plane(&motion) {
+            let text = "displacements along z do not go with a flat scene (`dimension 2`)";
+            return fail(Code::CONFLICT, style.span, text);
+        }
         let mut lattice = true;
         while let Some(word) = a.next() {
             match word.text.as_str() {
@@ -74,10 +83,10 @@ impl CommandStyle for DisplaceAtoms {
                 _ => return Err(bad_keyword(a, word, &["units"], &[])),
             }
         }
-        let scale = scales(cx.world, lattice);
+        let spacing = scales(cx.world, lattice);
         Ok(on_particles(vec![], move |cx| {
             cx.say("Displacing atoms ...");
-            displace(cx, group, &motion, scale)?;
+            displace(cx, group, &motion, spacing)?;
             common::settle(cx.world);
             cx.world.touch();
             Ok(())
@@ -85,7 +94,30 @@ impl CommandStyle for DisplaceAtoms {
     }
 }
 
-fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, scale: [f64; 3]) -> Result<()> {
+fn rotation(a: &mut Args) -> Result<Motion> {
+    let mut triple =
+        |what: &str| -> Result<[f64; 3]> { Ok([a.number(what)?, a.number(what)?, a.number(what)?]) };
+    let point = triple("a point of the axis")?;
+    let axis = triple("the axis")?;
+    let span = a.here();
+    let angle = std::f64::consts::PI * a.number("the angle")? / 180.0;
+    if length(axis) == 0.0 {
+        return fail(Code::BAD_VALUE, span, "the axis of rotation has no direction");
+    }
+    Ok(Motion::Rotate { point, axis: axis.map(|x| x / length(axis)), angle })
+}
+
+/// Whether particles would leave the plane z = 0.
+fn leaves_plane(motion: &Motion) -> bool {
+    match motion {
+        Motion::Shift([.., z]) => *z != Param::Number(0.0),
+        Motion::Ramp { along, .. } => *along == 2,
+        Motion::Random { by, .. } => by[2] != 0.0,
+        Motion::Rotate { axis, .. } => axis[0] != 0.0 || axis[1] != 0.0,
+    }
+}
+
+fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, spacing: [f64; 3]) -> Result<()> {
     let members: Vec<usize> =
         (0..cx.world.n()).filter(|&i| cx.world.particles.mask[i] & group.bit() != 0).collect();
     match motion {
@@ -94,7 +126,7 @@ fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, scale: [f64; 3]) ->
             let before = cx.world.particles.x.clone();
             for (d, param) in params.iter().enumerate() {
                 match cx.per_atom(param) {
-                    Ok(by) => members.iter().for_each(|&i| cx.world.particles.x[i][d] += scale[d] * by[i]),
+                    Ok(by) => members.iter().for_each(|&i| cx.world.particles.x[i][d] += spacing[d] * by[i]),
                     Err(e) => {
                         cx.world.particles.x = before;
                         return Err(e);
@@ -103,8 +135,8 @@ fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, scale: [f64; 3]) ->
             }
         }
         Motion::Ramp { along, by, axis, between } => {
-            let by = by.map(|b| scale[*along] * b);
-            let between = between.map(|c| scale[*axis] * c);
+            let by = by.map(|b| spacing[*along] * b);
+            let between = between.map(|c| spacing[*axis] * c);
             for &i in &members {
                 let x = &mut cx.world.particles.x[i];
                 x[*along] += common::ramp(x[*axis], between, by);
@@ -116,8 +148,15 @@ fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, scale: [f64; 3]) ->
                 let x = &mut cx.world.particles.x[i];
                 stream.reset_at(*seed, *x);
                 for d in 0..3 {
-                    x[d] += scale[d] * by[d] * 2.0 * (stream.uniform() - 0.5);
+                    x[d] += spacing[d] * by[d] * 2.0 * (stream.uniform() - 0.5);
                 }
+            }
+        }
+        Motion::Rotate { point, axis, angle } => {
+            let point = [0, 1, 2].map(|d| spacing[d] * point[d]);
+            for &i in &members {
+                cx.world.particles.x[i] = turned(matter::unwrapped(cx.world, i), point, *axis, *angle);
+                cx.world.particles.image.set(i, [0; 3]);
             }
         }
     }
@@ -156,7 +195,7 @@ mod tests {
         // Spacing 0.5: moves by 0 at x ≤ 1, by 0.1 at x ≥ 2.
         let z = |x: f64| w.particles.x.iter().find(|p| p[0] == x && p[2] < 0.3).unwrap()[2];
         assert_eq!([z(0.0), z(1.0), z(1.5), z(2.0), z(4.0)], [0.0, 0.0, 0.05, 0.1, 0.1]);
-        assert_eq!(refused(&w, "displace_atoms all rotate 0 0 0 0 0 1 90").0, "rotate");
+        assert_eq!(refused(&w, "displace_atoms all rotate 0 0 0 0 0 0 90").0, "90");
         assert_eq!(refused(&w, "displace_atoms all ramp w 0 0.2 x 2 4").0, "w");
         assert_eq!(
             refused(&w, "displace_atoms all move 1 2").1,

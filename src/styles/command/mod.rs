@@ -3,6 +3,7 @@
 mod atom_modify;
 mod atom_style;
 mod boundary;
+mod change_box;
 mod comm_modify;
 pub(super) mod common;
 mod create_atoms;
@@ -22,6 +23,8 @@ mod newton;
 mod processors;
 mod read_data;
 mod region;
+mod replicate;
+mod reset_atoms;
 mod reset_timestep;
 mod set;
 #[cfg(test)]
@@ -83,6 +86,10 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &delete_atoms::DeleteAtoms,
     &displace_atoms::DisplaceAtoms,
     &velocity::Velocity,
+    &replicate::Replicate,
+    &change_box::ChangeBox,
+    &reset_atoms::ResetAtoms,
+    &reset_atoms::ResetAtomIds,
     &mass::Mass,
     &material::MaterialStyle,
     &timestep::Timestep,

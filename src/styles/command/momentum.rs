@@ -75,9 +75,10 @@ impl Members {
     }
 }
 
-/// Temperature of these velocities: Σ m v² / ((3N − 3) k); 0 for a single particle.
+/// Temperature of these velocities: Σ m v² / ((3N − 3) k), in flat scenes (2N − 2); 0 for a single particle.
 pub fn temperature(w: &World, members: &Members, v: &[Vec3]) -> f64 {
-    let freedom = 3.0 * members.list.len() as f64 - 3.0;
+    let dimension = if w.settings.two_dimensional { 2.0 } else { 3.0 };
+    let freedom = dimension * members.list.len() as f64 - dimension;
     if freedom <= 0.0 {
         return 0.0;
     }

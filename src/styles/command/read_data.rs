@@ -311,7 +311,8 @@ impl Reading {
                 (lo[d], hi[d]) = (lo[d].min(old.lo[d]), hi[d].max(old.hi[d]));
             }
         }
-        let mut domain = Domain::new(lo, hi, world.settings.boundary);
+        let flat = world.settings.two_dimensional;
+        let mut domain = Domain { flat, ..Domain::new(lo, hi, world.settings.boundary) };
         domain.open_shrinking_faces();
         domain
     }

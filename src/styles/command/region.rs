@@ -6,7 +6,7 @@ use super::common::{self, id, scales, setting, units_lattice, unknown_style};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Param, Word};
-use crate::math::vec3::{length, scale};
+use crate::math::vec3::length;
 use crate::styles::{BuildCx, Doc, Style, UseKind};
 use crate::world::Region;
 use crate::world::region::{Motion, Shape, Turn, Variable};
@@ -194,7 +194,7 @@ fn turn(a: &mut Args, cx: &BuildCx, spacing: [f64; 3]) -> Result<Turn> {
     if length(along) == 0.0 {
         return fail(Code::BAD_VALUE, span, "the axis of rotation has no direction");
     }
-    Ok(Turn { variable, point, axis: scale(1.0 / length(along), along), angle: 0.0 })
+    Ok(Turn { variable, point, axis: along.map(|x| x / length(along)), angle: 0.0 })
 }
 
 /// Takes `v_name` of an equal-style variable.

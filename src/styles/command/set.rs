@@ -1,19 +1,26 @@
 //! `set`: properties of particles that exist.
 
-use super::common::{bad_keyword, id_range, masses_from_density, on_particles, seed, variable_param};
+mod change;
+
+use super::common::{self, bad_keyword, id_range, on_particles, seed, variable_param};
+use super::create_atoms::subset::Amount;
 use super::{Act, CommandStyle};
-use crate::diag::{Code, Result, Span, fail};
+use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Param, Word};
-use crate::math::rng::ParkMiller;
-use crate::styles::{ActCx, BuildCx, Doc, Style};
-use crate::world::{AtomStyle, GroupId, Region, World};
+use crate::styles::{BuildCx, Doc, Style};
+use crate::world::{AtomStyle, GroupId, Region};
+use change::{Change, Item, Limit};
 
 /// The command.
 pub struct Set;
 
-const KEYWORDS: [&str; 13] = [
+const KEYWORDS: [&str; 17] = [
     "type",
     "type/fraction",
+    "type/ratio",
+    "type/subset",
+    "image",
+    "density/disc",
     "mass",
     "density",
     "diameter",
@@ -26,9 +33,7 @@ const KEYWORDS: [&str; 13] = [
     "vy",
     "vz",
 ];
-const ELSEWHERE: [&str; 27] = [
-    "type/ratio",
-    "type/subset",
+const ELSEWHERE: [&str; 23] = [
     "mol",
     "charge",
     "dipole",
@@ -43,8 +48,6 @@ const ELSEWHERE: [&str; 27] = [
     "theta",
     "theta/random",
     "angmom",
-    "density/disc",
-    "image",
     "bond",
     "angle",
     "dihedral",
@@ -65,13 +68,15 @@ impl Style for Set {
         Doc {
             syntax: "set atom A*B | type A*B | group ID | region ID  KEYWORD VALUE …",
             summary: "Sets properties of the particles chosen: type, mass, density, diameter, volume, spin, place, velocity.",
-            text: "Keywords: `type T`, `type/fraction T P SEED`, `mass M`, `density ρ`, `diameter D`, `volume V`, \
-                   `omega WX WY WZ`, `x y z`, `vx vy vz`. A value is a number or an atom-style variable `v_name`. \
+            text: "Keywords: `type T`, `type/fraction T P SEED`, `type/ratio T P SEED`, `type/subset T N SEED`, `mass M`, \
+                   `density ρ`, `density/disc ρ`, `diameter D`, `volume V`, `omega WX WY WZ`, `image NX NY NZ` (`NULL` \
+                   leaves one alone), `x y z`, `vx vy vz`. A value is a number or an atom-style variable `v_name`. \
                    Who is chosen is decided once for the whole line. \
                    `density` of a sphere sets its mass to 4/3 π r³ ρ with the radius it has now; of a peridynamic particle \
                    without radius it sets the mass to ρ itself (LAMMPS' convention). `diameter` leaves the mass alone: \
                    say it before `density`. `type/fraction` decides for each particle by a random number that belongs \
-                   to its place, as LAMMPS does.",
+                   to its place, `type/ratio` and `type/subset` change exactly the part or number of them that LAMMPS \
+                   changes. `density/disc` is the mass per area of a disc, in flat scenes.",
             example: "set group plate density 2235.0 volume 1.25e-10",
         }
     }
@@ -85,46 +90,9 @@ enum Choice {
     Region(Region),
 }
 
-/// What a keyword sets.
-enum Change {
-    Kind(Param),
-    Fraction { kind: u16, fraction: f64, seed: u32 },
-    Mass(Param),
-    Density(Param),
-    Diameter(Param),
-    Volume(Param),
-    Omega([Param; 3]),
-    Place(usize, Param),
-    Velocity(usize, Param),
-}
-
-/// A keyword with its value and place.
-struct Item {
-    keyword: String,
-    span: Span,
-    change: Change,
-}
-
-impl Item {
-    fn has_variable(&self) -> bool {
-        let is = |p: &Param| matches!(p, Param::Ref(_));
-        match &self.change {
-            Change::Fraction { .. } => false,
-            Change::Omega(p) => p.iter().any(is),
-            Change::Kind(p)
-            | Change::Mass(p)
-            | Change::Density(p)
-            | Change::Diameter(p)
-            | Change::Volume(p)
-            | Change::Place(_, p)
-            | Change::Velocity(_, p) => is(p),
-        }
-    }
-}
-
 impl CommandStyle for Set {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        super::common::domain(cx)?;
+        common::domain(cx)?;
         let choice = choice(a, cx)?;
         let mut items = vec![];
         let mut word = Some(a.expect("a keyword")?);
@@ -135,19 +103,8 @@ impl CommandStyle for Set {
             items.push(Item { keyword: keyword.text.clone(), span, change });
             word = a.next();
         }
-        let settles = items.iter().filter_map(|i| settles(&i.change)).collect();
-        Ok(on_particles(settles, move |cx| apply(cx, &choice, &items)))
-    }
-}
-
-fn settles(change: &Change) -> Option<&'static str> {
-    match change {
-        Change::Mass(_) => Some("mass"),
-        Change::Density(_) => Some("density"),
-        Change::Diameter(_) => Some("diameter"),
-        Change::Volume(_) => Some("volume"),
-        Change::Velocity(..) => Some("velocity"),
-        _ => None,
+        let settles = items.iter().filter_map(|i| i.change.settles()).collect();
+        Ok(on_particles(settles, move |cx| change::apply(cx, &choice, &items)))
     }
 }
 
@@ -177,6 +134,9 @@ fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
     match keyword.text.as_str() {
         "type" => value(a, cx, "the type", Some(Limit::Kind)).map(Change::Kind),
         "type/fraction" => fraction(a, cx),
+        "type/ratio" => some(a, cx, true),
+        "type/subset" => some(a, cx, false),
+        "image" => image(a, cx),
         "mass" => {
             needs(sphere || peri)?;
             value(a, cx, "the mass", Some(Limit::Positive)).map(Change::Mass)
@@ -184,6 +144,14 @@ fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
         "density" => {
             needs(sphere || peri)?;
             value(a, cx, "the density", Some(Limit::Positive)).map(Change::Density)
+        }
+        "density/disc" => {
+            needs(sphere)?;
+            if !cx.world.settings.two_dimensional {
+                let text = "`density/disc` belongs to flat scenes (`dimension 2`)";
+                return fail(Code::CONFLICT, keyword.span, text);
+            }
+            value(a, cx, "the density", Some(Limit::Positive)).map(Change::Disc)
         }
         "diameter" => {
             needs(sphere)?;
@@ -210,25 +178,6 @@ fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
     }
 }
 
-/// What a value must keep to.
-#[derive(Clone, Copy)]
-enum Limit {
-    Positive,
-    NotNegative,
-    Kind,
-}
-
-impl Limit {
-    fn check(self, x: f64, types: usize, what: &str, span: Span) -> Result<()> {
-        let (ok, want) = match self {
-            Limit::Positive => (x > 0.0, "greater than zero".to_string()),
-            Limit::NotNegative => (x >= 0.0, "not negative".to_string()),
-            Limit::Kind => (x >= 1.0 && x < types as f64 + 1.0, format!("a type from 1 to {types}")),
-        };
-        if ok { Ok(()) } else { fail(Code::BAD_VALUE, span, format!("{what} must be {want}: {x}")) }
-    }
-}
-
 fn value(a: &mut Args, cx: &BuildCx, what: &str, limit: Option<Limit>) -> Result<Param> {
     let (span, unknown) = (a.here(), a.peek().is_some_and(|w| w.unknown));
     let p = variable_param(a, what)?;
@@ -240,111 +189,45 @@ fn value(a: &mut Args, cx: &BuildCx, what: &str, limit: Option<Limit>) -> Result
 }
 
 fn fraction(a: &mut Args, cx: &BuildCx) -> Result<Change> {
+    let kind = one_type(a, cx)?;
+    Ok(Change::Fraction { kind, fraction: common::fraction(a)?, seed: seed(a)? })
+}
+
+/// `type/ratio` and `type/subset`: an exact number of the chosen ones.
+fn some(a: &mut Args, cx: &BuildCx, ratio: bool) -> Result<Change> {
+    let kind = one_type(a, cx)?;
+    let amount = match ratio {
+        true => Amount::Ratio(common::fraction(a)?),
+        false => Amount::Count(a.integer_from(0, "the number of particles")?),
+    };
+    Ok(Change::Some { kind, amount, seed: common::marsaglia_seed(a)? })
+}
+
+fn one_type(a: &mut Args, cx: &BuildCx) -> Result<u16> {
     let (kind, _) = a.clone().type_range(cx.world.types)?;
     a.integer("the type")?;
-    let span = a.here();
-    let fraction = a.number("the fraction")?;
-    if !(0.0..=1.0).contains(&fraction) {
-        return fail(Code::BAD_VALUE, span, format!("the fraction must lie between 0 and 1: {fraction}"));
-    }
-    Ok(Change::Fraction { kind, fraction, seed: seed(a)? })
+    Ok(kind)
 }
 
-fn apply(cx: &mut ActCx, choice: &Choice, items: &[Item]) -> Result<()> {
-    let chosen = chosen(choice, cx.world);
-    // Constants were checked when the line was read: only variables can still turn out wrong.
-    let before = items.iter().any(Item::has_variable).then(|| cx.world.particles.clone());
-    cx.say("Setting atom values ...");
-    for item in items {
-        let done = change_particles(cx, item, &chosen);
-        match done {
-            Ok(count) => cx.say(format!("  {count} settings made for {}", item.keyword)),
-            Err(d) => {
-                if let Some(before) = before {
-                    cx.world.particles = before;
-                }
-                return Err(d.at(item.span));
-            }
+/// `image`: counts along periodic dimensions, `NULL` for those that stay.
+fn image(a: &mut Args, cx: &BuildCx) -> Result<Change> {
+    let domain = common::domain(cx)?;
+    let mut counts = [None, None, None];
+    for (d, count) in counts.iter_mut().enumerate() {
+        let span = a.here();
+        let value = common::param_or_null(a, "the image count")?;
+        let Some(param) = value else { continue };
+        cx.param(&param, true)?;
+        if !domain.boundary.periodic(d) {
+            let text = format!("the box does not repeat along {}: write NULL", ["x", "y", "z"][d]);
+            return fail(Code::CONFLICT, span, text);
         }
+        if matches!(param, Param::Number(x) if x.fract() != 0.0) {
+            return fail(Code::BAD_NUMBER, span, "an image count must be a whole number");
+        }
+        *count = Some(param);
     }
-    cx.world.touch();
-    Ok(())
-}
-
-/// Indices of the particles that are meant.
-fn chosen(choice: &Choice, w: &World) -> Vec<usize> {
-    let p = &w.particles;
-    let meant = |i: usize| match choice {
-        Choice::Tags(lo, hi) => (*lo..=*hi).contains(&i64::from(p.tag[i])),
-        Choice::Kinds(lo, hi) => (*lo..=*hi).contains(&p.kind[i]),
-        Choice::Group(g) => p.mask[i] & g.bit() != 0,
-        Choice::Region(r) => r.contains(p.x[i]),
-    };
-    (0..p.len()).filter(|&i| meant(i)).collect()
-}
-
-fn change_particles(cx: &mut ActCx, item: &Item, chosen: &[usize]) -> Result<usize> {
-    let types = cx.world.types;
-    let mut checked = |p: &Param, what: &str, limit: Option<Limit>| -> Result<Vec<f64>> {
-        let values = cx.per_atom(p)?;
-        if let Some(limit) = limit {
-            chosen.iter().try_for_each(|&i| limit.check(values[i], types, what, item.span))?;
-        }
-        Ok(values)
-    };
-    match &item.change {
-        Change::Kind(p) => {
-            let v = checked(p, "the type", Some(Limit::Kind))?;
-            chosen.iter().for_each(|&i| cx.world.particles.kind[i] = v[i] as u16);
-            cx.world.spread_type_masses();
-        }
-        Change::Fraction { kind, fraction, seed } => {
-            return Ok(set_fraction(cx.world, chosen, *kind, *fraction, *seed));
-        }
-        Change::Mass(p) => {
-            let v = checked(p, "the mass", Some(Limit::Positive))?;
-            chosen.iter().for_each(|&i| cx.world.particles.mass[i] = v[i]);
-        }
-        Change::Density(p) => {
-            let v = checked(p, "the density", Some(Limit::Positive))?;
-            masses_from_density(&mut cx.world.particles, chosen, &v);
-        }
-        Change::Diameter(p) => {
-            let v = checked(p, "the diameter", Some(Limit::NotNegative))?;
-            chosen.iter().for_each(|&i| cx.world.particles.radius[i] = 0.5 * v[i]);
-        }
-        Change::Volume(p) => {
-            let v = checked(p, "the volume", Some(Limit::Positive))?;
-            chosen.iter().for_each(|&i| cx.world.particles.volume[i] = v[i]);
-        }
-        Change::Omega(p) => {
-            let v = [checked(&p[0], "", None)?, checked(&p[1], "", None)?, checked(&p[2], "", None)?];
-            chosen.iter().for_each(|&i| cx.world.particles.omega[i] = [v[0][i], v[1][i], v[2][i]]);
-        }
-        Change::Place(d, p) => {
-            let v = checked(p, "", None)?;
-            chosen.iter().for_each(|&i| cx.world.particles.x[i][*d] = v[i]);
-        }
-        Change::Velocity(d, p) => {
-            let v = checked(p, "", None)?;
-            chosen.iter().for_each(|&i| cx.world.particles.v[i][*d] = v[i]);
-        }
-    }
-    Ok(chosen.len())
-}
-
-fn set_fraction(w: &mut World, chosen: &[usize], kind: u16, fraction: f64, seed: u32) -> usize {
-    let mut stream = ParkMiller::new(seed);
-    let mut count = 0;
-    for &i in chosen {
-        stream.reset_at(seed, w.particles.x[i]);
-        if stream.uniform() <= fraction {
-            w.particles.kind[i] = kind;
-            count += 1;
-        }
-    }
-    w.spread_type_masses();
-    count
+    Ok(Change::Image(counts))
 }
 
 #[cfg(test)]

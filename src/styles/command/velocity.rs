@@ -1,12 +1,10 @@
 //! `velocity`: gives particles velocities, changes or scales them.
 
-use super::common::{
-    self, axis, bad_keyword, not_here, on_particles, param_or_null, ramp, scales, seed, units_lattice,
-};
+use super::common::{self, axis, on_particles, param_or_null, ramp, scales, seed, units_lattice};
 use super::momentum::{Members, temperature};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Result, fail};
-use crate::lang::{Args, Param};
+use crate::lang::{Args, Param, RefKind, ValueRef, Word};
 use crate::math::rng::ParkMiller;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
 use crate::world::{GroupId, World};
@@ -14,7 +12,7 @@ use crate::world::{GroupId, World};
 /// The command.
 pub struct Velocity;
 
-const KEYWORDS: [&str; 7] = ["dist", "sum", "mom", "rot", "loop", "units", "bias"];
+const KEYWORDS: [&str; 9] = ["dist", "sum", "mom", "rot", "temp", "bias", "loop", "rigid", "units"];
 
 impl Style for Velocity {
     fn name(&self) -> &'static str {
@@ -25,11 +23,12 @@ impl Style for Velocity {
         Doc {
             syntax: "velocity GROUP create T SEED | set VX VY VZ | scale T | ramp vx|vy|vz VLO VHI x|y|z CLO CHI | \
                      zero linear|angular  [dist uniform|gaussian] [sum yes|no] [mom yes|no] [rot yes|no] \
-                     [loop all|local|geom] [units lattice|box]",
+                     [loop all|local|geom] [temp COMPUTE] [units lattice|box]",
             summary: "Gives the particles of a group velocities.",
             text: "`create` draws from LAMMPS' Park–Miller stream, number by number as LAMMPS does, takes away the mean \
                    (`mom yes`, default) and the rotation (`rot yes`), and scales to the temperature T, where \
-                   T = Σ m v² / ((3N − 3) k). `loop all` draws for ids 1 … N in order, `local` in storage order, `geom` by a \
+                   T = Σ m v² / ((3N − 3) k), in flat scenes (2N − 2). `temp` names a temperature compute that says the \
+                   present temperature instead, also for `scale`. `loop all` draws for ids 1 … N in order, `local` in storage order, `geom` by a \
                    stream for each place. `set` takes numbers, `NULL` or variables. `ramp` is linear between two \
                    coordinates and constant beyond. `sum yes` adds to the present velocities. Velocities and coordinates \
                    of `set` and `ramp` are in lattice spacings (per time) unless `units box` is said: in SI decks with a \
@@ -63,6 +62,8 @@ struct Options {
     rotation: bool,
     order: Loop,
     lattice: bool,
+    /// The compute that says the temperature.
+    compute: Option<ValueRef>,
 }
 
 impl CommandStyle for Velocity {
@@ -95,7 +96,10 @@ impl CommandStyle for Velocity {
                 return fail(Code::UNKNOWN_STYLE, style.span, text);
             }
         };
-        let options = options(a)?;
+        let options = options(a, cx)?;
+        if cx.world.settings.two_dimensional {
+            stays_flat(&action, style)?;
+        }
         Ok(on_particles(vec!["velocity"], move |cx| {
             apply(cx, group, &action, &options)?;
             cx.world.touch();
@@ -112,7 +116,22 @@ fn velocity_axis(a: &mut Args) -> Result<usize> {
     })
 }
 
-fn options(a: &mut Args) -> Result<Options> {
+/// Refuses velocities out of the plane of a flat scene.
+fn stays_flat(action: &Action, style: &Word) -> Result<()> {
+    let leaves = match action {
+        Action::Set([.., z]) => z.as_ref().is_some_and(|z| *z != Param::Number(0.0)),
+        Action::Ramp { along, .. } => *along == 2,
+        _ => false,
+    };
+    match leaves {
+        true => {
+            fail(Code::CONFLICT, style.span, "velocities along z do not go with a flat scene (`dimension 2`)")
+        }
+        false => Ok(()),
+    }
+}
+
+fn options(a: &mut Args, cx: &BuildCx) -> Result<Options> {
     let mut o = Options {
         gaussian: false,
         sum: false,
@@ -120,6 +139,7 @@ fn options(a: &mut Args) -> Result<Options> {
         rotation: false,
         order: Loop::All,
         lattice: true,
+        compute: None,
     };
     while let Some(word) = a.next() {
         match word.text.as_str() {
@@ -135,16 +155,37 @@ fn options(a: &mut Args) -> Result<Options> {
                 }
             }
             "units" => o.lattice = units_lattice(a)?,
+            "temp" => o.compute = Some(temperature_compute(a, cx)?),
             "bias" => {
                 let value = a.peek().cloned();
                 if let (true, Some(w)) = (a.flag("bias")?, value) {
-                    return Err(not_here(&w, "velocity bias"));
+                    let text = "no temperature compute here has a bias to take away";
+                    return fail(Code::NOT_SUPPORTED, w.span, text);
                 }
             }
-            _ => return Err(bad_keyword(a, word, &KEYWORDS, &["temp", "rigid"])),
+            "rigid" => {
+                let id = a.expect("a fix")?;
+                let text = format!("there is no rigid body fix `{}`", id.text);
+                return fail(Code::UNKNOWN_NAME, id.span, text);
+            }
+            _ => return Err(a.unknown(word, &KEYWORDS)),
         }
     }
     Ok(o)
+}
+
+/// The compute that a word names, if it is one of temperature.
+fn temperature_compute(a: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
+    let word = a.expect("a compute")?;
+    let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
+    cx.value(&r, false)?;
+    match cx.names.compute_style(&word.text) {
+        Some(style) if !style.starts_with("temp") => {
+            let text = format!("compute `{}` is of style {style} and computes no temperature", word.text);
+            fail(Code::WRONG_KIND, word.span, text)
+        }
+        _ => Ok(r),
+    }
 }
 
 fn apply(cx: &mut ActCx, group: GroupId, action: &Action, o: &Options) -> Result<()> {
@@ -152,7 +193,8 @@ fn apply(cx: &mut ActCx, group: GroupId, action: &Action, o: &Options) -> Result
     let members = Members::new(cx.world, group);
     match action {
         Action::Create { temperature, seed } => {
-            let new = created(cx.world, &members, *temperature, *seed, o)?;
+            let mut new = created(cx.world, &members, *seed, o)?;
+            rescale(cx, &members, &mut new, *temperature, o)?;
             members.write(cx.world, &new, o.sum);
         }
         Action::Set(values) => {
@@ -168,7 +210,7 @@ fn apply(cx: &mut ActCx, group: GroupId, action: &Action, o: &Options) -> Result
         }
         Action::Scale { temperature } => {
             let mut new = members.velocities(cx.world);
-            rescale(cx.world, &members, &mut new, *temperature)?;
+            rescale(cx, &members, &mut new, *temperature, o)?;
             members.write(cx.world, &new, o.sum);
         }
         Action::Ramp { along, by, axis, between } => {
@@ -194,12 +236,15 @@ fn apply(cx: &mut ActCx, group: GroupId, action: &Action, o: &Options) -> Result
     Ok(())
 }
 
-/// Velocities of a temperature, one per member.
-fn created(w: &World, members: &Members, t: f64, seed: u32, o: &Options) -> Result<Vec<[f64; 3]>> {
+/// Random velocities, one per member, before they are scaled.
+fn created(w: &World, members: &Members, seed: u32, o: &Options) -> Result<Vec<[f64; 3]>> {
     let mut v = draws(w, members, seed, o)?;
     for (v, &i) in v.iter_mut().zip(&members.list) {
         let factor = 1.0 / w.particles.mass[i].sqrt();
         *v = v.map(|x| x * factor);
+        if w.settings.two_dimensional {
+            v[2] = 0.0;
+        }
     }
     if o.momentum {
         members.stop_drift(w, &mut v);
@@ -207,7 +252,6 @@ fn created(w: &World, members: &Members, t: f64, seed: u32, o: &Options) -> Resu
     if o.rotation {
         members.stop_rotation(w, &mut v);
     }
-    rescale(w, members, &mut v, t)?;
     Ok(v)
 }
 
@@ -246,8 +290,20 @@ fn draws(w: &World, members: &Members, seed: u32, o: &Options) -> Result<Vec<[f6
     }
 }
 
-fn rescale(w: &World, members: &Members, v: &mut [[f64; 3]], target: f64) -> Result<()> {
-    let now = temperature(w, members, v);
+fn rescale(cx: &mut ActCx, members: &Members, v: &mut [[f64; 3]], target: f64, o: &Options) -> Result<()> {
+    let now = match &o.compute {
+        None => temperature(cx.world, members, v),
+        Some(compute) => {
+            // The compute sees the new velocities where its own group has them.
+            let before = members.velocities(cx.world);
+            members.write(cx.world, v, false);
+            cx.world.slots.invalidate();
+            let now = cx.number(&Param::Ref(compute.clone()));
+            members.write(cx.world, &before, false);
+            cx.world.slots.invalidate();
+            now?
+        }
+    };
     if now == 0.0 {
         return fail(Code::CONFLICT, None, "the group's velocities have temperature 0 and cannot be scaled");
     }
@@ -331,7 +387,8 @@ mod tests {
             ("velocity g create -1 3", "-1"),
             ("velocity g create 1 0", "0"),
             ("velocity g set 1 1 1 bias yes", "yes"),
-            ("velocity g scale 1 temp mine", "temp"),
+            ("velocity g zero linear rigid mine", "mine"),
+            ("velocity g scale 1 temp mine", "mine"),
             ("velocity g ramp vq 1 1 x 0 1", "vq"),
         ] {
             assert_eq!(refused(&w, line).0, word, "{line}");

@@ -2,7 +2,7 @@
 
 use super::Ask;
 use crate::diag::{Result, Span};
-use crate::math::vec3::{add, cross, dot, scale, sub};
+use crate::math::vec3::{cross, dot, scale, sub};
 
 /// An equal-style variable and the place in the deck that names it.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -66,17 +66,21 @@ impl Motion {
     pub(super) fn undo(&self, x: [f64; 3]) -> [f64; 3] {
         let x = sub(x, self.now);
         match &self.turn {
-            Some(t) => add(t.point, turned(sub(x, t.point), t.axis, -t.angle)),
+            Some(t) => turned(x, t.point, t.axis, -t.angle),
             None => x,
         }
     }
 }
 
-/// A vector turned about a unit axis (Rodrigues).
-pub fn turned(v: [f64; 3], axis: [f64; 3], angle: f64) -> [f64; 3] {
-    let (sin, cos) = angle.sin_cos();
-    let along = scale((1.0 - cos) * dot(axis, v), axis);
-    add(add(scale(cos, v), scale(sin, cross(axis, v))), along)
+/// A place turned about an axis of unit length through a point (Rodrigues), summed in LAMMPS' order: random streams that
+/// belong to places see every bit.
+pub fn turned(x: [f64; 3], point: [f64; 3], axis: [f64; 3], angle: f64) -> [f64; 3] {
+    let arm = sub(x, point);
+    let along = scale(dot(arm, axis), axis);
+    let across = sub(arm, along);
+    let ahead = cross(axis, across);
+    let (sin, cos) = (angle.sin(), angle.cos());
+    [0, 1, 2].map(|d| point[d] + along[d] + (across[d] * cos + ahead[d] * sin))
 }
 
 #[cfg(test)]
