@@ -321,9 +321,20 @@ pub struct DeckValues<'a> {
 }
 
 impl Values for DeckValues<'_> {
-    fn with_internal(&mut self, _w: &mut World, _r: &ValueRef, set: &[(&ValueRef, f64)]) -> Result<f64> {
-        let span = set.first().map(|(v, _)| v.span);
-        fail(Code::NOT_SUPPORTED, span, "internal-style variables are not in perigrain yet")
+    fn with_internal(&mut self, w: &mut World, r: &ValueRef, set: &[(&ValueRef, f64)]) -> Result<f64> {
+        let vars = Arc::make_mut(&mut self.vars);
+        for (variable, value) in set {
+            if !vars.set_internal(&variable.name, *value) {
+                let text = format!("variable `{}` must be of style internal", variable.name);
+                return fail(Code::WRONG_KIND, variable.span, text);
+            }
+        }
+        let vars = self.vars.clone();
+        let mut env = DeckEnv { w, graph: self.graph, checking: false };
+        match vars.value(&r.name, r.span, &mut env)? {
+            Value::Number(a) => Ok(a),
+            _ => fail(Code::WRONG_KIND, r.span, format!("`{r}` has no single number")),
+        }
     }
 
     fn scalar(&mut self, w: &mut World, r: &ValueRef) -> Result<f64> {

@@ -89,8 +89,9 @@ fn halve(t: Triangle, threshold: f64, found: &mut Vec<([f64; 3], f64)>) {
     }
 }
 
-/// Roberts' R2 sequence: the powers 1 and 2 of 1/g for the plastic number g, g³ = g + 1.
-const STEPS: [f64; 2] = [0.7548776662466927, 0.5698402909980532];
+/// Roberts' R2 sequence: the powers 1 and 2 of 1/g for the plastic number g, g³ = g + 1, to the seven digits that LAMMPS
+/// has: the places depend on them.
+const STEPS: [f64; 2] = [0.7548777, 0.5698403];
 
 /// Fills a triangle with the number of particles that a density gives, each at its place of a quasi-random sequence.
 fn scatter([a, b, c]: Triangle, density: f64, found: &mut Vec<([f64; 3], f64)>) {
