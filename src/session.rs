@@ -5,6 +5,7 @@ mod checking;
 mod commands;
 mod files;
 mod interactive;
+mod restarting;
 mod running;
 mod stability;
 mod unused;
@@ -299,6 +300,10 @@ impl Session {
             self.run_command(cmd)?;
         } else if name == "write_dump" {
             self.write_dump(cmd)?;
+        } else if name == "write_restart" {
+            self.write_restart(cmd)?;
+        } else if name == "read_restart" {
+            self.read_restart(cmd)?;
         } else if DECLARATIONS.contains(&name) {
             self.declare(cmd)?;
         } else if let Some(style) = COMMANDS.iter().find(|c| c.name() == name) {

@@ -125,6 +125,7 @@ decks! {
     pd_pmb_dtreset
     pd_pmb_laminate
     pd_data
+    pd_restart
     gr2_g_mindlin
     hyb_pmb_granular
 }

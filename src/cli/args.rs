@@ -204,6 +204,8 @@ const LAMMPS_ONLY: &[&str] = &[
     "-ps",
     "-reorder",
     "-ro",
+    "-r",
+    "-restart",
     "-restart2data",
     "-r2data",
     "-restart2dump",

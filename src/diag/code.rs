@@ -169,6 +169,9 @@ codes! {
     FORMAT = 138, "no format for a number",
         "A C format for one number is wanted: `%g`, `%.3f`, `%12.5e` and the like.",
         "print $(1/3:%d%d)", "print $(1/3:%.3f)";
+    BAD_FILE = 139, "file damaged or of another kind",
+        "The file is not what its place in the deck asks for: a restart file that is cut off, damaged, of another program or of a newer version.",
+        "print \"no scene\" file old.restart\nclear\nread_restart old.restart", "write_restart old.restart\nclear\nread_restart old.restart";
     LOST = 201, "particles lost",
         "A particle left a box with fixed faces. Enlarge the box, use boundary s or m, or shorten the time step.",
         "units si\natom_style sphere\nboundary f f f\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\ncreate_atoms 1 single 0.5 0.5 0.5\nvelocity all set 1 0 0\nfix 1 all nve\ntimestep 0.01\nrun 100",

@@ -11,9 +11,24 @@ use crate::styles::pair::PAIRS;
 use crate::world::World;
 
 /// Commands of the session and of the cursor through the deck, which stand in no table.
-pub const SESSION_COMMANDS: [&str; 15] = [
-    "print", "log", "echo", "clear", "compat", "run", "variable", "if", "jump", "label", "next", "include",
-    "quit", "suffix", "package",
+pub const SESSION_COMMANDS: [&str; 17] = [
+    "print",
+    "log",
+    "echo",
+    "clear",
+    "compat",
+    "run",
+    "variable",
+    "if",
+    "jump",
+    "label",
+    "next",
+    "include",
+    "quit",
+    "suffix",
+    "package",
+    "write_restart",
+    "read_restart",
 ];
 
 /// 1 for every particle in the group and in the region, else 0.

@@ -8,10 +8,10 @@ use crate::styles::dump::DUMPS;
 use crate::styles::fix::FIXES;
 use crate::styles::pair::PAIRS;
 use crate::styles::{BuildCx, Style, Use, UseKind};
-use crate::world::{GroupId, World};
+use crate::world::{GroupId, Said, World};
 
 /// The commands that declare.
-pub const DECLARATIONS: [&str; 17] = [
+pub const DECLARATIONS: [&str; 18] = [
     "pair_style",
     "pair_coeff",
     "pair_modify",
@@ -28,6 +28,7 @@ pub const DECLARATIONS: [&str; 17] = [
     "thermo",
     "thermo_style",
     "thermo_modify",
+    "restart",
     "write_dump",
 ];
 
@@ -105,7 +106,7 @@ pub struct Declared {
 /// Every mistake in the line; then nothing has changed.
 pub fn declare(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) -> Result<Declared> {
     let mut args = Args::new(cmd);
-    match cmd.name.text.as_str() {
+    let declared = match cmd.name.text.as_str() {
         "pair_style" => pair_style(graph, w, &mut args, cx),
         "pair_coeff" => pair_coeff(graph, w, &mut args, cx),
         "pair_modify" => fail(
@@ -134,7 +135,35 @@ pub fn declare(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) ->
             graph.thermo = thermo;
             Ok(Declared::default())
         }
+        "restart" => {
+            let mut restarts = graph.restarts.clone();
+            restarts.declare(&mut args)?;
+            args.finish()?;
+            graph.restarts = restarts;
+            Ok(Declared::default())
+        }
         other => fail(Code::UNKNOWN_COMMAND, cmd.name.span, format!("`{other}` declares nothing")),
+    }?;
+    keep_line(graph, w, cmd);
+    Ok(declared)
+}
+
+/// Keeps the lines of the pair style and of fixes for restart files.
+fn keep_line(graph: &mut Graph, w: &World, cmd: &Command) {
+    let words: Vec<String> = std::iter::once(&cmd.name).chain(&cmd.args).map(|w| w.text.clone()).collect();
+    let id = cmd.args.first().map_or("", |w| &w.text);
+    match cmd.name.text.as_str() {
+        "pair_style" | "pair_coeff" | "pair_modify" | "peri_modify" => {
+            if let Some(node) = &mut graph.pair {
+                node.lines.push(Said { words, lattice: w.lattice.clone() });
+            }
+        }
+        "fix" | "fix_modify" => {
+            if let Some(node) = graph.fixes.iter_mut().find(|f| f.id == id) {
+                node.lines.push(words.join(" "));
+            }
+        }
+        _ => {}
     }
 }
 
@@ -196,7 +225,7 @@ fn pair_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -
     let style = style(PAIRS, "pair", args)?;
     let pair = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
-    graph.pair = Some(PairNode { pair, span: cx.span });
+    graph.pair = Some(PairNode { pair, span: cx.span, lines: vec![] });
     w.touch();
     Ok(Declared::default())
 }
@@ -262,7 +291,15 @@ fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Resul
     let style = style(FIXES, "fix", args)?;
     let fix = style.build(args, &cx.build(graph, w, id, group))?;
     args.finish()?;
-    let node = FixNode { id: id.to_string(), style: style.name(), group, fix, energy: false, span: cx.span };
+    let node = FixNode {
+        id: id.to_string(),
+        style: style.name(),
+        group,
+        fix,
+        energy: false,
+        span: cx.span,
+        lines: vec![],
+    };
     // LAMMPS lets a fix of the same ID, style and group replace the old one in its place.
     let old = graph.fixes.iter().position(|f| f.id == id);
     if let Some(k) = old
@@ -280,7 +317,7 @@ fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Resul
     if let Some(k) = old {
         graph.fixes[k].fix.remove(w);
     }
-    node.fix.declare(w)?;
+    w.inherit(&format!("{}/{id}", node.style), |w| node.fix.declare(w))?;
     match old {
         Some(k) => graph.fixes[k] = node,
         None => graph.fixes.push(node),
@@ -369,7 +406,7 @@ fn compute(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> R
     let style = style(COMPUTES, "compute", args)?;
     let compute = style.build(args, &cx.build(graph, w, id, group))?;
     args.finish()?;
-    compute.declare(w)?;
+    w.inherit(&format!("compute {id}"), |w| compute.declare(w))?;
     graph.computes.push(ComputeNode { id: id.to_string(), style: style.name(), compute, span: cx.span });
     forget_values(w, &format!("c_{id}"));
     Ok(provides(UseKind::Compute, id))

@@ -9,6 +9,7 @@ pub mod measure;
 pub mod node;
 pub mod ops;
 pub mod regions;
+pub mod restarts;
 mod said;
 pub mod seal;
 pub mod show;

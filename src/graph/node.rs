@@ -1,10 +1,11 @@
 //! The graph's nodes: what has been declared, done and run, each with the line it came from.
 
+use super::restarts::Restarts;
 use super::thermo::Thermo;
 use crate::diag::Span;
 use crate::lang::{RefKind, ValueRef};
 use crate::styles::{Compute, Dump, Fix, Names, Pair, Shape, Use, UseKind};
-use crate::world::GroupId;
+use crate::world::{GroupId, Said};
 use std::collections::{BTreeMap, HashMap};
 
 /// Which node.
@@ -45,6 +46,8 @@ pub struct PairNode {
     pub pair: Box<dyn Pair>,
     /// The `pair_style` line.
     pub span: Span,
+    /// All its lines, for restart files.
+    pub lines: Vec<Said>,
 }
 
 /// A fix in force.
@@ -61,6 +64,8 @@ pub struct FixNode {
     pub energy: bool,
     /// Its line.
     pub span: Span,
+    /// Its line and those that modify it, as words with one blank between.
+    pub lines: Vec<String>,
 }
 
 /// A compute in force.
@@ -100,6 +105,8 @@ pub struct Graph {
     pub computes: Vec<ComputeNode>,
     /// Dumps in order of definition.
     pub dumps: Vec<DumpNode>,
+    /// Restart files during runs.
+    pub restarts: Restarts,
     /// What the step table shows.
     pub thermo: Thermo,
     /// Every line.
@@ -112,13 +119,13 @@ pub struct Graph {
 
 impl Clone for PairNode {
     fn clone(&self) -> Self {
-        Self { pair: self.pair.boxed(), span: self.span }
+        Self { pair: self.pair.boxed(), span: self.span, lines: self.lines.clone() }
     }
 }
 
 impl Clone for FixNode {
     fn clone(&self) -> Self {
-        Self { id: self.id.clone(), fix: self.fix.boxed(), ..*self }
+        Self { id: self.id.clone(), fix: self.fix.boxed(), lines: self.lines.clone(), ..*self }
     }
 }
 

@@ -21,6 +21,18 @@ pub struct Pattern {
 impl Pattern {
     /// Checks a name: one `*` at most, no `%` (one file per processor), no compressed or binary ending.
     pub fn new(text: &str) -> Result<Self> {
+        if let Some(ending) = REFUSED_ENDINGS.iter().find(|e| text.ends_with(**e)) {
+            let d = Diagnostic::error(Code::NOT_SUPPORTED, None, format!("files that end in `{ending}`"));
+            return Err(d.help("write plain text and compress the file afterwards").into());
+        }
+        Self::of_any_kind(text)
+    }
+
+    /// As [`Pattern::new`], with any ending.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn of_any_kind(text: &str) -> Result<Self> {
         if text.is_empty() {
             return fail(Code::BAD_VALUE, None, "the file name is empty");
         }
@@ -31,10 +43,6 @@ impl Pattern {
         }
         if text.matches('*').count() > 1 {
             return fail(Code::BAD_VALUE, None, "more than one `*` in the file name");
-        }
-        if let Some(ending) = REFUSED_ENDINGS.iter().find(|e| text.ends_with(**e)) {
-            let d = Diagnostic::error(Code::NOT_SUPPORTED, None, format!("files that end in `{ending}`"));
-            return Err(d.help("write plain text and compress the file afterwards").into());
         }
         Ok(Self { text: text.into(), pad: 0 })
     }
@@ -87,13 +95,33 @@ pub fn open(path: &Path, append: bool) -> Result<BufWriter<File>> {
 /// Writes a whole file beside its place and moves it there at the end: readers see the old or the new file,
 /// never half of one.
 pub fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
+    put(path, false, write)
+}
+
+/// As [`replace`], and the new file is on the disk before the old one goes: not even a power cut leaves half a file.
+pub fn replace_durably(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
+    put(path, true, write)
+}
+
+fn put(path: &Path, durably: bool, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
     let part = beside(path);
     let outcome = (|| {
         let mut file = BufWriter::with_capacity(1 << 20, File::create(&part)?);
         write(&mut file)?;
         file.flush()?;
+        if durably {
+            file.get_ref().sync_all()?;
+        }
         drop(file);
-        fs::rename(&part, path)
+        fs::rename(&part, path)?;
+        match path.parent().filter(|_| durably) {
+            // The folder has the new name on the disk, too; not every system can open folders.
+            Some(folder) => {
+                let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+                File::open(folder).and_then(|f| f.sync_all()).or(Ok(()))
+            }
+            None => Ok(()),
+        }
     })();
     outcome.map_err(|e| {
         // The half-written file is of no use; that it may not exist is fine.

@@ -7,6 +7,7 @@ pub mod file;
 pub mod formats;
 pub mod image;
 pub mod log;
+pub mod restart;
 pub mod rows;
 pub mod sheet;
 pub mod table;

@@ -48,9 +48,7 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "prd",
     "python",
     "read_dump",
-    "read_restart",
     "rerun",
-    "restart",
     "run_style",
     "server",
     "shell",
@@ -60,7 +58,6 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "third_order",
     "timer",
     "write_coeff",
-    "write_restart",
 ];
 
 /// What each variable offers, by name.

@@ -34,6 +34,7 @@ impl Session {
         self.ready(cmd.span)?;
         self.check_run(cmd.span, args.steps > 0)?;
         if self.checking() {
+            self.graph.restarts.names().into_iter().for_each(|name| self.promise_restart(name));
             return Ok(());
         }
         self.say_notes()?;
@@ -147,6 +148,7 @@ impl Session {
             s.add(vec![op], d.span);
         }
         s.at(span);
+        s.add(self.graph.restarts.ops(&self.graph), self.graph.restarts.span);
         let row = self.graph.thermo.op(&mut s, self.options.log.clone())?;
         s.add(vec![row], span);
         s.say_what_is_missing();
@@ -158,6 +160,7 @@ impl Session {
         let c = &mut self.world.clock;
         (c.first, c.last, c.halt) = (c.step, c.step + steps, Halt::No);
         c.began = None;
+        self.settle_resume(span)?;
         let unchanged = self.ran && !self.world.parts.changed && (!self.world.settings.lammps() || !pre);
         let mut plan = self.seal(span)?;
         if self.options.mode == Mode::Plan {

@@ -67,6 +67,11 @@ impl Images {
         }
     }
 
+    /// Whether there are counts for `n` particles.
+    pub fn are_for(&self, n: usize) -> bool {
+        self.particles == n && (self.counts.is_empty() || self.counts.len() == n)
+    }
+
     /// Memory held.
     pub fn bytes(&self) -> usize {
         self.counts.capacity() * size_of::<[i32; 3]>()

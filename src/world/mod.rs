@@ -15,11 +15,12 @@ pub mod particles;
 pub mod potentials;
 pub mod rebuild;
 pub mod region;
+pub mod resume;
 pub mod settings;
 pub mod slots;
 pub mod tally;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -32,6 +33,7 @@ pub use lattice::Lattice;
 pub use particles::{AtomStyle, Particles};
 pub use rebuild::Rebuild;
 pub use region::Region;
+pub use resume::{Promise, Resume, Said};
 pub use settings::{Compat, NeighborSettings, Settings};
 pub use slots::{Offers, Slot, SlotId, Slots};
 pub use tally::Tally;
@@ -90,15 +92,11 @@ pub struct Parts {
     pub facts: BTreeMap<String, Arc<str>>,
     /// While a deck is only checked: files that its lines so far would have written, by name.
     pub promised: BTreeMap<String, Promise>,
-}
-
-/// What a checked deck would have written into a file.
-#[derive(Clone, Debug)]
-pub enum Promise {
-    /// This text.
-    Text(String),
-    /// This scene, which holds no particles.
-    Scene(Arc<World>),
+    /// What came from a restart file and the deck may say again: `region/ID`, `material/ID`, and state of fixes and
+    /// computes as `STYLE/ID`.
+    pub restored: BTreeSet<String>,
+    /// What a restart file said about the scene, until the first run after it.
+    pub resume: Option<Arc<Resume>>,
 }
 
 impl World {

@@ -5,6 +5,7 @@ mod formulas;
 mod language;
 mod program;
 mod prompt;
+mod restart;
 mod session;
 mod thermo;
 
@@ -38,6 +39,9 @@ pub const COMMANDS: &[Entry] = &[
     declarations::DUMP_MODIFY,
     declarations::UNDUMP,
     session::WRITE_DUMP,
+    restart::RESTART,
+    restart::WRITE_RESTART,
+    restart::READ_RESTART,
     thermo::THERMO,
     thermo::THERMO_STYLE,
     thermo::THERMO_MODIFY,

@@ -225,7 +225,7 @@ impl Reading {
                 let source = Source { name: name.clone(), text: text.clone() };
                 return Ok(Found::File(Arc::new(source)));
             }
-            Some(Promise::Scene(scene)) => return Ok(Found::Promised(scene.clone())),
+            Some(Promise::Scene(scene, _)) => return Ok(Found::Promised(scene.clone())),
             None => {}
         }
         let beside = world.folder.join(name);

@@ -78,7 +78,9 @@ impl CommandStyle for RegionCommand {
         if style.text == "delete" {
             return delete(cx, name, word);
         }
-        if cx.world.regions.contains_key(&name) {
+        if cx.world.regions.contains_key(&name)
+            && !cx.world.parts.restored.contains(&format!("region/{name}"))
+        {
             let text = format!("region `{name}` exists already");
             return fail(Code::DUPLICATE_NAME, word.span, text);
         }
@@ -105,6 +107,7 @@ impl CommandStyle for RegionCommand {
         let region =
             Region { shape, outside: options.outside, open: options.open, given, motion: options.motion };
         Ok(setting(move |cx| {
+            cx.world.parts.restored.remove(&format!("region/{name}"));
             cx.world.regions.insert(name, region);
             Ok(())
         }))

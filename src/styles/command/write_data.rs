@@ -65,7 +65,7 @@ impl Act for Writing {
     fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
         let w = &mut *cx.world;
         if self.checking {
-            let scene = Promise::Scene(Arc::new(w.clone()));
+            let scene = Promise::Scene(Arc::new(w.clone()), vec![]);
             w.parts.promised.insert(self.file.text().to_string(), scene);
             return Ok(());
         }

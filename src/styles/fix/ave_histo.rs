@@ -209,7 +209,8 @@ struct Declared {
 
 impl Declared {
     fn key(&self) -> String {
-        format!("ave/histo/{}", self.id)
+        let style = if self.weight { "ave/histo/weight" } else { "ave/histo" };
+        format!("{style}/{}", self.id)
     }
 
     /// The values of one input at present.

@@ -142,8 +142,10 @@ pub struct FamilyOptions {
     /// Lattice or list.
     pub layout: Layout,
     /// Leave out what is exactly at rest; same bits either way.
+    #[serde(skip)]
     pub skip_rest: bool,
     /// Use the portable kernels even where better ones would run.
+    #[serde(skip)]
     pub portable: bool,
 }
 

@@ -1,0 +1,55 @@
+//! Pages of restart files: writing them, going on from them.
+
+use super::Entry;
+use crate::styles::Doc;
+
+pub(super) const RESTART: Entry = (
+    "restart",
+    Doc {
+        syntax: "restart N ROOT\nrestart N FILE1 FILE2\nrestart 0",
+        summary: "Writes restart files while a run goes on.",
+        text: "At steps that are multiples of `N`, but not where a run begins. With one name every step has a file of its \
+            own: `*` in the name becomes the step, else `.` and the step are appended. With two names the files are \
+            written in turn; a restarted run goes on with the one it did not come from. Both kinds may be in force. \
+            `restart 0` ends both. What is in a file and how it is read is on the page of `read_restart`.\n\n\
+            A file is written beside its place, brought to the disk and then moved there: whenever the program or the \
+            machine dies, a file of this name is whole. A variable as interval and LAMMPS' `%`, `fileper` and `nfile` (one \
+            file per processor) are refused.",
+        example: "restart 2 plate.*.restart\nrestart 4 even.restart odd.restart\nrun 4",
+    },
+);
+
+pub(super) const WRITE_RESTART: Entry = (
+    "write_restart",
+    Doc {
+        syntax: "write_restart FILE",
+        summary: "Writes a restart file now.",
+        text: "`*` in the name becomes the step. Writing changes nothing in the scene (LAMMPS wraps particles into the box and \
+            rebuilds its lists). See `read_restart` and `restart`.",
+        example: "write_restart plate.*.restart",
+    },
+);
+
+pub(super) const READ_RESTART: Entry = (
+    "read_restart",
+    Doc {
+        syntax: "read_restart FILE",
+        summary: "Goes on from a restart file: box, particles, bonds, contacts, settings.",
+        text: "It takes the place of `create_box` or `read_data`. A `*` in the name stands for the latest step. The file holds \
+            the whole scene: clock and time step, units, boundary, box, lattice, types, particles with their forces, groups, \
+            regions, materials, peridynamic bonds whole and broken, what contacts remember, neighbour settings and the \
+            moment of the last rebuild, the pair style with its coefficients, and the state that fixes keep.\n\n\
+            As in LAMMPS, the deck says fixes, computes, variables, dumps and thermo output again. A fix of the same ID and \
+            style goes on with its stored state; state that nobody claims is forgotten at the first run, with a note. \
+            Regions and materials may be defined again. The pair style may be said again or not.\n\n\
+            Where the scene is still that of the file and the lines of the pair style, of fixes and of their variables are \
+            the same, the stored forces stand: a run cut in two by a restart file has the same bits as one run. Otherwise \
+            forces are computed anew and the log says why. `compat lammps` always computes them anew, as LAMMPS does. For \
+            ramps across the cut, `run … start … stop …` says where they begin and end; `run N upto` makes the steps that \
+            are left.\n\n\
+            The format is perigrain's own: portable between machines, versioned, with a checksum. Files that are cut off, \
+            damaged, LAMMPS' own, or of a version that stores scenes otherwise are refused. LAMMPS' switches \
+            `-restart2data` and the like are not here: read the file and `write_data`.",
+        example: "write_restart plate.restart\nclear\nread_restart plate.restart\nfix motion all nve",
+    },
+);

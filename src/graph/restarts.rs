@@ -1,0 +1,202 @@
+//! `restart`: restart files written while a run goes on.
+
+use super::node::{FixNode, Graph};
+use crate::diag::{Code, Diagnostic, Result, Span, fail};
+use crate::lang::Args;
+use crate::out::file::Pattern;
+use crate::out::restart::{Saving, write};
+use crate::plan::{Access, Op, Stage, Tick, When};
+use crate::styles::{Use, UseKind};
+use crate::world::{Said, World};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Which restart files are wanted; both kinds may be.
+#[derive(Clone, Debug, Default)]
+pub struct Restarts {
+    /// A file of its own for each step that is a multiple.
+    pub each: Option<(i64, Pattern)>,
+    /// Two files in turn.
+    pub turn: Option<(i64, [PathBuf; 2])>,
+    /// The line.
+    pub span: Span,
+}
+
+/// Where the world keeps which of two files comes next: a restarted run does not begin with the file it came from.
+const NEXT: &str = "restart/next";
+
+impl Restarts {
+    /// Reads `restart 0`, `restart N root` or `restart N file1 file2`.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    pub fn declare(&mut self, args: &mut Args) -> Result<()> {
+        if args.peek_text().starts_with("v_") {
+            let text = "restart with a variable interval is not there yet";
+            return fail(Code::NOT_SUPPORTED, args.here(), text);
+        }
+        let every = args.integer_from(0, "the interval of restart files")?;
+        if every == 0 {
+            args.finish()?;
+            *self = Self::default();
+            return Ok(());
+        }
+        let first = args.expect("the name of the restart files")?;
+        let name = pattern(&first.text).map_err(|e| e.at(first.span))?;
+        let span = args.span();
+        match args.next() {
+            None => *self = Self { each: Some((every, numbered(name)?)), span, ..self.clone() },
+            Some(word) if matches!(word.text.as_str(), "fileper" | "nfile") => {
+                return Err(one_process(word.span, &word.text));
+            }
+            Some(second) => {
+                if let Some(word) = args.peek().filter(|w| matches!(w.text.as_str(), "fileper" | "nfile")) {
+                    return Err(one_process(word.span, &word.text));
+                }
+                args.finish()?;
+                pattern(&second.text).map_err(|e| e.at(second.span))?;
+                if let Some(word) = [first, second].into_iter().find(|w| w.text.contains('*')) {
+                    let text = "two files are written in turn: their names have no `*`";
+                    return fail(Code::BAD_VALUE, word.span, text);
+                }
+                if first.text == second.text {
+                    return fail(Code::BAD_VALUE, second.span, "the two files must have different names");
+                }
+                let files = [PathBuf::from(&first.text), PathBuf::from(&second.text)];
+                *self = Self { turn: Some((every, files)), span, ..self.clone() };
+            }
+        }
+        Ok(())
+    }
+
+    /// The names of all files that may be written, with `*` for the step.
+    pub fn names(&self) -> Vec<String> {
+        let each = self.each.iter().map(|(_, p)| p.text().to_string());
+        let turn = self.turn.iter().flat_map(|(_, files)| files.iter().map(|f| f.display().to_string()));
+        each.chain(turn).collect()
+    }
+
+    /// The ops that write them.
+    pub fn ops(&self, graph: &Graph) -> Vec<Box<dyn Op>> {
+        let each = self.each.clone().map(|(n, p)| (n, Names::Each(p)));
+        let turn = self.turn.clone().map(|(n, files)| (n, Names::Turn(files)));
+        let op = |(every, names)| -> Box<dyn Op> {
+            Box::new(Write { every, names, pair: graph.pair_lines().to_vec(), declared: graph.declared() })
+        };
+        each.into_iter().chain(turn).map(op).collect()
+    }
+}
+
+/// A name of restart files: any ending, no `%`.
+///
+/// # Errors
+/// What is no such name.
+pub fn pattern(text: &str) -> Result<Pattern> {
+    Pattern::of_any_kind(text)
+}
+
+/// Without a `*`, the step is appended (LAMMPS).
+fn numbered(name: Pattern) -> Result<Pattern> {
+    if name.many() { Ok(name) } else { pattern(&format!("{}.*", name.text())) }
+}
+
+/// The refusal of a keyword about files of several processes.
+pub fn one_process(span: Span, word: &str) -> crate::diag::Diagnostics {
+    let text = format!("`{word}` divides a restart file among processors: there is one process here");
+    Diagnostic::error(Code::NOT_SUPPORTED, span, text).help("leave it out").into()
+}
+
+enum Names {
+    Each(Pattern),
+    Turn([PathBuf; 2]),
+}
+
+/// Writes a restart file at multiples of `every`, but not where a run begins.
+struct Write {
+    every: i64,
+    names: Names,
+    pair: Vec<Said>,
+    declared: Vec<String>,
+}
+
+impl Op for Write {
+    fn name(&self) -> &str {
+        "restart"
+    }
+    fn stage(&self) -> Stage {
+        Stage::Output
+    }
+    fn access(&self) -> Access {
+        Access::new("everything", "restart file")
+    }
+    fn when(&self) -> When {
+        When::Every(self.every)
+    }
+    fn in_setup(&self) -> bool {
+        false
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if t.step == t.first {
+            return Ok(());
+        }
+        let path: PathBuf = match &self.names {
+            Names::Each(p) => p.at(t.step),
+            Names::Turn(files) => {
+                let next = w.memo.get(NEXT).is_some_and(|m| m.first() == Some(&1.0));
+                w.memo.insert(NEXT.into(), vec![if next { 0.0 } else { 1.0 }]);
+                files[usize::from(next)].clone()
+            }
+        };
+        save(&path, w, true, true, &self.pair, &self.declared)
+    }
+}
+
+/// Writes a restart file of a scene.
+///
+/// # Errors
+/// The disk's.
+pub fn save(
+    path: &Path,
+    w: &World,
+    ran: bool,
+    standing: bool,
+    pair: &[Said],
+    declared: &[String],
+) -> Result<()> {
+    write(path, &Saving { world: w, ran, standing, pair, declared })
+}
+
+/// Whether a name belongs to state that a fix or compute of the restarted deck may claim.
+pub fn claimable(name: &str) -> bool {
+    name != NEXT
+}
+
+impl Graph {
+    /// The lines of the pair style in force.
+    pub fn pair_lines(&self) -> &[Said] {
+        self.pair.as_ref().map_or(&[], |p| &p.lines)
+    }
+
+    /// All lines in force that decide about forces and motion: those of the pair style, of fixes, and of the variables
+    /// and computes they use.
+    pub fn declared(&self) -> Vec<String> {
+        let pair = self.pair_lines().iter().map(|l| l.words.join(" "));
+        let fixes = self.fixes.iter().flat_map(|f| f.lines.iter().cloned());
+        pair.chain(fixes).chain(self.behind_fixes()).collect()
+    }
+
+    /// The lines of the variables and computes that fixes use, directly or through others, sorted.
+    fn behind_fixes(&self) -> BTreeSet<String> {
+        let provider = |u: &Use| self.provider(u).map(|k| &self.nodes[k.0]);
+        let fix = |f: &FixNode| provider(&Use { kind: UseKind::Fix, name: f.id.clone() });
+        let mut open: Vec<&Use> = self.fixes.iter().filter_map(fix).flat_map(|n| &n.uses).collect();
+        let (mut seen, mut lines) = (BTreeSet::new(), BTreeSet::new());
+        while let Some(u) = open.pop() {
+            let followed = matches!(u.kind, UseKind::Variable | UseKind::Compute);
+            let Some(node) = provider(u).filter(|_| followed && seen.insert(u)) else { continue };
+            lines.insert(node.text.split_whitespace().collect::<Vec<_>>().join(" "));
+            open.extend(&node.uses);
+        }
+        lines
+    }
+}

@@ -1,0 +1,271 @@
+//! `write_restart` and `read_restart`: a session goes on in another run of the program.
+
+use super::{Session, refuse};
+use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
+use crate::graph::Role;
+use crate::graph::build::{Context, declare};
+use crate::graph::restarts::{claimable, one_process, pattern, save};
+use crate::lang::{Args, Command, Word};
+use crate::math::cformat::general;
+use crate::out::restart::{Saved, fingerprint, read, resume};
+use crate::world::{Halt, Particles, Promise, Said, World};
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Facts of a scene that a restart file settles.
+const SETTLES: [&str; 5] = ["particles", "volume", "density", "mass", "diameter"];
+
+impl Session {
+    pub(super) fn write_restart(&mut self, cmd: &Command) -> Result<()> {
+        let mut args = Args::new(cmd);
+        if self.world.domain.is_none() {
+            return refuse(Code::WRONG_ORDER, cmd.span, "there is nothing to write: no box has been defined");
+        }
+        let word = args.expect("a file name")?;
+        let name = pattern(&word.text).map_err(|e| e.at(word.span))?;
+        if let Some(key) = args.peek().filter(|w| matches!(w.text.as_str(), "fileper" | "nfile")) {
+            return Err(one_process(key.span, &key.text));
+        }
+        args.finish()?;
+        self.record(cmd, Role::Act, None, vec![], vec![]);
+        if self.checking() {
+            self.promise_restart(name.text().to_string());
+            return Ok(());
+        }
+        self.world.spread_type_masses();
+        let standing = self.ran && !self.world.parts.changed;
+        let path = name.at(self.world.clock.step);
+        let (pair, declared) = (self.graph.pair_lines(), self.graph.declared());
+        save(&path, &self.world, self.ran, standing, pair, &declared).map_err(|e| e.at(word.span))
+    }
+
+    /// In check mode: files that a line would have written, for the lines that read them.
+    pub(super) fn promise_restart(&mut self, name: String) {
+        let scene = Promise::Scene(Arc::new(self.world.clone()), self.graph.pair_lines().to_vec());
+        self.world.parts.promised.insert(name, scene);
+    }
+
+    pub(super) fn read_restart(&mut self, cmd: &Command) -> Result<()> {
+        let mut args = Args::new(cmd);
+        if self.world.domain.is_some() {
+            return Err(Diagnostic::error(
+                Code::WRONG_ORDER,
+                cmd.name.span,
+                "read_restart brings the box along, and the box is defined already",
+            )
+            .help("put `clear` before this line")
+            .into());
+        }
+        let word = args.expect("a file name")?;
+        let name = pattern(&word.text).map_err(|e| e.at(word.span))?;
+        if let Some(key) = args.next() {
+            if key.text != "remap" {
+                return Err(args.unknown(key, &["remap"]));
+            }
+            let text = "without effect: particles outside a periodic box are wrapped anyway";
+            self.notes.push(Diagnostic::note(Code::NO_EFFECT, key.span, text));
+        }
+        args.finish()?;
+        let began = std::time::Instant::now();
+        let (path, saved) = match self.promised(name.text(), word.span)? {
+            Some(saved) => (PathBuf::from(&word.text), saved),
+            None => {
+                let path = self.find(word)?;
+                let saved = read(&path).map_err(|e| e.at(word.span))?;
+                (path, saved)
+            }
+        };
+        self.enter(saved, cmd.span)?;
+        self.record(cmd, Role::Act, None, vec![], SETTLES.to_vec());
+        if self.checking() {
+            return Ok(());
+        }
+        self.tell(&path)?;
+        self.options.log.line(&format!("  read_restart CPU = {:.3} seconds", began.elapsed().as_secs_f64()))
+    }
+
+    /// In check mode: the scene that an earlier line would have written.
+    fn promised(&self, name: &str, span: Span) -> Result<Option<Saved>> {
+        if !self.checking() {
+            return Ok(None);
+        }
+        let fits = |promised: &str| {
+            promised == name
+                || promised.split_once('*').is_some_and(|(a, b)| {
+                    name.len() > a.len() + b.len() && name.starts_with(a) && name.ends_with(b)
+                })
+        };
+        let mut files = self.world.parts.promised.iter();
+        Ok(match files.find(|(file, _)| fits(file)).map(|(_, promise)| promise) {
+            Some(Promise::Scene(world, pair)) => Some(Saved {
+                world: World { parts: Default::default(), ..World::clone(world) },
+                ran: false,
+                standing: false,
+                pair: pair.clone(),
+                declared: vec![],
+            }),
+            Some(Promise::Text(_)) => {
+                let text =
+                    format!("the restart file `{name}` is none of perigrain: the deck prints text into it");
+                return refuse(Code::BAD_FILE, span, text);
+            }
+            None => None,
+        })
+    }
+
+    /// The file that a word names: beside the working folder, with a `*` the one of the latest step.
+    fn find(&self, word: &Word) -> Result<PathBuf> {
+        let missing = |text: String| -> Diagnostics {
+            Diagnostic::error(Code::NO_FILE, word.span, text)
+                .help("it is looked for in the working folder and beside the deck")
+                .into()
+        };
+        let places = [PathBuf::new(), self.world.folder.clone()];
+        if !word.text.contains('*') {
+            let found = places.iter().map(|p| p.join(&word.text)).find(|p| p.exists());
+            return found.ok_or_else(|| missing(format!("there is no restart file `{}`", word.text)));
+        }
+        let latest = places.iter().find_map(|p| latest(&p.join(&word.text)));
+        latest.ok_or_else(|| missing(format!("no file `{}` has a step in the place of the `*`", word.text)))
+    }
+
+    /// Makes a stored scene the present one.
+    fn enter(&mut self, saved: Saved, span: Span) -> Result<()> {
+        let Saved { mut world, ran, standing, pair, declared } = saved;
+        let resume = resume(&world, declared);
+        let old = &mut self.world;
+        let (settings, now) = (&mut world.settings, &old.settings);
+        settings.stop = now.stop.clone();
+        (settings.force_list, settings.no_skipping) = (now.force_list, now.no_skipping);
+        (settings.portable, settings.compat) = (now.portable, now.compat);
+        if let Some(families) = &mut world.families {
+            (families.options.skip_rest, families.options.portable) = (!now.no_skipping, now.portable);
+        }
+        world.folder = std::mem::take(&mut old.folder);
+        world.parts.promised = std::mem::take(&mut old.parts.promised);
+        (world.clock.running, world.clock.halt) = (false, Halt::No);
+        let state = world.memo.keys().cloned().chain(world.columns.names()).filter(|n| claimable(n));
+        let names = world.regions.keys().map(|n| format!("region/{n}"));
+        let names = names.chain(world.materials.keys().map(|n| format!("material/{n}")));
+        world.parts.restored = names.chain(state).collect();
+        self.world = world;
+        self.replay(&pair, span)?;
+        let parts = &mut self.world.parts;
+        parts.changed = true;
+        parts.resume = standing.then(|| Arc::new(resume));
+        self.ran = ran;
+        if self.checking() {
+            without_particles(&mut self.world);
+        }
+        Ok(())
+    }
+
+    /// Says the lines of the stored pair style again, each with the lattice that was in force.
+    fn replay(&mut self, pair: &[Said], span: Span) -> Result<()> {
+        let lattice = self.world.lattice.clone();
+        self.graph.pair = None;
+        for said in pair {
+            self.world.lattice = said.lattice.clone();
+            let mut words = said.words.iter().map(|w| Word::new(w.as_str(), span));
+            let Some(name) = words.next() else { continue };
+            let text = said.words.join(" ");
+            let cmd = Command { name, args: words.collect(), span, text };
+            let (notes, uses) = (RefCell::default(), RefCell::default());
+            let cx = Context { span, checking: self.checking(), notes: &notes, uses: &uses };
+            declare(&mut self.graph, &mut self.world, &cmd, &cx)?;
+        }
+        self.world.lattice = lattice;
+        Ok(())
+    }
+
+    fn tell(&self, path: &Path) -> Result<()> {
+        let (log, w) = (&self.options.log, &self.world);
+        log.line(&format!("Reading restart file {} ...", path.display()))?;
+        log.line(&format!("  restoring atom style {} from restart", w.particles.style.name()))?;
+        if let Some(d) = &w.domain {
+            let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
+            log.line(&format!("  orthogonal box = ({}) to ({})", text(d.lo), text(d.hi)))?;
+        }
+        if let Some(node) = &self.graph.pair {
+            log.line(&format!("  restoring pair style {} from restart", node.pair.name()))?;
+        }
+        log.line(&format!("  {} atoms at step {}", w.n(), w.clock.step))
+    }
+
+    /// At the first run after read_restart: whether the scene with its forces is still the one that was stored, and what
+    /// becomes of state that no fix has claimed.
+    pub(super) fn settle_resume(&mut self, span: Span) -> Result<()> {
+        self.drop_unclaimed(span);
+        let Some(resume) = self.world.parts.resume.take() else { return Ok(()) };
+        let declared = self.graph.declared();
+        let other = declared.iter().find(|l| !resume.declared.contains(l));
+        let gone = resume.declared.iter().find(|l| !declared.contains(l));
+        let why = match (other, gone) {
+            (Some(line), _) => format!("the restart file was not written under `{line}`"),
+            (None, Some(line)) => format!("the restart file was written under `{line}`"),
+            _ if declared != resume.declared => "the declarations come in another order".to_string(),
+            _ if fingerprint(&self.world, &resume) != resume.fingerprint => {
+                "settings, particles or bonds are not those of the restart file".to_string()
+            }
+            _ => {
+                self.world.parts.changed = false;
+                return Ok(());
+            }
+        };
+        if self.world.settings.lammps() {
+            return Ok(());
+        }
+        self.options.log.line(&format!("  forces are computed anew: {why}"))
+    }
+
+    /// State of fixes that the deck has not declared again is forgotten, as in LAMMPS.
+    fn drop_unclaimed(&mut self, span: Span) {
+        let left = std::mem::take(&mut self.world.parts.restored);
+        let state: Vec<String> =
+            left.into_iter().filter(|n| !n.starts_with("region/") && !n.starts_with("material/")).collect();
+        if state.is_empty() {
+            return;
+        }
+        for name in &state {
+            self.world.memo.remove(name);
+            self.world.columns.remove(name);
+        }
+        let text = format!(
+            "the restart file holds state of {}, which nobody claims: it is forgotten",
+            state.join(", ")
+        );
+        let note = Diagnostic::note(Code::SUSPICIOUS, span, text);
+        self.note_once(
+            note.help("declare a fix of the same style and ID before the run to go on with its state"),
+        );
+    }
+}
+
+/// The file of the latest step among those that fit a name with a `*`.
+fn latest(pattern: &Path) -> Option<PathBuf> {
+    let name = pattern.file_name()?.to_str()?;
+    let (before, after) = name.split_once('*')?;
+    let folder = match pattern.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p,
+        _ => Path::new("."),
+    };
+    let step = |file: &str| -> Option<u64> {
+        let step = file.strip_prefix(before)?.strip_suffix(after)?;
+        step.bytes().all(|b| b.is_ascii_digit()).then(|| step.parse().ok()).flatten()
+    };
+    let files = std::fs::read_dir(folder).ok()?.flatten();
+    let names = files.filter_map(|f| f.file_name().into_string().ok());
+    let last = names.filter_map(|n| step(&n).map(|s| (s, n))).max()?;
+    Some(pattern.with_file_name(last.1))
+}
+
+/// `perigrain check` keeps no particles.
+fn without_particles(w: &mut World) {
+    w.particles = Particles { style: w.particles.style, ..Particles::default() };
+    w.families = None;
+    w.contacts.clear();
+    w.columns = Default::default();
+    w.tally = Default::default();
+    w.rebuild = Default::default();
+}

@@ -1,0 +1,60 @@
+//! What passes from one run of the program to the next: lines that were said, state that waits for its fix.
+
+use super::{Lattice, World};
+use crate::diag::Result;
+use std::sync::Arc;
+
+/// What a restart file said about its scene: as long as all of it still holds, its forces stand.
+#[derive(Clone, Debug, Default)]
+pub struct Resume {
+    /// All lines that decide about forces.
+    pub declared: Vec<String>,
+    /// A checksum of the scene.
+    pub fingerprint: u32,
+    /// The bits of the groups it had.
+    pub bits: u32,
+    /// The names of its regions, materials and stored state.
+    pub names: Vec<String>,
+}
+
+/// A line of a deck and the lattice in force when it was said: its distances may be in spacings.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Said {
+    /// The words, the first being the command.
+    pub words: Vec<String>,
+    /// The lattice.
+    pub lattice: Lattice,
+}
+
+/// What a checked deck would have written into a file.
+#[derive(Clone, Debug)]
+pub enum Promise {
+    /// This text.
+    Text(String),
+    /// This scene, which holds no particles, and the lines of its pair style.
+    Scene(Arc<World>, Vec<Said>),
+}
+
+impl World {
+    /// Calls `declare`, which makes the state that belongs to `key` (a fix as `STYLE/ID`, a compute as `compute ID`, both perhaps followed by a name), and puts back what
+    /// a restart file had under this key.
+    ///
+    /// # Errors
+    /// Those of `declare`.
+    pub fn inherit(&mut self, key: &str, declare: impl FnOnce(&mut World) -> Result<()>) -> Result<()> {
+        let belongs =
+            |name: &str| name.strip_prefix(key).is_some_and(|r| r.is_empty() || r.starts_with(['/', ' ']));
+        let before = self.parts.restored.len();
+        self.parts.restored.retain(|name| !belongs(name));
+        if self.parts.restored.len() == before {
+            return declare(self);
+        }
+        let columns = self.columns.split_off(|name| !belongs(name));
+        let names: Vec<String> = self.memo.keys().filter(|name| belongs(name)).cloned().collect();
+        let memo: Vec<_> = names.iter().filter_map(|name| self.memo.remove_entry(name)).collect();
+        let outcome = declare(self);
+        self.columns.put(columns);
+        self.memo.extend(memo);
+        outcome
+    }
+}

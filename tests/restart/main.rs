@@ -1,0 +1,220 @@
+//! A run cut in two by a restart file has the bits of one run: bonds, contacts, fixes with state, in every layout.
+#![allow(clippy::unwrap_used)] // a test fails by panicking
+
+mod kill;
+mod refusals;
+
+use perigrain::out::log::{Buffer, Log};
+use perigrain::session::{Options, Session};
+use perigrain::world::World;
+use std::path::Path;
+
+/// A scene: what makes it, what is said again after read_restart, and the steps of the whole run.
+struct Scene {
+    name: &'static str,
+    make: &'static str,
+    again: &'static str,
+    steps: i64,
+    list: bool,
+}
+
+/// A block that bursts: fast ends, weak bonds.
+const BLOCK: &str = "units si\natom_style peri\nboundary s s s\nlattice sc 0.001\nregion blk block 0 7 0 5 0 5\n\
+    create_box 1 blk\ncreate_atoms 1 region blk\nset group all density 2400\nset group all volume 1e-9\n\
+    variable u atom 6000.0*(x-0.0035)\nvelocity all set v_u 0 0 units box\n";
+const BLOCK_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.0030001 0.0015 0.25\nneighbor 0.0006 bin\n\
+    fix 1 all nve\ntimestep 5.0e-8\ncompute dmg all damage/atom\ncompute dsum all reduce sum c_dmg\n\
+    thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
+
+/// Grains that fall on each other, spin and slide.
+const PILE: &str = "units lj\natom_style sphere\nboundary p p s\nlattice sc 1.0\nregion world block 0 4 0 4 0 9 units box\n\
+    create_box 1 world\nregion fill block 0.3 3.9 0.3 3.9 0.6 3.5 units box\nlattice sc 1.2\ncreate_atoms 1 region fill\n\
+    variable d atom 0.93+0.06*sin(5.0*x+2.0*y+9.0*z)\nset group all diameter v_d\nset group all density 1.2\n\
+    variable u0 atom 0.9*sin(2.0*y+z)\nvelocity all set v_u0 0.2 -0.5\n";
+const PILE_AGAIN: &str = "pair_style granular\n\
+    pair_coeff * * hertz 5000.0 20.0 tangential mindlin 4000.0 0.7 0.5\nneighbor 0.1 bin\n\
+    neigh_modify every 1 delay 0 check yes\nregion low block INF INF INF INF INF 1.0 units box\n\
+    group foot id 1 2 3 4\ngroup rest subtract all foot\n\
+    fix 1 rest nve/sphere\nfix 2 all gravity 1.0 vector 0.2 0 -1\n\
+    fix 3 foot move wiggle 0.05 0 0 0.7 units box\nfix 4 all viscous 0.1\ntimestep 0.001\n\
+    compute er all erotate/sphere\nthermo_style custom step time ke c_er press\n\
+    thermo_modify format float %24.17g norm no\nthermo 5\n";
+
+/// A grain that hits a peridynamic plate.
+const IMPACT: &str = "units si\natom_style hybrid sphere peri\nboundary s s s\nlattice sc 0.001\n\
+    region world block -0.006 0.006 -0.006 0.006 -0.003 0.009 units box\ncreate_box 2 world\n\
+    region plate block -0.0035 0.0035 -0.0035 0.0035 -0.001 0.001 units box\ncreate_atoms 1 region plate\n\
+    create_atoms 2 single 0.0002 0.0001 0.00249 units box\ngroup ball type 2\ngroup plate type 1\n\
+    set group plate diameter 0.001\nset group ball diameter 0.003\n\
+    material glass E 7e10 nu 0.25 rho 2235 Gc 2.0\nset type 1 density 2235\nset type 2 density 7800\n\
+    set group all volume 1e-9\nvelocity ball set 20 0 -300 units box\n\
+    timestep 2e-8\n";
+const IMPACT_AGAIN: &str = "pair_style hybrid/overlay peri/pmb granular\n\
+    pair_coeff * * granular hertz/material 5.0e9 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4\n\
+    pair_coeff 1 1 peri/pmb material glass horizon 3.01\npair_coeff 2 2 granular hertz/material 5.0e9 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4\n\
+    neighbor 0.0005 bin\nvariable t equal time\nvariable push equal 1e3*sin(1e5*v_t)\n\
+    fix 1 plate nve\nfix 2 ball nve/sphere\nfix 3 ball addforce v_push 0 0\n\
+    fix 4 all dt/reset 5 1e-9 3e-8 2e-6 units box\n\
+    compute dmg all damage/atom\ncompute dsum all reduce sum c_dmg\n\
+    thermo_style custom step time dt ke c_dsum f_3[1] f_4\nthermo_modify format float %24.17g\nthermo 5\n";
+
+const SCENES: [Scene; 4] = [
+    Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
+    Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
+    Scene { name: "pile", make: PILE, again: PILE_AGAIN, steps: 400, list: false },
+    Scene { name: "impact", make: IMPACT, again: IMPACT_AGAIN, steps: 60, list: false },
+];
+
+/// Works off a deck, `DIR` being the folder; the world at the end and everything said.
+fn run(folder: &Path, deck: &str, list: bool) -> (World, String) {
+    let screen = Buffer::default();
+    let options =
+        Options { log: Log::new(Some(Box::new(screen.clone()))), force_list: list, ..Options::default() };
+    let mut session = Session::new(options).unwrap();
+    let deck = deck.replace("DIR", folder.to_str().unwrap());
+    session.run_text("in.deck", &deck).unwrap_or_else(|e| panic!("{deck}\n{e}\n{}", screen.text()));
+    (session.world, screen.text())
+}
+
+/// Thermo rows by step.
+fn rows(said: &str) -> Vec<(i64, String)> {
+    let numbers =
+        |l: &&str| l.split_whitespace().count() > 1 && l.split_whitespace().all(|w| w.parse::<f64>().is_ok());
+    said.lines()
+        .filter(numbers)
+        .map(|l| (l.split_whitespace().next().unwrap().parse().unwrap(), l.to_string()))
+        .collect()
+}
+
+fn bits(w: &World) -> Vec<u64> {
+    let p = &w.particles;
+    let vectors = [&p.x, &p.v, &p.f, &p.omega, &p.torque, &p.x0].into_iter().flatten().flatten();
+    let scalars = [&p.mass, &p.radius, &p.volume].into_iter().flatten();
+    let clock = [w.clock.time(), w.clock.dt, w.clock.step as f64];
+    vectors.chain(scalars).map(|a| a.to_bits()).chain(clock.map(f64::to_bits)).collect()
+}
+
+/// Broken bonds and history, as text.
+fn memory(w: &World) -> String {
+    let bonds = w.families.as_ref().map(|f| {
+        let alive: Vec<_> = f.lattices.iter().map(|b| &b.alive).collect();
+        format!("{alive:?} {:?} {:?}", f.list.alive, f.hurt)
+    });
+    let state: Vec<_> = w.memo.iter().filter(|(name, _)| !name.starts_with("restart/")).collect();
+    format!("{bonds:?} {:?} {state:?} {:?}", w.contacts, w.particles.image)
+}
+
+#[test]
+fn a_run_cut_in_two_has_the_bits_of_one() {
+    for s in &SCENES {
+        let folder = tempfile::tempdir().unwrap();
+        let (half, steps) = (s.steps / 2 + 3, s.steps);
+        let (make, again) = (s.make, s.again);
+        let (whole, said) = run(folder.path(), &format!("{make}{again}run {steps}"), s.list);
+        let whole_rows = rows(&said);
+        // There is something to lose: broken bonds, or springs of contacts.
+        let broken = whole.families.as_ref().is_some_and(|f| f.hurt.iter().any(|h| *h));
+        let springs = whole.contacts.values().flat_map(|c| &c.history).any(|h| *h != [0.0; 3]);
+        assert!(if s.name == "pile" { springs } else { broken }, "{}", s.name);
+        // Files are written on the way, and the run they come from is not disturbed.
+        let watched = format!(
+            "{make}{again}restart {half} DIR/a.*.restart\nrestart 7 DIR/even.restart DIR/odd.restart\nrun {steps}"
+        );
+        let (same, _) = run(folder.path(), &watched, s.list);
+        assert!(bits(&same) == bits(&whole), "{}: writing changes the run", s.name);
+        // Between two runs, with a file that is not on a multiple of anything.
+        let written = format!("{make}{again}run {half}\nwrite_restart DIR/between.restart\nrun 1\n");
+        run(folder.path(), &written, s.list);
+
+        let last_turn = steps / 7 * 7;
+        let turn = if (steps / 7) % 2 == 1 { "even" } else { "odd" };
+        for (file, step) in [
+            (format!("a.{half}.restart"), half),
+            ("a.*.restart".to_string(), half),
+            ("between.restart".to_string(), half),
+            (format!("{turn}.restart"), last_turn),
+        ] {
+            let deck = format!("read_restart DIR/{file}\n{again}run {steps} upto");
+            let (cut, said) = run(folder.path(), &deck, s.list);
+            let what = format!("{}, {file}", s.name);
+            assert!(!said.contains("computed anew"), "{what}: {said}");
+            assert!(bits(&cut) == bits(&whole), "{what}: other bits");
+            assert!(memory(&cut) == memory(&whole), "{what}: bonds, contacts or fixes differ");
+            let rest: Vec<_> = whole_rows.iter().filter(|(k, _)| *k > step).cloned().collect();
+            let got: Vec<_> = rows(&said).into_iter().filter(|(k, _)| *k > step).collect();
+            assert!(!rest.is_empty());
+            assert_eq!(got, rest, "{what}");
+        }
+    }
+}
+
+#[test]
+fn the_first_row_shows_what_the_last_one_showed() {
+    for s in &SCENES {
+        let folder = tempfile::tempdir().unwrap();
+        let (make, again) = (s.make, s.again);
+        let deck = format!("{make}{again}run {}\nwrite_restart DIR/a", s.steps / 2);
+        let (_, before) = run(folder.path(), &deck, s.list);
+        let (_, after) = run(folder.path(), &format!("read_restart DIR/a\n{again}run 0"), s.list);
+        assert_eq!(rows(&before).last(), rows(&after).first(), "{}", s.name);
+    }
+}
+
+#[test]
+fn other_declarations_compute_forces_anew_and_say_so() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &format!("{BLOCK}{BLOCK_AGAIN}run 10\nwrite_restart DIR/a"), false);
+    for (line, why) in [
+        ("fix 2 all viscous 0.1\n", "was not written under `fix 2 all viscous 0.1`"),
+        ("pair_coeff 1 1 1.7e21 0.0030001 0.0015 0.25\n", "was not written under `pair_coeff"),
+        ("velocity all zero linear\n", "particles or bonds are not those"),
+        ("timestep 1e-8\n", "settings, particles or bonds"),
+        ("unfix 1\nfix 1 all nve/noforce\n", "was not written under `fix 1 all nve/noforce`"),
+        ("unfix 1\n", "was written under `fix 1 all nve`"),
+    ] {
+        let (_, said) = run(folder.path(), &format!("read_restart DIR/a\n{BLOCK_AGAIN}{line}run 1"), false);
+        assert!(said.contains("forces are computed anew") && said.contains(why), "{line}: {said}");
+    }
+    // What does not touch forces does not count.
+    let harmless =
+        "group left id 1 2 3\nregion r block 0 1 0 1 0 1\ncompute e all ke\nvariable a equal ke\nthermo 1\n";
+    let (_, said) = run(folder.path(), &format!("read_restart DIR/a\n{BLOCK_AGAIN}{harmless}run 1"), false);
+    assert!(!said.contains("computed anew"), "{said}");
+}
+
+#[test]
+fn the_pair_style_comes_with_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, _) =
+        run(folder.path(), &format!("{BLOCK}{BLOCK_AGAIN}run 10\nwrite_restart DIR/a\nrun 10"), false);
+    let (cut, said) = run(folder.path(), "read_restart DIR/a\nfix 1 all nve\nrun 10", false);
+    assert!(said.contains("restoring pair style peri/pmb"), "{said}");
+    assert!(bits(&whole) == bits(&cut));
+    // From a file to a file.
+    let (twice, _) = run(
+        folder.path(),
+        "read_restart DIR/a\nfix 1 all nve\nrun 4\nwrite_restart DIR/b\nclear\nread_restart DIR/b\nfix 1 all nve\nrun 6",
+        false,
+    );
+    assert!(bits(&whole) == bits(&twice));
+}
+
+#[test]
+fn regions_and_materials_may_be_said_again_once() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &format!("{IMPACT}{IMPACT_AGAIN}run 0\nwrite_restart DIR/a"), false);
+    let again = "region plate sphere 0 0 0 1\nmaterial glass E 7e10 nu 0.25 rho 2235\n";
+    run(folder.path(), &format!("read_restart DIR/a\n{again}"), false);
+    let mut session = Session::new(Options::default()).unwrap();
+    let deck = format!("read_restart {}/a\n{again}{again}", folder.path().display());
+    assert!(session.run_text("in.deck", &deck).unwrap_err().to_string().contains("exists already"));
+}
+
+#[test]
+fn state_that_nobody_claims_is_forgotten_with_a_note() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &format!("{PILE}{PILE_AGAIN}run 10\nwrite_restart DIR/a"), false);
+    let (world, said) = run(folder.path(), "read_restart DIR/a\nfix 9 all nve/sphere\nrun 1", false);
+    assert!(said.contains("holds state of move/3, which nobody claims"), "{said}");
+    assert!(world.memo.is_empty() && world.columns.names().is_empty());
+}
