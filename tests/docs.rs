@@ -53,6 +53,7 @@ const BOOK: [&str; 2] = [
      - [Make a long run](howto/long-runs.md)\n\
      - [Colours in your editor](editor/README.md)\n\n\
      # Reference\n\n\
+     - [The language](language.md)\n\
      - [Commands and styles](commands.md)\n",
     "- [Error codes](errors.md)\n\
      - [Coming from LAMMPS](coming-from-lammps.md)\n\n\

@@ -114,11 +114,11 @@ pub(super) fn logical(source: &str, file: FileId, start: usize) -> Result<Option
         let body = line.strip_suffix('\r').unwrap_or(line);
         mode = scan(body, text.text.len(), mode);
         rest = after;
-        if matches!(mode, Mode::Quote(Quote::Triple, _)) && !rest.is_empty() {
+        let joined = body.trim_end().strip_suffix('&');
+        if joined.is_none() && matches!(mode, Mode::Quote(Quote::Triple, _)) && !rest.is_empty() {
             text.push_literal(&source[at..place(source, rest)], file, at);
             continue;
         }
-        let joined = body.trim_end().strip_suffix('&');
         text.push_literal(joined.unwrap_or(body), file, at);
         if joined.is_none() || rest.is_empty() {
             break;

@@ -47,6 +47,7 @@ pub struct Snapshot {
     world: Arc<World>,
     compat: bool,
     ran: bool,
+    typed: Option<Script>,
     /// Bytes of the world; 0 where it is shared with an earlier snapshot.
     pub bytes: u64,
 }
@@ -92,14 +93,35 @@ impl Session {
 
     /// The state now. A snapshot of an earlier moment lends its world if no line since has changed particles.
     pub fn snapshot(&self, earlier: Option<&Snapshot>) -> Snapshot {
+        // Every field is named, so that a new one finds its place here or is left out knowingly.
+        let Self {
+            vars,
+            graph,
+            world,
+            options,
+            ran,
+            typed,
+            // What has been read and said, and what the next line sets anew.
+            sources: _,
+            notes: _,
+            shown: _,
+            plan: _,
+            watch: _,
+            interrupted: _,
+            quit: _,
+            prompt: _,
+            shelled: _,
+            seen_names: _,
+        } = self;
         let shared = earlier.filter(|e| self.same_particles(e)).map(|e| e.world.clone());
         let bytes = if shared.is_some() { 0 } else { self.bytes() };
         Snapshot {
-            vars: self.vars.detached(),
-            graph: self.graph.clone(),
-            world: shared.unwrap_or_else(|| Arc::new(self.world.clone())),
-            compat: self.options.compat,
-            ran: self.ran,
+            vars: vars.detached(),
+            graph: graph.clone(),
+            world: shared.unwrap_or_else(|| Arc::new(world.clone())),
+            compat: options.compat,
+            ran: *ran,
+            typed: typed.clone(),
             bytes,
         }
     }
@@ -120,6 +142,7 @@ impl Session {
         self.world = World::clone(&s.world);
         self.options.compat = s.compat;
         self.ran = s.ran;
+        self.typed.clone_from(&s.typed);
         self.plan = None;
     }
 

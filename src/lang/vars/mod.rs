@@ -157,7 +157,11 @@ impl Variable {
             Data::Range { now, .. } => now as u64,
             _ => 0,
         };
-        self.print.wrapping_add(at.wrapping_mul(0x9E37_79B9_7F4A_7C15)).rotate_left(17)
+        // Mixed well (SplitMix64), so that in a sum one variable's step cannot make up for another's.
+        let mut z = self.print ^ at.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
     }
 
     /// Its list or file has come to an end (by `next()` inside a formula).
