@@ -124,13 +124,18 @@ pub fn declare(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) ->
         "dump" => dump(graph, w, &mut args, cx),
         "undump" => undump(graph, &mut args),
         "dump_modify" => dump_modify(graph, w, &mut args, cx),
-        "thermo" => graph.thermo.interval(&mut args).map(|()| Declared::default()),
-        "thermo_style" | "thermo_modify" => {
+        "thermo" | "thermo_style" | "thermo_modify" => {
             let mut thermo = graph.thermo.clone();
             let build = cx.build(graph, w, "", GroupId::ALL);
             match cmd.name.text.as_str() {
+                "thermo" => thermo.interval(&mut args, &build)?,
                 "thermo_style" => thermo.style(&mut args, &build)?,
                 _ => thermo.modify(&mut args, &build)?,
+            }
+            if let Some(temperature) = thermo.new_temperature.take()
+                && let Some(press) = graph.computes.iter_mut().find(|c| c.id == thermo.press)
+            {
+                press.compute.take_temperature(&temperature);
             }
             graph.thermo = thermo;
             Ok(Declared::default())

@@ -10,6 +10,7 @@ pub mod node;
 pub mod ops;
 pub mod regions;
 pub mod restarts;
+mod row;
 mod said;
 pub mod seal;
 pub mod show;

@@ -6,7 +6,22 @@ use crate::plan::{Access, Op, Stage, Tick};
 use crate::world::World;
 
 /// Wraps, shrinks, checks for lost particles and tells lists to rebuild, at LAMMPS' reneighbour times.
-pub struct Reneighbor;
+pub struct Reneighbor {
+    /// What happens to lost particles.
+    pub lost: Lost,
+}
+
+/// What happens to particles beyond a fixed face (`thermo_modify lost`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Lost {
+    /// The run ends.
+    #[default]
+    Error,
+    /// They are deleted; thermo output says so once.
+    Warn,
+    /// They are deleted.
+    Ignore,
+}
 
 impl Op for Reneighbor {
     fn name(&self) -> &str {
@@ -22,7 +37,7 @@ impl Op for Reneighbor {
         if t.setup {
             w.rebuild.builds = 0;
             w.rebuild.dangerous = 0;
-            return rebuild(w, t);
+            return rebuild(w, t, self.lost);
         }
         let s = &w.settings.neighbor;
         let ago = t.step - w.rebuild.step;
@@ -39,7 +54,7 @@ impl Op for Reneighbor {
             w.rebuild.dangerous += u64::from(first_chance && s.delay.max(s.every) > 1);
         }
         w.rebuild.builds += 1;
-        rebuild(w, t)
+        rebuild(w, t, self.lost)
     }
 }
 
@@ -74,7 +89,7 @@ fn not_finite(w: &World, i: usize, t: &Tick) -> crate::diag::Diagnostics {
     .into()
 }
 
-fn rebuild(w: &mut World, t: &Tick) -> Result<()> {
+fn rebuild(w: &mut World, t: &Tick, policy: Lost) -> Result<()> {
     let n = w.n();
     let Some(domain) = &mut w.domain else { return Ok(()) };
     let p = &mut w.particles;
@@ -84,28 +99,39 @@ fn rebuild(w: &mut World, t: &Tick) -> Result<()> {
     p.image.wrap(domain, &mut p.x);
     domain.shrink(&p.x);
     let domain = &*domain;
-    let lost: Vec<usize> = (0..n).filter(|&i| !domain.keeps(&p.x[i])).take(5).collect();
-    if let Some(&i) = lost.first() {
-        let tags: Vec<String> = lost.iter().map(|&i| p.tag[i].to_string()).collect();
-        return Err(Diagnostic::error(
-            Code::LOST,
-            None,
-            format!(
-                "particles lost through a fixed face at step {}: {}{} (the first is at {:?}, v = {:?})",
-                t.step,
-                tags.join(" "),
-                if lost.len() == 5 { " …" } else { "" },
-                p.x[i],
-                p.v[i]
-            ),
-        )
-        .help("enlarge the box, or let it follow the particles with `boundary s s s` or `m`")
-        .into());
+    let (kept, lost): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| domain.keeps(&p.x[i]));
+    if !lost.is_empty() && policy == Lost::Error {
+        return Err(too_far(w, &lost, t));
+    }
+    if !lost.is_empty() {
+        w.rebuild.lost += lost.len() as u64;
+        w.gather(&kept);
     }
     w.rebuild.generation += 1;
     w.rebuild.step = t.step;
     hold(w);
     Ok(())
+}
+
+fn too_far(w: &World, lost: &[usize], t: &Tick) -> crate::diag::Diagnostics {
+    let p = &w.particles;
+    let tags: Vec<String> = lost.iter().take(5).map(|&i| p.tag[i].to_string()).collect();
+    let i = lost[0];
+    Diagnostic::error(
+        Code::LOST,
+        None,
+        format!(
+            "particles lost through a fixed face at step {}: {}{} (the first is at {:?}, v = {:?})",
+            t.step,
+            tags.join(" "),
+            if lost.len() > 5 { " …" } else { "" },
+            p.x[i],
+            p.v[i]
+        ),
+    )
+    .help("enlarge the box, or let it follow the particles with `boundary s s s` or `m`")
+    .help("`thermo_modify lost warn` or `ignore` deletes such particles and goes on")
+    .into()
 }
 
 /// Keeps the present positions; those of creation are kept already.

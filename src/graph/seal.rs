@@ -75,6 +75,14 @@ impl<'a> Sealer<'a> {
         }
     }
 
+    /// At multiples of which step the values of a fix are new; 0 and 1: at every step.
+    pub fn fix_interval(&self, r: &ValueRef) -> i64 {
+        match r.kind {
+            RefKind::Fix => self.graph.find_fix(&r.name).map_or(0, |f| f.fix.shape().every),
+            _ => 0,
+        }
+    }
+
     /// What follows belongs to the line at `span`.
     pub fn at(&mut self, span: Span) {
         self.span = span;

@@ -1,15 +1,15 @@
 //! The step table: which columns, when, and the op that prints a row.
 
 use super::keywords;
+use super::ops::Lost;
+use super::row::Row;
 use super::seal::Sealer;
 use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use crate::lang::{Args, RefKind, ValueRef, Word};
-use crate::math::cformat::Value;
-use crate::out;
 use crate::out::log::Log;
-use crate::out::thermo::{Column, Layout, Line, memory_line};
-use crate::plan::{Access, Op, Stage, Tick, When};
-use crate::styles::{BuildCx, Reading, SealCx, Wants};
+use crate::out::thermo::{Column, Layout, Line};
+use crate::plan::{Op, Stage, When};
+use crate::styles::{BuildCx, SealCx, Wants};
 use crate::world::{Face, World};
 
 /// What the step table shows and when.
@@ -17,6 +17,14 @@ use crate::world::{Face, World};
 pub struct Thermo {
     /// Interval in steps; 0 for first and last only.
     pub every: i64,
+    /// The variable that names the next step with a row, instead of an interval.
+    pub named: Option<ValueRef>,
+    /// What happens to particles beyond a fixed face.
+    pub lost: Lost,
+    /// `thermo_modify temp` names another temperature, which the pressure is still to take.
+    pub new_temperature: Option<ValueRef>,
+    /// Something was set by `thermo_modify`, which a new style forgets.
+    modified: bool,
     /// Columns and formats.
     pub layout: Layout,
     /// What each column reads.
@@ -49,6 +57,10 @@ impl Default for Thermo {
         let id = |s: &str| format!("thermo_{s}");
         Self {
             every: 0,
+            named: None,
+            lost: Lost::Error,
+            new_temperature: None,
+            modified: false,
             layout,
             sources,
             temp: id("temp"),
@@ -70,19 +82,23 @@ impl Thermo {
         self.norm.unwrap_or(w.settings.units.is_reduced())
     }
 
-    /// `thermo N`.
+    /// `thermo N` or `thermo v_name`.
     ///
     /// # Errors
-    /// Anything but a whole number from 0.
-    pub fn interval(&mut self, args: &mut Args) -> Result<()> {
-        if args.peek_text().starts_with("v_") {
-            return fail(
-                Code::NOT_SUPPORTED,
-                args.here(),
-                "thermo with a variable interval is not there yet",
-            );
+    /// Anything but a whole number from 0 or an equal-style variable.
+    pub fn interval(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let named = match args.peek() {
+            Some(word) if word.text.starts_with("v_") => ValueRef::parse(&word.text, word.span)?,
+            _ => None,
+        };
+        match &named {
+            Some(r) => {
+                args.next();
+                cx.value(r, false)?;
+            }
+            None => self.every = args.integer_from(0, "the interval of thermo output")?,
         }
-        self.every = args.integer_from(0, "the interval of thermo output")?;
+        self.named = named;
         args.finish()
     }
 
@@ -105,7 +121,15 @@ impl Thermo {
                 (layout, sources)
             }
         };
-        (self.layout, self.sources, self.norm) = (layout, sources, None);
+        if self.modified {
+            let text = "this thermo_style forgets what thermo_modify has set before";
+            cx.note(
+                Diagnostic::note(Code::SUSPICIOUS, args.name_span(), text)
+                    .help("put the thermo_modify line behind it"),
+            );
+        }
+        let Self { every, named, .. } = std::mem::take(self);
+        (self.every, self.named, self.layout, self.sources) = (every, named, layout, sources);
         self.built_in = style != "custom";
         Ok(())
     }
@@ -113,22 +137,14 @@ impl Thermo {
     /// `thermo_modify …`.
     ///
     /// # Errors
-    /// Unknown keywords, formats that do not fit, and `lost ignore|warn`, which is not there.
+    /// Unknown keywords and formats that do not fit.
     pub fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        const KNOWN: [&str; 12] = [
-            "lost",
-            "lost/bond",
-            "warn",
-            "norm",
-            "flush",
-            "line",
-            "colname",
-            "format",
-            "temp",
-            "press",
-            "triclinic/general",
-            "pe",
-        ];
+        const KNOWN: [&str; 10] =
+            ["lost", "lost/bond", "warn", "norm", "flush", "line", "colname", "format", "temp", "press"];
+        if args.is_empty() {
+            return fail(Code::MISSING_ARGUMENT, args.here(), "thermo_modify needs a keyword");
+        }
+        self.modified = true;
         while let Some(word) = args.next() {
             match word.text.as_str() {
                 "norm" => self.norm = Some(args.flag("norm")?),
@@ -141,36 +157,29 @@ impl Thermo {
                     }
                 }
                 "lost" => {
-                    let how = args.expect("error, warn or ignore")?;
-                    if how.text != "error" {
-                        return Err(Diagnostic::error(
-                            Code::NOT_SUPPORTED,
-                            how.span,
-                            format!(
-                                "thermo_modify lost {}: perigrain always stops at a lost particle",
-                                how.text
-                            ),
-                        )
-                        .help("use boundary s or m, or a larger box, so that fragments stay inside")
-                        .into());
+                    self.lost = match args.choice("value of lost", &["error", "warn", "ignore"])? {
+                        "error" => Lost::Error,
+                        "warn" => Lost::Warn,
+                        _ => Lost::Ignore,
                     }
                 }
                 "lost/bond" => {
-                    args.choice("lost/bond", &["error", "warn", "ignore"])?;
-                    cx.note(Diagnostic::note(
-                        Code::NO_EFFECT,
-                        word.span,
-                        "without effect: bonds are never lost here",
-                    ));
+                    args.choice("value of lost/bond", &["error", "warn", "ignore"])?;
+                    no_effect(cx, word, "without effect: bonds are never lost here");
                 }
                 "warn" => {
-                    args.expect("ignore, reset, default or a number")?;
-                    cx.note(Diagnostic::note(
-                        Code::NO_EFFECT,
-                        word.span,
-                        "without effect: warnings are not counted here",
-                    ));
+                    if !["ignore", "reset", "default", "always"].contains(&args.peek_text()) {
+                        args.integer_from(0, "the number of warnings (or ignore, reset, default, always)")?;
+                    } else {
+                        args.next();
+                    }
+                    no_effect(cx, word, "without effect: every warning is said once here");
                 }
+                "triclinic/general" if args.flag("triclinic/general")? => {
+                    let text = "there are no triclinic boxes in perigrain";
+                    return fail(Code::NOT_SUPPORTED, word.span, text);
+                }
+                "triclinic/general" => {}
                 "format" => self.format(args)?,
                 "colname" => match args.peek_text() {
                     "default" => {
@@ -183,8 +192,15 @@ impl Thermo {
                         self.layout.rename(&which.text, &name.text).map_err(|e| e.at(which.span))?;
                     }
                 },
-                "temp" => self.temp = existing(args, cx, "temp")?,
-                "press" => self.press = existing(args, cx, "pressure")?,
+                "temp" => {
+                    let r = existing(args, cx, "temp")?;
+                    self.temp = r.name.clone();
+                    self.new_temperature = Some(r);
+                }
+                "press" => {
+                    self.press = existing(args, cx, "pressure")?.name;
+                    self.new_temperature = None;
+                }
                 _ => return Err(args.unknown(word, &KNOWN)),
             }
         }
@@ -208,12 +224,25 @@ impl Thermo {
     }
 
     /// At which steps a row is printed.
-    pub fn when(&self) -> When {
+    fn when(&self, s: &mut Sealer) -> Result<When> {
         let ends = vec![When::First, When::Last];
-        match self.every {
-            0 => When::Any(ends),
-            n => When::Any([vec![When::Every(n)], ends].concat()),
+        Ok(match (&self.named, self.every) {
+            (Some(r), _) => When::Any([vec![s.steps(r)?], ends].concat()),
+            (None, 0) => When::Any(ends),
+            (None, n) => When::Any([vec![When::Every(n)], ends].concat()),
+        })
+    }
+
+    /// Refuses a fix whose values are not new at the steps of rows.
+    fn compatible(&self, s: &Sealer, r: &ValueRef) -> Result<()> {
+        let every = s.fix_interval(r);
+        if self.named.is_some() || every <= 1 || self.every % every == 0 {
+            return Ok(());
         }
+        let text =
+            format!("`{r}` is new every {every} steps only, and thermo output comes every {}", self.every);
+        let help = format!("let the interval of `thermo` be a multiple of {every}");
+        Err(Diagnostic::error(Code::CONFLICT, r.span, text).help(help).into())
     }
 
     /// The op that prints rows, its values asked for.
@@ -221,7 +250,7 @@ impl Thermo {
     /// # Errors
     /// Columns that name what no longer exists.
     pub fn op(&self, s: &mut Sealer, log: Log) -> Result<Box<dyn Op>> {
-        let when = self.when();
+        let when = self.when(s)?;
         let mut layout = self.layout.clone();
         layout.norm = self.normalized(s.world());
         let mut sources = self.sources.clone();
@@ -233,10 +262,13 @@ impl Thermo {
         for source in &sources {
             readings.push(match source {
                 Source::Keyword(name, span) => s.keyword_total(name, *span, Stage::Output, &when)?,
-                Source::Ref(r) => s.value(r, Stage::Output, &when)?,
+                Source::Ref(r) => {
+                    self.compatible(s, r)?;
+                    s.value(r, Stage::Output, &when)?
+                }
             });
         }
-        Ok(Box::new(Row { layout, readings, when, log }))
+        Ok(Box::new(Row { layout, readings, when, log, warn: self.lost == Lost::Warn }))
     }
 }
 
@@ -246,8 +278,13 @@ fn box_changes(w: &World) -> bool {
     w.domain.as_ref().is_some_and(|d| d.boundary.0.iter().flatten().any(follows))
 }
 
-/// The ID of an existing compute.
-fn existing(args: &mut Args, cx: &BuildCx, what: &str) -> Result<String> {
+/// A note at a word that changes nothing here.
+fn no_effect(cx: &BuildCx, word: &Word, text: &str) {
+    cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, text));
+}
+
+/// An existing compute.
+fn existing(args: &mut Args, cx: &BuildCx, what: &str) -> Result<ValueRef> {
     let word = args.expect("the ID of a compute")?;
     let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
     cx.value(&r, false).map_err(|e| {
@@ -256,7 +293,12 @@ fn existing(args: &mut Args, cx: &BuildCx, what: &str) -> Result<String> {
             .for_each(|d| d.help.push(format!("define it with `compute {} all {what} …`", word.text)));
         e
     })?;
-    Ok(word.text.clone())
+    match cx.names.compute(&r.name) {
+        Some(s) if s.vector != 6 => {
+            fail(Code::WRONG_KIND, word.span, format!("compute `{}` is no {what}", r.name))
+        }
+        _ => Ok(r),
+    }
 }
 
 fn columns(words: &[Word], cx: &BuildCx) -> Result<(Layout, Vec<Source>)> {
@@ -291,62 +333,4 @@ fn unknown(word: &Word) -> crate::diag::Diagnostics {
         None => d.help("a column is a keyword such as `step pe ke`, or c_ID, f_ID, v_name"),
     }
     .into()
-}
-
-impl Row {
-    /// The row as numbers, per particle where it is printed so.
-    fn kept(&self, w: &World, t: &Tick) -> (Vec<String>, out::rows::Row) {
-        let columns = self.layout.columns.iter().map(|c| c.name.clone()).collect();
-        let share = |c: &Column| if self.layout.norm && c.extensive { w.n().max(1) as f64 } else { 1.0 };
-        let values =
-            self.readings.iter().zip(&self.layout.columns).map(|(r, c)| r.get(w) / share(c)).collect();
-        (columns, out::rows::Row { step: t.step, time: w.clock.time(), values })
-    }
-}
-
-/// Prints a row.
-struct Row {
-    layout: Layout,
-    readings: Vec<Reading>,
-    when: When,
-    log: Log,
-}
-
-impl Op for Row {
-    fn name(&self) -> &str {
-        "thermo"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Output
-    }
-    fn access(&self) -> Access {
-        Access::new("slots", "log")
-    }
-    fn when(&self) -> When {
-        self.when.clone()
-    }
-    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        if t.setup {
-            self.log.line(&memory_line(crate::world::memory::bytes(w)))?;
-        }
-        if t.setup && !self.layout.header().is_empty() {
-            self.log.line(&self.layout.header())?;
-        }
-        let values: Vec<Value> = (self.readings.iter().zip(&self.layout.columns))
-            .map(|(r, c)| {
-                let a = r.get(w);
-                match c.kind {
-                    crate::out::thermo::Kind::Int => Value::Int(a as i64),
-                    crate::out::thermo::Kind::Float => Value::Float(a),
-                }
-            })
-            .collect();
-        let cpu = w.clock.began.map_or(0.0, |b| b.elapsed().as_secs_f64());
-        self.log.line(&self.layout.row(t.step, cpu, w.n() as u64, &values))?;
-        self.log.row(|| self.kept(w, t));
-        if self.layout.flush { self.log.flush() } else { Ok(()) }
-    }
-    fn finish(&mut self, _w: &mut World) -> Result<()> {
-        self.layout.footer().map_or(Ok(()), |text| self.log.line(text))
-    }
 }

@@ -73,7 +73,8 @@ fn tally_anew(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
         return Ok(());
     }
     let kept = (w.particles.f.clone(), w.particles.torque.clone());
-    plan.run(w, t, &[Stage::PreForce, Stage::Force])?;
+    // Fixes see that nothing has changed: they add their virial and leave the forces alone.
+    plan.run(w, t, &[Stage::PreForce, Stage::Force, Stage::PostForce])?;
     (w.particles.f, w.particles.torque) = kept;
     Ok(())
 }

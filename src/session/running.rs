@@ -128,7 +128,7 @@ impl Session {
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
         s.log = self.options.log.clone();
         s.at(span);
-        s.add(vec![Box::new(Reneighbor), Box::new(ClearForces)], span);
+        s.add(vec![Box::new(Reneighbor { lost: self.graph.thermo.lost }), Box::new(ClearForces)], span);
         crate::graph::regions::seal(&mut s)?;
         if let Some(node) = &self.graph.pair {
             s.at(node.span);

@@ -15,4 +15,7 @@ pub struct Rebuild {
     pub builds: u64,
     /// Rebuilds in the present run that came at the first step allowed, so perhaps too late.
     pub dangerous: u64,
+    /// Particles deleted beyond fixed faces that thermo output has not told of.
+    #[serde(default)]
+    pub lost: u64,
 }

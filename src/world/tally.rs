@@ -13,6 +13,9 @@ pub struct Tally {
     pub pair: f64,
     /// Virial of all pairs: xx yy zz xy xz yz.
     pub virial: [f64; 6],
+    /// Virial of fixes that were told to add theirs (`fix_modify ID virial yes`).
+    #[serde(default)]
+    pub fixes: [f64; 6],
     /// Energy per particle; empty when not asked for.
     pub atom: Vec<f64>,
 }
@@ -25,6 +28,7 @@ impl Tally {
         self.with_atoms = atoms;
         self.pair = 0.0;
         self.virial = [0.0; 6];
+        self.fixes = [0.0; 6];
         self.atom.clear();
         if atoms {
             self.atom.resize(n, 0.0);

@@ -113,6 +113,11 @@ fn motions_and_kept_states_agree() {
     agrees("motions");
 }
 
+#[test]
+fn virials_temperatures_and_losses_agree() {
+    agrees("virial");
+}
+
 // `golden/averages` holds the files that LAMMPS 22Jul2025 writes for `averages.in`.
 #[test]
 fn averages_agree_and_their_files_are_the_same_bytes() {

@@ -6,10 +6,11 @@ use crate::styles::Doc;
 pub(super) const THERMO: Entry = (
     "thermo",
     Doc {
-        syntax: "thermo N",
+        syntax: "thermo N | v_name",
         summary: "Prints a row of the step table every N steps.",
         text: "Rows are printed at the multiples of `N`, and always at the first and last step of a run; with 0 (as \
-            without the command) only there. A variable as interval (`thermo v_name`) is not there yet.",
+            without the command) only there. `v_name` of an equal-style variable names the next \
+            step with a row each time one has come, from the clock alone: `logfreq(10,3,10)`, `stride(0,100,7)`.",
         example: "thermo 2",
     },
 );
@@ -51,7 +52,7 @@ const COLUMNS: &str = "`one` is `step temp epair emol etotal press`, the default
 pub(super) const THERMO_MODIFY: Entry = (
     "thermo_modify",
     Doc {
-        syntax: "thermo_modify [norm yes|no] [flush yes|no] [line one|multi|yaml] [format …] [colname …] [temp ID] [press ID] [lost error]",
+        syntax: "thermo_modify [norm yes|no] [flush yes|no] [line one|multi|yaml] [format …] [colname …] [temp ID] [press ID] [lost error|warn|ignore]",
         summary: "Sets how the step table looks and what it uses.",
         text: "- `norm`: energies per particle; without it yes in `units lj` and no elsewhere;\n\
             - `flush yes`: every row reaches the log file at once;\n\
@@ -60,8 +61,10 @@ pub(super) const THERMO_MODIFY: Entry = (
             NAME %g` (one column; N counts from 1, from -1 backwards), `format none`. A column's own format wins over `int` and \
             `float`, these over `line`;\n\
             - `colname N|NAME text` renames a column, `colname default` takes all names back;\n\
-            - `temp ID`, `press ID`: the computes behind temperature (also `ke`) and pressure;\n\
-            - `lost error` is what always holds: a lost particle ends the run; `lost ignore` and `lost warn` are refused;\n\
+            - `temp ID`, `press ID`: the computes behind temperature (also `ke`) and pressure; `temp` is also handed to the \
+            pressure, unless `press` follows;\n\
+            - `lost error` (default): a particle beyond a fixed face ends the run; `warn` and `ignore` delete it, with its \
+            bonds and contacts, when neighbour lists are built, and `warn` says so once;\n\
             - `lost/bond` and `warn` are read for LAMMPS' decks, and a note says that they have no effect.\n\n\
             Formats and names belong to the present columns: put the line behind `thermo_style`.",
         example: "thermo_style custom step pe ke\nthermo_modify norm no flush yes format float %20.12g format step %8d colname pe energy",

@@ -86,6 +86,9 @@ pub trait Compute: Send {
         Ok(())
     }
 
+    /// Uses another temperature, if it uses one (`thermo_modify temp`).
+    fn take_temperature(&mut self, _temperature: &crate::lang::ValueRef) {}
+
     /// A copy, so that a failing `compute_modify` changes nothing.
     fn boxed(&self) -> Box<dyn Compute>;
 }

@@ -26,7 +26,7 @@ impl Style for Pressure {
                    compute temp-ID, the virial W of all pairs, and the volume V of the present box (area and 2 instead \
                    of 3 in two dimensions). Vector of 6: xx yy zz xy xz yz of (Σ m v_a v_b + W_ab) / V. Without \
                    keywords all terms count; `ke`, `pair` … choose some, `virial` is all but `ke`; terms that no style \
-                   of the scene has are 0, and so are those of fixes. `NULL` for temp-ID where `ke` is not wanted. \
+                   of the scene has are 0; `fix` is what `fix_modify ID virial yes` adds. `NULL` for temp-ID where `ke` is not wanted. \
                    For peridynamic particles the virial carries one factor of volume, as in LAMMPS.",
             example: "compute p all pressure thermo_temp virial",
         }
@@ -39,11 +39,13 @@ impl ComputeStyle for Pressure {
             return fail(Code::BAD_VALUE, cx.span, "compute pressure must use the group `all`");
         }
         let temp = args.expect("the ID of a temperature compute, or NULL")?;
-        let (mut ke, mut pair) = (args.is_empty(), args.is_empty());
+        let (mut ke, mut pair, mut fix) = (args.is_empty(), args.is_empty(), args.is_empty());
         while let Some(word) = args.peek() {
             match args.choice("keyword of compute pressure", KEYWORDS)? {
                 "ke" => ke = true,
-                "pair" | "virial" => pair = true,
+                "pair" => pair = true,
+                "fix" => fix = true,
+                "virial" => (pair, fix) = (true, true),
                 "pair/hybrid" => {
                     return fail(
                         Code::NOT_SUPPORTED,
@@ -55,7 +57,7 @@ impl ComputeStyle for Pressure {
             }
         }
         let temperature = if ke { Some(temperature(temp, cx)?) } else { None };
-        Ok(Box::new(Declared { id: cx.id.to_string(), temperature, pair }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), temperature, pair, fix }))
     }
 }
 
@@ -84,6 +86,7 @@ struct Declared {
     id: String,
     temperature: Option<ValueRef>,
     pair: bool,
+    fix: bool,
 }
 
 impl Compute for Declared {
@@ -92,8 +95,8 @@ impl Compute for Declared {
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let pair = self.pair;
-        if pair {
+        let (pair, fix) = (self.pair, self.fix);
+        if pair || fix {
             cx.ask_virial(when);
         }
         let kinetic = match &self.temperature {
@@ -101,7 +104,7 @@ impl Compute for Declared {
             None => None,
         };
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "tally box", move |w, t, out| {
-            let virial = if pair { virial(w, t.step)? } else { [0.0; 6] };
+            let virial = if pair || fix { virial(w, t.step, pair, fix)? } else { [0.0; 6] };
             let (trace, tensor) = match &kinetic {
                 Some((reading, r)) => kinetic_part(w, reading, r)?,
                 None => (0.0, [0.0; 6]),
@@ -121,15 +124,26 @@ impl Compute for Declared {
         }))
     }
 
+    fn take_temperature(&mut self, temperature: &ValueRef) {
+        if self.temperature.is_some() {
+            self.temperature = Some(temperature.clone());
+        }
+    }
+
     fn boxed(&self) -> Box<dyn Compute> {
         Box::new(self.clone())
     }
 }
 
-fn virial(w: &World, step: i64) -> Result<[f64; 6]> {
-    match w.tally.step {
+fn virial(w: &World, step: i64, pair: bool, fix: bool) -> Result<[f64; 6]> {
+    let tally = &w.tally;
+    let part = |yes: bool, v: [f64; 6]| if yes { v } else { [0.0; 6] };
+    match tally.step {
         None => Ok([0.0; 6]),
-        Some(s) if s == step && w.tally.with_virial => Ok(w.tally.virial),
+        Some(s) if s == step && tally.with_virial => {
+            let (pairs, fixes) = (part(pair, tally.virial), part(fix, tally.fixes));
+            Ok(std::array::from_fn(|k| pairs[k] + fixes[k]))
+        }
         Some(_) => fail(Code::WRONG_ORDER, None, format!("the virial is not known at step {step}")),
     }
 }

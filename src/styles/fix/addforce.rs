@@ -5,10 +5,10 @@ use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Param, RefKind, ValueRef};
 use crate::plan::{Access, Op, Stage, When};
 use crate::styles::command::common::variable_param;
-use crate::styles::matter::{Chosen, change_forces, publish, unwrapped};
+use crate::styles::matter::{Chosen, change_forces, publish, sum, unwrapped};
 use crate::styles::step_op::StepOp;
-use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
-use crate::world::GroupId;
+use crate::styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use crate::world::{GroupId, World};
 
 /// The style.
 pub struct AddForce;
@@ -26,7 +26,7 @@ impl Style for AddForce {
                    multiples of N. `region ID`: only inside. Acts in the setup of a run too. Scalar (extensive): the \
                    potential energy, −Σ f·x with unwrapped positions, or Σ of the atom-style variable after `energy`, \
                    which is refused for constant forces as in LAMMPS; `fix_modify ID energy yes` adds it to the \
-                   potential energy. Vector of 3 (extensive): the total force before the change.",
+                   potential energy. `fix_modify ID virial yes` adds Σ f x (unwrapped) to the virial of pressures. Vector of 3 (extensive): the total force before the change.",
             example: "fix push grains addforce 0.0 0.0 -1.0e-3",
         }
     }
@@ -36,8 +36,15 @@ impl FixStyle for AddForce {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         let force = [variable_param(args, "fx")?, variable_param(args, "fy")?, variable_param(args, "fz")?];
         force.iter().try_for_each(|p| cx.param(p, true))?;
-        let mut fix =
-            Declared { id: cx.id.to_string(), group: cx.group, force, every: 1, region: None, energy: None };
+        let mut fix = Declared {
+            id: cx.id.to_string(),
+            group: cx.group,
+            force,
+            every: 1,
+            region: None,
+            energy: None,
+            virial: false,
+        };
         while let Some(word) = args.next() {
             match word.text.as_str() {
                 "every" => fix.every = args.integer_from(1, "the number of steps between two pushes")?,
@@ -82,6 +89,8 @@ struct Declared {
     every: i64,
     region: Option<String>,
     energy: Option<ValueRef>,
+    /// `fix_modify virial yes`.
+    virial: bool,
 }
 
 impl Fix for Declared {
@@ -99,9 +108,13 @@ impl Fix for Declared {
             Some(r) => Some(cx.value(r, Stage::PostForce, &when)?),
             None => None,
         };
-        let slot = cx.slot(&format!("f_{}", self.id));
+        let (slot, virial) = (cx.slot(&format!("f_{}", self.id)), self.virial);
         let access = Access::new("f x image mask", "f");
         let op = StepOp::new(format!("fix {} addforce", self.id), Stage::PostForce, access, move |w, t| {
+            if virial && t.virial {
+                let added = virial_of(w, &chosen, &force);
+                (0..6).for_each(|k| w.tally.fixes[k] += added[k]);
+            }
             if t.unchanged {
                 return Ok(());
             }
@@ -124,6 +137,13 @@ impl Fix for Declared {
         Ok(vec![op.when(when).boxed()])
     }
 
+    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        match args.eat("virial") {
+            true => args.flag("virial").map(|yes| self.virial = yes),
+            false => super::no_option(args),
+        }
+    }
+
     fn shape(&self) -> Shape {
         Shape { scalar: true, vector: 3, scalar_extensive: true, vector_extensive: true, ..Shape::default() }
     }
@@ -135,6 +155,18 @@ impl Fix for Declared {
     fn boxed(&self) -> Box<dyn Fix> {
         Box::new(self.clone())
     }
+}
+
+/// Σ f x of the added force with unwrapped positions: xx yy zz xy xz yz.
+fn virial_of(w: &World, chosen: &Chosen, force: &[Reading; 3]) -> [f64; 6] {
+    let (p, chosen) = (&w.particles, chosen.now(w));
+    sum::<6>(&p.mask, GroupId::ALL, |i| {
+        if !chosen.has(p.mask[i], p.x[i]) {
+            return [0.0; 6];
+        }
+        let (x, [fx, fy, fz]) = (unwrapped(w, i), force.map(|r| r.atom(w, i)));
+        [fx * x[0], fy * x[1], fz * x[2], fx * x[1], fx * x[2], fy * x[2]]
+    })
 }
 
 #[cfg(test)]

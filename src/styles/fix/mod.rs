@@ -98,15 +98,7 @@ pub trait Fix: Send {
     /// # Errors
     /// Unknown keywords; by default there are none.
     fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        let Some(w) = args.next() else { return Ok(()) };
-        let elsewhere = ["virial", "temp", "press", "respa", "dynamic/dof", "bodyforces"];
-        if elsewhere.contains(&w.text.as_str()) {
-            let text = format!("the option `{}` of fix_modify is not in perigrain", w.text);
-            return fail(Code::NOT_SUPPORTED, w.span, text);
-        }
-        let d =
-            Diagnostic::error(Code::UNKNOWN_KEYWORD, w.span, format!("this fix has no option `{}`", w.text));
-        Err(d.help("fix_modify knows `energy yes|no`").into())
+        no_option(args)
     }
 
     /// A copy, so that a failing `fix_modify` changes nothing.
@@ -163,4 +155,23 @@ fn compatible(r: &ValueRef, shape: &Shape, every: i64, what: &str) -> Result<()>
     Err(Diagnostic::error(Code::CONFLICT, r.span, text)
         .help(format!("let {what} be a multiple of {}", shape.every))
         .into())
+}
+
+/// The refusal of an option that a fix does not have, with what it would mean.
+fn no_option(args: &mut Args) -> Result<()> {
+    let Some(w) = args.next() else { return Ok(()) };
+    let why = match w.text.as_str() {
+        "virial" => "this fix has no virial to add",
+        "temp" => "this fix uses no temperature",
+        "press" => "this fix uses no pressure",
+        "bodyforces" => "this fix moves no rigid bodies",
+        "respa" => "there is one level of time steps here, so that no fix can choose another",
+        "dynamic/dof" => "degrees of freedom are counted anew each time: this has nothing to change",
+        _ => {
+            let text = format!("this fix has no option `{}`", w.text);
+            let d = Diagnostic::error(Code::UNKNOWN_KEYWORD, w.span, text);
+            return Err(d.help("fix_modify knows `energy yes|no` and `virial yes|no`").into());
+        }
+    };
+    fail(Code::CONFLICT, w.span, why)
 }

@@ -1,0 +1,79 @@
+//! The op that prints a row of the step table.
+
+use crate::diag::Result;
+use crate::math::cformat::Value;
+use crate::out;
+use crate::out::log::Log;
+use crate::out::thermo::{Column, Layout, memory_line};
+use crate::plan::{Access, Op, Stage, Tick, When};
+use crate::styles::Reading;
+use crate::world::World;
+
+/// Prints a row.
+pub struct Row {
+    /// How it looks.
+    pub layout: Layout,
+    /// Its values.
+    pub readings: Vec<Reading>,
+    /// At which steps.
+    pub when: When,
+    /// Where to.
+    pub log: Log,
+    /// Says once that particles were lost.
+    pub warn: bool,
+}
+
+impl Row {
+    /// The row as numbers, per particle where it is printed so.
+    fn kept(&self, w: &World, t: &Tick) -> (Vec<String>, out::rows::Row) {
+        let columns = self.layout.columns.iter().map(|c| c.name.clone()).collect();
+        let share = |c: &Column| if self.layout.norm && c.extensive { w.n().max(1) as f64 } else { 1.0 };
+        let values =
+            self.readings.iter().zip(&self.layout.columns).map(|(r, c)| r.get(w) / share(c)).collect();
+        (columns, out::rows::Row { step: t.step, time: w.clock.time(), values })
+    }
+}
+
+impl Op for Row {
+    fn name(&self) -> &str {
+        "thermo"
+    }
+    fn stage(&self) -> Stage {
+        Stage::Output
+    }
+    fn access(&self) -> Access {
+        Access::new("slots", "log")
+    }
+    fn when(&self) -> When {
+        self.when.clone()
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if t.setup {
+            self.log.line(&memory_line(crate::world::memory::bytes(w)))?;
+        }
+        if t.setup && !self.layout.header().is_empty() {
+            self.log.line(&self.layout.header())?;
+        }
+        if self.warn && w.rebuild.lost > 0 {
+            self.warn = false;
+            let (now, lost) = (w.n() as u64, std::mem::take(&mut w.rebuild.lost));
+            self.log.line(&format!("WARNING: Lost atoms: original {} current {now}", now + lost))?;
+        }
+        let values: Vec<Value> = (self.readings.iter().zip(&self.layout.columns))
+            .map(|(r, c)| {
+                let a = r.get(w);
+                match c.kind {
+                    crate::out::thermo::Kind::Int => Value::Int(a as i64),
+                    crate::out::thermo::Kind::Float => Value::Float(a),
+                }
+            })
+            .collect();
+        let cpu = w.clock.began.map_or(0.0, |b| b.elapsed().as_secs_f64());
+        self.log.line(&self.layout.row(t.step, cpu, w.n() as u64, &values))?;
+        self.log.row(|| self.kept(w, t));
+        if self.layout.flush { self.log.flush() } else { Ok(()) }
+    }
+    fn finish(&mut self, _w: &mut World) -> Result<()> {
+        self.layout.footer().map_or(Ok(()), |text| self.log.line(text))
+    }
+}
