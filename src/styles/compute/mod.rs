@@ -120,6 +120,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &pressure::Pressure,
     &property_atom::PropertyAtom,
     &reduce::Reduce,
+    &reduce::ReduceRegion,
     &temp::Temp,
 ];
 

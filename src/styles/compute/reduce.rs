@@ -1,17 +1,20 @@
-//! compute reduce: one number from one value per particle: a sum, an extreme, a mean.
+//! Computes reduce and reduce/region: one number from one value per particle: a sum, an extreme, a mean.
 
 use super::{Compute, ComputeStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, RefKind, ValueRef, Word};
 use crate::par;
 use crate::plan::{Op, Stage, When};
-use crate::styles::matter::count;
+use crate::styles::matter::Chosen;
 use crate::styles::step_op::{Wanted, fill};
 use crate::styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use crate::world::{GroupId, SlotId, World};
 
-/// The style.
+/// `compute … reduce`.
 pub struct Reduce;
+
+/// `compute … reduce/region`.
+pub struct ReduceRegion;
 
 impl Style for Reduce {
     fn name(&self) -> &'static str {
@@ -19,12 +22,15 @@ impl Style for Reduce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group reduce sum|min|max|ave|sumsq|avesq|sumabs|aveabs|minabs|maxabs input …",
-            summary: "Sums, extremes and means of per-atom values over the group.",
+            syntax: "compute ID group reduce sum|min|max|ave|sumsq|avesq|sumabs|aveabs|minabs|maxabs input … \
+                     [replace i j] [inputs peratom|local]",
+            summary: "Sums, extremes and means of per-atom or local values over the group.",
             text: "Inputs: `x y z vx vy vz fx fy fz`, `c_ID`, `c_ID[k]`, `c_ID[*]`, `f_ID`, `f_ID[k]`, and `v_name` of an \
                    atom-style variable. One input gives a scalar, several a vector; sums are extensive, all else \
                    intensive. For an empty group: 0, but 1e20 for `min` and `minabs` and −1e20 for `max`. NaNs never \
-                   are extremes. The keywords `replace` and `inputs` are refused. LAMMPS 22Jul2025 gives 1e20 for every `minabs` and, where there are \
+                   are extremes. `replace i j` (modes `min` and `max`) gives, in place of the i-th result, the i-th \
+                   input's value where the j-th input has its extreme. `inputs local` reads local values instead \
+                   (`compute property/local` …), of which all count, whatever the group. LAMMPS 22Jul2025 gives 1e20 for every `minabs` and, where there are \
                    several inputs, does not divide `aveabs` by the number of particles; perigrain does so only under \
                    `-compat lammps`. LAMMPS' `sumabs` of several inputs is unset memory; perigrain's is the sum.",
             example: "compute worst all reduce max c_dmg",
@@ -131,45 +137,83 @@ impl Column {
     }
 }
 
-impl ComputeStyle for Reduce {
-    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let mode = Mode::named(args.choice("mode of compute reduce", MODES)?);
-        let mut inputs = vec![];
-        while let Some(word) = args.next() {
-            read_input(word, cx, &mut inputs)?;
+impl Style for ReduceRegion {
+    fn name(&self) -> &'static str {
+        "reduce/region"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group reduce/region region-ID sum|min|max|… input … [replace i j]",
+            summary: "As compute reduce, for particles that are in a region at that moment.",
+            text: "Modes, inputs and results are those of compute reduce; a particle counts while it is in the group and inside \
+                   the region.",
+            example: "compute deep all reduce/region box max vz",
         }
-        if inputs.is_empty() {
-            args.expect("at least one input, as `vx` or `c_ID`")?;
-        }
-        let touched = mode == Mode::MinAbs || (mode == Mode::AveAbs && inputs.len() > 1);
-        if touched && cx.world.settings.lammps() {
-            let text = "compat lammps: `minabs` is 1e20, and `aveabs` of several inputs is a sum";
-            cx.note(Diagnostic::note(Code::COMPAT, cx.span, text));
-        }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, mode, inputs }))
     }
 }
 
-fn read_input(word: &Word, cx: &BuildCx, inputs: &mut Vec<Input>) -> Result<()> {
+impl ComputeStyle for Reduce {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        Ok(Box::new(Declared::read(None, args, cx)?))
+    }
+}
+
+impl ComputeStyle for ReduceRegion {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let word = args.expect("a region")?;
+        cx.region(word)?;
+        Ok(Box::new(Declared::read(Some(word.text.clone()), args, cx)?))
+    }
+}
+
+/// The words before the keywords `replace` and `inputs`, and those keywords.
+fn split<'a>(args: &mut Args<'a>) -> Vec<&'a Word> {
+    let mut words = vec![];
+    while let Some(word) = args.peek().filter(|w| !matches!(w.text.as_str(), "replace" | "inputs")) {
+        args.next();
+        words.push(word);
+    }
+    words
+}
+
+/// `replace i j`, counted from 0.
+fn read_replace(mode: Mode, inputs: usize, args: &mut Args) -> Result<[usize; 2]> {
+    let span = args.here();
+    let mut pair = [0; 2];
+    for k in &mut pair {
+        let (span, n) = (args.here(), args.integer_from(1, "the number of an input")? as usize);
+        if n > inputs {
+            return fail(Code::BAD_VALUE, span, format!("there are {inputs} inputs, not {n}"));
+        }
+        *k = n - 1;
+    }
+    if !matches!(mode, Mode::Min | Mode::Max) {
+        return fail(Code::CONFLICT, span, "`replace` needs the mode `min` or `max`");
+    }
+    if pair[0] == pair[1] {
+        return fail(Code::BAD_VALUE, span, "`replace` needs two different inputs");
+    }
+    Ok(pair)
+}
+
+fn read_input(word: &Word, local: bool, cx: &BuildCx, inputs: &mut Vec<Input>) -> Result<()> {
     let text = word.text.as_str();
     let columns = [("", Column::Position), ("v", Column::Velocity), ("f", Column::Force)];
     for (prefix, column) in columns {
         if let Some(d) = ["x", "y", "z"].iter().position(|d| text.strip_prefix(prefix) == Some(d)) {
+            if local {
+                let text = format!("`{text}` is a value per particle: leave `inputs local` out");
+                return fail(Code::CONFLICT, word.span, text);
+            }
             inputs.push(Input::Column(column, d));
             return Ok(());
         }
     }
-    if matches!(text, "replace" | "inputs") {
-        return fail(
-            Code::NOT_SUPPORTED,
-            word.span,
-            format!("the keyword `{text}` of compute reduce is not in perigrain"),
-        );
-    }
-    for word in cx.expand(word, Wants::PerAtom)? {
+    let wants = if local { Wants::Local } else { Wants::PerAtom };
+    for word in cx.expand(word, wants)? {
         match ValueRef::parse(&word.text, word.span)? {
             Some(r) if !matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom) => {
-                cx.value(&r, true)?;
+                cx.reading(&r, wants)?;
                 inputs.push(Input::Value(r));
             }
             _ => {
@@ -190,14 +234,69 @@ fn read_input(word: &Word, cx: &BuildCx, inputs: &mut Vec<Input>) -> Result<()> 
 struct Declared {
     id: String,
     group: GroupId,
+    region: Option<String>,
     mode: Mode,
     inputs: Vec<Input>,
+    local: bool,
+    /// Which result is replaced, and where whose extreme is.
+    replace: Vec<[usize; 2]>,
+}
+
+impl Declared {
+    fn read(region: Option<String>, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let mode = Mode::named(args.choice("mode of compute reduce", MODES)?);
+        let words = split(args);
+        // `inputs` decides how the words before it are read.
+        let kind = (0..args.len()).find(|k| args.peek_at(*k).is_some_and(|w| w.text == "inputs"));
+        let kind = kind.and_then(|k| args.peek_at(k + 1)).map_or("", |w| w.text.as_str());
+        let local = kind == "local";
+        let mut inputs = vec![];
+        for word in words {
+            read_input(word, local, cx, &mut inputs)?;
+        }
+        if inputs.is_empty() {
+            args.expect("at least one input, as `vx` or `c_ID`")?;
+            return fail(Code::MISSING_ARGUMENT, cx.span, "at least one input is missing, as `vx` or `c_ID`");
+        }
+        let mut replace = vec![];
+        while !args.is_empty() {
+            let span = args.here();
+            match args.choice("keyword of compute reduce", &["replace", "inputs"])? {
+                "replace" => replace.push(read_replace(mode, inputs.len(), args)?),
+                _ => {
+                    args.choice("kind of inputs", &["peratom", "local"])?;
+                    if local && region.is_some() {
+                        return fail(
+                            Code::CONFLICT,
+                            span,
+                            "local values are in no region: use compute reduce",
+                        );
+                    }
+                }
+            }
+        }
+        let touched = mode == Mode::MinAbs || (mode == Mode::AveAbs && inputs.len() > 1);
+        if touched && cx.world.settings.lammps() {
+            let text = "compat lammps: `minabs` is 1e20, and `aveabs` of several inputs is a sum";
+            cx.note(Diagnostic::note(Code::COMPAT, cx.span, text));
+        }
+        Ok(Self { id: cx.id.to_string(), group: cx.group, region, mode, inputs, local, replace })
+    }
 }
 
 /// An input as it is read during a run.
 enum Source {
     Column(Column, usize),
     Reading(Reading),
+}
+
+impl Source {
+    fn value(&self, w: &World, i: usize) -> f64 {
+        match self {
+            Source::Column(c, d) => c.of(w)[i][*d],
+            Source::Reading(r) => r.atom(w, i),
+        }
+    }
 }
 
 impl Compute for Declared {
@@ -213,24 +312,50 @@ impl Compute for Declared {
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let (group, mode) = (self.group, self.mode);
+        let (mode, local, replace, span) = (self.mode, self.local, self.replace.clone(), cx.span());
+        let wants = if local { Wants::Local } else { Wants::PerAtom };
         let mut sources = vec![];
         for input in &self.inputs {
             sources.push(match input {
                 Input::Column(c, d) => Source::Column(*c, *d),
-                Input::Value(r) => Source::Reading(cx.value(r, stage, when)?),
+                Input::Value(r) => Source::Reading(cx.reading(r, wants, stage, when)?),
             });
         }
+        let (group, region) = (self.group, self.region.clone());
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "x v f mask", move |w, _, out| {
-            let n = count(w, group);
+            let chosen = Chosen::new(w, group, region.as_deref(), span)?;
+            let p = &w.particles;
+            let has = |i: usize| chosen.has(p.mask[i], p.x[i]);
             let artefact = Artefact { lammps: w.settings.lammps(), several: sources.len() > 1 };
+            let mut places = vec![None; sources.len()];
             out.vector.clear();
-            for source in &sources {
-                let folded = match source {
-                    Source::Column(c, d) => reduced(w, group, mode, |i| c.of(w)[i][*d]),
-                    Source::Reading(r) => reduced(w, group, mode, |i| r.atom(w, i)),
+            for (k, source) in sources.iter().enumerate() {
+                let sought = replace.iter().any(|[_, j]| *j == k);
+                let (folded, n) = match source {
+                    Source::Reading(r) if local => {
+                        let list = r.list(w);
+                        let folded = fold(list.len(), mode, |_| true, |i| list[i]);
+                        places[k] = (0..list.len()).find(|&i| sought && list[i] == folded);
+                        (folded, list.len())
+                    }
+                    _ => {
+                        let folded = fold(w.n(), mode, has, |i| source.value(w, i));
+                        places[k] = (0..w.n()).find(|&i| sought && has(i) && source.value(w, i) == folded);
+                        (
+                            folded,
+                            par::reduce(w.n(), |r| r.filter(|&i| has(i)).count(), |a, b| a + b).unwrap_or(0),
+                        )
+                    }
                 };
                 out.vector.push(mode.finish(folded, n, artefact));
+            }
+            for [i, j] in &replace {
+                if let Some(at) = places[*j] {
+                    out.vector[*i] = match &sources[*i] {
+                        Source::Reading(r) if local => r.list(w).get(at).copied().unwrap_or(0.0),
+                        source => source.value(w, at),
+                    };
+                }
             }
             if let [one] = out.vector[..] {
                 out.scalar = one;
@@ -245,81 +370,18 @@ impl Compute for Declared {
     }
 }
 
-fn reduced(w: &World, group: GroupId, mode: Mode, value: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let (mask, bit) = (&w.particles.mask, group.bit());
+fn fold(
+    n: usize,
+    mode: Mode,
+    has: impl Fn(usize) -> bool + Sync,
+    value: impl Fn(usize) -> f64 + Sync,
+) -> f64 {
     let (none, join) = mode.fold();
     let chunk = |range: std::ops::Range<usize>| {
-        range.filter(|&i| mask[i] & bit != 0).fold(none, |a, i| join(a, mode.term(value(i))))
+        range.filter(|&i| has(i)).fold(none, |a, i| join(a, mode.term(value(i))))
     };
-    par::reduce(mask.len(), chunk, join).unwrap_or(none)
+    par::reduce(n, chunk, join).unwrap_or(none)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::styles::testing::Bench;
-    use crate::world::{AtomStyle, Compat};
-
-    fn scene() -> Bench {
-        let mut b = Bench::new(
-            AtomStyle::default(),
-            &[[1.0, 1.0, 1.0], [-2.5, 1.5, 0.0], [4.0, 3.5, 2.0], [9.0, 9.0, 9.0]],
-        );
-        b.world.particles.mask[3] = 0;
-        b
-    }
-
-    fn value(b: &mut Bench, words: &str) -> f64 {
-        let c = b.compute(&Reduce, words).unwrap();
-        b.evaluate(&*c).unwrap().scalar
-    }
-
-    #[test]
-    fn all_modes() {
-        let mut b = scene();
-        // Of 1, -2.5, 4 by hand.
-        let expected = [2.5, -2.5, 4.0, 2.5 / 3.0, 23.25, 23.25 / 3.0, 7.5, 2.5, 1.0, 4.0];
-        for (mode, a) in MODES.iter().zip(expected) {
-            assert_eq!(value(&mut b, &format!("{mode} x")), a, "{mode}");
-        }
-        // Oracle: LAMMPS 22Jul2025 prints the sum for aveabs of several inputs, and 1e20 for minabs.
-        b.world.settings.compat = Compat::Lammps;
-        assert_eq!((value(&mut b, "aveabs x"), value(&mut b, "minabs x")), (2.5, 1e20));
-        let c = b.compute(&Reduce, "aveabs x x").unwrap();
-        assert_eq!(b.evaluate(&*c).unwrap().vector, [7.5, 7.5]);
-    }
-
-    // Oracle: an empty group gives 1e20, -1e20, 0, 0 for min, max, maxabs, ave.
-    #[test]
-    fn nothing_has_lammps_extremes() {
-        let mut b = scene();
-        b.world.particles.mask.fill(0);
-        let got = ["min", "max", "maxabs", "ave"].map(|m| value(&mut b, &format!("{m} x")));
-        assert_eq!(got, [1e20, -1e20, 0.0, 0.0]);
-    }
-
-    #[test]
-    fn several_inputs_make_a_vector() {
-        let mut b = scene();
-        b.atom.insert("a".into(), vec![1.0, 2.0, 3.0, 4.0]);
-        b.computes.insert("p".into(), Shape { atom: Some(2), ..Shape::default() });
-        let s = b.world.slots.id("c_p");
-        let slot = b.world.slots.get_mut(s);
-        (slot.cols, slot.atom) = (2, vec![1.0, 10.0, 2.0, 20.0, 3.0, 30.0, 4.0, 40.0]);
-        let c = b.compute(&Reduce, "sum z v_a c_p[2] c_p[*]").unwrap();
-        assert_eq!(c.shape().vector, 5);
-        assert_eq!(b.evaluate(&*c).unwrap().vector, [3.0, 6.0, 60.0, 6.0, 60.0]);
-    }
-
-    #[test]
-    fn mistakes_are_named() {
-        let mut b = scene();
-        b.equal.insert("e".into(), 1.0);
-        for words in
-            ["", "sum", "total x", "sum q", "sum c_no", "sum v_e", "max x y replace 1 2", "sum C_a[1]"]
-        {
-            assert!(b.compute(&Reduce, words).is_err(), "{words}");
-        }
-        assert_eq!(b.compute(&Reduce, "max x replace 1 2").err().unwrap().0[0].code, Code::NOT_SUPPORTED);
-    }
-}
+mod tests;
