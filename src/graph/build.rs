@@ -84,12 +84,7 @@ const LAMMPS_STYLES: &[(&str, &str)] = &[
     ("compute", "plasticity/atom"),
     ("compute", "contact/atom"),
     ("compute", "pair/local"),
-    ("compute", "property/local"),
     ("compute", "erotate/sphere/atom"),
-    ("dump", "local"),
-    ("dump", "xyz"),
-    ("dump", "cfg"),
-    ("dump", "yaml"),
     ("dump", "movie"),
 ];
 

@@ -64,7 +64,7 @@ impl Op for Row {
                 let a = r.get(w);
                 match c.kind {
                     crate::out::thermo::Kind::Int => Value::Int(a as i64),
-                    crate::out::thermo::Kind::Float => Value::Float(a),
+                    _ => Value::Float(a),
                 }
             })
             .collect();

@@ -336,6 +336,14 @@ impl SealCx for Sealer<'_> {
         self.log.clone()
     }
 
+    fn refresh(&mut self, id: &str, stage: Stage, when: &When) -> Result<Option<Box<dyn Op>>> {
+        let graph = self.graph;
+        match graph.find_compute(id) {
+            Some(node) => node.compute.refresh(self, stage, when),
+            None => fail(Code::UNKNOWN_NAME, self.span, format!("there is no compute `{id}`")),
+        }
+    }
+
     fn ask_energy(&mut self, when: &When) {
         self.plan.energy.push(when.clone());
     }

@@ -19,6 +19,8 @@ pub enum Data<'a> {
     Int(Box<dyn Fn(usize) -> i64 + Sync + 'a>),
     /// Numbers.
     Float(Box<dyn Fn(usize) -> f64 + Sync + 'a>),
+    /// Words of a list, and which of them.
+    Text(&'a [String], Box<dyn Fn(usize) -> usize + Sync + 'a>),
 }
 
 impl<'a> Data<'a> {
@@ -47,6 +49,7 @@ impl<'a> Data<'a> {
         match self {
             Self::Int(_) => Kind::Int,
             Self::Float(_) => Kind::Float,
+            Self::Text(..) => Kind::Text,
         }
     }
 
@@ -55,6 +58,16 @@ impl<'a> Data<'a> {
         match self {
             Self::Int(f) => f(i) as f64,
             Self::Float(f) => f(i),
+            Self::Text(_, which) => which(i) as f64,
+        }
+    }
+
+    /// The value of a particle as it is printed.
+    pub fn value(&self, i: usize) -> Value<'_> {
+        match self {
+            Self::Int(f) => Value::Int(f(i)),
+            Self::Float(f) => Value::Float(f(i)),
+            Self::Text(list, which) => Value::Text(list.get(which(i)).map_or("", String::as_str)),
         }
     }
 }
@@ -63,14 +76,69 @@ impl<'a> Data<'a> {
 pub struct Field<'a> {
     /// As it stands in the `ITEM: ATOMS` line.
     pub name: &'a str,
-    /// Its format; `None`: `%d` or `%g`, as LAMMPS does.
+    /// Its format; `None`: `%d`, `%g` or `%s`, as LAMMPS does.
     pub format: Option<&'a Format>,
     /// Its values.
     pub data: Data<'a>,
 }
 
+/// The formats of columns that have none of their own.
+struct Plain([Format; 3]);
+
+impl Plain {
+    fn new() -> Self {
+        Self(["%d", "%g", "%s"].map(|f| Format::parse(f).unwrap_or_default()))
+    }
+
+    fn of(&self, kind: Kind) -> &Format {
+        match kind {
+            Kind::Int => &self.0[0],
+            Kind::Float => &self.0[1],
+            Kind::Text => &self.0[2],
+        }
+    }
+}
+
+/// Writes rows of columns, formatted on all threads: what comes before and after a row, and before a column (from 1).
+pub fn write_rows(
+    to: &mut dyn Write,
+    rows: &[u32],
+    fields: &[Field<'_>],
+    [before, after]: [&str; 2],
+    between: impl Fn(usize) -> &'static str + Sync,
+) -> std::io::Result<()> {
+    let plain = Plain::new();
+    let formats: Vec<&Format> =
+        fields.iter().map(|f| f.format.unwrap_or_else(|| plain.of(f.data.kind()))).collect();
+    let some = |rows: &[u32]| {
+        let mut text = Vec::with_capacity(rows.len() * fields.len() * 12);
+        for &i in rows {
+            text.extend_from_slice(before.as_bytes());
+            for (k, (field, format)) in fields.iter().zip(&formats).enumerate() {
+                if k > 0 {
+                    text.extend_from_slice(between(k).as_bytes());
+                }
+                format.write(&mut text, &[field.data.value(i as usize)]);
+            }
+            text.extend_from_slice(after.as_bytes());
+        }
+        text
+    };
+    for batch in rows.chunks(BATCH) {
+        let chunks: Vec<&[u32]> = batch.chunks(par::CHUNK).collect();
+        for text in make(chunks.len(), |k| some(chunks[k])) {
+            to.write_all(&text)?;
+        }
+    }
+    Ok(())
+}
+
 /// One snapshot.
 pub struct Snapshot<'a> {
+    /// Whether there are lines before the rows.
+    pub header: bool,
+    /// What a row is, as `ATOMS`, and how the line that counts them calls it.
+    pub item: &'a str,
     /// Step number.
     pub step: i64,
     /// Simulated time, for `dump_modify time yes`.
@@ -90,20 +158,11 @@ pub struct Snapshot<'a> {
 impl Snapshot<'_> {
     /// Writes the snapshot.
     pub fn write(&self, to: &mut dyn Write) -> std::io::Result<()> {
-        to.write_all(&self.header())?;
-        let [int, float] = ["%d", "%g"].map(|f| Format::parse(f).unwrap_or_default());
-        let formats: Vec<&Format> = self
-            .fields
-            .iter()
-            .map(|f| f.format.unwrap_or(if f.data.kind() == Kind::Int { &int } else { &float }))
-            .collect();
-        for batch in self.rows.chunks(BATCH) {
-            let chunks: Vec<&[u32]> = batch.chunks(par::CHUNK).collect();
-            for text in make(chunks.len(), |k| self.rows(chunks[k], &formats)) {
-                to.write_all(&text)?;
-            }
+        if self.header {
+            to.write_all(&self.header())?;
         }
-        Ok(())
+        let end = if self.item == "ATOMS" { "\n" } else { " \n" };
+        write_rows(to, self.rows, self.fields, ["", end], |_| " ")
     }
 
     fn header(&self) -> Vec<u8> {
@@ -116,8 +175,9 @@ impl Snapshot<'_> {
             text.push_str(&format!("ITEM: TIME\n{time}\n"));
         }
         text.push_str(&format!(
-            "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\n",
+            "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF {}\n{}\n",
             self.step,
+            self.item,
             self.rows.len()
         ));
         text.push_str(&format!("ITEM: BOX BOUNDS {}\n", self.boundary));
@@ -125,32 +185,14 @@ impl Snapshot<'_> {
         for [lo, hi] in self.bounds {
             text.push_str(&bound.text(&[Value::Float(lo), Value::Float(hi)]));
         }
-        text.push_str("ITEM: ATOMS");
+        text.push_str("ITEM: ");
+        text.push_str(self.item);
         for field in self.fields {
             text.push(' ');
             text.push_str(field.name);
         }
         text.push('\n');
         text.into_bytes()
-    }
-
-    fn rows(&self, rows: &[u32], formats: &[&Format]) -> Vec<u8> {
-        let mut text = Vec::with_capacity(rows.len() * self.fields.len() * 12);
-        for &i in rows {
-            let i = i as usize;
-            for (k, (field, format)) in self.fields.iter().zip(formats).enumerate() {
-                if k > 0 {
-                    text.push(b' ');
-                }
-                let value = match &field.data {
-                    Data::Int(f) => Value::Int(f(i)),
-                    Data::Float(f) => Value::Float(f(i)),
-                };
-                format.write(&mut text, &[value]);
-            }
-            text.push(b'\n');
-        }
-        text
     }
 }
 
@@ -159,6 +201,10 @@ pub fn sort_rows(rows: &mut [u32], data: &Data<'_>, descending: bool) {
     match data {
         Data::Int(f) if descending => rows.sort_by_key(|&i| std::cmp::Reverse(f(i as usize))),
         Data::Int(f) => rows.sort_by_key(|&i| f(i as usize)),
+        Data::Text(list, which) => rows.sort_by(|&a, &b| {
+            let [a, b] = [a, b].map(|i| list.get(which(i as usize)));
+            if descending { b.cmp(&a) } else { a.cmp(&b) }
+        }),
         Data::Float(f) if descending => {
             rows.sort_by(|&a, &b| f(b as usize).total_cmp(&f(a as usize)));
         }
@@ -195,6 +241,8 @@ impl Target {
         write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
     ) -> Result<()> {
         let path = self.pattern.at(step);
+        let packed = self.pattern.packed();
+        let write = |to: &mut dyn Write| file::pack(to, packed, write);
         if self.pattern.many() {
             return file::replace(&path, write);
         }
@@ -294,6 +342,8 @@ ITEM: ATOMS id type xs ys zs ix iy iz
         let mut rows: Vec<u32> = (0..12).rev().collect();
         sort_rows(&mut rows, &fields[0].data, false);
         let snapshot = Snapshot {
+            header: true,
+            item: "ATOMS",
             step: 0,
             time: Some(0.0),
             units: Some("lj"),
@@ -333,6 +383,8 @@ ITEM: ATOMS id type xs ys zs ix iy iz
         let mut rows: Vec<u32> = (0..12).collect();
         sort_rows(&mut rows, &fields[2].data, true);
         let snapshot = Snapshot {
+            header: true,
+            item: "ATOMS",
             step: 0,
             time: None,
             units: None,
@@ -350,6 +402,8 @@ ITEM: ATOMS id type xs ys zs ix iy iz
         let rows: Vec<u32> = (0..n as u32).collect();
         let fields = [Field { name: "id", format: None, data: Data::int(|i| i as i64) }];
         let snapshot = Snapshot {
+            header: true,
+            item: "ATOMS",
             step: 7,
             time: None,
             units: None,

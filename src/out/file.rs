@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::diag::{Code, Diagnostic, Result, fail};
 
 /// Endings that LAMMPS writes compressed or binary and perigrain does not.
-const REFUSED_ENDINGS: &[&str] = &[".gz", ".zst", ".bz2", ".xz", ".lz4", ".bin", ".lammpsbin"];
+const REFUSED_ENDINGS: &[&str] = &[".zst", ".bz2", ".xz", ".lz4", ".bin", ".lammpsbin"];
 
 /// A file name in which `*` stands for the step.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ impl Pattern {
     pub fn new(text: &str) -> Result<Self> {
         if let Some(ending) = REFUSED_ENDINGS.iter().find(|e| text.ends_with(**e)) {
             let d = Diagnostic::error(Code::NOT_SUPPORTED, None, format!("files that end in `{ending}`"));
-            return Err(d.help("write plain text and compress the file afterwards").into());
+            return Err(d.help("write plain text or `.gz`").into());
         }
         Self::of_any_kind(text)
     }
@@ -50,6 +50,11 @@ impl Pattern {
     /// The name as it was written in the deck.
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// Whether what is written is compressed (`.gz`).
+    pub fn packed(&self) -> bool {
+        self.text.ends_with(".gz")
     }
 
     /// Whether every snapshot gets a file of its own.
@@ -130,6 +135,21 @@ fn put(path: &Path, durably: bool, write: impl FnOnce(&mut dyn Write) -> std::io
     })
 }
 
+/// Writes plainly, or as one gzip member: a file of several members reads as one, and what a killed run has left of it
+/// reads up to the last whole one.
+pub fn pack(
+    to: &mut dyn Write,
+    packed: bool,
+    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    if !packed {
+        return write(to);
+    }
+    let mut packer = flate2::write::GzEncoder::new(to, flate2::Compression::default());
+    write(&mut packer)?;
+    packer.finish().map(|_| ())
+}
+
 /// `.NAME.part` in the same folder.
 fn beside(path: &Path) -> PathBuf {
     let mut name = OsString::from(".");
@@ -152,7 +172,7 @@ mod tests {
         assert_eq!(p.at(5), PathBuf::from("run/d.000005.atom"));
         assert_eq!(p.stem(), PathBuf::from("run/d.atom"));
         assert_eq!(Pattern::new("plate_*.vtu").unwrap().stem(), PathBuf::from("plate.vtu"));
-        for bad in ["", "a.%.b", "a.*.*", "d.gz", "x.bin"] {
+        for bad in ["", "a.%.b", "a.*.*", "d.zst", "x.bin"] {
             assert!(Pattern::new(bad).is_err(), "{bad}");
         }
     }

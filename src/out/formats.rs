@@ -8,8 +8,10 @@ use crate::math::cformat::{Format, Spec};
 pub enum Kind {
     /// Counts, steps, ids.
     Int,
-    /// Everything else.
+    /// Everything else that is a number.
     Float,
+    /// Words, as the names of elements.
+    Text,
 }
 
 /// The `format` settings of `thermo_modify` and `dump_modify`, in LAMMPS' order of precedence.
@@ -64,8 +66,12 @@ impl Formats {
     /// The format of a column, if one was set.
     pub fn of(&self, column: usize, kind: Kind) -> Option<&Format> {
         let own = self.own.get(column).and_then(Option::as_ref);
-        let general = if kind == Kind::Int { &self.int } else { &self.float };
-        own.or(general.as_ref()).or(self.line.get(column))
+        let general = match kind {
+            Kind::Int => self.int.as_ref(),
+            Kind::Float => self.float.as_ref(),
+            Kind::Text => None,
+        };
+        own.or(general).or(self.line.get(column))
     }
 }
 
@@ -81,6 +87,7 @@ fn conversion(text: &str, kind: Kind) -> Result<Format> {
     };
     let (fits, wanted) = match kind {
         Kind::Int => (spec.is_integer(), "a whole number: use %d, as in `%10d`"),
+        Kind::Text => (!spec.is_integer() && !spec.is_float(), "a word: use %s"),
         Kind::Float => (spec.is_float(), "a number with a point: use %g, %f or %e, as in `%15.8g`"),
     };
     if !fits {

@@ -5,6 +5,7 @@
 pub mod dump;
 pub mod file;
 pub mod formats;
+pub mod forms;
 pub mod image;
 pub mod log;
 pub mod restart;

@@ -3,7 +3,7 @@
 use crate::diag::{Result, Span};
 use crate::lang::{Param, ValueRef};
 use crate::out::log::Log;
-use crate::plan::{Stage, When};
+use crate::plan::{Op, Stage, When};
 use crate::world::{SlotId, World};
 
 /// Where an op finds a value while it runs; the plan makes sure it is fresh.
@@ -151,6 +151,13 @@ pub trait SealCx {
     fn steps(&mut self, r: &ValueRef) -> Result<When>;
     /// Where a run speaks.
     fn log(&self) -> Log;
+    /// The op that gives a compute a new beginning after a snapshot (`dump_modify refresh`); `None` if it has none.
+    ///
+    /// # Errors
+    /// An unknown compute.
+    fn refresh(&mut self, _id: &str, _stage: Stage, _when: &When) -> Result<Option<Box<dyn Op>>> {
+        Ok(None)
+    }
     /// Energies must be tallied whenever `when` fires.
     fn ask_energy(&mut self, when: &When);
     /// The virial must be tallied whenever `when` fires.

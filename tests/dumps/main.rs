@@ -1,7 +1,7 @@
 //! Text dumps against LAMMPS' own files, byte for byte.
 //!
 //! `golden/` holds what LAMMPS 22Jul2025 writes for `in.dumps` (`lmp -in in.dumps -var dir golden`), where `g.dump`
-//! began with the line `before`. Formats show at most eight digits: the last ones of a double depend on the order of
+//! began with the line `before`; `golden_forms/` the same for `in.forms`. Formats show at most eight digits: the last ones of a double depend on the order of
 //! additions into forces.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
@@ -45,6 +45,41 @@ fn the_same_bytes_as_lammps() {
             assert!(same, "{name}, line {}:\nours   {a}\nLAMMPS {b}", k + 1);
             bounds = if a.starts_with("ITEM: BOX BOUNDS") { 3 } else { bounds.max(1) - 1 };
         }
+    }
+}
+
+#[test]
+fn other_forms_are_the_same_bytes_too() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/dumps");
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().to_str().unwrap().to_string();
+    let options = Options { compat: true, vars: vec![("dir".into(), vec![dir])], ..Options::default() };
+    let deck = fs::read_to_string(here.join("in.forms")).unwrap();
+    Session::new(options).unwrap().run_text("in.forms", &deck).unwrap();
+    let (ours, theirs) = (files(folder.path()), files(&here.join("golden_forms")));
+    assert_eq!(ours.keys().collect::<Vec<_>>(), theirs.keys().collect::<Vec<_>>());
+    for (name, text) in &ours {
+        assert_eq!(text, &theirs[name], "{name}");
+    }
+}
+
+/// A growing file is packed snapshot by snapshot, a file of one snapshot as a whole: both unpack to what is written
+/// without `.gz`.
+#[test]
+fn packed_files_unpack_to_the_same_text() {
+    use std::io::Read;
+    let folder = tempfile::tempdir().unwrap();
+    let deck = "units lj\nlattice sc 1\nregion b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 box\nmass 1 1\n\
+        velocity all set 1 2 3\nfix 1 all nve\ndump 1 all atom 2 ${dir}/a.txt\ndump 2 all atom 2 ${dir}/a.txt.gz\n\
+        dump 3 all yaml 4 ${dir}/b.*.txt id x\ndump 4 all yaml 4 ${dir}/b.*.txt.gz id x\nrun 4\n";
+    let dir = folder.path().to_str().unwrap().to_string();
+    let options = Options { vars: vec![("dir".into(), vec![dir])], ..Options::default() };
+    Session::new(options).unwrap().run_text("in.packed", deck).unwrap();
+    for name in ["a.txt", "b.0.txt", "b.4.txt"] {
+        let packed = fs::File::open(folder.path().join(format!("{name}.gz"))).unwrap();
+        let mut text = String::new();
+        flate2::read::MultiGzDecoder::new(packed).read_to_string(&mut text).unwrap();
+        assert_eq!(text, fs::read_to_string(folder.path().join(name)).unwrap(), "{name}");
     }
 }
 

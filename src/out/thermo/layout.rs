@@ -154,7 +154,7 @@ impl Layout {
             Line::One => {
                 let heads = self.columns.iter().map(|c| match c.kind {
                     Kind::Int => format!("{:^11}", c.header),
-                    Kind::Float => format!("{:^14}", c.header),
+                    _ => format!("{:^14}", c.header),
                 });
                 heads.collect::<Vec<_>>().join(" ")
             }

@@ -41,10 +41,7 @@ impl ComputeStyle for DisplaceAtom {
             let name = args.expect("the name of an atom-style variable")?;
             let r =
                 ValueRef { kind: RefKind::Variable, name: name.text.clone(), index: vec![], span: name.span };
-            // LAMMPS looks the variable up at the first snapshot: it often names this very compute.
-            if cx.names.variable(&r.name).is_some() {
-                cx.reading(&r, Wants::PerAtom)?;
-            }
+            cx.reading(&r, Wants::PerAtom)?;
             refresh = Some(r);
         }
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, refresh }))

@@ -19,6 +19,7 @@ mod pe;
 mod pe_atom;
 mod pressure;
 pub mod property_atom;
+mod property_local;
 mod reduce;
 mod temp;
 
@@ -119,6 +120,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &pe_atom::PeAtom,
     &pressure::Pressure,
     &property_atom::PropertyAtom,
+    &property_local::PropertyLocal,
     &reduce::Reduce,
     &reduce::ReduceRegion,
     &temp::Temp,

@@ -147,7 +147,7 @@ impl Style for ReduceRegion {
             summary: "As compute reduce, for particles that are in a region at that moment.",
             text: "Modes, inputs and results are those of compute reduce; a particle counts while it is in the group and inside \
                    the region.",
-            example: "compute deep all reduce/region box max vz",
+            example: "compute deep all reduce/region half max vz",
         }
     }
 }
@@ -324,6 +324,7 @@ impl Compute for Declared {
         let (group, region) = (self.group, self.region.clone());
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "x v f mask", move |w, _, out| {
             let chosen = Chosen::new(w, group, region.as_deref(), span)?;
+            let chosen = chosen.now(w);
             let p = &w.particles;
             let has = |i: usize| chosen.has(p.mask[i], p.x[i]);
             let artefact = Artefact { lammps: w.settings.lammps(), several: sources.len() > 1 };

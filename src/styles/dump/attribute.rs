@@ -46,6 +46,8 @@ pub enum Core {
     Unwrapped(usize),
     /// The same as a fraction of the box.
     ScaledUnwrapped(usize),
+    /// The same in a cell ten times as large around the same middle (dump cfg).
+    Tenth(usize),
     /// Box crossings.
     Image(usize),
     /// Velocity.
@@ -62,6 +64,8 @@ pub enum Core {
     Torque(usize),
     /// Volume of a peridynamic particle.
     Volume,
+    /// Name of the type (`dump_modify element`).
+    Element,
 }
 
 /// All core attributes by name.
@@ -101,11 +105,11 @@ pub const CORE: &[(&str, Core)] = &[
     ("tqy", Core::Torque(1)),
     ("tqz", Core::Torque(2)),
     ("volume", Core::Volume),
+    ("element", Core::Element),
 ];
 
 /// LAMMPS' attributes for things that perigrain's particles do not have.
-const ELSEWHERE: &[&str] =
-    &["mol", "element", "q", "mux", "muy", "muz", "mu", "angmomx", "angmomy", "angmomz"];
+const ELSEWHERE: &[&str] = &["mol", "q", "mux", "muy", "muz", "mu", "angmomx", "angmomy", "angmomz"];
 
 /// What `c_ID[*]` becomes: one attribute per column.
 pub fn expand(word: &Word, cx: &BuildCx) -> Result<Vec<Attribute>> {
@@ -159,6 +163,7 @@ impl Attribute {
     pub fn kind(&self) -> Kind {
         match self.source {
             Source::Core(Core::Id | Core::Kind | Core::Process(_) | Core::Image(_)) => Kind::Int,
+            Source::Core(Core::Element) => Kind::Text,
             _ => Kind::Float,
         }
     }
@@ -169,6 +174,29 @@ impl Attribute {
             Source::Core(core) => Ok(Bound::Core(*core)),
             Source::Value(r) => Ok(Bound::Value(cx.value(r, Stage::Output, when)?)),
         }
+    }
+}
+
+/// What a snapshot shows.
+#[derive(Clone, Copy)]
+pub struct Frame<'a> {
+    /// The world.
+    pub world: &'a World,
+    /// Its box.
+    pub domain: &'a Domain,
+    /// Places and box crossings wrapped into the box as it is now, for `dump_modify pbc yes`.
+    pub wrapped: Option<&'a [([f64; 3], [i32; 3])]>,
+    /// The name of each type.
+    pub elements: &'a [String],
+}
+
+impl<'a> Frame<'a> {
+    fn x(&self, i: usize) -> [f64; 3] {
+        self.wrapped.map_or_else(|| self.world.particles.x[i], |w| w[i].0)
+    }
+
+    fn image(&self, i: usize) -> [i32; 3] {
+        self.wrapped.map_or_else(|| self.world.particles.image[i], |w| w[i].1)
     }
 }
 
@@ -183,38 +211,49 @@ pub enum Bound {
 
 impl Bound {
     /// The values by particle index.
-    pub fn data<'a>(&self, w: &'a World, d: &'a Domain) -> Data<'a> {
+    pub fn data<'a>(&self, frame: &Frame<'a>) -> Data<'a> {
         let core = match *self {
             Bound::Core(core) => core,
-            Bound::Value(reading) => return Data::float(move |i| reading.atom(w, i)),
+            Bound::Value(reading) => {
+                let w = frame.world;
+                return Data::float(move |i| reading.atom(w, i));
+            }
         };
-        let p = &w.particles;
+        let (p, d, f) = (&frame.world.particles, frame.domain, *frame);
         // As LAMMPS: times the inverse length, not divided by the length.
         let inverse = |k: usize| 1.0 / (d.hi[k] - d.lo[k]);
         let length = |k: usize| d.hi[k] - d.lo[k];
         match core {
             Core::Id => Data::int(|i| i64::from(p.tag[i])),
             Core::Kind => Data::int(|i| i64::from(p.kind[i])),
+            Core::Element => Data::Text(f.elements, Box::new(|i| usize::from(p.kind[i]) - 1)),
             Core::Process(rank) => Data::int(move |_| rank),
             Core::Mass => Data::slice(&p.mass),
-            Core::X(k) => Data::component(&p.x, k),
+            Core::X(k) => Data::float(move |i| f.x(i)[k]),
             Core::Scaled(k) => {
                 let (lo, inverse) = (d.lo[k], inverse(k));
-                Data::float(move |i| (p.x[i][k] - lo) * inverse)
+                Data::float(move |i| (f.x(i)[k] - lo) * inverse)
             }
             Core::Unwrapped(k) => {
                 let length = length(k);
-                Data::float(move |i| p.x[i][k] + f64::from(p.image[i][k]) * length)
+                Data::float(move |i| f.x(i)[k] + f64::from(f.image(i)[k]) * length)
             }
             Core::ScaledUnwrapped(k) => {
                 let (lo, inverse) = (d.lo[k], inverse(k));
                 // LAMMPS adds its image offset of 512 and takes it away again, which costs three digits.
-                let offset = if w.settings.lammps() { 512.0 } else { 0.0 };
+                let offset = if frame.world.settings.lammps() { 512.0 } else { 0.0 };
                 Data::float(move |i| {
-                    (p.x[i][k] - lo) * inverse + (f64::from(p.image[i][k]) + offset) - offset
+                    (f.x(i)[k] - lo) * inverse + (f64::from(f.image(i)[k]) + offset) - offset
                 })
             }
-            Core::Image(k) => Data::int(move |i| i64::from(p.image[i][k])),
+            Core::Tenth(k) => {
+                let (lo, inverse) = (d.lo[k], inverse(k));
+                Data::float(move |i| {
+                    let scaled = (f.x(i)[k] - lo) * inverse + f64::from(f.image(i)[k]);
+                    (scaled - 0.5) / 10.0 + 0.5
+                })
+            }
+            Core::Image(k) => Data::int(move |i| i64::from(f.image(i)[k])),
             Core::V(k) => Data::component(&p.v, k),
             Core::F(k) => Data::component(&p.f, k),
             Core::Radius => Data::slice(&p.radius),

@@ -1,41 +1,57 @@
 //! What all dumps share: which particles, in which order, when, and into which file.
 
+use std::collections::VecDeque;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use super::attribute::{Attribute, Bound, attribute};
+use super::attribute::{Attribute, Bound, Frame, attribute};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::args::{blame, parse_number};
-use crate::lang::{Args, Word};
+use crate::lang::{Args, RefKind, ValueRef, Word};
 use crate::out::dump::{Data, Target, sort_rows};
-use crate::out::file::Pattern;
+use crate::out::file::{Pattern, trouble};
 use crate::out::image::View;
 use crate::out::vtu::Series;
 use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::step_op::StepOp;
-use crate::styles::{BuildCx, SealCx, UseKind};
-use crate::world::{GroupId, World};
+use crate::styles::{BuildCx, SealCx, UseKind, Wants};
+use crate::world::{Domain, GroupId, World};
 
 /// Keywords of `dump_modify` that every style understands.
-pub const KEYWORDS: &[&str] =
-    &["append", "buffer", "every", "first", "flush", "pad", "pbc", "region", "sort", "thresh"];
-
-/// Keywords of LAMMPS that no style here understands.
-const ELSEWHERE: &[&str] = &[
-    "at",
+pub const KEYWORDS: &[&str] = &[
+    "append",
     "balance",
+    "buffer",
     "delay",
     "element",
+    "every",
     "every/time",
-    "fileper",
-    "header",
-    "label",
+    "first",
+    "flush",
     "maxfiles",
-    "nfile",
+    "pad",
+    "pbc",
     "refresh",
-    "sfactor",
-    "tfactor",
-    "thermo",
-    "unwrap",
+    "region",
+    "skip",
+    "sort",
+    "thresh",
+    "types",
+];
+
+/// Keywords of LAMMPS that no style here understands, and why.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("at", "is for dump styles that perigrain does not have"),
+    ("fileper", "shares files among processes: there is one process here"),
+    ("nfile", "shares files among processes: there is one process here"),
+    ("sfactor", "is for dump xtc, which perigrain does not have"),
+    ("tfactor", "is for dump xtc, which perigrain does not have"),
+    ("precision", "is for dump xtc, which perigrain does not have"),
+    ("unwrap", "is for dumps dcd and xtc, which perigrain does not have: dump xu yu zu"),
+    ("thermo", "is not in perigrain: use thermo_modify line yaml"),
+    ("triclinic/general", "is for tilted boxes, which perigrain does not have"),
+    ("header", "is for text dumps"),
+    ("label", "is for dump local"),
 ];
 
 /// What outlives a run: open files and what belongs to them.
@@ -49,6 +65,10 @@ pub struct State {
     pub series: Option<Series>,
     /// The view that an `image` dump keeps.
     pub view: Option<View>,
+    /// The next time to write at, for `every/time`.
+    next_time: Option<f64>,
+    /// Files of single snapshots that still exist, for `maxfiles`.
+    kept: VecDeque<PathBuf>,
 }
 
 /// The order of rows.
@@ -67,11 +87,23 @@ pub enum Sort {
 pub struct Threshold {
     attribute: Attribute,
     compare: fn(f64, f64) -> bool,
-    value: f64,
+    /// `None`: the particle's value at the last snapshot (`LAST`).
+    value: Option<f64>,
 }
 
 /// A threshold whose attribute has been found: left side, comparison, right side.
-type Test<T> = (T, fn(f64, f64) -> bool, f64);
+type Test<T> = (T, fn(f64, f64) -> bool, Option<f64>);
+
+/// When snapshots are made, where that is not at multiples of the dump's interval.
+#[derive(Clone, Debug)]
+enum Rhythm {
+    /// The interval of the dump.
+    Steps,
+    /// At steps that a variable names.
+    Named(ValueRef),
+    /// At multiples of a time.
+    Time(f64),
+}
 
 /// What all dumps share.
 #[derive(Clone, Debug)]
@@ -84,7 +116,15 @@ pub struct Base {
     append: bool,
     pad: usize,
     every: Option<i64>,
+    rhythm: Rhythm,
+    delay: i64,
     first: bool,
+    pbc: bool,
+    maxfiles: Option<usize>,
+    skip: Option<ValueRef>,
+    refresh: Option<String>,
+    /// Names of types.
+    pub elements: Vec<String>,
     region: Option<String>,
     thresholds: Vec<Threshold>,
     /// Order of rows.
@@ -116,7 +156,14 @@ impl Base {
             let d = blame(word, Code::NOT_SUPPORTED, message);
             return Err(d.help(format!("let the name end in {}", endings[0])).into());
         }
-        let state = State { target: Target::new(pattern), last: None, series: None, view: None };
+        let state = State {
+            target: Target::new(pattern),
+            last: None,
+            series: None,
+            view: None,
+            next_time: None,
+            kept: VecDeque::new(),
+        };
         Ok(Self {
             id: cx.id.to_string(),
             style,
@@ -124,7 +171,14 @@ impl Base {
             append: false,
             pad: 0,
             every: None,
+            rhythm: Rhythm::Steps,
+            delay: i64::MIN,
             first: false,
+            pbc: false,
+            maxfiles: None,
+            skip: None,
+            refresh: None,
+            elements: vec!["C".to_string(); cx.world.types],
             region: None,
             thresholds: vec![],
             sort: Sort::Id,
@@ -156,7 +210,25 @@ impl Base {
     pub fn modify(&mut self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<bool> {
         match word.text.as_str() {
             "append" => self.append = args.flag("append")?,
-            "every" => self.every = Some(every(args)?),
+            "every" => self.read_every(args, cx)?,
+            "every/time" => self.rhythm = Rhythm::Time(args.positive("the time between snapshots")?),
+            "delay" => self.delay = args.integer("the first step to write")?,
+            "element" => self.elements = names(args, cx)?,
+            "maxfiles" => self.maxfiles = maxfiles(args)?,
+            "refresh" => self.refresh = Some(refresh(args, cx)?),
+            "skip" => self.skip = Some(number_variable(args, cx)?),
+            "balance" => {
+                args.flag("balance")?;
+                let text = "without effect: there is one process";
+                cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, text));
+            }
+            "types" => {
+                let kind = args.expect("`numeric`")?;
+                if kind.text != "numeric" {
+                    let d = blame(kind, Code::NOT_SUPPORTED, "types have no labels in perigrain");
+                    return Err(d.help("write `types numeric`, or name types with `element`").into());
+                }
+            }
             "first" => self.first = args.flag("first")?,
             "pad" => self.pad = args.integer_from(0, "the number of digits")?.min(40) as usize,
             "region" => self.region = region(args, cx)?,
@@ -166,12 +238,7 @@ impl Base {
             "flush" | "buffer" => {
                 args.flag(&word.text)?;
             }
-            "pbc" => {
-                if args.flag("pbc")? {
-                    let d = blame(word, Code::NOT_SUPPORTED, "dump_modify pbc yes");
-                    return Err(d.help("dump xu yu zu, or wrap when reading").into());
-                }
-            }
+            "pbc" => self.pbc = args.flag("pbc")?,
             _ => return Ok(false),
         }
         Ok(true)
@@ -198,10 +265,7 @@ impl Base {
             }
         };
         let word = args.expect("a number to compare with")?;
-        if word.text == "LAST" {
-            return fail(Code::NOT_SUPPORTED, word.span, "thresh against LAST");
-        }
-        let value = parse_number(word, "the threshold")?;
+        let value = if word.text == "LAST" { None } else { Some(parse_number(word, "the threshold")?) };
         self.thresholds.push(Threshold { attribute, compare, value });
         Ok(())
     }
@@ -214,11 +278,7 @@ impl Base {
         attributes: &[Attribute],
         mut write: impl FnMut(Shot<'_>) -> Result<()> + Send + 'static,
     ) -> Result<Box<dyn Op>> {
-        let when = match every {
-            0 => When::Always,
-            n if self.first => When::Every(n).or(When::First),
-            n => When::Every(n),
-        };
+        let when = self.when(cx, every)?;
         let bind = |a: &Attribute, cx: &mut dyn SealCx| a.bind(cx, &when);
         let shown = attributes.iter().map(|a| bind(a, cx)).collect::<Result<Vec<_>>>()?;
         let tested = self
@@ -226,42 +286,111 @@ impl Base {
             .iter()
             .map(|t| Ok((bind(&t.attribute, cx)?, t.compare, t.value)))
             .collect::<Result<Vec<_>>>()?;
+        let skip = match &self.skip {
+            Some(r) => Some(cx.reading(r, Wants::Number, Stage::Output, &when)?),
+            None => None,
+        };
         let span = cx.span();
+        let mut refresh = match &self.refresh {
+            Some(id) => cx.refresh(id, Stage::Output, &when)?,
+            None => None,
+        };
         let base = self.clone();
         let act = move |w: &mut World, t: &Tick| {
-            if !base.due(t, every) {
+            if !base.due(w, t, every) || skip.is_some_and(|s| s.get(w) != 0.0) {
                 return Ok(());
             }
             let world = &*w;
             let domain = world.domain().map_err(|e| e.at(span))?;
-            let data: Vec<Data<'_>> = shown.iter().map(|b| b.data(world, domain)).collect();
-            let rows = base.rows(world, &tested, &data).map_err(|e| e.at(span))?;
+            let wrapped = base.pbc.then(|| wrapped(world, domain));
+            let frame = Frame { world, domain, wrapped: wrapped.as_deref(), elements: &base.elements };
+            let data: Vec<Data<'_>> = shown.iter().map(|b| b.data(&frame)).collect();
+            let (rows, last) = base.rows(&frame, &tested, &data).map_err(|e| e.at(span))?;
             let mut state = base.state();
             (state.target.append, state.target.pattern.pad) = (base.append, base.pad);
             let shot = Shot { world, step: t.step, rows, data, state: &mut state };
             write(shot).map_err(|e| e.at(span))?;
             state.last = Some(t.step);
-            Ok(())
+            base.keep_few(&mut state, t.step)?;
+            drop(state);
+            let n = w.n();
+            last.into_iter().for_each(|(key, values)| *w.columns.scalar(&key, n) = values);
+            refresh.as_mut().map_or(Ok(()), |op| op.run(w, t))
         };
         let name = format!("dump {} {}", self.id, self.style);
         let reads = "x v f image mask tag kind mass radius omega torque volume";
         Ok(StepOp::new(name, Stage::Output, Access::new(reads, ""), act).when(when).in_setup(true).boxed())
     }
 
+    /// When snapshots may be due; whether they are is decided then.
+    pub fn when(&self, cx: &mut dyn SealCx, every: i64) -> Result<When> {
+        let when = match (&self.rhythm, every) {
+            (_, 0) | (Rhythm::Time(_), _) => return Ok(When::Always),
+            (Rhythm::Named(r), _) => cx.steps(r)?,
+            (Rhythm::Steps, n) => When::Every(n),
+        };
+        Ok(if self.first { when.or(When::First) } else { when })
+    }
+
     /// Whether this step is to be written: not twice, and the first step only if asked or a multiple.
-    fn due(&self, t: &Tick, every: i64) -> bool {
+    fn due(&self, w: &World, t: &Tick, every: i64) -> bool {
         if every == 0 {
             return true;
         }
-        let last = self.state().last;
-        if t.setup && t.step % every != 0 {
-            return self.first && last.is_none();
+        let mut state = self.state();
+        if let Rhythm::Time(time) = self.rhythm {
+            return self.due_in_time(&mut state, w, t, time);
         }
-        t.step % every == 0 && last != Some(t.step)
+        let regular = match self.rhythm {
+            Rhythm::Steps => t.step % every == 0,
+            _ => !t.setup,
+        };
+        if t.step < self.delay {
+            return false;
+        }
+        if t.setup && !regular {
+            return self.first && state.last.is_none();
+        }
+        regular && state.last != Some(t.step)
     }
 
-    /// Particles that pass, in order.
-    fn rows(&self, w: &World, tested: &[Test<Bound>], data: &[Data<'_>]) -> Result<Vec<u32>> {
+    /// The same for multiples of a time: the first step that reaches one, to a millionth of a step.
+    fn due_in_time(&self, state: &mut State, w: &World, t: &Tick, every: f64) -> bool {
+        let now = w.clock.time();
+        let late_enough = t.step >= self.delay;
+        if t.setup {
+            state.next_time = Some(((now / every).floor() + 1.0) * every);
+            return late_enough && self.first && state.last.is_none();
+        }
+        let next = state.next_time.unwrap_or(0.0);
+        if now < next - 1e-6 * t.dt {
+            return false;
+        }
+        let mut next = next + every;
+        // Times closer than steps are passed over, where LAMMPS passes over them.
+        if (next - now - 1e-6 * t.dt) / t.dt <= -1.0 {
+            next += (((now + t.dt - next) / every).trunc() + 1.0) * every;
+        }
+        state.next_time = Some(next);
+        late_enough
+    }
+
+    /// Deletes the oldest files beyond `maxfiles`.
+    fn keep_few(&self, state: &mut State, step: i64) -> Result<()> {
+        let Some(most) = self.maxfiles.filter(|_| state.target.pattern.many()) else { return Ok(()) };
+        let path = state.target.pattern.at(step);
+        state.kept.push_back(path);
+        while state.kept.len() > most {
+            if let Some(old) = state.kept.pop_front() {
+                std::fs::remove_file(&old).map_err(|e| trouble("delete", &old, &e))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Particles that pass, in order, and the values that `LAST` will compare with next time.
+    fn rows(&self, frame: &Frame<'_>, tested: &[Test<Bound>], data: &[Data<'_>]) -> Result<(Vec<u32>, Last)> {
+        let w = frame.world;
         let region = match &self.region {
             None => None,
             Some(name) => match w.regions.get(name) {
@@ -270,13 +399,18 @@ impl Base {
             },
         };
         let (bit, p) = (self.group.bit(), &w.particles);
-        let domain = w.domain()?;
         let tests: Vec<Test<Data<'_>>> =
-            tested.iter().map(|(b, compare, value)| (b.data(w, domain), *compare, *value)).collect();
+            tested.iter().map(|(b, compare, value)| (b.data(frame), *compare, *value)).collect();
+        let key = |k: usize| format!("dump {} last {k}", self.id);
+        let before: Vec<Option<&[f64]>> = (0..tests.len()).map(|k| w.columns.get_scalar(&key(k))).collect();
         let passes = |i: usize| {
+            let holds = |(k, (data, compare, value)): (usize, &Test<Data<'_>>)| {
+                let value = value.or_else(|| before[k].and_then(|b| b.get(i).copied()));
+                value.is_some_and(|v| compare(data.number(i), v))
+            };
             p.mask[i] & bit != 0
                 && region.is_none_or(|r| r.contains(p.x[i]))
-                && tests.iter().all(|(data, compare, value)| compare(data.number(i), *value))
+                && tests.iter().enumerate().all(holds)
         };
         let mut rows: Vec<u32> = (0..w.n()).filter(|&i| passes(i)).map(|i| i as u32).collect();
         match self.sort {
@@ -284,27 +418,88 @@ impl Base {
             Sort::Column(k, descending) if k < data.len() => sort_rows(&mut rows, &data[k], descending),
             _ => sort_rows(&mut rows, &Data::int(|i| i64::from(p.tag[i])), false),
         }
-        Ok(rows)
+        let against_last = tests.iter().enumerate().filter(|(_, t)| t.2.is_none());
+        let last = against_last.map(|(k, t)| (key(k), (0..w.n()).map(|i| t.0.number(i)).collect())).collect();
+        Ok((rows, last))
     }
+}
+
+/// Values of this snapshot for the next one, by the name of their column.
+type Last = Vec<(String, Vec<f64>)>;
+
+/// Places and box crossings wrapped into the box.
+fn wrapped(w: &World, domain: &Domain) -> Vec<([f64; 3], [i32; 3])> {
+    let p = &w.particles;
+    (0..w.n())
+        .map(|i| {
+            let (mut x, mut image) = (p.x[i], p.image[i]);
+            domain.wrap(&mut x, &mut image);
+            (x, image)
+        })
+        .collect()
 }
 
 /// Refuses a keyword that neither the style nor all dumps know.
 pub fn unknown(word: &Word, args: &Args, own: &[&'static str]) -> crate::diag::Diagnostics {
-    if ELSEWHERE.contains(&word.text.as_str()) {
-        return blame(word, Code::NOT_SUPPORTED, format!("dump_modify {}", word.text)).into();
+    if let Some((name, why)) = ELSEWHERE.iter().find(|(name, _)| *name == word.text) {
+        return blame(word, Code::NOT_SUPPORTED, format!("dump_modify {name} {why}")).into();
     }
     let known: Vec<&'static str> = KEYWORDS.iter().chain(own).copied().collect();
     args.unknown(word, &known)
 }
 
-fn every(args: &mut Args) -> Result<i64> {
-    if let Some(word) = args.peek().filter(|w| w.text.starts_with("v_")) {
-        let d = blame(word, Code::NOT_SUPPORTED, "dump_modify every with a variable");
-        return Err(d
-            .help("give a fixed number of steps, or several `run` commands with `first yes`")
-            .into());
+impl Base {
+    /// `every N` or `every v_name`.
+    fn read_every(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        if args.peek().is_some_and(|w| w.text.starts_with("v_")) {
+            self.rhythm = Rhythm::Named(number_variable(args, cx)?);
+            return Ok(());
+        }
+        self.every = Some(args.integer_from(1, "the dump's interval")?);
+        self.rhythm = Rhythm::Steps;
+        Ok(())
     }
-    args.integer_from(1, "the dump's interval")
+}
+
+/// `v_name` of a variable that yields a number.
+fn number_variable(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
+    let word = args.expect("an equal-style variable, as `v_name`")?;
+    match ValueRef::parse(&word.text, word.span)?.filter(|r| r.kind == RefKind::Variable) {
+        Some(r) => cx.value(&r, false).map(|()| r),
+        None => Err(blame(word, Code::BAD_VALUE, "this must be an equal-style variable, as `v_name`").into()),
+    }
+}
+
+/// One name for each type.
+fn names(args: &mut Args, cx: &BuildCx) -> Result<Vec<String>> {
+    (0..cx.world.types)
+        .map(|k| Ok(args.expect(&format!("the name of type {}", k + 1))?.text.clone()))
+        .collect()
+}
+
+/// `maxfiles N`; -1 keeps all.
+fn maxfiles(args: &mut Args) -> Result<Option<usize>> {
+    let span = args.here();
+    match args.integer("the number of files")? {
+        -1 => Ok(None),
+        n if n >= 1 => Ok(Some(n as usize)),
+        n => fail(Code::BAD_VALUE, span, format!("maxfiles must be at least 1, or -1 for all, not {n}")),
+    }
+}
+
+/// `refresh c_ID`.
+fn refresh(args: &mut Args, cx: &BuildCx) -> Result<String> {
+    let word = args.expect("a compute, as `c_ID`")?;
+    match ValueRef::parse(&word.text, word.span)? {
+        Some(r) if r.kind == RefKind::Compute && r.index.is_empty() => {
+            if cx.shape(&r).is_none() {
+                cx.value(&r, true)?;
+            }
+            cx.uses(UseKind::Compute, &r.name);
+            Ok(r.name)
+        }
+        _ => Err(blame(word, Code::BAD_VALUE, "refresh takes a compute, as `c_ID`").into()),
+    }
 }
 
 fn region(args: &mut Args, cx: &BuildCx) -> Result<Option<String>> {

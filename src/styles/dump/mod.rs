@@ -2,7 +2,9 @@
 
 mod attribute;
 mod base;
+mod forms;
 mod image;
+mod local;
 mod picture;
 mod text;
 mod vtk;
@@ -48,4 +50,14 @@ pub trait Dump: Send {
 }
 
 /// Every dump style.
-pub const DUMPS: &[&dyn DumpStyle] = &[&text::Atom, &text::Custom, &vtk::Vtk, &image::Image];
+#[rustfmt::skip]
+pub const DUMPS: &[&dyn DumpStyle] = &[
+    &text::Atom,
+    &forms::Cfg,
+    &text::Custom,
+    &image::Image,
+    &local::Local,
+    &vtk::Vtk,
+    &forms::Xyz,
+    &forms::Yaml,
+];

@@ -7,6 +7,7 @@ use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Word};
 use crate::out::dump::{Field, Snapshot};
 use crate::out::formats::{Formats, Kind};
+use crate::out::forms;
 use crate::plan::Op;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
 
@@ -19,15 +20,22 @@ pub struct Custom;
 /// The page of `custom`.
 const PAGE: &str = "Attributes: `id type mass proc procp1`, positions `x y z`, as fractions of the box `xs ys zs`, \
     with box crossings undone `xu yu zu xsu ysu zsu`, box crossings `ix iy iz`, velocities `vx vy vz`, forces \
-    `fx fy fz`, for spheres `radius diameter omegax omegay omegaz tqx tqy tqz`, for peridynamic particles `volume`, and \
+    `fx fy fz`, the type's name `element`, for spheres `radius diameter omegax omegay omegaz tqx tqy tqz`, for peridynamic particles `volume`, and \
     per-atom values `c_ID c_ID[k] c_ID[*] f_ID f_ID[k] v_name`.\n\n\
-    `dump_modify ID keyword value …` understands `append yes|no` (go on behind an existing file), `colname N name`, \
-    `every N`, `first yes|no` (also the first step of the first run), `format line \"…\"`, `format int %d`, \
-    `format float %g`, `format N %…` (one column), `format none`, `pad N` (digits of the step in file names), \
-    `region ID|none`, `sort id|off|N|-N`, `thresh attribute < <= > >= == != value` (several must all hold; \
-    `thresh none`), `time yes|no` and `units yes|no` (further header lines).\n\n\
+    `dump_modify ID keyword value …` understands, for every text dump: `append yes|no` (go on behind an existing file), \
+    `delay N` (nothing before step N), `element A B …` (one name per type, for the attribute `element`), `every N` or \
+    `every v_name` (a variable that names the next step), `every/time T` (multiples of a time), `first yes|no` (also the \
+    first step of the first run), `maxfiles N` (keep the last N of the files of single snapshots), `pad N` (digits of the \
+    step in file names), `pbc yes|no` (wrap positions into the box first), `refresh c_ID` (see compute displace/atom), \
+    `region ID|none`, `skip v_name` (no snapshot while the variable is not zero), `sort id|off|N|-N`, \
+    `thresh attribute < <= > >= == != |^ value|LAST` (several must all hold; LAST is the particle's value at the last \
+    snapshot; `thresh none`). This style adds `colname N name`, `format line \"…\"`, `format int %d`, `format float %g`, \
+    `format N %…` (one column), `format none`, `header yes|no`, `time yes|no` and `units yes|no` (further header lines). \
+    `balance buffer flush` and `types numeric` are read and without effect; `nfile fileper at sfactor tfactor precision \
+    unwrap thermo triclinic/general` are refused by name.\n\n\
     Rows are sorted by id unless told otherwise (LAMMPS: unsorted). A `*` in the file name becomes the step, and each \
-    snapshot then has a file of its own that appears only when it is complete. Compressed and binary files are refused.";
+    snapshot then has a file of its own that appears only when it is complete. A name that ends in `.gz` is compressed; \
+    binary files are refused.";
 
 impl Style for Atom {
     fn name(&self) -> &'static str {
@@ -62,50 +70,61 @@ impl Style for Custom {
 impl DumpStyle for Atom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
         let base = Base::new("atom", args, cx, &[])?;
-        let layout = Layout::Atom { scaled: true, image: false };
-        Ok(Box::new(Text {
-            base,
-            layout,
-            formats: Formats::default(),
-            names: vec![],
-            time: false,
-            units: false,
-        }))
+        Ok(Box::new(Text::new(base, Form::Native, Layout::Atom { scaled: true, image: false })))
     }
 }
 
 impl DumpStyle for Custom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
         let base = Base::new("custom", args, cx, &[])?;
-        let mut attributes = vec![];
-        // `modify` ends the attributes of write_dump.
-        while let Some(word) = args.peek().filter(|w| w.text != "modify") {
-            args.next();
-            attributes.extend(expand(word, cx)?);
+        let attributes = attributes(args, cx)?;
+        Ok(Box::new(Text::new(base, Form::Native, Layout::Custom(attributes))))
+    }
+}
+
+/// The attributes of a dump.
+pub(super) fn attributes(args: &mut Args, cx: &BuildCx) -> Result<Vec<Attribute>> {
+    let mut attributes = vec![];
+    // `modify` ends the attributes of write_dump.
+    while let Some(word) = args.peek().filter(|w| w.text != "modify") {
+        args.next();
+        attributes.extend(expand(word, cx)?);
+    }
+    if attributes.is_empty() {
+        args.expect("a particle attribute such as id or x")?;
+        return fail(Code::MISSING_ARGUMENT, args.here(), "this dump needs an attribute such as id or x");
+    }
+    Ok(attributes)
+}
+
+/// What a snapshot looks like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Form {
+    /// LAMMPS' own text.
+    Native,
+    /// One YAML document each.
+    Yaml,
+    /// XYZ.
+    Xyz,
+    /// AtomEye's CFG, with its length scale.
+    Cfg(f64),
+}
+
+impl Form {
+    /// Further keywords of `dump_modify`.
+    fn keywords(self, atom: bool) -> &'static [&'static str] {
+        match self {
+            Form::Native if atom => &["colname", "format", "header", "image", "scale", "time", "units"],
+            Form::Native | Form::Yaml => &["colname", "format", "header", "time", "units"],
+            Form::Xyz => &["format", "time"],
+            Form::Cfg(_) => &["format"],
         }
-        if attributes.is_empty() {
-            args.expect("a particle attribute such as id or x")?;
-            return fail(
-                Code::MISSING_ARGUMENT,
-                args.here(),
-                "dump custom needs an attribute such as id or x",
-            );
-        }
-        let layout = Layout::Custom(attributes);
-        Ok(Box::new(Text {
-            base,
-            layout,
-            formats: Formats::default(),
-            names: vec![],
-            time: false,
-            units: false,
-        }))
     }
 }
 
 /// Which columns.
 #[derive(Clone, Debug)]
-enum Layout {
+pub(super) enum Layout {
     Atom { scaled: bool, image: bool },
     Custom(Vec<Attribute>),
 }
@@ -132,8 +151,10 @@ impl Layout {
 
 /// A declared text dump.
 #[derive(Clone, Debug)]
-struct Text {
-    base: Base,
+pub(super) struct Text {
+    pub(super) base: Base,
+    form: Form,
+    header: bool,
     layout: Layout,
     formats: Formats,
     /// Column names that `colname` has set.
@@ -167,31 +188,40 @@ impl Dump for Text {
                 .map(|(k, data)| {
                     let renamed = dump.names.iter().rev().find(|(column, _)| *column == k);
                     let name = renamed.map_or(shown[k].word.as_str(), |(_, name)| name);
-                    Field { name, format: dump.formats.of(k, shown[k].kind()), data }
+                    let named = k == 1 && matches!(dump.form, Form::Cfg(_));
+                    let format = dump.formats.of(k, shown[k].kind()).filter(|_| !named);
+                    Field { name, format, data }
                 })
                 .collect();
             let target = &mut shot.state.target;
-            let snapshot = Snapshot {
-                step: shot.step,
-                time: dump.time.then(|| w.clock.time()),
-                units: (dump.units && target.is_fresh()).then(|| w.settings.units.name()),
-                bounds: [0, 1, 2].map(|k| [domain.lo[k], domain.hi[k]]),
-                boundary: &letters,
-                rows: &shot.rows,
-                fields: &fields,
-            };
-            target.write(shot.step, |to| snapshot.write(to))
+            let fresh = target.is_fresh();
+            let bounds = [0, 1, 2].map(|k| [domain.lo[k], domain.hi[k]]);
+            let (step, rows, time) = (shot.step, &shot.rows, dump.time.then(|| w.clock.time()));
+            let units = dump.units.then(|| w.settings.units.name());
+            target.write(step, |to| match dump.form {
+                Form::Xyz => forms::xyz(to, step, time, rows, &fields),
+                Form::Cfg(scale) => forms::cfg(to, scale, domain.lengths(), rows, &fields),
+                Form::Yaml => {
+                    let head =
+                        forms::Yaml { step, units, time, boundary: &letters, bounds, header: dump.header };
+                    head.write(to, rows, &fields)
+                }
+                Form::Native => {
+                    let units = units.filter(|_| fresh);
+                    let header = dump.header;
+                    let item = "ATOMS";
+                    let boundary = &letters;
+                    Snapshot { header, item, step, time, units, bounds, boundary, rows, fields: &fields }
+                        .write(to)
+                }
+            })
         })
     }
 
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
         while let Some(word) = args.next() {
             if !self.base.modify(word, args, cx)? && !self.own(word, args)? {
-                let own: &[&str] = match self.layout {
-                    Layout::Atom { .. } => &["colname", "format", "image", "scale", "time", "units"],
-                    Layout::Custom(_) => &["colname", "format", "time", "units"],
-                };
-                return Err(unknown(word, args, own));
+                return Err(unknown(word, args, self.own_keywords()));
             }
         }
         Ok(())
@@ -207,9 +237,28 @@ impl Dump for Text {
 }
 
 impl Text {
-    /// One keyword of these two styles.
+    /// A dump of these columns.
+    pub(super) fn new(base: Base, form: Form, layout: Layout) -> Self {
+        let formats = Formats::default();
+        Self { base, form, header: true, layout, formats, names: vec![], time: false, units: false }
+    }
+
+    /// Another format for a column (from 0) than the usual one, until `dump_modify format` says more.
+    pub(super) fn default_format(&mut self, column: usize, format: &str) -> Result<()> {
+        self.formats.set_column(column, Kind::Float, format)
+    }
+
+    fn own_keywords(&self) -> &'static [&'static str] {
+        self.form.keywords(matches!(self.layout, Layout::Atom { .. }))
+    }
+
+    /// One keyword of these styles.
     fn own(&mut self, word: &Word, args: &mut Args) -> Result<bool> {
+        if !self.own_keywords().contains(&word.text.as_str()) {
+            return Ok(false);
+        }
         match (word.text.as_str(), &mut self.layout) {
+            ("header", _) => self.header = args.flag("header")?,
             ("time", _) => self.time = args.flag("time")?,
             ("units", _) => self.units = args.flag("units")?,
             ("format", _) => self.format(args)?,
@@ -227,7 +276,14 @@ impl Text {
             self.formats.clear();
             return Ok(());
         }
-        let kinds: Vec<Kind> = self.layout.attributes().iter().map(Attribute::kind).collect();
+        let mut kinds: Vec<Kind> = self.layout.attributes().iter().map(Attribute::kind).collect();
+        if let (Form::Cfg(_), Some(kind)) = (self.form, kinds.get_mut(1)) {
+            // The deck speaks of a type; what is written is its name, whatever the format.
+            *kind = Kind::Int;
+        }
+        if self.form == Form::Xyz && which.text != "line" {
+            return fail(Code::NOT_SUPPORTED, which.span, "the only format of dump xyz is `format line`");
+        }
         let column = match which.text.as_str() {
             "line" | "int" | "float" => None,
             _ => Some(self.column(which, kinds.len())?),

@@ -210,7 +210,7 @@ impl Declared {
             }));
         }
         match (one.kind(), self.single) {
-            (Kind::Int, _) => Owned::I32(fill(rows, |i| one.number(i) as i32)),
+            (Kind::Int | Kind::Text, _) => Owned::I32(fill(rows, |i| one.number(i) as i32)),
             (Kind::Float, true) => Owned::F32(fill(rows, |i| one.number(i) as f32)),
             (Kind::Float, false) => Owned::F64(fill(rows, |i| one.number(i))),
         }

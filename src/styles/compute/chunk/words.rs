@@ -1,7 +1,7 @@
 //! The words of compute chunk/atom.
 
 use super::bins::{Axis, Origin, Shells};
-use crate::diag::{Code, Diagnostic, Result, fail};
+use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::args::parse_number;
 use crate::lang::{Args, RefKind, ValueRef};
 use crate::styles::{BuildCx, UseKind, Wants};
@@ -104,7 +104,7 @@ struct Options {
     limit: Option<Limit>,
     ids: Ids,
     compress: bool,
-    discard: Option<Discard>,
+    discard: Option<(Discard, Span)>,
     bound: [[Option<f64>; 2]; 3],
     pbc: bool,
     units: Units,
@@ -130,14 +130,14 @@ impl Spec {
             _ => {}
         }
         let discard = match (binned, o.discard) {
-            (false, Some(Discard::Mixed)) => {
+            (false, Some((Discard::Mixed, span))) => {
                 return fail(
                     Code::CONFLICT,
-                    cx.span,
+                    span,
                     "`discard mixed` is for bins: write `discard yes` or `no`",
                 );
             }
-            (_, Some(d)) => d,
+            (_, Some((d, _))) => d,
             (true, None) => Discard::Mixed,
             (false, None) => Discard::Yes,
         };
@@ -281,11 +281,13 @@ impl Options {
                 }
                 "compress" => o.compress = args.flag("compress")?,
                 "discard" => {
-                    o.discard = Some(match args.choice("value of discard", &["yes", "no", "mixed"])? {
+                    let span = args.here();
+                    let how = match args.choice("value of discard", &["yes", "no", "mixed"])? {
                         "yes" => Discard::Yes,
                         "no" => Discard::No,
                         _ => Discard::Mixed,
-                    })
+                    };
+                    o.discard = Some((how, span));
                 }
                 "bound" => o.read_bound(args)?,
                 "pbc" => o.pbc = args.flag("pbc")?,
@@ -314,7 +316,7 @@ impl Options {
         };
         for (k, end) in ["lower", "upper"].iter().enumerate() {
             let word = args.expect("a bound")?;
-            let what = format!("the bound must be `{end}` or a number, and");
+            let what = format!("a bound that is not `{end}`");
             self.bound[dim][k] = if word.text == *end { None } else { Some(parse_number(word, &what)?) };
         }
         Ok(())
