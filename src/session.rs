@@ -398,6 +398,7 @@ impl Session {
             args.finish()?;
             let settles = act.settles().to_vec();
             if self.checking() && act.needs_particles() {
+                act.makes_group().map(|name| self.world.groups.find_or_add(name));
                 return Ok(settles);
             }
             let mut values = DeckValues { graph: &self.graph, vars };

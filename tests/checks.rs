@@ -104,6 +104,36 @@ fn nothing_is_said_against_decks_that_are_right() {
     assert!(wrong.is_empty(), "{wrong}");
 }
 
+/// Warnings that the small good decks draw rightly: what they show needs no more, or is the warning itself.
+const SHOWN: &[&str] = &["no pair_style", "no fix moves", "is never used", "was never set"];
+
+#[test]
+fn small_good_decks_are_good_for_check_too() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scripts/good");
+    let (mut wrong, mut count) = (String::new(), 0);
+    for file in fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()) {
+        let text = fs::read_to_string(&file).unwrap();
+        for block in text.split("--- ").skip(1) {
+            let (name, deck) = block.split_once('\n').unwrap();
+            let (said, _) = check(&deck.replace("@scene\n", &format!("{SCENE}\n")), Path::new("."));
+            count += 1;
+            for d in said.iter().filter(|d| d.severity > Severity::Note) {
+                let expected = deck.contains(&format!("# warning: {}", d.message));
+                if !expected && !SHOWN.iter().any(|part| d.message.contains(part)) {
+                    let _ = writeln!(
+                        wrong,
+                        "{} {name}: {}",
+                        file.file_name().unwrap().to_string_lossy(),
+                        d.message
+                    );
+                }
+            }
+        }
+    }
+    assert!(count > 100, "only {count} decks");
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
 /// Warnings of one deck as `line:from-to message`.
 #[track_caller]
 fn warns(deck: &str, wanted: &[&str]) {

@@ -90,14 +90,7 @@ impl Session {
         if !self.checking() {
             return Ok(None);
         }
-        let fits = |promised: &str| {
-            promised == name
-                || promised.split_once('*').is_some_and(|(a, b)| {
-                    name.len() > a.len() + b.len() && name.starts_with(a) && name.ends_with(b)
-                })
-        };
-        let mut files = self.world.parts.promised.iter();
-        Ok(match files.find(|(file, _)| fits(file)).map(|(_, promise)| promise) {
+        Ok(match self.world.parts.promise(name) {
             Some(Promise::Scene(world, pair)) => Some(Saved {
                 world: World { parts: Default::default(), ..World::clone(world) },
                 ran: false,

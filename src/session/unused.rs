@@ -19,12 +19,19 @@ pub(super) fn unused(sources: &Sources, given: &[String]) -> Diagnostics {
     let (mut used, mut parts) = (BTreeSet::new(), vec![]);
     for (file, text) in (0..).map_while(|k| Some((FileId(k), sources.get(FileId(k))?.text.as_str()))) {
         let mut kind = None;
+        // The token before named what its line defines, and where.
+        let (mut fresh, mut last) = (false, 0);
         for t in tokens(text) {
             let defines = kind.take();
+            if std::mem::take(&mut fresh) && t.text == "delete" {
+                // `variable x delete` defines nothing.
+                defined.retain(|_, span: &mut Span| span.file != file || span.start as usize != last);
+            }
             if t.opens && (t.text == "variable" || t.text == "group") {
                 kind = Some(t.text);
             } else if let Some(kind) = defines.filter(|_| !t.part) {
                 defined.entry((kind, t.text)).or_insert(Span::new(file, t.at, t.at + t.text.len()));
+                (fresh, last) = (true, t.at);
             } else if t.part {
                 parts.push(t.text);
             } else {
@@ -116,6 +123,7 @@ mod tests {
         check("variable a equal 1\nprint a # ${b}\nvariable b equal 2\n", &["43 variable `b` is never used"]);
         check("group g type 1\ngroup g region r\n", &["6 group `g` is never used"]);
         check("variable given index 1\n", &[]);
+        check("variable gone delete\n", &[]);
     }
 
     #[test]

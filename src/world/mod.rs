@@ -99,6 +99,18 @@ pub struct Parts {
     pub resume: Option<Arc<Resume>>,
 }
 
+impl Parts {
+    /// The file of this name that a checked deck would have written; one written as `plate.*.data` may be any step's.
+    pub fn promise(&self, name: &str) -> Option<&Promise> {
+        let fits = |file: &str| {
+            file.split_once('*').is_some_and(|(a, b)| {
+                name.len() > a.len() + b.len() && name.starts_with(a) && name.ends_with(b)
+            })
+        };
+        self.promised.get(name).or_else(|| self.promised.iter().find(|(file, _)| fits(file)).map(|p| p.1))
+    }
+}
+
 impl World {
     /// The box, for code that runs only when one exists.
     ///

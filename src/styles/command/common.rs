@@ -227,6 +227,7 @@ struct Do<F> {
     f: F,
     particles: bool,
     settles: Vec<&'static str>,
+    group: Option<String>,
 }
 
 impl<F: FnOnce(&mut ActCx) -> Result<()>> Act for Do<F> {
@@ -238,6 +239,10 @@ impl<F: FnOnce(&mut ActCx) -> Result<()>> Act for Do<F> {
         self.particles
     }
 
+    fn makes_group(&self) -> Option<&str> {
+        self.group.as_deref()
+    }
+
     fn settles(&self) -> Vec<&'static str> {
         self.settles.clone()
     }
@@ -245,7 +250,7 @@ impl<F: FnOnce(&mut ActCx) -> Result<()>> Act for Do<F> {
 
 /// An act on settings, names or the box: it needs no particles and happens in `perigrain check` too.
 pub fn setting(f: impl FnOnce(&mut ActCx) -> Result<()> + 'static) -> Box<dyn Act> {
-    Box::new(Do { f, particles: false, settles: vec![] })
+    Box::new(Do { f, particles: false, settles: vec![], group: None })
 }
 
 /// An act on particles that settles these facts of the scene.
@@ -253,5 +258,14 @@ pub fn on_particles(
     settles: Vec<&'static str>,
     f: impl FnOnce(&mut ActCx) -> Result<()> + 'static,
 ) -> Box<dyn Act> {
-    Box::new(Do { f, particles: true, settles })
+    in_group(settles, None, f)
+}
+
+/// As `on_particles`, for acts that put particles into a group, made if it is not there.
+pub fn in_group(
+    settles: Vec<&'static str>,
+    group: Option<String>,
+    f: impl FnOnce(&mut ActCx) -> Result<()> + 'static,
+) -> Box<dyn Act> {
+    Box::new(Do { f, particles: true, settles, group })
 }

@@ -4,7 +4,7 @@ mod mesh;
 mod places;
 pub(super) mod subset;
 
-use super::common::{self, bad_keyword, not_here, on_particles, scales, seed, units_lattice, unknown_style};
+use super::common::{self, bad_keyword, in_group, not_here, scales, seed, units_lattice, unknown_style};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, RefKind, ValueRef, Word};
@@ -89,7 +89,7 @@ impl CommandStyle for CreateAtoms {
             let d = Diagnostic::error(Code::INCOMPLETE, style.span, "triangles are in box units: say so");
             return Err(d.help("add `units box` to this line").into());
         }
-        Ok(on_particles(vec!["particles"], move |cx| create(cx, &c)))
+        Ok(in_group(vec!["particles"], c.group.clone(), move |cx| create(cx, &c)))
     }
 }
 

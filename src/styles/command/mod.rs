@@ -60,6 +60,11 @@ pub trait Act {
         true
     }
 
+    /// The group it makes if there is none of this name: a check may count on it although nothing acts.
+    fn makes_group(&self) -> Option<&str> {
+        None
+    }
+
     /// Which facts of the scene it settles (`volume`, `density`, `mass`, `diameter`, `velocity` …), for checks.
     fn settles(&self) -> Vec<&'static str> {
         vec![]

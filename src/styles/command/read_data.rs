@@ -220,7 +220,7 @@ enum Found {
 impl Reading {
     fn text(&self, world: &World) -> Result<Found> {
         let name = &self.file.text;
-        match self.checking.then(|| world.parts.promised.get(name)).flatten() {
+        match self.checking.then(|| world.parts.promise(name)).flatten() {
             Some(Promise::Text(text)) => {
                 let source = Source { name: name.clone(), text: text.clone() };
                 return Ok(Found::File(Arc::new(source)));
