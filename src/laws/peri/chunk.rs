@@ -211,10 +211,11 @@ pub unsafe fn sums<L: Lanes>(a: &Chunk) -> [[f64; CELLS]; SUMS] {
                 let live = q.abs().ge(L::splat(*c.add(constant::DEAD))).keep(L::mask(bits >> here));
                 let one = L::splat(1.0);
                 let root = one.add(z).sqrt();
-                let stretch = z.div(one.add(root)).keep(live);
+                // z h(z) = s/(1 + s), and s times that root is s: one division.
+                let share = z.div(root.fma(root, root)).keep(live);
+                let stretch = share.mul(root);
                 let energy = stretch.mul(stretch).mul(L::splat(0.5 * *c.add(constant::ENERGY)));
-                // z h(z) = s/(1 + s)
-                let pull = stretch.div(root).mul(L::splat(-*c.add(constant::FACTOR)));
+                let pull = share.mul(L::splat(-*c.add(constant::FACTOR)));
                 sum[0] = sum[0].add(energy);
                 let p = xyz!(|k| pull.mul(y[k]));
                 sum[1] = p[0].fma(y[0], sum[1]);

@@ -73,10 +73,12 @@ pub fn add(t: &mut PeriTally, (i, e_i): (usize, f64), (j, e_j): (usize, f64), pu
     }
 }
 
-/// All repulsion of one step: near pairs, then squeezed bonds.
-pub fn repel(families: &Families, repulsion: &mut Repulsion) {
-    for &(i, j) in families.near.pairs.iter().flatten() {
-        repulsion.pair(i, j);
+/// All repulsion of one step: near pairs that may be `closer` by now than their gap was, then squeezed bonds.
+pub fn repel(families: &Families, closer: [f64; 2], repulsion: &mut Repulsion) {
+    for (pairs, closer) in families.near.pairs.iter().zip(closer) {
+        for pair in pairs.iter().filter(|pair| f64::from(pair.after) <= closer) {
+            repulsion.pair(pair.ends[0], pair.ends[1]);
+        }
     }
     for body in &families.lattices {
         for (chunk, _) in body.flagged.iter().enumerate().filter(|(_, flag)| **flag & SQUEEZED != 0) {

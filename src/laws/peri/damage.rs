@@ -1,8 +1,8 @@
 //! What has become of families: damage, counts, partners, and what happens to them when particles are deleted.
 
 use crate::par;
-use crate::world::families::Families;
 use crate::world::families::list::ListBody;
+use crate::world::families::{Families, NearPair};
 
 /// One partner of a particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -129,7 +129,7 @@ impl Families {
         let windows: usize =
             self.scratch.windows.iter().map(|w| w.lock().map_or(0, |w| 8 * w.force.len())).sum();
         let reference = self.reference.as_ref().map_or(0, |r| 24 * r.len());
-        let near: usize = self.near.pairs.iter().map(|p| 8 * p.capacity()).sum();
+        let near: usize = self.near.pairs.iter().map(|p| size_of::<NearPair>() * p.capacity()).sum();
         self.lattices.iter().map(crate::world::families::lattice::LatticeBody::bytes).sum::<usize>()
             + self.list.bytes()
             + 14 * self.place.len()

@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use super::chunk::{CELLS, Chunk, Kernels};
 use super::contact::add;
 use super::lattice::partners;
+use super::list_kernel::{RowKernels, RowTask, dead};
 use super::pmb::stretch;
 use crate::par::{self, Shared};
 use crate::world::families::lattice::{LANES, LatticeBody, PAD};
@@ -22,7 +23,12 @@ const ROWS: usize = 16;
 
 /// Adds energy and virial of the bonds as they were during the force evaluation: LAMMPS gives each end half of
 /// 1/2 c w V s² |xi|, and the virial one factor V.
-pub fn tally<K: Kernels>(families: &mut Families, view: &PeriView, t: &mut PeriTally, period: [f64; 3]) {
+pub fn tally<K: Kernels + RowKernels>(
+    families: &mut Families,
+    view: &PeriView,
+    t: &mut PeriTally,
+    period: [f64; 3],
+) {
     let mut rows = std::mem::take(&mut families.scratch.rows);
     let options = families.options;
     for body in &families.lattices {
@@ -34,7 +40,12 @@ pub fn tally<K: Kernels>(families: &mut Families, view: &PeriView, t: &mut PeriT
         sum(body.rows.len(), &mut rows, t, |slot, f| lattice_row(body, slot, view, families, &options, f));
     }
     let list = &families.list;
-    sum(list.record.len(), &mut rows, t, |i, f| list_row(list, i, period, &options, f));
+    if t.per_atom_energy.is_none() {
+        list_rows::<K>(list, period, &options, &mut rows);
+        collect(&rows, t);
+    } else {
+        sum(list.record.len(), &mut rows, t, |i, f| list_row(list, i, period, &options, f));
+    }
     families.scratch.rows = rows;
 }
 
@@ -122,6 +133,37 @@ fn whole_row<K: Kernels>(body: &LatticeBody, slot: usize, to: &[(i32, u32)]) -> 
         }
     }
     lanes.map(|l| l.iter().sum())
+}
+
+/// Energy and virial of the list, a sum for every few records.
+fn list_rows<K: RowKernels>(
+    list: &ListBody,
+    period: [f64; 3],
+    options: &FamilyOptions,
+    rows: &mut Vec<Sums>,
+) {
+    let n = list.record.len();
+    let (periodic, newton) = (period.iter().any(|p| p.is_finite()), options.unit == ForceUnit::Newton);
+    let dead = dead(options);
+    rows.clear();
+    rows.resize(n.div_ceil(ROWS), [0.0; 7]);
+    let shared = Shared::new(rows);
+    par::for_rows(n.div_ceil(ROWS), |part| {
+        // SAFETY: each part has its own sum.
+        let sum = unsafe { &mut shared.get(part..part + 1)[0] };
+        for i in part * ROWS..n.min((part + 1) * ROWS) {
+            let task = RowTask { body: list, i, force: std::ptr::null_mut(), first: 0, period, dead };
+            // SAFETY: the kernels are those that the processor has.
+            let row = unsafe {
+                if periodic {
+                    K::row_sums::<true>(&task, newton)
+                } else {
+                    K::row_sums::<false>(&task, newton)
+                }
+            };
+            sum.iter_mut().zip(row).for_each(|(sum, row)| *sum += row);
+        }
+    });
 }
 
 /// Energies of both ends and the pull on the first, from z, |xi|, c w and the volumes.

@@ -8,12 +8,15 @@ use super::chunk::{Kernels, Plain};
 use super::chunk::{Wide, Widest};
 use super::contact::{Repulsion, repel};
 use super::energy::tally;
+use super::gather::{GatherKernels, gather};
 use super::lanes::has_avx2;
 #[cfg(target_arch = "x86_64")]
 use super::lanes512::has_avx512;
 use super::lattice::{self, ChunkColumns, Mode};
-use super::list::{self, RowKernels};
+use super::list;
+use super::list_kernel::RowKernels;
 use super::stretching::StretchKernels;
+use super::tables;
 use crate::diag::{Code, Diagnostic, Result};
 use crate::neigh::family::{detect, lattice as cells, list as records};
 use crate::par::{self, Shared};
@@ -112,7 +115,7 @@ impl Families {
     pub fn refresh(&mut self, view: &PeriView, table: &PmbTable) {
         self.table = table.clone();
         for body in &mut self.lattices {
-            lattice::refresh(body, view, table, &self.options);
+            tables::refresh(body, view, table, &self.options);
         }
         list::refresh(&mut self.list, view, table, &self.options);
     }
@@ -154,7 +157,7 @@ impl Families {
         self.force_with::<Plain>(view, f, advance, tally);
     }
 
-    fn force_with<K: Kernels + RowKernels + StretchKernels>(
+    fn force_with<K: Kernels + RowKernels + StretchKernels + GatherKernels>(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
@@ -165,7 +168,8 @@ impl Families {
         let period = periods(&view.bounds);
         let reference = self.reference.as_deref().unwrap_or(view.x0);
         for body in &mut self.lattices {
-            lattice::gather(body, view, reference);
+            // SAFETY: `force` has chosen kernels that the processor has.
+            unsafe { gather::<K>(body, view, reference) };
         }
         let moved = list::gather(&mut self.list, view);
         self.sweep::<K>(f, advance, period);
@@ -225,9 +229,9 @@ impl Families {
         tally: Option<&mut PeriTally>,
     ) {
         let (within, all) = self.ranges(view, moved, advance);
-        self.update_near(view, within, all, advance);
+        let closer = self.update_near(view, within, all, advance);
         let mut repulsion = Repulsion { view, table: &self.table, options: &self.options, f, tally };
-        repel(self, &mut repulsion);
+        repel(self, closer, &mut repulsion);
     }
 
     /// Breaks bonds and makes this step the previous one.

@@ -86,35 +86,16 @@ pub trait Lanes: Copy {
     /// # Safety
     /// See [`Lanes::splat`].
     unsafe fn keep(self, mask: Self) -> Self;
-    /// Whether any lane of a mask says yes.
+    /// The lanes of a mask as bits.
     ///
     /// # Safety
     /// See [`Lanes::splat`].
-    unsafe fn any(self) -> bool;
-}
-
-/// What rows of four need besides.
-pub trait Rows: Lanes {
-    /// Lane values as an array.
-    ///
-    /// # Safety
-    /// See [`Lanes::splat`].
-    unsafe fn array(self) -> [f64; 4];
-    /// Four rows of four consecutive numbers as columns.
-    ///
-    /// # Safety
-    /// Each pointer must be readable for four numbers.
-    unsafe fn transposed(rows: [*const f64; 4]) -> [Self; 4];
-    /// Subtracts three columns from the first three numbers of four rows (and zero from the fourth).
-    ///
-    /// # Safety
-    /// Each pointer must be writable for four numbers, different rows apart unless lanes are zero.
-    unsafe fn subtract_transposed(columns: [Self; 3], rows: [*mut f64; 4]);
+    unsafe fn bits(self) -> u8;
 }
 
 /// Lanes as an array: any processor.
 #[derive(Clone, Copy)]
-pub struct Portable([f64; 4]);
+pub struct Portable(pub(super) [f64; 4]);
 
 impl Portable {
     #[inline(always)]
@@ -192,30 +173,8 @@ impl Lanes for Portable {
         self.zip(mask, |a, m| f64::from_bits(a.to_bits() & m.to_bits()))
     }
     #[inline(always)]
-    unsafe fn any(self) -> bool {
-        self.0.iter().any(|m| m.to_bits() != 0)
-    }
-}
-
-impl Rows for Portable {
-    #[inline(always)]
-    unsafe fn array(self) -> [f64; 4] {
-        self.0
-    }
-    #[inline(always)]
-    unsafe fn transposed(rows: [*const f64; 4]) -> [Self; 4] {
-        // SAFETY: readable by the caller's promise.
-        let r = rows.map(|p| unsafe { p.cast::<[f64; 4]>().read() });
-        [0, 1, 2, 3].map(|k| Self([r[0][k], r[1][k], r[2][k], r[3][k]]))
-    }
-    #[inline(always)]
-    unsafe fn subtract_transposed(columns: [Self; 3], rows: [*mut f64; 4]) {
-        for (lane, row) in rows.into_iter().enumerate() {
-            for (k, column) in columns.iter().enumerate() {
-                // SAFETY: writable by the caller's promise.
-                unsafe { *row.add(k) -= column.0[lane] };
-            }
-        }
+    unsafe fn bits(self) -> u8 {
+        self.0.iter().rev().fold(0, |bits, m| bits << 1 | u8::from(m.to_bits() != 0))
     }
 }
 
@@ -255,7 +214,7 @@ pub use x86::Avx2;
 mod x86 {
     use std::arch::x86_64::*;
 
-    use super::{Lanes, MASKS, Rows};
+    use super::{Lanes, MASKS};
 
     /// Lanes in one AVX register.
     #[derive(Clone, Copy)]
@@ -329,54 +288,8 @@ mod x86 {
             Self(unsafe { _mm256_and_pd(self.0, mask.0) })
         }
         #[inline(always)]
-        unsafe fn any(self) -> bool {
-            unsafe { _mm256_movemask_pd(self.0) != 0 }
-        }
-    }
-
-    impl Rows for Avx2 {
-        #[inline(always)]
-        unsafe fn array(self) -> [f64; 4] {
-            let mut out = [0.0; 4];
-            unsafe { _mm256_storeu_pd(out.as_mut_ptr(), self.0) }
-            out
-        }
-        #[inline(always)]
-        unsafe fn transposed(rows: [*const f64; 4]) -> [Self; 4] {
-            unsafe {
-                let [a, b, c, d] = rows;
-                macro_rules! halves {
-                    ($p:expr, $q:expr) => {
-                        _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(_mm_loadu_pd($p)), _mm_loadu_pd($q))
-                    };
-                }
-                let (ac, bd) = (halves!(a, c), halves!(b, d));
-                let (ac2, bd2) = (halves!(a.add(2), c.add(2)), halves!(b.add(2), d.add(2)));
-                [
-                    Self(_mm256_unpacklo_pd(ac, bd)),
-                    Self(_mm256_unpackhi_pd(ac, bd)),
-                    Self(_mm256_unpacklo_pd(ac2, bd2)),
-                    Self(_mm256_unpackhi_pd(ac2, bd2)),
-                ]
-            }
-        }
-        #[inline(always)]
-        unsafe fn subtract_transposed(columns: [Self; 3], rows: [*mut f64; 4]) {
-            unsafe {
-                let [x, y, z] = columns;
-                let zero = _mm256_setzero_pd();
-                let (xy0, xy1) = (_mm256_unpacklo_pd(x.0, y.0), _mm256_unpackhi_pd(x.0, y.0));
-                let (z0, z1) = (_mm256_unpacklo_pd(z.0, zero), _mm256_unpackhi_pd(z.0, zero));
-                let [a, b, c, d] = rows;
-                let f = _mm256_sub_pd(_mm256_loadu_pd(a), _mm256_permute2f128_pd::<0x20>(xy0, z0));
-                _mm256_storeu_pd(a, f);
-                let f = _mm256_sub_pd(_mm256_loadu_pd(b), _mm256_permute2f128_pd::<0x20>(xy1, z1));
-                _mm256_storeu_pd(b, f);
-                let f = _mm256_sub_pd(_mm256_loadu_pd(c), _mm256_permute2f128_pd::<0x31>(xy0, z0));
-                _mm256_storeu_pd(c, f);
-                let f = _mm256_sub_pd(_mm256_loadu_pd(d), _mm256_permute2f128_pd::<0x31>(xy1, z1));
-                _mm256_storeu_pd(d, f);
-            }
+        unsafe fn bits(self) -> u8 {
+            unsafe { _mm256_movemask_pd(self.0) as u8 }
         }
     }
 }

@@ -13,7 +13,7 @@ pub fn has_avx512() -> bool {
 
 /// Lanes in one AVX-512 register.
 #[derive(Clone, Copy)]
-pub struct Avx512(__m512d);
+pub struct Avx512(pub(super) __m512d);
 
 // SAFETY (all blocks): the caller promises that the processor has AVX-512 F and DQ, and that pointers are good.
 impl Lanes for Avx512 {
@@ -83,7 +83,7 @@ impl Lanes for Avx512 {
         Self(unsafe { _mm512_and_pd(self.0, mask.0) })
     }
     #[inline(always)]
-    unsafe fn any(self) -> bool {
-        unsafe { _mm512_movepi64_mask(_mm512_castpd_si512(self.0)) != 0 }
+    unsafe fn bits(self) -> u8 {
+        unsafe { _mm512_movepi64_mask(_mm512_castpd_si512(self.0)) }
     }
 }

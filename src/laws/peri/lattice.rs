@@ -1,12 +1,10 @@
-//! Forces of a body on a lattice: displacements gathered into rows, slabs swept, forces handed back.
+//! Forces of a body on a lattice: slabs swept, forces handed back.
 
-use super::chunk::{self, Chunk, Kernels, Various, constant};
+use super::chunk::{self, Chunk, Kernels, Various};
 use super::pmb::{UP_TO_3, UP_TO_5, UP_TO_7};
-use crate::par::{self, Shared};
-use crate::world::families::lattice::{
-    CONSTANTS, LANES, LatticeBody, MIXED, PAD, PAGE, RowMotion, STAGGER, greater, lesser, staggered,
-};
-use crate::world::families::{FamilyOptions, ForceUnit, PeriView, PmbTable, Window};
+use crate::par::Shared;
+use crate::world::families::Window;
+use crate::world::families::lattice::{CONSTANTS, LANES, LatticeBody, MIXED, PAD, PAGE, STAGGER, staggered};
 
 /// How one force evaluation treats the bonds of a body.
 #[derive(Clone, Copy, Debug)]
@@ -24,170 +22,13 @@ pub const MAY_BREAK: u8 = 1;
 /// Bonded pairs close enough for short-range contact.
 pub const SQUEEZED: u8 = 2;
 
-/// Fills the tables of constants, row types and per-cell data from coefficients, types and volumes.
-pub fn refresh(body: &mut LatticeBody, view: &PeriView, table: &PmbTable, options: &FamilyOptions) {
-    let some = body.particle.iter().copied().filter(|&p| p != u32::MAX);
-    let first = some.clone().next().map_or(0.0, |p| view.volume[p as usize]);
-    let mut various = some.clone().any(|p| view.volume[p as usize].to_bits() != first.to_bits());
-    body.kinds.clear();
-    for p in some {
-        let kind = view.kind[p as usize];
-        if !body.kinds.contains(&kind) {
-            body.kinds.push(kind);
-        }
-    }
-    body.kinds.sort_unstable();
-    for row in &mut body.rows {
-        let cells = row.start as usize..(row.start + row.len) as usize;
-        let mut of_row = body.particle[cells].iter().filter(|&&p| p != u32::MAX);
-        let kind = of_row.next().map_or(0, |&p| local(&body.kinds, view.kind[p as usize]));
-        let same = of_row.all(|&p| local(&body.kinds, view.kind[p as usize]) == kind);
-        row.kind = if same { kind } else { MIXED };
-        various |= !same;
-    }
-    body.cell_kind.clear();
-    body.cell_volume.clear();
-    if various {
-        let cells = body.particle.len();
-        body.cell_kind.resize(cells + 2 * PAD, 0);
-        body.cell_volume.resize(cells + 2 * PAD, 0.0);
-        for (cell, &p) in body.particle.iter().enumerate() {
-            if p != u32::MAX {
-                body.cell_kind[PAD + cell] = local(&body.kinds, view.kind[p as usize]) as u8;
-                body.cell_volume[PAD + cell] = view.volume[p as usize];
-            }
-        }
-    }
-    fill_tables(body, table, options, first);
-}
-
-fn local(kinds: &[u16], kind: u16) -> u16 {
-    kinds.iter().position(|&k| k == kind).unwrap_or(0) as u16
-}
-
-fn fill_tables(body: &mut LatticeBody, table: &PmbTable, options: &FamilyOptions, volume: f64) {
-    let n = body.kinds.len();
-    let various = !body.cell_kind.is_empty();
-    body.tables.clear();
-    body.pairs.clear();
-    for pair in 0..n * n {
-        let coeff = table.get(body.kinds[pair / n], body.kinds[pair % n]);
-        body.pairs.push(coeff.map_or([0.0, f64::INFINITY, 0.0], |k| [k.c, k.s00, k.alpha]));
-        let volumes = match options.unit {
-            ForceUnit::Density => volume,
-            ForceUnit::Newton => volume * volume,
-        };
-        let c = if various { 1.0 } else { coeff.map_or(0.0, |k| k.c) * volumes };
-        for step in &body.stencil {
-            let mut row = [0.0; CONSTANTS];
-            let mut xi = [0.0; 3];
-            for k in 0..3 {
-                xi[body.axes[k]] = f64::from(step[k]) * body.spacing;
-            }
-            row[constant::XI..constant::XI + 3].copy_from_slice(&xi);
-            let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let inverse = 1.0 / (length * length);
-            let weight = options.volume.weight(length, body.horizon, options.lattice_spacing);
-            let factor = c * weight / length;
-            row[constant::DEAD] = options.dead_band(length) * length * length;
-            let mut scale = factor * inverse;
-            for (k, a) in super::pmb::SERIES.iter().enumerate() {
-                row[constant::SERIES + k] = scale * a;
-                scale *= inverse;
-            }
-            row[constant::INVERSE] = inverse;
-            row[constant::FACTOR] = factor;
-            row[constant::ENERGY] = c * weight * length;
-            body.tables.extend_from_slice(&row);
-        }
-    }
-}
-
-/// Gathers displacements from positions into `u[1]`, and what moved since `u[0]`.
-pub fn gather(body: &mut LatticeBody, view: &PeriView, reference: &[[f64; 3]]) {
-    let [old, new] = &mut body.u;
-    let (new, motion) = (Shared::new(new), Shared::new(&mut body.motion));
-    let (rows, particle, stride, width) = (&body.rows, &body.particle, body.stride, body.width);
-    par::for_rows(body.planes, |plane| {
-        for slot in plane * width..(plane + 1) * width {
-            let row = rows[slot];
-            let cells = row.start as usize..(row.start + row.len) as usize;
-            // SAFETY: rows do not share cells, and each row belongs to one plane.
-            let u = unsafe {
-                [0, 1, 2].map(|k| new.get(k * stride + PAD + cells.start..k * stride + PAD + cells.end))
-            };
-            let last = [0, 1, 2].map(|k| &old[k * stride + PAD + cells.start..k * stride + PAD + cells.end]);
-            // SAFETY: as above, one entry per row.
-            let motion = &mut unsafe { motion.get(slot..slot + 1) }[0];
-            *motion = gather_row(&particle[cells], view, reference, u, last, row.lo);
-        }
-    });
-}
-
-fn gather_row(
-    particle: &[u32],
-    view: &PeriView,
-    reference: &[[f64; 3]],
-    u: [&mut [f64]; 3],
-    last: [&[f64]; 3],
-    lo: i32,
-) -> RowMotion {
-    let n = particle.len();
-    let wraps = view.bounds.periodic != [false; 3];
-    let [ux, uy, uz] = u;
-    let (ux, uy, uz) = (&mut ux[..n], &mut uy[..n], &mut uz[..n]);
-    for c in 0..n {
-        let p = particle[c] as usize;
-        let (Some(x), Some(x0)) = (view.x.get(p), reference.get(p)) else { continue };
-        let mut now = [x[0] - x0[0], x[1] - x0[1], x[2] - x0[2]];
-        if wraps {
-            now = unwrap(now, [last[0][c], last[1][c], last[2][c]], view);
-        }
-        (ux[c], uy[c], uz[c]) = (now[0], now[1], now[2]);
-    }
-    // Vacant cells stay at zero: they widen the ranges at most.
-    let mut motion = RowMotion::NONE;
-    for (k, (now, last)) in [&*ux, &*uy, &*uz].into_iter().zip(last).enumerate() {
-        (motion.least[k], motion.most[k]) = range_of_change(now, last);
-        if let Some(first) = now.iter().position(|&u| u != 0.0) {
-            motion.lo = motion.lo.min(lo + first as i32);
-            let last = now.iter().rposition(|&u| u != 0.0).unwrap_or(first);
-            motion.hi = motion.hi.max(lo + last as i32);
-        }
-    }
-    motion
-}
-
-/// The smallest and the largest difference of two columns whose length is a multiple of [`LANES`].
-fn range_of_change(now: &[f64], last: &[f64]) -> (f64, f64) {
-    let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
-    for (now, last) in now.chunks_exact(LANES).zip(last.chunks_exact(LANES)) {
-        for k in 0..LANES {
-            let change = now[k] - last[k];
-            least[k] = lesser(change, least[k]);
-            most[k] = greater(change, most[k]);
-        }
-    }
-    (least.into_iter().fold(f64::INFINITY, lesser), most.into_iter().fold(f64::NEG_INFINITY, greater))
-}
-
-/// The displacement among its periodic images that is nearest to the one before.
-fn unwrap(now: [f64; 3], before: [f64; 3], view: &PeriView) -> [f64; 3] {
-    [0, 1, 2].map(|k| {
-        if !view.bounds.periodic[k] {
-            return now[k];
-        }
-        let length = view.bounds.hi[k] - view.bounds.lo[k];
-        now[k] - length * ((now[k] - before[k]) / length).round()
-    })
-}
-
 /// One body during one force evaluation, with the columns that its slabs write.
 pub struct Sweep<'a> {
     body: &'a LatticeBody,
     tension: Shared<'a, f32>,
     compression: Shared<'a, f32>,
     measure: Shared<'a, f32>,
+    floor: Shared<'a, f32>,
     flagged: Shared<'a, u8>,
     mode: Mode,
     newton: bool,
@@ -199,6 +40,7 @@ pub struct ChunkColumns {
     tension: Vec<f32>,
     compression: Vec<f32>,
     measure: Vec<f32>,
+    floor: Vec<f32>,
     flagged: Vec<u8>,
 }
 
@@ -209,6 +51,7 @@ impl ChunkColumns {
             tension: std::mem::take(&mut body.tension),
             compression: std::mem::take(&mut body.compression),
             measure: std::mem::take(&mut body.measure),
+            floor: std::mem::take(&mut body.floor),
             flagged: std::mem::take(&mut body.flagged),
         }
     }
@@ -218,6 +61,7 @@ impl ChunkColumns {
         body.tension = self.tension;
         body.compression = self.compression;
         body.measure = self.measure;
+        body.floor = self.floor;
         body.flagged = self.flagged;
     }
 }
@@ -240,6 +84,7 @@ impl<'a> Sweep<'a> {
             tension: Shared::new(&mut columns.tension),
             compression: Shared::new(&mut columns.compression),
             measure: Shared::new(&mut columns.measure),
+            floor: Shared::new(&mut columns.floor),
             flagged: Shared::new(&mut columns.flagged),
             mode,
             newton,
@@ -309,11 +154,12 @@ impl<'a> Sweep<'a> {
         let entries = body.stencil.len();
         let chunks = row.start as usize / LANES..(row.start + row.len) as usize / LANES;
         // SAFETY: a row's chunks belong to it alone, and a row to one slab.
-        let (tension, compression, measure, flagged) = unsafe {
+        let (tension, compression, measure, floors, flagged) = unsafe {
             (
                 self.tension.get(chunks.clone()),
                 self.compression.get(chunks.clone()),
                 self.measure.get(chunks.clone()),
+                self.floor.get(chunks.clone()),
                 self.flagged.get(chunks.clone()),
             )
         };
@@ -344,6 +190,7 @@ impl<'a> Sweep<'a> {
                 (high, low) = measured;
                 if fragile && high >= floor {
                     flagged[k] |= MAY_BREAK;
+                    floors[k] = round_down(floor);
                 }
                 if low >= -body.contact {
                     flagged[k] |= SQUEEZED;
@@ -471,4 +318,8 @@ fn next_measure(z: f64) -> f64 {
 
 fn round_up(z: f64) -> f32 {
     (z * (1.0 + 1e-6)) as f32
+}
+
+fn round_down(z: f64) -> f32 {
+    (z - 1e-6 * z.abs()) as f32
 }

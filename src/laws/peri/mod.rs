@@ -6,11 +6,16 @@ mod contact;
 pub mod damage;
 mod energy;
 pub mod families;
+mod fragile;
+mod gather;
 mod lanes;
 #[cfg(target_arch = "x86_64")]
 mod lanes512;
 mod lattice;
 mod list;
+mod list_kernel;
 pub mod moduli;
 mod pmb;
+mod rows;
 mod stretching;
+mod tables;

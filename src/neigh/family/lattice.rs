@@ -150,6 +150,7 @@ fn rows(body: &mut LatticeBody, members: &[u32], sites: &Sites) {
     body.tension = vec![0.0; chunks];
     body.compression = vec![0.0; chunks];
     body.measure = vec![0.0; chunks];
+    body.floor = vec![0.0; chunks];
     body.flagged = vec![0; chunks];
     body.motion = vec![RowMotion::NONE; body.rows.len()];
 }

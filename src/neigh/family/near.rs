@@ -7,7 +7,7 @@
 
 use super::detect::distance;
 use crate::world::families::lattice::RowMotion;
-use crate::world::families::{Families, PeriView};
+use crate::world::families::{Families, NearPair, PeriView};
 
 /// Contact between unbonded particles never reaches farther than this many lattice spacings.
 const CONTACT: f64 = 1.35;
@@ -30,16 +30,22 @@ impl Families {
     }
 
     /// Brings the pairs up to date with positions. `within` and `all` are the ranges of displacement changes
-    /// since the last step that advanced: the largest in one body, and that of all particles together.
-    pub fn update_near(&mut self, view: &PeriView, within: f64, all: f64, advance: bool) {
+    /// since the last step that advanced: the largest in one body, and that of all particles together. Returns
+    /// how much closer particles may be now than when pairs were searched.
+    pub fn update_near(&mut self, view: &PeriView, within: f64, all: f64, advance: bool) -> [f64; 2] {
+        let mut closer = [0.0; 2];
         for (part, change) in [within, all].into_iter().enumerate() {
             let spent = self.near.spent[part] + change;
             if spent >= self.near.allowed[part] {
                 self.search(view, part);
-            } else if advance {
+                continue;
+            }
+            closer[part] = spent;
+            if advance {
                 self.near.spent[part] = spent;
             }
         }
+        closer
     }
 
     /// Which body a particle belongs to: lattices from 0, then the list; every loose particle is its own.
@@ -67,7 +73,7 @@ impl Families {
                 && families.table.get(view.kind[i as usize], view.kind[j as usize]).is_some()
                 && !(same && families.bonded(i, j))
             {
-                pairs.push((i.min(j), i.max(j)));
+                pairs.push(families.near_pair(view, i, j, 0.0));
             }
         };
         if part == 0 {
@@ -80,7 +86,7 @@ impl Families {
             cells.pairs(|i, j| keep(self, i, j));
             self.near.allowed[part] = self.near.allowed[part].max(gap - CONTACT * lc);
         }
-        pairs.sort_unstable();
+        pairs.sort_unstable_by_key(|pair| pair.ends);
         self.near.pairs[part] = pairs;
         self.scratch.cells = cells;
     }
@@ -145,8 +151,18 @@ impl Families {
     pub(crate) fn add_broken(&mut self, view: &PeriView, i: u32, j: u32) {
         let range = CONTACT * self.options.lattice_spacing + self.near.skin.max(0.0);
         if distance(view, i, j).0 < range * range {
-            self.near.pairs[0].push((i.min(j), i.max(j)));
+            let pair = self.near_pair(view, i, j, self.near.spent[0]);
+            self.near.pairs[0].push(pair);
         }
+    }
+
+    /// Two particles that cannot touch before they have come closer by what lies between them now; `spent` is
+    /// what has been spent so far.
+    fn near_pair(&self, view: &PeriView, i: u32, j: u32, spent: f64) -> NearPair {
+        let gap = distance(view, i, j).0.sqrt() - self.options.contact_range(view, i, j);
+        // Rounded down by more than f32 and the sum of many steps may lose.
+        let after = if gap > 0.0 { (spent + gap) * (1.0 - 1e-6) } else { 0.0 };
+        NearPair { ends: [i.min(j), i.max(j)], after: after as f32 }
     }
 
     /// The ranges of displacement changes within bodies and over everything; loose particles are looked at here.

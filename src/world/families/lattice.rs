@@ -1,5 +1,7 @@
 //! A peridynamic body on a simple cubic lattice: cells in rows, rows in planes, one bit per bond.
 
+use super::Measures;
+
 /// Cells per chunk: alive bits of a chunk's bonds along one stencil vector are one byte.
 pub const LANES: usize = 8;
 
@@ -104,6 +106,8 @@ pub struct LatticeBody {
     pub compression: Vec<f32>,
     /// Value of either bound at which a chunk is measured anew.
     pub measure: Vec<f32>,
+    /// z below which no bond of a chunk can break in this step, where the chunk is flagged for that.
+    pub floor: Vec<f32>,
     /// What a chunk's bonds may need besides forces this step: bits known to the sweep.
     pub flagged: Vec<u8>,
     /// Displacements, components `stride` apart, [`PAD`] unused cells before the first: now, and at the
@@ -129,9 +133,9 @@ pub struct LatticeBody {
     pub first_place: u32,
     /// Bonds (cell, stencil vector) that broke in the last step that advanced.
     pub broken: Vec<(u32, u16)>,
-    /// Critical measure of each cell's family in the step before, where it was asked for this step; anything
-    /// elsewhere. Empty until bonds come near breaking.
-    pub measured: Vec<f64>,
+    /// Critical measures of families in the step before, by chunks.
+    #[serde(skip)]
+    pub measures: Measures,
 }
 
 /// Unused cells around the cells of a body: kernels read beyond the ends of rows.
@@ -269,17 +273,14 @@ impl LatticeBody {
 
     /// Memory held.
     pub fn bytes(&self) -> usize {
-        let doubles = self.u[0].len()
-            + self.u[1].len()
-            + self.tables.len()
-            + self.cell_volume.len()
-            + self.measured.len();
-        let chunk = 4 * 3 + 2;
+        let doubles = self.u[0].len() + self.u[1].len() + self.tables.len() + self.cell_volume.len();
+        let chunk = 4 * 4 + 2;
         8 * (doubles + self.broken.capacity())
             + self.particle.len() * 4
             + self.alive.len()
             + self.intact.len() * chunk
             + self.cell_kind.len()
+            + self.measures.bytes()
             + self.rows.len() * (size_of::<Row>() + size_of::<RowMotion>())
     }
 }

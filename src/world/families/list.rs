@@ -1,5 +1,7 @@
 //! Bonds of all bodies that sit on no lattice: records in slab order, each with its bonds to later ones.
 
+use super::Measures;
+
 /// What a bond needs to know of one end; one cache line.
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -76,8 +78,9 @@ pub struct ListBody {
     pub first_place: u32,
     /// Bonds (places in `partner`) that broke in the last step that advanced.
     pub broken: Vec<u32>,
-    /// See [`super::lattice::LatticeBody::measured`].
-    pub measured: Vec<f64>,
+    /// Critical measures of families in the step before, by records.
+    #[serde(skip)]
+    pub measures: Measures,
 }
 
 impl ListBody {
@@ -123,6 +126,6 @@ impl ListBody {
         self.record.len() * (size_of::<Record>() + 24 + 4 + 1 + 4 + 4 + 4 + 1)
             + 4 * (self.partner.len() + self.back.len() + self.owner.len())
             + self.group_kind.len()
-            + 8 * self.measured.len()
+            + self.measures.bytes()
     }
 }

@@ -7,8 +7,10 @@ use crate::diag::{Code, Diagnostic, Result};
 mod cells;
 pub mod lattice;
 pub mod list;
+mod measures;
 
 pub use cells::Cells;
+pub use measures::Measures;
 
 /// Coefficients of the prototype microelastic brittle model for one pair of types.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -269,7 +271,7 @@ pub struct Families {
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct NearPairs {
     /// Pairs within a body (the list counts as one), and pairs across bodies.
-    pub pairs: [Vec<(u32, u32)>; 2],
+    pub pairs: [Vec<NearPair>; 2],
     /// How much closer than at the last search two particles of the same body, and of different ones, may be.
     pub spent: [f64; 2],
     /// How much closer they may come before pairs must be searched anew.
@@ -278,6 +280,15 @@ pub struct NearPairs {
     pub skin: f64,
     /// Particles without a family whose type has short-range contact, and where they were.
     pub loose: Vec<(u32, [f64; 3])>,
+}
+
+/// Two particles, the first with the lower number, that may come into short-range contact.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct NearPair {
+    /// The particles.
+    pub ends: [u32; 2],
+    /// What [`NearPairs::spent`] must reach before they can touch.
+    pub after: f32,
 }
 
 /// Memory kept between steps that holds nothing a step depends on; a clone starts empty.
