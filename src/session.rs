@@ -4,10 +4,14 @@ mod causes;
 mod checking;
 mod commands;
 mod files;
+mod inert;
+mod info;
 mod interactive;
 mod restarting;
 mod running;
+mod shell;
 mod stability;
+mod timer;
 mod unused;
 
 use crate::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Sources, Span, fail, nearest};
@@ -118,6 +122,10 @@ pub struct Session {
     prompt: Option<FileId>,
     /// A shell command was passed over (`check` mode).
     shelled: bool,
+    /// Commands whose lack of effect has been said.
+    told: std::collections::BTreeSet<String>,
+    timer: timer::Timer,
+    born: std::time::Instant,
     /// The variable table's names as the graph knows them.
     seen_names: u64,
 }
@@ -151,6 +159,9 @@ impl Session {
             typed: None,
             prompt: None,
             shelled: false,
+            told: Default::default(),
+            timer: Default::default(),
+            born: std::time::Instant::now(),
             seen_names: 0,
         };
         for (name, values) in s.options.vars.clone() {
@@ -177,7 +188,8 @@ impl Session {
 
     /// An empty world with this session's settings; the computes that thermo output needs are there.
     fn reset_world(&mut self) {
-        let stop = self.world.settings.stop.clone();
+        let old = &self.world.settings;
+        let (stop, deadline, limit_every) = (old.stop.clone(), old.deadline, old.limit_every);
         let compat = match self.options.compat {
             true => Compat::Lammps,
             false => Compat::Perigrain,
@@ -187,7 +199,7 @@ impl Session {
         self.world.parts.promised = promised;
         let s = &mut self.world.settings;
         s.compat = compat;
-        s.stop = stop;
+        (s.stop, s.deadline, s.limit_every) = (stop, deadline, limit_every);
         s.force_list = self.options.force_list;
         s.no_skipping = self.options.no_skipping;
         s.portable = self.options.portable;
@@ -295,6 +307,9 @@ impl Session {
         let name = cmd.name.text.as_str();
         if !["print", "log", "echo", "info"].contains(&name) {
             script.changed();
+        }
+        if name == "partition" {
+            return self.partition(script, cmd);
         }
         if name == "run" {
             self.run_command(cmd)?;

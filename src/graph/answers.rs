@@ -11,7 +11,7 @@ use crate::styles::pair::PAIRS;
 use crate::world::World;
 
 /// Commands of the session and of the cursor through the deck, which stand in no table.
-pub const SESSION_COMMANDS: [&str; 17] = [
+pub const SESSION_COMMANDS: [&str; 23] = [
     "print",
     "log",
     "echo",
@@ -29,6 +29,12 @@ pub const SESSION_COMMANDS: [&str; 17] = [
     "package",
     "write_restart",
     "read_restart",
+    "shell",
+    "info",
+    "timer",
+    "partition",
+    "balance",
+    "comm_style",
 ];
 
 /// 1 for every particle in the group and in the region, else 0.

@@ -160,6 +160,9 @@ impl Env for RunEnv<'_> {
     fn answer(&self, question: Question, category: &str, name: &str, span: Span) -> Result<bool> {
         answers::answer(self.w, self.declared, question, category, name, span)
     }
+    fn timed_out(&self) -> bool {
+        self.w.settings.timed_out()
+    }
     fn clock(&self) -> Clock {
         clock(self.w)
     }
@@ -299,6 +302,9 @@ impl Env for DeckEnv<'_> {
         answers::answer(self.w, &Declared::new(self.graph), question, category, name, span)
     }
 
+    fn timed_out(&self) -> bool {
+        self.w.settings.timed_out()
+    }
     fn clock(&self) -> Clock {
         clock(self.w)
     }

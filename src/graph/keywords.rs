@@ -146,6 +146,7 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
         "lx" | "cella" | "avecx" => edges(0),
         "ly" | "cellb" | "bvecy" => edges(1),
         "lz" | "cellc" | "cvecz" => edges(2),
+        "timeremain" => w.settings.time_left(),
         "xlat" => w.lattice.spacing[0],
         "ylat" => w.lattice.spacing[1],
         "zlat" => w.lattice.spacing[2],

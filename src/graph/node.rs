@@ -2,11 +2,11 @@
 
 use super::restarts::Restarts;
 use super::thermo::Thermo;
-use crate::diag::Span;
+use crate::diag::{FileId, Span};
 use crate::lang::{RefKind, ValueRef};
 use crate::styles::{Compute, Dump, Fix, Names, Pair, Shape, Use, UseKind};
 use crate::world::{GroupId, Said};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// Which node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -114,7 +114,12 @@ pub struct Graph {
     /// Variables by name and what they offer. Kept in step with the variable table for look-ups.
     pub variables: BTreeMap<String, Shape>,
     /// The latest node of each place of a deck.
-    latest: HashMap<Span, usize>,
+    latest: BTreeMap<(FileId, u32, u32), usize>,
+}
+
+/// A span as a key.
+fn place(span: Span) -> (FileId, u32, u32) {
+    (span.file, span.start, span.end)
 }
 
 impl Clone for PairNode {
@@ -154,13 +159,13 @@ impl Graph {
 
     /// Takes a line up.
     pub fn add(&mut self, node: Node) {
-        self.latest.insert(node.span, self.nodes.len());
+        self.latest.insert(place(node.span), self.nodes.len());
         self.nodes.push(node);
     }
 
     /// The node of this place, if it provided the same.
     pub fn repeated(&mut self, span: Span, provides: &Option<Use>) -> Option<&mut Node> {
-        let node = self.nodes.get_mut(*self.latest.get(&span)?)?;
+        let node = self.nodes.get_mut(*self.latest.get(&place(span))?)?;
         (node.span == span && node.provides == *provides).then_some(node)
     }
 

@@ -1,10 +1,10 @@
 //! The lexer: physical lines into logical lines, logical lines into words, with nom.
 
 use super::command::{Command, Word};
-use super::scan::{place, taken};
+use super::scan::place;
 use super::text::Mapped;
 use crate::diag::{Code, Diagnostic, FileId, Result, Span, fail};
-use nom::bytes::complete::{tag, take_till, take_until, take_while, take_while1};
+use nom::bytes::complete::{tag, take_till, take_until, take_while1};
 use nom::character::complete::{char, none_of};
 use nom::combinator::opt;
 use nom::sequence::{delimited, terminated};
@@ -98,10 +98,15 @@ pub(super) fn advance(input: &str, at: usize, mode: Mode) -> IResult<&str, Mode>
 /// Scans `text`, which starts at byte `base` of its line.
 fn scan(text: &str, base: usize, mut mode: Mode) -> Mode {
     let mut rest = text;
-    while let Ok((after, next)) = advance(rest, base + place(text, rest), mode) {
+    loop {
+        if mode == Mode::Plain {
+            // the bytes that can change the state
+            let Some(k) = rest.find(['"', '\'', '#']) else { return mode };
+            rest = &rest[k..];
+        }
+        let Ok((after, next)) = advance(rest, base + place(text, rest), mode) else { return mode };
         (rest, mode) = (after, next);
     }
-    mode
 }
 
 /// Reads the logical line that starts at byte `start` of `source`; `None` at its end.
@@ -159,12 +164,16 @@ pub(super) fn unclosed(q: Quote, span: Span) -> Diagnostic {
 
 /// A word: the bytes inside the quotes, and the length of the quote mark (0 for a bare word).
 fn word(input: &str) -> IResult<&str, (&str, usize)> {
+    if !input.starts_with(['"', '\'']) && !input.is_empty() {
+        let end = input.find(blank).unwrap_or(input.len());
+        if end > 0 {
+            return Ok((&input[end..], (&input[..end], 0)));
+        }
+    }
     let triple = delimited(tag("\"\"\""), take_until("\"\"\""), tag("\"\"\""));
     let double = delimited(char('"'), take_till(|c| c == '"'), char('"'));
     let single = delimited(char('\''), take_till(|c| c == '\''), char('\''));
-    let bare = taken((none_of("\"' \t\r\n\x0b\x0c"), take_while(|c| !blank(c))));
-    alt((triple.map(|w| (w, 3)), double.map(|w| (w, 1)), single.map(|w| (w, 1)), bare.map(|w| (w, 0))))
-        .parse(input)
+    alt((triple.map(|w| (w, 3)), double.map(|w| (w, 1)), single.map(|w| (w, 1)))).parse(input)
 }
 
 fn blank(c: char) -> bool {

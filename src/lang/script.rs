@@ -8,7 +8,7 @@ use super::text::Mapped;
 use super::value::Env;
 use super::vars::Vars;
 use crate::diag::{FileId, Result, Sources};
-use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
 /// Where lines come from.
@@ -42,7 +42,7 @@ enum Body {
 #[derive(Clone, Debug, Default)]
 struct Known {
     /// Lines by their first byte; kept once a jump has shown that lines come back.
-    lines: HashMap<usize, Arc<Prepared>>,
+    lines: BTreeMap<usize, Arc<Prepared>>,
     /// The byte behind the first `label` line of each name; none before the first jump to a label.
     labels: Option<Arc<BTreeMap<String, usize>>>,
 }

@@ -55,21 +55,18 @@ pub(super) fn expand(
     let mut out = Mapped::default();
     let (mut rest, mut from) = (text, 0);
     let mut quote: Option<(Quote, usize)> = None;
-    while let Some(c) = rest.chars().next() {
+    while let Some(k) = rest.find(['"', '\'', '$']) {
+        rest = &rest[k..];
         let at = place(text, rest);
         if let Some((q, _)) = quote {
             match close_quote(rest, q) {
                 Ok((after, ())) => (quote, rest) = (None, after),
-                Err(_) => rest = &rest[c.len_utf8()..],
+                Err(_) => rest = &rest[1..],
             }
             continue;
         }
         if let Ok((after, q)) = opening(rest) {
             (quote, rest) = (Some((q, at)), after);
-            continue;
-        }
-        if c != '$' {
-            rest = &rest[c.len_utf8()..];
             continue;
         }
         let Ok((after, dollar)) = dollar(rest) else { return Err(no_dollar(line, rest)) };

@@ -92,6 +92,10 @@ pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Resu
             interrupted = true;
             break;
         }
+        if w.settings.ends_at(w.clock.step) {
+            w.clock.halt = Halt::All;
+            break;
+        }
         w.clock.step += 1;
         let mut t = tick(w, false);
         plan.ask(&mut t);

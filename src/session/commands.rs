@@ -1,7 +1,7 @@
 //! Commands about the session itself: print, log, echo, clear, compat.
 
 use super::{Session, refuse};
-use crate::diag::{Code, Diagnostic, Result};
+use crate::diag::{Code, Result};
 use crate::graph::env::DeckEnv;
 use crate::graph::{ComputeNode, Role};
 use crate::lang::{Args, Command, Kind, RefKind, ValueRef, Vars, Word, substitute};
@@ -21,11 +21,9 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "angle_coeff",
     "angle_style",
     "atom_modify_map",
-    "balance",
     "bond_coeff",
     "bond_style",
     "bond_write",
-    "comm_style",
     "create_bonds",
     "delete_bonds",
     "dielectric",
@@ -34,7 +32,6 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "dynamical_matrix",
     "improper_coeff",
     "improper_style",
-    "info",
     "kspace_modify",
     "kspace_style",
     "mdi",
@@ -43,7 +40,6 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "minimize",
     "molecule",
     "neb",
-    "partition",
     "plugin",
     "prd",
     "python",
@@ -51,12 +47,10 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "rerun",
     "run_style",
     "server",
-    "shell",
     "special_bonds",
     "tad",
     "temper",
     "third_order",
-    "timer",
     "write_coeff",
 ];
 
@@ -152,6 +146,7 @@ impl Session {
             }
             "clear" => {
                 args.finish()?;
+                self.vars.clear_atomfiles();
                 self.reset_world();
             }
             "compat" => {
@@ -162,14 +157,10 @@ impl Session {
                 self.world.settings.compat = compat;
                 self.world.touch();
             }
-            "suffix" | "package" => {
-                args.rest();
-                let text = format!(
-                    "`{}` is without effect here: perigrain chooses its kernels itself",
-                    cmd.name.text
-                );
-                self.notes.push(Diagnostic::note(Code::NO_EFFECT, cmd.span, text));
-            }
+            "shell" => self.shell(cmd)?,
+            "info" => self.info(&mut args)?,
+            "timer" => self.timer(&mut args)?,
+            _ if self.inert(cmd)? => {}
             _ => return Ok(false),
         }
         self.record_once(cmd, Role::Act, None);

@@ -48,6 +48,7 @@ pub struct Snapshot {
     compat: bool,
     ran: bool,
     typed: Option<Script>,
+    timer: super::timer::Timer,
     /// Bytes of the world; 0 where it is shared with an earlier snapshot.
     pub bytes: u64,
 }
@@ -101,6 +102,7 @@ impl Session {
             options,
             ran,
             typed,
+            timer,
             // What has been read and said, and what the next line sets anew.
             sources: _,
             notes: _,
@@ -111,6 +113,8 @@ impl Session {
             quit: _,
             prompt: _,
             shelled: _,
+            told: _,
+            born: _,
             seen_names: _,
         } = self;
         let shared = earlier.filter(|e| self.same_particles(e)).map(|e| e.world.clone());
@@ -122,6 +126,7 @@ impl Session {
             compat: options.compat,
             ran: *ran,
             typed: typed.clone(),
+            timer: *timer,
             bytes,
         }
     }
@@ -143,6 +148,7 @@ impl Session {
         self.options.compat = s.compat;
         self.ran = s.ran;
         self.typed.clone_from(&s.typed);
+        self.timer = s.timer;
         self.plan = None;
     }
 

@@ -130,6 +130,7 @@ impl Session {
         let old = &mut self.world;
         let (settings, now) = (&mut world.settings, &old.settings);
         settings.stop = now.stop.clone();
+        (settings.deadline, settings.limit_every) = (now.deadline, now.limit_every);
         (settings.force_list, settings.no_skipping) = (now.force_list, now.no_skipping);
         (settings.portable, settings.compat) = (now.portable, now.compat);
         if let Some(families) = &mut world.families {

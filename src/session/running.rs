@@ -38,6 +38,10 @@ impl Session {
             return Ok(());
         }
         self.say_notes()?;
+        if self.world.settings.timed_out() {
+            self.options.log.line("The limit of `timer timeout` has passed: no further run")?;
+            return Ok(());
+        }
         if self.world.clock.halt == Halt::All {
             return Ok(());
         }
@@ -191,7 +195,11 @@ impl Session {
         self.ran = true;
         self.world.parts.changed = false;
         self.interrupted |= outcome.interrupted;
-        self.say_end(&plan, &outcome, post)?;
+        self.say_end(&plan, &outcome, post && self.timer.tables())?;
+        if self.world.clock.halt == Halt::All && self.world.settings.timed_out() {
+            let step = self.world.clock.step;
+            self.options.log.line(&format!("Wall time limit reached at step {step}"))?;
+        }
         if self.options.mode == Mode::Measure {
             self.options.log.line(explain::text(&plan, true).trim_end())?;
         }

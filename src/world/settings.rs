@@ -3,6 +3,7 @@
 use crate::units::UnitSystem;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::time::Instant;
 
 /// Whose numbers are wanted where LAMMPS 22Jul2025 is wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -72,9 +73,36 @@ pub struct Settings {
     /// Set from outside (Ctrl-C): end the run at the next whole step.
     #[serde(skip)]
     pub stop: Arc<AtomicBool>,
+    /// When runs have to end (`timer timeout`).
+    #[serde(skip)]
+    pub deadline: Option<Instant>,
+    /// Steps between two looks at the clock for that; 0 stands for 10, LAMMPS' own.
+    #[serde(skip)]
+    pub limit_every: i64,
 }
 
 impl Settings {
+    /// Seconds left until the limit of `timer timeout`: negative behind it, 0 without one.
+    pub fn time_left(&self) -> f64 {
+        let Some(end) = self.deadline else { return 0.0 };
+        let now = Instant::now();
+        match end.checked_duration_since(now) {
+            Some(left) => left.as_secs_f64(),
+            None => -now.duration_since(end).as_secs_f64(),
+        }
+    }
+
+    /// Whether the limit of `timer timeout` has passed.
+    pub fn timed_out(&self) -> bool {
+        self.deadline.is_some_and(|end| Instant::now() >= end)
+    }
+
+    /// Whether a run has to end before the step after `step`.
+    pub fn ends_at(&self, step: i64) -> bool {
+        let every = if self.limit_every > 0 { self.limit_every } else { 10 };
+        self.deadline.is_some() && step % every == 0 && self.timed_out()
+    }
+
     /// Whether LAMMPS' artefacts are wanted.
     pub fn lammps(&self) -> bool {
         self.compat == Compat::Lammps

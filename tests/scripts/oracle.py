@@ -37,8 +37,8 @@ def run(lines):
         Path(folder, "in.deck").write_text(deck + "\n")
         env = dict(os.environ, LD_LIBRARY_PATH="/opt/lmp/lib")
         command = [LMP, "-in", "in.deck", "-log", "none", "-nocite"]
-        done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, timeout=120)
-    return done.stdout
+        done = subprocess.run(command, cwd=folder, env=env, capture_output=True, timeout=120)
+    return done.stdout.decode(errors="replace")
 
 
 def is_expectation(line):

@@ -51,6 +51,12 @@ pub const COMMANDS: &[Entry] = &[
     session::ECHO,
     session::CLEAR,
     session::COMPAT,
+    session::SHELL,
+    session::INFO,
+    session::TIMER,
+    session::PARTITION,
     session::SUFFIX,
     session::PACKAGE,
+    session::COMM_STYLE,
+    session::BALANCE,
 ];

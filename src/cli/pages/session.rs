@@ -90,13 +90,73 @@ pub(super) const COMPAT: Entry = (
     },
 );
 
+pub(super) const SHELL: Entry = (
+    "shell",
+    Doc {
+        syntax: "shell cd FOLDER\n\
+            shell mkdir FOLDER …\n\
+            shell rmdir FOLDER …\n\
+            shell mv OLD NEW\n\
+            shell rm [-f] FILE …\n\
+            shell putenv NAME=VALUE …\n\
+            shell COMMAND WORD …",
+        summary: "Works with folders, files and the system's shell.",
+        text: "`cd` changes the working folder, to which all further file names refer. `mkdir` and `rmdir` make and remove \
+            folders (empty ones), `mv` and `rm` rename and remove files; `putenv` sets environment variables for `variable \
+            … getenv` and for commands. Anything else is one line for `sh`, its words joined by single blanks as LAMMPS \
+            does; its output goes to the screen.\n\n\
+            What fails is a warning and the deck goes on, as in LAMMPS; `rm -f` says nothing. `perigrain check` and \
+            `perigrain plan` carry out nothing but `putenv`; files that are missing later are then not complained about.",
+        example: "shell mkdir results\nshell putenv RUN=seven\nvariable run getenv RUN\nprint \"run ${run}\"\nshell rmdir results",
+    },
+);
+
+pub(super) const INFO: Entry = (
+    "info",
+    Doc {
+        syntax: "info [out screen|log|append FILE|overwrite FILE] category …",
+        summary: "Shows what the session holds.",
+        text: "Categories: `system` (units, atom style, particles, box, time step), `groups` `regions` `computes` `dumps` \
+            `fixes` `variables` `coeffs` (which pairs of types have coefficients), `memory`, `communication` (threads), \
+            `time`, `configuration` (version and system), `styles [all|atom|command|compute|dump|fix|pair]` (what there is), \
+            `accelerator` and `fft` (none here), `all`. The beginning of a word is enough, as in LAMMPS; an unknown one is \
+            refused. The text goes to the screen alone if `out` does not say otherwise.",
+        example: "info system groups variables\ninfo styles pair out log",
+    },
+);
+
+pub(super) const TIMER: Entry = (
+    "timer",
+    Doc {
+        syntax: "timer [off|loop|normal|full] [sync|nosync] [timeout H:MM:SS|off] [every N]",
+        summary: "Limits the time that runs may take; chooses how much is said about time.",
+        text: "- `timeout`: runs end at the first step that is a multiple of `every` (10) after this much time, counted from \
+            this line; further runs are passed over. `SS`, `MM:SS` or `H:MM:SS`; `off` takes the limit back. `is_timeout()` \
+            and the thermo keyword `timeremain` tell about it.\n\
+            - `off` and `loop` leave out the tables behind a run, `normal` and `full` (the same here) have them.\n\
+            - `sync` and `nosync` are for LAMMPS' processes; there is one here.",
+        example: "timer timeout 1:00:00 every 5\nrun 4\nif \"$(is_timeout())\" then \"print 'out of time'\"\ntimer timeout off",
+    },
+);
+
+pub(super) const PARTITION: Entry = (
+    "partition",
+    Doc {
+        syntax: "partition yes|no N command word …",
+        summary: "Carries out a command on some of LAMMPS' partitions, of which there is one here.",
+        text: "With `yes` and `1` (or a range such as `1*`) the command is carried out as if it stood alone, with `no` it is \
+            passed over. A partition that does not exist is refused.",
+        example: "partition yes 1 print \"on the first partition\"",
+    },
+);
+
 pub(super) const SUFFIX: Entry = (
     "suffix",
     Doc {
-        syntax: "suffix word …",
+        syntax: "suffix off|on|gpu|intel|kk|omp|opt\nsuffix hybrid SUFFIX SUFFIX",
         summary: "Taken for LAMMPS' decks, without effect.",
         text: "LAMMPS chooses variants of styles with it. Here kernels are chosen by what the scene and the processor \
-            offer; a note in the log says that the line does nothing.",
+            offer; a note in the log says once that the line does nothing.",
         example: "suffix omp",
     },
 );
@@ -104,10 +164,31 @@ pub(super) const SUFFIX: Entry = (
 pub(super) const PACKAGE: Entry = (
     "package",
     Doc {
-        syntax: "package word …",
+        syntax: "package gpu|intel|kokkos|omp|opt word …",
         summary: "Taken for LAMMPS' decks, without effect.",
-        text: "A note in the log says so. Threads are set by `-threads N` (or `-pk omp N`) on the command line.",
+        text: "A note in the log says so once. Threads are set by `-threads N` (or `-pk omp N`) on the command line.",
         example: "package omp 4",
+    },
+);
+
+pub(super) const COMM_STYLE: Entry = (
+    "comm_style",
+    Doc {
+        syntax: "comm_style brick|tiled",
+        summary: "Taken for LAMMPS' decks, without effect.",
+        text: "perigrain is one process with threads; a note in the log says once that the line does nothing.",
+        example: "comm_style tiled",
+    },
+);
+
+pub(super) const BALANCE: Entry = (
+    "balance",
+    Doc {
+        syntax: "balance thresh x|y|z uniform|cut … | shift dims N stop | rcb [weight style word …] [out FILE]",
+        summary: "Taken for LAMMPS' decks, without effect.",
+        text: "LAMMPS moves the borders between its processes; here threads share the work by themselves. The line is read \
+            whole, and a note in the log says once that it does nothing.",
+        example: "balance 1.1 shift xyz 10 1.05",
     },
 );
 

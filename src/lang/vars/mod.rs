@@ -9,11 +9,11 @@ use super::command::Word;
 use super::expr::Expr;
 use super::reference::{RefKind, ValueRef};
 use super::value::{Env, Value};
-use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
+use crate::diag::{Code, Diagnostic, FileId, Result, Span, fail, nearest};
 use crate::math::rng::Marsaglia;
 use files::{AtomFile, Lines};
-use std::collections::{BTreeMap, HashMap};
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::collections::BTreeMap;
+use std::hash::{Hash, Hasher};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -134,7 +134,7 @@ impl Variable {
 
     /// Settles the hash, once everything else stands.
     fn named(mut self, name: &str) -> Self {
-        let mut h = DefaultHasher::new();
+        let mut h = Words(0);
         (name, self.kind, self.unknown).hash(&mut h);
         match &self.data {
             Data::List { values, .. } => values.hash(&mut h),
@@ -157,11 +157,7 @@ impl Variable {
             Data::Range { now, .. } => now as u64,
             _ => 0,
         };
-        // Mixed well (SplitMix64), so that in a sum one variable's step cannot make up for another's.
-        let mut z = self.print ^ at.wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+        mixed(self.print ^ mixed(at))
     }
 
     /// Its list or file has come to an end (by `next()` inside a formula).
@@ -207,7 +203,7 @@ pub struct Vars {
     /// What `random` and `normal` draw from: one stream for numbers, one for values per particle.
     streams: Arc<Mutex<Streams>>,
     /// Formulas by place, so that a loop parses each of them once.
-    formulas: Arc<Mutex<HashMap<Span, Arc<Expr>>>>,
+    formulas: Arc<Mutex<BTreeMap<(FileId, u32, u32), Arc<Expr>>>>,
     /// Counts what formulas change by being evaluated: random numbers drawn, files read on.
     events: Arc<AtomicU64>,
     /// Environment variables set by `shell putenv`.
@@ -249,7 +245,7 @@ impl Vars {
     /// A number that stays the same as long as no variable, stream or file has changed.
     pub(super) fn fingerprint(&self) -> u64 {
         let events = self.events.load(Ordering::Relaxed);
-        self.state ^ events.wrapping_mul(0xD6E8_FEB8_6659_FD93)
+        self.state ^ mixed(events)
     }
 
     /// A number that stays the same as long as the same variables of the same styles exist.
@@ -260,11 +256,12 @@ impl Vars {
     /// The formula `text` at `at`, parsed at its first use.
     pub(super) fn formula(&self, text: &str, at: Span) -> Result<Arc<Expr>> {
         let mut known = self.formulas.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(e) = known.get(&at).filter(|e| e.text() == text) {
+        let key = (at.file, at.start, at.end);
+        if let Some(e) = known.get(&key).filter(|e| e.text() == text) {
             return Ok(e.clone());
         }
         let e = Arc::new(Expr::parse(text, at)?);
-        known.insert(at, e.clone());
+        known.insert(key, e.clone());
         Ok(e)
     }
 
@@ -445,6 +442,31 @@ impl Vars {
             None => d,
         }
     }
+}
+
+/// A quick hash of a definition.
+struct Words(u64);
+
+impl Hasher for Words {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+    fn write(&mut self, bytes: &[u8]) {
+        for part in bytes.chunks(8) {
+            let mut word = [0; 8];
+            word[..part.len()].copy_from_slice(part);
+            self.0 = mixed(self.0 ^ u64::from_le_bytes(word) ^ (part.len() as u64) << 59);
+        }
+    }
+}
+
+/// A number whose bits all depend on all bits of `x` (the finaliser of SplitMix64), so that sums of such numbers do not
+/// agree by chance.
+fn mixed(x: u64) -> u64 {
+    let x = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    x ^ (x >> 31)
 }
 
 fn is_name(name: &str) -> bool {

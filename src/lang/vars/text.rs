@@ -85,6 +85,20 @@ impl Vars {
         })
     }
 
+    /// What a variable was defined as, for a list of variables.
+    pub fn definition(&self, name: &str) -> Option<String> {
+        Some(match &self.find(name)?.data {
+            Data::List { values, .. } => values.join(" "),
+            Data::Range { now, last, .. } => format!("{now} … {last}"),
+            Data::Text(t) | Data::Getenv(t) => t.clone(),
+            Data::Lines(l) => format!("{} (now {})", l.path(), l.now()),
+            Data::Atoms(a) => a.path().to_owned(),
+            Data::Format { name, format } => format!("{name} {format}"),
+            Data::Formula(e) => e.text().to_owned(),
+            Data::Number(v) => value_text(*v),
+        })
+    }
+
     /// The value of a variable in formulas.
     pub fn value(&self, name: &str, span: Span, env: &mut dyn Env) -> Result<Value> {
         let r = ValueRef { kind: RefKind::Variable, name: name.to_owned(), index: vec![], span };

@@ -1,0 +1,133 @@
+//! Commands about processes and accelerators: read whole, said once to be without effect; and `partition`.
+
+use super::{Session, refuse};
+use crate::diag::{Code, Diagnostic, Result};
+use crate::lang::{Args, Command, Script};
+
+const PACKAGES: [&str; 5] = ["gpu", "intel", "kokkos", "omp", "opt"];
+
+impl Session {
+    /// Handles a command that LAMMPS needs for its processes and accelerators; `false` if it is none.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    pub(super) fn inert(&mut self, cmd: &Command) -> Result<bool> {
+        let mut args = Args::new(cmd);
+        let why = match cmd.name.text.as_str() {
+            "suffix" => {
+                suffix(&mut args)?;
+                "perigrain chooses its kernels itself"
+            }
+            "package" => {
+                args.choice("package", &PACKAGES)?;
+                args.rest();
+                "perigrain chooses its kernels itself; threads are set by `-threads N`"
+            }
+            "comm_style" => {
+                args.choice("communication style", &["brick", "tiled"])?;
+                args.finish()?;
+                "perigrain is one process with threads"
+            }
+            "balance" => {
+                balance(&mut args)?;
+                "perigrain is one process, and its threads share the work by themselves"
+            }
+            _ => return Ok(false),
+        };
+        let text = format!("`{}` is without effect here: {why}", cmd.name.text);
+        if self.told.insert(cmd.name.text.clone()) {
+            self.notes.push(Diagnostic::note(Code::NO_EFFECT, cmd.span, text));
+        }
+        Ok(true)
+    }
+
+    /// `partition yes|no N command …`: the one partition there is has the number 1.
+    ///
+    /// # Errors
+    /// A partition that does not exist, and what the command refuses.
+    pub(super) fn partition(&mut self, script: &mut Script, cmd: &Command) -> Result<Option<i32>> {
+        let mut args = Args::new(cmd);
+        let wanted = args.flag("whether these or the other partitions are meant")?;
+        let which = args.expect("the number of a partition")?;
+        let ok = match which.text.split_once('*') {
+            None => which.text == "1",
+            Some((a, b)) => ["", "1"].contains(&a) && ["", "1"].contains(&b),
+        };
+        if !ok {
+            let text = format!("`{}` is no partition: there is one, with the number 1", which.text);
+            return refuse(Code::BAD_VALUE, which.span, text);
+        }
+        let name = args.expect("a command")?.clone();
+        if !wanted {
+            return Ok(None);
+        }
+        let words = args.rest().to_vec();
+        let text =
+            std::iter::once(&name).chain(&words).map(|w| w.text.as_str()).collect::<Vec<_>>().join(" ");
+        let span = words.last().map_or(name.span, |w| name.span.to(w.span));
+        self.command(script, &Command { name, args: words, span, text })
+    }
+}
+
+/// `off`, `on`, a package, or `hybrid` with two of them.
+fn suffix(args: &mut Args) -> Result<()> {
+    const KNOWN: [&str; 8] = ["off", "on", "hybrid", "gpu", "intel", "kk", "omp", "opt"];
+    if args.choice("suffix", &KNOWN)? == "hybrid" {
+        args.choice("first suffix", &KNOWN[3..])?;
+        args.choice("second suffix", &KNOWN[3..])?;
+    }
+    args.finish()
+}
+
+/// `balance thresh x|y|z uniform|FRACTIONS … | shift dims iterations stop | rcb`, then options.
+fn balance(args: &mut Args) -> Result<()> {
+    args.positive("the imbalance that is borne")?;
+    let style = args.expect("a style: x, y, z, shift or rcb")?;
+    match style.text.as_str() {
+        "x" | "y" | "z" => {
+            if !args.eat("uniform") {
+                args.non_negative("uniform, or the places of the cuts")?;
+                while args.peek_text().parse::<f64>().is_ok() {
+                    args.non_negative("a cut")?;
+                }
+            }
+            while ["x", "y", "z"].contains(&args.peek_text()) {
+                args.next();
+                if !args.eat("uniform") {
+                    args.non_negative("uniform, or the places of the cuts")?;
+                }
+            }
+        }
+        "shift" => {
+            let dims = args.expect("the directions, as xyz")?;
+            if dims.text.is_empty() || !dims.text.chars().all(|c| "xyz".contains(c)) {
+                let text = format!("`{}` names no directions: write some of x, y, z", dims.text);
+                return refuse(Code::BAD_VALUE, dims.span, text);
+            }
+            args.integer_from(1, "the number of iterations")?;
+            args.positive("the imbalance at which to stop")?;
+        }
+        "rcb" => {}
+        other => {
+            let text = format!("unknown style of balance: `{other}`; one of x y z shift rcb");
+            return refuse(Code::UNKNOWN_STYLE, style.span, text);
+        }
+    }
+    while let Some(word) = args.next() {
+        match word.text.as_str() {
+            "old" => {}
+            "out" => {
+                args.expect("a file name")?;
+            }
+            "weight" => {
+                args.choice("weight", &["group", "neigh", "time", "var", "store"])?;
+                args.expect("what the weight is made from")?;
+                while !["", "weight", "out", "old"].contains(&args.peek_text()) {
+                    args.next();
+                }
+            }
+            _ => return Err(args.unknown(word, &["weight", "out", "old"])),
+        }
+    }
+    Ok(())
+}

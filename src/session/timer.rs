@@ -1,0 +1,89 @@
+//! `timer`: how much is said about time, and the limit of time for runs.
+
+use super::{Session, refuse};
+use crate::diag::{Code, Result};
+use crate::lang::{Args, Word};
+use std::time::{Duration, Instant};
+
+/// What `timer` has said.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Timer {
+    style: &'static str,
+    mode: &'static str,
+    limit: Option<Duration>,
+}
+
+impl Default for Timer {
+    fn default() -> Self {
+        Self { style: "normal", mode: "nosync", limit: None }
+    }
+}
+
+impl Timer {
+    /// Whether runs end with tables of where the time went.
+    pub fn tables(&self) -> bool {
+        matches!(self.style, "normal" | "full")
+    }
+}
+
+impl Session {
+    /// The `timer` command.
+    ///
+    /// # Errors
+    /// Unknown words, limits that are no times.
+    pub(super) fn timer(&mut self, args: &mut Args) -> Result<()> {
+        const KNOWN: [&str; 8] = ["off", "loop", "normal", "full", "sync", "nosync", "timeout", "every"];
+        let (mut timer, mut every) = (self.timer, self.world.settings.limit_every);
+        let mut restart = false;
+        while let Some(word) = args.next() {
+            match KNOWN.iter().find(|k| **k == word.text) {
+                Some(&("sync" | "nosync")) => {
+                    timer.mode = if word.text == "sync" { "sync" } else { "nosync" }
+                }
+                Some(&"timeout") => {
+                    timer.limit = limit(args.expect("a time such as 2:00:00, or off")?)?;
+                    restart = true;
+                }
+                Some(&"every") => every = args.integer_from(1, "the steps between two looks at the clock")?,
+                Some(style) => timer.style = style,
+                None => return Err(args.unknown(word, &KNOWN)),
+            }
+        }
+        self.timer = timer;
+        let settings = &mut self.world.settings;
+        settings.limit_every = every;
+        if restart {
+            settings.deadline = timer.limit.map(|l| Instant::now() + l);
+            self.world.clock.halt = crate::world::Halt::No;
+        }
+        if self.checking() {
+            return Ok(());
+        }
+        let shown = timer.limit.map_or("off".to_owned(), |l| clock(l.as_secs()));
+        self.options
+            .log
+            .line(&format!("New timer settings: style={}  mode={}  timeout={shown}", timer.style, timer.mode))
+    }
+}
+
+/// `SS`, `MM:SS` or `H:MM:SS`; `off` and `unlimited` for none.
+fn limit(word: &Word) -> Result<Option<Duration>> {
+    if ["off", "unlimited"].contains(&word.text.as_str()) {
+        return Ok(None);
+    }
+    let parts: Option<Vec<u64>> =
+        word.text.split(':').map(|p| p.parse().ok().filter(|n| *n < 1 << 32)).collect();
+    match parts.filter(|p| p.len() <= 3) {
+        Some(parts) => Ok(Some(Duration::from_secs(parts.into_iter().fold(0, |s, p| 60 * s + p)))),
+        None => refuse(
+            Code::BAD_VALUE,
+            word.span,
+            format!("`{}` is no time: write seconds, MM:SS, H:MM:SS or off", word.text),
+        ),
+    }
+}
+
+/// Seconds as HH:MM:SS.
+pub(super) fn clock(seconds: u64) -> String {
+    format!("{:02}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60)
+}
