@@ -174,12 +174,12 @@ impl Graph {
         self.nodes.iter().rposition(|n| n.provides.as_ref() == Some(wanted)).map(NodeId)
     }
 
-    /// Whether some fix or the pair style depends on this variable, directly or through others.
+    /// Whether some fix or the pair style depends on this variable, directly or through variables, regions and groups.
     pub fn forces_use_variable(&self, name: &str) -> bool {
+        let between = [UseKind::Fix, UseKind::Variable, UseKind::Region, UseKind::Group];
         let wanted = Use { kind: UseKind::Variable, name: name.to_string() };
         self.nodes.iter().any(|n| {
-            n.uses.contains(&wanted)
-                && n.provides.as_ref().is_none_or(|p| p.kind == UseKind::Fix || p.kind == UseKind::Variable)
+            n.uses.contains(&wanted) && n.provides.as_ref().is_none_or(|p| between.contains(&p.kind))
         })
     }
 }

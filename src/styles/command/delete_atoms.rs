@@ -107,7 +107,7 @@ fn overlap(a: &mut Args, cx: &BuildCx, domain: &Domain) -> Result<Choice> {
     let span = a.here();
     let cutoff = a.positive("the distance")?;
     let lengths = domain.lengths();
-    if (0..3).any(|d| domain.boundary.periodic(d) && cutoff > lengths[d]) {
+    if (0..3).any(|d| domain.periodic()[d] && cutoff > lengths[d]) {
         return fail(Code::BAD_VALUE, span, "the distance is longer than a periodic edge of the box");
     }
     let (first, second) = (cx.group(a.expect("a group")?)?, cx.group(a.expect("a group")?)?);
@@ -224,7 +224,7 @@ impl<'a> Cells<'a> {
     /// Whether `test` (particle, its place or that of its image, whether it is an image) holds for one nearby.
     fn any_near(&self, x: [f64; 3], mut test: impl FnMut(usize, [f64; 3], bool) -> bool) -> bool {
         let here = self.cell(x);
-        let lengths = self.domain.lengths();
+        let (lengths, periodic) = (self.domain.lengths(), self.domain.periodic());
         (0..27).any(|k| {
             let (mut cell, mut shift) = ([0; 3], [0.0; 3]);
             for d in 0..3 {
@@ -232,7 +232,7 @@ impl<'a> Cells<'a> {
                 let n = self.count[d] as i64;
                 if (0..n).contains(&c) {
                     cell[d] = c as usize;
-                } else if self.domain.boundary.periodic(d) {
+                } else if periodic[d] {
                     (cell[d], shift[d]) = (c.rem_euclid(n) as usize, c.div_euclid(n) as f64 * lengths[d]);
                 } else {
                     return false;

@@ -121,3 +121,31 @@ pub fn say_box(cx: &mut ActCx) -> Result<()> {
     cx.say(line);
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{act, more, refused, scene};
+
+    // Oracle: the numbers of the deck `repeated` in tests/scripts/good/scene_change.in follow the same rules.
+    #[test]
+    fn copies_follow_each_other_with_z_fastest_and_ids_with_x_fastest() {
+        let mut w = scene("units si\natom_style sphere\nregion b block 0 2 0 3 0 4\ncreate_box 2 b");
+        more(
+            &mut w,
+            "create_atoms 1 single 1 1 1\ncreate_atoms 2 single 0.5 2 3\ndisplace_atoms all move 1.2 0 0",
+        );
+        assert_eq!(w.particles.image[0], [1, 0, 0]);
+        more(&mut w, "set atom 2 diameter 0.3 vx 7");
+        let said = act(&mut w, "replicate 2 1 2", &[]).unwrap();
+        assert_eq!(said[0], "Replication is creating a 2x1x2 = 4 times larger system...");
+        assert_eq!(said[3], "  8 atoms");
+        let p = &w.particles;
+        assert_eq!(p.tag, [1, 2, 5, 6, 3, 4, 7, 8]);
+        // Unwrapped at 2.2: the copy lies at 4.2 of a box of 4.
+        assert!((p.x[0][0] - 2.2).abs() < 1e-12 && (p.x[4][0] - 0.2).abs() < 1e-12);
+        assert_eq!((p.image[0], p.image[4], p.x[2][2]), ([0; 3], [1, 0, 0], 5.0));
+        assert_eq!((p.radius[7], p.v[7][0], p.kind[7]), (0.15, 7.0, 2));
+        assert_eq!(refused(&w, "replicate 1 0 1").0, "0");
+        assert_eq!(refused(&w, "replicate 1 1 1 bond/periodic").0, "bond/periodic");
+    }
+}
