@@ -99,21 +99,21 @@ impl Domain {
             let l = self.hi[d] - self.lo[d];
             if x[d] < self.lo[d] {
                 x[d] += l;
-                image[d] -= 1;
+                image[d] = image[d].saturating_sub(1);
                 x[d] = x[d].max(self.lo[d]);
                 if x[d] < self.lo[d] || x[d] - self.lo[d] > l {
                     let k = ((x[d] - self.lo[d]) / l).floor();
                     x[d] -= k * l;
-                    image[d] += k as i32;
+                    image[d] = image[d].saturating_add(k as i32);
                 }
             }
             if x[d] >= self.hi[d] {
                 x[d] -= l;
-                image[d] += 1;
+                image[d] = image[d].saturating_add(1);
                 if x[d] >= self.hi[d] {
                     let k = ((x[d] - self.lo[d]) / l).floor();
                     x[d] -= k * l;
-                    image[d] += k as i32;
+                    image[d] = image[d].saturating_add(k as i32);
                 }
                 x[d] = x[d].max(self.lo[d]);
             }

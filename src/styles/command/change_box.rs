@@ -119,6 +119,8 @@ fn edge(word: &Word, a: &mut Args, steps: &mut Vec<Step>) -> Result<()> {
 }
 
 fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span: Span) -> Result<()> {
+    // LAMMPS lets shrink-wrapped faces follow the particles before it looks at the box.
+    common::settle(cx.world);
     let mut domain = cx.world.domain()?.clone();
     let mut saved = domain.clone();
     let mut x = cx.world.particles.x.clone();

@@ -11,7 +11,6 @@ use crate::lang::{Args, RefKind, ValueRef, Word};
 use crate::math::cformat::general;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
 use crate::world::{World, memory};
-use mesh::{Mesh, Mode};
 use places::{Maker, New, Place, Test};
 use subset::{Amount, Subset};
 
@@ -103,7 +102,7 @@ fn place(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<(Place, Vec<String>
         }
         "single" => Place::Single { x: [a.number("x")?, a.number("y")?, a.number("z")?], remap: false },
         "random" => random(a, cx)?,
-        "mesh" => return mesh(a, cx),
+        "mesh" => return mesh::parse(a, cx).map(|(mesh, note)| (Place::Mesh(mesh), note)),
         _ => {
             const KNOWN: [&str; 5] = ["box", "region", "single", "random", "mesh"];
             return Err(unknown_style(style, "style of create_atoms", &KNOWN));
@@ -128,7 +127,7 @@ fn keywords(a: &mut Args, cx: &BuildCx, style: &Word, c: &mut Creation) -> Resul
             ("remap", Place::Single { remap, .. }) => *remap = a.flag("remap")?,
             ("overlap", Place::Random { overlap, .. }) => *overlap = a.positive("the distance")?,
             ("maxtry", Place::Random { tries, .. }) => *tries = a.integer_from(1, "maxtry")?,
-            ("meshmode", Place::Mesh(mesh)) => mesh.mode = mode(a)?,
+            ("meshmode", Place::Mesh(mesh)) => mesh.mode = mesh::mode(a)?,
             ("radscale", Place::Mesh(mesh)) => mesh.radius_scale = a.positive("the factor of radii")?,
             ("var", Place::Lattice { .. } | Place::Random { .. }) => {
                 start = word.span;
@@ -223,33 +222,6 @@ fn random(a: &mut Args, cx: &BuildCx) -> Result<Place> {
         _ => Some(cx.region(word)?.clone()),
     };
     Ok(Place::Random { count, seed, region, overlap: 0.0, tries: 1000 })
-}
-
-fn mode(a: &mut Args) -> Result<Mode> {
-    Ok(match a.choice("mode", &["bisect", "qrand"])? {
-        "bisect" => Mode::Bisect(a.positive("the largest mean distance of the corners")?),
-        _ => Mode::Quasi(a.positive("the number of particles per area")?),
-    })
-}
-
-fn mesh(a: &mut Args, cx: &BuildCx) -> Result<(Place, Vec<String>)> {
-    let word = a.expect("the name of an STL file")?;
-    let mesh = |triangles| Place::Mesh(Mesh { triangles, mode: Mode::Bisect(1.0), radius_scale: 1.0 });
-    let bad = |text: String| fail(Code::NO_FILE, word.span, text);
-    match std::fs::read(&word.text) {
-        Err(_) if cx.checking => Ok((mesh(vec![]), vec![])),
-        Err(e) => bad(format!("the file `{}` cannot be read: {e}", word.text)),
-        Ok(bytes) => match mesh::read(&bytes) {
-            Err(what) => bad(format!("`{}` is no STL file: {what}", word.text)),
-            Ok((name, binary, triangles)) => {
-                let kind = if binary { "binary" } else { "text" };
-                Ok((
-                    mesh(triangles),
-                    vec![format!("Reading STL object {name} from {kind} file {}", word.text)],
-                ))
-            }
-        },
-    }
 }
 
 fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {

@@ -1,7 +1,10 @@
 //! Particles on a surface of triangles from an STL file, ASCII or binary.
 
 use super::places::{Maker, New};
+use crate::diag::{Code, Result, fail};
+use crate::lang::Args;
 use crate::math::vec3::{add, cross, length, scale, sub};
+use crate::styles::BuildCx;
 
 /// Three corners.
 pub type Triangle = [[f64; 3]; 3];
@@ -117,8 +120,37 @@ fn scatter([a, b, c]: Triangle, density: f64, found: &mut Vec<([f64; 3], f64)>) 
     }
 }
 
+/// Takes a `meshmode`.
+pub fn mode(a: &mut Args) -> Result<Mode> {
+    Ok(match a.choice("mode", &["bisect", "qrand"])? {
+        "bisect" => Mode::Bisect(a.positive("the largest mean distance of the corners")?),
+        _ => Mode::Quasi(a.positive("the number of particles per area")?),
+    })
+}
+
+/// Takes the name of an STL file and reads it; the surface, and what is said about it.
+pub fn parse(a: &mut Args, cx: &BuildCx) -> Result<(Mesh, Vec<String>)> {
+    let word = a.expect("the name of an STL file")?;
+    let mesh = |triangles| Place::Mesh(Mesh { triangles, mode: Mode::Bisect(1.0), radius_scale: 1.0 });
+    let bad = |text: String| fail(Code::NO_FILE, word.span, text);
+    match std::fs::read(&word.text) {
+        Err(_) if cx.checking => Ok((mesh(vec![]), vec![])),
+        Err(e) => bad(format!("the file `{}` cannot be read: {e}", word.text)),
+        Ok(bytes) => match read(&bytes) {
+            Err(what) => bad(format!("`{}` is no STL file: {what}", word.text)),
+            Ok((name, binary, triangles)) => {
+                let kind = if binary { "binary" } else { "text" };
+                Ok((
+                    mesh(triangles),
+                    vec![format!("Reading STL object {name} from {kind} file {}", word.text)],
+                ))
+            }
+        },
+    }
+}
+
 /// Reads an STL file of either kind; the object's name, whether it is binary, and its triangles.
-pub fn read(bytes: &[u8]) -> Result<(String, bool, Vec<Triangle>), String> {
+pub fn read(bytes: &[u8]) -> std::result::Result<(String, bool, Vec<Triangle>), String> {
     if let Some(triangles) = binary(bytes) {
         let header = String::from_utf8_lossy(&bytes[..80]);
         return Ok((
@@ -152,7 +184,7 @@ fn binary(bytes: &[u8]) -> Option<Vec<Triangle>> {
     Some(records.chunks_exact(50).map(|r| [0, 1, 2].map(|p| corner(r, p))).collect())
 }
 
-fn ascii(text: &str) -> Result<Vec<Triangle>, String> {
+fn ascii(text: &str) -> std::result::Result<Vec<Triangle>, String> {
     let mut triangles = vec![];
     let mut corners: Vec<[f64; 3]> = vec![];
     for (n, line) in text.lines().enumerate().skip(1) {
