@@ -131,7 +131,7 @@ pub fn mode(a: &mut Args) -> Result<Mode> {
 /// Takes the name of an STL file and reads it; the surface, and what is said about it.
 pub fn parse(a: &mut Args, cx: &BuildCx) -> Result<(Mesh, Vec<String>)> {
     let word = a.expect("the name of an STL file")?;
-    let mesh = |triangles| Place::Mesh(Mesh { triangles, mode: Mode::Bisect(1.0), radius_scale: 1.0 });
+    let mesh = |triangles| Mesh { triangles, mode: Mode::Bisect(1.0), radius_scale: 1.0 };
     let bad = |text: String| fail(Code::NO_FILE, word.span, text);
     match std::fs::read(&word.text) {
         Err(_) if cx.checking => Ok((mesh(vec![]), vec![])),
