@@ -35,7 +35,7 @@ fn attribute(w: &World, name: &str, i: usize) -> Option<f64> {
         "omegax" => of(&p.omega, 0)?,
         "omegay" => of(&p.omega, 1)?,
         "omegaz" => of(&p.omega, 2)?,
-        _ => return None,
+        custom => *w.columns.get_scalar(&w.columns.custom(custom)?)?.get(i)?,
     })
 }
 
@@ -54,6 +54,11 @@ fn column(w: &World, name: &str) -> Option<Result<Vec<f64>>> {
         "id", "type", "mass", "radius", "x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz", "omegax",
         "omegay", "omegaz",
     ];
+    if let Some(full) = w.columns.custom(name) {
+        let mut list = w.columns.get_scalar(&full).unwrap_or_default().to_vec();
+        list.resize(w.n(), 0.0);
+        return Some(Ok(list));
+    }
     if !KNOWN.contains(&name) {
         return None;
     }

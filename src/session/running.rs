@@ -189,11 +189,12 @@ impl Session {
         self.world.clock.running = true;
         let outcome = self.steps(&mut plan, unchanged);
         self.world.clock.running = false;
+        // What is put back at the end of a run changes the scene again.
+        self.world.parts.changed &= outcome.is_err();
         let finished = plan.finish(&mut self.world);
         let outcome = outcome.map_err(|e| e.at(span))?;
         finished?;
         self.ran = true;
-        self.world.parts.changed = false;
         self.interrupted |= outcome.interrupted;
         self.say_end(&plan, &outcome, post && self.timer.tables())?;
         if self.world.clock.halt == Halt::All && self.world.settings.timed_out() {

@@ -20,6 +20,20 @@ impl Columns {
         self.vectors.entry(name.to_string()).or_insert_with(|| vec![[0.0; 3]; n])
     }
 
+    /// The full name of the column behind a deck's `i_NAME`, `d_NAME`, `i2_NAME[k]` or `d2_NAME[k]` (fix property/atom).
+    pub fn custom(&self, word: &str) -> Option<String> {
+        let name = match word.strip_suffix(']').and_then(|w| w.split_once('[')) {
+            Some((head, k)) => format!("{head}/{k}"),
+            None => word.to_string(),
+        };
+        let own = |full: &&String| {
+            full.strip_prefix("property/atom/")
+                .and_then(|r| r.split_once('/'))
+                .is_some_and(|(_, n)| n == name)
+        };
+        self.scalars.keys().find(own).cloned()
+    }
+
     /// The vector column of this name, if there is one.
     pub fn get_vector(&self, name: &str) -> Option<&[[f64; 3]]> {
         self.vectors.get(name).map(Vec::as_slice)

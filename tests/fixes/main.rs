@@ -118,6 +118,11 @@ fn virials_temperatures_and_losses_agree() {
     agrees("virial");
 }
 
+#[test]
+fn sizes_and_own_properties_agree() {
+    agrees("adapt");
+}
+
 // `golden/averages` holds the files that LAMMPS 22Jul2025 writes for `averages.in`.
 #[test]
 fn averages_agree_and_their_files_are_the_same_bytes() {

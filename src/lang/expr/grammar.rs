@@ -6,7 +6,7 @@
 use super::super::number;
 use super::super::scan::{place, taken};
 use super::functions::{self, Group};
-use super::{ATTRIBUTES, Binary, Index, Op, RefKind, Step, special};
+use super::{ATTRIBUTES, Binary, Index, Op, RefKind, Step, attribute, special};
 use crate::diag::{Code, nearest};
 use nom::branch::alt;
 use nom::bytes::complete::{tag, take_till, take_while};
@@ -182,7 +182,7 @@ impl<'a> Program<'a> {
         }
         if let Ok((rest, i)) = index(after) {
             let range = at..place(self.text, rest);
-            if !ATTRIBUTES.contains(&word) {
+            if !attribute(word) {
                 let mut f = self.fault(Code::UNKNOWN_NAME, range, format!("`{word}` cannot have an index"));
                 f.help.push(format!("particles have {}", ATTRIBUTES.join(" ")));
                 return Err(f);
@@ -195,7 +195,7 @@ impl<'a> Program<'a> {
         }
         let op = match functions::constant(word) {
             Some(v) => Op::Number(v),
-            None if ATTRIBUTES.contains(&word) => Op::Column(word.to_owned()),
+            None if attribute(word) => Op::Column(word.to_owned()),
             None => Op::Word(word.to_owned()),
         };
         self.emit(op, range)?;

@@ -27,6 +27,11 @@ pub const ATTRIBUTES: &[&str] = &[
     "omegay", "omegaz",
 ];
 
+/// Whether a word names an attribute of particles: LAMMPS' own, or one of fix property/atom.
+fn attribute(word: &str) -> bool {
+    ATTRIBUTES.contains(&word) || ["i_", "d_"].iter().any(|p| word.len() > 2 && word.starts_with(p))
+}
+
 /// A parsed formula.
 #[derive(Clone, Debug)]
 pub struct Expr {

@@ -174,7 +174,13 @@ fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
             let d = usize::from(keyword.text.as_bytes()[1] - b'x');
             value(a, cx, "the velocity", None).map(|p| Change::Velocity(d, p))
         }
-        _ => Err(bad_keyword(a, keyword, &KEYWORDS, &ELSEWHERE)),
+        custom => match cx.world.columns.custom(custom) {
+            Some(column) => {
+                let p = value(a, cx, "the value", None)?;
+                Ok(Change::Custom { column, whole: custom.starts_with('i'), value: p })
+            }
+            None => Err(bad_keyword(a, keyword, &KEYWORDS, &ELSEWHERE)),
+        },
     }
 }
 

@@ -25,7 +25,7 @@ impl Style for PropertyAtom {
                    mass x y z`; `xs ys zs` as fractions of the box; `xu yu zu` unwrapped across periodic faces; `ix iy iz` \
                    image counts; `vx vy vz fx fy fz`; with atom_style sphere `radius diameter omegax omegay omegaz tqx \
                    tqy tqz`; with atom_style peri `vfrac`, the volume. All in the deck's units. LAMMPS' other attributes \
-                   belong to atom styles that perigrain does not have and are refused, as is `s0`.",
+                   belong to atom styles that perigrain does not have and are refused, as is `s0`. `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`: those of `fix property/atom`.",
             example: "compute r all property/atom radius",
         }
     }
@@ -49,11 +49,29 @@ impl Needs {
     }
 }
 
+type Read = fn(&World, usize) -> f64;
+
 /// Reads an attribute of a particle.
-pub type Getter = fn(&World, usize) -> f64;
+#[derive(Clone)]
+pub enum Getter {
+    /// One that particles have by themselves.
+    Own(Read),
+    /// A column of fix property/atom.
+    Column(String),
+}
+
+impl Getter {
+    /// The value of particle `i`.
+    pub fn get(&self, w: &World, i: usize) -> f64 {
+        match self {
+            Getter::Own(read) => read(w, i),
+            Getter::Column(name) => w.columns.get_scalar(name).and_then(|c| c.get(i)).copied().unwrap_or(0.0),
+        }
+    }
+}
 
 /// Name, needs and value of every attribute.
-const ATTRIBUTES: &[(&str, Needs, Getter)] = &[
+const ATTRIBUTES: &[(&str, Needs, Read)] = &[
     ("id", Needs::Nothing, |w, i| f64::from(w.particles.tag[i])),
     ("type", Needs::Nothing, |w, i| f64::from(w.particles.kind[i])),
     ("proc", Needs::Nothing, |_, _| 0.0),
@@ -170,7 +188,7 @@ pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
     let name = word.text.as_str();
     if let Some((_, needs, getter)) = ATTRIBUTES.iter().find(|a| a.0 == name) {
         if needs.met(cx.world.particles.style) {
-            return Ok(*getter);
+            return Ok(Getter::Own(*getter));
         }
         let style = if *needs == Needs::Sphere { "sphere" } else { "peri" };
         return Err(Diagnostic::error(
@@ -181,8 +199,16 @@ pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
         .help(format!("`atom_style {style}`, alone or in a hybrid, has it"))
         .into());
     }
-    let custom = ["i_", "d_", "i2_", "d2_"].iter().any(|p| name.starts_with(p));
-    if custom || ELSEWHERE.contains(&name) {
+    if let Some(column) = cx.world.columns.custom(name) {
+        return Ok(Getter::Column(column));
+    }
+    if ["i_", "d_", "i2_", "d2_"].iter().any(|p| name.starts_with(p)) {
+        let d = Diagnostic::error(Code::UNKNOWN_NAME, word.span, format!("there is no property `{name}`"));
+        return Err(d
+            .help("`fix ID all property/atom NAME` makes one; of several columns say which, as `d2_x[1]`")
+            .into());
+    }
+    if ELSEWHERE.contains(&name) {
         return fail(Code::NOT_SUPPORTED, word.span, format!("the attribute `{name}` is not in perigrain"));
     }
     let d =
@@ -216,7 +242,7 @@ impl Compute for Declared {
             par::each(&mut out.atom[..], |start, values| {
                 for (k, value) in values.iter_mut().enumerate() {
                     let (i, column) = ((start + k) / columns, (start + k) % columns);
-                    *value = if w.particles.mask[i] & bit != 0 { getters[column](w, i) } else { 0.0 };
+                    *value = if w.particles.mask[i] & bit != 0 { getters[column].get(w, i) } else { 0.0 };
                 }
             });
             Ok(())

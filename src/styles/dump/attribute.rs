@@ -25,6 +25,8 @@ pub enum Source {
     Core(Core),
     /// A compute, fix or atom-style variable.
     Value(ValueRef),
+    /// A column of fix property/atom; whole numbers or not.
+    Custom(String, bool),
 }
 
 /// Core properties; numbers are axes.
@@ -127,6 +129,9 @@ pub fn attribute(word: &Word, cx: &BuildCx) -> Result<Attribute> {
         cx.value(&r, true)?;
         return Ok(Attribute { word: text.into(), source: Source::Value(r) });
     }
+    if let Some(column) = cx.world.columns.custom(text) {
+        return Ok(Attribute { word: text.into(), source: Source::Custom(column, text.starts_with('i')) });
+    }
     if ELSEWHERE.contains(&text) || ["i_", "d_", "i2_", "d2_"].iter().any(|p| text.starts_with(p)) {
         let message = format!("particles have no attribute `{text}` in perigrain");
         return Err(blame(word, Code::NOT_SUPPORTED, message).into());
@@ -164,6 +169,7 @@ impl Attribute {
         match self.source {
             Source::Core(Core::Id | Core::Kind | Core::Process(_) | Core::Image(_)) => Kind::Int,
             Source::Core(Core::Element) => Kind::Text,
+            Source::Custom(_, true) => Kind::Int,
             _ => Kind::Float,
         }
     }
@@ -173,6 +179,7 @@ impl Attribute {
         match &self.source {
             Source::Core(core) => Ok(Bound::Core(*core)),
             Source::Value(r) => Ok(Bound::Value(cx.value(r, Stage::Output, when)?)),
+            Source::Custom(column, int) => Ok(Bound::Custom(column.clone(), *int)),
         }
     }
 }
@@ -201,22 +208,30 @@ impl<'a> Frame<'a> {
 }
 
 /// An attribute that knows where its values are.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Bound {
     /// In the core columns.
     Core(Core),
     /// In a slot.
     Value(Reading),
+    /// In a column of fix property/atom; whole numbers or not.
+    Custom(String, bool),
 }
 
 impl Bound {
     /// The values by particle index.
     pub fn data<'a>(&self, frame: &Frame<'a>) -> Data<'a> {
-        let core = match *self {
-            Bound::Core(core) => core,
+        let w = frame.world;
+        let core = match self {
+            Bound::Core(core) => *core,
             Bound::Value(reading) => {
-                let w = frame.world;
+                let reading = *reading;
                 return Data::float(move |i| reading.atom(w, i));
+            }
+            Bound::Custom(column, int) => {
+                let column = w.columns.get_scalar(column).unwrap_or_default();
+                let at = move |i: usize| column.get(i).copied().unwrap_or(0.0);
+                return if *int { Data::int(move |i| at(i) as i64) } else { Data::float(at) };
             }
         };
         let (p, d, f) = (&frame.world.particles, frame.domain, *frame);

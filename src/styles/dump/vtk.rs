@@ -154,7 +154,7 @@ fn vector_name(three: &[Attribute]) -> Option<String> {
             [k @ 1..=3] => Some((a.word.split('[').next().unwrap_or_default().to_string(), k - 1)),
             _ => None,
         },
-        Source::Core(_) => None,
+        Source::Core(_) | Source::Custom(..) => None,
     };
     let [x, y, z] = [axis(&three[0])?, axis(&three[1])?, axis(&three[2])?];
     (x.0 == y.0 && y.0 == z.0 && [x.1, y.1, z.1] == [0, 1, 2]).then_some(x.0)

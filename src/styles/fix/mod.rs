@@ -1,5 +1,6 @@
 //! Fixes: what is done to particles during the steps besides their mutual forces.
 
+mod adapt;
 mod addforce;
 mod ave_atom;
 mod ave_histo;
@@ -24,6 +25,7 @@ mod nve_sphere;
 mod path;
 mod planeforce;
 mod print;
+mod property_atom;
 mod recenter;
 mod setforce;
 mod spring;
@@ -108,6 +110,7 @@ pub trait Fix: Send {
 /// Every fix style.
 #[rustfmt::skip]
 pub const FIXES: &[&dyn FixStyle] = &[
+    &adapt::Adapt,
     &addforce::AddForce,
     &ave_atom::AveAtom,
     &ave_histo::AveHisto,
@@ -130,6 +133,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &nve_sphere::NveSphere,
     &planeforce::PlaneForce,
     &print::Print,
+    &property_atom::PropertyAtomFix,
     &recenter::Recenter,
     &setforce::SetForce,
     &spring::Spring,

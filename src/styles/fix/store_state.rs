@@ -46,7 +46,8 @@ impl FixStyle for StoreState {
         let mut inputs = vec![];
         while let Some(word) = args.peek().filter(|w| w.text != "com") {
             args.next();
-            match find_attribute(&word.text) {
+            let custom = cx.world.columns.custom(&word.text).map(|_| "");
+            match find_attribute(&word.text).or(custom) {
                 Some(name) => inputs.push(Input::Attribute(name, read_attribute(word, cx)?)),
                 None => value(word, every, cx, &mut inputs)?,
             }
@@ -116,7 +117,7 @@ impl Declared {
                         "zu" => center[2],
                         _ => 0.0,
                     };
-                    (0..n).map(|i| getter(world, i) - less).collect()
+                    (0..n).map(|i| getter.get(world, i) - less).collect()
                 }
                 Input::Value(_) if which != Which::Attributes => {
                     let Some(reading) = readings.get(k).copied().flatten() else { continue };

@@ -49,6 +49,15 @@ pub enum Change {
     Place(usize, Param),
     /// A component of the velocity.
     Velocity(usize, Param),
+    /// A property of fix property/atom.
+    Custom {
+        /// Its column.
+        column: String,
+        /// Whole numbers only: fractions are cut off.
+        whole: bool,
+        /// The value.
+        value: Param,
+    },
 }
 
 /// A keyword with its value and place.
@@ -75,7 +84,8 @@ impl Item {
             | Change::Diameter(p)
             | Change::Volume(p)
             | Change::Place(_, p)
-            | Change::Velocity(_, p) => is(p),
+            | Change::Velocity(_, p)
+            | Change::Custom { value: p, .. } => is(p),
         }
     }
 }
@@ -184,6 +194,12 @@ fn change_particles(cx: &mut ActCx, item: &Item, chosen: &[usize]) -> Result<usi
         }
         Change::Fraction { kind, fraction, seed } => {
             return Ok(set_fraction(cx.world, chosen, *kind, *fraction, *seed));
+        }
+        Change::Custom { column, whole, value } => {
+            let (v, n) = (checked(value, "the value", None)?, cx.world.n());
+            let values = cx.world.columns.scalar(column, n);
+            values.resize(n, 0.0);
+            chosen.iter().for_each(|&i| values[i] = if *whole { v[i].trunc() } else { v[i] });
         }
         Change::Mass(p) => {
             let v = checked(p, "the mass", Some(Limit::Positive))?;

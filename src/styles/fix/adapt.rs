@@ -1,0 +1,252 @@
+//! fix adapt: sizes of spheres that follow a variable.
+
+use super::window::forget;
+use super::{Fix, FixStyle};
+use crate::diag::{Code, Diagnostic, Result, fail};
+use crate::lang::{Args, RefKind, ValueRef};
+use crate::plan::{Access, Op, Stage, Tick, When};
+use crate::styles::{BuildCx, Doc, Reading, SealCx, Style};
+use crate::world::{GroupId, World};
+use std::f64::consts::PI;
+
+/// The style.
+pub struct Adapt;
+
+impl Style for Adapt {
+    fn name(&self) -> &'static str {
+        "adapt"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group adapt N atom diameter|diameter/disc v_name [scale yes|no] [reset yes|no] [mass yes|no]",
+            summary: "Lets the diameter of spheres follow a variable during a run.",
+            text: "The equal-style variable is evaluated in the setup of a run and at multiples of N (N = 0: in the setup only); \
+                   its value becomes the diameter of every particle of the group, or with `scale yes` a factor on the \
+                   diameter it had when the fix was declared. `mass yes` (default, as LAMMPS 22Jul2025 does) keeps the density, \
+                   of a disc with `diameter/disc`; `mass no` keeps the mass. `reset yes`: diameters and masses are put back \
+                   at the end of each run. Neighbour lists are made for the sizes at that moment: let particles grow by \
+                   less than the skin between two, or say `neigh_modify check no`. LAMMPS' `pair`, `kspace`, `bond` and \
+                   `atom charge` are refused: no style here has such parameters. After `reset yes` LAMMPS' masses are wrong in the next run; \
+                   perigrain's are those of before.",
+            example: "variable d equal ramp(0.001,0.0011)\nfix swell ball adapt 1 atom diameter v_d reset yes",
+        }
+    }
+}
+
+impl FixStyle for Adapt {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let every = args.integer_from(0, "the number of steps N")?;
+        let word = args.peek();
+        let attribute =
+            args.choice("attribute", &["atom", "pair", "bond", "angle", "dihedral", "improper", "kspace"])?;
+        if attribute != "atom" {
+            let text = format!("no style in perigrain has a parameter that `{attribute}` could change");
+            let d = Diagnostic::error(Code::NOT_SUPPORTED, word.map(|w| w.span), text);
+            return Err(d.help("fix adapt changes `atom diameter`").into());
+        }
+        let word = args.peek();
+        let what = args.choice("property of particles", &["diameter", "diameter/disc", "charge"])?;
+        let span = word.map(|w| w.span);
+        if what == "charge" {
+            return fail(Code::NOT_SUPPORTED, span, "particles have no charge in perigrain");
+        }
+        if !cx.world.particles.style.sphere {
+            let d = Diagnostic::error(Code::CONFLICT, span, "the particles of this scene have no diameter");
+            return Err(d.help("`atom_style sphere`, alone or in a hybrid, has it").into());
+        }
+        let size = variable(args, cx)?;
+        let mut fix = Declared {
+            id: cx.id.to_string(),
+            group: cx.group,
+            every,
+            size,
+            disc: what == "diameter/disc",
+            scale: false,
+            reset: false,
+            mass: true,
+        };
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "scale" => fix.scale = args.flag("scale")?,
+                "reset" => fix.reset = args.flag("reset")?,
+                "mass" => fix.mass = args.flag("mass")?,
+                _ => return Err(args.unknown(word, &["scale", "reset", "mass"])),
+            }
+        }
+        Ok(Box::new(fix))
+    }
+}
+
+fn variable(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
+    let word = args.expect("the variable v_name")?;
+    match ValueRef::parse(&word.text, word.span)? {
+        Some(r) if r.kind == RefKind::Variable => {
+            cx.value(&r, false)?;
+            Ok(r)
+        }
+        _ => fail(Code::WRONG_KIND, word.span, format!("a variable v_name is needed, not `{}`", word.text)),
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    every: i64,
+    size: ValueRef,
+    disc: bool,
+    scale: bool,
+    reset: bool,
+    mass: bool,
+}
+
+impl Declared {
+    /// Names of the columns that hold first radii, and radii and masses before a run.
+    fn columns(&self) -> [String; 3] {
+        ["first", "radius", "mass"].map(|what| format!("adapt/{}/{what}", self.id))
+    }
+
+    /// Space that a particle of this radius fills: an area for discs.
+    fn space(&self, r: f64) -> f64 {
+        if self.disc { PI * r * r } else { 4.0 * PI / 3.0 * r * r * r }
+    }
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        let ([first, ..], n) = (self.columns(), w.n());
+        let radii = w.particles.radius.clone();
+        *w.columns.scalar(&first, n) = radii;
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        forget(w, &format!("adapt/{}", self.id));
+        self.columns().iter().for_each(|c| w.columns.remove(c));
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let when = if self.every == 0 { When::First } else { When::First.or(When::Every(self.every)) };
+        let size = cx.value(&self.size, Stage::PreForce, &when)?;
+        Ok(vec![Box::new(Change { name: format!("fix {} adapt", self.id), fix: self.clone(), when, size })])
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+/// Gives the particles their present size, and the old one back at the end.
+struct Change {
+    name: String,
+    fix: Declared,
+    when: When,
+    size: Reading,
+}
+
+impl Op for Change {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn stage(&self) -> Stage {
+        Stage::PreForce
+    }
+    fn access(&self) -> Access {
+        Access::new("slots mask", "radius mass columns")
+    }
+    fn when(&self) -> When {
+        self.when.clone()
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let (value, fix, n) = (self.size.get(w), &self.fix, w.n());
+        if !(value > 0.0 && value.is_finite()) {
+            let text = format!("`{}` is {value} at step {}: no size of particles", fix.size, t.step);
+            return fail(Code::BAD_VALUE, fix.size.span, text);
+        }
+        let [first, radius, mass] = fix.columns();
+        if t.setup && fix.reset && !w.memo.contains_key(&radius) {
+            let (radii, masses) = (w.particles.radius.clone(), w.particles.mass.clone());
+            *w.columns.scalar(&radius, n) = radii;
+            *w.columns.scalar(&mass, n) = masses;
+            w.memo.insert(radius, vec![]);
+        }
+        let mut firsts = std::mem::take(w.columns.scalar(&first, n));
+        let p = &mut w.particles;
+        // Particles that came after the declaration have their first size now.
+        for (first, r) in firsts.iter_mut().zip(&p.radius).filter(|(first, _)| **first == 0.0) {
+            *first = *r;
+        }
+        for i in (0..n).filter(|&i| p.mask[i] & fix.group.bit() != 0) {
+            let new = if fix.scale { firsts[i] * value } else { 0.5 * value };
+            if fix.mass && p.radius[i] > 0.0 {
+                let density = p.mass[i] / fix.space(p.radius[i]);
+                p.mass[i] = density * fix.space(new);
+            }
+            p.radius[i] = new;
+        }
+        *w.columns.scalar(&first, n) = firsts;
+        Ok(())
+    }
+    fn finish(&mut self, w: &mut World) -> Result<()> {
+        let [_, radius, mass] = self.fix.columns();
+        if w.memo.remove(&radius).is_none() {
+            return Ok(());
+        }
+        let n = w.n();
+        let (radii, masses) = (w.columns.scalar(&radius, n).clone(), w.columns.scalar(&mass, n).clone());
+        (w.particles.radius, w.particles.mass) = (radii, masses);
+        w.columns.remove(&radius);
+        w.columns.remove(&mass);
+        w.touch();
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+    use crate::world::AtomStyle;
+
+    // A diameter of 3 instead of 1: 27 times the mass; the other particle is in no group.
+    #[test]
+    fn sizes_follow_and_come_back() {
+        let style = AtomStyle { sphere: true, sphere_mass: true, ..AtomStyle::default() };
+        let mut b = Bench::new(style, &[[0.0; 3], [5.0; 3]]);
+        b.world.particles.mass = vec![2.0; 2];
+        b.world.particles.mask[1] = 0;
+        b.equal.insert("d".into(), 3.0);
+        for (words, radius, mass) in [
+            ("1 atom diameter v_d reset yes", 1.5, 54.0),
+            ("1 atom diameter/disc v_d scale yes mass no reset yes", 1.5, 2.0),
+        ] {
+            let fix = b.fix(&Adapt, words).unwrap();
+            fix.declare(&mut b.world).unwrap();
+            let mut ops = b.seal(&*fix).unwrap();
+            let t = Tick { setup: true, ..b.tick() };
+            ops[0].run(&mut b.world, &t).unwrap();
+            assert_eq!(b.world.particles.radius, [radius, 0.5], "{words}");
+            assert!((b.world.particles.mass[0] - mass).abs() < 1e-13, "{words}");
+            ops[0].finish(&mut b.world).unwrap();
+            assert_eq!((b.world.particles.radius[0], b.world.particles.mass[0]), (0.5, 2.0));
+            fix.remove(&mut b.world);
+            assert!(b.world.columns.names().is_empty() && b.world.memo.is_empty());
+        }
+        b.equal.insert("d".into(), -1.0);
+        let fix = b.fix(&Adapt, "0 atom diameter v_d").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        assert!(b.stage(&mut ops, Stage::PreForce).is_err());
+        for words in [
+            "-1 atom diameter v_d",
+            "1",
+            "1 atom diameter 3",
+            "1 atom diameter v_no",
+            "1 atom charge v_d",
+            "1 pair lj/cut epsilon 1 1 v_d",
+            "1 atom diameter v_d scale maybe",
+            "1 atom diameter v_d foo",
+        ] {
+            assert!(b.fix(&Adapt, words).is_err(), "{words}");
+        }
+    }
+}

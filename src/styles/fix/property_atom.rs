@@ -1,0 +1,137 @@
+//! fix property/atom: further properties of particles, by names of the deck's own.
+
+use super::{Fix, FixStyle};
+use crate::diag::{Code, Diagnostic, Result, fail};
+use crate::lang::{Args, Word};
+use crate::plan::Op;
+use crate::styles::{BuildCx, Doc, SealCx, Style};
+use crate::world::World;
+
+/// The style.
+pub struct PropertyAtomFix;
+
+impl Style for PropertyAtomFix {
+    fn name(&self) -> &'static str {
+        "property/atom"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group property/atom name … [ghost yes|no] [writedata yes|no]",
+            summary: "Gives all particles properties of the deck's own.",
+            text: "A name is `i_NAME` (whole numbers) or `d_NAME` (numbers), or `i2_NAME N` and `d2_NAME N` for N columns. They \
+                   are 0 at first, belong to all particles whatever the group, and are set by `set … d_NAME value` (or \
+                   `d2_NAME[k]`). Read them with `compute property/atom`, in `dump custom`, `fix store/state` and in formulas \
+                   (`d_NAME`, `d_NAME[7]`; without columns). `ghost` and `writedata` are read for LAMMPS' decks. LAMMPS' `mol`, \
+                   `q` and `rmass` are refused: atom styles say what particles have.",
+            example: "fix mine all property/atom i_flag d_heat\nset group ball d_heat 3.5 i_flag 2\nvariable heat atom d_heat+1",
+        }
+    }
+}
+
+impl FixStyle for PropertyAtomFix {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let mut names: Vec<String> = vec![];
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "ghost" | "writedata" => {
+                    args.flag(&word.text)?;
+                    cx.note(Diagnostic::note(
+                        Code::NO_EFFECT,
+                        word.span,
+                        "without effect: there are no ghosts",
+                    ));
+                }
+                "mol" | "q" | "rmass" => {
+                    let text =
+                        format!("`{}` cannot be added: atom styles say what particles have", word.text);
+                    return fail(Code::NOT_SUPPORTED, word.span, text);
+                }
+                _ => names.extend(columns(word, args, cx, &names)?),
+            }
+        }
+        if names.is_empty() {
+            args.expect("a name such as i_flag or d_heat")?;
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), names }))
+    }
+}
+
+/// The columns of one name, as `d_heat` or `d2_heat/1`.
+fn columns(word: &Word, args: &mut Args, cx: &BuildCx, before: &[String]) -> Result<Vec<String>> {
+    let prefix = ["i_", "d_", "i2_", "d2_"].into_iter().find(|p| word.text.starts_with(p));
+    let tail = prefix.map_or("", |p| &word.text[p.len()..]);
+    let (Some(prefix), true) =
+        (prefix, !tail.is_empty() && tail.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'))
+    else {
+        let d = Diagnostic::error(
+            Code::BAD_VALUE,
+            word.span,
+            format!("`{}` is no name of a property", word.text),
+        );
+        return Err(d.help("write i_NAME, d_NAME, i2_NAME N or d2_NAME N").into());
+    };
+    let several = prefix.contains('2');
+    let count = if several { args.integer_from(1, "the number of columns")? } else { 1 };
+    let key = |k: i64| if several { format!("{}/{k}", word.text) } else { word.text.clone() };
+    // A fix of this ID may be declared again.
+    let own = format!("property/atom/{}/", cx.id);
+    let taken = cx.world.columns.custom(&key(1)).is_some_and(|full| !full.starts_with(&own));
+    if taken || before.contains(&key(1)) {
+        return fail(Code::DUPLICATE_NAME, word.span, format!("`{}` exists already", word.text));
+    }
+    Ok((1..=count).map(key).collect())
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    names: Vec<String>,
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        let n = w.n();
+        for name in &self.names {
+            w.columns.scalar(&format!("property/atom/{}/{name}", self.id), n);
+        }
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        self.names.iter().for_each(|name| w.columns.remove(&format!("property/atom/{}/{name}", self.id)));
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let n = cx.world().n();
+        cx.world().columns.resize(n);
+        Ok(vec![])
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+    use crate::world::AtomStyle;
+
+    #[test]
+    fn columns_come_and_go() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
+        let fix = b.fix(&PropertyAtomFix, "i_a d_b d2_c 2 ghost yes").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        let columns = &b.world.columns;
+        assert_eq!(columns.custom("d_b").as_deref(), Some("property/atom/f/d_b"));
+        assert_eq!(columns.custom("d2_c[2]").as_deref(), Some("property/atom/f/d2_c/2"));
+        assert_eq!((columns.custom("d2_c[3]"), columns.custom("b")), (None, None));
+        fix.remove(&mut b.world);
+        assert!(b.world.columns.names().is_empty());
+        b.world.columns.scalar("property/atom/other/d_b", 2);
+        for words in ["", "d_b", "x_b", "d_", "d_a d_a", "d2_c", "d2_c 0", "mol", "ghost maybe", "d_a-b"] {
+            assert!(b.fix(&PropertyAtomFix, words).is_err(), "{words}");
+        }
+    }
+}
