@@ -37,9 +37,10 @@ impl Style for AtomStyleCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "atom_style atomic | sphere | peri | hybrid STYLE STYLE …",
+            syntax: "atom_style atomic | sphere [0|1] | peri | hybrid STYLE STYLE …",
             summary: "Says which properties particles have.",
-            text: "`atomic`: mass by type. `sphere`: radius, spin, own mass (LAMMPS: density times 4/3 π r³). `peri`: volume, \
+            text: "`atomic`: mass by type. `sphere`: radius, spin, own mass (LAMMPS: density times 4/3 π r³); the flag that LAMMPS needs for radii that change (`fix adapt`) \
+                   is read and not needed. `peri`: volume, \
                    position at creation, own mass (in LAMMPS' convention its density). `hybrid sphere peri` has both; \
                    the mass is one column. Must come before the box. Default: `atomic`.",
             example: "atom_style hybrid sphere peri",
@@ -55,7 +56,7 @@ impl CommandStyle for AtomStyleCommand {
         if first.text != "hybrid" {
             add(&mut style, first)?;
             if first.text == "sphere" {
-                constant_radius(a)?;
+                radius_flag(a)?;
             }
             return Ok(choose(style));
         }
@@ -100,8 +101,8 @@ fn add(style: &mut AtomStyle, word: &Word) -> Result<()> {
     Ok(())
 }
 
-/// `atom_style sphere 0`: LAMMPS' flag for radii that change during a run; 0 is what perigrain does.
-fn constant_radius(a: &mut Args) -> Result<()> {
+/// `atom_style sphere 0|1`: LAMMPS' flag for radii that change during a run, which they always may here.
+fn radius_flag(a: &mut Args) -> Result<()> {
     match a.next() {
         Some(word) => check_radius_flag(word),
         None => Ok(()),
@@ -110,8 +111,7 @@ fn constant_radius(a: &mut Args) -> Result<()> {
 
 fn check_radius_flag(word: &Word) -> Result<()> {
     match word.text.as_str() {
-        "0" => Ok(()),
-        "1" => Err(not_here(word, "atom_style sphere with changing radii,")),
+        "0" | "1" => Ok(()),
         _ => fail(Code::EXTRA_ARGUMENT, word.span, "atom_style sphere takes at most the flag 0 or 1"),
     }
 }

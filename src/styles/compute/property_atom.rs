@@ -282,7 +282,7 @@ mod tests {
         assert_eq!(code("x radius"), Code::INCOMPLETE);
         assert_eq!(code("vfrac"), Code::INCOMPLETE);
         assert_eq!(code("mol"), Code::NOT_SUPPORTED);
-        assert_eq!(code("d_mine"), Code::NOT_SUPPORTED);
+        assert_eq!(code("d_mine"), Code::UNKNOWN_NAME);
         assert_eq!(code("radus"), Code::UNKNOWN_KEYWORD);
     }
 }

@@ -22,7 +22,7 @@ impl Style for Adapt {
             summary: "Lets the diameter of spheres follow a variable during a run.",
             text: "The equal-style variable is evaluated in the setup of a run and at multiples of N (N = 0: in the setup only); \
                    its value becomes the diameter of every particle of the group, or with `scale yes` a factor on the \
-                   diameter it had when the fix was declared. `mass yes` (default, as LAMMPS 22Jul2025 does) keeps the density, \
+                   diameter it had at first (each change multiplies the present one by the new factor over the last). `mass yes` (default, as LAMMPS 22Jul2025 does) keeps the density, \
                    of a disc with `diameter/disc`; `mass no` keeps the mass. `reset yes`: diameters and masses are put back \
                    at the end of each run. Neighbour lists are made for the sizes at that moment: let particles grow by \
                    less than the skin between two, or say `neigh_modify check no`. LAMMPS' `pair`, `kspace`, `bond` and \
@@ -101,9 +101,14 @@ struct Declared {
 }
 
 impl Declared {
-    /// Names of the columns that hold first radii, and radii and masses before a run.
-    fn columns(&self) -> [String; 3] {
-        ["first", "radius", "mass"].map(|what| format!("adapt/{}/{what}", self.id))
+    /// Where the factor of the last change is remembered.
+    fn factor(&self) -> String {
+        format!("adapt/{}/factor", self.id)
+    }
+
+    /// Names of the columns that hold radii and masses before a run.
+    fn columns(&self) -> [String; 2] {
+        ["radius", "mass"].map(|what| format!("adapt/{}/{what}", self.id))
     }
 
     /// Space that a particle of this radius fills: an area for discs.
@@ -114,9 +119,7 @@ impl Declared {
 
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
-        let ([first, ..], n) = (self.columns(), w.n());
-        let radii = w.particles.radius.clone();
-        *w.columns.scalar(&first, n) = radii;
+        w.memo.insert(self.factor(), vec![1.0]);
         Ok(())
     }
 
@@ -163,32 +166,27 @@ impl Op for Change {
             let text = format!("`{}` is {value} at step {}: no size of particles", fix.size, t.step);
             return fail(Code::BAD_VALUE, fix.size.span, text);
         }
-        let [first, radius, mass] = fix.columns();
+        let [radius, mass] = fix.columns();
         if t.setup && fix.reset && !w.memo.contains_key(&radius) {
             let (radii, masses) = (w.particles.radius.clone(), w.particles.mass.clone());
             *w.columns.scalar(&radius, n) = radii;
             *w.columns.scalar(&mass, n) = masses;
             w.memo.insert(radius, vec![]);
         }
-        let mut firsts = std::mem::take(w.columns.scalar(&first, n));
+        let before = w.memo.insert(fix.factor(), vec![value]).and_then(|m| m.first().copied()).unwrap_or(1.0);
         let p = &mut w.particles;
-        // Particles that came after the declaration have their first size now.
-        for (first, r) in firsts.iter_mut().zip(&p.radius).filter(|(first, _)| **first == 0.0) {
-            *first = *r;
-        }
         for i in (0..n).filter(|&i| p.mask[i] & fix.group.bit() != 0) {
-            let new = if fix.scale { firsts[i] * value } else { 0.5 * value };
+            let new = if fix.scale { p.radius[i] * (value / before) } else { 0.5 * value };
             if fix.mass && p.radius[i] > 0.0 {
                 let density = p.mass[i] / fix.space(p.radius[i]);
                 p.mass[i] = density * fix.space(new);
             }
             p.radius[i] = new;
         }
-        *w.columns.scalar(&first, n) = firsts;
         Ok(())
     }
     fn finish(&mut self, w: &mut World) -> Result<()> {
-        let [_, radius, mass] = self.fix.columns();
+        let [radius, mass] = self.fix.columns();
         if w.memo.remove(&radius).is_none() {
             return Ok(());
         }
@@ -197,6 +195,7 @@ impl Op for Change {
         (w.particles.radius, w.particles.mass) = (radii, masses);
         w.columns.remove(&radius);
         w.columns.remove(&mass);
+        w.memo.insert(self.fix.factor(), vec![1.0]);
         w.touch();
         Ok(())
     }
