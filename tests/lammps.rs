@@ -95,6 +95,7 @@ fn run(deck: &str, v: Variant) -> Outcome {
     let complaint = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{deck}: {command:?} ended with {}:\n{complaint}", output.status);
     let log = fs::read_to_string(folder.path().join("log.deck")).unwrap();
+    assert!(!log.contains("warning[PG0121]"), "{deck}: its time step is stable, whatever the estimate says");
     let dump = fs::read_to_string(folder.path().join(format!("{deck}.final.dump"))).unwrap();
     let thermo_lines = log.lines().filter(|l| is_row(l)).map(String::from).collect();
     Outcome { thermo_lines, thermo: read(&log), state: read(&dump), dump }

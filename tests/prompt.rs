@@ -48,7 +48,7 @@ mod terminal {
     use super::*;
     use rexpect::session::{PtySession, spawn_command};
 
-    const PATIENCE: u64 = 20_000;
+    const PATIENCE: u64 = 60_000;
 
     fn start(folder: &Path) -> PtySession {
         // Wide enough that no line is wrapped: a line break then is the end of an answer's line.

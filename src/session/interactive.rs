@@ -54,8 +54,8 @@ pub struct Snapshot {
 }
 
 /// Commands after which particles and everything that goes with them are as before.
-const LIGHT: [&str; 9] =
-    ["variable", "next", "print", "echo", "log", "label", "thermo", "thermo_style", "thermo_modify"];
+const LIGHT: [&str; 10] =
+    ["variable", "next", "print", "info", "echo", "log", "label", "thermo", "thermo_style", "thermo_modify"];
 
 impl Session {
     /// Works off a text that was typed; `name` stands in messages about it.

@@ -29,16 +29,9 @@ impl Session {
         );
     }
 
-    /// The density that peridynamic particles have: the smallest there is; before there are any, the largest that
-    /// the deck has set, so that no other particles' density draws a warning.
+    /// The largest density that the deck has set, for a check that has no particles: no other particles' density
+    /// shall draw a warning.
     fn density(&self) -> Option<f64> {
-        let p = &self.world.particles;
-        if !p.mass.is_empty() && p.volume.len() == p.len() {
-            // In LAMMPS' convention the mass is the density; true masses are ρV.
-            let newton = self.graph.pair.as_ref().is_some_and(|n| n.pair.true_forces() == Some(true));
-            let of = |i: usize| if newton { p.density[i] } else { p.mass[i] };
-            return (0..p.len()).map(of).filter(|d| *d > 0.0).reduce(f64::min);
-        }
         let sets = self.graph.nodes.iter().filter(|n| n.settles.contains(&"density"));
         let said = sets.filter_map(|n| {
             let mut words = n.text.split_whitespace().skip_while(|w| *w != "density");

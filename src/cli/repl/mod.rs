@@ -56,7 +56,7 @@ pub fn run(o: &Options) -> u8 {
             return FAILED;
         }
     };
-    let mut reader = Reader::new(known, &std::env::current_dir().unwrap_or_default());
+    let mut reader = Reader::new(known, std::path::Path::new("."));
     if reader.is_terminal() {
         println!("perigrain {}\n{GREETING}", env!("CARGO_PKG_VERSION"));
     }

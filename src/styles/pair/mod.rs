@@ -61,9 +61,9 @@ pub trait Pair: Send {
         &[]
     }
 
-    /// The longest time step that is stable, by its own estimate, for particles of this density where a type has
-    /// none of its own [time units]; `None` if it cannot tell.
-    fn stable_step(&self, _w: &World, _density: Option<f64>) -> Option<f64> {
+    /// The longest time step that is stable, by its own estimate [time units]; `None` if it cannot tell. `said` is the
+    /// density that the deck has set, for a check without particles.
+    fn stable_step(&self, _w: &World, _said: Option<f64>) -> Option<f64> {
         None
     }
 

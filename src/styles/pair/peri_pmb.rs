@@ -121,6 +121,14 @@ impl Pmb {
 }
 
 impl Pmb {
+    /// The smallest density of a type's particles; in LAMMPS' convention their mass holds it.
+    fn lightest(&self, w: &World, kind: u16) -> Option<f64> {
+        let p = &w.particles;
+        let column = if self.unit() == ForceUnit::Newton { &p.density } else { &p.mass };
+        let of_kind = p.kind.iter().zip(column).filter(|(k, d)| **k == kind && **d > 0.0);
+        of_kind.map(|(_, d)| *d).reduce(f64::min)
+    }
+
     /// Whether `neigh_modify exclude` concerns pairs that this style acts on.
     fn loses_pairs(&self, w: &World) -> bool {
         let (rules, p) = (&w.settings.neighbor, &w.particles);
@@ -248,7 +256,7 @@ impl Pair for Pmb {
         if self.materials.is_empty() { &["volume", "density"] } else { &["volume"] }
     }
 
-    fn stable_step(&self, w: &World, density: Option<f64>) -> Option<f64> {
+    fn stable_step(&self, w: &World, said: Option<f64>) -> Option<f64> {
         let types = self.table.types() as u16;
         let stiffest = |i: u16| {
             let all = (1..=types).filter_map(|j| self.table.get(i, j));
@@ -257,7 +265,8 @@ impl Pair for Pmb {
         // Bonds sum up to 2π c δ² over a whole ball (Silling & Askari 2005, equation 34).
         let ftm2v = w.settings.units.constants().ftm2v;
         let step = |i: u16| {
-            let rho = self.materials.density(i).or(density)?;
+            let own = self.materials.density(i);
+            let rho = own.or_else(|| if w.n() > 0 { self.lightest(w, i) } else { said })?;
             Some((rho / (ftm2v * std::f64::consts::PI * stiffest(i)?)).sqrt())
         };
         (1..=types).filter_map(step).reduce(f64::min)
