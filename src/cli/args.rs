@@ -315,6 +315,10 @@ pub fn parse_many(words: Vec<String>) -> Result<(Options, Vec<Deck>), Usage> {
 fn unknown(word: &str) -> Usage {
     if LAMMPS_ONLY.contains(&word) {
         let message = format!("LAMMPS' switch `{word}` is not in perigrain");
+        if word == "-r" || word.starts_with("-r2") || word.starts_with("-restart") {
+            return Usage::new(message)
+                .help("in a deck, `read_restart` and then `write_data` or `write_dump` do this");
+        }
         return Usage::new(message).help("leave it out: perigrain is one process with threads");
     }
     let names = SWITCHES.iter().filter(|s| !s.about.is_empty()).flat_map(|s| s.names.iter().copied());
@@ -380,6 +384,12 @@ mod tests {
             assert!(read(line).is_err(), "{line}");
         }
         assert!(read("-partition 2x1").unwrap_err().message.contains("LAMMPS"));
+        for switch in ["-r", "-restart2data", "-r2dump"] {
+            assert!(
+                read(&format!("{switch} a b")).unwrap_err().help.unwrap().contains("write_data"),
+                "{switch}"
+            );
+        }
     }
 
     #[test]

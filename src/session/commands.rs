@@ -43,7 +43,6 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "plugin",
     "prd",
     "python",
-    "read_dump",
     "rerun",
     "run_style",
     "server",

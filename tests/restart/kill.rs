@@ -8,15 +8,15 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// A block that bursts, with everything written often; `STEPS` steps.
-const DECK: &str = "units si\natom_style peri\nboundary s s s\nlattice sc 0.001\nregion blk block 0 7 0 5 0 5\n\
+const DECK: &str = "units si\natom_style peri\nboundary s s s\nlattice sc 0.001\nregion blk block 0 6 0 4 0 4\n\
     create_box 1 blk\ncreate_atoms 1 region blk\nset group all density 2400\nset group all volume 1e-9\n\
-    variable u atom 6000.0*(x-0.0035)\nvelocity all set v_u 0 0 units box\n";
+    variable u atom 6000.0*(x-0.003)\nvelocity all set v_u 0 0 units box\n";
 const AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.0030001 0.0015 0.25\nneighbor 0.0006 bin\n\
     fix 1 all nve\nfix 2 all dt/reset 10 1e-9 5e-8 1e-6 units box\ncompute dmg all damage/atom\n\
     thermo_style custom step time pe ke\nthermo_modify format float %24.17g flush yes\nthermo 1\n\
     restart 3 even.restart odd.restart\nrestart 5 each.*.restart\n\
     dump 1 all custom 4 dump.*.txt id x y z vx vy vz fx fy fz c_dmg\ndump_modify 1 format float %.17g\n";
-const STEPS: i64 = 240;
+const STEPS: i64 = 160;
 
 fn perigrain(folder: &Path, deck: &str, log: &str) -> Child {
     fs::write(folder.join(deck), text(deck)).unwrap();

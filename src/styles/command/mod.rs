@@ -22,6 +22,7 @@ mod neighbor;
 mod newton;
 mod processors;
 mod read_data;
+mod read_dump;
 mod region;
 mod replicate;
 mod reset_atoms;
@@ -85,6 +86,7 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &region::RegionCommand,
     &create_box::CreateBox,
     &read_data::ReadData,
+    &read_dump::ReadDump,
     &create_atoms::CreateAtoms,
     &group::Group,
     &set::Set,

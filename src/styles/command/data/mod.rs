@@ -1,6 +1,7 @@
 //! LAMMPS data files: which columns particles have in them, how they are read and written.
 
 pub mod body;
+pub mod dump;
 pub mod header;
 pub mod text;
 pub mod write;
