@@ -7,6 +7,7 @@ mod files;
 mod inert;
 mod info;
 mod interactive;
+mod rerunning;
 mod restarting;
 mod running;
 mod shell;
@@ -205,6 +206,8 @@ impl Session {
         s.portable = self.options.portable;
         self.world.folder = self.options.folder.clone();
         self.graph = Graph::default();
+        // Variables outlive `clear`.
+        self.graph.variables = commands::variable_kinds(&self.vars);
         self.plan = None;
         self.ran = false;
     }
@@ -319,6 +322,8 @@ impl Session {
             self.write_restart(cmd)?;
         } else if name == "read_restart" {
             self.read_restart(cmd)?;
+        } else if name == "rerun" {
+            self.rerun(cmd)?;
         } else if DECLARATIONS.contains(&name) {
             self.declare(cmd)?;
         } else if let Some(style) = COMMANDS.iter().find(|c| c.name() == name) {

@@ -11,7 +11,7 @@ use crate::styles::pair::PAIRS;
 use crate::world::World;
 
 /// Commands of the session and of the cursor through the deck, which stand in no table.
-pub const SESSION_COMMANDS: [&str; 23] = [
+pub const SESSION_COMMANDS: [&str; 24] = [
     "print",
     "log",
     "echo",
@@ -29,6 +29,7 @@ pub const SESSION_COMMANDS: [&str; 23] = [
     "package",
     "write_restart",
     "read_restart",
+    "rerun",
     "shell",
     "info",
     "timer",

@@ -108,6 +108,32 @@ pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Resu
     Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })
 }
 
+/// Forces and output for each scene that `next` puts in; nothing moves. `next` says `false` when there are no more.
+///
+/// # Errors
+/// The first op's that fails, and those of `next`.
+pub fn look(
+    plan: &mut StepPlan,
+    w: &mut World,
+    mut next: impl FnMut(&mut World) -> Result<bool>,
+) -> Result<Outcome> {
+    let (begin, cpu) = (Instant::now(), cpu_seconds());
+    let (mut steps, mut interrupted) = (0, false);
+    loop {
+        interrupted |= w.settings.stop.load(Ordering::Relaxed);
+        if interrupted || !next(w)? {
+            break;
+        }
+        let mut shown = tick(w, steps == 0);
+        plan.ask(&mut shown);
+        let forces = Tick { setup: true, ..shown.clone() };
+        plan.run(w, &forces, &[Stage::Neighbor, Stage::PreForce, Stage::Force, Stage::PostForce])?;
+        plan.run(w, &shown, &[Stage::EndOfStep, Stage::Output])?;
+        steps += 1;
+    }
+    Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })
+}
+
 fn tick(w: &World, setup: bool) -> Tick {
     Tick {
         step: w.clock.step,

@@ -43,7 +43,6 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "plugin",
     "prd",
     "python",
-    "rerun",
     "run_style",
     "server",
     "special_bonds",

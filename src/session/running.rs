@@ -107,7 +107,7 @@ impl Session {
     }
 
     /// Refuses a run without box; fills masses of types in.
-    fn ready(&mut self, span: Span) -> Result<()> {
+    pub(super) fn ready(&mut self, span: Span) -> Result<()> {
         if self.world.domain.is_none() {
             return Err(Diagnostic::error(
                 Code::WRONG_ORDER,
@@ -215,7 +215,7 @@ impl Session {
         verlet::verlet(plan, &mut self.world, self.watch.as_mut())
     }
 
-    fn say_end(&mut self, plan: &StepPlan, o: &verlet::Outcome, post: bool) -> Result<()> {
+    pub(super) fn say_end(&mut self, plan: &StepPlan, o: &verlet::Outcome, post: bool) -> Result<()> {
         let log = &self.options.log;
         let times = plan.time_by_class();
         let section = |name, class| Section {

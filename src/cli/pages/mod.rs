@@ -42,6 +42,7 @@ pub const COMMANDS: &[Entry] = &[
     restart::RESTART,
     restart::WRITE_RESTART,
     restart::READ_RESTART,
+    restart::RERUN,
     thermo::THERMO,
     thermo::THERMO_STYLE,
     thermo::THERMO_MODIFY,

@@ -1,4 +1,4 @@
-//! Pages of restart files: writing them, going on from them.
+//! Pages of restart files, and of runs over what dumps hold.
 
 use super::Entry;
 use crate::styles::Doc;
@@ -51,5 +51,23 @@ pub(super) const READ_RESTART: Entry = (
             damaged, LAMMPS' own, or of a version that stores scenes otherwise are refused. LAMMPS' switches \
             `-restart2data` and the like are not here: read the file and `write_data`.",
         example: "write_restart plate.restart\nclear\nread_restart plate.restart\nfix motion all nve",
+    },
+);
+
+pub(super) const RERUN: Entry = (
+    "rerun",
+    Doc {
+        syntax: "rerun FILE … [first N] [last N] [every N] [skip N] [start N] [stop N] [post yes|no] dump FIELD … [keyword value …]",
+        summary: "Computes forces and output for the snapshots of dumps, without motion.",
+        text: "The files are text dumps, read one after the other; what stands after `dump` is as for `read_dump`, without file \
+            and step. Snapshots before the step `first` or behind `last` are left out, and so are those whose step is not \
+            above that of the one before; after the first one only multiples of `every` count, and of these one in `skip`. \
+            For each, forces are computed as in the setup of a run, fixes that change forces act and integrators do not; \
+            thermo output, dumps and averages appear for steps that are multiples of their intervals. `start` and `stop` \
+            are as for `run`.\n\n\
+            The clock shows step · dt of each snapshot (LAMMPS counts the time from its own first snapshot). Peridynamic \
+            bonds are those of the scene before, or of the first snapshot if there was no run: bonds do not break, and \
+            damage is not in a dump.",
+        example: "dump 1 all custom 1 moves.txt id x y z vx vy vz\nrun 4\nundump 1\nrerun moves.txt first 2 every 2 dump x y z vx vy vz",
     },
 );

@@ -22,7 +22,7 @@ mod neighbor;
 mod newton;
 mod processors;
 mod read_data;
-mod read_dump;
+pub mod read_dump;
 mod region;
 mod replicate;
 mod reset_atoms;

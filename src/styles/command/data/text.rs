@@ -114,6 +114,16 @@ impl<'a> Lines<'a> {
         }
     }
 
+    /// At this byte of a text.
+    pub fn at(text: &'a str, at: usize) -> Self {
+        Self { text, at }
+    }
+
+    /// The byte at which the next line begins.
+    pub fn position(&self) -> usize {
+        self.at
+    }
+
     /// All of the text.
     pub fn text(&self) -> &'a str {
         self.text

@@ -1,0 +1,60 @@
+//! `rerun`: forces and output for the snapshots of dumps, without motion.
+
+use super::{Mode, Session};
+use crate::diag::Result;
+use crate::graph::Role;
+use crate::graph::build::Context;
+use crate::lang::{Args, Command};
+use crate::plan::explain;
+use crate::run::verlet;
+use crate::styles::command::read_dump::Rerun;
+use crate::world::GroupId;
+use std::cell::RefCell;
+use std::time::Instant;
+
+impl Session {
+    pub(super) fn rerun(&mut self, cmd: &Command) -> Result<()> {
+        let (notes, uses) = (RefCell::default(), RefCell::default());
+        let cx = Context { span: cmd.span, checking: self.checking(), notes: &notes, uses: &uses };
+        let mut args = Args::new(cmd);
+        let rerun = Rerun::read(&mut args, &cx.build(&self.graph, &self.world, "", GroupId::ALL))?;
+        args.finish()?;
+        self.thermo_computes();
+        self.record(cmd, Role::Run, None, vec![], vec![]);
+        self.ready(cmd.span)?;
+        self.check_run(cmd.span, false)?;
+        if self.checking() {
+            return Ok(());
+        }
+        self.say_notes()?;
+        let Rerun { mut reel, start, stop, post } = rerun;
+        let c = &mut self.world.clock;
+        let (first, last) = (reel.first, reel.last);
+        (c.began, c.step) = (None, first);
+        self.world.parts.resume = None;
+        self.world.slots.invalidate();
+        let mut plan = self.seal(cmd.span)?;
+        if self.options.mode == Mode::Plan {
+            return self.options.log.line(explain::text(&plan, false).trim_end());
+        }
+        self.world.clock.running = true;
+        self.world.clock.began = Some(Instant::now());
+        let outcome = verlet::look(&mut plan, &mut self.world, |w| {
+            let more = reel.next(w)?;
+            // Reading has set the counter; the run as a whole goes from `first` to `last`.
+            let c = &mut w.clock;
+            (c.first, c.last) = (first, last);
+            (c.start, c.stop) = (start.unwrap_or(first), stop.unwrap_or(last));
+            Ok(more)
+        });
+        self.world.clock.running = false;
+        let finished = plan.finish(&mut self.world);
+        let outcome = outcome.map_err(|e| e.at(cmd.span))?;
+        finished?;
+        self.ran = true;
+        self.interrupted |= outcome.interrupted;
+        self.say_end(&plan, &outcome, post)?;
+        self.plan = Some(plan);
+        Ok(())
+    }
+}
