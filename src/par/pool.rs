@@ -29,6 +29,15 @@ fn pool() -> Option<Arc<ThreadPool>> {
     POOL.read().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
+/// Runs `work` on a thread of the pool if there is one: loops inside it start without handing over between threads,
+/// which takes longer than a loop over a few thousand particles.
+pub fn inside<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    match pool() {
+        None => work(),
+        Some(pool) => pool.install(work),
+    }
+}
+
 /// Runs `work` inside the pool if there is one and `parts` are worth it, else right here.
 pub(super) fn enter<R: Send>(parts: usize, work: impl FnOnce(bool) -> R + Send) -> R {
     if parts < 2 {

@@ -1,6 +1,7 @@
 //! Velocity Verlet over a sealed plan: the loop, short enough to read aloud.
 
 use crate::diag::Result;
+use crate::par;
 use crate::plan::{Stage, StepPlan, Tick};
 use crate::world::{Halt, World};
 use std::sync::atomic::Ordering;
@@ -99,7 +100,7 @@ pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Resu
         w.clock.step += 1;
         let mut t = tick(w, false);
         plan.ask(&mut t);
-        plan.run(w, &t, &Stage::ALL)?;
+        par::inside(|| plan.run(w, &t, &Stage::ALL))?;
         let c = &w.clock;
         let (done, total) = (c.step - first, c.last - first);
         watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });

@@ -1,5 +1,6 @@
 //! The innermost loops of the list layout: all bonds that a record owns, four or eight at a time.
 
+use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
 use super::lanes::{Lanes, Portable};
@@ -82,9 +83,13 @@ impl<L: Lanes> Own<L> {
 struct Walk {
     group: usize,
     end: usize,
-    /// Where a group is alone but lanes are eight, the owner fills up the rest.
-    alone: [u32; MOST],
+    /// Where a group is alone but lanes are eight, the owner fills up the rest; for each place in a block.
+    alone: *mut [u32; MOST],
 }
+
+/// So many times the lanes are reckoned before their forces are handed over: the processor looks ahead farther when
+/// it need not wait for stores (measured: a fifth of the time).
+const BLOCK: usize = 8;
 
 /// Some bonds of one record: where their partners stand, and which of them live.
 struct Few<'a> {
@@ -95,17 +100,17 @@ struct Few<'a> {
 
 impl Walk {
     #[inline(always)]
-    fn of(a: &RowTask) -> Self {
+    fn of(a: &RowTask, alone: &mut [[u32; MOST]; BLOCK]) -> Self {
         let start = &a.body.start;
-        Self { group: start[a.i] as usize, end: start[a.i + 1] as usize, alone: [a.i as u32; MOST] }
+        Self { group: start[a.i] as usize, end: start[a.i + 1] as usize, alone: alone.as_mut_ptr() }
     }
 
-    /// The next bonds of a pair of types.
+    /// The next bonds of a pair of types, to be used before the same `place` is asked for again.
     ///
     /// # Safety
-    /// There must be a group left.
+    /// There must be a group left, and `place` is below [`BLOCK`]; what the walk was made with lives.
     #[inline(always)]
-    unsafe fn next<'a, L: Lanes>(&mut self, a: &RowTask<'a>) -> Few<'a> {
+    unsafe fn next<'a, L: Lanes>(&mut self, a: &RowTask<'a>, place: usize) -> Few<'a> {
         // SAFETY: groups lie within the body's columns, kinds within its pairs.
         unsafe {
             let (kinds, bits) = (a.body.group_kind.as_ptr(), a.body.alive.as_ptr());
@@ -120,8 +125,9 @@ impl Walk {
                     alive |= *bits.add(self.group) << GROUP;
                     self.group += 1;
                 } else {
-                    partner.copy_to_nonoverlapping(self.alone.as_mut_ptr(), GROUP);
-                    partner = self.alone.as_ptr();
+                    let alone = self.alone.add(place).cast::<u32>();
+                    partner.copy_to_nonoverlapping(alone, GROUP);
+                    partner = alone;
                 }
             }
             Few { partner, alive, pair }
@@ -192,22 +198,32 @@ unsafe fn force<L: Rows, const PERIODIC: bool, const RING: bool>(a: &RowTask) ->
         let own = Own::<L>::of(a);
         let mut sum = [L::none(); 3];
         let (mut high, mut low) = (L::splat(0.0), L::splat(0.0));
-        let mut walk = Walk::of(a);
+        let mut alone = [[a.i as u32; MOST]; BLOCK];
+        let mut walk = Walk::of(a, &mut alone);
+        let mut ready = [MaybeUninit::<([L; 3], *const u32)>::uninit(); BLOCK];
         while walk.group < walk.end {
-            let few = walk.next::<L>(a);
-            let s = shape::<L, PERIODIC>(a, &own, &few);
-            let h = pull(s.z, s.alive);
-            let z = s.z.keep(s.live);
-            high = z.max(high);
-            low = z.min(low);
-            let factor = s.scale.mul(z).mul(h).keep(s.live);
-            let [bx, by, bz] = s.bond;
-            sum = [factor.add_to(bx, sum[0]), factor.add_to(by, sum[1]), factor.add_to(bz, sum[2])];
-            let place = partners!(L, null_mut(), |k| {
-                let j = *few.partner.add(k) as usize;
-                a.force.wrapping_add(4 * if RING && j < a.first { j + n } else { j })
-            });
-            L::subtract_transposed([factor.mul(bx), factor.mul(by), factor.mul(bz)], &place);
+            let mut count = 0;
+            while count < BLOCK && walk.group < walk.end {
+                let few = walk.next::<L>(a, count);
+                let s = shape::<L, PERIODIC>(a, &own, &few);
+                let h = pull(s.z, s.alive);
+                let z = s.z.keep(s.live);
+                high = z.max(high);
+                low = z.min(low);
+                let factor = s.scale.mul(z).mul(h).keep(s.live);
+                let [bx, by, bz] = s.bond;
+                sum = [factor.add_to(bx, sum[0]), factor.add_to(by, sum[1]), factor.add_to(bz, sum[2])];
+                ready[count].write(([factor.mul(bx), factor.mul(by), factor.mul(bz)], few.partner));
+                count += 1;
+            }
+            for some in &ready[..count] {
+                let (columns, partner) = some.assume_init();
+                let place = partners!(L, null_mut(), |k| {
+                    let j = *partner.add(k) as usize;
+                    a.force.wrapping_add(4 * if RING && j < a.first { j + n } else { j })
+                });
+                L::subtract_transposed(columns, &place);
+            }
         }
         let own = a.force.wrapping_add(4 * a.i);
         *own += L::total(sum[0]);
@@ -235,9 +251,10 @@ unsafe fn sums<L: Rows, const PERIODIC: bool>(a: &RowTask, newton: bool) -> [f64
         let one = L::splat(1.0);
         let own = Own::<L>::of(a);
         let mut sum = [L::none(); SUMS];
-        let mut walk = Walk::of(a);
+        let mut alone = [[a.i as u32; MOST]; BLOCK];
+        let mut walk = Walk::of(a, &mut alone);
         while walk.group < walk.end {
-            let few = walk.next::<L>(a);
+            let few = walk.next::<L>(a, 0);
             let s = shape::<L, PERIODIC>(a, &own, &few);
             let root = one.add(s.z.keep(s.live)).sqrt();
             // s/(1 + s), and s.
