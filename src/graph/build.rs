@@ -75,7 +75,6 @@ const LAMMPS_STYLES: &[(&str, &str)] = &[
     ("fix", "nvt"),
     ("fix", "npt"),
     ("fix", "langevin"),
-    ("fix", "ave/chunk"),
     ("fix", "wall/reflect"),
     ("compute", "stress/atom"),
     ("compute", "dilatation/atom"),

@@ -15,11 +15,15 @@ const TOLERANCE: f64 = 1e-12;
 
 /// Runs a deck and returns its thermo table, header first.
 fn run(name: &str, deck: &str, compat: bool) -> Vec<Vec<String>> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("log");
+    run_in(tempfile::tempdir().unwrap().path(), name, deck, compat)
+}
+
+/// As `run`; files of the deck go to a folder.
+fn run_in(folder: &Path, name: &str, deck: &str, compat: bool) -> Vec<Vec<String>> {
+    let path = folder.join("log");
     let log = Log::silent();
     log.open(&path, false).unwrap();
-    let dir = folder.path().to_str().unwrap().to_string();
+    let dir = folder.to_str().unwrap().to_string();
     let vars = vec![("dir".into(), vec![dir])];
     let options = Options { compat, log: log.clone(), vars, ..Options::default() };
     if let Err(e) = Session::new(options).unwrap().run_text(name, deck) {
@@ -64,6 +68,33 @@ fn agrees(name: &str) {
             assert!((a - b).abs() <= TOLERANCE * largest, "{name}, {column}, row {row}: {a} is not {b}");
         }
     }
+}
+
+#[test]
+fn profiles_are_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/computes/golden/profiles");
+    run_in(folder.path(), "profiles", include_str!("profiles.in"), true);
+    let mut files = 0;
+    for entry in fs::read_dir(golden).unwrap() {
+        let entry = entry.unwrap();
+        let ours = fs::read_to_string(folder.path().join(entry.file_name())).unwrap();
+        assert_eq!(ours, fs::read_to_string(entry.path()).unwrap(), "{:?}", entry.file_name());
+        files += 1;
+    }
+    assert_eq!(files, 10);
+    agrees("profiles");
+}
+
+// A run cut inside an average goes on with it.
+#[test]
+fn a_profile_of_a_run_cut_in_two_is_that_of_one() {
+    let last = |runs: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        run_in(folder.path(), "cut", &include_str!("profiles.in").replace("run 40", runs), false);
+        ["1.txt", "2.txt", "4.txt", "9.txt"].map(|f| fs::read_to_string(folder.path().join(f)).unwrap())
+    };
+    assert_eq!(last("run 40"), last("run 17\nrun 23"));
 }
 
 #[test]

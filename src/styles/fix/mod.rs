@@ -3,6 +3,7 @@
 mod adapt;
 mod addforce;
 mod ave_atom;
+mod ave_chunk;
 mod ave_histo;
 mod ave_time;
 mod aveforce;
@@ -113,6 +114,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &adapt::Adapt,
     &addforce::AddForce,
     &ave_atom::AveAtom,
+    &ave_chunk::AveChunk,
     &ave_histo::AveHisto,
     &ave_histo::AveHistoWeight,
     &ave_time::AveTime,

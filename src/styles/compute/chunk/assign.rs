@@ -135,7 +135,7 @@ impl Task<'_> {
             let bin = match &self.spec.what {
                 What::Type => return f64::from(p.kind[i]),
                 What::Value(_) => return self.value.map_or(0.0, |v| whole(v.atom(w, i))),
-                _ => self.bin(d, layout, p.x[i]),
+                _ => self.bin(d, layout, p.x[i], w.settings.lammps()),
             };
             bin.map_or(f64::NAN, |b| b as f64 + 1.0)
         };
@@ -165,7 +165,7 @@ impl Task<'_> {
     }
 
     /// The bin of a place, counted from 0.
-    fn bin(&self, d: &Domain, layout: &Layout, x: [f64; 3]) -> Option<usize> {
+    fn bin(&self, d: &Domain, layout: &Layout, x: [f64; 3], lammps: bool) -> Option<usize> {
         let along = |k: usize| {
             let (lo, hi) = (d.lo[k], d.hi[k]);
             let mut a = x[k];
@@ -184,13 +184,13 @@ impl Task<'_> {
             What::Bins(axes) => {
                 let mut bin = 0;
                 for (a, l) in axes.iter().zip(layers) {
-                    bin = bin * l.count + a.layer(l, along(a.dim), spec.discard)?;
+                    bin = bin * l.count + a.layer(l, along(a.dim), spec.discard, lammps)?;
                 }
                 Some(bin)
             }
             What::Sphere(s) => layout.of(s).shell(d, x, spec.pbc, spec.discard),
             What::Cylinder(a, s) => {
-                let axial = a.layer(&layers[0], along(a.dim), spec.discard)?;
+                let axial = a.layer(&layers[0], along(a.dim), spec.discard, lammps)?;
                 let ring = layout.of(s).shell(d, x, spec.pbc, spec.discard)?;
                 Some(ring * layers[0].count + axial)
             }

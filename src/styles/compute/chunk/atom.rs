@@ -37,7 +37,8 @@ impl Style for ChunkAtom {
                    to none or to the nearest (`mixed`: to the nearest where bins end at the box); `bound dim lo hi` for \
                    layers; `pbc yes`: minimum image distances for spheres and cylinders; `units box|lattice|reduced` \
                    (lattice). A `fix ave/chunk` holds the number of chunks during its windows. `molecule` is refused: \
-                   particles have none. LAMMPS 22Jul2025 ignores or crashes on `limit` together with `compress`; here it \
+                   particles have none. Under `-compat lammps` `mixed` drops what is above the last layer \
+                   also where layers end at the box, as LAMMPS 22Jul2025 does. LAMMPS 22Jul2025 ignores or crashes on `limit` together with `compress`; here it \
                    does what LAMMPS' manual says.",
             example: "compute cc all chunk/atom bin/1d z lower 0.1 units reduced",
         }

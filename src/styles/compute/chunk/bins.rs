@@ -77,8 +77,9 @@ impl Axis {
         (lo <= hi && count < 1e9).then_some(Layers { lo, count: count as usize })
     }
 
-    /// The layer of a place, counted from 0; `None` for those that belong to none.
-    pub fn layer(&self, l: &Layers, x: f64, discard: Discard) -> Option<usize> {
+    /// The layer of a place, counted from 0; `None` for those that belong to none. LAMMPS 22Jul2025 drops what is above
+    /// the last layer under `mixed` also where that ends at the box.
+    pub fn layer(&self, l: &Layers, x: f64, discard: Discard, lammps: bool) -> Option<usize> {
         let inverse = 1.0 / self.delta;
         let mut k = ((x - l.lo) * inverse).trunc();
         if x < l.lo {
@@ -88,7 +89,7 @@ impl Axis {
         let keep = |end: usize| match discard {
             Discard::Yes => false,
             Discard::No => true,
-            Discard::Mixed => self.bound[end].is_none(),
+            Discard::Mixed => self.bound[end].is_none() && !(lammps && end == 1),
         };
         if (k < 0.0 && !keep(0)) || (k > last && !keep(1)) || l.count == 0 {
             return None;
@@ -194,9 +195,10 @@ mod tests {
     fn what_is_outside_goes_where_discard_says() {
         let a = Axis { dim: 0, origin: Origin::Lower, delta: 1.0, bound: [Some(0.0), None] };
         let l = Layers { lo: 0.0, count: 3 };
-        let of = |discard| [-0.5, 0.5, 2.999, 3.0].map(|x| a.layer(&l, x, discard));
+        let of = |discard| [-0.5, 0.5, 2.999, 3.0].map(|x| a.layer(&l, x, discard, false));
         assert_eq!(of(Discard::Yes), [None, Some(0), Some(2), None]);
         assert_eq!(of(Discard::No), [Some(0), Some(0), Some(2), Some(2)]);
         assert_eq!(of(Discard::Mixed), [None, Some(0), Some(2), Some(2)]);
+        assert_eq!(a.layer(&l, 3.0, Discard::Mixed, true), None);
     }
 }

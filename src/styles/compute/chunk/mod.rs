@@ -9,6 +9,8 @@ pub mod reduce;
 pub mod vcm;
 mod words;
 
+pub use assign::lock_key;
+
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::lang::{Args, RefKind, ValueRef};
 use crate::plan::{Stage, When};
@@ -88,6 +90,11 @@ impl<'a> Chunks<'a> {
     /// The number a chunk had before `compress`.
     pub fn original(&self, k: usize) -> f64 {
         self.slot.inner[k * self.stride]
+    }
+
+    /// The volume of a chunk's bin, or of the box.
+    pub fn volume(&self, k: usize) -> f64 {
+        self.slot.inner[k * self.stride + 1]
     }
 
     /// A coordinate of a chunk's bin.
