@@ -100,7 +100,7 @@ fn walk(w: &mut World, vars: &Vars, r: &ValueRef) -> Result<When> {
             Value::Number(a) => a.ceil(),
             _ => return fail(Code::WRONG_KIND, r.span, format!("`{r}` has no number here")),
         };
-        if !(next > w.clock.step as f64) {
+        if next.is_nan() || next <= w.clock.step as f64 {
             let text = format!("`{r}` names step {next} at step {}: it must name a later one", w.clock.step);
             return Err(Diagnostic::error(Code::BAD_VALUE, r.span, text)
                 .help("use stride(), logfreq(), stagger() or another formula that leads on")

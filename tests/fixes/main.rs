@@ -170,3 +170,43 @@ fn threads_leave_every_bit_as_it_is() {
     assert_eq!(one.len(), 7);
     assert_eq!(one, three);
 }
+
+// 9261 particles again, with the fixes that sum over groups, keep states and average.
+#[test]
+fn threads_leave_averages_and_springs_as_they_are() {
+    let deck = "units lj\natom_style sphere\nboundary s s s\nlattice sc 1.0\nregion b block 0 20 0 20 0 20\n\
+        create_box 1 b\ncreate_atoms 1 box\nset group all diameter 0.5\nvariable u atom sin(x*y+z)\n\
+        variable w atom cos(z*y-x)\nvelocity all set v_u v_w v_u units box\nfix n all nve/limit 0.006\n\
+        fix te all spring tether 3.0 1 2 3 0.5\nfix se all spring/self 2.0\nfix av all aveforce NULL 0.1 NULL\n\
+        fix dr all drag 1 NULL 3 0.7 0.2\nfix mo all momentum 2 linear 1 1 1 angular rescale\n\
+        fix re all recenter INIT NULL INIT\nfix st all store/state 3 vx xu com yes\nfix m all ave/atom 1 2 2 vy v_u\n\
+        fix h all ave/histo 1 2 2 -1 1 9 vx vy mode vector\ncompute r all reduce sumsq x vy fz f_st[1] f_st[2] f_m[1]\n\
+        fix a all ave/time 1 2 2 c_r[*] ave running\nthermo_style custom step ke f_n f_te f_te[1] f_se f_av[3] f_dr[1] \
+        f_re[1] c_r[*] f_a[*] f_h[3] f_h[5][2]\nthermo_modify format float %.17g norm no\nthermo 2\nrun 6\n";
+    set_threads(1);
+    let (_, one) = run("one", deck, false);
+    set_threads(3);
+    let (_, three) = run("three", deck, false);
+    assert_eq!(one.len(), 5);
+    assert_eq!(one, three);
+}
+
+// Averages go on across runs as if there were one.
+#[test]
+fn averages_of_a_run_cut_in_three_are_those_of_one() {
+    let deck = |runs: &str| {
+        format!(
+            "units lj\natom_style atomic\nlattice sc 1.0\nregion b block 0 3 0 3 0 3\ncreate_box 1 b\n\
+             create_atoms 1 box\nmass 1 1.0\nvelocity all create 1.0 4711\nfix 1 all nve\ncompute s all reduce sum x\n\
+             fix a all ave/time 2 3 6 c_s ave window 2\nfix m all ave/atom 1 4 6 x\ncompute r all reduce sumsq f_m\n\
+             fix v all vector 2 c_s\nvariable t equal trap(f_v)\n{runs}\nvariable all equal f_a+c_r+v_t\n"
+        )
+    };
+    let value = |runs: &str| {
+        let (session, _) = run("cut", &deck(runs), false);
+        let w = &session.world;
+        let slot = |name: &str| w.slots.get(w.slots.find(name).unwrap());
+        (slot("f_a").scalar, slot("f_m").atom.clone(), slot("f_v").vector.clone())
+    };
+    assert_eq!(value("run 18"), value("run 5\nrun 6\nrun 7"));
+}

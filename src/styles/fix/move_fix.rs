@@ -54,10 +54,13 @@ impl FixStyle for Move {
                 let amplitude = components(args)?;
                 Path::Wiggle(amplitude, 2.0 * PI / args.positive("the period")?)
             }
-            "variable" => Path::Variables(
-                [variable(args, cx, "x")?, variable(args, cx, "y")?, variable(args, cx, "z")?],
-                [variable(args, cx, "vx")?, variable(args, cx, "vy")?, variable(args, cx, "vz")?],
-            ),
+            "variable" => {
+                let mut three = |names: [&str; 3]| -> Result<[Option<ValueRef>; 3]> {
+                    let [x, y, z] = names.map(|name| variable(args, cx, name));
+                    Ok([x?, y?, z?])
+                };
+                Path::Variables(Box::new([three(["x", "y", "z"])?, three(["vx", "vy", "vz"])?]))
+            }
             _ => {
                 let velocity = if kind == "transrot" { three(args, "V")? } else { [0.0; 3] };
                 let point = three(args, "P")?;

@@ -38,6 +38,9 @@ impl FixStyle for NveLimit {
     }
 }
 
+/// Places, velocities, forces and group bits of a chunk.
+type Parts<'a> = (&'a mut [[f64; 3]], &'a mut [[f64; 3]], &'a [[f64; 3]], &'a [u32]);
+
 #[derive(Clone)]
 struct Declared {
     id: String,
@@ -57,27 +60,26 @@ impl Declared {
         let p = &mut w.particles;
         let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
         let columns = (&mut p.x[..], &mut p.v[..], &p.f[..], &p.mask[..]);
-        let chunk =
-            |start: usize, (x, v, f, mask): (&mut [[f64; 3]], &mut [[f64; 3]], &[[f64; 3]], &[u32])| {
-                let mut shortened = 0.0;
-                for (k, (((x, v), f), mask)) in x.iter_mut().zip(v).zip(f).zip(mask).enumerate() {
-                    if mask & bit == 0 {
-                        continue;
-                    }
-                    let by = half / masses.get(start + k);
-                    (0..3).for_each(|d| v[d] += by * f[d]);
-                    let speed = dot(*v, *v);
-                    if speed > square {
-                        shortened += 1.0;
-                        let scale = (square / speed).sqrt();
-                        *v = v.map(|a| a * scale);
-                    }
-                    if drift {
-                        (0..3).for_each(|d| x[d] += t.dt * v[d]);
-                    }
+        let chunk = |start: usize, (x, v, f, mask): Parts<'_>| {
+            let mut shortened = 0.0;
+            for (k, (((x, v), f), mask)) in x.iter_mut().zip(v).zip(f).zip(mask).enumerate() {
+                if mask & bit == 0 {
+                    continue;
                 }
-                [shortened]
-            };
+                let by = half / masses.get(start + k);
+                (0..3).for_each(|d| v[d] += by * f[d]);
+                let speed = dot(*v, *v);
+                if speed > square {
+                    shortened += 1.0;
+                    let scale = (square / speed).sqrt();
+                    *v = v.map(|a| a * scale);
+                }
+                if drift {
+                    (0..3).for_each(|d| x[d] += t.dt * v[d]);
+                }
+            }
+            [shortened]
+        };
         par::reduce_each(columns, chunk, add).map_or(0.0, |[n]| n)
     }
 }

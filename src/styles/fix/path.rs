@@ -24,7 +24,7 @@ pub enum Path {
         velocity: Vec3,
     },
     /// Displacements and velocities.
-    Variables([Option<ValueRef>; 3], [Option<ValueRef>; 3]),
+    Variables(Box<[[Option<ValueRef>; 3]; 2]>),
 }
 
 /// Where a variable path finds its values in a step: displacements, velocities.
@@ -45,14 +45,14 @@ impl Path {
         match self {
             Path::Linear(a) | Path::Wiggle(a, _) => a.map(|a| a.is_some()),
             Path::Turn { .. } => [true; 3],
-            Path::Variables(way, speed) => std::array::from_fn(|d| way[d].is_some() || speed[d].is_some()),
+            Path::Variables(both) => std::array::from_fn(|d| both[0][d].is_some() || both[1][d].is_some()),
         }
     }
 
     /// The parameters to plan, as in [`Readings`].
     pub fn params(&self) -> [[Option<Param>; 3]; 2] {
         match self {
-            Path::Variables(way, speed) => [way, speed].map(|list| list.clone().map(|r| r.map(Param::Ref))),
+            Path::Variables(both) => both.clone().map(|list| list.map(|r| r.map(Param::Ref))),
             _ => Default::default(),
         }
     }
