@@ -5,10 +5,9 @@ use super::scan::{place, taken};
 use super::text::Mapped;
 use crate::diag::{Code, Diagnostics, Result, fail};
 use nom::branch::alt;
-use nom::bytes::complete::{tag, take_while, take_while1};
-use nom::character::complete::{char, multispace0, satisfy};
-use nom::combinator::{opt, value};
-use nom::sequence::preceded;
+use nom::bytes::complete::{take_while, take_while1};
+use nom::character::complete::{char, satisfy};
+use nom::combinator::opt;
 use nom::{IResult, Parser};
 
 /// How deep parentheses may nest.
@@ -53,22 +52,22 @@ pub(super) fn holds(text: &Mapped) -> Result<bool> {
     }
 }
 
-fn operator(input: &str) -> IResult<&str, (Op, u8)> {
-    preceded(
-        multispace0,
-        alt((
-            value((Op::Or, 1), tag("||")),
-            value((Op::Xor, 1), tag("|^")),
-            value((Op::And, 2), tag("&&")),
-            value((Op::Equal, 3), tag("==")),
-            value((Op::NotEqual, 3), tag("!=")),
-            value((Op::LessEqual, 4), tag("<=")),
-            value((Op::GreaterEqual, 4), tag(">=")),
-            value((Op::Less, 4), tag("<")),
-            value((Op::Greater, 4), tag(">")),
-        )),
-    )
-    .parse(input)
+/// An operator with its level, and what follows it.
+fn operator(input: &str) -> Option<(&str, (Op, u8))> {
+    let rest = input.trim_ascii_start();
+    let (length, operator) = match rest.as_bytes() {
+        [b'|', b'|', ..] => (2, (Op::Or, 1)),
+        [b'|', b'^', ..] => (2, (Op::Xor, 1)),
+        [b'&', b'&', ..] => (2, (Op::And, 2)),
+        [b'=', b'=', ..] => (2, (Op::Equal, 3)),
+        [b'!', b'=', ..] => (2, (Op::NotEqual, 3)),
+        [b'<', b'=', ..] => (2, (Op::LessEqual, 4)),
+        [b'>', b'=', ..] => (2, (Op::GreaterEqual, 4)),
+        [b'<', ..] => (1, (Op::Less, 4)),
+        [b'>', ..] => (1, (Op::Greater, 4)),
+        _ => return None,
+    };
+    Some((&rest[length..], operator))
 }
 
 /// A number or a word that starts with a letter.
@@ -87,7 +86,7 @@ struct Reader<'a> {
 impl<'a> Reader<'a> {
     fn binary(&self, input: &'a str, level: u8, depth: usize) -> Result<(&'a str, Item<'a>)> {
         let (mut rest, mut left) = self.operand(input, depth)?;
-        while let Ok((after, (op, l))) = operator(rest) {
+        while let Some((after, (op, l))) = operator(rest) {
             if l < level {
                 break;
             }

@@ -11,7 +11,7 @@ use crate::diag::{Code, nearest};
 use nom::branch::alt;
 use nom::bytes::complete::{tag, take_till, take_while};
 use nom::character::complete::{char, digit1, multispace0, one_of, satisfy};
-use nom::combinator::{map_opt, opt, value};
+use nom::combinator::{map_opt, opt};
 use nom::multi::many_m_n;
 use nom::sequence::{delimited, preceded};
 use nom::{IResult, Parser};
@@ -56,26 +56,28 @@ fn spaced<'a, O>(
     preceded(multispace0, p)
 }
 
-/// An operator with its level; longer ones first.
-fn operator(input: &str) -> IResult<&str, (Binary, u8)> {
-    spaced(alt((
-        value((Binary::Or, 1), tag("||")),
-        value((Binary::Xor, 1), tag("|^")),
-        value((Binary::And, 2), tag("&&")),
-        value((Binary::Equal, 3), tag("==")),
-        value((Binary::NotEqual, 3), tag("!=")),
-        value((Binary::LessEqual, 4), tag("<=")),
-        value((Binary::GreaterEqual, 4), tag(">=")),
-        value((Binary::Less, 4), tag("<")),
-        value((Binary::Greater, 4), tag(">")),
-        value((Binary::Add, 5), tag("+")),
-        value((Binary::Subtract, 5), tag("-")),
-        value((Binary::Multiply, 6), tag("*")),
-        value((Binary::Divide, 6), tag("/")),
-        value((Binary::Modulo, 6), tag("%")),
-        value((Binary::Power, 7), tag("^")),
-    )))
-    .parse(input)
+/// An operator with its level, and what follows it.
+fn operator(input: &str) -> Option<(&str, (Binary, u8))> {
+    let rest = input.trim_ascii_start();
+    let (length, operator) = match rest.as_bytes() {
+        [b'|', b'|', ..] => (2, (Binary::Or, 1)),
+        [b'|', b'^', ..] => (2, (Binary::Xor, 1)),
+        [b'&', b'&', ..] => (2, (Binary::And, 2)),
+        [b'=', b'=', ..] => (2, (Binary::Equal, 3)),
+        [b'!', b'=', ..] => (2, (Binary::NotEqual, 3)),
+        [b'<', b'=', ..] => (2, (Binary::LessEqual, 4)),
+        [b'>', b'=', ..] => (2, (Binary::GreaterEqual, 4)),
+        [b'<', ..] => (1, (Binary::Less, 4)),
+        [b'>', ..] => (1, (Binary::Greater, 4)),
+        [b'+', ..] => (1, (Binary::Add, 5)),
+        [b'-', ..] => (1, (Binary::Subtract, 5)),
+        [b'*', ..] => (1, (Binary::Multiply, 6)),
+        [b'/', ..] => (1, (Binary::Divide, 6)),
+        [b'%', ..] => (1, (Binary::Modulo, 6)),
+        [b'^', ..] => (1, (Binary::Power, 7)),
+        _ => return None,
+    };
+    Some((&rest[length..], operator))
 }
 
 /// A name: a letter or underscore, then letters, digits and underscores.
@@ -110,7 +112,7 @@ impl<'a> Program<'a> {
     /// Operands joined by operators of at least `level`.
     fn binary(&mut self, input: &'a str, level: u8, depth: usize) -> Parsed<'a> {
         let mut rest = self.signed(input, depth)?;
-        while let Ok((after, (op, l))) = operator(rest) {
+        while let Some((after, (op, l))) = operator(rest) {
             if l < level.max(1) {
                 break;
             }
