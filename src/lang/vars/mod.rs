@@ -2,18 +2,16 @@
 
 mod define;
 mod files;
+mod hash;
+mod moving;
 mod text;
 
-use super::args::blame;
-use super::command::Word;
 use super::expr::Expr;
-use super::reference::{RefKind, ValueRef};
-use super::value::{Env, Value};
 use crate::diag::{Code, Diagnostic, FileId, Result, Span, fail, nearest};
 use crate::math::rng::Marsaglia;
 use files::{AtomFile, Lines};
+use hash::mixed;
 use std::collections::BTreeMap;
-use std::hash::{Hash, Hasher};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -130,69 +128,6 @@ struct Variable {
 impl Variable {
     fn new(kind: Kind, data: Data) -> Self {
         Self { kind, data, span: None, unknown: false, print: 0 }
-    }
-
-    /// Settles the hash, once everything else stands.
-    fn named(mut self, name: &str) -> Self {
-        let mut h = Words(0);
-        (name, self.kind, self.unknown).hash(&mut h);
-        match &self.data {
-            Data::List { values, .. } => values.hash(&mut h),
-            Data::Range { last, width, .. } => (last, width).hash(&mut h),
-            Data::Text(t) | Data::Getenv(t) => t.hash(&mut h),
-            Data::Lines(l) => l.path().hash(&mut h),
-            Data::Atoms(a) => a.path().hash(&mut h),
-            Data::Format { name, format } => (name, format).hash(&mut h),
-            Data::Formula(e) => e.text().hash(&mut h),
-            Data::Number(v) => v.to_bits().hash(&mut h),
-        }
-        self.print = h.finish();
-        self
-    }
-
-    /// The hash with the position in a list.
-    fn state(&self) -> u64 {
-        let at = match self.data {
-            Data::List { at, .. } => at as u64,
-            Data::Range { now, .. } => now as u64,
-            _ => 0,
-        };
-        mixed(self.print ^ mixed(at))
-    }
-
-    /// Its list or file has come to an end (by `next()` inside a formula).
-    fn exhausted(&self) -> bool {
-        match &self.data {
-            Data::Lines(l) => l.is_over(),
-            Data::Atoms(a) => a.is_over(),
-            _ => false,
-        }
-    }
-
-    /// Leaves the position in a file to those it was shared with, and goes on with one of its own.
-    fn detach(&mut self) {
-        match &mut self.data {
-            Data::Lines(l) => l.detach(),
-            Data::Atoms(a) => a.detach(),
-            _ => {}
-        }
-    }
-
-    /// Moves on; false if there is nothing further.
-    fn advance(&mut self) -> bool {
-        match &mut self.data {
-            Data::List { values, at } => {
-                *at += 1;
-                *at < values.len()
-            }
-            Data::Range { now, last, .. } => {
-                *now += 1;
-                *now <= *last
-            }
-            Data::Lines(l) => l.advance(),
-            Data::Atoms(a) => a.advance(),
-            _ => false,
-        }
     }
 }
 
@@ -371,70 +306,6 @@ impl Vars {
         }
     }
 
-    /// `next`: moves all of `names` on; true if one of them has no further value (it is then forgotten).
-    pub fn next(&mut self, names: &[Word]) -> Result<bool> {
-        let family = |k: Kind| if k == Kind::Uloop { Kind::Universe } else { k };
-        let mut first = None;
-        for name in names {
-            let Some(kind) = self.kind(&name.text) else {
-                return Err(self.unknown(&name.text, name.span).into());
-            };
-            if !kind.moves() {
-                let message = format!(
-                    "`{}` is of style {}; next moves index, loop, file, atomfile, universe and uloop variables",
-                    name.text,
-                    kind.name()
-                );
-                return Err(blame(name, Code::WRONG_KIND, message).into());
-            }
-            if *first.get_or_insert(family(kind)) != family(kind) {
-                return fail(Code::CONFLICT, name.span, "all variables of one next must have the same style");
-            }
-        }
-        let mut exhausted = false;
-        for name in names {
-            let Some(v) = Arc::make_mut(&mut self.table).get_mut(&name.text) else { continue };
-            self.state = self.state.wrapping_sub(v.state());
-            let more = v.advance();
-            let in_file = matches!(v.data, Data::Lines(_) | Data::Atoms(_));
-            self.state = self.state.wrapping_add(v.state());
-            if in_file {
-                self.event();
-            }
-            if !more {
-                self.remove(&name.text);
-                exhausted = true;
-            }
-        }
-        // all partitions of a universe end together
-        if exhausted && first == Some(Kind::Universe) {
-            names.iter().for_each(|n| self.remove(&n.text));
-        }
-        Ok(exhausted)
-    }
-
-    /// `next(name)` in a formula: the present value of a file- or atomfile-style variable, which then moves on.
-    pub(super) fn take_next(&self, name: &str, span: Span, env: &mut dyn Env) -> Result<Value> {
-        let r = ValueRef { kind: RefKind::Variable, name: name.to_owned(), index: vec![], span };
-        let Some(variable) = self.find(name) else { return Err(self.unknown(name, span).into()) };
-        if variable.unknown {
-            return Ok(Value::Unknown);
-        }
-        if !matches!(variable.kind, Kind::File | Kind::Atomfile) {
-            let style = variable.kind.name();
-            let message = format!("next() moves file and atomfile variables; `{name}` is of style {style}");
-            return fail(Code::WRONG_KIND, span, message);
-        }
-        let value = self.reference(&r, env, &mut super::expr::Trail::default())?;
-        self.event();
-        match &variable.data {
-            Data::Lines(l) => l.advance(),
-            Data::Atoms(a) => a.advance(),
-            _ => false,
-        };
-        Ok(value)
-    }
-
     fn unknown(&self, name: &str, span: Span) -> Diagnostic {
         let d = Diagnostic::error(Code::UNKNOWN_VARIABLE, span, format!("variable `{name}` is not defined"));
         match nearest(name, self.names()) {
@@ -442,31 +313,6 @@ impl Vars {
             None => d,
         }
     }
-}
-
-/// A quick hash of a definition.
-struct Words(u64);
-
-impl Hasher for Words {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-    fn write(&mut self, bytes: &[u8]) {
-        for part in bytes.chunks(8) {
-            let mut word = [0; 8];
-            word[..part.len()].copy_from_slice(part);
-            self.0 = mixed(self.0 ^ u64::from_le_bytes(word) ^ (part.len() as u64) << 59);
-        }
-    }
-}
-
-/// A number whose bits all depend on all bits of `x` (the finaliser of SplitMix64), so that sums of such numbers do not
-/// agree by chance.
-fn mixed(x: u64) -> u64 {
-    let x = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    x ^ (x >> 31)
 }
 
 fn is_name(name: &str) -> bool {
