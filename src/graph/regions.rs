@@ -86,7 +86,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
                     ValueRef { kind: RefKind::Variable, name: v.name.clone(), index: vec![], span: v.span };
                 readings.push(s.value(&r, stage, &When::Always)?);
             }
-            let op = PlaceRegion { title: format!("region {name}"), name: name.clone(), readings, stage };
+            let op = PlaceRegion { title: format!("region {name}"), region: name.clone(), readings, stage };
             let span = s.span();
             s.add(vec![Box::new(op)], span);
         }
@@ -97,7 +97,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
 /// Puts one region where its variables say.
 struct PlaceRegion {
     title: String,
-    name: String,
+    region: String,
     /// Values of its variables, in the order in which it asks for them.
     readings: Vec<Reading>,
     stage: Stage,
@@ -119,7 +119,7 @@ impl Op for PlaceRegion {
     fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
         let values: Vec<f64> = self.readings.iter().map(|r| r.get(w)).collect();
         let mut next = values.into_iter();
-        match w.regions.get_mut(&self.name) {
+        match w.regions.get_mut(&self.region) {
             Some(region) => region.place(&mut |_| Ok(next.next())),
             None => Ok(()),
         }

@@ -87,7 +87,7 @@ enum Choice {
     Tags(i64, i64),
     Kinds(u16, u16),
     Group(GroupId),
-    Region(Region),
+    Region(Box<Region>),
 }
 
 impl CommandStyle for Set {
@@ -117,7 +117,7 @@ fn choice(a: &mut Args, cx: &BuildCx) -> Result<Choice> {
         }
         "type" => a.type_range(cx.world.types).map(|(lo, hi)| Choice::Kinds(lo, hi)),
         "group" => cx.group(a.expect("a group")?).map(Choice::Group),
-        "region" => Ok(Choice::Region(cx.region(a.expect("a region")?)?.clone())),
+        "region" => Ok(Choice::Region(Box::new(cx.region(a.expect("a region")?)?.clone()))),
         _ => Err(bad_keyword(a, style, &["atom", "type", "group", "region"], &["mol"])),
     }
 }

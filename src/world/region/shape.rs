@@ -149,7 +149,7 @@ impl Shape {
     /// Gives the shape's number `k`, counted as `region` reads them, a new value.
     pub(super) fn set(&mut self, k: usize, value: f64) {
         let corner = |lo: &mut [f64; 3], hi: &mut [f64; 3]| {
-            let end = if k % 2 == 0 { lo } else { hi };
+            let end = if k.is_multiple_of(2) { lo } else { hi };
             end[k / 2] = value;
         };
         match self {
