@@ -213,6 +213,19 @@ fn a_line_that_fails_changes_nothing() {
 }
 
 #[test]
+fn a_deck_may_come_first() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("decks")).unwrap();
+    let deck = "units si\natom_style sphere\nmaterial m file own.toml\nprint \"read\"\n";
+    fs::write(folder.path().join("decks/in.first"), deck).unwrap();
+    let steel = Path::new(env!("CARGO_MANIFEST_DIR")).join("potentials/steel.toml");
+    fs::copy(steel, folder.path().join("decks/own.toml")).unwrap();
+    let o = program(folder.path(), &["repl", "decks/in.first"]).stdin(Stdio::null()).output().unwrap();
+    assert_eq!(o.status.code(), Some(0), "{}", err(&o));
+    assert!(out(&o).contains("read"), "{}", out(&o));
+}
+
+#[test]
 fn loops_live_in_files() {
     let folder = tempfile::tempdir().unwrap();
     let text = "variable n loop 3\nlabel again\nprint \"turn $n\"\nnext n\njump SELF again\n";

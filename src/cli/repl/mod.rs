@@ -85,9 +85,7 @@ fn begin(o: &Options, log: &Log, known: Rc<RefCell<Known>>) -> Result<Repl> {
         log.set_echo(echo);
     }
     log.keep_rows();
-    // Relative names are those of the working folder, also when a deck is read first.
-    let here = Options { deck: Deck::Stdin, ..o.clone() };
-    let mut session = deck::begin(&here, Mode::Run, log)?;
+    let mut session = deck::begin(o, Mode::Run, log)?;
     session.set_watch(Box::new(deck::Bar(progress.clone())));
     deck::catch_interrupts(&session);
     let mut switches: Vec<String> =
