@@ -263,4 +263,23 @@ proptest! {
         let (session, outcome) = outcome(folder.path(), &format!("atom_style {style}\nread_data x.data\n"), Mode::Run);
         prop_assert!(outcome.is_ok() || session.world.n() == 0);
     }
+
+    /// Dumps cut, joined and changed anywhere: an answer, never a panic.
+    #[test]
+    fn no_dump_makes_it_panic(cut in 0usize..400, at in 0usize..400, bytes in "\\PC{0,12}", rerun in any::<bool>()) {
+        const DUMP: &str = "ITEM: TIMESTEP\n5\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp ff pp\n0 1\n0 1\n0 1\n\
+            ITEM: ATOMS id type xs y zu vx ix\n1 1 0.5 0.5 3.5 1 0\n2 1 0.1 0.2 0.3 0 1\n";
+        let mut text = DUMP.repeat(2).replacen("TIMESTEP\n5", "TIMESTEP\n3", 1);
+        text.truncate(cut.max(at).min(text.len()));
+        text.insert_str(at.min(text.len()), &bytes);
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("d.txt"), text).unwrap();
+        let fields = "x y z vx ix";
+        let line = match rerun {
+            true => format!("rerun DIR/d.txt dump {fields} trim yes add keep"),
+            false => format!("read_dump DIR/d.txt 5 {fields} add yes"),
+        };
+        let deck = format!("region b block 0 2 0 2 0 2\ncreate_box 1 b\ncreate_atoms 1 single 0.5 0.5 0.5\nmass 1 1\n{line}\n");
+        let _ = outcome(folder.path(), &deck, Mode::Run);
+    }
 }

@@ -1,7 +1,8 @@
 //! `read_data`: box, particles, velocities, masses and coefficients from a LAMMPS data file.
 
 use super::common::{self, bad_keyword, id};
-use super::data::body::{DataFile, How, Index};
+use super::data::body::{DataFile, How};
+use super::data::index::Index;
 use super::data::text::load;
 use super::data::{Column, body};
 use super::{Act, CommandStyle};

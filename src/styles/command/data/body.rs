@@ -1,6 +1,7 @@
 //! The sections of a data file: Masses, Atoms, Velocities, pair coefficients.
 
 use super::header::{self, Header};
+use super::index::Index;
 use super::text::{Line, Lines, not_here, number, whole};
 use super::{Column, columns, velocity_columns};
 use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
@@ -390,31 +391,5 @@ fn id(line: &Line, word: &str) -> Result<u32> {
     match u32::try_from(k) {
         Ok(tag) if tag >= 1 => Ok(tag),
         _ => fail(Code::BAD_VALUE, line.span_of(word), format!("ids go from 1 to {}, not {k}", u32::MAX)),
-    }
-}
-
-/// Finds particles by their ids.
-pub struct Index(Vec<u32>);
-
-impl Index {
-    /// Of these ids.
-    pub fn new(tags: &[u32]) -> Self {
-        let mut order: Vec<u32> = (0..tags.len() as u32).collect();
-        if !tags.is_sorted() {
-            order.sort_unstable_by_key(|&i| tags[i as usize]);
-        }
-        Self(order)
-    }
-
-    /// The place of an id.
-    pub fn find(&self, tag: u32, tags: &[u32]) -> Option<usize> {
-        let k = self.0.binary_search_by_key(&tag, |&i| tags[i as usize]).ok()?;
-        Some(self.0[k] as usize)
-    }
-
-    /// Two places with the same id.
-    pub fn twice(&self, tags: &[u32]) -> Option<(usize, usize)> {
-        let pair = self.0.windows(2).find(|w| tags[w[0] as usize] == tags[w[1] as usize])?;
-        Some((pair[0].min(pair[1]) as usize, pair[0].max(pair[1]) as usize))
     }
 }

@@ -3,6 +3,7 @@
 pub mod body;
 pub mod dump;
 pub mod header;
+pub mod index;
 pub mod text;
 pub mod write;
 
