@@ -244,7 +244,7 @@ fn until_next<'a>(args: &mut Args<'a>) -> &'a [Word] {
 /// Whether a condition holds; `None` if that is unknown.
 fn evaluate(word: &Word, vars: &Vars, env: &mut dyn Env) -> Result<Option<bool>> {
     let text = Mapped::whole(&word.text, word.span, word.origin, word.unknown);
-    let full = expand(&text, vars, env, &mut vec![])?;
+    let full = expand(&text, vars, env, None)?;
     let truth = condition::holds(&full);
     if word.unknown || full.unknown(0..full.text.len()) {
         return Ok(None);

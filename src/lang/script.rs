@@ -128,7 +128,7 @@ impl Script {
             Body::Closed(command) => (command.clone(), vec![]),
             Body::Open(code) => {
                 let mut echoes = Vec::new();
-                let full = expand(code, vars, env, &mut echoes)?;
+                let full = expand(code, vars, env, Some(&mut echoes))?;
                 (lex::command(&full)?.map(Arc::new), echoes)
             }
         };

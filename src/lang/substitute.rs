@@ -39,7 +39,7 @@ pub fn substitute(text: &str, span: Span, vars: &Vars, env: &mut dyn Env) -> Res
 
 /// As [`substitute`], and says whether all values were known.
 pub fn substitute_known(text: &str, span: Span, vars: &Vars, env: &mut dyn Env) -> Result<Substituted> {
-    let line = expand(&Mapped::whole(text, span, None, false), vars, env, &mut vec![])?;
+    let line = expand(&Mapped::whole(text, span, None, false), vars, env, None)?;
     let unknown = line.unknown(0..line.text.len().max(1));
     Ok(Substituted { text: line.text, unknown })
 }
@@ -49,10 +49,10 @@ pub(super) fn expand(
     line: &Mapped,
     vars: &Vars,
     env: &mut dyn Env,
-    echoes: &mut Vec<String>,
+    mut echoes: Option<&mut Vec<String>>,
 ) -> Result<Mapped> {
     let text = line.text.as_str();
-    let mut out = Mapped::default();
+    let mut out = Mapped::with_room(text.len());
     let (mut rest, mut from) = (text, 0);
     let mut quote: Option<(Quote, usize)> = None;
     while let Some(k) = rest.find(['"', '\'', '$']) {
@@ -76,7 +76,12 @@ pub(super) fn expand(
         let shown = if value.unknown { STAND_IN } else { &value.text };
         out.push_value(shown, line.span(range.clone()), value.origin, value.unknown);
         (rest, from) = (after, range.end);
-        echoes.push(format!("{}{rest}", out.text));
+        if let Some(echoes) = &mut echoes {
+            let mut echo = String::with_capacity(out.text.len() + rest.len());
+            echo.push_str(&out.text);
+            echo.push_str(rest);
+            echoes.push(echo);
+        }
     }
     if let Some((q, at)) = quote {
         return Err(unclosed(q, line.span(at..at + 1)).into());

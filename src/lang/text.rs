@@ -34,6 +34,11 @@ impl Mapped {
         Self { text: text.to_owned(), parts: vec![part] }
     }
 
+    /// An empty text with room for a line of this length and the values in it.
+    pub fn with_room(length: usize) -> Self {
+        Self { text: String::with_capacity(length + 32), parts: Vec::with_capacity(4) }
+    }
+
     /// Appends bytes of the deck that start at byte `at` of `file`.
     pub fn push_literal(&mut self, text: &str, file: FileId, at: usize) {
         if text.is_empty() && !self.parts.is_empty() {
@@ -76,6 +81,9 @@ impl Mapped {
 
     /// The place of `range` in the deck.
     pub fn span(&self, range: Range<usize>) -> Span {
+        if let [only] = self.parts.as_slice() {
+            return self.part_span(only, range);
+        }
         let first = self.part_at(range.start);
         let last = self.part_at(range.end.saturating_sub(1).max(range.start));
         let (Some(first), Some(last)) = (first, last) else { return Span::default() };
