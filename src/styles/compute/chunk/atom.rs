@@ -2,7 +2,7 @@
 
 use super::assign::{Task, key};
 use super::words::{Spec, What};
-use crate::diag::{Code, Result, fail};
+use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
 use crate::plan::{Access, Op, Stage, When};
 use crate::styles::compute::{Compute, ComputeStyle};
@@ -47,7 +47,12 @@ impl Style for ChunkAtom {
 
 impl ComputeStyle for ChunkAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        Ok(Box::new(Declared(Spec::read(args, cx)?)))
+        let spec = Spec::read(args, cx)?;
+        if cx.world.settings.lammps() && spec.drops_above() {
+            let text = "compat lammps: what is above the last layer belongs to no chunk";
+            cx.note(Diagnostic::note(Code::COMPAT, cx.span, text));
+        }
+        Ok(Box::new(Declared(spec)))
     }
 }
 

@@ -164,6 +164,17 @@ impl Spec {
         })
     }
 
+    /// Whether LAMMPS 22Jul2025 drops what is above the last layer although layers end at the box.
+    pub fn drops_above(&self) -> bool {
+        let open = |a: &Axis| a.bound[1].is_none();
+        self.discard == Discard::Mixed
+            && match &self.what {
+                What::Bins(axes) => axes.iter().any(open),
+                What::Cylinder(axis, _) => open(axis),
+                _ => false,
+            }
+    }
+
     /// Coordinates of each chunk.
     pub fn coordinates(&self) -> usize {
         match &self.what {
