@@ -204,7 +204,7 @@ impl Session {
     }
 
     /// Keeps what a checked deck would have printed into a file, for the lines that read it.
-    fn promise(&mut self, name: &str, text: String, append: bool) {
+    pub(super) fn promise(&mut self, name: &str, text: String, append: bool) {
         let promised = &mut self.world.parts.promised;
         let before = match promised.remove(name) {
             Some(Promise::Text(before)) if append => before,

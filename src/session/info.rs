@@ -72,6 +72,9 @@ impl Session {
         }
         let _ = write!(text, "{LINE}");
         if self.checking() {
+            if let Target::File(word, append) = target {
+                self.promise(&word.text, text, append);
+            }
             return Ok(());
         }
         match target {
