@@ -73,7 +73,7 @@ fn complain(usage: &Usage) {
 /// What there is to say about one diagnostic code, or the list of all for `all`.
 fn explain(word: &str) -> Result<String, Usage> {
     if word == "all" {
-        return Ok(CODES.iter().map(|k| explained(k)).collect::<Vec<_>>().join("\n"));
+        return Ok(CODES.iter().map(explained).collect::<Vec<_>>().join("\n"));
     }
     let wanted = word.to_uppercase();
     if let Some(kind) = CODES.iter().find(|k| k.code.to_string() == wanted) {

@@ -68,7 +68,7 @@ impl Reading {
 
     /// How many values `list` gives.
     pub fn len(&self, w: &World) -> usize {
-        let rows = |values: usize, cols: usize| if cols == 0 { 0 } else { values / cols };
+        let rows = |values: usize, cols: usize| values.checked_div(cols).unwrap_or(0);
         match *self {
             Reading::Vector(s) => w.slots.get(s).vector.len(),
             Reading::Column(s, _) => rows(w.slots.get(s).array.len(), w.slots.get(s).array_cols),

@@ -21,8 +21,8 @@ pub fn complete(line: &str, known: &Known, folder: &Path) -> (usize, Vec<String>
 
 /// The last logical line: behind the last line break that no `&` joins.
 fn last_line(text: &str) -> &str {
-    let ends = text.match_indices('\n').filter(|(k, _)| !text[..*k].trim_end().ends_with('&'));
-    &text[ends.last().map_or(0, |(k, _)| k + 1)..]
+    let end = text.match_indices('\n').rfind(|(k, _)| !text[..*k].trim_end().ends_with('&'));
+    &text[end.map_or(0, |(k, _)| k + 1)..]
 }
 
 /// How much of the word stays as it is, and what the rest of it may become.

@@ -186,7 +186,8 @@ impl Repl {
     fn accept(&mut self, line: &str, heard: Heard, first: i64) {
         *self.known.borrow_mut() = self.session.known();
         if heard.quit.is_none() {
-            let stopped = heard.interrupted.then(|| Stopped { first, step: self.session.world.clock.step });
+            let step = self.session.world.clock.step;
+            let stopped = heard.interrupted.then_some(Stopped { first, step });
             self.lines.push(Line { text: line.to_string(), stopped });
         }
     }

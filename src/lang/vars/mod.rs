@@ -138,7 +138,7 @@ pub struct Vars {
     /// What `random` and `normal` draw from: one stream for numbers, one for values per particle.
     streams: Arc<Mutex<Streams>>,
     /// Formulas by place, so that a loop parses each of them once.
-    formulas: Arc<Mutex<BTreeMap<(FileId, u32, u32), Arc<Expr>>>>,
+    formulas: Arc<Mutex<Parsed>>,
     /// Counts what formulas change by being evaluated: random numbers drawn, files read on.
     events: Arc<AtomicU64>,
     /// Environment variables set by `shell putenv`.
@@ -148,6 +148,9 @@ pub struct Vars {
     /// Counts changes of names and styles.
     names: u64,
 }
+
+/// Formulas by file, first and last byte.
+type Parsed = BTreeMap<(FileId, u32, u32), Arc<Expr>>;
 
 /// The streams of `random` and `normal`, once their first use has seeded them.
 pub(super) type Streams = [Option<Marsaglia>; 2];
