@@ -1,5 +1,6 @@
 //! Lines that declare become nodes: pair styles, fixes, computes, dumps, thermo.
 
+use super::elsewhere;
 use super::node::{ComputeNode, DumpNode, FixNode, Graph, PairNode};
 use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use crate::lang::{Args, Command};
@@ -41,7 +42,7 @@ pub fn style<'t, S: Style + ?Sized>(table: &[&'t S], kind: &str, args: &mut Args
     if let Some(s) = table.iter().find(|s| s.name() == word.text) {
         return Ok(s);
     }
-    if LAMMPS_STYLES.contains(&(kind, word.text.as_str())) {
+    if elsewhere::STYLES.contains(&(kind, word.text.as_str())) {
         let text = format!("{kind} style `{}` is LAMMPS', but perigrain does not have it yet", word.text);
         return fail(Code::NOT_SUPPORTED, word.span, text);
     }
@@ -54,36 +55,6 @@ pub fn style<'t, S: Style + ?Sized>(table: &[&'t S], kind: &str, args: &mut Args
     }
     .into())
 }
-
-/// LAMMPS styles of our field that the next issues bring; named so that nobody searches for a typo.
-const LAMMPS_STYLES: &[(&str, &str)] = &[
-    ("pair", "gran/hooke"),
-    ("pair", "gran/hooke/history"),
-    ("pair", "gran/hertz/history"),
-    ("pair", "peri/lps"),
-    ("pair", "peri/ves"),
-    ("pair", "peri/eps"),
-    ("pair", "bpm/spring"),
-    ("pair", "lj/cut"),
-    ("fix", "freeze"),
-    ("fix", "wall/gran"),
-    ("fix", "wall/gran/region"),
-    ("fix", "pour"),
-    ("fix", "deposit"),
-    ("fix", "rigid"),
-    ("fix", "rigid/small"),
-    ("fix", "nvt"),
-    ("fix", "npt"),
-    ("fix", "langevin"),
-    ("fix", "wall/reflect"),
-    ("compute", "stress/atom"),
-    ("compute", "dilatation/atom"),
-    ("compute", "plasticity/atom"),
-    ("compute", "contact/atom"),
-    ("compute", "pair/local"),
-    ("compute", "erotate/sphere/atom"),
-    ("dump", "movie"),
-];
 
 /// What a declaration has done, for the node's record.
 #[derive(Default)]

@@ -3,6 +3,7 @@
 pub mod answers;
 pub mod build;
 pub mod dynamic;
+mod elsewhere;
 pub mod env;
 pub mod keywords;
 pub mod measure;

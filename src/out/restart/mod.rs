@@ -4,7 +4,7 @@
 //! magic 8 | format u32 | layout u32 | program: length u8, text | scene (postcard) | length u64 | crc32 u32 | end 8
 //! ```
 //!
-//! All numbers are little-endian. `layout` is a fingerprint of the shapes of all stored types ([`layout`]), the checksum
+//! All numbers are little-endian. `layout` is a fingerprint of the shapes of all stored types (module `layout`), the checksum
 //! covers everything before it. Files are written beside their place and moved there when they are on the disk.
 
 mod layout;

@@ -1,0 +1,31 @@
+//! What LAMMPS has and perigrain does not: refused by name.
+
+/// LAMMPS styles of our field that perigrain does not have yet, by kind; named so that nobody searches for a typo.
+pub const STYLES: &[(&str, &str)] = &[
+    ("pair", "gran/hooke"),
+    ("pair", "gran/hooke/history"),
+    ("pair", "gran/hertz/history"),
+    ("pair", "peri/lps"),
+    ("pair", "peri/ves"),
+    ("pair", "peri/eps"),
+    ("pair", "bpm/spring"),
+    ("pair", "lj/cut"),
+    ("fix", "freeze"),
+    ("fix", "wall/gran"),
+    ("fix", "wall/gran/region"),
+    ("fix", "pour"),
+    ("fix", "deposit"),
+    ("fix", "rigid"),
+    ("fix", "rigid/small"),
+    ("fix", "nvt"),
+    ("fix", "npt"),
+    ("fix", "langevin"),
+    ("fix", "wall/reflect"),
+    ("compute", "stress/atom"),
+    ("compute", "dilatation/atom"),
+    ("compute", "plasticity/atom"),
+    ("compute", "contact/atom"),
+    ("compute", "pair/local"),
+    ("compute", "erotate/sphere/atom"),
+    ("dump", "movie"),
+];
