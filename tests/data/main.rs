@@ -242,6 +242,16 @@ fn a_checked_deck_knows_files_it_would_write() {
     assert!(problems.0[0].message.contains("from 1 to 1"), "{problems}");
 }
 
+#[test]
+fn a_dump_that_ends_within_a_face_of_the_box_is_refused_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "ITEM: TIMESTEP\n3\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp ff pp\n0 1\n0 1\n0\n";
+    fs::write(folder.path().join("d.txt"), text).unwrap();
+    let deck = "region b block 0 2 0 2 0 2\ncreate_box 1 b\nmass 1 1\nread_dump DIR/d.txt 3 x y z add yes\n";
+    let problems = outcome(folder.path(), deck, Mode::Run).1.unwrap_err();
+    assert!(problems.0[0].message.contains("the upper face must be a number"), "{problems}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 

@@ -77,14 +77,13 @@ fn taken<'a>(lines: &mut Lines<'a>, what: &str) -> Result<Line<'a>> {
 
 fn single(lines: &mut Lines, what: &str) -> Result<i64> {
     let line = taken(lines, what)?;
-    whole(&line, line.words().next().unwrap_or(""), what)
+    whole(&line, line.word(0), what)
 }
 
 fn edge(lines: &mut Lines) -> Result<[f64; 2]> {
     let line = taken(lines, "a face of the box")?;
-    let mut words = line.words();
-    let (lo, hi) = (words.next().unwrap_or(""), words.next().unwrap_or(""));
-    let edge = [number(&line, lo, "the lower face")?, number(&line, hi, "the upper face")?];
+    let edge =
+        [number(&line, line.word(0), "the lower face")?, number(&line, line.word(1), "the upper face")?];
     if edge[0] < edge[1] {
         Ok(edge)
     } else {

@@ -54,6 +54,11 @@ impl<'a> Line<'a> {
         self.text.split_ascii_whitespace()
     }
 
+    /// Its word `k`, from 0; the empty end of the line where there are fewer.
+    pub fn word(&self, k: usize) -> &'a str {
+        self.words().nth(k).unwrap_or(&self.text[self.text.len()..])
+    }
+
     /// The place of a word of it.
     pub fn span_of(&self, word: &str) -> Span {
         let start = self.start + (word.as_ptr() as usize - self.text.as_ptr() as usize);
