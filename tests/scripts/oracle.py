@@ -4,7 +4,7 @@
     tests/scripts/oracle.py FILE...          says which blocks do not agree; exit code 1 if there are any
     tests/scripts/oracle.py --fill FILE...   writes the `# print:` lines anew, at the end of each block
 
-LAMMPS is $LMP or /opt/lmp/bin/lmp. A block with a line `# perigrain only: why` is left out. The prints of a block with
+LAMMPS is $LMP or the one benches/versus_lammps has installed. A block with a line `# perigrain only: why` is left out. The prints of a block with
 `@scene` must begin with `= `, so that --fill can tell them from the rest of LAMMPS' output.
 """
 import os
@@ -15,7 +15,8 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-LMP = os.environ.get("LMP", "/opt/lmp/bin/lmp")
+ROOT = HERE.parents[1]
+LMP = Path(os.environ.get("LMP", ROOT / "target/versus_lammps/venv/bin/lmp")).absolute()
 NOISE = ("LAMMPS (", "OMP_NUM_THREADS", "  using ", "Total wall time", "WARNING:", "Increment via next")
 
 
@@ -35,7 +36,7 @@ def run(lines):
     deck = "\n".join(scene.rstrip("\n") if line == "@scene" else line for line in lines)
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "in.deck").write_text(deck + "\n")
-        env = dict(os.environ, LD_LIBRARY_PATH="/opt/lmp/lib")
+        env = dict(os.environ, LD_LIBRARY_PATH=str(LMP.parent.parent / "lib"))
         command = [LMP, "-in", "in.deck", "-log", "none", "-nocite"]
         done = subprocess.run(command, cwd=folder, env=env, capture_output=True, timeout=120)
     return done.stdout.decode(errors="replace")
