@@ -1,5 +1,6 @@
 //! Small vectors and matrices, decompositions, random numbers.
 
 pub mod cformat;
+pub mod real;
 pub mod rng;
 pub mod vec3;

@@ -1,40 +1,48 @@
-//! Plain names for the vector algebra of kernels on `[f64; 3]`.
+//! Plain names for the vector algebra of kernels on three components.
+
+use super::real::Real;
 
 /// Three components.
-pub type Vec3 = [f64; 3];
+pub type Vec3<R = f64> = [R; 3];
 
 /// a + b.
 #[inline(always)]
-pub fn add(a: Vec3, b: Vec3) -> Vec3 {
+pub fn add<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// a − b.
 #[inline(always)]
-pub fn sub(a: Vec3, b: Vec3) -> Vec3 {
+pub fn sub<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// s a.
 #[inline(always)]
-pub fn scale(s: f64, a: Vec3) -> Vec3 {
+pub fn scale<R: Real>(s: R, a: Vec3<R>) -> Vec3<R> {
     [s * a[0], s * a[1], s * a[2]]
 }
 
 /// a · b.
 #[inline(always)]
-pub fn dot(a: Vec3, b: Vec3) -> f64 {
+pub fn dot<R: Real>(a: Vec3<R>, b: Vec3<R>) -> R {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// a × b.
 #[inline(always)]
-pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
+pub fn cross<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// |a|.
 #[inline(always)]
-pub fn length(a: Vec3) -> f64 {
+pub fn length<R: Real>(a: Vec3<R>) -> R {
     dot(a, a).sqrt()
+}
+
+/// `yes` where the mask says so, else `no`.
+#[inline(always)]
+pub fn choose<R: Real>(mask: R::Mask, yes: Vec3<R>, no: Vec3<R>) -> Vec3<R> {
+    [R::choose(mask, yes[0], no[0]), R::choose(mask, yes[1], no[1]), R::choose(mask, yes[2], no[2])]
 }

@@ -10,7 +10,7 @@ mod split;
 mod sum;
 
 pub use pool::{for_rows, inside, set_threads, slot, threads, two_colours};
-pub use split::{Shared, Split, each, for_chunks};
+pub use split::{Rows, Shared, Split, each, for_chunks};
 pub use sum::{max, reduce, reduce_each, sum};
 
 /// Particles per chunk, everywhere: fixed, so that the order of additions is too.

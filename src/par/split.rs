@@ -31,6 +31,24 @@ impl<T: Send> Split for &mut [T] {
     }
 }
 
+/// A column with several numbers per row.
+pub struct Rows<'a, T> {
+    /// All rows, one after the other.
+    pub data: &'a mut [T],
+    /// How many numbers a row has, perhaps none.
+    pub width: usize,
+}
+
+impl<T: Send> Split for Rows<'_, T> {
+    fn rows(&self) -> usize {
+        self.data.len().checked_div(self.width).unwrap_or(0)
+    }
+    fn cut(self, mid: usize) -> (Self, Self) {
+        let (low, high) = self.data.split_at_mut(mid * self.width);
+        (Self { data: low, width: self.width }, Self { data: high, width: self.width })
+    }
+}
+
 macro_rules! split_tuples {
     ($(($first:ident $($name:ident)*))*) => {$(
         impl<$first: Split, $($name: Split),*> Split for ($first, $($name,)*) {

@@ -259,6 +259,7 @@ fn without_particles(w: &mut World) {
     w.particles = Particles { style: w.particles.style, ..Particles::default() };
     w.families = None;
     w.contacts.clear();
+    w.wall_contacts.clear();
     w.columns = Default::default();
     w.tally = Default::default();
     w.rebuild = Default::default();

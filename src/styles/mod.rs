@@ -6,6 +6,7 @@
 pub mod build;
 pub mod command;
 pub mod compute;
+mod contact;
 pub mod dump;
 pub mod fix;
 pub mod matter;

@@ -1,29 +1,37 @@
-//! Contact history by pair of tags: what grains remember while they touch.
+//! Contact history by pair: what grains remember while they touch each other or a wall.
 
-/// Contacts of the last step in the order of their tags, with what each remembers.
+/// Contacts of the last step in the order of their keys, with what each remembers.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Contacts<H> {
-    /// Tags of both grains, the smaller one first; sorted.
+pub struct Contacts {
+    /// Tags of both grains, the smaller one first; of a wall's contacts the grain's tag and the part of the wall.
+    /// Sorted.
     pub keys: Vec<[u32; 2]>,
-    /// What each contact remembers, of the first grain against the second.
-    pub history: Vec<H>,
+    /// How many numbers a contact remembers.
+    pub width: usize,
+    /// What each contact remembers, of the first grain against the second: `width` numbers each.
+    pub history: Vec<f64>,
 }
 
-impl<H: Copy + Default> Contacts<H> {
-    /// Replaces the contacts by those of `keys` (sorted): those that were there keep their history, new ones
-    /// start with none, others are forgotten. `spare` is room that is used again.
-    pub fn carry(&mut self, keys: &[[u32; 2]], spare: &mut Vec<H>) {
+impl Contacts {
+    /// Replaces the contacts by those of `keys` (sorted), `width` numbers each: those that were there keep their
+    /// history, new ones start with zeros, others are forgotten. `spare` is room that is used again.
+    pub fn carry(&mut self, keys: &[[u32; 2]], width: usize, spare: &mut Vec<f64>) {
         spare.clear();
+        spare.resize(keys.len() * width, 0.0);
+        let kept = width.min(self.width);
         let mut at = 0;
-        for key in keys {
+        for (new, key) in keys.iter().enumerate() {
             while self.keys.get(at).is_some_and(|k| k < key) {
                 at += 1;
             }
-            let old = self.keys.get(at) == Some(key);
-            spare.push(if old { self.history[at] } else { H::default() });
-            at += usize::from(old);
+            if self.keys.get(at) == Some(key) {
+                let old = &self.history[at * self.width..][..kept];
+                spare[new * width..][..kept].copy_from_slice(old);
+                at += 1;
+            }
         }
         std::mem::swap(&mut self.history, spare);
+        self.width = width;
         self.keys.clear();
         self.keys.extend_from_slice(keys);
     }
@@ -38,16 +46,36 @@ impl<H: Copy + Default> Contacts<H> {
         self.keys.is_empty()
     }
 
-    /// Renames grains (LAMMPS gives new ids when some are deleted); `new(tag)` is `None` for those gone.
-    pub fn rename(&mut self, new: impl Fn(u32) -> Option<u32>, turned: impl Fn(H) -> H) {
-        let mut list: Vec<([u32; 2], H)> = vec![];
-        for (key, h) in self.keys.iter().zip(&self.history) {
-            let (Some(a), Some(b)) = (new(key[0]), new(key[1])) else { continue };
-            list.push(if a <= b { ([a, b], *h) } else { ([b, a], turned(*h)) });
+    /// What the contact with this key remembers, if there is one.
+    pub fn get(&self, key: [u32; 2]) -> Option<&[f64]> {
+        let at = self.keys.binary_search(&key).ok()?;
+        Some(&self.history[at * self.width..][..self.width])
+    }
+
+    /// Whether keys and history fit together.
+    pub fn sound(&self) -> bool {
+        self.keys.len() * self.width == self.history.len()
+    }
+
+    /// Renames grains (LAMMPS gives new ids when some are deleted); `new(key)` is the new key, `None` for those gone,
+    /// and whether it is seen from the other side now, for which `mirror` turns what is remembered.
+    pub fn rename(
+        &mut self,
+        new: impl Fn([u32; 2]) -> Option<([u32; 2], bool)>,
+        mirror: impl Fn(&mut [f64]),
+    ) {
+        let mut list: Vec<([u32; 2], Vec<f64>)> = vec![];
+        for (k, key) in self.keys.iter().enumerate() {
+            let Some((key, turned)) = new(*key) else { continue };
+            let mut history = self.history[k * self.width..][..self.width].to_vec();
+            if turned {
+                mirror(&mut history);
+            }
+            list.push((key, history));
         }
         list.sort_by_key(|(key, _)| *key);
         self.keys = list.iter().map(|(key, _)| *key).collect();
-        self.history = list.iter().map(|(_, h)| *h).collect();
+        self.history = list.into_iter().flat_map(|(_, h)| h).collect();
     }
 }
 
@@ -59,20 +87,33 @@ mod tests {
     fn contacts_keep_their_history_while_they_last() {
         let mut c = Contacts::default();
         let mut spare = vec![];
-        c.carry(&[[1, 2], [1, 5], [3, 4]], &mut spare);
-        c.history = vec![12, 15, 34];
-        c.carry(&[[1, 3], [1, 5], [2, 9], [3, 4]], &mut spare);
-        assert_eq!(c.history, [0, 15, 0, 34]);
-        c.carry(&[], &mut spare);
-        c.carry(&[[1, 5]], &mut spare);
+        c.carry(&[[1, 2], [1, 5], [3, 4]], 2, &mut spare);
+        c.history = vec![12.0, 0.5, 15.0, 1.5, 34.0, 2.5];
+        c.carry(&[[1, 3], [1, 5], [2, 9], [3, 4]], 2, &mut spare);
+        assert_eq!(c.history, [0.0, 0.0, 15.0, 1.5, 0.0, 0.0, 34.0, 2.5]);
+        assert_eq!(c.get([3, 4]), Some(&[34.0, 2.5][..]));
+        // A law with more memory goes on from what there is.
+        c.carry(&[[1, 5]], 3, &mut spare);
+        assert_eq!(c.history, [15.0, 1.5, 0.0]);
+        c.carry(&[], 3, &mut spare);
+        c.carry(&[[1, 5]], 3, &mut spare);
         // Touching again after a separation starts anew.
-        assert_eq!((c.history.as_slice(), c.len()), (&[0][..], 1));
+        assert_eq!((c.history.as_slice(), c.len()), (&[0.0; 3][..], 1));
     }
 
     #[test]
     fn renaming_turns_what_is_seen_from_the_other_side() {
-        let mut c = Contacts { keys: vec![[1, 2], [1, 3], [2, 3]], history: vec![12, 13, 23] };
-        c.rename(|t| [None, Some(3), Some(2), Some(1)][t as usize], |h| -h);
-        assert_eq!(c, Contacts { keys: vec![[1, 2], [1, 3], [2, 3]], history: vec![-23, -13, -12] });
+        let mut c =
+            Contacts { keys: vec![[1, 2], [1, 3], [2, 3]], width: 1, history: vec![12.0, 13.0, 23.0] };
+        // Tags 2 and 3 change places.
+        let tag = |t: u32| [0, 1, 3, 2][t as usize];
+        let new = |[a, b]: [u32; 2]| {
+            let (a, b) = (tag(a), tag(b));
+            Some(([a.min(b), a.max(b)], a > b))
+        };
+        c.rename(new, |h| h.iter_mut().for_each(|a| *a = -*a));
+        let expected =
+            Contacts { keys: vec![[1, 2], [1, 3], [2, 3]], width: 1, history: vec![13.0, 12.0, -23.0] };
+        assert_eq!(c, expected);
     }
 }

@@ -71,8 +71,10 @@ pub struct World {
     pub rebuild: Rebuild,
     /// Peridynamic bonds, from the first run on.
     pub families: Option<families::Families>,
-    /// What touching grains remember, by pair style: accumulated tangential displacement.
-    pub contacts: BTreeMap<String, contacts::Contacts<[f64; 3]>>,
+    /// What touching grains remember, by pair style.
+    pub contacts: BTreeMap<String, contacts::Contacts>,
+    /// What grains touching a wall remember, by the wall's fix.
+    pub wall_contacts: BTreeMap<String, contacts::Contacts>,
     /// Materials by ID.
     pub materials: BTreeMap<String, material::Material>,
     /// What the deck's folder is, for files beside it.

@@ -21,12 +21,20 @@ impl World {
     /// Gives particles these ids, in storage order; contacts follow.
     pub fn rename(&mut self, ids: Vec<u32>) {
         let old = std::mem::replace(&mut self.particles.tag, ids);
-        if self.contacts.is_empty() {
+        if self.contacts.is_empty() && self.wall_contacts.is_empty() {
             return;
         }
         let new: BTreeMap<u32, u32> = old.into_iter().zip(self.particles.tag.iter().copied()).collect();
+        let pair = |[a, b]: [u32; 2]| {
+            let (a, b) = (*new.get(&a)?, *new.get(&b)?);
+            Some(([a.min(b), a.max(b)], a > b))
+        };
         for c in self.contacts.values_mut() {
-            c.rename(|tag| new.get(&tag).copied(), |h| h.map(|a| -a));
+            // Displacements and angles change sign with the side they are seen from.
+            c.rename(pair, |h| h.iter_mut().for_each(|a| *a = -*a));
+        }
+        for c in self.wall_contacts.values_mut() {
+            c.rename(|[a, part]| Some(([*new.get(&a)?, part], false)), |_| {});
         }
     }
 }

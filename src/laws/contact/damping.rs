@@ -1,5 +1,6 @@
 //! Damping along the normal, F = −η v_n, with η from a coefficient or from the coefficient of restitution.
 
+use crate::math::real::Real;
 use crate::world::Compat;
 
 /// How η is made.
@@ -61,12 +62,12 @@ impl Damping {
 
     /// η for contact radius `a`, normal stiffness F/δ = `secant` = k a and effective mass.
     #[inline]
-    pub fn coefficient(self, constant: f64, a: f64, secant: f64, mass: f64) -> f64 {
+    pub fn coefficient<R: Real>(self, constant: f64, a: R, secant: R, mass: R) -> R {
         match self {
-            Damping::Velocity => constant,
-            Damping::MassVelocity => constant * mass,
-            Damping::Viscoelastic => constant * mass * a,
-            Damping::Tsuji | Damping::CoeffRestitution => constant * (mass * secant).sqrt(),
+            Damping::Velocity => a.like(constant),
+            Damping::MassVelocity => mass * constant,
+            Damping::Viscoelastic => mass * constant * a,
+            Damping::Tsuji | Damping::CoeffRestitution => (mass * secant).sqrt() * constant,
         }
     }
 }

@@ -66,6 +66,14 @@ impl<L: Copy> Rules<L> {
         self.table[(usize::from(a) - 1) * self.types + usize::from(b) - 1].as_ref()
     }
 
+    /// How many numbers a contact remembers at most.
+    pub fn memory(&self) -> usize
+    where
+        L: ContactLaw,
+    {
+        self.table.iter().flatten().map(|r| r.law.memory()).max().unwrap_or(0)
+    }
+
     /// Whether some rule is of this kind.
     pub fn any(&self, is: impl Fn(&Rule<L>) -> bool) -> bool {
         self.table.iter().flatten().any(is)
@@ -126,7 +134,7 @@ impl Grains<'_> {
     fn geometry<L>(&self, p: &Pair, rule: &Rule<L>) -> Option<Geometry> {
         let (i, j) = (p.i as usize, p.j as usize);
         let d = difference(self.x, &self.period, p);
-        let g = Geometry::of_spheres(d, [self.radius[i], self.radius[j]], [self.mass[i], self.mass[j]])?;
+        let g = Geometry::of_spheres(d, [self.radius[i], self.radius[j]], [self.mass[i], self.mass[j]], 0.0)?;
         if rule.curvature == Curvature::Both {
             return Some(g);
         }
@@ -140,7 +148,7 @@ impl Grains<'_> {
 
 /// One evaluation of all contacts; keeps its room from step to step.
 #[derive(Clone, Debug, Default)]
-pub struct Sweep<H> {
+pub struct Sweep {
     flags: Vec<bool>,
     touching: Vec<Pair>,
     keys: Vec<[u32; 2]>,
@@ -148,31 +156,34 @@ pub struct Sweep<H> {
     counts: Vec<u32>,
     names: Vec<[u64; 2]>,
     wrenches: Vec<Wrench>,
-    spare: Vec<H>,
+    spare: Vec<f64>,
 }
 
-impl<H: Copy + Default + Send> Sweep<H> {
+impl Sweep {
     /// Evaluates the contacts among the pairs of `list`; `memory` follows: contacts that ended are forgotten.
-    pub fn run<L: ContactLaw<History = H>>(
+    pub fn run<L: ContactLaw>(
         &mut self,
         list: &[Pair],
         grains: &Grains,
         rules: &Rules<L>,
-        memory: &mut Contacts<H>,
+        memory: &mut Contacts,
         step: Advance,
     ) {
+        let width = rules.memory();
         self.find(list, grains);
-        memory.carry(&self.keys, &mut self.spare);
+        memory.carry(&self.keys, width, &mut self.spare);
         self.share(grains, rules);
         self.wrenches.clear();
         self.wrenches.resize(self.touching.len(), Wrench::default());
-        let columns = (&mut self.wrenches[..], &mut memory.history[..], &self.touching[..], &self.shares[..]);
+        let history = par::Rows { data: &mut memory.history[..], width };
+        let columns = (&mut self.wrenches[..], history, &self.touching[..], &self.shares[..]);
         par::each(columns, |_, (wrenches, history, pairs, shares)| {
-            for (((w, h), p), share) in wrenches.iter_mut().zip(history).zip(pairs).zip(shares) {
+            for (k, ((w, p), share)) in wrenches.iter_mut().zip(pairs).zip(shares).enumerate() {
                 let (a, b) = (grains.kind[p.i as usize], grains.kind[p.j as usize]);
                 let Some(rule) = rules.get(a, b) else { continue };
                 let Some(g) = grains.geometry(p, rule) else { continue };
-                *w = rule.law.contact(&g, &grains.motion(p.i), &grains.motion(p.j), h, step);
+                let remembered = &mut history.data[k * width..][..width];
+                *w = rule.law.contact(&g, &grains.motion(p.i), &grains.motion(p.j), remembered, step);
                 if *share != 1.0 {
                     *w = w.scaled(*share);
                 }

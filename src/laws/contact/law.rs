@@ -2,7 +2,8 @@
 
 use super::tangential::Spring;
 use super::{Advance, ContactLaw, Damping, Geometry, Motion, Normal, Tangential, Wrench, split_velocity};
-use crate::math::vec3::{Vec3, add, cross, scale, sub};
+use crate::math::real::Real;
+use crate::math::vec3::{add, cross, scale, sub};
 use crate::world::Compat;
 
 /// What a deck says about contacts of one pair of types.
@@ -73,32 +74,44 @@ pub struct Granular {
 }
 
 impl ContactLaw for Granular {
-    /// Accumulated tangential displacement of i against j [length].
-    type History = Vec3;
+    /// The accumulated tangential displacement of i against j [length].
+    fn memory(&self) -> usize {
+        3
+    }
 
     #[inline]
-    fn contact(&self, g: &Geometry, i: &Motion, j: &Motion, history: &mut Vec3, step: Advance) -> Wrench {
+    fn contact<R: Real>(
+        &self,
+        g: &Geometry<R>,
+        i: &Motion<R>,
+        j: &Motion<R>,
+        history: &mut [R],
+        step: Advance,
+    ) -> Wrench<R> {
         let a = (g.curvature * g.overlap).sqrt();
-        let secant = self.stiffness * a;
+        let secant = a * self.stiffness;
         let eta = self.damping.coefficient(self.damping_constant, a, secant, g.mass);
 
         let (v_n, v_across) = split_velocity(g, i, j);
         let mut normal_force = secant * g.overlap - eta * v_n;
-        if self.limit_damping && normal_force < 0.0 {
-            normal_force = 0.0;
+        if self.limit_damping {
+            normal_force = normal_force.most(a.like(0.0));
         }
 
         // Slip of the two surfaces: v_t − (R_i ω_i + R_j ω_j) × n, full radii as in LAMMPS.
         let spin = add(scale(g.radii[0], i.spin), scale(g.radii[1], j.spin));
         let v_t = sub(v_across, cross(spin, g.normal));
-        let friction = self.spring.force(g.normal, a, eta, v_t, normal_force.abs(), history, step);
+        let mut slip = [history[0], history[1], history[2]];
+        let friction = self.spring.force(g.normal, a, eta, v_t, normal_force.abs(), &mut slip, step);
+        history[..3].copy_from_slice(&slip);
 
         // Lever arms end in the middle of the overlap.
         let lever = cross(friction, g.normal);
+        let arm = |k: usize| g.radii[k] - g.overlap * 0.5;
         Wrench {
             force: add(scale(normal_force, g.normal), friction),
-            torque_i: scale(g.radii[0] - 0.5 * g.overlap, lever),
-            torque_j: scale(g.radii[1] - 0.5 * g.overlap, lever),
+            torque_i: scale(arm(0), lever),
+            torque_j: scale(arm(1), lever),
         }
     }
 }

@@ -15,31 +15,33 @@ pub use law::{Granular, Model, Unmixable};
 pub use normal::Normal;
 pub use tangential::Tangential;
 
+use crate::math::real::Real;
 use crate::math::vec3::{Vec3, sub};
 
-/// Where and how two spheres i and j touch; a wall is a j of radius 0.
+/// Where and how two spheres i and j touch; a wall is a j of radius 0 and infinite mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Geometry {
+pub struct Geometry<R = f64> {
     /// Unit vector from j to i.
-    pub normal: Vec3,
-    /// Depth R_i + R_j − |x_i − x_j| > 0 [length].
-    pub overlap: f64,
+    pub normal: Vec3<R>,
+    /// Depth R_i + R_j − |x_i − x_j| [length]; negative only where an existing contact still holds (cohesion).
+    pub overlap: R,
     /// Radii of i and j [length].
-    pub radii: [f64; 2],
+    pub radii: [R; 2],
     /// Effective radius R̄, by default R_i R_j / (R_i + R_j) [length].
-    pub curvature: f64,
+    pub curvature: R,
     /// Effective mass m̄ = m_i m_j / (m_i + m_j) [mass].
-    pub mass: f64,
+    pub mass: R,
 }
 
 impl Geometry {
-    /// The contact of two spheres with centres `d` = x_i − x_j apart; `None` when they do not touch.
+    /// The contact of two spheres with centres `d` = x_i − x_j apart; `None` when they are further apart than
+    /// their radii and `gap` (what an existing cohesive contact spans) together.
     #[inline]
-    pub fn of_spheres(d: Vec3, radii: [f64; 2], masses: [f64; 2]) -> Option<Self> {
+    pub fn of_spheres(d: Vec3, radii: [f64; 2], masses: [f64; 2], gap: f64) -> Option<Self> {
         let [ri, rj] = radii;
         let sum = ri + rj;
         let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        if square >= sum * sum {
+        if square >= (sum + gap) * (sum + gap) {
             return None;
         }
         let distance = square.sqrt();
@@ -61,11 +63,11 @@ impl Geometry {
 
 /// How one side of a contact moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Motion {
-    /// Velocity of the centre [length/time].
-    pub velocity: Vec3,
+pub struct Motion<R = f64> {
+    /// Velocity of the centre (of a wall: of its surface at the contact) [length/time].
+    pub velocity: Vec3<R>,
     /// Angular velocity [1/time]; zero for peridynamic particles and walls.
-    pub spin: Vec3,
+    pub spin: Vec3<R>,
 }
 
 /// The part of a step that contact history sees.
@@ -79,13 +81,13 @@ pub struct Advance {
 
 /// What a contact does: `force` on i (its opposite on j) and the torques on both.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wrench {
+pub struct Wrench<R = f64> {
     /// Force on i [force].
-    pub force: Vec3,
+    pub force: Vec3<R>,
     /// Torque on i about its centre.
-    pub torque_i: Vec3,
+    pub torque_i: Vec3<R>,
     /// Torque on j about its centre.
-    pub torque_j: Vec3,
+    pub torque_j: Vec3<R>,
 }
 
 impl Wrench {
@@ -101,25 +103,40 @@ impl Wrench {
     }
 }
 
-/// A law of contact between spheres.
+/// A law of contact between spheres, written once for one contact and for lanes of contacts.
 pub trait ContactLaw: Copy + Sync {
-    /// What a contact remembers while it lasts; its default is a contact that has just begun.
-    type History: Copy + Default + Send;
+    /// How many numbers a contact remembers while it lasts; a contact that begins remembers zeros.
+    fn memory(&self) -> usize;
 
-    /// Force and torques of one contact; `history` moves on with it.
-    fn contact(
+    /// Whether `contact` may be asked for several lanes at once; else it is asked for single contacts only.
+    fn in_lanes(&self) -> bool {
+        true
+    }
+
+    /// How far apart the surfaces may be before an existing contact ends (cohesion) [length].
+    fn gap(&self, _curvature: f64) -> f64 {
+        0.0
+    }
+
+    /// Force and torques of one contact; `history`, [`ContactLaw::memory`] numbers, moves on with it.
+    fn contact<R: Real>(
         &self,
-        g: &Geometry,
-        i: &Motion,
-        j: &Motion,
-        history: &mut Self::History,
+        g: &Geometry<R>,
+        i: &Motion<R>,
+        j: &Motion<R>,
+        history: &mut [R],
         step: Advance,
-    ) -> Wrench;
+    ) -> Wrench<R>;
+
+    /// What j remembers of i, from what i remembers of j.
+    fn mirror(&self, history: &mut [f64]) {
+        history.iter_mut().for_each(|a| *a = -*a);
+    }
 }
 
 /// Relative velocity of i against j, split along and across the normal.
 #[inline]
-fn split_velocity(g: &Geometry, i: &Motion, j: &Motion) -> (f64, Vec3) {
+fn split_velocity<R: Real>(g: &Geometry<R>, i: &Motion<R>, j: &Motion<R>) -> (R, Vec3<R>) {
     use crate::math::vec3::{dot, scale};
     let relative = sub(i.velocity, j.velocity);
     let along = dot(relative, g.normal);

@@ -2,7 +2,8 @@
 
 use super::normal::{effective_shear, effective_young, geometric};
 use super::{Advance, Normal};
-use crate::math::vec3::{Vec3, add, dot, length, scale, sub};
+use crate::math::real::Real;
+use crate::math::vec3::{Vec3, add, choose, dot, length, scale, sub};
 use crate::world::Compat;
 
 /// Component along the normal, relative to the Coulomb limit, below which a spring counts as tangential.
@@ -70,44 +71,47 @@ impl Spring {
     /// displacement: turned into the present tangent plane with its length kept (Luding 2008, eq. 17), moved
     /// on by v_t dt, and shortened to what the slider carries when it slides (eq. 20).
     #[inline]
-    pub fn force(
+    pub fn force<R: Real>(
         &self,
-        n: Vec3,
-        a: f64,
-        eta: f64,
-        v_t: Vec3,
-        limit: f64,
-        xi: &mut Vec3,
+        n: Vec3<R>,
+        a: R,
+        eta: R,
+        v_t: Vec3<R>,
+        normal_force: R,
+        xi: &mut Vec3<R>,
         step: Advance,
-    ) -> Vec3 {
-        let stiffness = self.stiffness * a;
-        let damping = self.x_gamma * eta;
-        let limit = self.mu * limit;
+    ) -> Vec3<R> {
+        let zero = a.like(0.0);
+        let stiffness = a * self.stiffness;
+        let damping = eta * self.x_gamma;
+        let limit = normal_force * self.mu;
         if step.history {
             let tilt = dot(*xi, n);
-            if tilt.abs() * stiffness > TILT * limit {
-                *xi = into_plane(*xi, n, tilt);
+            let tilted = (tilt.abs() * stiffness).above(limit * TILT);
+            if R::any(tilted) {
+                *xi = choose::<R>(tilted, into_plane(*xi, n, tilt), *xi);
             }
-            *xi = add(*xi, scale(step.dt, v_t));
+            *xi = add(*xi, scale(a.like(step.dt), v_t));
         }
         let trial = sub(scale(-damping, v_t), scale(stiffness, *xi));
         let size = length(trial);
-        if size <= limit {
+        let slides = size.above(limit);
+        if !R::any(slides) {
             return trial;
         }
-        if dot(*xi, *xi) == 0.0 {
-            return [0.0; 3];
-        }
-        let sliding = scale(limit / size, trial);
-        *xi = scale(-1.0 / stiffness, add(sliding, scale(damping, v_t)));
-        sliding
+        let stretched = dot(*xi, *xi).above(zero);
+        let sliding = scale(R::choose(stretched, limit / size, zero), trial);
+        let carried = scale(a.like(-1.0) / stiffness, add(sliding, scale(damping, v_t)));
+        *xi = choose::<R>(R::both(slides, stretched), carried, *xi);
+        choose::<R>(slides, sliding, trial)
     }
 }
 
 /// `xi` without its component `tilt` along `n`, at its old length.
 #[inline]
-fn into_plane(xi: Vec3, n: Vec3, tilt: f64) -> Vec3 {
+fn into_plane<R: Real>(xi: Vec3<R>, n: Vec3<R>, tilt: R) -> Vec3<R> {
     let flat = sub(xi, scale(tilt, n));
     let flat_length = length(flat);
-    if flat_length > 0.0 { scale(length(xi) / flat_length, flat) } else { flat }
+    let one = tilt.like(1.0);
+    scale(R::choose(flat_length.above(tilt.like(0.0)), length(xi) / flat_length, one), flat)
 }

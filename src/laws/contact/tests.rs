@@ -53,7 +53,7 @@ impl Duel {
     fn forces(&mut self, history: bool) {
         let [a, b] = self.balls;
         let mut w = Wrench::default();
-        match Geometry::of_spheres(sub(a.x, b.x), [a.radius, b.radius], [a.mass, b.mass]) {
+        match Geometry::of_spheres(sub(a.x, b.x), [a.radius, b.radius], [a.mass, b.mass], 0.0) {
             Some(g) => {
                 let g = self.curvature.map_or(g, |r| g.with_curvature(r));
                 let step = Advance { dt: self.dt, history };

@@ -29,7 +29,15 @@ pub fn fingerprint(w: &World, of: &Resume) -> u32 {
     let clock = (c.step, c.dt, c.time_base, c.time_step);
     let names = (known(&w.regions, of), known(&w.materials, of), known(&w.memo, of));
     let scene = (&w.settings, &w.domain, p.style, w.types, &w.type_mass, &w.lattice);
-    sum_of(&(clock, scene, motion, matter, columns, names, (&w.rebuild, &w.families, &w.contacts)))
+    sum_of(&(
+        clock,
+        scene,
+        motion,
+        matter,
+        columns,
+        names,
+        (&w.rebuild, &w.families, &w.contacts, &w.wall_contacts),
+    ))
 }
 
 /// Columns of one length, types and bonds within bounds: what every loop relies on.
@@ -59,7 +67,7 @@ pub fn check(w: &World) -> Result<(), &'static str> {
     if w.type_mass.len() != w.types || p.kind.iter().any(|k| *k == 0 || usize::from(*k) > w.types) {
         return Err("a particle's type is beyond the number of types");
     }
-    if w.contacts.values().any(|c| c.keys.len() != c.history.len()) {
+    if w.contacts.values().chain(w.wall_contacts.values()).any(|c| !c.sound()) {
         return Err("contacts and their history differ in length");
     }
     let Some(f) = &w.families else { return Ok(()) };

@@ -77,6 +77,7 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
     let lengths = old.lengths();
     let world = &mut *cx.world;
     world.contacts.values_mut().for_each(|c| *c = Default::default());
+    world.wall_contacts.values_mut().for_each(|c| *c = Default::default());
     world.gather(&from);
     let p = &mut world.particles;
     for copy in 0..copies {

@@ -1,15 +1,15 @@
 //! `pair_style granular`: contacts of spheres, with models chosen per pair of types.
 
 mod force;
-mod words;
 
 use super::{Pair, PairStyle, TypePairs};
-use crate::diag::{Code, Diagnostic, Result, Span};
+use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
-use crate::laws::contact::driver::{Average, Curvature, Rule, Rules};
-use crate::laws::contact::{Damping, Granular, Model, Tangential};
+use crate::laws::contact::driver::{Rule, Rules};
+use crate::laws::contact::{Damping, Granular, Tangential};
 use crate::neigh::list::{Reach, Wanted};
 use crate::plan::Op;
+use crate::styles::contact::{Coeff, words};
 use crate::styles::{BuildCx, Doc, SealCx, Style};
 use crate::world::Compat;
 use std::collections::BTreeMap;
@@ -65,17 +65,6 @@ impl PairStyle for GranularStyle {
         let cutoff = if number { Some(args.positive("the global cutoff")?) } else { None };
         Ok(Box::new(Declared { cutoff, given: BTreeMap::new(), only: None, memory: "granular".to_string() }))
     }
-}
-
-/// What one `pair_coeff` line says of its pairs of types.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Coeff {
-    model: Model,
-    average: Average,
-    curvature: Curvature,
-    cutoff: Option<f64>,
-    /// The word with the normal model, for messages.
-    span: Span,
 }
 
 /// The style with its coefficients.
@@ -151,7 +140,7 @@ impl Pair for Declared {
     }
 
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        let coeff = words::coeff(args)?;
+        let coeff = words::coeff(args, &[])?;
         self.given.extend(pairs.iter().map(|&p| (p, coeff)));
         Ok(())
     }

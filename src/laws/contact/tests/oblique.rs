@@ -73,6 +73,7 @@ fn first_step(law: Granular, v: Vec3) -> Vec3 {
             2500.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.005_f64.powi(3),
             4000.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.004_f64.powi(3),
         ],
+        0.0,
     );
     let step = Advance { dt: 1e-9, history: true };
     let i = Motion { velocity: v, spin: [0.0; 3] };
@@ -130,8 +131,9 @@ fn action_and_reaction_are_equal_to_the_bit() {
     let step = Advance { dt: 1e-6, history: true };
     let (mut h, mut k) = ([1e-7, -2e-7, 3e-7], [-1e-7, 2e-7, -3e-7]);
     let (radii, masses) = ([a.radius, b.radius], [a.mass, b.mass]);
-    let g = Geometry::of_spheres(d, radii, masses).unwrap();
-    let back = Geometry::of_spheres(scale(-1.0, d), [radii[1], radii[0]], [masses[1], masses[0]]).unwrap();
+    let g = Geometry::of_spheres(d, radii, masses, 0.0).unwrap();
+    let back =
+        Geometry::of_spheres(scale(-1.0, d), [radii[1], radii[0]], [masses[1], masses[0]], 0.0).unwrap();
     let w = law.contact(&g, &a.motion, &b.motion, &mut h, step);
     let r = law.contact(&back, &b.motion, &a.motion, &mut k, step);
     assert_eq!(w.force, scale(-1.0, r.force));
@@ -143,7 +145,7 @@ fn action_and_reaction_are_equal_to_the_bit() {
 fn nothing_moves_on_in_the_setup_of_a_run() {
     let law = model(material(5.0e7, 0.0, 0.3), Damping::Viscoelastic, mindlin(0.0, 0.4)).law(Compat::Lammps);
     let mut h = [0.0, 1e-9, 0.0];
-    let g = Geometry::of_spheres([-0.00898, 0.0, 0.0], [0.005, 0.004], [1.0, 1.0]).unwrap();
+    let g = Geometry::of_spheres([-0.00898, 0.0, 0.0], [0.005, 0.004], [1.0, 1.0], 0.0).unwrap();
     let i = Motion { velocity: [0.0, 1.0, 0.0], spin: [0.0; 3] };
     law.contact(&g, &i, &Motion::default(), &mut h, Advance { dt: 1e-6, history: false });
     assert_eq!(h, [0.0, 1e-9, 0.0]);

@@ -19,7 +19,7 @@ pub struct Force {
     /// The rebuild the list was made at.
     generation: Option<u64>,
     body: Vec<u32>,
-    sweep: Sweep<Vec3>,
+    sweep: Sweep,
 }
 
 impl Force {
@@ -76,7 +76,7 @@ impl Op for Force {
         let period = period(w)?;
         let mut memory = w.contacts.remove(&self.memory).unwrap_or_default();
         // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
-        let kept: Option<Contacts<Vec3>> = (t.setup && !w.settings.lammps()).then(|| memory.clone());
+        let kept: Option<Contacts> = (t.setup && !w.settings.lammps()).then(|| memory.clone());
         let p = &w.particles;
         let grains = Grains {
             x: &p.x,

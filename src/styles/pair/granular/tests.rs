@@ -1,12 +1,13 @@
 //! The words of granular coefficients and what is refused.
 
 use super::*;
+use crate::laws::contact::driver::{Average, Curvature};
 use crate::styles::testing::command;
 
 fn read(words: &str) -> Result<Coeff> {
     let c = command(words);
     let mut args = Args::new(&c);
-    let coeff = words::coeff(&mut args)?;
+    let coeff = words::coeff(&mut args, &[])?;
     args.finish()?;
     Ok(coeff)
 }

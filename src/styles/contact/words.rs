@@ -19,11 +19,11 @@ const KEYWORDS: [&str; 9] = [
     "curvature",
 ];
 
-/// Reads a whole line after its types.
+/// Reads a granular model: to the end of the line, or to one of the words `ends` (what follows the model of a wall).
 ///
 /// # Errors
 /// Every mistake in the line.
-pub fn coeff(args: &mut Args) -> Result<Coeff> {
+pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
     let first = args.expect("the normal model")?;
     let normal = normal(first, args)?;
     let mut tangential = None;
@@ -39,7 +39,9 @@ pub fn coeff(args: &mut Args) -> Result<Coeff> {
         cutoff: None,
         span: first.span,
     };
-    while let Some(word) = args.next() {
+    while !ends.contains(&args.peek_text())
+        && let Some(word) = args.next()
+    {
         match word.text.as_str() {
             "tangential" => tangential = Some(self::tangential(&normal, args)?),
             "damping" => c.model.damping = damping(args)?,

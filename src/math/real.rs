@@ -1,0 +1,89 @@
+//! Numbers that formulas are written for: one `f64`, or several side by side.
+
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number, or lanes of numbers, on which a formula is evaluated at once; every lane gets the bits that the formula
+/// gives for `f64` alone. Plain numbers may stand on the right of operators.
+pub trait Real:
+    Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+{
+    /// Yes or no for every lane.
+    type Mask: Copy;
+
+    /// The same number in every lane (`self` lends only its kind).
+    fn like(self, a: f64) -> Self;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
+    /// The larger of two; `other` where either is NaN.
+    fn most(self, other: Self) -> Self;
+    /// The smaller of two; `other` where either is NaN.
+    fn least(self, other: Self) -> Self;
+    /// Where `self > other`.
+    fn above(self, other: Self) -> Self::Mask;
+    /// Where both say yes.
+    fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// `yes` where the mask says so, else `no`. Both are evaluated.
+    fn choose(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// Whether some lane says yes.
+    fn any(mask: Self::Mask) -> bool;
+    /// A function without a form in lanes (powers, angles), lane by lane.
+    fn each(self, f: impl Fn(f64) -> f64) -> Self;
+}
+
+impl Real for f64 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn like(self, a: f64) -> f64 {
+        a
+    }
+    #[inline(always)]
+    fn sqrt(self) -> f64 {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn abs(self) -> f64 {
+        self.abs()
+    }
+    #[inline(always)]
+    fn most(self, other: f64) -> f64 {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn least(self, other: f64) -> f64 {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn above(self, other: f64) -> bool {
+        self > other
+    }
+    #[inline(always)]
+    fn both(a: bool, b: bool) -> bool {
+        a && b
+    }
+    #[inline(always)]
+    fn choose(mask: bool, yes: f64, no: f64) -> f64 {
+        if mask { yes } else { no }
+    }
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+    #[inline(always)]
+    fn each(self, f: impl Fn(f64) -> f64) -> f64 {
+        f(self)
+    }
+}
