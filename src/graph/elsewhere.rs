@@ -10,7 +10,6 @@ pub const STYLES: &[(&str, &str)] = &[
     ("pair", "peri/eps"),
     ("pair", "bpm/spring"),
     ("pair", "lj/cut"),
-    ("fix", "freeze"),
     ("fix", "wall/gran"),
     ("fix", "wall/gran/region"),
     ("fix", "pour"),
@@ -26,6 +25,5 @@ pub const STYLES: &[(&str, &str)] = &[
     ("compute", "plasticity/atom"),
     ("compute", "contact/atom"),
     ("compute", "pair/local"),
-    ("compute", "erotate/sphere/atom"),
     ("dump", "movie"),
 ];

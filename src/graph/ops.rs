@@ -4,6 +4,7 @@ use crate::diag::{Code, Diagnostic, Result};
 use crate::par;
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::world::World;
+use crate::world::columns::HEATFLOW;
 
 /// Wraps, shrinks, checks for lost particles and tells lists to rebuild, at LAMMPS' reneighbour times.
 pub struct Reneighbor {
@@ -156,11 +157,15 @@ impl Op for ClearForces {
         Stage::PreForce
     }
     fn access(&self) -> Access {
-        Access::new("", "f torque tally")
+        Access::new("", "f torque columns tally")
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         w.particles.f.fill([0.0; 3]);
         w.particles.torque.fill([0.0; 3]);
+        if let Some(heat) = w.columns.custom(HEATFLOW) {
+            let n = w.particles.len();
+            w.columns.scalar(&heat, n).fill(0.0);
+        }
         if t.energy || t.virial {
             w.tally.clear(t.step, t.virial, t.atom_energy, w.particles.len());
         }

@@ -2,6 +2,11 @@
 
 use std::collections::BTreeMap;
 
+/// The property of fix property/atom that holds temperatures.
+pub const TEMPERATURE: &str = "temperature";
+/// The property of fix property/atom that holds the heat flowing into particles, summed anew in each step.
+pub const HEATFLOW: &str = "heatflow";
+
 /// Named scalar and vector columns, kept in step with the particles.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Columns {
@@ -20,7 +25,8 @@ impl Columns {
         self.vectors.entry(name.to_string()).or_insert_with(|| vec![[0.0; 3]; n])
     }
 
-    /// The full name of the column behind a deck's `i_NAME`, `d_NAME`, `i2_NAME[k]` or `d2_NAME[k]` (fix property/atom).
+    /// The full name of the column behind a deck's `i_NAME`, `d_NAME`, `i2_NAME[k]`, `d2_NAME[k]`, `temperature` or
+    /// `heatflow` (fix property/atom).
     pub fn custom(&self, word: &str) -> Option<String> {
         let name = match word.strip_suffix(']').and_then(|w| w.split_once('[')) {
             Some((head, k)) => format!("{head}/{k}"),

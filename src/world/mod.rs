@@ -92,6 +92,8 @@ pub struct Parts {
     pub changed: bool,
     /// Text facts that styles leave for the log's end, by name.
     pub facts: BTreeMap<String, Arc<str>>,
+    /// The fix freeze in force and its group: contact laws take these grains for infinitely heavy.
+    pub frozen: Option<(String, GroupId)>,
     /// While a deck is only checked: files that its lines so far would have written, by name.
     pub promised: BTreeMap<String, Promise>,
     /// What came from a restart file and the deck may say again: `region/ID`, `material/ID`, and state of fixes and

@@ -5,9 +5,10 @@ mod change;
 use super::common::{self, bad_keyword, id_range, on_particles, seed, variable_param};
 use super::create_atoms::subset::Amount;
 use super::{Act, CommandStyle};
-use crate::diag::{Code, Result, fail};
+use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Param, Word};
 use crate::styles::{BuildCx, Doc, Style};
+use crate::world::columns::{HEATFLOW, TEMPERATURE};
 use crate::world::{AtomStyle, GroupId, Region};
 use change::{Change, Item, Limit};
 
@@ -33,7 +34,7 @@ const KEYWORDS: [&str; 17] = [
     "vy",
     "vz",
 ];
-const ELSEWHERE: [&str; 23] = [
+const ELSEWHERE: [&str; 22] = [
     "mol",
     "charge",
     "dipole",
@@ -52,7 +53,6 @@ const ELSEWHERE: [&str; 23] = [
     "angle",
     "dihedral",
     "improper",
-    "temperature",
     "epsilon",
     "rheo/rho",
     "rheo/status",
@@ -70,7 +70,7 @@ impl Style for Set {
             summary: "Sets properties of the particles chosen: type, mass, density, diameter, volume, spin, place, velocity.",
             text: "Keywords: `type T`, `type/fraction T P SEED`, `type/ratio T P SEED`, `type/subset T N SEED`, `mass M`, \
                    `density ρ`, `density/disc ρ`, `diameter D`, `volume V`, `omega WX WY WZ`, `image NX NY NZ` (`NULL` \
-                   leaves one alone), `x y z`, `vx vy vz`. A value is a number or an atom-style variable `v_name`. \
+                   leaves one alone), `x y z`, `vx vy vz`, `temperature T` (where `fix property/atom temperature` is). A value is a number or an atom-style variable `v_name`. \
                    Who is chosen is decided once for the whole line. \
                    `density` of a sphere sets its mass to 4/3 π r³ ρ with the radius it has now; of a peridynamic particle \
                    without radius it sets the mass to ρ itself (LAMMPS' convention). `diameter` leaves the mass alone: \
@@ -174,9 +174,18 @@ fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
             let d = usize::from(keyword.text.as_bytes()[1] - b'x');
             value(a, cx, "the velocity", None).map(|p| Change::Velocity(d, p))
         }
+        HEATFLOW => {
+            let text = "the heat flow is computed anew in each step: it cannot be set";
+            fail(Code::CONFLICT, keyword.span, text)
+        }
+        TEMPERATURE if cx.world.columns.custom(TEMPERATURE).is_none() => {
+            let d = Diagnostic::error(Code::INCOMPLETE, keyword.span, "these particles have no temperature");
+            Err(d.help("`fix ID all property/atom temperature` gives them one").into())
+        }
         custom => match cx.world.columns.custom(custom) {
             Some(column) => {
-                let p = value(a, cx, "the value", None)?;
+                let limit = (custom == TEMPERATURE).then_some(Limit::NotNegative);
+                let p = value(a, cx, if limit.is_some() { "the temperature" } else { "the value" }, limit)?;
                 Ok(Change::Custom { column, whole: custom.starts_with('i'), value: p })
             }
             None => Err(bad_keyword(a, keyword, &KEYWORDS, &ELSEWHERE)),

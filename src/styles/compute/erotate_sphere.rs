@@ -10,7 +10,7 @@ use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 use crate::world::{GroupId, SlotId};
 
 /// I / (m R²) of a solid sphere.
-const INERTIA: f64 = 0.4;
+pub(super) const INERTIA: f64 = 0.4;
 
 /// The style.
 pub struct ErotateSphere;
@@ -33,17 +33,19 @@ impl Style for ErotateSphere {
 impl ComputeStyle for ErotateSphere {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         args.finish()?;
-        if !cx.world.particles.style.sphere {
-            return Err(Diagnostic::error(
-                Code::WRONG_ORDER,
-                cx.span,
-                "compute erotate/sphere needs spheres",
-            )
-            .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
-            .into());
-        }
+        needs_spheres(self.name(), cx)?;
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group }))
     }
+}
+
+/// Refuses a compute of spheres where particles have no radius.
+pub(super) fn needs_spheres(name: &str, cx: &BuildCx) -> Result<()> {
+    if cx.world.particles.style.sphere {
+        return Ok(());
+    }
+    Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, format!("compute {name} needs spheres"))
+        .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
+        .into())
 }
 
 #[derive(Clone)]

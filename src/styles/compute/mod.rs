@@ -7,6 +7,7 @@ mod coord_atom;
 mod damage_atom;
 mod displace_atom;
 mod erotate_sphere;
+mod erotate_sphere_atom;
 mod global_atom;
 mod gyration;
 mod ke;
@@ -22,6 +23,7 @@ pub mod property_atom;
 mod property_local;
 mod reduce;
 mod temp;
+mod temp_sphere;
 
 use super::{BuildCx, SealCx, Shape, Style};
 use crate::diag::{Code, Diagnostic, Result};
@@ -110,6 +112,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &damage_atom::DamageAtom,
     &displace_atom::DisplaceAtom,
     &erotate_sphere::ErotateSphere,
+    &erotate_sphere_atom::ErotateSphereAtom,
     &global_atom::GlobalAtom,
     &gyration::Gyration,
     &ke::Ke,
@@ -124,6 +127,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &reduce::Reduce,
     &reduce::ReduceRegion,
     &temp::Temp,
+    &temp_sphere::TempSphere,
 ];
 
 /// Keywords of `pe` and `pe/atom`: whether pairs and fixes count. Terms of styles that perigrain does not have

@@ -8,6 +8,7 @@ use crate::plan::{Op, Stage, When};
 use crate::styles::matter::{Masses, unwrapped};
 use crate::styles::step_op::{Wanted, fill};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
+use crate::world::columns::{HEATFLOW, TEMPERATURE};
 use crate::world::{AtomStyle, GroupId, SlotId, World};
 
 /// The style.
@@ -25,7 +26,7 @@ impl Style for PropertyAtom {
                    mass x y z`; `xs ys zs` as fractions of the box; `xu yu zu` unwrapped across periodic faces; `ix iy iz` \
                    image counts; `vx vy vz fx fy fz`; with atom_style sphere `radius diameter omegax omegay omegaz tqx \
                    tqy tqz`; with atom_style peri `vfrac`, the volume. All in the deck's units. LAMMPS' other attributes \
-                   belong to atom styles that perigrain does not have and are refused, as is `s0`. `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`: those of `fix property/atom`.",
+                   belong to atom styles that perigrain does not have and are refused, as is `s0`. `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`, `temperature`, `heatflow`: those of `fix property/atom`.",
             example: "compute r all property/atom radius",
         }
     }
@@ -107,58 +108,11 @@ const ATTRIBUTES: &[(&str, Needs, Read)] = &[
 
 /// LAMMPS' attributes of atom styles that perigrain does not have.
 const ELSEWHERE: &[&str] = &[
-    "mol",
-    "q",
-    "mux",
-    "muy",
-    "muz",
-    "mu",
-    "spx",
-    "spy",
-    "spz",
-    "sp",
-    "fmx",
-    "fmy",
-    "fmz",
-    "nbonds",
-    "temperature",
-    "heatflow",
-    "angmomx",
-    "angmomy",
-    "angmomz",
-    "shapex",
-    "shapey",
-    "shapez",
-    "quatw",
-    "quati",
-    "quatj",
-    "quatk",
-    "end1x",
-    "end1y",
-    "end1z",
-    "end2x",
-    "end2y",
-    "end2z",
-    "corner1x",
-    "corner1y",
-    "corner1z",
-    "corner2x",
-    "corner2y",
-    "corner2z",
-    "corner3x",
-    "corner3y",
-    "corner3z",
-    "s0",
-    "espin",
-    "eradius",
-    "ervel",
-    "erforce",
-    "rho",
-    "drho",
-    "e",
-    "de",
-    "cv",
-    "buckling",
+    "mol", "q", "mux", "muy", "muz", "mu", "spx", "spy", "spz", "sp", "fmx", "fmy", "fmz", "nbonds",
+    "angmomx", "angmomy", "angmomz", "shapex", "shapey", "shapez", "quatw", "quati", "quatj", "quatk",
+    "end1x", "end1y", "end1z", "end2x", "end2y", "end2z", "corner1x", "corner1y", "corner1z", "corner2x",
+    "corner2y", "corner2z", "corner3x", "corner3y", "corner3z", "s0", "espin", "eradius", "ervel", "erforce",
+    "rho", "drho", "e", "de", "cv", "buckling",
 ];
 
 fn scaled(w: &World, i: usize, d: usize) -> f64 {
@@ -207,6 +161,11 @@ pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
         return Err(d
             .help("`fix ID all property/atom NAME` makes one; of several columns say which, as `d2_x[1]`")
             .into());
+    }
+    if [TEMPERATURE, HEATFLOW].contains(&name) {
+        let text = format!("the particles of this scene have no `{name}`");
+        let d = Diagnostic::error(Code::INCOMPLETE, word.span, text);
+        return Err(d.help(format!("`fix ID all property/atom {name}` gives them one")).into());
     }
     if ELSEWHERE.contains(&name) {
         return fail(Code::NOT_SUPPORTED, word.span, format!("the attribute `{name}` is not in perigrain"));

@@ -2,6 +2,7 @@
 
 mod adapt;
 mod addforce;
+mod addtorque;
 mod ave_atom;
 mod ave_chunk;
 mod ave_histo;
@@ -13,8 +14,10 @@ mod dt_reset;
 mod elapsed;
 mod enforce2d;
 mod extremes;
+mod freeze;
 mod gravity;
 mod halt;
+mod heat_flow;
 mod indent;
 mod lineforce;
 mod momentum;
@@ -35,6 +38,7 @@ mod store_force;
 mod store_state;
 mod vector;
 mod viscous;
+mod viscous_sphere;
 mod window;
 
 use super::{BuildCx, SealCx, Shape, Style};
@@ -113,6 +117,7 @@ pub trait Fix: Send {
 pub const FIXES: &[&dyn FixStyle] = &[
     &adapt::Adapt,
     &addforce::AddForce,
+    &addtorque::AddTorque,
     &ave_atom::AveAtom,
     &ave_chunk::AveChunk,
     &ave_histo::AveHisto,
@@ -123,8 +128,10 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &dt_reset::DtReset,
     &enforce2d::Enforce2d,
     &extremes::ExtremesStyle,
+    &freeze::Freeze,
     &gravity::Gravity,
     &halt::HaltFix,
+    &heat_flow::HeatFlow,
     &indent::Indent,
     &lineforce::LineForce,
     &momentum::Momentum,
@@ -144,6 +151,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &store_state::StoreState,
     &vector::VectorFix,
     &viscous::Viscous,
+    &viscous_sphere::ViscousSphere,
 ];
 
 /// Takes the region after the keyword `region`.

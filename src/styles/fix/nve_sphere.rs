@@ -12,6 +12,8 @@ use crate::world::{GroupId, World};
 
 /// I / (m R²) of a solid sphere.
 const INERTIA: f64 = 0.4;
+/// I / (m R²) of a disc about its axis.
+const DISC: f64 = 0.5;
 
 /// The style.
 pub struct NveSphere;
@@ -22,10 +24,11 @@ impl Style for NveSphere {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group nve/sphere",
+            syntax: "fix ID group nve/sphere [disc]",
             summary: "Moves and turns the group's spheres by velocity Verlet.",
-            text: "As `fix nve`, and with each half kick ω += Δt/2 · torque/I, I = 2/5 m R² (solid spheres). Every \
-                   particle of the group needs a radius.",
+            text: "As `fix nve`, and with each half kick ω += Δt/2 · torque/I, I = 2/5 m R² (solid spheres). `disc`, \
+                   for flat scenes, takes I = 1/2 m R². Every particle of the group needs a radius. `update dipole` is refused as \
+                   LAMMPS refuses it where particles have no dipole: no particle in perigrain has one.",
             example: "fix 1 all nve/sphere",
         }
     }
@@ -33,21 +36,32 @@ impl Style for NveSphere {
 
 impl FixStyle for NveSphere {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        if let Some(word) = args.next() {
-            let text = match word.text.as_str() {
-                "update" | "disc" => {
-                    format!("fix nve/sphere {} is not in perigrain yet", word.text)
+        let mut inertia = INERTIA;
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "update" => {
+                    let what = args.expect("dipole or dipole/dlm")?;
+                    if !matches!(what.text.as_str(), "dipole" | "dipole/dlm") {
+                        return Err(args.unknown(what, &["dipole", "dipole/dlm"]));
+                    }
+                    let text = "`update dipole` needs particles with a dipole, and these have none";
+                    let d = Diagnostic::error(Code::CONFLICT, word.span.to(what.span), text);
+                    return Err(d.help("leave it out").into());
+                }
+                "disc" if cx.world.settings.two_dimensional => inertia = DISC,
+                "disc" => {
+                    let text = "`disc` belongs to flat scenes (`dimension 2`)";
+                    return fail(Code::CONFLICT, word.span, text);
                 }
                 _ => return Err(args.unknown(word, &["update", "disc"])),
-            };
-            return fail(Code::NOT_SUPPORTED, word.span, text);
+            }
         }
         if !cx.world.particles.style.sphere {
             return Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, "fix nve/sphere needs spheres")
                 .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
                 .into());
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, inertia }))
     }
 }
 
@@ -55,11 +69,13 @@ impl FixStyle for NveSphere {
 struct Declared {
     id: String,
     group: GroupId,
+    /// I / (m R²).
+    inertia: f64,
 }
 
 impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let (group, span) = (self.group, cx.span());
+        let (group, inertia, span) = (self.group, self.inertia, cx.span());
         let p = &cx.world().particles;
         let member = |i: &usize| p.mask[*i] & group.bit() != 0;
         if let Some(i) = (0..p.len()).filter(member).find(|&i| p.radius[i] <= 0.0) {
@@ -72,12 +88,12 @@ impl Fix for Declared {
         let access = || Access::new("f torque mass radius mask", "x v omega");
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
             kick_and_drift(w, group, t.dt);
-            turn(w, group, t.dt);
+            turn(w, group, inertia, t.dt);
             Ok(())
         });
         let second = StepOp::new(name, Stage::FinalIntegrate, access(), move |w, t| {
             kick(w, group, t.dt);
-            turn(w, group, t.dt);
+            turn(w, group, inertia, t.dt);
             Ok(())
         });
         Ok(vec![first.boxed(), second.boxed()])
@@ -93,8 +109,8 @@ impl Fix for Declared {
 }
 
 /// Half a step of rotation: ω += Δt/2 · torque/I.
-fn turn(w: &mut World, group: GroupId, dt: f64) {
-    let half = 0.5 * dt * w.settings.units.constants().ftm2v / INERTIA;
+fn turn(w: &mut World, group: GroupId, inertia: f64, dt: f64) {
+    let half = 0.5 * dt * w.settings.units.constants().ftm2v / inertia;
     let p = &mut w.particles;
     let bit = group.bit();
     let columns = (&mut p.omega[..], &p.torque[..], &p.radius[..], &p.mass[..], &p.mask[..]);
@@ -147,7 +163,11 @@ mod tests {
         let fix = b.fix(&NveSphere, "").unwrap();
         let e = b.seal(&*fix).err().unwrap();
         assert_eq!(e.0[0].message, "fix nve/sphere needs spheres, but particle 2 has no radius");
-        assert_eq!(b.fix(&NveSphere, "disc").err().unwrap().0[0].code, Code::NOT_SUPPORTED);
+        for words in ["disc", "update dipole", "update dipole/dlm"] {
+            assert_eq!(b.fix(&NveSphere, words).err().unwrap().0[0].code, Code::CONFLICT);
+        }
+        b.world.settings.two_dimensional = true;
+        assert!(b.fix(&NveSphere, "disc").is_ok());
         assert_eq!(b.fix(&NveSphere, "dics").err().unwrap().0[0].code, Code::UNKNOWN_KEYWORD);
         b.world.particles.style.sphere = false;
         assert!(b.fix(&NveSphere, "").is_err());

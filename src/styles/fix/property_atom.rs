@@ -6,6 +6,7 @@ use crate::lang::{Args, Word};
 use crate::plan::Op;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
 use crate::world::World;
+use crate::world::columns::{HEATFLOW, TEMPERATURE};
 
 /// The style.
 pub struct PropertyAtomFix;
@@ -16,12 +17,13 @@ impl Style for PropertyAtomFix {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group property/atom name … [ghost yes|no] [writedata yes|no]",
+            syntax: "fix ID group property/atom name … [temperature] [heatflow] [ghost yes|no] [writedata yes|no]",
             summary: "Gives all particles properties of the deck's own.",
             text: "A name is `i_NAME` (whole numbers) or `d_NAME` (numbers), or `i2_NAME N` and `d2_NAME N` for N columns. They \
                    are 0 at first, belong to all particles whatever the group, and are set by `set … d_NAME value` (or \
                    `d2_NAME[k]`). Read them with `compute property/atom`, in `dump custom`, `fix store/state` and in formulas \
-                   (`d_NAME`, `d_NAME[7]`; without columns). `ghost` and `writedata` are read for LAMMPS' decks. LAMMPS' `mol`, \
+                   (`d_NAME`, `d_NAME[7]`; without columns). `temperature` and `heatflow` are what granular contacts that conduct heat \
+                   read and write, and `fix heat/flow` integrates. `ghost` and `writedata` are read for LAMMPS' decks. LAMMPS' `mol`, \
                    `q` and `rmass` are refused: atom styles say what particles have.",
             example: "fix mine all property/atom i_flag d_heat\nset group ball d_heat 3.5 i_flag 2\nvariable heat atom d_heat+1",
         }
@@ -58,6 +60,9 @@ impl FixStyle for PropertyAtomFix {
 
 /// The columns of one name, as `d_heat` or `d2_heat/1`.
 fn columns(word: &Word, args: &mut Args, cx: &BuildCx, before: &[String]) -> Result<Vec<String>> {
+    if [TEMPERATURE, HEATFLOW].contains(&word.text.as_str()) {
+        return free(word, cx, before, &word.text).map(|()| vec![word.text.clone()]);
+    }
     let prefix = ["i_", "d_", "i2_", "d2_"].into_iter().find(|p| word.text.starts_with(p));
     let tail = prefix.map_or("", |p| &word.text[p.len()..]);
     let (Some(prefix), true) =
@@ -68,18 +73,23 @@ fn columns(word: &Word, args: &mut Args, cx: &BuildCx, before: &[String]) -> Res
             word.span,
             format!("`{}` is no name of a property", word.text),
         );
-        return Err(d.help("write i_NAME, d_NAME, i2_NAME N or d2_NAME N").into());
+        return Err(d.help("write i_NAME, d_NAME, i2_NAME N, d2_NAME N, temperature or heatflow").into());
     };
     let several = prefix.contains('2');
     let count = if several { args.integer_from(1, "the number of columns")? } else { 1 };
     let key = |k: i64| if several { format!("{}/{k}", word.text) } else { word.text.clone() };
-    // A fix of this ID may be declared again.
+    free(word, cx, before, &key(1))?;
+    Ok((1..=count).map(key).collect())
+}
+
+/// Checks that no other fix has a property of this name. A fix of this ID may be declared again.
+fn free(word: &Word, cx: &BuildCx, before: &[String], key: &str) -> Result<()> {
     let own = format!("property/atom/{}/", cx.id);
-    let taken = cx.world.columns.custom(&key(1)).is_some_and(|full| !full.starts_with(&own));
-    if taken || before.contains(&key(1)) {
+    let taken = cx.world.columns.custom(key).is_some_and(|full| !full.starts_with(&own));
+    if taken || before.iter().any(|b| b == key) {
         return fail(Code::DUPLICATE_NAME, word.span, format!("`{}` exists already", word.text));
     }
-    Ok((1..=count).map(key).collect())
+    Ok(())
 }
 
 #[derive(Clone)]

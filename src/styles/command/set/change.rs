@@ -196,7 +196,8 @@ fn change_particles(cx: &mut ActCx, item: &Item, chosen: &[usize]) -> Result<usi
             return Ok(set_fraction(cx.world, chosen, *kind, *fraction, *seed));
         }
         Change::Custom { column, whole, value } => {
-            let (v, n) = (checked(value, "the value", None)?, cx.world.n());
+            let limit = column.ends_with("/temperature").then_some(Limit::NotNegative);
+            let (v, n) = (checked(value, "the value", limit)?, cx.world.n());
             let values = cx.world.columns.scalar(column, n);
             values.resize(n, 0.0);
             chosen.iter().for_each(|&i| values[i] = if *whole { v[i].trunc() } else { v[i] });

@@ -1,0 +1,119 @@
+//! fix freeze: grains that nothing moves.
+
+use super::{Fix, FixStyle};
+use crate::diag::{Code, Diagnostic, Result};
+use crate::lang::Args;
+use crate::plan::{Access, Op, Stage};
+use crate::styles::matter::{Chosen, change_forces, publish};
+use crate::styles::step_op::StepOp;
+use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
+use crate::world::{GroupId, World};
+
+/// The style.
+pub struct Freeze;
+
+impl Style for Freeze {
+    fn name(&self) -> &'static str {
+        "freeze"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group freeze",
+            summary: "Takes all force and torque from the group's spheres.",
+            text: "What acts on these spheres is set to zero, so that they keep their velocity under any integrator; \
+                   granular contacts with others take them for infinitely heavy. Only what was computed before counts: \
+                   forces of pair styles and of fixes declared earlier. Acts in the setup of a run too. There is one \
+                   fix freeze at a time. Vector of 3 (extensive): the total force before the change.",
+            example: "fix still ball freeze",
+        }
+    }
+}
+
+impl FixStyle for Freeze {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        args.finish()?;
+        if !cx.world.particles.style.sphere {
+            return Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, "fix freeze needs spheres")
+                .help("put `atom_style sphere` at the top of the deck, or use `fix setforce 0 0 0`")
+                .into());
+        }
+        let other = cx.world.parts.frozen.as_ref().filter(|(id, _)| id != cx.id);
+        if let Some((id, _)) = other {
+            let text = format!("there is one fix freeze at a time, and `{id}` is one");
+            return Err(Diagnostic::error(Code::CONFLICT, cx.span, text)
+                .help(format!("freeze a `group … union …` of both, or say `unfix {id}` before this line"))
+                .into());
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        w.parts.frozen = Some((self.id.clone(), self.group));
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.parts.frozen = None;
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        let chosen = Chosen::new(cx.world(), self.group, None, span)?;
+        let (slot, bit) = (cx.slot(&format!("f_{}", self.id)), self.group.bit());
+        let access = Access::new("f torque mask", "f torque");
+        let op = StepOp::new(format!("fix {} freeze", self.id), Stage::PostForce, access, move |w, t| {
+            if t.unchanged {
+                return Ok(());
+            }
+            let before = change_forces(w, &chosen, |_, _, f| std::mem::take(f));
+            let p = &mut w.particles;
+            p.torque.iter_mut().zip(&p.mask).filter(|(_, m)| **m & bit != 0).for_each(|(t, _)| *t = [0.0; 3]);
+            publish(w, slot, t, 0.0, &before);
+            Ok(())
+        });
+        Ok(vec![op.boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { vector: 3, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+    use crate::world::AtomStyle;
+
+    #[test]
+    fn forces_and_torques_vanish_and_their_sum_is_told() {
+        let style = AtomStyle { sphere: true, ..AtomStyle::default() };
+        let mut b = Bench::new(style, &[[0.0; 3], [5.0; 3], [7.0; 3]]);
+        b.world.particles.f = vec![[1.0, 2.0, 3.0], [10.0, 20.0, 30.0], [4.0; 3]];
+        b.world.particles.torque = vec![[1.0; 3]; 3];
+        b.world.particles.mask[2] = 0;
+        let fix = b.fix(&Freeze, "").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        assert_eq!(b.world.parts.frozen, Some(("f".to_string(), GroupId::ALL)));
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        let p = &b.world.particles;
+        assert_eq!(p.f, [[0.0; 3], [0.0; 3], [4.0; 3]]);
+        assert_eq!(p.torque, [[0.0; 3], [0.0; 3], [1.0; 3]]);
+        assert_eq!(b.slot_of("f_f").vector, [11.0, 22.0, 33.0]);
+        b.world.parts.frozen = Some(("other".into(), GroupId::ALL));
+        assert_eq!(b.fix(&Freeze, "").err().unwrap().0[0].code, Code::CONFLICT);
+    }
+}
