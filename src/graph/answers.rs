@@ -88,13 +88,14 @@ pub fn setting(w: &World, checking: bool, name: &str) -> Option<Value> {
         "rmass_flag" => flag(s.own_mass()),
         "radius_flag" | "omega_flag" | "torque_flag" => flag(s.sphere),
         "peri_flag" => flag(s.peri),
+        "molecule_flag" => flag(s.molecules),
+        "nbondtypes" => w.bonds.types as f64,
         "world_size" | "universe_size" => 1.0,
         "bigint" => 8.0,
         "tagint" | "imageint" => 4.0,
-        "nghost" | "triclinic" | "nbondtypes" | "nangletypes" | "ndihedraltypes" | "nimpropertypes"
-        | "molecule_flag" | "q_flag" | "mu_flag" | "ellipsoid_flag" | "angmom_flag" | "world_rank"
-        | "universe_rank" | "nellipsoids" | "nlines" | "ntris" | "nbodies" | "kokkos_active"
-        | "kokkos_nthreads" | "kokkos_ngpus" => 0.0,
+        "nghost" | "triclinic" | "nangletypes" | "ndihedraltypes" | "nimpropertypes" | "q_flag"
+        | "mu_flag" | "ellipsoid_flag" | "angmom_flag" | "world_rank" | "universe_rank" | "nellipsoids"
+        | "nlines" | "ntris" | "nbodies" | "kokkos_active" | "kokkos_nthreads" | "kokkos_ngpus" => 0.0,
         _ => return None,
     };
     Some(Value::Number(number))

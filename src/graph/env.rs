@@ -21,6 +21,7 @@ fn attribute(w: &World, name: &str, i: usize) -> Option<f64> {
     Some(match name {
         "id" => f64::from(*p.tag.get(i)?),
         "type" => f64::from(*p.kind.get(i)?),
+        "mol" => f64::from(*p.molecule.get(i)?),
         "mass" => *p.mass.get(i)?,
         "radius" => *p.radius.get(i)?,
         "x" => of(&p.x, 0)?,
@@ -50,8 +51,8 @@ fn one(w: &World, name: &str, tag: usize, span: Span) -> Result<Value> {
 }
 
 fn column(w: &World, name: &str) -> Option<Result<Vec<f64>>> {
-    const KNOWN: [&str; 16] = [
-        "id", "type", "mass", "radius", "x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz", "omegax",
+    const KNOWN: [&str; 17] = [
+        "id", "type", "mol", "mass", "radius", "x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz", "omegax",
         "omegay", "omegaz",
     ];
     if let Some(full) = w.columns.custom(name) {

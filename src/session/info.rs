@@ -125,12 +125,7 @@ impl Session {
     fn system_text(&self) -> String {
         let w = &self.world;
         let style = &w.particles.style;
-        let atom = match (style.sphere, style.peri) {
-            (true, true) => "hybrid sphere peri",
-            (true, false) => "sphere",
-            (false, true) => "peri",
-            (false, false) => "atomic",
-        };
+        let atom = if style.sphere && style.peri { "hybrid sphere peri" } else { style.name() };
         let pair = self.graph.pair.as_ref().map_or("none", |p| p.pair.name());
         let mut text = format!(
             "\nSystem information:\nUnits         = {}\nAtom style    = {atom}\nAtoms     = {:>12},  types = {:>8},  style = {pair}\nDimensions = {}\n",
@@ -262,7 +257,7 @@ fn styles(args: &mut Args) -> &'static str {
 
 fn list_of_styles(which: &str) -> String {
     let table: [(&str, Vec<&str>); 6] = [
-        ("atom", vec!["atomic", "hybrid", "peri", "sphere"]),
+        ("atom", vec!["atomic", "bond", "bpm/sphere", "hybrid", "molecular", "peri", "sphere"]),
         ("command", COMMANDS.iter().map(|s| s.name()).chain(DECLARATIONS).chain(SESSION_COMMANDS).collect()),
         ("compute", COMPUTES.iter().map(|s| s.name()).collect()),
         ("dump", DUMPS.iter().map(|s| s.name()).collect()),

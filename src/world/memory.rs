@@ -17,7 +17,10 @@ pub fn bytes(w: &World) -> u64 {
         + of(&p.torque)
         + of(&p.volume)
         + of(&p.x0)
-        + of(&p.density);
+        + of(&p.density)
+        + of(&p.molecule)
+        + of(&w.bonds.list)
+        + of(&w.bonds.special);
     let families = w.families.as_ref().map_or(0, |f| f.bytes() as u64);
     columns + own + of(&w.rebuild.held) + families
 }

@@ -1,5 +1,7 @@
 //! The state of a scene: everything that outlives a step, and nothing that decides.
 
+pub mod allowed;
+pub mod bonds;
 pub mod clock;
 pub mod columns;
 pub mod contacts;
@@ -7,6 +9,7 @@ pub mod domain;
 pub mod families;
 pub mod groups;
 pub mod images;
+pub mod index;
 pub mod lattice;
 pub mod material;
 pub mod memory;
@@ -19,24 +22,28 @@ pub mod resume;
 pub mod settings;
 pub mod slots;
 pub mod tally;
+pub mod template;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+pub use allowed::Allowed;
+pub use bonds::{Bond, Bonds};
 pub use clock::{Clock, Halt};
 pub use columns::Columns;
 pub use domain::{Boundary, Domain, Face};
 pub use groups::{Dynamic, GroupId, Groups};
 pub use images::Images;
 pub use lattice::Lattice;
-pub use particles::{AtomStyle, Particles};
+pub use particles::{AtomStyle, Own, Particles};
 pub use rebuild::Rebuild;
 pub use region::Region;
 pub use resume::{Promise, Resume, Said};
 pub use settings::{Compat, NeighborSettings, Settings};
 pub use slots::{Offers, Slot, SlotId, Slots};
 pub use tally::Tally;
+pub use template::Template;
 
 /// Everything that outlives a step. It decides nothing: commands change it, ops advance it.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -69,6 +76,11 @@ pub struct World {
     pub memo: BTreeMap<String, Vec<f64>>,
     /// When neighbour lists were last rebuilt.
     pub rebuild: Rebuild,
+    /// Bonds between particles by their ids.
+    pub bonds: Bonds,
+    /// Molecule templates by ID, one for each file; a restart file does not hold them, as in LAMMPS.
+    #[serde(skip)]
+    pub templates: BTreeMap<String, Arc<[Template]>>,
     /// Peridynamic bonds, from the first run on.
     pub families: Option<families::Families>,
     /// What touching grains remember, by pair style.
@@ -153,6 +165,9 @@ impl World {
                 to[k] = Some(new as u32);
             }
             families.remap(&to);
+        }
+        if old.len() < n && !self.bonds.list.is_empty() {
+            self.bonds.forget_lone(&self.particles.tag);
         }
         self.slots.gather(old, n);
         self.slots.invalidate();

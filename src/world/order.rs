@@ -13,18 +13,19 @@ impl World {
         }
     }
 
-    /// Gives every particle its place in storage + 1 as id; contacts follow.
+    /// Gives every particle its place in storage + 1 as id; contacts and bonds follow.
     pub fn renumber(&mut self) {
         self.rename((1..=self.n() as u32).collect());
     }
 
-    /// Gives particles these ids, in storage order; contacts follow.
+    /// Gives particles these ids, in storage order; contacts and bonds follow.
     pub fn rename(&mut self, ids: Vec<u32>) {
         let old = std::mem::replace(&mut self.particles.tag, ids);
-        if self.contacts.is_empty() && self.wall_contacts.is_empty() {
+        if self.contacts.is_empty() && self.wall_contacts.is_empty() && self.bonds.list.is_empty() {
             return;
         }
         let new: BTreeMap<u32, u32> = old.into_iter().zip(self.particles.tag.iter().copied()).collect();
+        self.bonds.rename(|tag| new.get(&tag).copied());
         let pair = |[a, b]: [u32; 2]| {
             let (a, b) = (*new.get(&a)?, *new.get(&b)?);
             Some(([a.min(b), a.max(b)], a > b))

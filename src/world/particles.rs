@@ -13,8 +13,29 @@ pub struct AtomStyle {
     pub peri: bool,
     /// Masses start as those of spheres: `sphere`, unless `peri` follows it in `hybrid`.
     pub sphere_mass: bool,
+    /// Molecule IDs.
+    pub molecules: bool,
+    /// Bonds between particles.
+    pub bonded: bool,
+    /// Named `molecular`, not `bond`: the two have the same columns here.
+    pub molecular: bool,
     /// Named as `hybrid …`, which decides the columns of data files.
     pub hybrid: bool,
+    /// The own columns of a hybrid in data files, in the order in which its styles name them.
+    pub own: [Option<Own>; 4],
+}
+
+/// A column of data files that only some atom styles have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Own {
+    /// Molecule ID.
+    Molecule,
+    /// Twice the radius.
+    Diameter,
+    /// Density.
+    Density,
+    /// Volume.
+    Volume,
 }
 
 impl AtomStyle {
@@ -25,12 +46,49 @@ impl AtomStyle {
 
     /// The word after `atom_style`.
     pub fn name(&self) -> &'static str {
-        match (self.hybrid, self.sphere, self.peri) {
-            (false, true, false) => "sphere",
-            (false, false, true) => "peri",
-            (false, false, false) => "atomic",
+        match (self.hybrid, self.sphere, self.peri, self.bonded) {
+            (false, true, false, false) => "sphere",
+            (false, true, false, true) => "bpm/sphere",
+            (false, false, true, false) => "peri",
+            (false, false, false, false) => "atomic",
+            (false, false, false, true) if self.molecular => "molecular",
+            (false, false, false, true) => "bond",
             _ => "hybrid",
         }
+    }
+
+    /// Adds a style of this name, as `hybrid` does; `false` if there is none.
+    pub fn add(&mut self, name: &str) -> bool {
+        let own: &[Own] = match name {
+            "atomic" => &[],
+            "sphere" | "bpm/sphere" => {
+                (self.sphere, self.sphere_mass) = (true, true);
+                self.bonded |= name == "bpm/sphere";
+                self.molecules |= self.bonded;
+                match name {
+                    "sphere" => &[Own::Diameter, Own::Density],
+                    _ => &[Own::Molecule, Own::Diameter, Own::Density],
+                }
+            }
+            "peri" => {
+                (self.peri, self.sphere_mass) = (true, false);
+                &[Own::Volume, Own::Density]
+            }
+            "bond" | "molecular" => {
+                (self.bonded, self.molecules) = (true, true);
+                self.molecular |= name == "molecular";
+                &[Own::Molecule]
+            }
+            _ => return false,
+        };
+        for &column in own {
+            if !self.own.contains(&Some(column))
+                && let Some(free) = self.own.iter_mut().find(|c| c.is_none())
+            {
+                *free = Some(column);
+            }
+        }
+        true
     }
 }
 
@@ -67,6 +125,8 @@ pub struct Particles {
     pub x0: Vec<[f64; 3]>,
     /// Density as the deck set it, NaN where it did not (peri and sphere styles).
     pub density: Vec<f64>,
+    /// Molecule ID, 0 for none (styles with bonds, `fix property/atom mol`).
+    pub molecule: Vec<u32>,
 }
 
 impl Particles {
@@ -102,6 +162,9 @@ impl Particles {
         if self.style.own_mass() {
             self.density.reserve_exact(more);
         }
+        if self.style.molecules {
+            self.molecule.reserve_exact(more);
+        }
     }
 
     /// Adds a particle with LAMMPS' defaults (radius 0.5, density 1 → mass, volume 1).
@@ -127,12 +190,16 @@ impl Particles {
         if sphere || peri {
             self.density.push(f64::NAN);
         }
+        if self.style.molecules {
+            self.molecule.push(0);
+        }
     }
 
     /// Puts particles with the same columns behind the present ones.
     pub fn append(&mut self, mut more: Particles) {
         self.tag.append(&mut more.tag);
         self.kind.append(&mut more.kind);
+        self.molecule.append(&mut more.molecule);
         self.mask.append(&mut more.mask);
         self.image.append(&mut more.image);
         for (own, new) in [
@@ -176,6 +243,7 @@ impl Particles {
         pick(&mut self.volume, old);
         pick(&mut self.x0, old);
         pick(&mut self.density, old);
+        pick(&mut self.molecule, old);
     }
 
     /// The index of the particle with this tag.
@@ -185,6 +253,11 @@ impl Particles {
             return Some(guess);
         }
         self.tag.iter().position(|&t| t == tag)
+    }
+
+    /// Largest molecule ID in use (0 when there are none).
+    pub fn last_molecule(&self) -> u32 {
+        self.molecule.iter().copied().max().unwrap_or(0)
     }
 
     /// Largest tag in use (0 when empty).

@@ -32,6 +32,8 @@ pub struct NeighborSettings {
     pub exclude_groups: Vec<(u32, u32)>,
     /// Pairs of types that never interact: `exclude type a b`.
     pub exclude_types: Vec<(u16, u16)>,
+    /// Groups whose members do not interact within a molecule (`true`) or across molecules (`false`).
+    pub exclude_molecules: Vec<(u32, bool)>,
 }
 
 impl Default for NeighborSettings {
@@ -44,6 +46,7 @@ impl Default for NeighborSettings {
             once: false,
             exclude_groups: vec![],
             exclude_types: vec![],
+            exclude_molecules: vec![],
         }
     }
 }

@@ -24,7 +24,7 @@ pub fn fingerprint(w: &World, of: &Resume) -> u32 {
     let mut columns = w.columns.clone();
     columns.split_off(|name| of.names.iter().any(|n| n == name));
     let motion = (&p.tag, &p.kind, masks, &p.image, &p.x, &p.v, &p.f);
-    let matter = (&p.mass, &p.radius, &p.omega, &p.torque, &p.volume, &p.x0, &p.density);
+    let matter = (&p.mass, &p.radius, &p.omega, &p.torque, &p.volume, &p.x0, &p.density, &p.molecule);
     let c = &w.clock;
     let clock = (c.step, c.dt, c.time_base, c.time_step);
     let names = (known(&w.regions, of), known(&w.materials, of), known(&w.memo, of));
@@ -36,7 +36,7 @@ pub fn fingerprint(w: &World, of: &Resume) -> u32 {
         matter,
         columns,
         names,
-        (&w.rebuild, &w.families, &w.contacts, &w.wall_contacts),
+        (&w.rebuild, &w.families, &w.contacts, &w.wall_contacts, &w.bonds.list, &w.bonds.weights),
     ))
 }
 
@@ -56,6 +56,7 @@ pub fn check(w: &World) -> Result<(), &'static str> {
         || !own(style.peri, p.volume.len())
         || !own(style.peri, p.x0.len())
         || !own(style.own_mass(), p.density.len())
+        || !own(style.molecules, p.molecule.len())
         || !p.image.are_for(n)
         || !w.columns.have(n)
     {

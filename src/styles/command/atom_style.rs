@@ -11,10 +11,8 @@ use crate::world::AtomStyle;
 pub struct AtomStyleCommand;
 
 /// Styles LAMMPS has besides.
-const ELSEWHERE: [&str; 16] = [
+const ELSEWHERE: [&str; 13] = [
     "angle",
-    "bond",
-    "bpm/sphere",
     "body",
     "charge",
     "dipole",
@@ -23,12 +21,13 @@ const ELSEWHERE: [&str; 16] = [
     "ellipsoid",
     "full",
     "line",
-    "molecular",
     "mdpd",
     "sph",
     "template",
     "tri",
 ];
+
+const KNOWN: [&str; 7] = ["atomic", "sphere", "peri", "bond", "molecular", "bpm/sphere", "hybrid"];
 
 impl Style for AtomStyleCommand {
     fn name(&self) -> &'static str {
@@ -37,11 +36,13 @@ impl Style for AtomStyleCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "atom_style atomic | sphere [0|1] | peri | hybrid STYLE STYLE …",
+            syntax: "atom_style atomic | sphere [0|1] | peri | bond | molecular | bpm/sphere | hybrid STYLE STYLE …",
             summary: "Says which properties particles have.",
             text: "`atomic`: mass by type. `sphere`: radius, spin, own mass (LAMMPS: density times 4/3 π r³); the flag that LAMMPS needs for radii that change (`fix adapt`) \
                    is read and not needed. `peri`: volume, \
-                   position at creation, own mass (in LAMMPS' convention its density). `hybrid sphere peri` has both; \
+                   position at creation, own mass (in LAMMPS' convention its density). `bond`: bonds, molecule IDs, mass by \
+                   type; `molecular` is the same here, as there are no angles. `bpm/sphere`: bonds, molecule IDs, and what \
+                   `sphere` has. `hybrid sphere peri`, `hybrid sphere bond` … have what each of them has; \
                    the mass is one column. Must come before the box. Default: `atomic`.",
             example: "atom_style hybrid sphere peri",
         }
@@ -53,21 +54,22 @@ impl CommandStyle for AtomStyleCommand {
         before_box(cx, "atom_style")?;
         let mut style = AtomStyle { chosen: true, ..AtomStyle::default() };
         let first = a.expect("a style")?;
+        let mut named = vec![];
         if first.text != "hybrid" {
-            add(&mut style, first)?;
+            add(&mut style, first, &mut named)?;
             if first.text == "sphere" {
                 radius_flag(a)?;
             }
             return Ok(choose(style));
         }
         style.hybrid = true;
-        add(&mut style, a.expect("a style")?)?;
+        add(&mut style, a.expect("a style")?, &mut named)?;
         while let Some(word) = a.next() {
             if style.sphere && matches!(word.text.as_str(), "0" | "1") {
                 check_radius_flag(word)?;
                 continue;
             }
-            add(&mut style, word)?;
+            add(&mut style, word, &mut named)?;
         }
         Ok(choose(style))
     }
@@ -80,25 +82,16 @@ fn choose(style: AtomStyle) -> Box<dyn Act> {
     })
 }
 
-fn add(style: &mut AtomStyle, word: &Word) -> Result<()> {
-    let twice = |is: bool| match is {
-        true => fail(Code::BAD_VALUE, word.span, format!("atom_style `{}` is named twice", word.text)),
-        false => Ok(()),
-    };
-    match word.text.as_str() {
-        "atomic" => {}
-        "sphere" => {
-            twice(style.sphere)?;
-            (style.sphere, style.sphere_mass) = (true, true);
-        }
-        "peri" => {
-            twice(style.peri)?;
-            (style.peri, style.sphere_mass) = (true, false);
-        }
-        name if ELSEWHERE.contains(&name) => return Err(not_here(word, "atom_style")),
-        _ => return Err(unknown_style(word, "atom_style", &["atomic", "sphere", "peri", "hybrid"])),
+fn add(style: &mut AtomStyle, word: &Word, before: &mut Vec<String>) -> Result<()> {
+    if before.contains(&word.text) {
+        return fail(Code::BAD_VALUE, word.span, format!("atom_style `{}` is named twice", word.text));
     }
-    Ok(())
+    before.push(word.text.clone());
+    match word.text.as_str() {
+        name if style.add(name) => Ok(()),
+        name if ELSEWHERE.contains(&name) => Err(not_here(word, "atom_style")),
+        _ => Err(unknown_style(word, "atom_style", &KNOWN)),
+    }
 }
 
 /// `atom_style sphere 0|1`: LAMMPS' flag for radii that change during a run, which they always may here.

@@ -185,15 +185,36 @@ pub fn whole(word: &Word, what: &str) -> Result<i64> {
 
 /// Reads `a`, `*`, `a*`, `*b` or `a*b` as an inclusive range of ids; open ends are 1 and the last id.
 pub fn id_range(word: &Word, last: i64) -> Result<(i64, i64)> {
+    range_from(word, 1, last)
+}
+
+/// Takes a bond type.
+pub fn bond_type(a: &mut Args, types: usize) -> Result<u16> {
+    let span = a.here();
+    let k = a.integer("the bond type")?;
+    match u16::try_from(k) {
+        Ok(t) if k >= 1 && k as usize <= types => Ok(t),
+        _ if types == 0 => {
+            let d = Diagnostic::error(Code::BAD_VALUE, span, "there are no bond types");
+            Err(d.help("say how many: `create_box … bond/types N`").into())
+        }
+        _ => fail(Code::BAD_VALUE, span, format!("there are bond types 1 to {types}, not {k}")),
+    }
+}
+
+/// As `id_range`, for numbers from `first`.
+pub fn range_from(word: &Word, first: i64, last: i64) -> Result<(i64, i64)> {
     let part = |s: &str, default: i64| if s.is_empty() { Some(default) } else { s.parse().ok() };
     let (lo, hi) = match word.text.split_once('*') {
-        Some((a, b)) => (part(a, 1), part(b, last)),
+        Some((a, b)) => (part(a, first), part(b, last)),
         None => (word.text.parse().ok(), word.text.parse().ok()),
     };
     match (lo, hi) {
-        (Some(a), Some(b)) if a >= 1 && a <= b => Ok((a, b)),
-        _ if word.unknown => Ok((1, last)),
-        _ => fail(Code::BAD_VALUE, word.span, format!("`{}` is no id or range of ids from 1", word.text)),
+        (Some(a), Some(b)) if a >= first && a <= b => Ok((a, b)),
+        _ if word.unknown => Ok((first, last)),
+        _ => {
+            fail(Code::BAD_VALUE, word.span, format!("`{}` is no id or range of ids from {first}", word.text))
+        }
     }
 }
 

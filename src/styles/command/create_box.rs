@@ -2,7 +2,7 @@
 
 use super::common::{self, bad_keyword, setting};
 use super::{Act, CommandStyle};
-use crate::diag::{Code, Result, fail};
+use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
 use crate::math::cformat::general;
 use crate::styles::{BuildCx, Doc, Style};
@@ -12,17 +12,16 @@ use crate::world::region::{INFINITE, Shape};
 /// The command.
 pub struct CreateBox;
 
-/// Keywords LAMMPS has: room for bonded topologies.
-const ELSEWHERE: [&str; 9] = [
-    "bond/types",
+const KEYWORDS: [&str; 3] = ["bond/types", "extra/bond/per/atom", "extra/special/per/atom"];
+
+/// Keywords LAMMPS has: room for angles and the like.
+const ELSEWHERE: [&str; 6] = [
     "angle/types",
     "dihedral/types",
     "improper/types",
-    "extra/bond/per/atom",
     "extra/angle/per/atom",
     "extra/dihedral/per/atom",
     "extra/improper/per/atom",
-    "extra/special/per/atom",
 ];
 
 impl Style for CreateBox {
@@ -32,10 +31,12 @@ impl Style for CreateBox {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "create_box N REGION",
+            syntax: "create_box N REGION [bond/types N] [extra/bond/per/atom N] [extra/special/per/atom N]",
             summary: "Creates the simulation box from a bounded region, for N particle types.",
             text: "The box is the smallest one along the axes that holds the region, which must have finite bounds and \
-                   `side in`. Shrink-wrapped faces start 1e-4 of the edge length outside it, as in LAMMPS.",
+                   `side in`. Shrink-wrapped faces start 1e-4 of the edge length outside it, as in LAMMPS. `bond/types` \
+                   gives the number of bond types, for atom styles with bonds; room for bonds per particle is not limited, \
+                   `extra/…` only has to be said for LAMMPS.",
             example: "create_box 3 world",
         }
     }
@@ -76,9 +77,7 @@ impl CommandStyle for CreateBox {
         }) {
             return fail(Code::BAD_VALUE, word.span, "the box must have finite edges longer than zero");
         }
-        if let Some(word) = a.next() {
-            return Err(bad_keyword(a, word, &[], &ELSEWHERE));
-        }
+        let bond_types = bond_types(a, cx)?;
         let flat = cx.world.settings.two_dimensional;
         common::check_flat(cx.world.settings.boundary, (lo[2], hi[2]), flat).map_err(|d| d.at(word.span))?;
         Ok(setting(move |cx| {
@@ -89,10 +88,35 @@ impl CommandStyle for CreateBox {
             domain.open_shrinking_faces();
             cx.world.domain = Some(domain);
             cx.world.types = types as usize;
+            cx.world.bonds.types = bond_types;
             cx.world.type_mass = vec![None; types as usize];
             Ok(())
         }))
     }
+}
+
+/// Room for bonds: their types count, lists grow as they must.
+fn bond_types(a: &mut Args, cx: &BuildCx) -> Result<usize> {
+    let mut types = 0;
+    while let Some(word) = a.next() {
+        let span = a.here();
+        match word.text.as_str() {
+            "bond/types" => types = a.integer_from(0, "the number of bond types")?,
+            "extra/bond/per/atom" | "extra/special/per/atom" => {
+                a.integer_from(0, "the extra room")?;
+            }
+            _ => return Err(bad_keyword(a, word, &KEYWORDS, &ELSEWHERE)),
+        }
+        if !cx.world.particles.style.bonded {
+            let text = format!("particles of atom_style {} have no bonds", cx.world.particles.style.name());
+            let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+            return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
+        }
+        if types > i64::from(u16::MAX) {
+            return fail(Code::BAD_VALUE, span, format!("at most {} bond types are possible", u16::MAX));
+        }
+    }
+    Ok(types as usize)
 }
 
 #[cfg(test)]

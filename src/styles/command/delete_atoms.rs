@@ -1,6 +1,6 @@
 //! `delete_atoms`: takes particles away.
 
-use super::common::{self, bad_keyword, not_here, on_particles, unknown_style};
+use super::common::{self, bad_keyword, on_particles, unknown_style};
 use super::create_atoms::subset::{Amount, Subset};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
@@ -8,6 +8,7 @@ use crate::lang::{Args, Param, ValueRef};
 use crate::math::rng::Marsaglia;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
 use crate::world::{Domain, GroupId, Particles, Region};
+use std::collections::BTreeSet;
 
 /// The command.
 pub struct DeleteAtoms;
@@ -21,16 +22,28 @@ impl Style for DeleteAtoms {
         Doc {
             syntax: "delete_atoms group ID | region ID | variable NAME | overlap D ID ID | \
                      random fraction P yes|no GROUP REGION|NULL SEED | random count N yes|no GROUP REGION|NULL SEED  \
-                     [compress yes|no]",
+                     [compress yes|no] [bond yes|no] [mol yes|no]",
             summary: "Deletes the particles of a group or region, or those too near to others.",
             text: "As in LAMMPS the last particle moves into the hole, and with `compress yes` (default) ids become storage \
                    order + 1 afterwards. `overlap D A B` goes through the particles of A in order and deletes each that \
                    is nearer than D to a particle of B that is still there. `random fraction` deletes a part of the \
                    particles of a group inside a region, exactly with `yes`, about with `no`; `random count` deletes N of \
-                   them, or all if there are fewer (an error with `yes`), the ones that LAMMPS deletes. Bonds of deleted particles are gone.",
+                   them, or all if there are fewer (an error with `yes`), the ones that LAMMPS deletes. Peridynamic bonds of deleted particles are gone. \
+                   Other bonds go with `bond yes`; without it a bond that has lost one end is an error of the next run. `mol \
+                   yes` deletes whole molecules. Where particles have bonds, ids stay (LAMMPS ignores `compress yes` then).",
             example: "delete_atoms region notch",
         }
     }
+}
+
+/// What else a line says.
+#[derive(Clone, Copy)]
+struct How {
+    compress: bool,
+    /// Bonds of deleted particles go, too.
+    bond: bool,
+    /// Whole molecules go.
+    mol: bool,
 }
 
 enum Choice {
@@ -72,20 +85,26 @@ impl CommandStyle for DeleteAtoms {
                 return Err(unknown_style(style, "style of delete_atoms", &KNOWN));
             }
         };
-        let mut compress = true;
+        let mut how = How { compress: true, bond: false, mol: false };
         while let Some(word) = a.next() {
             match word.text.as_str() {
-                "compress" => compress = a.flag("compress")?,
+                "compress" => how.compress = a.flag("compress")?,
                 "bond" | "mol" => {
-                    let value = a.peek().cloned();
-                    if let (true, Some(w)) = (a.flag(&word.text)?, value) {
-                        return Err(not_here(&w, &format!("delete_atoms {}", word.text)));
+                    let (yes, style) = (a.flag(&word.text)?, cx.world.particles.style);
+                    let (there, of) = match word.text.as_str() {
+                        "bond" => (style.bonded, &mut how.bond),
+                        _ => (style.molecules, &mut how.mol),
+                    };
+                    if yes && !there {
+                        let text = format!("`{} yes` needs an atom style with bonds", word.text);
+                        return fail(Code::CONFLICT, word.span, text);
                     }
+                    *of = yes;
                 }
                 _ => return Err(bad_keyword(a, word, &["compress", "bond", "mol"], &["condense"])),
             }
         }
-        Ok(on_particles(vec![], move |cx| delete(cx, &choice, compress)))
+        Ok(on_particles(vec![], move |cx| delete(cx, &choice, how)))
     }
 }
 
@@ -114,8 +133,8 @@ fn overlap(a: &mut Args, cx: &BuildCx, domain: &Domain) -> Result<Choice> {
     Ok(Choice::Overlap { cutoff, first, second })
 }
 
-fn delete(cx: &mut ActCx, choice: &Choice, compress: bool) -> Result<()> {
-    let marked = match choice {
+fn delete(cx: &mut ActCx, choice: &Choice, how: How) -> Result<()> {
+    let mut marked: Vec<bool> = match choice {
         Choice::Group(g) => cx.world.particles.mask.iter().map(|m| m & g.bit() != 0).collect(),
         Choice::Region(r) => cx.world.particles.x.iter().map(|&x| r.contains(x)).collect(),
         Choice::Variable(r) => {
@@ -128,11 +147,31 @@ fn delete(cx: &mut ActCx, choice: &Choice, compress: bool) -> Result<()> {
             overlapping(&cx.world.particles, domain, *cutoff, *first, *second)
         }
     };
-    let before = cx.world.n();
-    cx.world.delete(&marked, compress);
+    if how.mol {
+        whole_molecules(&cx.world.particles, &mut marked);
+    }
+    let (before, bonds) = (cx.world.n(), cx.world.bonds.len());
+    if how.bond || how.mol {
+        let p = &cx.world.particles;
+        let gone: BTreeSet<u32> = (0..p.len()).filter(|&i| marked[i]).map(|i| p.tag[i]).collect();
+        cx.world.bonds.retain(|b| !b.ends.iter().any(|t| gone.contains(t)));
+    }
+    // Ids of bonded scenes stay as they are, as in LAMMPS.
+    cx.world.delete(&marked, how.compress && !cx.world.particles.style.bonded);
     let now = cx.world.n();
     cx.say(format!("Deleted {} atoms, new total = {now}", before - now));
+    if (how.bond || how.mol) && bonds > 0 {
+        let left = cx.world.bonds.len();
+        cx.say(format!("Deleted {} bonds, new total = {left}", bonds - left));
+    }
     Ok(())
+}
+
+/// Marks all of each molecule of which a particle is marked; molecule 0 is none.
+fn whole_molecules(p: &Particles, marked: &mut [bool]) {
+    let hit: BTreeSet<u32> =
+        (0..p.len()).filter(|&i| marked[i] && p.molecule[i] != 0).map(|i| p.molecule[i]).collect();
+    marked.iter_mut().zip(&p.molecule).for_each(|(m, id)| *m |= hit.contains(id));
 }
 
 /// Marks the particles that the random stream chooses.
@@ -293,7 +332,7 @@ mod tests {
         assert_eq!(refused(&w, "delete_atoms random fraction 1.1 yes all NULL 3").0, "1.1");
         assert_eq!(refused(&w, "delete_atoms random count 2000 yes all NULL 3").0, "2000");
         assert_eq!(refused(&w, "delete_atoms porosity all NULL 0.1 3").0, "porosity");
-        assert_eq!(refused(&w, "delete_atoms group all bond yes").0, "yes");
+        assert_eq!(refused(&w, "delete_atoms group all bond yes").0, "bond");
         assert_eq!(refused(&w, "delete_atoms overlap 5 all all").0, "5");
         assert_eq!(
             refused(&w, "delete_atoms overlap 0.1 all").1,

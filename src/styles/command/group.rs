@@ -7,6 +7,7 @@ use crate::lang::{Args, Param, ValueRef, Word};
 use crate::styles::{ActCx, BuildCx, Doc, Style, UseKind};
 use crate::world::region::Variable;
 use crate::world::{Dynamic, GroupId, Particles, Region};
+use std::collections::BTreeSet;
 
 /// The command.
 pub struct Group;
@@ -18,15 +19,16 @@ impl Style for Group {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "group ID type|id A B:C D:E:F … | type|id < <= > >= == != N | type|id <> A B | region ID | \
+            syntax: "group ID type|id|molecule A B:C D:E:F … | type|id|molecule < <= > >= == != N | type|id|molecule <> A B | \
+                     include molecule | region ID | \
                      variable NAME | union ID … | intersect ID ID … | subtract ID ID … | empty | clear | delete | \
                      dynamic PARENT [region ID] [var NAME] [every N] | static",
             summary: "Names a set of particles, or adds particles to it.",
             text: "Membership is decided now and stays, but for dynamic groups. A group that exists already gains the \
                    particles named. `A:B:C` counts from A to B by C; `<> A B` is between, both included. `variable` takes \
                    those for which the atom-style variable is not zero. `subtract` takes members of the first group that \
-                   are in none of the others. At most 32 groups, `all` among them. `molecule` needs an atom style with \
-                   molecules, which perigrain does not have.\n\n\
+                   are in none of the others. At most 32 groups, `all` among them. `molecule` asks for molecule IDs as `id` \
+                   for ids; `include molecule` takes all molecules of which some particle is in the group already.\n\n\
                    `dynamic` chooses the members anew at the start of each run and at every step that is a multiple of N \
                    (default 1): those of PARENT that are inside the region and for which the atom-style variable is not \
                    zero. It does so when forces have been computed, before fixes act on them. `static` lets the group stay \
@@ -41,6 +43,9 @@ enum Choice {
     Nobody,
     Kind(Numbers),
     Tag(Numbers),
+    Molecule(Numbers),
+    /// Whole molecules of which a particle is in the group.
+    Include,
     Region(Box<Region>),
     Variable(ValueRef),
     Union(Vec<GroupId>),
@@ -114,7 +119,9 @@ fn delete(cx: &BuildCx, word: &Word, name: String) -> Result<Box<dyn Act>> {
         let text = format!("group `{name}` is the parent of the dynamic group `{child}`");
         return fail(Code::CONFLICT, word.span, text);
     }
-    if cx.world.settings.neighbor.exclude_groups.iter().any(|&(a, b)| a == group.bit() || b == group.bit()) {
+    let n = &cx.world.settings.neighbor;
+    let pair = |&(a, b): &(u32, u32)| a == group.bit() || b == group.bit();
+    if n.exclude_groups.iter().any(pair) || n.exclude_molecules.iter().any(|(g, _)| *g == group.bit()) {
         let text = format!("group `{name}` is still used by neigh_modify exclude");
         return fail(Code::CONFLICT, word.span, text);
     }
@@ -196,8 +203,20 @@ fn say_count(cx: &mut ActCx, group: GroupId, name: &str) {
 }
 
 /// The ways to choose a group's particles.
-const KNOWN: [&str; 10] =
-    ["empty", "type", "id", "region", "variable", "union", "intersect", "subtract", "dynamic", "static"];
+const KNOWN: [&str; 12] = [
+    "empty",
+    "type",
+    "id",
+    "molecule",
+    "include",
+    "region",
+    "variable",
+    "union",
+    "intersect",
+    "subtract",
+    "dynamic",
+    "static",
+];
 
 fn choice(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<Choice> {
     Ok(match style.text.as_str() {
@@ -209,8 +228,13 @@ fn choice(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<Choice> {
         "union" => Choice::Union(groups(a, cx, 1)?),
         "intersect" => Choice::Intersect(groups(a, cx, 2)?),
         "subtract" => Choice::Subtract(groups(a, cx, 2)?),
-        "molecule" | "include" => {
+        "molecule" | "include" if !cx.world.particles.style.molecules => {
             return fail(Code::CONFLICT, style.span, "particles of this atom_style belong to no molecules");
+        }
+        "molecule" => Choice::Molecule(numbers(a, "a molecule")?),
+        "include" => {
+            a.choice("style of group include", &["molecule"])?;
+            Choice::Include
         }
         _ => return Err(unknown_style(style, "style of group", &KNOWN)),
     })
@@ -266,6 +290,9 @@ fn join(cx: &mut ActCx, name: &str, choice: &Choice) -> Result<()> {
         return fail(Code::TOO_LARGE, None, "there are 32 groups already; delete one first");
     };
     let particles = &mut cx.world.particles;
+    if matches!(choice, Choice::Include) {
+        include_molecules(particles, group);
+    }
     let joins: Vec<bool> = (0..particles.len()).map(|i| chosen(choice, particles, &values, i)).collect();
     for (mask, _) in particles.mask.iter_mut().zip(joins).filter(|(_, j)| *j) {
         *mask |= group.bit();
@@ -274,12 +301,28 @@ fn join(cx: &mut ActCx, name: &str, choice: &Choice) -> Result<()> {
     Ok(())
 }
 
+/// Takes in the whole of each molecule of which a member is there; molecule 0 is none.
+fn include_molecules(p: &mut Particles, group: GroupId) {
+    let there: BTreeSet<u32> = p
+        .mask
+        .iter()
+        .zip(&p.molecule)
+        .filter(|(m, id)| **m & group.bit() != 0 && **id != 0)
+        .map(|(_, id)| *id)
+        .collect();
+    for (mask, _) in p.mask.iter_mut().zip(&p.molecule).filter(|(_, id)| there.contains(id)) {
+        *mask |= group.bit();
+    }
+}
+
 fn chosen(choice: &Choice, p: &Particles, values: &[f64], i: usize) -> bool {
     let within = |g: &GroupId| p.mask[i] & g.bit() != 0;
     match choice {
         Choice::Nobody => false,
         Choice::Kind(set) => set.contain(i64::from(p.kind[i])),
         Choice::Tag(set) => set.contain(i64::from(p.tag[i])),
+        Choice::Molecule(set) => set.contain(i64::from(p.molecule[i])),
+        Choice::Include => false,
         Choice::Region(region) => region.contains(p.x[i]),
         Choice::Variable(_) => values[i] != 0.0,
         Choice::Union(list) => list.iter().any(within),

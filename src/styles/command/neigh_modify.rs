@@ -1,6 +1,6 @@
 //! `neigh_modify`: when neighbour lists are rebuilt and which pairs they leave out.
 
-use super::common::{bad_keyword, choice_or_refuse, not_here, setting};
+use super::common::{bad_keyword, not_here, setting};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Word};
@@ -20,11 +20,12 @@ impl Style for NeighModify {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "neigh_modify [every N] [delay N] [check yes|no] [once yes|no] [exclude type I J | group A B | none] …",
+            syntax: "neigh_modify [every N] [delay N] [check yes|no] [once yes|no] [exclude type I J | group A B | molecule/intra G | molecule/inter G | none] …",
             summary: "Says when neighbour lists are rebuilt and which pairs they leave out.",
             text: "A rebuild is considered every N steps, not before `delay` steps after the last one, and with `check yes` \
                    only if some particle has moved half the skin; the delay must be a multiple of N. Wrapping into the box, shrink-wrapping and the test for \
-                   lost particles happen then too. `exclude type I J` and `exclude group A B` leave pairs out, `exclude \
+                   lost particles happen then too. `exclude type I J` and `exclude group A B` leave pairs out, `exclude molecule/intra G` (or `molecule G`) those within a molecule of the group, `molecule/inter G` \
+                   those across molecules, `exclude \
                    none` forgets all such rules; pairs of `peri/pmb` cannot be left out yet. `page`, `one`, `binsize` and `cluster` are accepted without effect. \
                    Defaults: every 1 delay 0 check yes once no.",
             example: "neigh_modify every 5 delay 0 check yes exclude group wall wall",
@@ -92,8 +93,17 @@ fn without_effect(keyword: &Word, cx: &BuildCx) {
 }
 
 fn exclude(set: &mut NeighborSettings, a: &mut Args, cx: &BuildCx) -> Result<()> {
-    let elsewhere = ["molecule", "molecule/intra", "molecule/inter"];
-    match choice_or_refuse(a, "kind of exclusion", &["type", "group", "none"], &elsewhere)? {
+    let kinds = ["type", "group", "molecule/intra", "molecule/inter", "molecule", "none"];
+    let span = a.here();
+    let kind = a.choice("kind of exclusion", &kinds)?;
+    if kind.starts_with("molecule") && !cx.world.particles.style.molecules {
+        return fail(Code::CONFLICT, span, "particles of this atom_style belong to no molecules");
+    }
+    match kind {
+        "molecule" | "molecule/intra" | "molecule/inter" => {
+            let group = cx.group(a.expect("a group")?)?.bit();
+            set.exclude_molecules.push((group, kind != "molecule/inter"));
+        }
         "type" => {
             let types = cx.world.types;
             let (i, j) = (one_type(a, types)?, one_type(a, types)?);
@@ -106,6 +116,7 @@ fn exclude(set: &mut NeighborSettings, a: &mut Args, cx: &BuildCx) -> Result<()>
         _ => {
             set.exclude_types.clear();
             set.exclude_groups.clear();
+            set.exclude_molecules.clear();
         }
     }
     Ok(())

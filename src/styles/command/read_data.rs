@@ -2,14 +2,15 @@
 
 use super::common::{self, bad_keyword, id};
 use super::data::body::{DataFile, How};
-use super::data::index::Index;
 use super::data::text::load;
+use super::data::words::{Ids, extra_types, ids, offsets, outside};
 use super::data::{Column, body};
 use super::{Act, CommandStyle};
-use crate::diag::{Code, Diagnostic, Result, Source, Span, fail};
+use crate::diag::{Code, Diagnostic, Result, Source, fail};
 use crate::lang::{Args, Word};
 use crate::math::cformat::general;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
+use crate::world::index::Index;
 use crate::world::{Domain, Particles, Promise, World, memory};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -17,18 +18,25 @@ use std::sync::Arc;
 /// The command.
 pub struct ReadData;
 
-const KEYWORDS: [&str; 6] = ["add", "offset", "shift", "extra/atom/types", "group", "nocoeff"];
-const ELSEWHERE: [&str; 10] = [
-    "fix",
+const KEYWORDS: [&str; 9] = [
+    "add",
+    "offset",
+    "shift",
+    "extra/atom/types",
     "extra/bond/types",
+    "extra/bond/per/atom",
+    "extra/special/per/atom",
+    "group",
+    "nocoeff",
+];
+const ELSEWHERE: [&str; 7] = [
+    "fix",
     "extra/angle/types",
     "extra/dihedral/types",
     "extra/improper/types",
-    "extra/bond/per/atom",
     "extra/angle/per/atom",
     "extra/dihedral/per/atom",
     "extra/improper/per/atom",
-    "extra/special/per/atom",
 ];
 
 impl Style for ReadData {
@@ -39,12 +47,15 @@ impl Style for ReadData {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "read_data FILE [add append|merge|IDOFFSET] [offset TYPE BOND ANGLE DIHEDRAL IMPROPER] [shift X Y Z] \
-                     [extra/atom/types N] [group ID] [nocoeff]",
+                     [extra/atom/types N] [extra/bond/types N] [extra/bond/per/atom N] [extra/special/per/atom N] \
+                     [group ID] [nocoeff]",
             summary: "Reads box, particles, velocities, masses and coefficients from a LAMMPS data file.",
             text: "The file is LAMMPS' format, packed with gzip if its name ends in `.gz`; it is looked for in the working \
                    folder, then beside the deck. The header gives `N atoms`, `N atom types`, `xlo xhi`, `ylo yhi`, `zlo \
-                   zhi`; sections are Masses, Atoms, Velocities, Pair Coeffs and PairIJ Coeffs. Columns of Atoms: `id type \
-                   x y z` (atomic), `id type diameter density x y z` (sphere), `id type volume density x y z` (peri), `id \
+                   zhi`, for atom styles with bonds also `N bonds` and `N bond types`; sections are Masses, Atoms, Velocities, Bonds \
+                   (number, type, two ids), Pair Coeffs, PairIJ Coeffs and Bond Coeffs. Columns of Atoms: `id type \
+                   x y z` (atomic), `id type diameter density x y z` (sphere), `id type volume density x y z` (peri), \
+                   `id molecule type x y z` (bond, molecular), `id molecule type diameter density x y z` (bpm/sphere), `id \
                    type x y z` and then the columns of each style in the order of its name (hybrid; what two have stands \
                    once), all with three image flags at the end or none. Velocities: `id vx vy vz`, with spheres also `wx \
                    wy wz`. The density of a sphere becomes the mass 4/3 π r³ ρ; without a radius it is the mass. The \
@@ -53,26 +64,16 @@ impl Style for ReadData {
                    Positions are wrapped along periodic dimensions; elsewhere they must be inside the box, which is opened \
                    by 1e-4 of its edge at shrink-wrapped faces, which then follow the particles. Image flags of other dimensions become 0, with a warning.\n\n\
                    `add` brings particles into an existing box, which grows to hold the file's: `append` puts the ids \
-                   behind the largest one, a number is added to each, `merge` keeps them. `offset` adds to types (the \
-                   other four numbers are for bonded scenes), `shift` to places and to the file's box. \
-                   `extra/atom/types` leaves room for more types; `group` puts the particles into a group, new if there is \
+                   behind the largest one, a number is added to each, `merge` keeps them. `offset` adds to types and bond types (the \
+                   last three numbers are for angles and the like), `shift` to places and to the file's box. \
+                   `extra/atom/types` and `extra/bond/types` leave room for more types, room per particle is not limited; `group` puts the particles into a group, new if there is \
                    none; `nocoeff` skips coefficients. Where a comment names the style (`Atoms # sphere`), it must be the \
                    deck's; LAMMPS only warns. Ids that occur twice, lines beyond the promised number and particles outside \
-                   are refused in the file itself. Refused by name: bonds and other topology, type labels, tilted boxes, \
+                   are refused in the file itself. Refused by name: angles and other topology, type labels, tilted boxes, \
                    `fix`.",
             example: "write_data plate.data\nread_data plate.data add append shift 0.0 0.0 0.02",
         }
     }
-}
-
-/// What becomes of the ids.
-#[derive(Clone, Copy)]
-enum Ids {
-    /// There is no box yet.
-    First,
-    Append,
-    Merge,
-    Offset(u32),
 }
 
 /// What a line asks for.
@@ -80,6 +81,8 @@ struct Reading {
     file: Word,
     ids: Ids,
     type_offset: u16,
+    bond_offset: u16,
+    extra_bond_types: usize,
     shift: [f64; 3],
     extra_types: usize,
     group: Option<Word>,
@@ -94,6 +97,8 @@ impl CommandStyle for ReadData {
             file,
             ids: Ids::First,
             type_offset: 0,
+            bond_offset: 0,
+            extra_bond_types: 0,
             shift: [0.0; 3],
             extra_types: 0,
             group: None,
@@ -106,7 +111,7 @@ impl CommandStyle for ReadData {
                 "add" => r.ids = ids(a)?,
                 "offset" => {
                     only_with_add.get_or_insert(word);
-                    r.type_offset = offsets(a)?;
+                    (r.type_offset, r.bond_offset) = offsets(a)?;
                 }
                 "shift" => {
                     only_with_add.get_or_insert(word);
@@ -114,12 +119,13 @@ impl CommandStyle for ReadData {
                         *s = a.number("a component of the shift")?;
                     }
                 }
+                "extra/bond/types" => r.extra_bond_types = extra_types(a)?,
+                // Lists grow as they must.
+                "extra/bond/per/atom" | "extra/special/per/atom" => {
+                    a.integer_from(0, "the extra room")?;
+                }
                 "extra/atom/types" => {
-                    let span = a.here();
-                    r.extra_types = usize::try_from(a.integer_from(0, "the number of extra types")?)
-                        .ok()
-                        .filter(|n| *n <= usize::from(u16::MAX))
-                        .ok_or_else(|| Diagnostic::error(Code::BAD_VALUE, span, "too many extra types"))?;
+                    r.extra_types = extra_types(a)?;
                 }
                 "group" => {
                     let word = a.expect("a group")?;
@@ -148,32 +154,6 @@ impl CommandStyle for ReadData {
     }
 }
 
-fn ids(a: &mut Args) -> Result<Ids> {
-    let word = a.expect("append, merge or an offset of ids")?;
-    match word.text.as_str() {
-        "append" => Ok(Ids::Append),
-        "merge" => Ok(Ids::Merge),
-        text => match text.parse::<u32>() {
-            Ok(k) => Ok(Ids::Offset(k)),
-            Err(_) => {
-                let text = format!("`add` takes append, merge or an offset of ids, not `{text}`");
-                fail(Code::BAD_VALUE, word.span, text)
-            }
-        },
-    }
-}
-
-/// The five offsets; those of bonded scenes have nothing to act on.
-fn offsets(a: &mut Args) -> Result<u16> {
-    let span = a.here();
-    let types = a.integer_from(0, "the offset of types")?;
-    for what in ["bond", "angle", "dihedral", "improper"] {
-        a.integer_from(0, &format!("the offset of {what} types"))?;
-    }
-    u16::try_from(types)
-        .map_err(|_| Diagnostic::error(Code::BAD_VALUE, span, format!("there are no {types} types")).into())
-}
-
 impl Act for Reading {
     fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
         let began = std::time::Instant::now();
@@ -189,6 +169,9 @@ impl Act for Reading {
             type_offset: self.type_offset,
             extra_types: self.extra_types,
             no_coeff: self.no_coeff,
+            bond_types: world.domain.is_some().then_some(world.bonds.types),
+            bond_offset: self.bond_offset,
+            extra_bond_types: self.extra_bond_types,
         };
         let outcome = body::read(&text.text, &how).and_then(|data| self.place(cx, data, &text.text));
         let mut data = outcome.map_err(|e| e.within(&text))?;
@@ -251,6 +234,7 @@ impl Reading {
         cx.world.types = cx.world.types.max(scene.types + self.extra_types);
         cx.world.type_mass = scene.type_mass.clone();
         cx.world.type_mass.resize(cx.world.types, None);
+        cx.world.bonds.types = scene.bonds.types + self.extra_bond_types;
         self.group(cx).map(|_| ())
     }
 
@@ -300,6 +284,9 @@ impl Reading {
             cx.note(Diagnostic::warning(Code::SUSPICIOUS, None, text));
         }
         data.particles = p;
+        for (bond, _) in &mut data.bonds {
+            bond.ends = bond.ends.map(|tag| tag.saturating_add(add));
+        }
         Ok(data)
     }
 
@@ -340,6 +327,7 @@ impl Reading {
         w.domain = Some(domain);
         w.types = data.types;
         w.type_mass.resize(data.types, None);
+        w.bonds.types = data.bond_types;
         for &(kind, mass) in &data.masses {
             w.type_mass[usize::from(kind) - 1] = Some(mass);
         }
@@ -353,6 +341,8 @@ impl Reading {
             }
             let n = w.n();
             w.columns.resize(n);
+            data.bonds.drain(..).for_each(|(bond, _)| w.bonds.push(bond));
+            w.bonds.find_special();
             // LAMMPS lets shrink-wrapped faces follow at once.
             common::settle(w);
         }
@@ -372,6 +362,10 @@ impl Reading {
             cx.say("  reading velocities ...");
             cx.say(format!("  {count} velocities"));
         }
+        if !data.bonds.is_empty() {
+            cx.say("  reading bonds ...");
+            cx.say(format!("  {} bonds", data.bonds.len()));
+        }
     }
 }
 
@@ -386,23 +380,4 @@ fn finish(p: &mut Particles, bit: u32) {
         let all: Vec<usize> = (0..p.len()).collect();
         common::masses_from_density(p, &all, &density);
     }
-}
-
-fn outside(
-    domain: &Domain,
-    d: usize,
-    x: &[f64; 3],
-    span: Option<Span>,
-    tag: u32,
-) -> crate::diag::Diagnostics {
-    let axis = ["x", "y", "z"][d];
-    let text = format!(
-        "particle {tag} lies outside the box: {axis} = {} is not within {} ≤ {axis} < {}",
-        general(x[d], 8),
-        general(domain.lo[d], 8),
-        general(domain.hi[d], 8)
-    );
-    Diagnostic::error(Code::LOST, span, text)
-        .help(format!("enlarge `{axis}lo {axis}hi` in the file, or make the dimension periodic"))
-        .into()
 }

@@ -6,7 +6,7 @@ use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
 use crate::math::cformat::general;
 use crate::styles::{ActCx, BuildCx, Doc, Style, matter};
-use crate::world::{Domain, memory};
+use crate::world::{Bond, Domain, memory};
 
 /// The command.
 pub struct Replicate;
@@ -21,7 +21,7 @@ impl Style for Replicate {
             syntax: "replicate NX NY NZ",
             summary: "Repeats the scene along the edges of its box.",
             text: "The box grows to NX, NY, NZ times its lengths, and each particle gets a copy in each repetition, with \
-                   everything that belongs to it. Repetitions follow each other as in LAMMPS (z fastest in storage, x \
+                   everything that belongs to it; bonds join the copies of one repetition, and molecules get new IDs. Repetitions follow each other as in LAMMPS (z fastest in storage, x \
                    fastest in ids). It must come before the first run of a scene with peridynamic bonds.",
             example: "units lj\nlattice sc 0.5\nregion cell block 0 2 0 2 0 2\ncreate_box 1 cell\ncreate_atoms 1 box\n\
                       mass 1 1.0\nreplicate 2 2 1\nprint \"$(atoms) particles\"",
@@ -76,6 +76,8 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
     let from: Vec<usize> = (0..copies).flat_map(|_| 0..n).collect();
     let lengths = old.lengths();
     let world = &mut *cx.world;
+    let molecules = world.particles.last_molecule();
+    let (bonds, special) = (std::mem::take(&mut world.bonds.list), std::mem::take(&mut world.bonds.special));
     world.contacts.values_mut().for_each(|c| *c = Default::default());
     world.wall_contacts.values_mut().for_each(|c| *c = Default::default());
     world.gather(&from);
@@ -84,9 +86,16 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
         let place = [copy / (ny * nz), copy / nz % ny, copy % nz];
         let offset = (place[2] * ny * nx + place[1] * nx + place[0]) * last;
         let shift = [0, 1, 2].map(|d| place[d] as f64 * lengths[d]);
+        let number = (place[2] * ny * nx + place[1] * nx + place[0]) as u32;
+        let moved = |ends: [u32; 2]| ends.map(|t| t + offset as u32);
+        world.bonds.list.extend(bonds.iter().map(|b| Bond { ends: moved(b.ends), ..*b }));
+        world.bonds.special.extend(special.iter().map(|p| moved(*p)));
         for (k, old) in unwrapped.iter().enumerate() {
             let i = copy as usize * n + k;
             p.tag[i] += offset as u32;
+            if let Some(m) = p.molecule.get_mut(i).filter(|m| **m > 0) {
+                *m += number * molecules;
+            }
             let (mut x, mut image) = ([0, 1, 2].map(|d| old[d] + shift[d]), [0; 3]);
             if let Some(x0) = p.x0.get_mut(i) {
                 *x0 = [0, 1, 2].map(|d| x0[d] + shift[d]);
@@ -96,6 +105,8 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
             p.image.set(i, image);
         }
     }
+    world.bonds.special.sort_unstable();
+    world.bonds.changes += 1;
     world.domain = Some(domain);
     world.touch();
     say_box(cx)?;

@@ -15,7 +15,9 @@ use change::{Change, Item, Limit};
 /// The command.
 pub struct Set;
 
-const KEYWORDS: [&str; 17] = [
+const KEYWORDS: [&str; 19] = [
+    "mol",
+    "bond",
     "type",
     "type/fraction",
     "type/ratio",
@@ -34,8 +36,7 @@ const KEYWORDS: [&str; 17] = [
     "vy",
     "vz",
 ];
-const ELSEWHERE: [&str; 22] = [
-    "mol",
+const ELSEWHERE: [&str; 20] = [
     "charge",
     "dipole",
     "dipole/random",
@@ -49,7 +50,6 @@ const ELSEWHERE: [&str; 22] = [
     "theta",
     "theta/random",
     "angmom",
-    "bond",
     "angle",
     "dihedral",
     "improper",
@@ -66,11 +66,11 @@ impl Style for Set {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "set atom A*B | type A*B | group ID | region ID  KEYWORD VALUE …",
+            syntax: "set atom A*B | type A*B | mol A*B | group ID | region ID  KEYWORD VALUE …",
             summary: "Sets properties of the particles chosen: type, mass, density, diameter, volume, spin, place, velocity.",
             text: "Keywords: `type T`, `type/fraction T P SEED`, `type/ratio T P SEED`, `type/subset T N SEED`, `mass M`, \
                    `density ρ`, `density/disc ρ`, `diameter D`, `volume V`, `omega WX WY WZ`, `image NX NY NZ` (`NULL` \
-                   leaves one alone), `x y z`, `vx vy vz`, `temperature T` (where `fix property/atom temperature` is). A value is a number or an atom-style variable `v_name`. \
+                   leaves one alone), `mol M`, `bond T` (the type of all bonds with both ends among the chosen), `x y z`, `vx vy vz`, `temperature T` (where `fix property/atom temperature` is). A value is a number or an atom-style variable `v_name`. \
                    Who is chosen is decided once for the whole line. \
                    `density` of a sphere sets its mass to 4/3 π r³ ρ with the radius it has now; of a peridynamic particle \
                    without radius it sets the mass to ρ itself (LAMMPS' convention). `diameter` leaves the mass alone: \
@@ -86,6 +86,7 @@ impl Style for Set {
 enum Choice {
     Tags(i64, i64),
     Kinds(u16, u16),
+    Molecules(i64, i64),
     Group(GroupId),
     Region(Box<Region>),
 }
@@ -116,9 +117,14 @@ fn choice(a: &mut Args, cx: &BuildCx) -> Result<Choice> {
             Ok(Choice::Tags(lo, hi))
         }
         "type" => a.type_range(cx.world.types).map(|(lo, hi)| Choice::Kinds(lo, hi)),
+        "mol" if cx.world.particles.style.molecules => {
+            let (lo, hi) = common::range_from(a.expect("a molecule")?, 0, i64::MAX)?;
+            Ok(Choice::Molecules(lo, hi))
+        }
+        "mol" => fail(Code::CONFLICT, style.span, "particles of this atom_style belong to no molecules"),
         "group" => cx.group(a.expect("a group")?).map(Choice::Group),
         "region" => Ok(Choice::Region(Box::new(cx.region(a.expect("a region")?)?.clone()))),
-        _ => Err(bad_keyword(a, style, &["atom", "type", "group", "region"], &["mol"])),
+        _ => Err(bad_keyword(a, style, &["atom", "type", "mol", "group", "region"], &[])),
     }
 }
 
@@ -165,6 +171,14 @@ fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
             needs(sphere)?;
             let mut next = || value(a, cx, "the angular velocity", None);
             Ok(Change::Omega([next()?, next()?, next()?]))
+        }
+        "mol" => {
+            needs(cx.world.particles.style.molecules)?;
+            value(a, cx, "the molecule", Some(Limit::NotNegative)).map(Change::Molecule)
+        }
+        "bond" => {
+            needs(cx.world.particles.style.bonded)?;
+            common::bond_type(a, cx.world.bonds.types).map(Change::Bond)
         }
         "x" | "y" | "z" => {
             let d = usize::from(keyword.text.as_bytes()[0] - b'x');
@@ -306,6 +320,8 @@ mod tests {
             ("set atom 1 type 4", "4"),
             ("set atom 1 type/fraction 1 1.5 3", "1.5"),
             ("set mol 1 mass 3", "mol"),
+            ("set atom 1 mol 3", "mol"),
+            ("set atom 1 bond 1", "bond"),
             ("set atom 7*3 mass 3.0", "7*3"),
             ("set atom 1 mass v_q", "v_q"),
         ] {

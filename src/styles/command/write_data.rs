@@ -25,8 +25,8 @@ impl Style for WriteData {
             text: "A `*` in the name becomes the step. The file has LAMMPS' sections and columns (see read_data) and \
                    appears whole or not at all. Numbers are written in the shortest form that is read back to the same \
                    bits. Positions are wrapped and shrink-wrapped faces follow the particles first, as in LAMMPS. None of \
-                   the pair styles here writes coefficients into data files, in LAMMPS neither: `pair` and `nocoeff` make \
-                   no difference, nor does `nofix`, as no fix adds a section. Bonds, damage, contact history, forces and \
+                   the pair styles here writes coefficients into data files, in LAMMPS neither: `pair` makes no difference; \
+                   `nocoeff` leaves out those of bonds. `nofix` makes no difference, as no fix adds a section. Peridynamic bonds, damage, contact history, forces and \
                    the clock are not in a data file: write_restart has them. `types labels` and `triclinic/general` are \
                    refused.",
             example: "write_data plate.*.data nocoeff",
@@ -37,6 +37,7 @@ impl Style for WriteData {
 struct Writing {
     file: Pattern,
     span: Span,
+    coeffs: bool,
     checking: bool,
 }
 
@@ -45,10 +46,12 @@ impl CommandStyle for WriteData {
         domain(cx)?;
         let word = a.expect("a file name")?;
         let file = Pattern::new(&word.text).map_err(|e| e.at(word.span))?;
+        let mut coeffs = true;
         while let Some(key) = a.next() {
             match key.text.as_str() {
                 "pair" => drop(a.choice("value of pair", &["ii", "ij"])?),
-                "nocoeff" | "nofix" => {}
+                "nocoeff" => coeffs = false,
+                "nofix" => {}
                 "types" => match a.peek() {
                     Some(w) if w.text == "labels" => return Err(not_here(w, "write_data types")),
                     _ => drop(a.choice("value of types", &["numeric"])?),
@@ -57,7 +60,7 @@ impl CommandStyle for WriteData {
                 _ => return Err(a.unknown(key, &["pair", "nocoeff", "nofix", "types"])),
             }
         }
-        Ok(Box::new(Writing { file, span: word.span, checking: cx.checking }))
+        Ok(Box::new(Writing { file, span: word.span, coeffs, checking: cx.checking }))
     }
 }
 
@@ -72,7 +75,7 @@ impl Act for Writing {
         w.spread_type_masses();
         settle(w);
         let path = self.file.at(w.clock.step);
-        replace(&path, |out| write::write(out, w)).map_err(|e| e.at(self.span))
+        replace(&path, |out| write::write(out, w, self.coeffs)).map_err(|e| e.at(self.span))
     }
 
     fn needs_particles(&self) -> bool {

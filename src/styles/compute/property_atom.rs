@@ -25,7 +25,7 @@ impl Style for PropertyAtom {
             text: "Per-atom vector for one attribute, array for several; 0 outside the group. Attributes: `id type proc \
                    mass x y z`; `xs ys zs` as fractions of the box; `xu yu zu` unwrapped across periodic faces; `ix iy iz` \
                    image counts; `vx vy vz fx fy fz`; with atom_style sphere `radius diameter omegax omegay omegaz tqx \
-                   tqy tqz`; with atom_style peri `vfrac`, the volume. All in the deck's units. LAMMPS' other attributes \
+                   tqy tqz`; with atom_style peri `vfrac`, the volume; with molecules `mol`. All in the deck's units. LAMMPS' other attributes \
                    belong to atom styles that perigrain does not have and are refused, as is `s0`. `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`, `temperature`, `heatflow`: those of `fix property/atom`.",
             example: "compute r all property/atom radius",
         }
@@ -38,6 +38,7 @@ enum Needs {
     Nothing,
     Sphere,
     Peri,
+    Molecules,
 }
 
 impl Needs {
@@ -46,6 +47,7 @@ impl Needs {
             Needs::Nothing => true,
             Needs::Sphere => style.sphere,
             Needs::Peri => style.peri,
+            Needs::Molecules => style.molecules,
         }
     }
 }
@@ -104,15 +106,16 @@ const ATTRIBUTES: &[(&str, Needs, Read)] = &[
     ("tqy", Needs::Sphere, |w, i| w.particles.torque[i][1]),
     ("tqz", Needs::Sphere, |w, i| w.particles.torque[i][2]),
     ("vfrac", Needs::Peri, |w, i| w.particles.volume[i]),
+    ("mol", Needs::Molecules, |w, i| f64::from(w.particles.molecule[i])),
 ];
 
 /// LAMMPS' attributes of atom styles that perigrain does not have.
 const ELSEWHERE: &[&str] = &[
-    "mol", "q", "mux", "muy", "muz", "mu", "spx", "spy", "spz", "sp", "fmx", "fmy", "fmz", "nbonds",
-    "angmomx", "angmomy", "angmomz", "shapex", "shapey", "shapez", "quatw", "quati", "quatj", "quatk",
-    "end1x", "end1y", "end1z", "end2x", "end2y", "end2z", "corner1x", "corner1y", "corner1z", "corner2x",
-    "corner2y", "corner2z", "corner3x", "corner3y", "corner3z", "s0", "espin", "eradius", "ervel", "erforce",
-    "rho", "drho", "e", "de", "cv", "buckling",
+    "q", "mux", "muy", "muz", "mu", "spx", "spy", "spz", "sp", "fmx", "fmy", "fmz", "nbonds", "angmomx",
+    "angmomy", "angmomz", "shapex", "shapey", "shapez", "quatw", "quati", "quatj", "quatk", "end1x", "end1y",
+    "end1z", "end2x", "end2y", "end2z", "corner1x", "corner1y", "corner1z", "corner2x", "corner2y",
+    "corner2z", "corner3x", "corner3y", "corner3z", "s0", "espin", "eradius", "ervel", "erforce", "rho",
+    "drho", "e", "de", "cv", "buckling",
 ];
 
 fn scaled(w: &World, i: usize, d: usize) -> f64 {
@@ -144,7 +147,11 @@ pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
         if needs.met(cx.world.particles.style) {
             return Ok(Getter::Own(*getter));
         }
-        let style = if *needs == Needs::Sphere { "sphere" } else { "peri" };
+        let style = match needs {
+            Needs::Sphere => "sphere",
+            Needs::Molecules => "bond",
+            _ => "peri",
+        };
         return Err(Diagnostic::error(
             Code::INCOMPLETE,
             word.span,
@@ -220,7 +227,7 @@ mod tests {
 
     #[test]
     fn attributes_of_all_kinds() {
-        let style = AtomStyle { chosen: true, sphere: true, peri: true, sphere_mass: false, hybrid: true };
+        let style = AtomStyle { sphere: true, peri: true, hybrid: true, ..AtomStyle::default() };
         let mut b = Bench::new(style, &[[1.0, 5.0, -10.0], [0.0; 3]]);
         b.world.particles.image[0] = [1, 0, -1];
         b.world.particles.volume[0] = 0.125;
@@ -240,7 +247,7 @@ mod tests {
         assert_eq!(code(""), Code::MISSING_ARGUMENT);
         assert_eq!(code("x radius"), Code::INCOMPLETE);
         assert_eq!(code("vfrac"), Code::INCOMPLETE);
-        assert_eq!(code("mol"), Code::NOT_SUPPORTED);
+        assert_eq!((code("mol"), code("quatw")), (Code::INCOMPLETE, Code::NOT_SUPPORTED));
         assert_eq!(code("d_mine"), Code::UNKNOWN_NAME);
         assert_eq!(code("radus"), Code::UNKNOWN_KEYWORD);
     }

@@ -66,6 +66,8 @@ pub enum Core {
     Torque(usize),
     /// Volume of a peridynamic particle.
     Volume,
+    /// Molecule ID.
+    Molecule,
     /// Name of the type (`dump_modify element`).
     Element,
 }
@@ -76,6 +78,7 @@ pub const CORE: &[(&str, Core)] = &[
     ("type", Core::Kind),
     ("proc", Core::Process(0)),
     ("procp1", Core::Process(1)),
+    ("mol", Core::Molecule),
     ("mass", Core::Mass),
     ("x", Core::X(0)),
     ("y", Core::X(1)),
@@ -111,7 +114,7 @@ pub const CORE: &[(&str, Core)] = &[
 ];
 
 /// LAMMPS' attributes for things that perigrain's particles do not have.
-const ELSEWHERE: &[&str] = &["mol", "q", "mux", "muy", "muz", "mu", "angmomx", "angmomy", "angmomz"];
+const ELSEWHERE: &[&str] = &["q", "mux", "muy", "muz", "mu", "angmomx", "angmomy", "angmomz"];
 
 /// What `c_ID[*]` becomes: one attribute per column.
 pub fn expand(word: &Word, cx: &BuildCx) -> Result<Vec<Attribute>> {
@@ -149,6 +152,7 @@ fn requires(core: Core, word: &Word, cx: &BuildCx) -> Result<()> {
     let (there, need) = match core {
         Core::Radius | Core::Diameter | Core::Omega(_) | Core::Torque(_) => (style.sphere, "sphere"),
         Core::Volume => (style.peri, "peri"),
+        Core::Molecule => (style.molecules, "bond"),
         _ => return Ok(()),
     };
     if there {
@@ -167,7 +171,9 @@ impl Attribute {
     /// Whether it shows whole numbers.
     pub fn kind(&self) -> Kind {
         match self.source {
-            Source::Core(Core::Id | Core::Kind | Core::Process(_) | Core::Image(_)) => Kind::Int,
+            Source::Core(Core::Id | Core::Kind | Core::Molecule | Core::Process(_) | Core::Image(_)) => {
+                Kind::Int
+            }
             Source::Core(Core::Element) => Kind::Text,
             Source::Custom(_, true) => Kind::Int,
             _ => Kind::Float,
@@ -276,6 +282,7 @@ impl Bound {
             Core::Omega(k) => Data::component(&p.omega, k),
             Core::Torque(k) => Data::component(&p.torque, k),
             Core::Volume => Data::slice(&p.volume),
+            Core::Molecule => Data::int(|i| i64::from(p.molecule[i])),
         }
     }
 }

@@ -32,7 +32,7 @@ impl Style for PropertyAtomFix {
 
 impl FixStyle for PropertyAtomFix {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let mut names: Vec<String> = vec![];
+        let (mut names, mut molecules): (Vec<String>, _) = (vec![], false);
         while let Some(word) = args.next() {
             match word.text.as_str() {
                 "ghost" | "writedata" => {
@@ -43,7 +43,15 @@ impl FixStyle for PropertyAtomFix {
                         "without effect: there are no ghosts",
                     ));
                 }
-                "mol" | "q" | "rmass" => {
+                "mol" if !cx.world.particles.style.bonded => molecules = true,
+                "mol" => {
+                    let text = format!(
+                        "particles of atom_style {} have molecules by themselves",
+                        cx.world.particles.style.name()
+                    );
+                    return fail(Code::CONFLICT, word.span, text);
+                }
+                "q" | "rmass" => {
                     let text =
                         format!("`{}` cannot be added: atom styles say what particles have", word.text);
                     return fail(Code::NOT_SUPPORTED, word.span, text);
@@ -51,10 +59,10 @@ impl FixStyle for PropertyAtomFix {
                 _ => names.extend(columns(word, args, cx, &names)?),
             }
         }
-        if names.is_empty() {
+        if names.is_empty() && !molecules {
             args.expect("a name such as i_flag or d_heat")?;
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), names }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), names, molecules }))
     }
 }
 
@@ -96,6 +104,8 @@ fn free(word: &Word, cx: &BuildCx, before: &[String], key: &str) -> Result<()> {
 struct Declared {
     id: String,
     names: Vec<String>,
+    /// Molecule IDs, too.
+    molecules: bool,
 }
 
 impl Fix for Declared {
@@ -104,10 +114,18 @@ impl Fix for Declared {
         for name in &self.names {
             w.columns.scalar(&format!("property/atom/{}/{name}", self.id), n);
         }
+        if self.molecules {
+            w.particles.style.molecules = true;
+            w.particles.molecule.resize(n, 0);
+        }
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
+        if self.molecules {
+            w.particles.style.molecules = w.particles.style.bonded;
+            w.particles.molecule.clear();
+        }
         self.names.iter().for_each(|name| w.columns.remove(&format!("property/atom/{}/{name}", self.id)));
     }
 
@@ -140,7 +158,7 @@ mod tests {
         fix.remove(&mut b.world);
         assert!(b.world.columns.names().is_empty());
         b.world.columns.scalar("property/atom/other/d_b", 2);
-        for words in ["", "d_b", "x_b", "d_", "d_a d_a", "d2_c", "d2_c 0", "mol", "ghost maybe", "d_a-b"] {
+        for words in ["", "d_b", "x_b", "d_", "d_a d_a", "d2_c", "d2_c 0", "q", "ghost maybe", "d_a-b"] {
             assert!(b.fix(&PropertyAtomFix, words).is_err(), "{words}");
         }
     }

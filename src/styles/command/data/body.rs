@@ -1,12 +1,13 @@
-//! The sections of a data file: Masses, Atoms, Velocities, pair coefficients.
+//! The sections of a data file: Masses, Atoms.
 
 use super::header::{self, Header};
-use super::index::Index;
+use super::more::molecule_id;
 use super::text::{Line, Lines, not_here, number, whole};
-use super::{Column, columns, velocity_columns};
+use super::{Column, columns};
 use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
-use crate::lang::{Command, Word};
-use crate::world::{AtomStyle, Particles};
+use crate::lang::Command;
+use crate::world::index::Index;
+use crate::world::{AtomStyle, Bond, Particles};
 
 /// What the deck says about reading.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +22,12 @@ pub struct How {
     pub extra_types: usize,
     /// Skip coefficients.
     pub no_coeff: bool,
+    /// The number of bond types there will be.
+    pub bond_types: Option<usize>,
+    /// Added to every bond type.
+    pub bond_offset: u16,
+    /// Bond types beyond those of the file.
+    pub extra_bond_types: usize,
 }
 
 /// A data file that has been read.
@@ -38,8 +45,12 @@ pub struct DataFile {
     pub velocities: bool,
     /// The line on which each particle stands.
     pub lines: Vec<u32>,
-    /// `pair_coeff` lines.
+    /// `pair_coeff` and `bond_coeff` lines.
     pub coeffs: Vec<Command>,
+    /// The number of bond types, extra ones included.
+    pub bond_types: usize,
+    /// Bonds with ids as in the file, and the lines on which they stand.
+    pub bonds: Vec<(Bond, u32)>,
 }
 
 impl DataFile {
@@ -52,12 +63,10 @@ impl DataFile {
 }
 
 /// Sections LAMMPS has besides.
-const ELSEWHERE: [&str; 22] = [
-    "Bonds",
+const ELSEWHERE: [&str; 20] = [
     "Angles",
     "Dihedrals",
     "Impropers",
-    "Bond Coeffs",
     "Angle Coeffs",
     "Dihedral Coeffs",
     "Improper Coeffs",
@@ -77,7 +86,8 @@ const ELSEWHERE: [&str; 22] = [
     "AngleTorsion Coeffs",
 ];
 
-const SECTIONS: [&str; 5] = ["Masses", "Atoms", "Velocities", "Pair Coeffs", "PairIJ Coeffs"];
+const SECTIONS: [&str; 7] =
+    ["Masses", "Atoms", "Velocities", "Bonds", "Pair Coeffs", "PairIJ Coeffs", "Bond Coeffs"];
 
 /// Reads a whole file.
 ///
@@ -91,7 +101,14 @@ pub fn read(text: &str, how: &How) -> Result<DataFile> {
         let text = format!("at most {} types are possible, not {types}", u16::MAX);
         return fail(Code::BAD_VALUE, lines.end(), text);
     }
-    let mut reader = Reader { lines, how: *how, data: DataFile { header, types, ..DataFile::default() } };
+    let bond_types = how.bond_types.unwrap_or(header.bond_types + how.extra_bond_types);
+    if let Some(at) = header.bonds_at.filter(|_| !how.style.bonded) {
+        let text = format!("particles of atom_style {} have no bonds", how.style.name());
+        let d = Diagnostic::error(Code::CONFLICT, at, text);
+        return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
+    }
+    let data = DataFile { header, types, bond_types, ..DataFile::default() };
+    let mut reader = Reader { lines, how: *how, data };
     let mut seen: Vec<String> = vec![];
     while let Some(title) = reader.lines.take_filled() {
         let name = title.words().collect::<Vec<_>>().join(" ");
@@ -106,13 +123,19 @@ pub fn read(text: &str, how: &How) -> Result<DataFile> {
         let text = format!("the header promises {promised} atoms, but there is no section Atoms");
         return fail(Code::INCOMPLETE, reader.data.header.atoms_at.unwrap_or(reader.lines.end()), text);
     }
+    let (promised, have) = (reader.data.header.bonds, reader.data.bonds.len());
+    if promised > have {
+        let text = format!("the header promises {promised} bonds, but there is no section Bonds");
+        return fail(Code::INCOMPLETE, reader.data.header.bonds_at.unwrap_or(reader.lines.end()), text);
+    }
     Ok(reader.data)
 }
 
-struct Reader<'a> {
+/// A file being read.
+pub(super) struct Reader<'a> {
     lines: Lines<'a>,
-    how: How,
-    data: DataFile,
+    pub(super) how: How,
+    pub(super) data: DataFile,
 }
 
 impl<'a> Reader<'a> {
@@ -146,13 +169,15 @@ impl<'a> Reader<'a> {
             "Masses" => self.rows(name, title, types, Self::mass),
             "Atoms" => self.atoms(title),
             "Velocities" => self.velocities(title),
+            "Bonds" => self.bonds(title),
+            "Bond Coeffs" => self.rows(name, title, self.data.header.bond_types, Self::bond_coeff),
             "Pair Coeffs" => self.rows(name, title, types, |r, line| r.coeff(line, 1)),
             _ => self.rows(name, title, types * (types + 1) / 2, |r, line| r.coeff(line, 2)),
         }
     }
 
     /// Takes exactly `count` lines of a section.
-    fn rows(
+    pub(super) fn rows(
         &mut self,
         name: &str,
         title: &Line,
@@ -165,9 +190,15 @@ impl<'a> Reader<'a> {
                 None => {
                     let text = format!("the section {name} has {have} lines, the header promises {count}");
                     let d = Diagnostic::error(Code::INCOMPLETE, title.span(), text);
-                    return Err(match (name, self.data.header.atoms_at) {
-                        ("Atoms" | "Velocities", Some(at)) => d.label(at, "promised here"),
-                        _ => d,
+                    let header = &self.data.header;
+                    let at = match name {
+                        "Atoms" | "Velocities" => header.atoms_at,
+                        "Bonds" => header.bonds_at,
+                        _ => None,
+                    };
+                    return Err(match at {
+                        Some(at) => d.label(at, "promised here"),
+                        None => d,
                     }
                     .into());
                 }
@@ -177,7 +208,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn kind(&self, line: &Line, word: &str) -> Result<u16> {
+    /// A type, its offset added.
+    pub(super) fn kind(&self, line: &Line, word: &str) -> Result<u16> {
         if word.starts_with(|c: char| c.is_ascii_alphabetic()) {
             return Err(not_here(line.span_of(word), &format!("the type label `{word}`")).into());
         }
@@ -261,7 +293,7 @@ impl<'a> Reader<'a> {
             return Err(self.misfit(line, layout, n));
         }
         let (mut tag, mut kind, mut x) = (0, 0, [0.0; 3]);
-        let (mut diameter, mut density, mut volume) = (0.0, 0.0, 0.0);
+        let (mut diameter, mut density, mut volume, mut molecule) = (0.0, 0.0, 0.0, 0);
         for (column, word) in layout.iter().zip(words) {
             let least = |least: f64, open: bool| -> Result<f64> {
                 let a = number(line, word, column.name())?;
@@ -279,6 +311,7 @@ impl<'a> Reader<'a> {
                 Column::Diameter => diameter = least(0.0, false)?,
                 Column::Density => density = least(0.0, true)?,
                 Column::Volume => volume = least(0.0, true)?,
+                Column::Molecule => molecule = molecule_id(line, word)?,
             }
         }
         let mut image = [0; 3];
@@ -308,6 +341,9 @@ impl<'a> Reader<'a> {
         if p.style.own_mass() {
             p.density[last] = density;
         }
+        if p.style.molecules {
+            p.molecule[last] = molecule;
+        }
         Ok(())
     }
 
@@ -324,60 +360,6 @@ impl<'a> Reader<'a> {
             .help("the deck's `atom_style` must be the one the file was written for")
             .into()
     }
-
-    fn velocities(&mut self, title: &Line) -> Result<()> {
-        let p = &self.data.particles;
-        if p.is_empty() && self.data.header.atoms > 0 {
-            return fail(Code::WRONG_ORDER, title.span(), "the section Velocities must follow Atoms");
-        }
-        let index = Index::new(&p.tag);
-        let wanted = velocity_columns(self.how.style);
-        let count = self.data.header.atoms;
-        self.data.velocities = true;
-        self.rows("Velocities", title, count, |r, line| {
-            let (mut values, mut n) = ([0.0; 6], 0);
-            let mut words = line.words();
-            let first = words.next().unwrap_or("");
-            for word in words {
-                if n < wanted {
-                    values[n] = number(line, word, "a velocity")?;
-                }
-                n += 1;
-            }
-            if n != wanted {
-                let text = format!("an id and {wanted} numbers are needed here, not an id and {n}");
-                return fail(Code::SYNTAX, line.span(), text);
-            }
-            let p = &mut r.data.particles;
-            let Some(i) = index.find(id(line, first)?, &p.tag) else {
-                let text = format!("the section Atoms has no particle {first}");
-                return fail(Code::UNKNOWN_NAME, line.span_of(first), text);
-            };
-            p.v[i] = [values[0], values[1], values[2]];
-            if let Some(omega) = p.omega.get_mut(i) {
-                *omega = [values[3], values[4], values[5]];
-            }
-            Ok(())
-        })
-    }
-
-    /// A `pair_coeff` line from the words behind `types` types.
-    fn coeff(&mut self, line: &Line, types: usize) -> Result<()> {
-        let words: Vec<&str> = line.words().collect();
-        if words.len() < types {
-            return fail(Code::SYNTAX, line.span(), "two types are needed here");
-        }
-        let mut args = vec![];
-        for word in [words[0], words[types - 1]] {
-            args.push(Word::new(self.kind(line, word)?.to_string(), line.span_of(word)));
-        }
-        args.extend(words[types..].iter().map(|w| Word::new(*w, line.span_of(w))));
-        if !self.how.no_coeff {
-            let (name, span) = (Word::new("pair_coeff", line.span()), line.span());
-            self.data.coeffs.push(Command { name, args, span, text: line.text.trim().to_string() });
-        }
-        Ok(())
-    }
 }
 
 /// Data lines begin with a number; type labels, which could stand there too, are refused elsewhere.
@@ -386,7 +368,7 @@ fn begins_section(line: &Line) -> bool {
     SECTIONS.iter().chain(&ELSEWHERE).any(|s| text.starts_with(s))
 }
 
-fn id(line: &Line, word: &str) -> Result<u32> {
+pub(super) fn id(line: &Line, word: &str) -> Result<u32> {
     let k = whole(line, word, "the id")?;
     match u32::try_from(k) {
         Ok(tag) if tag >= 1 => Ok(tag),

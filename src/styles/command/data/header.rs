@@ -16,30 +16,33 @@ pub struct Header {
     pub hi: [f64; 3],
     /// Where the number of particles stands.
     pub atoms_at: Option<Span>,
+    /// Number of bonds.
+    pub bonds: usize,
+    /// Number of bond types.
+    pub bond_types: usize,
+    /// Where the number of bonds or their types stands.
+    pub bonds_at: Option<Span>,
 }
 
 impl Default for Header {
     /// LAMMPS' defaults: no particles in a box of edge length 1 around the origin.
     fn default() -> Self {
-        Self { atoms: 0, types: 0, lo: [-0.5; 3], hi: [0.5; 3], atoms_at: None }
+        let (lo, hi) = ([-0.5; 3], [0.5; 3]);
+        Self { atoms: 0, types: 0, lo, hi, atoms_at: None, bonds: 0, bond_types: 0, bonds_at: None }
     }
 }
 
 /// Header words with a count that must be zero here.
-const COUNTS: [&str; 18] = [
-    "bonds",
+const COUNTS: [&str; 14] = [
     "angles",
     "dihedrals",
     "impropers",
-    "bond types",
     "angle types",
     "dihedral types",
     "improper types",
-    "extra bond per atom",
     "extra angle per atom",
     "extra dihedral per atom",
     "extra improper per atom",
-    "extra special per atom",
     "ellipsoids",
     "lines",
     "triangles",
@@ -53,7 +56,7 @@ const SLANTED: [&str; 5] = ["xy xz yz", "avec", "bvec", "cvec", "abc origin"];
 /// Reads the header; the first line of the file is a title. The cursor stands before the first section afterwards.
 ///
 /// # Errors
-/// Lines that are neither header nor section, bonds, tilted boxes, faces in the wrong order.
+/// Lines that are neither header nor section, angles, tilted boxes, faces in the wrong order.
 pub fn read(lines: &mut Lines) -> Result<Header> {
     let mut header = Header::default();
     lines.take();
@@ -86,6 +89,17 @@ fn take(header: &mut Header, line: &Line, values: &[&str], name: &str) -> Result
             header.atoms_at = Some(line.span_of(values[0]));
         }
         "atom types" => header.types = count(line, values, name)?,
+        "bonds" | "bond types" => {
+            let n = count(line, values, name)?;
+            if n > 0 {
+                header.bonds_at = Some(line.span_of(values[0]));
+            }
+            *(if name == "bonds" { &mut header.bonds } else { &mut header.bond_types }) = n;
+        }
+        // Lists grow as they must.
+        "extra bond per atom" | "extra special per atom" => {
+            count(line, values, name)?;
+        }
         "xlo xhi" => edge(header, 0, line, values)?,
         "ylo yhi" => edge(header, 1, line, values)?,
         "zlo zhi" => edge(header, 2, line, values)?,
@@ -101,7 +115,7 @@ fn take(header: &mut Header, line: &Line, values: &[&str], name: &str) -> Result
             }
         }
         _ => {
-            let known = ["atoms", "atom types", "xlo xhi", "ylo yhi", "zlo zhi"];
+            let known = ["atoms", "atom types", "bonds", "bond types", "xlo xhi", "ylo yhi", "zlo zhi"];
             let text = format!("`{name}` is no header line of a data file");
             let d = Diagnostic::error(Code::UNKNOWN_KEYWORD, line.span(), text);
             return Err(match crate::diag::nearest(name, known) {

@@ -3,11 +3,12 @@
 pub mod body;
 pub mod dump;
 pub mod header;
-pub mod index;
+mod more;
 pub mod text;
+pub mod words;
 pub mod write;
 
-use crate::world::AtomStyle;
+use crate::world::{AtomStyle, Own};
 
 /// A column of the section Atoms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +25,8 @@ pub enum Column {
     Density,
     /// Volume of a peridynamic particle.
     Volume,
+    /// Molecule ID.
+    Molecule,
 }
 
 impl Column {
@@ -38,24 +41,31 @@ impl Column {
             Column::Diameter => "the diameter",
             Column::Density => "the density",
             Column::Volume => "the volume",
+            Column::Molecule => "the molecule",
         }
     }
 }
 
 /// The columns of the section Atoms, image flags apart.
 pub fn columns(style: AtomStyle) -> Vec<Column> {
-    use Column::{Density, Diameter, Id, Type, Volume, X};
-    let own: &[Column] = match (style.sphere, style.peri) {
-        (false, false) => &[],
-        (true, false) => &[Diameter, Density],
-        (false, true) => &[Volume, Density],
-        // The order in which `hybrid` names them; what both have stands once.
-        (true, true) if style.sphere_mass => &[Volume, Density, Diameter],
-        (true, true) => &[Diameter, Density, Volume],
-    };
+    use Column::{Density, Diameter, Id, Molecule, Type, Volume, X};
     let place = [X(0), X(1), X(2)];
-    let (first, last) = if style.hybrid { (&place[..], own) } else { (own, &place[..]) };
-    [&[Id, Type], first, last].concat()
+    if style.hybrid {
+        let own = style.own.iter().flatten().map(|own| match own {
+            Own::Molecule => Molecule,
+            Own::Diameter => Diameter,
+            Own::Density => Density,
+            Own::Volume => Volume,
+        });
+        return [Id, Type].into_iter().chain(place).chain(own).collect();
+    }
+    let molecule: &[Column] = if style.bonded { &[Molecule] } else { &[] };
+    let own: &[Column] = match (style.sphere, style.peri) {
+        (true, _) => &[Diameter, Density],
+        (false, true) => &[Volume, Density],
+        (false, false) => &[],
+    };
+    [&[Id], molecule, &[Type], own, &place].concat()
 }
 
 /// Numbers after the id in the section Velocities.

@@ -6,8 +6,8 @@ use crate::world::{Particles, World};
 use std::f64::consts::PI;
 use std::io::{Result, Write};
 
-/// Writes the whole scene as LAMMPS' write_data does.
-pub fn write(out: &mut dyn Write, w: &World) -> Result<()> {
+/// Writes the whole scene as LAMMPS' write_data does, with coefficients of bonds or without.
+pub fn write(out: &mut dyn Write, w: &World, coeffs: bool) -> Result<()> {
     let units = w.settings.units.name();
     writeln!(
         out,
@@ -15,19 +15,38 @@ pub fn write(out: &mut dyn Write, w: &World) -> Result<()> {
         env!("CARGO_PKG_VERSION"),
         w.clock.step
     )?;
-    writeln!(out, "{} atoms\n{} atom types\n", w.n(), w.types)?;
+    writeln!(out, "{} atoms\n{} atom types", w.n(), w.types)?;
+    if w.bonds.types > 0 || !w.bonds.is_empty() {
+        writeln!(out, "{} bonds\n{} bond types", w.bonds.len(), w.bonds.types)?;
+    }
+    writeln!(out)?;
     if let Some(domain) = &w.domain {
         for (d, axis) in ["x", "y", "z"].into_iter().enumerate() {
             writeln!(out, "{} {} {axis}lo {axis}hi", shortest(domain.lo[d]), shortest(domain.hi[d]))?;
         }
     }
     masses(out, w)?;
+    if coeffs {
+        bond_coeffs(out, w)?;
+    }
     let p = &w.particles;
     if p.is_empty() {
         return Ok(());
     }
     atoms(out, p)?;
-    velocities(out, p)
+    velocities(out, p)?;
+    bonds(out, w)
+}
+
+fn bonds(out: &mut dyn Write, w: &World) -> Result<()> {
+    if w.bonds.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\nBonds\n")?;
+    for (k, bond) in (1..).zip(w.bonds.by_owner(&w.particles.tag)) {
+        writeln!(out, "{k} {} {} {}", bond.kind, bond.ends[0], bond.ends[1])?;
+    }
+    Ok(())
 }
 
 /// The section Masses, where types have masses; as LAMMPS does, only when all are set.
@@ -37,6 +56,18 @@ fn masses(out: &mut dyn Write, w: &World) -> Result<()> {
     writeln!(out, "\nMasses\n")?;
     for (k, mass) in all.into_iter().enumerate() {
         writeln!(out, "{} {}", k + 1, shortest(mass))?;
+    }
+    Ok(())
+}
+
+/// The section Bond Coeffs, where a bond style has coefficients for all types.
+fn bond_coeffs(out: &mut dyn Write, w: &World) -> Result<()> {
+    let Some((style, texts)) = w.bonds.coeffs.as_ref().filter(|(_, t)| t.len() == w.bonds.types) else {
+        return Ok(());
+    };
+    writeln!(out, "\nBond Coeffs # {style}\n")?;
+    for (kind, text) in texts {
+        writeln!(out, "{kind} {text}")?;
     }
     Ok(())
 }
@@ -53,6 +84,7 @@ fn atoms(out: &mut dyn Write, p: &Particles) -> Result<()> {
                 Column::Diameter => write!(out, " {}", shortest(2.0 * p.radius[i]))?,
                 Column::Density => write!(out, " {}", shortest(density(p, i)))?,
                 Column::Volume => write!(out, " {}", shortest(p.volume[i]))?,
+                Column::Molecule => write!(out, " {}", p.molecule[i])?,
             }
         }
         let [a, b, c] = p.image[i];

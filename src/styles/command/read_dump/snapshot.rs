@@ -2,10 +2,10 @@
 
 use super::super::common::settle;
 use super::super::data::dump::Snapshot;
-use super::super::data::index::Index;
 use super::super::data::text::{number, whole};
 use super::{Add, FIELDS, Wish};
 use crate::diag::{Code, Result, fail};
+use crate::world::index::Index;
 use crate::world::{Domain, World};
 
 /// What a snapshot says about one particle.

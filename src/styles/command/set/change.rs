@@ -8,6 +8,7 @@ use crate::styles::ActCx;
 use crate::styles::command::common::masses_from_density;
 use crate::styles::command::create_atoms::subset::{Amount, Subset};
 use crate::world::World;
+use std::collections::BTreeSet;
 
 /// What a keyword sets.
 pub enum Change {
@@ -45,6 +46,10 @@ pub enum Change {
     Volume(Param),
     /// The angular velocity.
     Omega([Param; 3]),
+    /// The molecule ID.
+    Molecule(Param),
+    /// The type of bonds with both ends among the chosen.
+    Bond(u16),
     /// A coordinate.
     Place(usize, Param),
     /// A component of the velocity.
@@ -74,7 +79,7 @@ impl Item {
     fn has_variable(&self) -> bool {
         let is = |p: &Param| matches!(p, Param::Ref(_));
         match &self.change {
-            Change::Fraction { .. } | Change::Some { .. } => false,
+            Change::Fraction { .. } | Change::Some { .. } | Change::Bond(_) => false,
             Change::Image(p) => p.iter().flatten().any(is),
             Change::Omega(p) => p.iter().any(is),
             Change::Kind(p)
@@ -83,6 +88,7 @@ impl Item {
             | Change::Disc(p)
             | Change::Diameter(p)
             | Change::Volume(p)
+            | Change::Molecule(p)
             | Change::Place(_, p)
             | Change::Velocity(_, p)
             | Change::Custom { value: p, .. } => is(p),
@@ -154,6 +160,7 @@ fn chosen(choice: &Choice, w: &World) -> Vec<usize> {
     let p = &w.particles;
     let meant = |i: usize| match choice {
         Choice::Tags(lo, hi) => (*lo..=*hi).contains(&i64::from(p.tag[i])),
+        Choice::Molecules(lo, hi) => (*lo..=*hi).contains(&i64::from(p.molecule[i])),
         Choice::Kinds(lo, hi) => (*lo..=*hi).contains(&p.kind[i]),
         Choice::Group(g) => p.mask[i] & g.bit() != 0,
         Choice::Region(r) => r.contains(p.x[i]),
@@ -231,6 +238,11 @@ fn change_particles(cx: &mut ActCx, item: &Item, chosen: &[usize]) -> Result<usi
             let v = [checked(&p[0], "", None)?, checked(&p[1], "", None)?, checked(&p[2], "", None)?];
             chosen.iter().for_each(|&i| cx.world.particles.omega[i] = [v[0][i], v[1][i], v[2][i]]);
         }
+        Change::Molecule(p) => {
+            let v = checked(p, "the molecule", Some(Limit::NotNegative))?;
+            chosen.iter().for_each(|&i| cx.world.particles.molecule[i] = v[i] as u32);
+        }
+        Change::Bond(kind) => return Ok(set_bonds(cx.world, chosen, *kind)),
         Change::Place(d, p) => {
             let v = checked(p, "", None)?;
             chosen.iter().for_each(|&i| cx.world.particles.x[i][*d] = v[i]);
@@ -241,6 +253,18 @@ fn change_particles(cx: &mut ActCx, item: &Item, chosen: &[usize]) -> Result<usi
         }
     }
     Ok(chosen.len())
+}
+
+/// Counts bonds, as LAMMPS does, not particles.
+fn set_bonds(w: &mut World, chosen: &[usize], kind: u16) -> usize {
+    let tags: BTreeSet<u32> = chosen.iter().map(|&i| w.particles.tag[i]).collect();
+    let mut count = 0;
+    for bond in w.bonds.list.iter_mut().filter(|b| b.ends.iter().all(|t| tags.contains(t))) {
+        bond.kind = i32::from(kind);
+        count += 1;
+    }
+    w.bonds.changes += 1;
+    count
 }
 
 fn set_fraction(w: &mut World, chosen: &[usize], kind: u16, fraction: f64, seed: u32) -> usize {

@@ -8,7 +8,7 @@ use crate::math::vec3::Vec3;
 use crate::neigh::list::{Pair, View, Wanted, pairs};
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::world::contacts::Contacts;
-use crate::world::{NeighborSettings, World};
+use crate::world::{Allowed, World};
 
 /// Forces and torques of all granular contacts of one pair style.
 pub struct Force {
@@ -44,9 +44,8 @@ impl Force {
         let held = w.held();
         let x = if held.len() == p.len() { held } else { &p.x };
         let v = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: period(w)? };
-        let s = &w.settings.neighbor;
-        let keep = |i: usize, j: usize| allowed(s, [p.mask[i], p.mask[j]], [p.kind[i], p.kind[j]]);
-        self.list = pairs(&v, &self.wanted, s.skin, &keep);
+        let allowed = Allowed::new(w);
+        self.list = pairs(&v, &self.wanted, w.settings.neighbor.skin, &|i, j| allowed.pair(i, j));
         self.generation = Some(w.rebuild.generation);
         Ok(())
     }
@@ -113,12 +112,4 @@ fn period(w: &World) -> Result<Vec3> {
     let domain = w.domain()?;
     let (lengths, periodic) = (domain.lengths(), domain.periodic());
     Ok(std::array::from_fn(|d| if periodic[d] { lengths[d] } else { 0.0 }))
-}
-
-/// `neigh_modify exclude`.
-fn allowed(s: &NeighborSettings, mask: [u32; 2], kind: [u16; 2]) -> bool {
-    let [a, b] = mask;
-    let groups = |&(g, h): &(u32, u32)| (a & g != 0 && b & h != 0) || (a & h != 0 && b & g != 0);
-    let types = |&(g, h): &(u16, u16)| (kind[0] == g && kind[1] == h) || (kind[0] == h && kind[1] == g);
-    !s.exclude_groups.iter().any(groups) && !s.exclude_types.iter().any(types)
 }

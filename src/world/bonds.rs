@@ -1,0 +1,223 @@
+//! Bonds between particles by their ids, and which pairs they exempt from pair forces (`special_bonds`).
+
+use super::index::Index;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A bond.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Bond {
+    /// Type from 1; negative while it is turned off (`delete_bonds`).
+    pub kind: i32,
+    /// The ids of its ends; it is listed with the first.
+    pub ends: [u32; 2],
+    /// Length at rest, as a bond style has measured it [length]; 0 before.
+    pub length: f64,
+}
+
+impl Bond {
+    /// A bond that nobody has measured.
+    pub fn new(kind: i32, ends: [u32; 2]) -> Self {
+        Self { kind, ends, length: 0.0 }
+    }
+
+    /// Whether it acts.
+    pub fn is_on(&self) -> bool {
+        self.kind > 0
+    }
+}
+
+/// By how much pair forces count between particles one, two and three bonds apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Weights {
+    /// Of all pair styles here.
+    pub lj: [f64; 3],
+    /// Of electric forces, which nobody has: only `create_bonds` and bond styles look at them.
+    pub coul: [f64; 3],
+}
+
+/// All bonds of a scene.
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub struct Bonds {
+    /// Number of bond types.
+    pub types: usize,
+    /// The bonds, in the order in which they were made.
+    pub list: Vec<Bond>,
+    /// `special_bonds`.
+    pub weights: Weights,
+    /// The pairs that count as bonded for the weights, ascending: as bonds were when this was last decided.
+    pub special: Vec<[u32; 2]>,
+    /// The bond style in force and its coefficients by type, as a data file has them.
+    pub coeffs: Option<(String, BTreeMap<usize, String>)>,
+    /// Grows with every change of the list or of what is special, so that others notice.
+    pub changes: u64,
+}
+
+impl Bonds {
+    /// Number of bonds.
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Adds a bond; what is special stays until it is decided anew.
+    pub fn push(&mut self, bond: Bond) {
+        self.list.push(bond);
+        self.changes += 1;
+    }
+
+    /// Keeps the bonds that `keep` lets pass.
+    pub fn retain(&mut self, keep: impl FnMut(&Bond) -> bool) {
+        self.list.retain(keep);
+        self.changes += 1;
+    }
+
+    /// Decides anew which pairs count as bonded: those of all present bonds, turned off or not.
+    pub fn find_special(&mut self) {
+        self.special =
+            self.list.iter().map(|b| [b.ends[0].min(b.ends[1]), b.ends[0].max(b.ends[1])]).collect();
+        self.special.sort_unstable();
+        self.special.dedup();
+        self.changes += 1;
+    }
+
+    /// Forgets bonds of which both ends are gone; those with one end left are an error of the next run.
+    pub fn forget_lone(&mut self, tags: &[u32]) {
+        let there: BTreeSet<u32> = tags.iter().copied().collect();
+        self.list.retain(|b| b.ends.iter().any(|t| there.contains(t)));
+        self.special.retain(|p| p.iter().any(|t| there.contains(t)));
+        self.changes += 1;
+    }
+
+    /// Renames particles; bonds of those without a new id are gone.
+    pub fn rename(&mut self, new: impl Fn(u32) -> Option<u32>) {
+        let both = |ends: [u32; 2]| Some([new(ends[0])?, new(ends[1])?]);
+        let renamed = |b: &Bond| both(b.ends).map(|ends| Bond { ends, ..*b });
+        self.list = self.list.iter().filter_map(renamed).collect();
+        self.special =
+            self.special.iter().filter_map(|p| both(*p)).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        self.special.sort_unstable();
+        self.changes += 1;
+    }
+
+    /// The bonds in the order of LAMMPS' lists: by the place of the first end in storage.
+    pub fn by_owner(&self, tags: &[u32]) -> Vec<Bond> {
+        let index = Index::new(tags);
+        let mut list: Vec<(usize, Bond)> =
+            self.list.iter().filter_map(|b| Some((index.find(b.ends[0], tags)?, *b))).collect();
+        list.sort_by_key(|(place, _)| *place);
+        list.into_iter().map(|(_, b)| b).collect()
+    }
+
+    /// Pairs at most `far` bonds apart with the least number of bonds between them, by ids, ascending.
+    pub fn apart(&self, far: u8) -> Vec<([u32; 2], u8)> {
+        let near = Near::new(&self.special);
+        let mut out = vec![];
+        for (k, &id) in near.ids.iter().enumerate() {
+            for (apart, ring) in (1..).zip(near.rings(k, far)) {
+                let later = ring.into_iter().map(|m| near.ids[m]).filter(|other| *other > id);
+                out.extend(later.map(|other| ([id, other], apart)));
+            }
+        }
+        out.sort_unstable();
+        out
+    }
+
+    /// The pairs without pair forces: those whose weight is zero, ascending.
+    pub fn barred(&self) -> Vec<[u32; 2]> {
+        let far = (1..=3).rev().find(|k| self.weights.lj[*k - 1] == 0.0).unwrap_or(0);
+        let pairs = if far > 0 { self.apart(far as u8) } else { vec![] };
+        let zero = |apart: u8| self.weights.lj[usize::from(apart) - 1] == 0.0;
+        pairs.into_iter().filter(|(_, apart)| zero(*apart)).map(|(p, _)| p).collect()
+    }
+
+    /// Whether two particles are joined by a bond that counts.
+    pub fn joined(&self, a: u32, b: u32) -> bool {
+        self.special.binary_search(&[a.min(b), a.max(b)]).is_ok()
+    }
+}
+
+/// Who is bonded to whom, by places in a sorted list of ids.
+struct Near {
+    ids: Vec<u32>,
+    partners: Vec<Vec<usize>>,
+}
+
+impl Near {
+    fn new(pairs: &[[u32; 2]]) -> Self {
+        let mut ids: Vec<u32> = pairs.iter().flatten().copied().collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let mut partners = vec![vec![]; ids.len()];
+        let place = |id: u32| ids.binary_search(&id).unwrap_or(0);
+        for [a, b] in pairs {
+            let (a, b) = (place(*a), place(*b));
+            partners[a].push(b);
+            partners[b].push(a);
+        }
+        Self { ids, partners }
+    }
+
+    /// Those at exactly 1, 2 … `far` bonds from `k`.
+    fn rings(&self, k: usize, far: u8) -> Vec<Vec<usize>> {
+        let mut seen = BTreeSet::from([k]);
+        let mut edge = vec![k];
+        (0..far)
+            .map(|_| {
+                let mut next = vec![];
+                for m in edge.iter().flat_map(|&m| &self.partners[m]) {
+                    if seen.insert(*m) {
+                        next.push(*m);
+                    }
+                }
+                edge.clone_from(&next);
+                next
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chain() -> Bonds {
+        let mut b = Bonds { types: 1, ..Bonds::default() };
+        for ends in [[2, 1], [2, 3], [4, 3], [4, 5]] {
+            b.push(Bond::new(1, ends));
+        }
+        b.find_special();
+        b
+    }
+
+    #[test]
+    fn pairs_at_one_two_and_three_bonds() {
+        let mut b = chain();
+        // By hand: a chain of five.
+        let near = b.apart(2);
+        assert_eq!(near.iter().filter(|p| p.1 == 1).count(), 4);
+        assert_eq!(
+            near.iter().filter(|p| p.1 == 2).map(|p| p.0).collect::<Vec<_>>(),
+            [[1, 3], [2, 4], [3, 5]]
+        );
+        assert_eq!(b.barred().len(), 9);
+        b.weights.lj = [0.0, 1.0, 1.0];
+        assert_eq!(b.barred(), [[1, 2], [2, 3], [3, 4], [4, 5]]);
+        b.weights.lj = [1.0; 3];
+        assert!(b.barred().is_empty() && b.joined(3, 4) && !b.joined(1, 3));
+    }
+
+    #[test]
+    fn bonds_follow_their_particles() {
+        let mut b = chain();
+        b.forget_lone(&[1, 2, 3]);
+        assert_eq!(b.list.iter().map(|b| b.ends).collect::<Vec<_>>(), [[2, 1], [2, 3], [4, 3]]);
+        b.rename(|tag| (tag < 4).then(|| 10 - tag));
+        assert_eq!(b.special, [[7, 8], [8, 9]]);
+        let owners: Vec<[u32; 2]> = b.by_owner(&[7, 8, 9]).iter().map(|b| b.ends).collect();
+        assert_eq!(owners, [[8, 9], [8, 7]]);
+    }
+}
