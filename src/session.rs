@@ -8,6 +8,7 @@ mod flow;
 mod inert;
 mod info;
 mod interactive;
+mod minimizing;
 mod rerunning;
 mod restarting;
 mod running;
@@ -322,6 +323,8 @@ impl Session {
             self.write_restart(cmd)?;
         } else if name == "read_restart" {
             self.read_restart(cmd)?;
+        } else if name == "minimize" {
+            self.minimize(cmd)?;
         } else if name == "rerun" {
             self.rerun(cmd)?;
         } else if DECLARATIONS.contains(&name) {

@@ -11,7 +11,7 @@ use crate::styles::pair::PAIRS;
 use crate::world::World;
 
 /// Commands of the session and of the cursor through the deck, which stand in no table.
-pub const SESSION_COMMANDS: [&str; 24] = [
+pub const SESSION_COMMANDS: [&str; 25] = [
     "print",
     "log",
     "echo",
@@ -30,6 +30,7 @@ pub const SESSION_COMMANDS: [&str; 24] = [
     "write_restart",
     "read_restart",
     "rerun",
+    "minimize",
     "shell",
     "info",
     "timer",
@@ -178,7 +179,7 @@ fn active(w: &World, declared: &Declared, category: &str, name: &str, span: Span
             name == "single" && declared.pair.is_some(),
         ),
         "comm_style" => named(&["brick", "tiled"], name == "brick"),
-        "min_style" => Ok(name == "cg"),
+        "min_style" => Ok(name == w.settings.minimizer.style.name()),
         "run_style" => Ok(name == "verlet"),
         "atom_style" => Ok(name == atom_style(w)),
         "pair_style" => Ok(name == declared.pair.as_deref().unwrap_or("none")),

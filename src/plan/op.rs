@@ -167,6 +167,8 @@ pub struct Tick {
     pub setup: bool,
     /// In setup: the scene is as the last run left it, so forces, bonds and history stand already.
     pub unchanged: bool,
+    /// The end has come early (a minimization has converged): all outputs show it, whatever their intervals.
+    pub ending: bool,
     /// Somebody reads the energy at this step.
     pub energy: bool,
     /// Somebody reads the virial at this step.
@@ -185,6 +187,7 @@ impl Tick {
             dt: c.dt,
             setup: false,
             unchanged: true,
+            ending: false,
             energy: false,
             virial: false,
             atom_energy: false,

@@ -61,7 +61,7 @@ impl StepPlan {
 
     /// Fills in which sums are asked for at this tick.
     pub fn ask(&self, t: &mut Tick) {
-        let any = |list: &[When]| list.iter().any(|w| w.fires(t));
+        let any = |list: &[When]| list.iter().any(|w| t.ending || w.fires(t));
         let (energy, virial, atoms) = (any(&self.energy), any(&self.virial), any(&self.atom_energy));
         t.energy = energy || atoms;
         t.virial = virial;
@@ -74,7 +74,9 @@ impl StepPlan {
     /// The first op's that fails, with the place of its command.
     pub fn run(&mut self, w: &mut World, t: &Tick, stages: &[Stage]) -> Result<()> {
         for p in &mut self.ops {
-            if !stages.contains(&p.op.stage()) || (t.setup && !p.op.in_setup()) || !p.when.fires(t) {
+            let stage = p.op.stage();
+            let fires = p.when.fires(t) || (t.ending && stage == Stage::Output && p.when != When::Never);
+            if !stages.contains(&stage) || (t.setup && !p.op.in_setup()) || !fires {
                 continue;
             }
             let begin = Instant::now();

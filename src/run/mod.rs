@@ -1,5 +1,6 @@
-//! The time loop.
+//! The loops over a sealed plan: steps in time, and minimization.
 
+pub mod minimize;
 pub mod verlet;
 
 pub use verlet::{Made, Outcome, Watch, verlet};

@@ -135,7 +135,8 @@ pub fn look(
     Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })
 }
 
-fn tick(w: &World, setup: bool) -> Tick {
+/// The tick of the step the clock stands at.
+pub(super) fn tick(w: &World, setup: bool) -> Tick {
     Tick {
         step: w.clock.step,
         first: w.clock.first,
@@ -143,6 +144,7 @@ fn tick(w: &World, setup: bool) -> Tick {
         dt: w.clock.dt,
         setup,
         unchanged: false,
+        ending: false,
         energy: false,
         virial: false,
         atom_energy: false,
@@ -150,7 +152,7 @@ fn tick(w: &World, setup: bool) -> Tick {
 }
 
 /// User + system time of this process [s], from /proc where there is one, else 0.
-fn cpu_seconds() -> f64 {
+pub(super) fn cpu_seconds() -> f64 {
     let Ok(stat) = std::fs::read_to_string("/proc/self/stat") else { return 0.0 };
     let Some((_, rest)) = stat.rsplit_once(')') else { return 0.0 };
     let fields: Vec<f64> = rest.split_whitespace().map(|s| s.parse().unwrap_or(0.0)).collect();

@@ -53,7 +53,7 @@ impl Session {
         finished?;
         self.ran = true;
         self.interrupted |= outcome.interrupted;
-        self.say_end(&plan, &outcome, post)?;
+        self.say_end(&plan, &outcome, None, post)?;
         self.plan = Some(plan);
         Ok(())
     }

@@ -2,15 +2,17 @@
 
 use super::{Mode, Session, refuse};
 use crate::diag::{Code, Diagnostic, Result, Span};
-use crate::graph::Role;
 use crate::graph::build::{Context, once_dump};
 use crate::graph::env::DeckEnv;
 use crate::graph::ops::{ClearForces, Reneighbor};
 use crate::graph::seal::Sealer;
+use crate::graph::{FixNode, Role};
 use crate::lang::{Args, Command, Script, Word};
 use crate::out::thermo::{Finish, Section};
-use crate::plan::{OpClass, StepPlan, explain};
+use crate::plan::{OpClass, Stage, StepPlan, When, explain};
 use crate::run::verlet;
+use crate::styles::Reading;
+use crate::styles::fix::Minimizing;
 use crate::world::Halt;
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -127,6 +129,11 @@ impl Session {
     /// # Errors
     /// What styles miss in the scene.
     pub fn seal(&mut self, span: Span) -> Result<StepPlan> {
+        Ok(self.sealed(span, false)?.0)
+    }
+
+    /// As `seal`. A minimization leaves fixes out that do not act in it, and reads the energy.
+    pub(super) fn sealed(&mut self, span: Span, minimizing: bool) -> Result<(StepPlan, Option<Reading>)> {
         let vars = Arc::new(self.vars.clone());
         self.graph.computes.iter().for_each(|c| c.compute.welcome(&mut self.world));
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
@@ -141,7 +148,8 @@ impl Session {
         }
         s.at(span);
         crate::graph::dynamic::seal(&mut s)?;
-        for f in &self.graph.fixes {
+        let acts = |f: &&FixNode| !minimizing || f.fix.minimizing() == Minimizing::Acts;
+        for f in self.graph.fixes.iter().filter(acts) {
             s.at(f.span);
             let ops = f.fix.ops(&mut s)?;
             s.add(ops, f.span);
@@ -153,16 +161,19 @@ impl Session {
         }
         s.at(span);
         s.add(self.graph.restarts.ops(&self.graph), self.graph.restarts.span);
+        let energy =
+            minimizing.then(|| s.keyword_total("pe", span, Stage::EndOfStep, &When::Always)).transpose()?;
         let row = self.graph.thermo.op(&mut s, self.options.log.clone())?;
         s.add(vec![row], span);
         s.say_what_is_missing();
-        Ok(s.plan)
+        Ok((s.plan, energy))
     }
 
     /// One uninterrupted stretch of steps.
     fn leg(&mut self, steps: i64, pre: bool, post: bool, span: Span) -> Result<()> {
         let c = &mut self.world.clock;
         (c.first, c.last, c.halt) = (c.step, c.step + steps, Halt::No);
+        c.begin_moving();
         c.began = None;
         self.settle_resume(span)?;
         let unchanged = self.ran && !self.world.parts.changed && (!self.world.settings.lammps() || !pre);
@@ -196,7 +207,7 @@ impl Session {
         finished?;
         self.ran = true;
         self.interrupted |= outcome.interrupted;
-        self.say_end(&plan, &outcome, post && self.timer.tables())?;
+        self.say_end(&plan, &outcome, None, post && self.timer.tables())?;
         if self.world.clock.halt == Halt::All && self.world.settings.timed_out() {
             let step = self.world.clock.step;
             self.options.log.line(&format!("Wall time limit reached at step {step}"))?;
@@ -215,7 +226,14 @@ impl Session {
         verlet::verlet(plan, &mut self.world, self.watch.as_mut())
     }
 
-    pub(super) fn say_end(&mut self, plan: &StepPlan, o: &verlet::Outcome, post: bool) -> Result<()> {
+    /// What a run, or a minimization with its own block of text, says at its end.
+    pub(super) fn say_end(
+        &mut self,
+        plan: &StepPlan,
+        o: &verlet::Outcome,
+        minimized: Option<&str>,
+        post: bool,
+    ) -> Result<()> {
         let log = &self.options.log;
         let times = plan.time_by_class();
         let section = |name, class| Section {
@@ -243,6 +261,7 @@ impl Session {
             full,
             builds: self.world.rebuild.builds,
             dangerous: self.world.rebuild.dangerous,
+            minimized,
         };
         let text = finish.text();
         let shown = if post { text.as_str() } else { text.lines().next().unwrap_or("") };

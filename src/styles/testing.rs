@@ -106,6 +106,7 @@ impl Bench {
             dt: clock.dt,
             setup: false,
             unchanged: false,
+            ending: false,
             energy: true,
             virial: true,
             atom_energy: true,

@@ -24,6 +24,9 @@ pub struct Clock {
     pub began: Option<std::time::Instant>,
     /// Whether a run is going on.
     pub running: bool,
+    /// The steps since `time_step` were iterations of a minimization: the next run does not count their time.
+    #[serde(default)]
+    pub minimizing: bool,
     /// Whether a fix has ended the run.
     pub halt: Halt,
 }
@@ -53,6 +56,7 @@ impl Default for Clock {
             stop: 0,
             began: None,
             running: false,
+            minimizing: false,
             halt: Halt::No,
         }
     }
@@ -74,11 +78,29 @@ impl Clock {
         self.dt = dt;
     }
 
+    /// A minimization begins: its iterations count as time until the next run (as LAMMPS has it).
+    pub fn begin_minimizing(&mut self) {
+        if !self.minimizing {
+            self.time_base = self.time();
+            self.time_step = self.step;
+            self.minimizing = true;
+        }
+    }
+
+    /// A run begins: the iterations of a minimization before it have taken no time.
+    pub fn begin_moving(&mut self) {
+        if self.minimizing {
+            self.time_step = self.step;
+            self.minimizing = false;
+        }
+    }
+
     /// Sets the counter (`reset_timestep`): time restarts at step · dt.
     pub fn reset(&mut self, step: i64) {
         self.step = step;
         self.time_base = step as f64 * self.dt;
         self.time_step = step;
+        self.minimizing = false;
         self.first = step;
         self.last = step;
         self.start = step;

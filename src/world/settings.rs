@@ -73,6 +73,9 @@ pub struct Settings {
     /// The portable kernels even where faster ones would run.
     #[serde(skip)]
     pub portable: bool,
+    /// What `min_style` and `min_modify` have chosen.
+    #[serde(skip)]
+    pub minimizer: super::Minimizer,
     /// Set from outside (Ctrl-C): end the run at the next whole step.
     #[serde(skip)]
     pub stop: Arc<AtomicBool>,

@@ -47,6 +47,7 @@ pub const COMMANDS: &[Entry] = &[
     thermo::THERMO_STYLE,
     thermo::THERMO_MODIFY,
     session::RUN,
+    session::MINIMIZE,
     session::PRINT,
     session::LOG,
     session::ECHO,

@@ -29,6 +29,29 @@ pub(super) const RUN: Entry = (
     },
 );
 
+pub(super) const MINIMIZE: Entry = (
+    "minimize",
+    Doc {
+        syntax: "minimize ETOL FTOL MAXITER MAXEVAL",
+        summary: "Moves particles until the energy is lowest.",
+        text: "Stops when the energy changes by less than the part `ETOL` in an iteration, when the forces together are \
+            shorter than `FTOL` [force; force density for peridynamic particles in LAMMPS' convention], after `MAXITER` \
+            iterations, or after `MAXEVAL` evaluations of forces (`cg` and `sd` only, as in LAMMPS). `min_style` chooses the \
+            algorithm, `min_modify` its numbers: set `dmax` to the scene's lengths.\n\n\
+            Iterations are steps: thermo output, dumps and restart files come at their intervals, and once more where the \
+            end is early. The time they show is of no meaning and is not counted by the next run. The log then gives the \
+            criterion that ended it, energies and forces before and after.\n\n\
+            Fixes that hold or push particles act at every evaluation: `addforce aveforce enforce2d indent lineforce \
+            planeforce setforce spring spring/self store/force viscous`; `halt` ends it. The energy of `indent`, `spring` \
+            and the like counts after `fix_modify ID energy yes`. `gravity` and `drag` do not act, as in LAMMPS, which a \
+            warning says. Integrators, averages and `print` wait for runs. Particles do not rotate.\n\n\
+            Peridynamic bonds break as in steps: each evaluation looks at them. Laws of contact count no energy, so for \
+            grains `fire` with a force tolerance is the way. `fire` sets all velocities to zero first and leaves those of its \
+            last iteration.",
+        example: "fix hold plate setforce 0.0 0.0 0.0\nmin_style fire\nmin_modify dmax 1.0e-6\nminimize 0.0 1.0e3 20 100",
+    },
+);
+
 pub(super) const PRINT: Entry = (
     "print",
     Doc {

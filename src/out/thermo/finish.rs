@@ -38,6 +38,8 @@ pub struct Finish<'a> {
     pub builds: u64,
     /// Builds that came later than they should have.
     pub dangerous: u64,
+    /// What a minimization tells of itself.
+    pub minimized: Option<&'a str>,
 }
 
 /// The line before the first row, in megabytes.
@@ -61,7 +63,7 @@ impl Finish<'_> {
             self.steps,
             self.atoms
         );
-        if self.steps > 0 && self.seconds > 0.0 {
+        if self.steps > 0 && self.seconds > 0.0 && self.minimized.is_none() {
             text.push_str(&self.performance());
         }
         let percent = if self.seconds > 0.0 { 100.0 * self.cpu / self.seconds } else { 0.0 };
@@ -69,6 +71,10 @@ impl Finish<'_> {
             "{percent:.1}% CPU use with 1 MPI tasks x {} OpenMP threads\n\n",
             self.threads
         ));
+        if let Some(block) = self.minimized {
+            text.push_str(block);
+            text.push_str("\n\n");
+        }
         text.push_str(&self.breakdown());
         text.push_str(&self.counts());
         text
@@ -235,6 +241,7 @@ Dangerous builds = 0";
             full: Some(51146),
             builds: 14,
             dangerous: 0,
+            minimized: None,
         };
         // "Other" differs from LAMMPS' 0.001308 because the sections above are already rounded.
         assert_eq!(finish.text(), COLLIDE);

@@ -16,6 +16,8 @@ mod group;
 mod lattice;
 mod mass;
 mod material;
+mod min_modify;
+mod min_style;
 pub mod momentum;
 mod neigh_modify;
 mod neighbor;
@@ -102,6 +104,8 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &timestep::Timestep,
     &reset_timestep::ResetTimestep,
     &neighbor::Neighbor,
+    &min_style::MinStyleCommand,
+    &min_modify::MinModify,
     &neigh_modify::NeighModify,
     &write_data::WriteData,
 ];

@@ -241,6 +241,9 @@ impl Base {
             return true;
         }
         let mut state = self.state();
+        if t.ending {
+            return t.step >= self.delay && state.last != Some(t.step);
+        }
         if let Rhythm::Time(time) = self.rhythm {
             return self.due_in_time(&mut state, w, t, time);
         }

@@ -1,6 +1,6 @@
 //! fix addforce: a force added to each particle.
 
-use super::{Fix, FixStyle, region_keyword};
+use super::{Fix, FixStyle, Minimizing, region_keyword};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Param, RefKind, ValueRef};
 use crate::plan::{Access, Op, Stage, When};
@@ -150,6 +150,10 @@ impl Fix for Declared {
 
     fn has_energy(&self) -> bool {
         true
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

@@ -1,6 +1,6 @@
 //! fix aveforce: every particle of a group feels the mean force of the group.
 
-use super::{Fix, FixStyle, region_keyword};
+use super::{Fix, FixStyle, Minimizing, region_keyword};
 use crate::diag::Result;
 use crate::lang::{Args, Param};
 use crate::plan::{Access, Op, Stage, When};
@@ -89,6 +89,10 @@ impl Fix for Declared {
 
     fn shape(&self) -> Shape {
         Shape { vector: 3, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

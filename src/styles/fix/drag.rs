@@ -1,6 +1,6 @@
 //! fix drag: a force of constant strength towards a point.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::Result;
 use crate::lang::Args;
 use crate::plan::{Access, Op, Stage};
@@ -81,6 +81,10 @@ impl Fix for Declared {
 
     fn shape(&self) -> Shape {
         Shape { vector: 3, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Absent
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

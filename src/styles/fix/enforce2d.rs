@@ -1,6 +1,6 @@
 //! fix enforce2d: keeps a two-dimensional scene in its plane.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
 use crate::par;
@@ -71,6 +71,10 @@ impl Fix for Declared {
             Ok(())
         });
         Ok(vec![op.boxed()])
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

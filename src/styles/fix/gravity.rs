@@ -1,6 +1,6 @@
 //! fix gravity: the same acceleration for everyone.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Param};
 use crate::plan::{Access, Op, Stage, When};
@@ -147,6 +147,10 @@ impl Fix for Declared {
 
     fn has_energy(&self) -> bool {
         true
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Absent
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

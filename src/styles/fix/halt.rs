@@ -1,6 +1,6 @@
 //! fix halt: ends a run when something has happened.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::lang::{Args, Param, RefKind, ValueRef};
 use crate::math::cformat::shortest;
@@ -154,6 +154,10 @@ impl Fix for Declared {
             if me.message { log.line(&text) } else { Ok(()) }
         });
         Ok(vec![op.when(when).boxed()])
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

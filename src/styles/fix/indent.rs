@@ -1,6 +1,6 @@
 //! fix indent: a sphere, cylinder or plane that repels particles.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Param, Word};
 use crate::plan::{Access, Op, Stage, When};
@@ -250,6 +250,10 @@ impl Fix for Declared {
 
     fn has_energy(&self) -> bool {
         true
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

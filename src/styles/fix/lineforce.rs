@@ -1,6 +1,6 @@
 //! fix lineforce: forces held along a line.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
 use crate::math::vec3::{Vec3, dot};
@@ -83,6 +83,10 @@ impl Fix for Held {
             Ok(())
         });
         Ok(vec![op.boxed()])
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

@@ -56,6 +56,18 @@ pub trait FixStyle: Style {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>>;
 }
 
+/// What becomes of a fix while `minimize` moves the particles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Minimizing {
+    /// Nothing: it integrates, averages or speaks in runs.
+    #[default]
+    Idle,
+    /// It changes forces in runs, but not here, which the user is told.
+    Absent,
+    /// It acts at every evaluation of forces.
+    Acts,
+}
+
 /// A declared fix.
 pub trait Fix: Send {
     /// The ops it contributes to a step. Values it offers go to the slot `f_ID`.
@@ -93,6 +105,11 @@ pub trait Fix: Send {
     /// Whether it moves the particles of its group (two such fixes on one particle draw a warning).
     fn integrates(&self) -> bool {
         false
+    }
+
+    /// What becomes of it in a minimization; as in LAMMPS, only some that change forces act.
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Idle
     }
 
     /// Whether its scalar is an energy that `fix_modify energy yes` may add to the potential energy.

@@ -1,6 +1,6 @@
 //! fix setforce: forces replaced by given ones.
 
-use super::{Fix, FixStyle, region_keyword};
+use super::{Fix, FixStyle, Minimizing, region_keyword};
 use crate::diag::Result;
 use crate::lang::{Args, Param};
 use crate::plan::{Access, Op, Stage, When};
@@ -90,6 +90,10 @@ impl Fix for Declared {
 
     fn shape(&self) -> Shape {
         Shape { vector: 3, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

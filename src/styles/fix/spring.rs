@@ -1,6 +1,6 @@
 //! fix spring: a spring between the centre of mass of a group and a point, or another group's centre.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
 use crate::math::vec3::length;
@@ -122,6 +122,10 @@ impl Fix for Declared {
 
     fn has_energy(&self) -> bool {
         true
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

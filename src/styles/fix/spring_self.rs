@@ -1,6 +1,6 @@
 //! fix spring/self: every particle on a spring to where it was.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::Result;
 use crate::lang::{Args, Param};
 use crate::plan::{Access, Op, Stage, When};
@@ -103,6 +103,10 @@ impl Fix for Declared {
 
     fn has_energy(&self) -> bool {
         true
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

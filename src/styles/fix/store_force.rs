@@ -1,6 +1,6 @@
 //! fix store/force: keeps the forces as they are at this place among the fixes.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::Result;
 use crate::lang::Args;
 use crate::plan::{Access, Op, Stage};
@@ -67,6 +67,10 @@ impl Fix for Declared {
 
     fn shape(&self) -> Shape {
         Shape { atom: Some(3), ..Shape::default() }
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

@@ -1,6 +1,6 @@
 //! fix viscous: a drag proportional to velocity.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::Result;
 use crate::lang::Args;
 use crate::plan::{Access, Op, Stage};
@@ -70,6 +70,10 @@ impl Fix for Declared {
             Ok(())
         });
         Ok(vec![op.boxed()])
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

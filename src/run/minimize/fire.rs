@@ -1,0 +1,179 @@
+//! FIRE: damped motion that speeds up downhill and stops uphill (Bitzek et al., PRL 97, 170201; Guénolé et al., Comput.
+//! Mater. Sci. 175, 109584).
+
+use super::{Search, Stop, product};
+use crate::diag::Result;
+use crate::par;
+use crate::world::World;
+use crate::world::minimizer::{Fire, FireIntegrator};
+
+/// Squared forces below this have no direction.
+const NO_FORCE: f64 = 1e-20;
+
+/// The state of the damping.
+struct Damping {
+    set: Fire,
+    /// The time step now, and its bounds.
+    dt: f64,
+    longest: f64,
+    shortest: f64,
+    /// The time step after no particle may go further than `dmax`.
+    limited: f64,
+    /// How much of the velocity is turned into the force's direction.
+    alpha: f64,
+    /// The iteration that last went uphill.
+    uphill: i64,
+    /// Uphill iterations in a row.
+    uphills: i64,
+    /// Factors of velocity and force in this iteration; `None` uphill.
+    mix: Option<(f64, f64)>,
+}
+
+/// Moves until something says stop. Velocities and time step are those of the last iteration then.
+///
+/// # Errors
+/// As the ops of the plan.
+pub fn relax(s: &mut Search) -> Result<Stop> {
+    let (set, dt) = (s.w.settings.minimizer.fire, s.w.clock.dt);
+    let mut d = Damping {
+        set,
+        dt,
+        longest: set.tmax * dt,
+        shortest: set.tmin * dt,
+        limited: dt,
+        alpha: set.alpha0,
+        uphill: s.w.clock.step,
+        uphills: 0,
+        mix: None,
+    };
+    iterate(s, &mut d)
+}
+
+fn iterate(s: &mut Search, d: &mut Damping) -> Result<Stop> {
+    if d.set.integrator == FireIntegrator::Leapfrog {
+        s.evaluate()?;
+        let half = -0.5 * d.dt;
+        kick(s.w, half, None);
+    }
+    loop {
+        if let Some(stop) = s.next() {
+            return Ok(stop);
+        }
+        let downhill = product(&s.w.particles.v, &s.w.particles.f) > 0.0;
+        if downhill {
+            speed_up(s.w, d);
+        } else if !slow_down(s, d)? {
+            return Ok(Stop::Stuck);
+        }
+        limit(s.w, d);
+        if !downhill {
+            s.w.particles.v.fill([0.0; 3]);
+        }
+        s.previous = s.energy;
+        step(s, d)?;
+        if s.goal.etol > 0.0 && s.w.clock.step - d.uphill > d.set.delay && s.energy_settled() {
+            return Ok(Stop::Energy);
+        }
+        if s.force_settled() {
+            return Ok(Stop::Force);
+        }
+        s.output()?;
+    }
+}
+
+/// Downhill: the velocity is turned towards the force, and after a while the time step grows.
+fn speed_up(w: &mut World, d: &mut Damping) {
+    let p = &w.particles;
+    let (vv, ff) = (product(&p.v, &p.v), product(&p.f, &p.f));
+    let along = if ff <= NO_FORCE { 0.0 } else { d.alpha * (vv / ff).sqrt() };
+    d.mix = Some((1.0 - d.alpha, along));
+    d.uphills = 0;
+    if w.clock.step - d.uphill > d.set.delay {
+        d.dt = (d.dt * d.set.grow).min(d.longest);
+        w.clock.dt = d.dt;
+        d.alpha *= d.set.alpha_shrink;
+    }
+}
+
+/// Uphill: a shorter time step, half a step back, and a fresh start along the forces, whose speed after one step is left
+/// in the velocities for `limit`. `false` if this has happened too often.
+fn slow_down(s: &mut Search, d: &mut Damping) -> Result<bool> {
+    let step = s.w.clock.step;
+    (d.mix, d.uphill) = (None, step);
+    let starting = d.set.initial_delay && step - s.first < d.set.delay;
+    if !starting {
+        d.alpha = d.set.alpha0;
+        if d.dt * d.set.shrink >= d.shortest {
+            d.dt *= d.set.shrink;
+            s.w.clock.dt = d.dt;
+        }
+    }
+    d.uphills += 1;
+    if d.set.uphill_most > 0 && d.uphills > d.set.uphill_most {
+        return Ok(false);
+    }
+    if d.set.half_step_back {
+        drift(s.w, -0.5 * d.dt);
+    }
+    s.w.particles.v.fill([0.0; 3]);
+    s.evaluate()?;
+    kick(s.w, d.dt, None);
+    Ok(true)
+}
+
+/// Shortens this step so that nobody goes further than `dmax`.
+fn limit(w: &World, d: &mut Damping) {
+    let fastest = super::largest(&w.particles.v);
+    let dmax = w.settings.minimizer.dmax;
+    d.limited = if d.dt * fastest > dmax { dmax / fastest } else { d.dt };
+}
+
+/// One step of motion with its evaluation.
+fn step(s: &mut Search, d: &Damping) -> Result<()> {
+    let dt = d.limited;
+    match d.set.integrator {
+        FireIntegrator::EulerImplicit | FireIntegrator::Leapfrog => {
+            kick(s.w, dt, d.mix);
+            drift(s.w, dt);
+            s.evaluate()
+        }
+        FireIntegrator::Verlet => {
+            kick(s.w, 0.5 * dt, d.mix);
+            drift(s.w, dt);
+            s.evaluate()?;
+            kick(s.w, 0.5 * dt, None);
+            Ok(())
+        }
+        FireIntegrator::EulerExplicit => {
+            kick(s.w, 0.0, d.mix);
+            drift(s.w, dt);
+            kick(s.w, dt, None);
+            s.evaluate()
+        }
+    }
+}
+
+/// v ← v + f/m · dt, then v ← a v + b f.
+fn kick(w: &mut World, dt: f64, mix: Option<(f64, f64)>) {
+    let factor = dt * w.settings.units.constants().ftm2v;
+    let p = &mut w.particles;
+    par::each((&mut p.v[..], &p.f[..], &p.mass[..]), |_, (v, f, mass)| {
+        for ((v, f), mass) in v.iter_mut().zip(f).zip(mass) {
+            let k = factor / mass;
+            (0..3).for_each(|d| v[d] += k * f[d]);
+            if let Some((a, b)) = mix {
+                (0..3).for_each(|d| v[d] = a * v[d] + b * f[d]);
+            }
+        }
+    });
+}
+
+/// x ← x + v · dt.
+fn drift(w: &mut World, dt: f64) {
+    let p = &mut w.particles;
+    par::each((&mut p.x[..], &p.v[..]), |_, (x, v)| {
+        for (x, v) in x.iter_mut().zip(v) {
+            (0..3).for_each(|d| x[d] += dt * v[d]);
+        }
+    });
+}

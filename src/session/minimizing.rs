@@ -1,0 +1,134 @@
+//! `minimize`: the declarations sealed for a minimization, and what its log says.
+
+use super::{Mode, Session};
+use crate::diag::{Code, Diagnostic, Result, Span};
+use crate::graph::Role;
+use crate::lang::{Args, Command};
+use crate::math::cformat::{Format, Value, general};
+use crate::plan::explain;
+use crate::run::minimize::{self, Goal, Stats};
+use crate::styles::fix::Minimizing;
+use crate::styles::matter::check_masses;
+use crate::world::minimizer::MinStyle;
+use crate::world::{Halt, NeighborSettings};
+use std::time::Instant;
+
+impl Session {
+    pub(super) fn minimize(&mut self, cmd: &Command) -> Result<()> {
+        let mut args = Args::new(cmd);
+        let goal = Goal {
+            etol: args.non_negative("the energy tolerance")?,
+            ftol: args.non_negative("the force tolerance")?,
+            iterations: args.integer_from(0, "the most iterations")?,
+            evaluations: args.integer_from(0, "the most evaluations of forces")?,
+        };
+        args.finish()?;
+        self.thermo_computes();
+        self.record(cmd, Role::Run, None, vec![], vec![]);
+        self.ready(cmd.span)?;
+        self.check_run(cmd.span, false)?;
+        if self.world.settings.minimizer.style == MinStyle::Fire {
+            check_masses(&self.world, cmd.span)?;
+        }
+        self.note_absent();
+        if self.checking() {
+            self.graph.restarts.names().into_iter().for_each(|name| self.promise_restart(name));
+            return Ok(());
+        }
+        self.say_notes()?;
+        if self.world.clock.halt == Halt::All || self.world.settings.timed_out() {
+            return Ok(());
+        }
+        let neighbor = self.world.settings.neighbor.clone();
+        let outcome = self.eager_lists().and_then(|()| self.search(goal, cmd.span));
+        self.world.settings.neighbor = neighbor;
+        outcome
+    }
+
+    /// Fixes that push particles in runs but not here.
+    fn note_absent(&mut self) {
+        let absent = |f: &&crate::graph::FixNode| f.fix.minimizing() == Minimizing::Absent;
+        let notes: Vec<Diagnostic> = (self.graph.fixes.iter().filter(absent))
+            .map(|f| {
+                let text = format!("fix {} does not act while `minimize` moves particles", f.style);
+                Diagnostic::warning(Code::NO_EFFECT, f.span, text)
+            })
+            .collect();
+        notes.into_iter().for_each(|n| self.note_once(n));
+    }
+
+    /// Lists are looked at before every evaluation: steps may be long.
+    fn eager_lists(&mut self) -> Result<()> {
+        let s = &mut self.world.settings.neighbor;
+        if (s.every, s.delay) == (1, 0) {
+            return Ok(());
+        }
+        *s = NeighborSettings { every: 1, delay: 0, check: true, ..s.clone() };
+        let text = "Switching to 'neigh_modify every 1 delay 0 check yes' setting during minimization";
+        self.options.log.line(text)
+    }
+
+    fn search(&mut self, goal: Goal, span: Span) -> Result<()> {
+        let c = &mut self.world.clock;
+        (c.first, c.last, c.halt) = (c.step, c.step.saturating_add(goal.iterations), Halt::No);
+        (c.start, c.stop) = (c.first, c.last);
+        c.began = Some(Instant::now());
+        c.begin_minimizing();
+        self.settle_resume(span)?;
+        let (mut plan, energy) = self.sealed(span, true)?;
+        if self.options.mode == Mode::Plan {
+            return self.options.log.line(explain::text(&plan, false).trim_end());
+        }
+        self.world.slots.invalidate();
+        let normalized = self.graph.thermo.normalized(&self.world);
+        let read = |w: &crate::world::World| {
+            let total = energy.map_or(0.0, |e| e.get(w));
+            if normalized { total / w.n().max(1) as f64 } else { total }
+        };
+        self.world.clock.running = true;
+        let watch = self.watch.as_mut();
+        let outcome = minimize::minimize(&mut plan, &mut self.world, watch, (&read, normalized), goal);
+        self.world.clock.running = false;
+        // Energies belong to the scene now; the next run computes forces anew, as velocities may have changed since.
+        self.world.parts.changed &= outcome.is_err();
+        let finished = plan.finish(&mut self.world);
+        let (outcome, stats) = outcome.map_err(|e| e.at(span))?;
+        finished?;
+        self.ran = false;
+        self.interrupted |= outcome.interrupted;
+        self.say_end(&plan, &outcome, Some(&block(&stats)), self.timer.tables())?;
+        if self.options.mode == Mode::Measure {
+            self.options.log.line(explain::text(&plan, true).trim_end())?;
+        }
+        self.plan = Some(plan);
+        Ok(())
+    }
+}
+
+/// LAMMPS' block of results.
+fn block(s: &Stats) -> String {
+    let wide =
+        |x: f64| Format::parse("%18.15g").map_or_else(|_| general(x, 15), |f| f.text(&[Value::Float(x)]));
+    let short = |x: f64| general(x, 8);
+    format!(
+        "Minimization stats:\n  \
+         Stopping criterion = {}\n  \
+         Energy initial, next-to-last, final = \n    {} {} {}\n  \
+         Force two-norm initial, final = {} {}\n  \
+         Force max component initial, final = {} {}\n  \
+         Final line search alpha, max atom move = {} {}\n  \
+         Iterations, force evaluations = {} {}",
+        s.stop.text(),
+        wide(s.energy[0]),
+        wide(s.energy[1]),
+        wide(s.energy[2]),
+        short(s.two_norm[0]),
+        short(s.two_norm[1]),
+        short(s.largest[0]),
+        short(s.largest[1]),
+        short(s.alpha),
+        short(s.alpha * s.largest[1]),
+        s.iterations,
+        s.evaluations
+    )
+}
