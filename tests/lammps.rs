@@ -128,5 +128,14 @@ decks! {
     pd_data
     pd_restart
     gr2_g_mindlin
+    gr2_g_coeffrest
+    gr2_g_dmt
+    gr2_g_hertz_nohist
+    gr2_g_hooke
+    gr2_g_jkr
+    gr2_g_mindlin_force
+    gr2_g_mixed
+    gr2_g_rescale
+    gr2_g_rescale_force
     hyb_pmb_granular
 }

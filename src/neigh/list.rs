@@ -8,6 +8,8 @@ use crate::par;
 pub enum Reach {
     /// R_i + R_j.
     Touch,
+    /// R_i + R_j and this much more (cohesion) [length].
+    Beyond(f64),
     /// A distance [length].
     Fixed(f64),
 }
@@ -188,6 +190,7 @@ impl<K: Fn(usize, usize) -> bool + Sync> Search<'_, K> {
         self.skin
             + match self.reach {
                 Reach::Touch => ri + rj,
+                Reach::Beyond(gap) => ri + rj + gap,
                 Reach::Fixed(c) => c,
             }
     }

@@ -2,10 +2,13 @@
 
 use crate::math::real::Real;
 use crate::world::Compat;
+use std::f64::consts::PI;
 
 /// How η is made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Damping {
+    /// `none`: η = 0.
+    None,
     /// `velocity`: η = η₀ [mass/time].
     Velocity,
     /// `mass_velocity`: η = η₀ m̄, η₀ [1/time].
@@ -13,15 +16,17 @@ pub enum Damping {
     /// `viscoelastic` (Brilliantov et al. 1996): η = η₀ a m̄, η₀ [1/(time length)].
     #[default]
     Viscoelastic,
-    /// `tsuji` (Tsuji et al. 1992): η = √2 α_T(e) √(m̄ k a).
+    /// `tsuji` (Tsuji et al. 1992): η = √2 α_T(e) √(m̄ k), k = F/δ.
     Tsuji,
-    /// `coeff_restitution`: η = α_e √(m̄ k a), α_e = −√5 ln e / √(π² + ln² e), exact for Hertz.
+    /// `coeff_restitution`: η = α √(m̄ k) with β = −ln e/√(π² + ln² e): α = √5 β for forces ∝ δ^(3/2), 2 β for
+    /// `hooke`; exact for both.
     CoeffRestitution,
 }
 
 impl Damping {
     /// All of them.
-    pub const ALL: [Damping; 5] = [
+    pub const ALL: [Damping; 6] = [
+        Damping::None,
         Damping::Velocity,
         Damping::MassVelocity,
         Damping::Viscoelastic,
@@ -32,6 +37,7 @@ impl Damping {
     /// The word decks use.
     pub fn name(self) -> &'static str {
         match self {
+            Damping::None => "none",
             Damping::Velocity => "velocity",
             Damping::MassVelocity => "mass_velocity",
             Damping::Viscoelastic => "viscoelastic",
@@ -45,29 +51,31 @@ impl Damping {
         matches!(self, Damping::Tsuji | Damping::CoeffRestitution)
     }
 
-    /// The constant in front: η₀ itself, or α(e). LAMMPS 22Jul2025 leaves out the √2 of `tsuji`
-    /// (it returns e = 0.78 where 0.70 is asked for), which `compat` reproduces.
-    pub fn constant(self, eta: f64, compat: Compat) -> f64 {
+    /// The constant in front: η₀ itself, or α(e), for normal forces ∝ δ where `linear`, else ∝ δ^(3/2).
+    /// LAMMPS 22Jul2025 leaves out the √2 of `tsuji` (it returns e = 0.78 where 0.70 is asked for), which `compat`
+    /// reproduces.
+    pub fn constant(self, eta: f64, linear: bool, compat: Compat) -> f64 {
         match self {
+            Damping::None => 0.0,
             Damping::Velocity | Damping::MassVelocity | Damping::Viscoelastic => eta,
             Damping::Tsuji if compat == Compat::Lammps => tsuji(eta),
             Damping::Tsuji => std::f64::consts::SQRT_2 * tsuji(eta),
             Damping::CoeffRestitution => {
                 let log = eta.ln();
-                let pi = std::f64::consts::PI;
-                -5.0_f64.sqrt() * log / (pi * pi + log * log).sqrt()
+                let front = if linear { 2.0 } else { 5.0_f64.sqrt() };
+                -front * log / (PI * PI + log * log).sqrt()
             }
         }
     }
 
-    /// η for contact radius `a`, normal stiffness F/δ = `secant` = k a and effective mass.
+    /// η over its constant, for contact radius `a`, normal stiffness F/δ = `secant` and effective mass.
     #[inline]
-    pub fn coefficient<R: Real>(self, constant: f64, a: R, secant: R, mass: R) -> R {
+    pub fn form<R: Real>(self, a: R, secant: R, mass: R) -> R {
         match self {
-            Damping::Velocity => a.like(constant),
-            Damping::MassVelocity => mass * constant,
-            Damping::Viscoelastic => mass * constant * a,
-            Damping::Tsuji | Damping::CoeffRestitution => (mass * secant).sqrt() * constant,
+            Damping::None | Damping::Velocity => mass.like(1.0),
+            Damping::MassVelocity => mass,
+            Damping::Viscoelastic => mass * a,
+            Damping::Tsuji | Damping::CoeffRestitution => (mass * secant).sqrt(),
         }
     }
 }

@@ -123,18 +123,29 @@ impl Grains<'_> {
         Motion { velocity: self.v[i as usize], spin: self.omega[i as usize] }
     }
 
-    /// Whether the two touch.
+    /// Whether the two touch, or would still hold together if they had touched (`gaps`: some law lets them).
     #[inline]
-    fn touching(&self, p: &Pair) -> bool {
+    fn meeting<L: ContactLaw>(&self, p: &Pair, rules: &Rules<L>, gaps: bool) -> Meeting {
         let d = difference(self.x, &self.period, p);
-        let sum = self.radius[p.i as usize] + self.radius[p.j as usize];
-        d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < sum * sum
+        let [ri, rj] = [p.i, p.j].map(|k| self.radius[k as usize]);
+        let (square, sum) = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2], ri + rj);
+        if square < sum * sum {
+            return Meeting::Touch;
+        }
+        if !gaps {
+            return Meeting::Apart;
+        }
+        let rule = rules.get(self.kind[p.i as usize], self.kind[p.j as usize]);
+        let far = sum + rule.map_or(0.0, |r| r.law.gap(ri * rj / sum));
+        if square < far * far { Meeting::Near } else { Meeting::Apart }
     }
 
     fn geometry<L>(&self, p: &Pair, rule: &Rule<L>) -> Option<Geometry> {
         let (i, j) = (p.i as usize, p.j as usize);
         let d = difference(self.x, &self.period, p);
-        let g = Geometry::of_spheres(d, [self.radius[i], self.radius[j]], [self.mass[i], self.mass[j]], 0.0)?;
+        let (radii, masses) = ([self.radius[i], self.radius[j]], [self.mass[i], self.mass[j]]);
+        // Who is asked about touches, or has touched and still holds.
+        let g = Geometry::of_spheres(d, radii, masses, f64::INFINITY)?;
         if rule.curvature == Curvature::Both {
             return Some(g);
         }
@@ -146,10 +157,20 @@ impl Grains<'_> {
     }
 }
 
+/// How close two grains are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Meeting {
+    #[default]
+    Apart,
+    /// Beyond touch, but within what an existing contact spans.
+    Near,
+    Touch,
+}
+
 /// One evaluation of all contacts; keeps its room from step to step.
 #[derive(Clone, Debug, Default)]
 pub struct Sweep {
-    flags: Vec<bool>,
+    flags: Vec<Meeting>,
     touching: Vec<Pair>,
     keys: Vec<[u32; 2]>,
     shares: Vec<f64>,
@@ -170,7 +191,7 @@ impl Sweep {
         step: Advance,
     ) {
         let width = rules.memory();
-        self.find(list, grains);
+        self.find(list, grains, rules, memory);
         memory.carry(&self.keys, width, &mut self.spare);
         self.share(grains, rules);
         self.wrenches.clear();
@@ -224,20 +245,29 @@ impl Sweep {
         sum
     }
 
-    fn find(&mut self, list: &[Pair], grains: &Grains) {
+    fn find<L: ContactLaw>(&mut self, list: &[Pair], grains: &Grains, rules: &Rules<L>, memory: &Contacts) {
+        let gaps = rules.any(|r| r.law.gap(1.0) > 0.0);
         self.flags.clear();
-        self.flags.resize(list.len(), false);
+        self.flags.resize(list.len(), Meeting::Apart);
         par::each((&mut self.flags[..], list), |_, (flags, list)| {
             for (flag, p) in flags.iter_mut().zip(list) {
-                *flag = grains.touching(p);
+                *flag = grains.meeting(p, rules, gaps);
             }
         });
-        let hits = list.iter().zip(&self.flags).filter(|(_, hit)| **hit).map(|(p, _)| *p);
-        self.touching.clear();
-        self.touching.extend(hits);
         let tags = |p: &Pair| [grains.tag[p.i as usize], grains.tag[p.j as usize]];
+        self.touching.clear();
         self.keys.clear();
-        self.keys.extend(self.touching.iter().map(tags));
+        for (p, meeting) in list.iter().zip(&self.flags) {
+            let holds = match meeting {
+                Meeting::Apart => false,
+                Meeting::Near => memory.get(tags(p)).is_some(),
+                Meeting::Touch => true,
+            };
+            if holds {
+                self.touching.push(*p);
+                self.keys.push(tags(p));
+            }
+        }
     }
 
     /// 1/N for every contact.

@@ -1,10 +1,22 @@
-//! The granular law: one normal, one damping and one tangential model, mixed for a pair of types.
+//! The granular law: normal, damping, tangential, rolling and twisting models, mixed for a pair of types.
 
-use super::tangential::Spring;
+use super::elastic::{Elastic, Form};
+use super::tangential::{Drag, Friction, Spring};
+use super::turning::{Rolling, Twisting};
 use super::{Advance, ContactLaw, Damping, Geometry, Motion, Normal, Tangential, Wrench, split_velocity};
 use crate::math::real::Real;
 use crate::math::vec3::{add, cross, scale, sub};
 use crate::world::Compat;
+
+/// Where the tangential force takes hold of the spheres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Arm {
+    /// In the middle of the overlap: R − δ/2.
+    #[default]
+    Middle,
+    /// At the full radius, as `pair_style gran/*` has it.
+    Radius,
+}
 
 /// What a deck says about contacts of one pair of types.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,15 +27,62 @@ pub struct Model {
     pub damping: Damping,
     /// Across the normal.
     pub tangential: Tangential,
+    /// Against rolling.
+    pub rolling: Rolling,
+    /// Against twisting.
+    pub twisting: Twisting,
     /// `limit_damping`: the normal force never pulls.
     pub limit_damping: bool,
+    /// Lever arms of the tangential force.
+    pub arm: Arm,
 }
 
 /// Two models of different kinds cannot be mixed: which words differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unmixable(pub &'static str, pub &'static str);
 
+/// The numbers of `pair_style gran/*` and `fix wall/gran hooke|hooke/history|hertz/history`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Classic {
+    /// Normal and tangential stiffness [force/length; pressure for `hertz`].
+    pub stiffness: [f64; 2],
+    /// Normal and tangential damping [1/time; 1/(time length) for `hertz`].
+    pub gamma: [f64; 2],
+    /// Coefficient of friction.
+    pub mu: f64,
+    /// Whether the normal force never pulls.
+    pub limit_damping: bool,
+}
+
 impl Model {
+    /// A model that resists neither rolling nor twisting.
+    pub fn new(normal: Normal, damping: Damping, tangential: Tangential) -> Self {
+        Self {
+            normal,
+            damping,
+            tangential,
+            rolling: Rolling::None,
+            twisting: Twisting::None,
+            limit_damping: false,
+            arm: Arm::Middle,
+        }
+    }
+
+    /// `hooke`, `hooke/history` or `hertz/history` of the older styles: mass-proportional damping, springs projected
+    /// into the tangent plane, full lever arms.
+    pub fn classic(hertz: bool, history: bool, c: &Classic) -> Self {
+        let [stiffness, kt] = c.stiffness;
+        let [eta, gamma_t] = c.gamma;
+        let (normal, damping, spring) = if hertz {
+            (Normal::Hertz { stiffness, eta }, Damping::Viscoelastic, Friction::MindlinClassic)
+        } else {
+            (Normal::Hooke { stiffness, eta }, Damping::MassVelocity, Friction::LinearHistoryClassic)
+        };
+        let kind = if history { spring } else { Friction::LinearNohistory };
+        let tangential = Tangential { kind, stiffness: Some(kt), drag: Drag::Own(gamma_t), mu: c.mu };
+        Self { limit_damping: c.limit_damping, arm: Arm::Radius, ..Self::new(normal, damping, tangential) }
+    }
+
     /// The law for a pair of types whose model was given.
     pub fn law(&self, compat: Compat) -> Granular {
         self.pair(self, false, compat)
@@ -35,8 +94,7 @@ impl Model {
     /// # Errors
     /// When the models are not of one kind.
     pub fn mixed(&self, other: &Model, compat: Compat) -> Result<Granular, Unmixable> {
-        let names = |m: &Model| [m.normal.name(), m.damping.name(), m.tangential.name()];
-        for (a, b) in names(self).into_iter().zip(names(other)) {
+        for (a, b) in self.names().into_iter().zip(other.names()) {
             if a != b {
                 return Err(Unmixable(a, b));
             }
@@ -44,25 +102,43 @@ impl Model {
         Ok(self.pair(other, true, compat))
     }
 
+    fn names(&self) -> [&'static str; 5] {
+        let m = self;
+        [m.normal.name(), m.damping.name(), m.tangential.name(), m.rolling.name(), m.twisting.name()]
+    }
+
     fn pair(&self, other: &Model, mixed: bool, compat: Compat) -> Granular {
         let eta = super::normal::geometric(self.normal.eta(), other.normal.eta());
+        let eta = self.damping.constant(eta, self.normal.linear(), compat);
         let normals = [&self.normal, &other.normal];
+        let elastic = self.normal.elastic(&other.normal);
+        let twisting = self.twisting.mixed(&other.twisting);
+        let spring = self.tangential.spring(&other.tangential, normals, eta, mixed, compat);
+        let by_radius = !matches!(elastic.form, Form::None | Form::Hooke)
+            || self.damping == Damping::Viscoelastic
+            || spring.kind.by_radius()
+            || twisting == Twisting::Marshall;
         Granular {
-            stiffness: self.normal.stiffness(&other.normal),
+            elastic,
             damping: self.damping,
-            damping_constant: self.damping.constant(eta, compat),
+            damping_constant: eta,
             limit_damping: self.limit_damping || other.limit_damping,
-            spring: self.tangential.spring(&other.tangential, normals, mixed, compat),
+            spring,
+            rolling: self.rolling.mixed(&other.rolling),
+            twisting,
+            arm: self.arm,
+            by_radius,
+            compat,
         }
     }
 }
 
-/// The granular contact law of one pair of types (LAMMPS' `pair_style granular`), F on i from j:
-/// F = (k a δ − η v_n) n + F_t with a = √(R̄ δ).
+/// The granular contact law of one pair of types (LAMMPS' `pair_style granular`, `gran/*` and walls), F on i from j:
+/// F = (F_n − η v_n) n + F_t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Granular {
-    /// k in F = k a δ [pressure].
-    pub stiffness: f64,
+    /// Along the normal.
+    pub elastic: Elastic,
     /// How η is made.
     pub damping: Damping,
     /// Its constant.
@@ -71,12 +147,30 @@ pub struct Granular {
     pub limit_damping: bool,
     /// Across the normal.
     pub spring: Spring,
+    /// Against rolling.
+    pub rolling: Rolling,
+    /// Against twisting.
+    pub twisting: Twisting,
+    /// Lever arms of the tangential force.
+    pub arm: Arm,
+    /// Whether some part asks for the radius of the contact.
+    by_radius: bool,
+    /// Whose faults it has.
+    compat: Compat,
 }
 
 impl ContactLaw for Granular {
-    /// The accumulated tangential displacement of i against j [length].
+    /// The tangential spring of i against j, then the rolling displacement, then the angle of twisting.
     fn memory(&self) -> usize {
-        3
+        self.spring.memory() + self.rolling.memory() + self.twisting.memory()
+    }
+
+    fn in_lanes(&self) -> bool {
+        self.elastic.form != Form::Jkr
+    }
+
+    fn gap(&self, curvature: f64) -> f64 {
+        self.elastic.gap(curvature)
     }
 
     #[inline]
@@ -88,30 +182,77 @@ impl ContactLaw for Granular {
         history: &mut [R],
         step: Advance,
     ) -> Wrench<R> {
-        let a = (g.curvature * g.overlap).sqrt();
-        let secant = a * self.stiffness;
-        let eta = self.damping.coefficient(self.damping_constant, a, secant, g.mass);
+        let zero = g.overlap.like(0.0);
+        let a = if self.by_radius { self.elastic.radius(g) } else { zero };
+        let push = self.elastic.push(g, a);
+        let form = self.damping.form(a, push.secant, g.mass);
 
         let (v_n, v_across) = split_velocity(g, i, j);
-        let mut normal_force = secant * g.overlap - eta * v_n;
+        let mut normal_force = push.force - form * self.damping_constant * v_n;
         if self.limit_damping {
-            normal_force = normal_force.most(a.like(0.0));
+            normal_force = normal_force.most(zero);
         }
+        // Friction of grains that stick together counts from where they would let go (Thornton 1991).
+        let sticky = matches!(self.elastic.form, Form::Dmt | Form::Jkr);
+        let carried = if sticky { push.force + push.pull_off * 2.0 } else { normal_force }.abs();
 
         // Slip of the two surfaces: v_t − (R_i ω_i + R_j ω_j) × n, full radii as in LAMMPS.
         let spin = add(scale(g.radii[0], i.spin), scale(g.radii[1], j.spin));
-        let v_t = sub(v_across, cross(spin, g.normal));
-        let mut slip = [history[0], history[1], history[2]];
-        let friction = self.spring.force(g.normal, a, eta, v_t, normal_force.abs(), &mut slip, step);
-        history[..3].copy_from_slice(&slip);
+        let slip = sub(v_across, cross(spin, g.normal));
+        let (own, rest) = history.split_at_mut(self.spring.memory());
+        let friction = self.spring.force(g.normal, a, form, slip, carried, own, step);
 
-        // Lever arms end in the middle of the overlap.
         let lever = cross(friction, g.normal);
-        let arm = |k: usize| g.radii[k] - g.overlap * 0.5;
-        Wrench {
+        let arm = |k: usize| match self.arm {
+            Arm::Middle => g.radii[k] - g.overlap * 0.5,
+            Arm::Radius => g.radii[k],
+        };
+        let mut w = Wrench {
             force: add(scale(normal_force, g.normal), friction),
             torque_i: scale(arm(0), lever),
             torque_j: scale(arm(1), lever),
+        };
+        if self.rolling.memory() + self.twisting.memory() > 0 {
+            self.turn(g, i, j, [a, form, carried], rest, step, &mut w);
+        }
+        w
+    }
+
+    /// Displacements across the normal are those of i against j. A contact radius, the rolling displacement and the
+    /// angle of twisting are the same from both sides.
+    fn mirror(&self, history: &mut [f64]) {
+        let own = self.spring.memory().min(3).min(history.len());
+        history[..own].iter_mut().for_each(|a| *a = -*a);
+    }
+}
+
+impl Granular {
+    /// Adds the torques against rolling and twisting.
+    #[inline]
+    fn turn<R: Real>(
+        &self,
+        g: &Geometry<R>,
+        i: &Motion<R>,
+        j: &Motion<R>,
+        [a, form, carried]: [R; 3],
+        history: &mut [R],
+        step: Advance,
+        w: &mut Wrench<R>,
+    ) {
+        let omega = sub(i.spin, j.spin);
+        let (roll, rest) = history.split_at_mut(self.rolling.memory());
+        if self.rolling != Rolling::None {
+            let torque = self.rolling.torque(g, omega, carried, roll, step);
+            w.torque_i = add(w.torque_i, torque);
+            w.torque_j = sub(w.torque_j, torque);
+        }
+        if let Some(angle) = rest.first_mut().filter(|_| self.twisting != Twisting::None) {
+            let about = crate::math::vec3::dot(omega, g.normal);
+            let size =
+                self.twisting.torque(&self.spring, [a, form], about, carried, angle, step, self.compat);
+            let torque = scale(size, g.normal);
+            w.torque_i = add(w.torque_i, torque);
+            w.torque_j = sub(w.torque_j, torque);
         }
     }
 }

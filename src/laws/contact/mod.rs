@@ -6,14 +6,18 @@
 pub mod bodies;
 pub mod damping;
 pub mod driver;
+pub mod elastic;
 pub mod law;
 pub mod normal;
+pub mod slider;
 pub mod tangential;
+pub mod turning;
 
 pub use damping::Damping;
-pub use law::{Granular, Model, Unmixable};
+pub use law::{Arm, Classic, Granular, Model, Unmixable};
 pub use normal::Normal;
-pub use tangential::Tangential;
+pub use tangential::{Drag, Friction, Tangential};
+pub use turning::{Rolling, Sds, Twisting};
 
 use crate::math::real::Real;
 use crate::math::vec3::{Vec3, sub};

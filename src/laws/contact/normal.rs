@@ -1,9 +1,20 @@
-//! Elastic forces along the normal: Hertz, by stiffness or by material.
+//! Elastic and cohesive forces along the normal, as decks name them: by stiffness or by material.
+
+use super::elastic::{Elastic, Form};
 
 /// A normal model with the coefficients a deck gives it. `eta` is the damping coefficient or, for damping
 /// models that ask for it, the coefficient of restitution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Normal {
+    /// `none`: no force along the normal.
+    None,
+    /// `hooke kn eta`: F = k_n δ, k_n [force/length].
+    Hooke {
+        /// Stiffness [force/length].
+        stiffness: f64,
+        /// Damping coefficient or restitution.
+        eta: f64,
+    },
     /// `hertz kn eta`: F = k_n √(R̄ δ) δ, k_n [pressure].
     Hertz {
         /// Stiffness [pressure].
@@ -20,43 +31,104 @@ pub enum Normal {
         /// Poisson's ratio.
         poisson: f64,
     },
+    /// `dmt E eta nu gamma` (Derjaguin, Muller & Toporov 1975): F = (4/3) E* √(R̄ δ) δ − 4π γ R̄.
+    Dmt {
+        /// Young's modulus [pressure].
+        young: f64,
+        /// Damping coefficient.
+        eta: f64,
+        /// Poisson's ratio.
+        poisson: f64,
+        /// Surface energy γ [energy/area].
+        cohesion: f64,
+    },
+    /// `jkr E eta nu gamma` (Johnson, Kendall & Roberts 1971), lasts until it is pulled off at −3π γ R̄.
+    Jkr {
+        /// Young's modulus [pressure].
+        young: f64,
+        /// Damping coefficient.
+        eta: f64,
+        /// Poisson's ratio.
+        poisson: f64,
+        /// Surface energy γ [energy/area].
+        cohesion: f64,
+    },
 }
 
 impl Normal {
+    /// The words decks use.
+    pub const NAMES: [&'static str; 6] = ["none", "hooke", "hertz", "hertz/material", "dmt", "jkr"];
+
     /// The word decks use.
     pub fn name(&self) -> &'static str {
         match self {
+            Normal::None => "none",
+            Normal::Hooke { .. } => "hooke",
             Normal::Hertz { .. } => "hertz",
             Normal::HertzMaterial { .. } => "hertz/material",
+            Normal::Dmt { .. } => "dmt",
+            Normal::Jkr { .. } => "jkr",
         }
     }
 
     /// Damping coefficient or restitution.
     pub fn eta(&self) -> f64 {
         match *self {
-            Normal::Hertz { eta, .. } | Normal::HertzMaterial { eta, .. } => eta,
+            Normal::None => 0.0,
+            Normal::Hooke { eta, .. }
+            | Normal::Hertz { eta, .. }
+            | Normal::HertzMaterial { eta, .. }
+            | Normal::Dmt { eta, .. }
+            | Normal::Jkr { eta, .. } => eta,
         }
     }
 
     /// Young's modulus and Poisson's ratio, where the model has them.
     pub fn material(&self) -> Option<(f64, f64)> {
         match *self {
-            Normal::HertzMaterial { young, poisson, .. } => Some((young, poisson)),
-            Normal::Hertz { .. } => None,
+            Normal::HertzMaterial { young, poisson, .. }
+            | Normal::Dmt { young, poisson, .. }
+            | Normal::Jkr { young, poisson, .. } => Some((young, poisson)),
+            _ => None,
         }
     }
 
-    /// k in F = k a δ with the contact radius a = √(R̄ δ), for a pair of grains with these models of one kind
-    /// [pressure]; stiffnesses mix geometrically, materials as E*.
-    pub fn stiffness(&self, other: &Normal) -> f64 {
-        match (*self, *other) {
-            (
-                Normal::HertzMaterial { young: e1, poisson: n1, .. },
-                Normal::HertzMaterial { young: e2, poisson: n2, .. },
-            ) => 4.0 / 3.0 * effective_young([e1, e2], [n1, n2]),
-            (Normal::Hertz { stiffness: k1, .. }, Normal::Hertz { stiffness: k2, .. }) => geometric(k1, k2),
-            (Normal::Hertz { stiffness, .. }, _) | (_, Normal::Hertz { stiffness, .. }) => stiffness,
+    /// Surface energy γ [energy/area]; `None` for models that only push.
+    pub fn cohesion(&self) -> Option<f64> {
+        match *self {
+            Normal::Dmt { cohesion, .. } | Normal::Jkr { cohesion, .. } => Some(cohesion),
+            _ => None,
         }
+    }
+
+    /// Whether the force grows as δ, not as δ^(3/2).
+    pub fn linear(&self) -> bool {
+        matches!(self, Normal::Hooke { .. })
+    }
+
+    /// The force between two grains with these models of one kind: stiffnesses and surface energies mix
+    /// geometrically, materials as E*.
+    pub fn elastic(&self, other: &Normal) -> Elastic {
+        let cohesion = geometric(self.cohesion().unwrap_or(0.0), other.cohesion().unwrap_or(0.0));
+        let form = match self {
+            Normal::None => Form::None,
+            Normal::Hooke { .. } => Form::Hooke,
+            Normal::Hertz { .. } | Normal::HertzMaterial { .. } => Form::Hertz,
+            Normal::Dmt { .. } => Form::Dmt,
+            Normal::Jkr { .. } => Form::Jkr,
+        };
+        Elastic { form, stiffness: self.stiffness(other), cohesion }
+    }
+
+    fn stiffness(&self, other: &Normal) -> f64 {
+        if let (Some((e1, nu1)), Some((e2, nu2))) = (self.material(), other.material()) {
+            return 4.0 / 3.0 * effective_young([e1, e2], [nu1, nu2]);
+        }
+        let own = |n: &Normal| match *n {
+            Normal::Hooke { stiffness, .. } | Normal::Hertz { stiffness, .. } => stiffness,
+            _ => 0.0,
+        };
+        geometric(own(self), own(other))
     }
 }
 

@@ -1,47 +1,151 @@
-//! Friction across the normal: a spring and a dashpot that slide at the Coulomb limit.
+//! Friction across the normal: the models decks name and their constants for one pair of types.
 
 use super::normal::{effective_shear, effective_young, geometric};
+use super::slider::{Memory, Slider};
 use super::{Advance, Normal};
 use crate::math::real::Real;
-use crate::math::vec3::{Vec3, add, choose, dot, length, scale, sub};
+use crate::math::vec3::{Vec3, length, scale};
 use crate::world::Compat;
 
-/// Component along the normal, relative to the Coulomb limit, below which a spring counts as tangential.
-const TILT: f64 = 1e-10;
-
-/// A tangential model with the coefficients a deck gives it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Tangential {
-    /// `mindlin kt|NULL x_gamma mu`: no-slip stiffness k_t a on an accumulated displacement.
-    Mindlin {
-        /// k_t [pressure]; `None` (NULL): 8 G* from the normal model's material.
-        stiffness: Option<f64>,
-        /// Tangential damping in units of the normal one.
-        x_gamma: f64,
-        /// Coefficient of friction.
-        mu: f64,
-    },
+/// The kinds of friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Friction {
+    /// `none`: smooth spheres.
+    None,
+    /// `linear_nohistory`: F_t = −η_t v_t.
+    LinearNohistory,
+    /// `linear_history`: F_t = −k_t ξ − η_t v_t.
+    LinearHistory,
+    /// `linear_history_classic`: the same, ξ projected into the tangent plane as by `pair_style gran/hooke/history`.
+    LinearHistoryClassic,
+    /// `mindlin`: F_t = −k_t a ξ − η_t v_t.
+    Mindlin,
+    /// `mindlin_classic`: the same, ξ projected as by `pair_style gran/hertz/history`.
+    MindlinClassic,
+    /// `mindlin/force`: the force is remembered, dF_t = −k_t a v_t dt.
+    MindlinForce,
+    /// `mindlin_rescale`: as `mindlin`; ξ shrinks with the contact radius (Thornton et al. 2013, eq. 18b).
+    MindlinRescale,
+    /// `mindlin_rescale/force`: as `mindlin/force`; the force shrinks with the contact radius.
+    MindlinRescaleForce,
 }
 
-impl Tangential {
+impl Friction {
+    /// All of them.
+    pub const ALL: [Friction; 9] = [
+        Friction::None,
+        Friction::LinearNohistory,
+        Friction::LinearHistory,
+        Friction::LinearHistoryClassic,
+        Friction::Mindlin,
+        Friction::MindlinClassic,
+        Friction::MindlinForce,
+        Friction::MindlinRescale,
+        Friction::MindlinRescaleForce,
+    ];
+
     /// The word decks use.
-    pub fn name(&self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
-            Tangential::Mindlin { .. } => "mindlin",
+            Friction::None => "none",
+            Friction::LinearNohistory => "linear_nohistory",
+            Friction::LinearHistory => "linear_history",
+            Friction::LinearHistoryClassic => "linear_history_classic",
+            Friction::Mindlin => "mindlin",
+            Friction::MindlinClassic => "mindlin_classic",
+            Friction::MindlinForce => "mindlin/force",
+            Friction::MindlinRescale => "mindlin_rescale",
+            Friction::MindlinRescaleForce => "mindlin_rescale/force",
         }
     }
 
-    /// The spring between grains of two types: coefficients mix geometrically, G* as Mindlin's theory wants.
-    /// LAMMPS 22Jul2025 takes E* of the pair for both moduli of a mixed pair and √(ν_i ν_j) for both ratios,
-    /// against its own manual, which `mixed` and `compat` together reproduce.
-    pub fn spring(&self, other: &Tangential, normals: [&Normal; 2], mixed: bool, compat: Compat) -> Spring {
-        let Tangential::Mindlin { stiffness: k1, x_gamma: x1, mu: m1 } = *self;
-        let Tangential::Mindlin { stiffness: k2, x_gamma: x2, mu: m2 } = *other;
-        let stiffness = match (k1, k2) {
+    /// Whether k_t is multiplied by the contact radius.
+    pub fn by_radius(self) -> bool {
+        !matches!(
+            self,
+            Friction::None
+                | Friction::LinearNohistory
+                | Friction::LinearHistory
+                | Friction::LinearHistoryClassic
+        )
+    }
+
+    /// Whether k_t may follow from the material (`NULL`).
+    pub fn takes_material(self) -> bool {
+        self.by_radius() && self != Friction::MindlinClassic
+    }
+
+    fn rescales(self) -> bool {
+        matches!(self, Friction::MindlinRescale | Friction::MindlinRescaleForce)
+    }
+
+    fn memory(self) -> Memory {
+        match self {
+            Friction::LinearHistoryClassic | Friction::MindlinClassic => Memory::Projected,
+            Friction::MindlinForce | Friction::MindlinRescaleForce => Memory::Force,
+            _ => Memory::Displacement,
+        }
+    }
+}
+
+/// Damping across the normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drag {
+    /// η_t = x_gamma η_n.
+    Times(f64),
+    /// η_t from a constant of its own, in the form of the normal damping (`pair_style gran/*`).
+    Own(f64),
+}
+
+/// A tangential model with the coefficients a deck gives it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tangential {
+    /// Its kind.
+    pub kind: Friction,
+    /// k_t [pressure, or force/length for linear models]; `None` (NULL): 8 G* from the normal model's material.
+    pub stiffness: Option<f64>,
+    /// Tangential damping.
+    pub drag: Drag,
+    /// Coefficient of friction.
+    pub mu: f64,
+}
+
+impl Tangential {
+    /// Smooth spheres.
+    pub const SMOOTH: Tangential =
+        Tangential { kind: Friction::None, stiffness: Some(0.0), drag: Drag::Times(0.0), mu: 0.0 };
+
+    /// The usual coefficients of this kind of friction.
+    pub fn new(kind: Friction, stiffness: Option<f64>, x_gamma: f64, mu: f64) -> Self {
+        Self { kind, stiffness, drag: Drag::Times(x_gamma), mu }
+    }
+
+    /// The word decks use.
+    pub fn name(&self) -> &'static str {
+        self.kind.name()
+    }
+
+    /// The spring between grains of two types whose normal damping has the constant `eta`: coefficients mix
+    /// geometrically, G* as Mindlin's theory wants. LAMMPS 22Jul2025 takes E* of the pair for both moduli of a mixed
+    /// pair and √(ν_i ν_j) for both ratios, against its own manual, which `mixed` and `compat` together reproduce.
+    pub fn spring(
+        &self,
+        other: &Tangential,
+        normals: [&Normal; 2],
+        eta: f64,
+        mixed: bool,
+        compat: Compat,
+    ) -> Spring {
+        let stiffness = match (self.stiffness, other.stiffness) {
             (Some(k1), Some(k2)) => geometric(k1, k2),
             _ => 8.0 * shear(normals, mixed && compat == Compat::Lammps),
         };
-        Spring { stiffness, x_gamma: geometric(x1, x2), mu: geometric(m1, m2) }
+        let damping = match (self.drag, other.drag) {
+            (Drag::Times(x), Drag::Times(y)) => geometric(x, y) * eta,
+            (Drag::Own(a), Drag::Own(b)) => geometric(a, b),
+            (Drag::Own(a), Drag::Times(_)) | (Drag::Times(_), Drag::Own(a)) => a,
+        };
+        Spring { kind: self.kind, stiffness, damping, mu: geometric(self.mu, other.mu) }
     }
 }
 
@@ -55,63 +159,64 @@ fn shear(normals: [&Normal; 2], artefact: bool) -> f64 {
     effective_shear([e1, e2], [nu1, nu2])
 }
 
-/// Mindlin's spring and dashpot with a slider, ready for contacts of one pair of types.
+/// Friction with a slider, ready for contacts of one pair of types.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
-    /// k_t in F_t = −k_t a ξ [pressure].
+    /// Its kind.
+    pub kind: Friction,
+    /// k_t [pressure, or force/length for linear models].
     pub stiffness: f64,
-    /// Tangential damping in units of the normal one.
-    pub x_gamma: f64,
+    /// Constant of the tangential damping, in the form of the normal one.
+    pub damping: f64,
     /// Coefficient of friction.
     pub mu: f64,
 }
 
 impl Spring {
-    /// The tangential force on i, F_t = −k_t a ξ − x_γ η v_t, at most μ |F_n|; `xi` is the accumulated
-    /// displacement: turned into the present tangent plane with its length kept (Luding 2008, eq. 17), moved
-    /// on by v_t dt, and shortened to what the slider carries when it slides (eq. 20).
+    /// How many numbers it remembers: a displacement or force and, to shrink it, the contact radius.
+    pub fn memory(&self) -> usize {
+        match self.kind {
+            Friction::None | Friction::LinearNohistory => 0,
+            kind if kind.rescales() => 4,
+            _ => 3,
+        }
+    }
+
+    /// The tangential force on i, at most `mu` times `carried`, the normal force that counts for friction; `a`: radius
+    /// of the contact, `form`: the normal damping over its constant, `v`: slip velocity.
     #[inline]
     pub fn force<R: Real>(
         &self,
         n: Vec3<R>,
         a: R,
-        eta: R,
-        v_t: Vec3<R>,
-        normal_force: R,
-        xi: &mut Vec3<R>,
+        form: R,
+        v: Vec3<R>,
+        carried: R,
+        history: &mut [R],
         step: Advance,
     ) -> Vec3<R> {
-        let zero = a.like(0.0);
-        let stiffness = a * self.stiffness;
-        let damping = eta * self.x_gamma;
-        let limit = normal_force * self.mu;
-        if step.history {
-            let tilt = dot(*xi, n);
-            let tilted = (tilt.abs() * stiffness).above(limit * TILT);
-            if R::any(tilted) {
-                *xi = choose::<R>(tilted, into_plane(*xi, n, tilt), *xi);
+        let limit = carried * self.mu;
+        let damping = form * self.damping;
+        let stiffness = if self.kind.by_radius() { a * self.stiffness } else { a.like(self.stiffness) };
+        match self.kind {
+            Friction::None => [a.like(0.0); 3],
+            Friction::LinearNohistory => {
+                let speed = length(v);
+                let size = limit.least(damping * speed);
+                let factor = R::choose(speed.above(a.like(0.0)), size / speed, a.like(0.0));
+                scale(-factor, v)
             }
-            *xi = add(*xi, scale(a.like(step.dt), v_t));
+            kind => {
+                let mut xi = [history[0], history[1], history[2]];
+                if kind.rescales() && step.history {
+                    let shrinks = history[3].above(a);
+                    xi = scale(R::choose(shrinks, a / history[3], a.like(1.0)), xi);
+                    history[3] = a;
+                }
+                let force = Slider { n, stiffness, damping, limit, v }.force(&mut xi, kind.memory(), step);
+                history[..3].copy_from_slice(&xi);
+                force
+            }
         }
-        let trial = sub(scale(-damping, v_t), scale(stiffness, *xi));
-        let size = length(trial);
-        let slides = size.above(limit);
-        if !R::any(slides) {
-            return trial;
-        }
-        let stretched = dot(*xi, *xi).above(zero);
-        let sliding = scale(R::choose(stretched, limit / size, zero), trial);
-        let carried = scale(a.like(-1.0) / stiffness, add(sliding, scale(damping, v_t)));
-        *xi = choose::<R>(R::both(slides, stretched), carried, *xi);
-        choose::<R>(slides, sliding, trial)
     }
-}
-
-/// `xi` without its component `tilt` along `n`, at its old length.
-#[inline]
-fn into_plane<R: Real>(xi: Vec3<R>, n: Vec3<R>, tilt: R) -> Vec3<R> {
-    let flat = sub(xi, scale(tilt, n));
-    let flat_length = length(flat);
-    let one = tilt.like(1.0);
-    scale(R::choose(flat_length.above(tilt.like(0.0)), length(xi) / flat_length, one), flat)
 }

@@ -40,26 +40,30 @@ impl Ball {
 struct Duel {
     balls: [Ball; 2],
     law: Granular,
-    history: Vec3,
+    history: Vec<f64>,
     curvature: Option<f64>,
     dt: f64,
+    touching: bool,
 }
 
 impl Duel {
     fn new(balls: [Ball; 2], law: Granular, dt: f64) -> Self {
-        Self { balls, law, history: [0.0; 3], curvature: None, dt }
+        Self { balls, law, history: vec![0.0; law.memory()], curvature: None, dt, touching: false }
     }
 
     fn forces(&mut self, history: bool) {
         let [a, b] = self.balls;
         let mut w = Wrench::default();
-        match Geometry::of_spheres(sub(a.x, b.x), [a.radius, b.radius], [a.mass, b.mass], 0.0) {
+        let gap = if self.touching { self.law.gap(a.radius * b.radius / (a.radius + b.radius)) } else { 0.0 };
+        let g = Geometry::of_spheres(sub(a.x, b.x), [a.radius, b.radius], [a.mass, b.mass], gap);
+        self.touching = g.is_some();
+        match g {
             Some(g) => {
                 let g = self.curvature.map_or(g, |r| g.with_curvature(r));
                 let step = Advance { dt: self.dt, history };
                 w = self.law.contact(&g, &a.motion, &b.motion, &mut self.history, step);
             }
-            None => self.history = [0.0; 3],
+            None => self.history.fill(0.0),
         }
         self.balls[0].force = w.force;
         self.balls[1].force = scale(-1.0, w.force);
@@ -101,9 +105,9 @@ fn material(young: f64, eta: f64, poisson: f64) -> Normal {
 }
 
 fn mindlin(x_gamma: f64, mu: f64) -> Tangential {
-    Tangential::Mindlin { stiffness: None, x_gamma, mu }
+    Tangential::new(Friction::Mindlin, None, x_gamma, mu)
 }
 
 fn model(normal: Normal, damping: Damping, tangential: Tangential) -> Model {
-    Model { normal, damping, tangential, limit_damping: false }
+    Model::new(normal, damping, tangential)
 }

@@ -49,6 +49,7 @@ fn brute(v: &View, wanted: &Wanted, skin: f64, keep: impl Fn(usize, usize) -> bo
             let cut = skin
                 + match reach {
                     Reach::Touch => v.radius[i] + v.radius[j],
+                    Reach::Beyond(gap) => v.radius[i] + v.radius[j] + gap,
                     Reach::Fixed(c) => c,
                 };
             for_images(m, |shift| {

@@ -1,10 +1,10 @@
 //! The words of `pair_coeff … granular`: models by name, each with its numbers; what is not there is refused by name.
 
 use super::Coeff;
-use crate::diag::{Code, Diagnostic, Diagnostics, Result};
+use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use crate::lang::{Args, Word};
 use crate::laws::contact::driver::{Average, Curvature};
-use crate::laws::contact::{Damping, Model, Normal, Tangential};
+use crate::laws::contact::{Damping, Friction, Model, Normal, Rolling, Sds, Tangential, Twisting};
 
 /// Keywords after the normal model.
 const KEYWORDS: [&str; 9] = [
@@ -27,13 +27,9 @@ pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
     let first = args.expect("the normal model")?;
     let normal = normal(first, args)?;
     let mut tangential = None;
+    let mut limit = None;
     let mut c = Coeff {
-        model: Model {
-            normal,
-            damping: Damping::default(),
-            tangential: Tangential::Mindlin { stiffness: None, x_gamma: 0.0, mu: 0.0 },
-            limit_damping: false,
-        },
+        model: Model::new(normal, Damping::default(), Tangential::SMOOTH),
         average: Average::None,
         curvature: Curvature::Both,
         cutoff: None,
@@ -45,10 +41,10 @@ pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
         match word.text.as_str() {
             "tangential" => tangential = Some(self::tangential(&normal, args)?),
             "damping" => c.model.damping = damping(args)?,
-            "limit_damping" => c.model.limit_damping = true,
-            "rolling" => absent("rolling", &["sds"], args)?,
-            "twisting" => absent("twisting", &["sds", "marshall"], args)?,
-            "heat" => absent("heat", &["radius", "area"], args)?,
+            "limit_damping" => limit = Some(word.span),
+            "rolling" => c.model.rolling = rolling(args)?,
+            "twisting" => c.model.twisting = twisting(args)?,
+            "heat" => heat(args)?,
             "cutoff" => c.cutoff = Some(args.positive("the cutoff")?),
             "average" => {
                 c.average = match args.choice("way of averaging", &["none", "particle", "body"])? {
@@ -72,68 +68,83 @@ pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
             args.here(),
             "a granular contact needs a tangential model",
         )
-        .help("add `tangential mindlin NULL 1.0 0.5`; friction 0 makes spheres smooth")
+        .help("add `tangential mindlin NULL 1.0 0.5`; `tangential none` makes spheres smooth")
         .into());
     };
     c.model.tangential = tangential;
+    c.model.limit_damping = limit.is_some();
     check_restitution(first, &c.model)?;
+    check_cohesion(first, &c.model, limit)?;
     Ok(c)
 }
 
 fn normal(word: &Word, args: &mut Args) -> Result<Normal> {
+    let eta = |args: &mut Args| args.non_negative("the damping eta");
     match word.text.as_str() {
-        "hertz" => Ok(Normal::Hertz {
-            stiffness: args.non_negative("the stiffness kn")?,
-            eta: args.non_negative("the damping eta")?,
-        }),
-        "hertz/material" => {
+        "none" => Ok(Normal::None),
+        "hooke" => Ok(Normal::Hooke { stiffness: args.non_negative("the stiffness kn")?, eta: eta(args)? }),
+        "hertz" => Ok(Normal::Hertz { stiffness: args.non_negative("the stiffness kn")?, eta: eta(args)? }),
+        "hertz/material" | "dmt" | "jkr" => {
             let young = args.positive("Young's modulus E")?;
-            let eta = args.non_negative("the damping eta")?;
-            let at = args.here();
-            let poisson = args.number("Poisson's ratio nu")?;
-            if !(-1.0..=0.5).contains(&poisson) {
-                let text = format!("Poisson's ratio lies between -1 and 0.5, {poisson} does not");
-                return Err(Diagnostic::error(Code::BAD_VALUE, at, text).into());
+            let eta = eta(args)?;
+            let poisson = poisson(args)?;
+            if word.text == "hertz/material" {
+                return Ok(Normal::HertzMaterial { young, eta, poisson });
             }
-            Ok(Normal::HertzMaterial { young, eta, poisson })
+            let cohesion = args.non_negative("the surface energy gamma")?;
+            Ok(match word.text.as_str() {
+                "dmt" => Normal::Dmt { young, eta, poisson, cohesion },
+                _ => Normal::Jkr { young, eta, poisson, cohesion },
+            })
         }
-        "none" | "hooke" | "dmt" | "jkr" | "mdr" => {
-            Err(not_yet("normal model", word, "hertz or hertz/material"))
-        }
-        _ => Err(unknown(word, "normal model of granular contacts", &["hertz", "hertz/material"])),
+        "mdr" => Err(not_yet("normal model", word, &Normal::NAMES.join(", "))),
+        _ => Err(unknown(word, "normal model of granular contacts", &Normal::NAMES)),
     }
+}
+
+fn poisson(args: &mut Args) -> Result<f64> {
+    let at = args.here();
+    let poisson = args.number("Poisson's ratio nu")?;
+    if !(-1.0..=0.5).contains(&poisson) {
+        let text = format!("Poisson's ratio lies between -1 and 0.5, {poisson} does not");
+        return Err(Diagnostic::error(Code::BAD_VALUE, at, text).into());
+    }
+    Ok(poisson)
 }
 
 fn tangential(normal: &Normal, args: &mut Args) -> Result<Tangential> {
     let word = args.expect("the tangential model")?;
-    match word.text.as_str() {
-        "mindlin" => {
-            let stiffness = if args.peek_text() == "NULL" {
-                let null = args.expect("kt")?;
-                if normal.material().is_none() {
-                    let text = format!("`NULL` needs a material, which {} does not have", normal.name());
-                    return Err(Diagnostic::error(Code::CONFLICT, null.span, text)
-                        .help("write the stiffness kt, or use hertz/material")
-                        .into());
-                }
-                None
-            } else {
-                Some(args.non_negative("the tangential stiffness kt")?)
-            };
-            let x_gamma = args.non_negative("the tangential damping x_gamma")?;
-            let mu = args.non_negative("the coefficient of friction mu")?;
-            Ok(Tangential::Mindlin { stiffness, x_gamma, mu })
-        }
-        "none"
-        | "linear_nohistory"
-        | "linear_history"
-        | "linear_history_classic"
-        | "mindlin_classic"
-        | "mindlin/force"
-        | "mindlin_rescale"
-        | "mindlin_rescale/force" => Err(not_yet("tangential model", word, "mindlin")),
-        _ => Err(unknown(word, "tangential model", &["mindlin"])),
+    let Some(kind) = Friction::ALL.into_iter().find(|f| f.name() == word.text) else {
+        return Err(unknown(word, "tangential model", &Friction::ALL.map(Friction::name)));
+    };
+    if kind == Friction::None {
+        return Ok(Tangential::SMOOTH);
     }
+    let stiffness = match kind {
+        Friction::LinearNohistory => Some(0.0),
+        _ if args.peek_text() == "NULL" => {
+            check_null(kind, normal, args.expect("kt")?)?;
+            None
+        }
+        _ => Some(args.non_negative("the tangential stiffness kt")?),
+    };
+    let x_gamma = args.non_negative("the tangential damping x_gamma")?;
+    let mu = args.non_negative("the coefficient of friction mu")?;
+    Ok(Tangential::new(kind, stiffness, x_gamma, mu))
+}
+
+/// `NULL` in the place of a stiffness: only where the normal model has a material and the spring is Mindlin's.
+fn check_null(kind: Friction, normal: &Normal, null: &Word) -> Result<()> {
+    let (text, help) = if !kind.takes_material() {
+        let text = format!("`tangential {}` needs a stiffness kt, not `NULL`", kind.name());
+        (text, "write the stiffness kt; mindlin, mindlin/force and mindlin_rescale take it from the material")
+    } else if normal.material().is_none() {
+        let text = format!("`NULL` needs a material, which {} does not have", normal.name());
+        (text, "write the stiffness kt, or use hertz/material")
+    } else {
+        return Ok(());
+    };
+    Err(Diagnostic::error(Code::CONFLICT, null.span, text).help(help).into())
 }
 
 fn damping(args: &mut Args) -> Result<Damping> {
@@ -142,19 +153,46 @@ fn damping(args: &mut Args) -> Result<Damping> {
         return Ok(d);
     }
     let names = Damping::ALL.map(Damping::name);
-    if ["none", "mdr"].contains(&word.text.as_str()) {
+    if word.text == "mdr" {
         return Err(not_yet("damping model", word, &names.join(", ")));
     }
     Err(unknown(word, "damping model", &names))
 }
 
-/// A part that can only be `none` so far.
-fn absent(part: &str, known: &[&str], args: &mut Args) -> Result<()> {
-    let word = args.expect(&format!("the {part} model"))?;
+fn rolling(args: &mut Args) -> Result<Rolling> {
+    let word = args.expect("the rolling model")?;
+    match word.text.as_str() {
+        "none" => Ok(Rolling::None),
+        "sds" => Ok(Rolling::Sds(sds("rolling", args)?)),
+        _ => Err(unknown(word, "rolling model", &["none", "sds"])),
+    }
+}
+
+fn twisting(args: &mut Args) -> Result<Twisting> {
+    let word = args.expect("the twisting model")?;
+    match word.text.as_str() {
+        "none" => Ok(Twisting::None),
+        "marshall" => Ok(Twisting::Marshall),
+        "sds" => Ok(Twisting::Sds(sds("twisting", args)?)),
+        _ => Err(unknown(word, "twisting model", &["none", "marshall", "sds"])),
+    }
+}
+
+fn sds(part: &str, args: &mut Args) -> Result<Sds> {
+    Ok(Sds {
+        stiffness: args.non_negative(&format!("the {part} stiffness k"))?,
+        damping: args.non_negative(&format!("the {part} damping gamma"))?,
+        mu: args.non_negative(&format!("the {part} friction mu"))?,
+    })
+}
+
+/// Conduction of heat, which can only be `none` so far.
+fn heat(args: &mut Args) -> Result<()> {
+    let word = args.expect("the heat model")?;
     match word.text.as_str() {
         "none" => Ok(()),
-        w if known.contains(&w) => Err(not_yet(&format!("{part} model"), word, "none")),
-        _ => Err(unknown(word, &format!("{part} model"), &["none"])),
+        "radius" | "area" => Err(not_yet("heat model", word, "none")),
+        _ => Err(unknown(word, "heat model", &["none"])),
     }
 }
 
@@ -171,6 +209,26 @@ fn check_restitution(normal: &Word, model: &Model) -> Result<()> {
         model.normal.name()
     );
     Err(Diagnostic::error(Code::BAD_VALUE, normal.span, text).into())
+}
+
+/// What does not go with grains that stick together.
+fn check_cohesion(normal: &Word, model: &Model, limit: Option<Span>) -> Result<()> {
+    let name = model.normal.name();
+    if model.normal.cohesion().is_none() {
+        return Ok(());
+    }
+    if model.damping.wants_restitution() {
+        let text =
+            format!("damping {} is made for grains that only push, {name} pulls", model.damping.name());
+        return Err(Diagnostic::error(Code::CONFLICT, normal.span, text)
+            .help("use damping velocity, mass_velocity or viscoelastic")
+            .into());
+    }
+    if let Some(span) = limit {
+        let text = format!("limit_damping would cut off the attraction of {name}");
+        return Err(Diagnostic::error(Code::CONFLICT, span, text).help("leave the word out").into());
+    }
+    Ok(())
 }
 
 fn not_yet(what: &str, word: &Word, have: &str) -> Diagnostics {

@@ -1,7 +1,7 @@
 //! Sharing, curvature, momentum and thread counts of the loop over contacts.
 
 use super::*;
-use crate::laws::contact::{Damping, Granular, Model, Normal, Tangential};
+use crate::laws::contact::{Damping, Friction, Granular, Model, Normal, Tangential};
 use crate::neigh::list::{Reach, View, Wanted, pairs};
 use crate::world::Compat;
 
@@ -40,13 +40,9 @@ fn scene() -> Scene {
 }
 
 fn law() -> Granular {
-    Model {
-        normal: Normal::HertzMaterial { young: 1e6, eta: 0.8, poisson: 0.25 },
-        damping: Damping::Tsuji,
-        tangential: Tangential::Mindlin { stiffness: None, x_gamma: 0.5, mu: 0.3 },
-        limit_damping: false,
-    }
-    .law(Compat::Perigrain)
+    let normal = Normal::HertzMaterial { young: 1e6, eta: 0.8, poisson: 0.25 };
+    let friction = Tangential::new(Friction::Mindlin, None, 0.5, 0.3);
+    Model::new(normal, Damping::Tsuji, friction).law(Compat::Perigrain)
 }
 
 /// Forces and torques after one evaluation, and the number of contacts.

@@ -3,9 +3,9 @@
 use crate::diag::Result;
 use crate::laws::contact::bodies::solids;
 use crate::laws::contact::driver::{Average, Curvature, Grains, Rules, Sweep};
-use crate::laws::contact::{Advance, Granular};
+use crate::laws::contact::{Advance, ContactLaw, Granular};
 use crate::math::vec3::Vec3;
-use crate::neigh::list::{Pair, View, Wanted, pairs};
+use crate::neigh::list::{Pair, Reach, View, Wanted, pairs};
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::world::contacts::Contacts;
 use crate::world::{Allowed, World};
@@ -38,6 +38,26 @@ impl Force {
         }
     }
 
+    /// How far types reach for each other, with what contacts that hold span beyond touch.
+    fn reaching(&self, w: &World) -> Wanted {
+        let mut wanted = self.wanted.clone();
+        let mut largest = vec![0.0_f64; w.types];
+        for (kind, r) in w.particles.kind.iter().zip(&w.particles.radius) {
+            let of_type = &mut largest[usize::from(*kind) - 1];
+            *of_type = of_type.max(*r);
+        }
+        let types = 1..=w.types as u16;
+        for (a, b) in types.clone().flat_map(|a| types.clone().map(move |b| (a, b))) {
+            let [ra, rb] = [a, b].map(|k| largest[usize::from(k) - 1]);
+            let (Some(rule), Some(Reach::Touch)) = (self.rules.get(a, b), wanted.get(a, b)) else { continue };
+            let gap = if ra + rb > 0.0 { rule.law.gap(ra * rb / (ra + rb)) } else { 0.0 };
+            if gap > 0.0 {
+                wanted.set(a, b, Reach::Beyond(gap));
+            }
+        }
+        wanted
+    }
+
     /// The list, from the positions of the last rebuild: later positions are within half a skin of those.
     fn find_pairs(&mut self, w: &World) -> Result<()> {
         let p = &w.particles;
@@ -45,7 +65,7 @@ impl Force {
         let x = if held.len() == p.len() { held } else { &p.x };
         let v = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: period(w)? };
         let allowed = Allowed::new(w);
-        self.list = pairs(&v, &self.wanted, w.settings.neighbor.skin, &|i, j| allowed.pair(i, j));
+        self.list = pairs(&v, &self.reaching(w), w.settings.neighbor.skin, &|i, j| allowed.pair(i, j));
         self.generation = Some(w.rebuild.generation);
         Ok(())
     }

@@ -36,11 +36,20 @@ fn every_model_is_read() {
 fn what_is_not_there_is_refused_by_name_at_its_place() {
     let h = "hertz 1e6 0.5 tangential";
     let cases = [
-        ("jkr 1e6 0.5 0.3 10 tangential mindlin NULL 1 0.5".to_string(), Code::NOT_SUPPORTED, "jkr"),
+        ("jkr 1e6 0.5 0.3 10 tangential mindlin NULL 1 0.5 damping tsuji".to_string(), Code::CONFLICT, "jkr"),
+        ("dmt 1e6 0.5 0.3 10 limit_damping tangential none".to_string(), Code::CONFLICT, "limit_damping"),
+        ("dmt 1e6 0.5 0.3 -1 tangential none".to_string(), Code::BAD_VALUE, "-1"),
+        ("mdr 1e6 0.3 1e5 0 0.5 0.5 tangential none".to_string(), Code::NOT_SUPPORTED, "mdr"),
         ("herz 1e6 0.5".to_string(), Code::UNKNOWN_STYLE, "herz"),
+        ("hooke -1 0.5".to_string(), Code::BAD_VALUE, "-1"),
+        ("hooke nan 0.5".to_string(), Code::BAD_NUMBER, "nan"),
         (format!("{h} mindlin NULL 1 0.5"), Code::CONFLICT, "NULL"),
-        (format!("{h} mindlin_rescale 1 1 0.5"), Code::NOT_SUPPORTED, "mindlin_rescale"),
-        (format!("{h} mindlin 1 1 0.5 rolling sds 1 1 1"), Code::NOT_SUPPORTED, "sds"),
+        (format!("{h} linear_history NULL 1 0.5"), Code::CONFLICT, "NULL"),
+        (format!("{h} mindlin_scale 1 1 0.5"), Code::UNKNOWN_STYLE, "mindlin_scale"),
+        (format!("{h} mindlin 1 1 0.5 rolling sds 1 1"), Code::MISSING_ARGUMENT, "1"),
+        (format!("{h} mindlin 1 1 0.5 twisting sds 1 -1 1"), Code::BAD_VALUE, "-1"),
+        (format!("{h} mindlin 1 1 0.5 twisting marshal"), Code::UNKNOWN_STYLE, "marshal"),
+        (format!("{h} mindlin 1 1 0.5 heat area 2"), Code::NOT_SUPPORTED, "area"),
         (format!("{h} mindlin 1 1 0.5 dampng tsuji"), Code::UNKNOWN_KEYWORD, "dampng"),
         (format!("{h} mindlin 1 1 -0.5"), Code::BAD_VALUE, "-0.5"),
         ("hertz 1e6 1.5 tangential mindlin 1 1 0.5 damping tsuji".to_string(), Code::BAD_VALUE, "hertz"),
@@ -68,7 +77,7 @@ fn unlike_models_need_a_line_of_their_own() {
     d.given.insert((2, 2), read(&format!("hertz 4e6 0.5 {tail}")).unwrap());
     let (rule, reach) = d.rule(1, 2, Compat::Perigrain).unwrap().unwrap();
     // √(1e6 · 4e6).
-    assert_eq!((rule.law.stiffness, reach), (2e6, Reach::Touch));
+    assert_eq!((rule.law.elastic.stiffness, reach), (2e6, Reach::Touch));
     d.restrict(&[(1, 2)]);
     let (rules, _) = d.tables(2, Compat::Perigrain).unwrap();
     assert!(rules.get(1, 1).is_none() && rules.get(2, 1).is_some());

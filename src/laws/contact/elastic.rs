@@ -1,0 +1,114 @@
+//! The force along the normal of one pair of types, and the radius of the area of contact.
+
+use super::Geometry;
+use crate::math::real::Real;
+use std::f64::consts::PI;
+
+/// How the force depends on the overlap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// No force.
+    None,
+    /// F = k δ.
+    Hooke,
+    /// F = k a δ, a = √(R̄ δ).
+    Hertz,
+    /// F = k a δ − 4π γ R̄, a = √(R̄ δ).
+    Dmt,
+    /// F = k a³/R̄ − 4 a √(π γ E* a), δ = a²/R̄ − 2 √(π γ a/E*), k = (4/3) E*.
+    Jkr,
+}
+
+/// A normal force, ready for contacts of one pair of types.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elastic {
+    /// Its form.
+    pub form: Form,
+    /// k [pressure; force/length for Hooke].
+    pub stiffness: f64,
+    /// Surface energy γ [energy/area].
+    pub cohesion: f64,
+}
+
+/// The force of one contact along the normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push<R> {
+    /// Elastic and cohesive force on i, positive apart.
+    pub force: R,
+    /// The stiffness that damping models see, k a or k [force/length].
+    pub secant: R,
+    /// The force needed to pull the grains apart, 0 without cohesion.
+    pub pull_off: R,
+}
+
+impl Elastic {
+    /// The radius of the area of contact.
+    #[inline]
+    pub fn radius<R: Real>(&self, g: &Geometry<R>) -> R {
+        match self.form {
+            Form::Jkr => self.jkr_radius(g.curvature, g.overlap),
+            _ => (g.curvature * g.overlap).sqrt(),
+        }
+    }
+
+    /// The force for an area of contact of radius `a`.
+    #[inline]
+    pub fn push<R: Real>(&self, g: &Geometry<R>, a: R) -> Push<R> {
+        let zero = g.overlap.like(0.0);
+        let secant = match self.form {
+            Form::None => zero,
+            Form::Hooke => zero.like(self.stiffness),
+            Form::Hertz | Form::Dmt | Form::Jkr => a * self.stiffness,
+        };
+        let plain = Push { force: secant * g.overlap, secant, pull_off: zero };
+        match self.form {
+            Form::None | Form::Hooke | Form::Hertz => plain,
+            Form::Dmt => {
+                let pull_off = g.curvature * (4.0 * PI * self.cohesion);
+                Push { force: plain.force - pull_off, pull_off, ..plain }
+            }
+            Form::Jkr => {
+                let adhesion = a * (a * (PI * self.cohesion * self.young())).sqrt() * 4.0;
+                let force = secant * a * a / g.curvature - adhesion;
+                Push { force, pull_off: g.curvature * (3.0 * PI * self.cohesion), ..plain }
+            }
+        }
+    }
+
+    /// How far the surfaces of an existing contact come apart before it breaks: −δ where a JKR contact tears under a
+    /// given force, a³ = 9π γ R̄²/(4 E*).
+    pub fn gap(&self, curvature: f64) -> f64 {
+        if self.form != Form::Jkr || self.cohesion == 0.0 {
+            return 0.0;
+        }
+        let e = self.young();
+        let a = (9.0 * PI * self.cohesion * curvature * curvature / (4.0 * e)).cbrt();
+        2.0 * (PI * self.cohesion * a / e).sqrt() - a * a / curvature
+    }
+
+    /// E* [pressure], of models that have one.
+    fn young(&self) -> f64 {
+        0.75 * self.stiffness
+    }
+
+    /// a(δ), the largest root of δ = a²/R̄ − 2 √(π γ a/E*), in the closed form of Parteli et al. (2014),
+    /// doi 10.1038/srep06227, eq. 7.
+    fn jkr_radius<R: Real>(&self, curvature: R, overlap: R) -> R {
+        let (e, gamma) = (self.young(), self.cohesion);
+        let zero = overlap.like(0.0);
+        let depth = curvature * overlap;
+        let root = |r: R| r.most(zero).sqrt();
+        let square = curvature * curvature;
+        let attraction = square * square * (gamma * gamma * e);
+        let own = attraction * (27.0 * PI * PI);
+        let elastic = depth * depth * depth * (8.0 * e * e * e);
+        let inner = root(attraction * (own + elastic * 2.0));
+        let cube = (own + elastic + inner * (3.0 * 3.0_f64.sqrt() * PI)).each(f64::cbrt);
+        let part = depth * depth * (4.0 * e) / cube + cube / e;
+        let first = root(depth * 2.0 + part);
+        let last = square * (6.0 * 6.0_f64.sqrt() * gamma * PI / e) / first;
+        let a = (first + root(depth * 4.0 - part + last)) / 6.0_f64.sqrt();
+        // Without attraction the quotients are 0/0 at first touch.
+        R::choose(cube.above(zero), a, root(depth))
+    }
+}

@@ -1,0 +1,94 @@
+//! A spring and a dashpot that slide at a limit: friction across the normal and resistance to rolling.
+
+use super::Advance;
+use crate::math::real::Real;
+use crate::math::vec3::{Vec3, add, choose, dot, length, scale, sub};
+
+/// Component along the normal, relative to the limit, below which a spring counts as tangential.
+const TILT: f64 = 1e-10;
+
+/// What a spring remembers, and how that follows the turning normal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Memory {
+    /// The displacement ξ, turned into the present tangent plane with its length kept (Luding 2008, eq. 17).
+    Displacement,
+    /// The displacement ξ, of which the component along the normal is dropped (Silbert et al. 2001).
+    Projected,
+    /// The elastic force −k ξ itself, turned as a displacement; what was built up at another stiffness stays.
+    Force,
+}
+
+/// One contact's spring, dashpot and limit in the tangent plane.
+#[derive(Clone, Copy, Debug)]
+pub struct Slider<R> {
+    /// The normal.
+    pub n: Vec3<R>,
+    /// k [force/length].
+    pub stiffness: R,
+    /// η [mass/time].
+    pub damping: R,
+    /// The largest force it carries.
+    pub limit: R,
+    /// The velocity v across the normal that it resists.
+    pub v: Vec3<R>,
+}
+
+impl<R: Real> Slider<R> {
+    /// F = −k ξ − η v, at most the limit; `xi` moves on by v dt and is shortened to what the slider carries when
+    /// it slides (Luding 2008, eq. 20).
+    #[inline]
+    pub fn force(&self, xi: &mut Vec3<R>, memory: Memory, step: Advance) -> Vec3<R> {
+        if step.history {
+            self.advance(xi, memory, step.dt);
+        }
+        let zero = self.limit.like(0.0);
+        let drag = scale(-self.damping, self.v);
+        let by_force = memory == Memory::Force;
+        let trial = if by_force { add(drag, *xi) } else { sub(drag, scale(self.stiffness, *xi)) };
+        let size = length(trial);
+        let slides = size.above(self.limit);
+        if !R::any(slides) {
+            return trial;
+        }
+        let stretched = dot(*xi, *xi).above(zero);
+        let sliding = scale(R::choose(stretched, self.limit / size, zero), trial);
+        let elastic = sub(sliding, drag);
+        let (carried, fits) = if by_force {
+            (elastic, R::both(slides, stretched))
+        } else {
+            // Without stiffness no displacement carries a force: it stays as it is.
+            let stiff = self.stiffness.above(zero);
+            (scale(zero.like(-1.0) / self.stiffness, elastic), R::both(R::both(slides, stretched), stiff))
+        };
+        *xi = choose::<R>(fits, carried, *xi);
+        choose::<R>(slides, sliding, trial)
+    }
+
+    /// What is remembered, turned with the normal and moved on.
+    #[inline]
+    fn advance(&self, xi: &mut Vec3<R>, memory: Memory, dt: f64) {
+        let dt = self.limit.like(dt);
+        if memory == Memory::Projected {
+            *xi = add(*xi, scale(dt, self.v));
+            *xi = sub(*xi, scale(dot(*xi, self.n), self.n));
+            return;
+        }
+        let tilt = dot(*xi, self.n);
+        let force = if memory == Memory::Force { tilt.abs() } else { tilt.abs() * self.stiffness };
+        let tilted = force.above(self.limit * TILT);
+        if R::any(tilted) {
+            *xi = choose::<R>(tilted, into_plane(*xi, self.n, tilt), *xi);
+        }
+        let rate = if memory == Memory::Force { -(self.stiffness * dt) } else { dt };
+        *xi = add(*xi, scale(rate, self.v));
+    }
+}
+
+/// `xi` without its component `tilt` along `n`, at its old length.
+#[inline]
+fn into_plane<R: Real>(xi: Vec3<R>, n: Vec3<R>, tilt: R) -> Vec3<R> {
+    let flat = sub(xi, scale(tilt, n));
+    let flat_length = length(flat);
+    let one = tilt.like(1.0);
+    scale(R::choose(flat_length.above(tilt.like(0.0)), length(xi) / flat_length, one), flat)
+}
