@@ -127,6 +127,10 @@ decks! {
     pd_pmb_laminate
     pd_data
     pd_restart
+    pd_lps_wave
+    pd_lps_notch
+    pd_ves_relax
+    pd_eps_tension
     gr2_g_mindlin
     gr2_g_coeffrest
     gr2_g_dmt

@@ -15,6 +15,7 @@ use super::lanes512::has_avx512;
 use super::lattice::{self, ChunkColumns, Mode};
 use super::list;
 use super::list_kernel::RowKernels;
+use super::state::{self, chunk::StateKernels};
 use super::stretching::StretchKernels;
 use super::tables;
 use crate::diag::{Code, Diagnostic, Result};
@@ -22,21 +23,31 @@ use crate::neigh::family::{detect, lattice as cells, list as records};
 use crate::par::{self, Shared};
 use crate::world::families::lattice::RowMotion;
 use crate::world::families::{
-    Bounds, Candidate, Families, FamilyOptions, ForceUnit, Layout, NearPairs, PeriTally, PeriView, PmbTable,
-    Scratch,
+    Bounds, Candidate, Families, FamilyOptions, ForceUnit, Law, Layout, NearPairs, PeriTally, PeriView,
+    PmbTable, Scratch,
 };
 
 impl Families {
-    /// Finds all bonds: partners closer than the horizon of their types in the present positions.
+    /// Finds all bonds: partners closer than the horizon of their types in the present positions. They are
+    /// microelastic.
     ///
     /// # Errors
     /// A periodic box shorter than two horizons is refused: a bond would meet its own image.
     pub fn build(view: &PeriView, table: &PmbTable, options: FamilyOptions) -> Result<Self> {
+        Self::build_of(view, table, options, Law::default())
+    }
+
+    /// The same for bonds of any law.
+    ///
+    /// # Errors
+    /// As for [`Families::build`].
+    pub fn build_of(view: &PeriView, table: &PmbTable, options: FamilyOptions, law: Law) -> Result<Self> {
         check_box(view, detect::reach(table, &options))?;
         let n = view.x.len();
         let mut families = Self {
             table: table.clone(),
             options,
+            law,
             armed: false,
             lattices: vec![],
             list: Default::default(),
@@ -51,6 +62,9 @@ impl Families {
         families.lay_out(view);
         families.number_places();
         families.refresh(view, table);
+        if families.law.kind.has_states() {
+            families.weigh(view, periods(&view.bounds));
+        }
         let reaches = table.iter().map(|c| options.volume.reach(c.horizon, options.lattice_spacing));
         families.start_near(reaches.fold(f64::INFINITY, f64::min));
         families.find_loose(view);
@@ -115,7 +129,7 @@ impl Families {
     pub fn refresh(&mut self, view: &PeriView, table: &PmbTable) {
         self.table = table.clone();
         for body in &mut self.lattices {
-            tables::refresh(body, view, table, &self.options);
+            tables::refresh(body, view, table, &self.options, &self.law);
         }
         list::refresh(&mut self.list, view, table, &self.options);
     }
@@ -157,7 +171,7 @@ impl Families {
         self.force_with::<Plain>(view, f, advance, tally);
     }
 
-    fn force_with<K: Kernels + RowKernels + StretchKernels + GatherKernels>(
+    fn force_with<K: Kernels + RowKernels + StretchKernels + GatherKernels + StateKernels>(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
@@ -172,10 +186,17 @@ impl Families {
             unsafe { gather::<K>(body, view, reference) };
         }
         let moved = list::gather(&mut self.list, view);
-        self.sweep::<K>(f, advance, period);
+        let states = self.law.kind.has_states();
+        match states {
+            true => self.sweep_states::<K>(view, f, advance, period),
+            false => self.sweep::<K>(f, advance, period),
+        }
         self.contact(view, f, &moved, advance, tallied.as_deref_mut());
         if let Some(t) = tallied {
-            tally::<K>(self, view, t, period);
+            match states {
+                true => state::tally(self, view, t, period),
+                false => tally::<K>(self, view, t, period),
+            }
         }
         if advance {
             self.advance::<K>(view, period);
@@ -183,7 +204,12 @@ impl Families {
     }
 
     /// Adds the forces of all bonds, slab by slab in two colours.
-    fn sweep<K: Kernels + RowKernels>(&mut self, f: &mut [[f64; 3]], advance: bool, period: [f64; 3]) {
+    fn sweep<K: Kernels + RowKernels + StateKernels>(
+        &mut self,
+        f: &mut [[f64; 3]],
+        advance: bool,
+        period: [f64; 3],
+    ) {
         let mode = Mode { advance, armed: self.armed, skip: self.options.skip_rest };
         let newton = self.options.unit == ForceUnit::Newton;
         let Self { lattices, list, scratch, options, .. } = self;
@@ -196,7 +222,7 @@ impl Families {
         let f = Shared::new(f);
         for body in lattices {
             let mut columns = ChunkColumns::take(body);
-            let sweep = lattice::Sweep::new(body, &mut columns, mode, newton);
+            let sweep = lattice::Sweep::new(body, &mut columns, mode, newton, None);
             par::two_colours(body.slabs(), |slab| sweep.slab::<K>(slab, &mut window(), &f));
             columns.give(body);
         }

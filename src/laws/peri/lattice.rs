@@ -2,6 +2,8 @@
 
 use super::chunk::{self, Chunk, Kernels, Various};
 use super::pmb::{UP_TO_3, UP_TO_5, UP_TO_7};
+use super::state::chunk::StateKernels;
+use super::state::lattice::States;
 use crate::par::Shared;
 use crate::world::families::Window;
 use crate::world::families::lattice::{CONSTANTS, LANES, LatticeBody, MIXED, PAD, PAGE, STAGGER, staggered};
@@ -32,6 +34,7 @@ pub struct Sweep<'a> {
     flagged: Shared<'a, u8>,
     mode: Mode,
     newton: bool,
+    states: Option<States<'a>>,
 }
 
 /// The body's per-chunk columns, taken out so that slabs can share the rest.
@@ -67,9 +70,9 @@ impl ChunkColumns {
 }
 
 /// What a row needs to know before its chunks are swept.
-struct RowPlan {
+pub(super) struct RowPlan {
     /// Coordinates beyond which everything is at rest.
-    active: (i32, i32),
+    pub(super) active: (i32, i32),
     /// Bound on the change of z of any bond since the last step.
     growth: f64,
     /// Smallest s00 and largest alpha of its bonds.
@@ -77,10 +80,17 @@ struct RowPlan {
 }
 
 impl<'a> Sweep<'a> {
-    /// Prepares the sweep of a body.
-    pub fn new(body: &'a LatticeBody, columns: &'a mut ChunkColumns, mode: Mode, newton: bool) -> Self {
+    /// Prepares the sweep of a body, under a state-based law with what its sites have.
+    pub fn new(
+        body: &'a LatticeBody,
+        columns: &'a mut ChunkColumns,
+        mode: Mode,
+        newton: bool,
+        states: Option<States<'a>>,
+    ) -> Self {
         Self {
             body,
+            states,
             tension: Shared::new(&mut columns.tension),
             compression: Shared::new(&mut columns.compression),
             measure: Shared::new(&mut columns.measure),
@@ -93,12 +103,9 @@ impl<'a> Sweep<'a> {
 
     /// Adds the forces of the bonds of one slab's cells to `f`: written are the particles of this slab and
     /// of the next.
-    pub fn slab<K: Kernels>(&self, slab: usize, window: &mut Window, f: &Shared<[f64; 3]>) {
+    pub fn slab<K: Kernels + StateKernels>(&self, slab: usize, window: &mut Window, f: &Shared<[f64; 3]>) {
         let body = self.body;
-        let own = slab * body.thickness..((slab + 1) * body.thickness).min(body.planes);
-        let end = (own.end + body.reach as usize).min(body.planes);
-        let first = body.rows[body.slot(own.start, 0)].start as usize;
-        let last = body.rows[body.slot(end, 0)].start as usize;
+        let (own, first, last) = extent(body, slab);
         let (base, stride) = open(window, body, first, last - first);
         let mut touched = false;
         for slot in body.slot(own.start, 0)..body.slot(own.end, 0) {
@@ -121,8 +128,31 @@ impl<'a> Sweep<'a> {
         }
     }
 
+    /// The body.
+    pub(super) fn body(&self) -> &'a LatticeBody {
+        self.body
+    }
+
+    /// What sites have under a state-based law.
+    pub(super) fn states(&self) -> Option<&States<'a>> {
+        self.states.as_ref()
+    }
+
+    /// Whether what is at rest is left out.
+    pub(super) fn skips(&self) -> bool {
+        self.mode.skip
+    }
+
+    /// The degree of series that a chunk's bonds need.
+    pub(super) fn degree(&self, chunk: usize, plan: &RowPlan) -> usize {
+        // SAFETY: bounds are written by one slab, between sweeps that ask for degrees.
+        let (tension, compression) =
+            unsafe { (self.tension.get(chunk..chunk + 1)[0], self.compression.get(chunk..chunk + 1)[0]) };
+        degree(f64::from(tension.max(compression)) + plan.growth)
+    }
+
     /// Looks at the rows that a row's bonds lead to.
-    fn plan(&self, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) -> RowPlan {
+    pub(super) fn plan(&self, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) -> RowPlan {
         let body = self.body;
         let mut motion = body.motion[slot];
         partners(body, slot, meets, to);
@@ -134,15 +164,19 @@ impl<'a> Sweep<'a> {
         let d = range.iter().map(|r| r * r).sum::<f64>().sqrt();
         // |z' - z| <= (|eta' - eta|/|xi|) (r + r')/|xi| with r < 1.007 |xi|, r' <= r + |eta' - eta|.
         let growth = d * (2.02 + d);
-        RowPlan {
-            active: (motion.lo.saturating_sub(body.reach), motion.hi.saturating_add(body.reach)),
-            growth,
-            limit,
+        let mut at = (motion.lo, motion.hi);
+        if self.states.as_ref().is_some_and(|s| s.spread) {
+            at = body.state.active[slot];
+            for &step in &body.steps {
+                let other = body.state.active[meet(body, slot, step).0];
+                at = (at.0.min(other.0), at.1.max(other.1));
+            }
         }
+        RowPlan { active: (at.0.saturating_sub(body.reach), at.1.saturating_add(body.reach)), growth, limit }
     }
 
     /// Sweeps a row's chunks; returns whether any was not at rest.
-    fn row<K: Kernels>(
+    fn row<K: Kernels + StateKernels>(
         &self,
         slot: usize,
         plan: &RowPlan,
@@ -185,7 +219,12 @@ impl<'a> Sweep<'a> {
             let cell = chunk * LANES;
             let chunk_data = self.chunk(cell, entries, window, (base, stride, first));
             // SAFETY: live bonds lead to cells of the body that the window covers; both have PAD cells around.
-            let measured = unsafe { chunk::run::<K>(&chunk_data, degree, !body.intact[chunk], track) };
+            let measured = unsafe {
+                match &self.states {
+                    None => chunk::run::<K>(&chunk_data, degree, !body.intact[chunk], track),
+                    Some(s) => s.pull::<K>(body, chunk, &chunk_data, degree, track),
+                }
+            };
             if track {
                 (high, low) = measured;
                 if fragile && high >= floor {
@@ -207,7 +246,7 @@ impl<'a> Sweep<'a> {
         touched
     }
 
-    fn chunk<'b>(
+    pub(super) fn chunk<'b>(
         &'b self,
         cell: usize,
         entries: usize,
@@ -237,6 +276,15 @@ impl<'a> Sweep<'a> {
             various,
         }
     }
+}
+
+/// The planes of a slab, and the cells that its bonds touch: those of the slab and of what it reaches.
+pub(super) fn extent(body: &LatticeBody, slab: usize) -> (std::ops::Range<usize>, usize, usize) {
+    let own = slab * body.thickness..((slab + 1) * body.thickness).min(body.planes);
+    let end = (own.end + body.reach as usize).min(body.planes);
+    let first = body.rows[body.slot(own.start, 0)].start as usize;
+    let last = body.rows[body.slot(end, 0)].start as usize;
+    (own, first, last)
 }
 
 /// The row slot that bonds with a row step lead to, and the pair of local types if both rows have one each.
@@ -283,7 +331,7 @@ pub fn partners(body: &LatticeBody, slot: usize, meets: &mut Vec<(i32, u32)>, to
 
 /// Makes room for the forces of `cells` cells from `first` on, all zero. Returns where the first one lies and
 /// how far components are apart: not at the page offsets of the displacements of the same cells.
-fn open(window: &mut Window, body: &LatticeBody, first: usize, cells: usize) -> (usize, usize) {
+pub(super) fn open(window: &mut Window, body: &LatticeBody, first: usize, cells: usize) -> (usize, usize) {
     let stride = staggered(cells);
     let length = 3 * stride + PAGE + PAD;
     if window.force.len() < length {

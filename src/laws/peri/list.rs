@@ -6,6 +6,7 @@ use crate::par::{self, Shared};
 use crate::world::families::lattice::RowMotion;
 use crate::world::families::list::{ListBody, PairConstants, Record};
 use crate::world::families::{FamilyOptions, ForceUnit, PeriView, PmbTable, VolumeRule, Window};
+use std::ops::Range;
 
 /// Fills constants, types and volumes.
 pub fn refresh(body: &mut ListBody, view: &PeriView, table: &PmbTable, options: &FamilyOptions) {
@@ -18,7 +19,7 @@ pub fn refresh(body: &mut ListBody, view: &PeriView, table: &PmbTable, options: 
                 VolumeRule::None => [1.0, 0.0],
                 _ => [1.0 + (k.horizon - half) / (2.0 * half), 1.0 / (2.0 * half)],
             };
-            PairConstants { c: k.c, s00: k.s00, alpha: k.alpha, weight }
+            PairConstants { c: k.c, s00: k.s00, alpha: k.alpha, horizon: k.horizon, weight }
         });
         body.pairs.push(constants.unwrap_or(PairConstants { s00: f64::INFINITY, ..Default::default() }));
     }
@@ -77,6 +78,19 @@ pub fn keep(body: &mut ListBody) {
     });
 }
 
+/// The records of a slab, and those of the slab that its bonds reach.
+pub fn reach_of(body: &ListBody, slab: usize) -> (Range<usize>, Range<usize>) {
+    let own = body.slab[slab] as usize..body.slab[slab + 1] as usize;
+    let next = if slab + 1 < body.slabs() {
+        own.end..body.slab[slab + 2] as usize
+    } else if body.ring {
+        0..body.slab[1] as usize
+    } else {
+        0..0
+    };
+    (own, next)
+}
+
 /// The list during one force evaluation, with the columns that its slabs write.
 pub struct Sweep<'a> {
     /// The bonds.
@@ -99,14 +113,7 @@ impl Sweep<'_> {
     pub fn slab<K: RowKernels>(&self, slab: usize, window: &mut Window, f: &Shared<[f64; 3]>) {
         let body = self.body;
         let slabs = body.slabs();
-        let own = body.slab[slab] as usize..body.slab[slab + 1] as usize;
-        let next = if slab + 1 < slabs {
-            own.end..body.slab[slab + 2] as usize
-        } else if body.ring {
-            0..body.slab[1] as usize
-        } else {
-            0..0
-        };
+        let (own, next) = reach_of(body, slab);
         // SAFETY: records belong to one slab.
         let (tension, flagged) = unsafe { (self.tension.get(own.clone()), self.flagged.get(own.clone())) };
         flagged.fill(0);

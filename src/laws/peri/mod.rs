@@ -17,5 +17,7 @@ mod list_kernel;
 pub mod moduli;
 mod pmb;
 mod rows;
+mod single;
+mod state;
 mod stretching;
 mod tables;

@@ -85,6 +85,22 @@ pub fn fracture_energy(critical_stretch: f64, micro_modulus: f64, horizon: f64) 
     PI * micro_modulus * horizon.powi(5) * critical_stretch * critical_stretch / 10.0
 }
 
+/// The same for a linear peridynamic solid: s_c = √(G_c/((3G + (3/4)⁴ (K − 5G/3)) δ)) (Madenci and Oterkus 2014); at
+/// ν = 1/4 that of bonds.
+pub fn critical_stretch_of_states(fracture_energy: f64, solid: Elastic, horizon: f64) -> f64 {
+    (fracture_energy / resistance(solid, horizon)).sqrt()
+}
+
+/// What a unit of crack area of a linear peridynamic solid costs when bonds break at this stretch.
+pub fn fracture_energy_of_states(critical_stretch: f64, solid: Elastic, horizon: f64) -> f64 {
+    resistance(solid, horizon) * critical_stretch * critical_stretch
+}
+
+fn resistance(solid: Elastic, horizon: f64) -> f64 {
+    let (bulk, shear) = (solid.bulk(), solid.shear());
+    (3.0 * shear + 0.75f64.powi(4) * (bulk - 5.0 * shear / 3.0)) * horizon
+}
+
 /// Contact modulus E* of two solids: 1/E* = (1 − ν_i²)/E_i + (1 − ν_j²)/E_j (Hertz).
 pub fn contact_young(i: Elastic, j: Elastic) -> f64 {
     1.0 / ((1.0 - i.nu * i.nu) / i.young + (1.0 - j.nu * j.nu) / j.young)
@@ -175,6 +191,14 @@ mod tests {
         // s_c = 5e-4 there costs 10.06 J/m^2.
         assert!(agrees(fracture_energy(5e-4, c, 1.5e-3), 10.06, 4));
         assert!(agrees(fracture_energy(critical_stretch(10.06, c, 1.5e-3), c, 1.5e-3), 10.06, 14));
+    }
+
+    #[test]
+    fn bonds_and_states_break_alike_at_one_quarter() {
+        let c = Form::Bulk.micro_modulus(PLATE, 1.5e-3);
+        let s = critical_stretch_of_states(10.06, PLATE, 1.5e-3);
+        assert!(agrees(s, critical_stretch(10.06, c, 1.5e-3), 13));
+        assert!(agrees(fracture_energy_of_states(s, PLATE, 1.5e-3), 10.06, 13));
     }
 
     #[test]

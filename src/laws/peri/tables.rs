@@ -2,10 +2,16 @@
 
 use super::chunk::constant;
 use crate::world::families::lattice::{CONSTANTS, LatticeBody, MIXED, PAD};
-use crate::world::families::{FamilyOptions, ForceUnit, PeriView, PmbTable};
+use crate::world::families::{FamilyOptions, ForceUnit, Law, PeriView, PmbTable};
 
 /// Fills the tables of constants, row types and per-cell data from coefficients, types and volumes.
-pub fn refresh(body: &mut LatticeBody, view: &PeriView, table: &PmbTable, options: &FamilyOptions) {
+pub fn refresh(
+    body: &mut LatticeBody,
+    view: &PeriView,
+    table: &PmbTable,
+    options: &FamilyOptions,
+    law: &Law,
+) {
     let some = body.particle.iter().copied().filter(|&p| p != u32::MAX);
     let first = some.clone().next().map_or(0.0, |p| view.volume[p as usize]);
     let mut various = some.clone().any(|p| view.volume[p as usize].to_bits() != first.to_bits());
@@ -39,6 +45,9 @@ pub fn refresh(body: &mut LatticeBody, view: &PeriView, table: &PmbTable, option
         }
     }
     fill_tables(body, table, options, first);
+    if law.kind.has_states() {
+        super::state::tables::fill(body, options, law, if various { 1.0 } else { first });
+    }
 }
 
 fn local(kinds: &[u16], kind: u16) -> u16 {

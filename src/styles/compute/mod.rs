@@ -5,6 +5,7 @@ mod cluster_atom;
 mod com;
 mod coord_atom;
 mod damage_atom;
+mod dilatation_atom;
 mod displace_atom;
 mod erotate_sphere;
 mod erotate_sphere_atom;
@@ -18,6 +19,7 @@ mod near;
 mod origin;
 mod pe;
 mod pe_atom;
+mod plasticity_atom;
 mod pressure;
 pub mod property_atom;
 mod property_local;
@@ -110,6 +112,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &com::Com,
     &coord_atom::CoordAtom,
     &damage_atom::DamageAtom,
+    &dilatation_atom::DilatationAtom,
     &displace_atom::DisplaceAtom,
     &erotate_sphere::ErotateSphere,
     &erotate_sphere_atom::ErotateSphereAtom,
@@ -121,6 +124,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &msd::Msd,
     &pe::Pe,
     &pe_atom::PeAtom,
+    &plasticity_atom::PlasticityAtom,
     &pressure::Pressure,
     &property_atom::PropertyAtom,
     &property_local::PropertyLocal,

@@ -1,10 +1,8 @@
 //! Pair styles: forces between particles.
 
 mod granular;
-mod horizon;
 mod hybrid;
-pub mod materials;
-mod peri_pmb;
+mod peri;
 
 use super::{BuildCx, SealCx, Style};
 use crate::diag::{Code, Result, fail};
@@ -90,5 +88,8 @@ pub const PAIRS: &[&dyn PairStyle] = &[
     &granular::GranularStyle,
     &hybrid::Hybrid,
     &hybrid::Overlay,
-    &peri_pmb::PeriPmb,
+    &peri::PeriEps,
+    &peri::PeriLps,
+    &peri::PeriPmb,
+    &peri::PeriVes,
 ];

@@ -1,6 +1,7 @@
 //! A peridynamic body on a simple cubic lattice: cells in rows, rows in planes, one bit per bond.
 
 use super::Measures;
+use super::law::SiteState;
 
 /// Cells per chunk: alive bits of a chunk's bonds along one stencil vector are one byte.
 pub const LANES: usize = 8;
@@ -136,6 +137,9 @@ pub struct LatticeBody {
     /// Critical measures of families in the step before, by chunks.
     #[serde(skip)]
     pub measures: Measures,
+    /// Under a state-based law: columns with [`PAD`] entries around those of the cells. Memory of bonds: number `k` of
+    /// bond `e` of a chunk's eight cells from `((chunk * stencil.len() + e) * numbers + k) * LANES` on.
+    pub state: SiteState,
 }
 
 /// Unused cells around the cells of a body: kernels read beyond the ends of rows.
@@ -281,6 +285,7 @@ impl LatticeBody {
             + self.intact.len() * chunk
             + self.cell_kind.len()
             + self.measures.bytes()
+            + self.state.bytes()
             + self.rows.len() * (size_of::<Row>() + size_of::<RowMotion>())
     }
 }

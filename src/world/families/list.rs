@@ -1,6 +1,7 @@
 //! Bonds of all bodies that sit on no lattice: records in slab order, each with its bonds to later ones.
 
 use super::Measures;
+use super::law::SiteState;
 
 /// What a bond needs to know of one end; one cache line.
 #[repr(C, align(64))]
@@ -28,6 +29,8 @@ pub struct PairConstants {
     pub s00: f64,
     /// Its rise under compression.
     pub alpha: f64,
+    /// Horizon.
+    pub horizon: f64,
     /// Weight of partial volumes: min(1, `weight[0] - weight[1] |xi|`).
     pub weight: [f64; 2],
 }
@@ -81,6 +84,9 @@ pub struct ListBody {
     /// Critical measures of families in the step before, by records.
     #[serde(skip)]
     pub measures: Measures,
+    /// Under a state-based law: columns by records. Memory of bonds: number `k` of the bond at place `b` is
+    /// `b * numbers + k`.
+    pub state: SiteState,
 }
 
 impl ListBody {
@@ -127,5 +133,6 @@ impl ListBody {
             + 4 * (self.partner.len() + self.back.len() + self.owner.len())
             + self.group_kind.len()
             + self.measures.bytes()
+            + self.state.bytes()
     }
 }

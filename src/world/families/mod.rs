@@ -6,10 +6,12 @@ use crate::diag::{Code, Diagnostic, Result};
 
 mod cells;
 pub mod lattice;
+pub mod law;
 pub mod list;
 mod measures;
 
 pub use cells::Cells;
+pub use law::{Influence, Law, LawKind, Moduli};
 pub use measures::Measures;
 
 /// Coefficients of the prototype microelastic brittle model for one pair of types.
@@ -243,6 +245,8 @@ pub struct Families {
     pub table: PmbTable,
     /// Rules the families were built with.
     pub options: FamilyOptions,
+    /// What bonds do.
+    pub law: Law,
     /// Whether a step has been advanced: nothing breaks before.
     pub armed: bool,
     /// Bodies on a lattice.

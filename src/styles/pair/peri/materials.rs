@@ -1,11 +1,12 @@
 //! Coefficients of peridynamic bonds from materials: `pair_coeff … material ID …` and `pair_coeff … mix RULE`.
 
-use super::TypePairs;
+use super::{Coeff, short_range};
 use crate::diag::{Code, Diagnostic, Result, Severity, Span, fail, nearest};
 use crate::lang::Args;
 use crate::laws::peri::moduli::{self, BOND_NU, Elastic, Form, Mix};
+use crate::styles::pair::TypePairs;
 use crate::styles::{BuildCx, UseKind};
-use crate::world::families::PmbCoeff;
+use crate::world::families::{LawKind, Moduli, PmbCoeff};
 use crate::world::material::{Material, Strength};
 use std::collections::BTreeMap;
 
@@ -18,6 +19,9 @@ struct Stuff {
     alpha: f64,
     form: Form,
     horizon: f64,
+    law: LawKind,
+    /// What a state-based law needs besides K and G.
+    extra: Moduli,
 }
 
 /// The materials of a peridynamic body's types.
@@ -32,15 +36,21 @@ impl Materials {
     ///
     /// # Errors
     /// Every mistake in the line.
-    pub fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<Option<PmbCoeff>> {
+    pub fn coeff(
+        &mut self,
+        law: LawKind,
+        pairs: &TypePairs,
+        args: &mut Args,
+        cx: &BuildCx,
+    ) -> Result<Option<Coeff>> {
         match args.peek_text() {
             "material" => {
                 args.next();
-                let stuff = stuff(args, cx)?;
+                let stuff = stuff(law, args, cx)?;
                 for &(i, _) in pairs.iter().filter(|(i, j)| i == j) {
                     self.types.insert(i, stuff.clone());
                 }
-                Ok(Some(stuff.coeff()))
+                Ok(Some((stuff.coeff(), stuff.moduli())))
             }
             "mix" => {
                 args.next();
@@ -61,7 +71,7 @@ impl Materials {
     }
 
     /// `mix RULE`: means of the properties of exactly two types.
-    fn mixed(&self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<PmbCoeff> {
+    fn mixed(&self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
         let word = args.peek().map_or(cx.span, |w| w.span);
         let name = args.choice("rule of mixing", &Mix::NAMES.map(|m| m.0))?;
         let rule = Mix::from_name(name).unwrap_or_default();
@@ -75,20 +85,33 @@ impl Materials {
             })
         };
         let (a, b) = (find(i)?, find(j)?);
-        Ok(a.mixed(b, rule, word)?.coeff())
+        let between = a.mixed(b, rule, word)?;
+        Ok((between.coeff(), between.moduli()))
     }
 }
 
 impl Stuff {
     /// What LAMMPS would have been told: c, horizon, s00, alpha.
     fn coeff(&self) -> PmbCoeff {
-        let c = self.form.micro_modulus(self.solid, self.horizon);
+        let states = self.law.has_states();
+        let c = match states {
+            true => short_range(self.solid.bulk(), self.horizon),
+            false => self.form.micro_modulus(self.solid, self.horizon),
+        };
         let s00 = match self.strength {
             None => f64::INFINITY,
             Some(Strength::Stretch(s)) => s,
+            Some(Strength::FractureEnergy(g)) if states => {
+                moduli::critical_stretch_of_states(g, self.solid, self.horizon)
+            }
             Some(Strength::FractureEnergy(g)) => moduli::critical_stretch(g, c, self.horizon),
         };
         PmbCoeff { c, horizon: self.horizon, s00, alpha: self.alpha }
+    }
+
+    /// What the ends of bonds have under a state-based law.
+    fn moduli(&self) -> Moduli {
+        Moduli { bulk: self.solid.bulk(), shear: self.solid.shear(), ..self.extra }
     }
 
     /// What a bond to another body is made of; with itself: the same to the last bit.
@@ -130,14 +153,27 @@ impl Stuff {
             Some(Strength::FractureEnergy(g)) => g,
             _ => {
                 let p = self.coeff();
-                moduli::fracture_energy(p.s00, p.c, p.horizon)
+                match self.law.has_states() {
+                    true => moduli::fracture_energy_of_states(p.s00, self.solid, p.horizon),
+                    false => moduli::fracture_energy(p.s00, p.c, p.horizon),
+                }
             }
         }
     }
 }
 
-/// Reads `ID horizon H [form F] [s00 S] [alpha A]`.
-fn stuff(args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
+/// Keywords after a material's ID that a law has besides `horizon`, `s00` and `alpha`; state-based ones must all be said.
+fn keywords(law: LawKind) -> &'static [&'static str] {
+    match law {
+        LawKind::Pmb => &["form"],
+        LawKind::Lps => &[],
+        LawKind::Ves => &["lambda", "tau"],
+        LawKind::Eps => &["yield"],
+    }
+}
+
+/// Reads `ID horizon H [s00 S] [alpha A]` and the law's own words.
+fn stuff(law: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
     let id = args.expect("the material's ID")?;
     let Some(m) = cx.world.materials.get(&id.text) else {
         let d =
@@ -150,10 +186,14 @@ fn stuff(args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
     };
     cx.uses(UseKind::Material, &id.text);
     let mut horizon = None;
-    let mut s = of(m);
+    let mut s = of(m, law);
     let mut chosen = false;
+    let mut missing: Vec<&str> = if law.has_states() { keywords(law).to_vec() } else { vec![] };
+    let known: Vec<&'static str> = [&["horizon", "s00", "alpha"], keywords(law)].concat();
     while let Some(word) = args.peek() {
-        match args.choice("keyword of a material", &["horizon", "form", "s00", "alpha"])? {
+        let key = args.choice("keyword of a material", &known)?;
+        missing.retain(|k| *k != key);
+        match key {
             "horizon" => {
                 let span = args.here();
                 let ratio = args.positive("the horizon in lattice spacings")?;
@@ -166,6 +206,15 @@ fn stuff(args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
                 chosen = true;
             }
             "s00" => s.strength = Some(Strength::Stretch(args.positive("s00")?)),
+            "lambda" => {
+                let at = args.here();
+                s.extra.lambda = args.non_negative("lambda")?;
+                if s.extra.lambda > 1.0 {
+                    return fail(Code::BAD_VALUE, at, "lambda is the share of G that relaxes: from 0 to 1");
+                }
+            }
+            "tau" => s.extra.tau = args.positive("tau")?,
+            "yield" => s.extra.yield_stress = args.positive("the yield stress")?,
             _ => s.alpha = args.non_negative("alpha")?,
         }
         if word.text == "horizon" {
@@ -181,7 +230,11 @@ fn stuff(args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
         .help("add `horizon 3.015`: in lattice spacings")
         .into());
     }
-    if s.solid.defies_bonds() {
+    if let Some(key) = missing.first() {
+        let text = format!("this style needs `{key}` beside the material");
+        return fail(Code::MISSING_ARGUMENT, args.here(), text);
+    }
+    if !law.has_states() && s.solid.defies_bonds() {
         let said = poisson(&id.text, &s, id.span);
         // Who names the modulus to keep knows that the others are off.
         cx.note(if chosen { Diagnostic { severity: Severity::Note, ..said } } else { said });
@@ -190,7 +243,7 @@ fn stuff(args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
 }
 
 /// A material before its horizon is known.
-fn of(m: &Material) -> Stuff {
+fn of(m: &Material, law: LawKind) -> Stuff {
     Stuff {
         solid: Elastic { young: m.young, nu: m.nu },
         density: m.density,
@@ -198,6 +251,8 @@ fn of(m: &Material) -> Stuff {
         alpha: m.alpha,
         form: Form::default(),
         horizon: 0.0,
+        law,
+        extra: Moduli::default(),
     }
 }
 
@@ -236,6 +291,8 @@ mod tests {
             alpha: 0.25,
             form: Form::Shear,
             horizon: 1.5e-3,
+            law: LawKind::Pmb,
+            extra: Moduli::default(),
         }
     }
 

@@ -1,0 +1,323 @@
+//! Sweeps of state-based laws over bonds kept as a list, one bond after the other.
+
+use std::sync::Mutex;
+
+use super::super::lattice::{MAY_BREAK, Mode, SQUEEZED, least_critical};
+use super::super::list::reach_of;
+use super::super::single::Single;
+use super::law::{
+    BondLaw, Dilatation, Elastic, Ends, Moment, Norm, NormLammps, Plastic, PlasticLammps, Stretch, Term,
+    Viscous, ViscousLammps, closed,
+};
+use super::settle::{Settling, Sites};
+use super::window;
+use crate::par::{self, Shared};
+use crate::world::families::law::COLUMNS;
+use crate::world::families::list::{ListBody, PairConstants};
+use crate::world::families::{FamilyOptions, Influence, LawKind, PeriView, Window};
+
+/// The sweeps over the list.
+pub fn body(
+    list: &mut ListBody,
+    view: &PeriView,
+    f: &Shared<[f64; 3]>,
+    (mode, options): (Mode, &FamilyOptions),
+    settling: &Settling,
+    (windows, period): (&[Mutex<Window>], [f64; 3]),
+) {
+    let n = list.record.len();
+    if n == 0 {
+        return;
+    }
+    let kind = settling.law.kind;
+    let active = find_active(list, kind.memory() > 0);
+    list.state.columns.resize(COLUMNS * n, 0.0);
+    super::keep_earlier(&mut list.state, settling);
+    let mut memory = std::mem::take(&mut list.state.memory);
+    let (mut tension, mut flagged) = (std::mem::take(&mut list.tension), std::mem::take(&mut list.flagged));
+    let (tension_of, flagged_of) = (Shared::new(&mut tension), Shared::new(&mut flagged));
+    let memory_of = Shared::new(&mut memory);
+    let particle = std::mem::take(&mut list.particle);
+    let sites = Sites { count: n, pad: 0, stride: n, particle: &particle, kind: view.kind };
+    let sweep = |list: &ListBody, task: &(dyn Fn(&Sweep, usize) + Sync)| {
+        let sweep = Sweep {
+            body: list,
+            tension: &tension_of,
+            flagged: &flagged_of,
+            memory: &memory_of,
+            mode,
+            options,
+            period,
+            moment: settling.moment,
+            influence: settling.law.influence,
+            numbers: kind.memory(),
+        };
+        let slabs = list.slabs();
+        // A ring of an odd number of slabs cannot be coloured with two colours: its last one goes alone.
+        let odd = list.ring && slabs % 2 == 1;
+        par::two_colours(slabs - usize::from(odd), |slab| task(&sweep, slab));
+        if odd {
+            task(&sweep, slabs - 1);
+        }
+    };
+    let add_up = |list: &mut ListBody, task: &(dyn Fn(&Sweep, usize, &Shared<f64>) + Sync)| {
+        let mut sums = std::mem::take(&mut list.state.sums);
+        sums.clear();
+        sums.resize(n, 0.0);
+        let shared = Shared::new(&mut sums);
+        sweep(list, &|sweep, slab| task(sweep, slab, &shared));
+        list.state.sums = sums;
+    };
+    let moving = list.moving.clone();
+    add_up(list, &|s, slab, sums| {
+        s.add_up::<Dilatation>(slab, &moving, &mut window(windows), sums);
+    });
+    settling.dilatations(&mut list.state, &sites);
+    if kind == LawKind::Eps {
+        add_up(list, &|s, slab, sums| match settling.compat {
+            true => s.add_up::<NormLammps>(slab, &active, &mut window(windows), sums),
+            false => s.add_up::<Norm>(slab, &active, &mut window(windows), sums),
+        });
+        settling.flow(&mut list.state, &sites);
+    }
+    list.particle = particle;
+    sweep(list, &|s, slab| {
+        let w = &mut window(windows);
+        match (kind, settling.compat) {
+            (LawKind::Pmb | LawKind::Lps, _) => s.pull::<Elastic>(slab, &active, w, f),
+            (LawKind::Ves, false) => s.pull::<Viscous>(slab, &active, w, f),
+            (LawKind::Ves, true) => s.pull::<ViscousLammps>(slab, &active, w, f),
+            (LawKind::Eps, false) => s.pull::<Plastic>(slab, &active, w, f),
+            (LawKind::Eps, true) => s.pull::<PlasticLammps>(slab, &active, w, f),
+        }
+    });
+    (list.tension, list.flagged) = (tension, flagged);
+    list.state.memory = memory;
+}
+
+/// Which slabs have sites with dilatations, or under a law with memory ever had.
+fn find_active(list: &mut ListBody, remembers: bool) -> Vec<bool> {
+    let slabs = list.slabs();
+    let moving = |s: usize| list.moving.get(s).copied().unwrap_or(false);
+    let mut active: Vec<bool> =
+        (0..slabs).map(|s| moving(s) || moving(s + 1) || (s > 0 && moving(s - 1))).collect();
+    if list.ring {
+        active[0] |= moving(slabs - 1);
+        active[slabs - 1] |= moving(0);
+    }
+    if remembers {
+        let awake = &mut list.state.awake;
+        awake.resize(slabs, (0, 0));
+        for (awake, active) in awake.iter_mut().zip(&mut active) {
+            *active |= awake.0 != 0;
+            awake.0 = i32::from(*active);
+        }
+    }
+    active
+}
+
+/// The list during one sweep.
+struct Sweep<'a> {
+    body: &'a ListBody,
+    tension: &'a Shared<'a, f32>,
+    flagged: &'a Shared<'a, u8>,
+    memory: &'a Shared<'a, f64>,
+    mode: Mode,
+    options: &'a FamilyOptions,
+    period: [f64; 3],
+    moment: Moment,
+    influence: Influence,
+    numbers: usize,
+}
+
+/// One bond.
+pub struct Bond {
+    /// xi + eta.
+    pub y: [f64; 3],
+    /// z.
+    pub z: f64,
+    /// |xi|.
+    pub length: f64,
+    /// ω.
+    pub omega: f64,
+    /// ω w.
+    pub share: f64,
+    /// Its stretch.
+    pub stretch: Stretch<Single>,
+}
+
+/// The bond between two records.
+pub fn bond(
+    body: &ListBody,
+    (i, j): (usize, usize),
+    period: [f64; 3],
+    influence: Influence,
+    options: &FamilyOptions,
+) -> Bond {
+    let (a, b) = (&body.record[i], &body.record[j]);
+    let (mut q, mut square, mut y) = (0.0, 0.0, [0.0; 3]);
+    for k in 0..3 {
+        let mut xi = b.reference[k] - a.reference[k];
+        if xi.abs() > 0.5 * period[k] {
+            xi -= period[k] * (xi / period[k]).round();
+        }
+        let eta = b.u[k] - a.u[k];
+        q += eta * (2.0 * xi + eta);
+        square += xi * xi;
+        y[k] = xi + eta;
+    }
+    let pair: &PairConstants =
+        &body.pairs[usize::from(body.kind[i]) * body.kinds.len() + usize::from(body.kind[j])];
+    let length = square.sqrt();
+    let z = q / square;
+    let live = z.abs() >= options.dead_band(length);
+    // SAFETY: plain arithmetic.
+    let mut stretch = unsafe { closed(Single(z)) };
+    if !live {
+        (stretch.s, stretch.share) = (Single(0.0), Single(0.0));
+    }
+    let omega = influence.of(length, pair.horizon);
+    let share = omega * (pair.weight[0] - pair.weight[1] * length).min(1.0);
+    Bond { y, z: if live { z } else { 0.0 }, length, omega, share, stretch }
+}
+
+impl Sweep<'_> {
+    /// Whether a slab and the one it reaches have nothing to do.
+    fn rests(&self, slab: usize, active: &[bool]) -> bool {
+        let next = if slab + 1 < active.len() { slab + 1 } else { 0 };
+        !active[slab] && ((next == 0 && !self.body.ring) || !active[next])
+    }
+
+    fn columns(&self, site: usize, count: usize) -> [Single; COLUMNS] {
+        let (columns, n) = (&self.body.state.columns, self.body.record.len());
+        std::array::from_fn(|k| Single(if k < count { columns[k * n + site] } else { 0.0 }))
+    }
+
+    fn recall(&self, b: usize) -> [Single; 2] {
+        // SAFETY: a bond is its owner's, and that in one slab.
+        let memory = unsafe { self.memory.get(b * self.numbers..(b + 1) * self.numbers) };
+        std::array::from_fn(|k| Single(memory.get(k).copied().unwrap_or(0.0)))
+    }
+
+    /// Where a record is in the window of a slab.
+    fn place(&self, own: &std::ops::Range<usize>, j: usize) -> usize {
+        if j < own.start { own.len() + j } else { j - own.start }
+    }
+
+    /// Adds a term of the bonds of one slab's records to the sums of both ends.
+    fn add_up<T: Term>(&self, slab: usize, active: &[bool], window: &mut Window, sums: &Shared<f64>) {
+        if self.rests(slab, active) && self.mode.skip {
+            return;
+        }
+        let body = self.body;
+        let (own, next) = reach_of(body, slab);
+        let length = own.len() + next.len();
+        if window.force.len() < length {
+            window.force.resize(length, 0.0);
+        }
+        window.force[..length].fill(0.0);
+        for i in own.clone() {
+            let near = self.columns(i, T::COLUMNS);
+            let mut sum = 0.0;
+            for k in body.own(i).filter(|&k| body.lives(k)) {
+                let j = body.partner[k] as usize;
+                let b = bond(body, (i, j), self.period, self.influence, self.options);
+                let ends: Ends<Single> = [near, self.columns(j, T::COLUMNS)];
+                // SAFETY: plain arithmetic.
+                let (a, c) = unsafe { T::terms(&b.stretch, Single(b.omega), &ends, &self.recall(k)) };
+                let one = b.share * b.length * b.length;
+                sum += one * body.record[j].volume * a.0;
+                window.force[self.place(&own, j)] += one * body.record[i].volume * c.0;
+            }
+            window.force[i - own.start] += sum;
+        }
+        for (k, i) in own.chain(next).enumerate() {
+            // SAFETY: slabs that reach a record run one after the other.
+            unsafe { sums.get(i..i + 1)[0] += window.force[k] };
+        }
+    }
+
+    /// Adds the forces of the bonds of one slab's records.
+    fn pull<W: BondLaw>(&self, slab: usize, active: &[bool], window: &mut Window, f: &Shared<[f64; 3]>) {
+        let body = self.body;
+        let (own, next) = reach_of(body, slab);
+        // SAFETY: records belong to one slab.
+        let (tension, flagged) = unsafe { (self.tension.get(own.clone()), self.flagged.get(own.clone())) };
+        flagged.fill(0);
+        let rest = self.rests(slab, active);
+        if rest && self.mode.advance {
+            tension.fill(0.0);
+        }
+        if rest && self.mode.skip {
+            return;
+        }
+        let length = 4 * (own.len() + next.len());
+        if window.force.len() < length {
+            window.force.resize(length, 0.0);
+        }
+        window.force[..length].fill(0.0);
+        let limit =
+            body.pairs.iter().fold((f64::INFINITY, 0.0f64), |l, p| (l.0.min(p.s00), l.1.max(p.alpha)));
+        for (k, i) in own.clone().enumerate() {
+            let (high, low) = self.pull_one::<W>(i, &own, window);
+            let floor = least_critical(limit, f64::from(tension[k]));
+            if self.mode.armed && self.mode.advance && high >= floor {
+                flagged[k] |= MAY_BREAK;
+            }
+            if low >= -body.contact {
+                flagged[k] |= SQUEEZED;
+            }
+            if self.mode.advance {
+                tension[k] = (high * (1.0 + 1e-6)) as f32;
+            }
+        }
+        for (k, i) in own.chain(next).enumerate() {
+            let p = body.particle[i] as usize;
+            if p < f.len() {
+                // SAFETY: in bounds; slabs that reach a particle run one after the other.
+                let f = unsafe { &mut *f.as_ptr().add(p) };
+                let w = &window.force[4 * k..4 * k + 3];
+                let share = body.record[i].share;
+                *f = [f[0] + share * w[0], f[1] + share * w[1], f[2] + share * w[2]];
+            }
+        }
+    }
+
+    /// Adds the forces of one record's bonds; returns the largest z and the largest −z.
+    fn pull_one<W: BondLaw>(
+        &self,
+        i: usize,
+        own: &std::ops::Range<usize>,
+        window: &mut Window,
+    ) -> (f64, f64) {
+        let body = self.body;
+        let near = self.columns(i, W::COLUMNS);
+        let (mut high, mut low, mut sum) = (0.0f64, 0.0f64, [0.0; 3]);
+        for k in body.own(i).filter(|&k| body.lives(k)) {
+            let j = body.partner[k] as usize;
+            let b = bond(body, (i, j), self.period, self.influence, self.options);
+            let ends: Ends<Single> = [near, self.columns(j, W::COLUMNS)];
+            let mut memory = self.recall(k);
+            // SAFETY: plain arithmetic.
+            let (a, c) = unsafe { W::pull(&b.stretch, Single(b.omega), &ends, &mut memory, &self.moment) };
+            if self.mode.advance && self.numbers > 0 {
+                // SAFETY: a bond is its owner's, and that in one slab.
+                let place = unsafe { self.memory.get(k * self.numbers..(k + 1) * self.numbers) };
+                place.iter_mut().zip(memory).for_each(|(place, m)| *place = m.0);
+            }
+            let factor = b.share * body.record[i].volume * body.record[j].volume;
+            let (a, c) = (factor * a.0, factor * c.0);
+            let target = 4 * self.place(own, j);
+            for (d, y) in b.y.iter().enumerate() {
+                sum[d] += a * y;
+                window.force[target + d] -= c * y;
+            }
+            high = high.max(b.z);
+            low = low.max(-b.z);
+        }
+        for (d, sum) in sum.iter().enumerate() {
+            window.force[4 * (i - own.start) + d] += sum;
+        }
+        (high, low)
+    }
+}

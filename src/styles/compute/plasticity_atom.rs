@@ -1,0 +1,50 @@
+//! compute plasticity/atom: how much each particle of an elastic, perfectly plastic body has flowed.
+
+use super::dilatation_atom::state_of_particles;
+use super::{Compute, ComputeStyle};
+use crate::diag::Result;
+use crate::lang::Args;
+use crate::styles::{BuildCx, Doc, Style};
+use crate::world::families::Families;
+
+/// The style.
+pub struct PlasticityAtom;
+
+impl Style for PlasticityAtom {
+    fn name(&self) -> &'static str {
+        "plasticity/atom"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group plasticity/atom",
+            summary: "Accumulated plastic multiplier of each particle under pair_style peri/eps.",
+            text: "Per-atom vector: the sum of Δλ = (m/15G)(norm/limit − 1) over the steps in which the particle has flowed, \
+                   as LAMMPS defines it (volume²/force·length² with ω = 1/|ξ|). 0 under other pair styles, before the first run, \
+                   and outside the group.",
+            example: "compute flow all plasticity/atom",
+        }
+    }
+}
+
+impl ComputeStyle for PlasticityAtom {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        state_of_particles("plasticity/atom", Families::plastic_strain, args, cx)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+    use crate::world::AtomStyle;
+
+    // Values are compared with LAMMPS' at the onset of flow in tests/lammps (pd_eps_tension).
+    #[test]
+    fn nothing_before_the_first_run_and_refused_without_bonds() {
+        let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &[[0.0; 3]; 2]);
+        let c = b.compute(&PlasticityAtom, "").unwrap();
+        assert_eq!(b.evaluate(&*c).unwrap().atom, [0.0, 0.0]);
+        let b = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
+        assert!(b.compute(&PlasticityAtom, "").is_err());
+    }
+}

@@ -1,0 +1,123 @@
+//! The op behind all peridynamic styles: families at the first run, forces at every step.
+
+use super::{Pair, Solid};
+use crate::diag::{Code, Diagnostic, Result};
+use crate::plan::{Access, Op, Stage, Tick};
+use crate::world::families::{Bounds, Families, FamilyOptions, ForceUnit, PeriTally, PeriView};
+use crate::world::{Domain, World};
+
+/// Bond and short-range forces of all peridynamic bodies.
+pub struct Force {
+    style: Solid,
+    options: FamilyOptions,
+    name: String,
+}
+
+impl Force {
+    /// The op of a style.
+    pub fn new(style: Solid, options: FamilyOptions) -> Self {
+        let name = format!("pair {}", style.name);
+        Self { style, options, name }
+    }
+}
+
+impl Op for Force {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn stage(&self) -> Stage {
+        Stage::Force
+    }
+
+    fn access(&self) -> Access {
+        Access::new("x x0 type volume families", "f families tally")
+    }
+
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if t.setup {
+            self.prepare(w)?;
+        }
+        let Some(mut families) = w.families.take() else { return Ok(()) };
+        let first = !families.armed;
+        families.law.dt = w.clock.dt;
+        let mut sums = PeriTally::default();
+        let mut atoms = std::mem::take(&mut w.tally.atom);
+        if t.atom_energy {
+            sums.per_atom_energy = Some(&mut atoms);
+        }
+        let advance = match t.setup {
+            // LAMMPS advances bonds in the setup of every run but the first.
+            true => w.settings.lammps() && !first && !t.unchanged,
+            false => true,
+        };
+        let mut f = std::mem::take(&mut w.particles.f);
+        let tally = (t.energy || t.virial || t.atom_energy).then_some(&mut sums);
+        families.force(&view(w)?, &mut f, advance, tally);
+        w.particles.f = f;
+        let (energy, virial) = (sums.energy, sums.virial);
+        w.tally.atom = atoms;
+        w.tally.pair += energy;
+        for (total, part) in w.tally.virial.iter_mut().zip(virial) {
+            *total += part;
+        }
+        w.families = Some(families);
+        Ok(())
+    }
+}
+
+impl Force {
+    /// Families at the first run, masses of true-force bodies at every run.
+    fn prepare(&self, w: &mut World) -> Result<()> {
+        if self.options.unit == ForceUnit::Newton {
+            self.true_masses(w)?;
+        }
+        let families = match w.families.take() {
+            Some(mut families) => {
+                families.options = self.options;
+                families.law = self.style.law.clone();
+                families.refresh(&view(w)?, &self.style.table);
+                families
+            }
+            None => {
+                let law = self.style.law.clone();
+                Families::build_of(&view(w)?, &self.style.table, self.options, law)?
+            }
+        };
+        w.families = Some(families);
+        Ok(())
+    }
+
+    /// m = ρV for every particle of a peridynamic type.
+    fn true_masses(&self, w: &mut World) -> Result<()> {
+        let p = &mut w.particles;
+        for i in 0..p.len() {
+            let kind = p.kind[i];
+            if !self.style.covers(kind, kind) {
+                continue;
+            }
+            let density = self.style.materials.density(kind).unwrap_or(p.density[i]);
+            if density.is_nan() || density <= 0.0 {
+                return Err(Diagnostic::error(
+                    Code::INCOMPLETE,
+                    None,
+                    format!(
+                        "particle {} (type {kind}) has no density, which `peri_modify force newton` needs",
+                        p.tag[i]
+                    ),
+                )
+                .help(format!("add `set type {kind} density …`"))
+                .into());
+            }
+            p.mass[i] = density * p.volume[i];
+        }
+        Ok(())
+    }
+}
+
+fn view(w: &World) -> Result<PeriView<'_>> {
+    let Domain { lo, hi, .. } = *w.domain()?;
+    let p = &w.particles;
+    let bounds = Bounds { lo, hi, periodic: w.domain()?.periodic() };
+    Ok(PeriView { x: &p.x, x0: &p.x0, kind: &p.kind, volume: &p.volume, bounds })
+}

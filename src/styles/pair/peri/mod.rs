@@ -1,0 +1,306 @@
+//! Peridynamic pair styles: what they share. A style is its law, the words of its coefficients and its page.
+
+mod eps;
+mod force;
+mod horizon;
+mod lps;
+pub mod materials;
+mod options;
+mod pmb;
+mod ves;
+
+use super::{Pair, TypePairs};
+use crate::diag::{Code, Diagnostic, Result, Span, fail};
+use crate::lang::Args;
+use crate::plan::Op;
+use crate::styles::{BuildCx, SealCx};
+use crate::world::World;
+use crate::world::families::{
+    FamilyOptions, ForceUnit, Law, LawKind, Layout, Moduli, PmbCoeff, PmbTable, VolumeRule,
+};
+pub use eps::PeriEps;
+use force::Force;
+pub use lps::PeriLps;
+use materials::Materials;
+pub use pmb::PeriPmb;
+pub use ves::PeriVes;
+
+/// A peridynamic style with its coefficients.
+#[derive(Clone)]
+struct Solid {
+    name: &'static str,
+    table: PmbTable,
+    law: Law,
+    materials: Materials,
+    /// Some pair was given as numbers.
+    raw: bool,
+    /// `peri_modify force`, if it was said.
+    unit: Option<ForceUnit>,
+    volume: VolumeRule,
+}
+
+/// Starts a style: particles must have volumes.
+fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair>> {
+    if !cx.world.particles.style.peri {
+        return Err(Diagnostic::error(
+            Code::WRONG_ORDER,
+            cx.span,
+            format!("pair_style {name} needs particles with a volume"),
+        )
+        .help("put `atom_style peri` (or `hybrid sphere peri`) at the top of the deck")
+        .into());
+    }
+    let law = Law { kind, moduli: vec![Moduli::default(); cx.world.types], ..Law::default() };
+    Ok(Box::new(Solid {
+        name,
+        table: PmbTable::new(cx.world.types),
+        law,
+        materials: Materials::default(),
+        raw: false,
+        unit: None,
+        volume: VolumeRule::Lammps,
+    }))
+}
+
+/// Coefficients of one line: of the bonds, and of the ends where the law is state-based.
+type Coeff = (PmbCoeff, Moduli);
+
+/// Reads the coefficients of a law as LAMMPS writes them.
+fn numbers(kind: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
+    let (mut c, mut moduli) = (0.0, Moduli::default());
+    if kind == LawKind::Pmb {
+        c = args.non_negative("the micro-modulus c")?;
+    } else {
+        moduli.bulk = args.positive("the bulk modulus K")?;
+        moduli.shear = args.non_negative("the shear modulus G")?;
+    }
+    let span = args.here();
+    let horizon = args.positive("the horizon")?;
+    let s00 = args.non_negative("the critical stretch s00")?;
+    let alpha = args.non_negative("alpha")?;
+    match kind {
+        LawKind::Ves => {
+            let at = args.here();
+            moduli.lambda = args.non_negative("the relaxing share lambda")?;
+            if moduli.lambda > 1.0 {
+                return fail(Code::BAD_VALUE, at, "lambda is the share of G that relaxes: from 0 to 1");
+            }
+            moduli.tau = args.positive("the relaxation time tau")?;
+        }
+        LawKind::Eps => moduli.yield_stress = args.positive("the yield stress")?,
+        LawKind::Pmb | LawKind::Lps => {}
+    }
+    if kind != LawKind::Pmb {
+        c = short_range(moduli.bulk, horizon);
+    }
+    let lc = cx.world.lattice.spacing[0];
+    if horizon < lc && lc > 0.0 {
+        cx.note(
+            Diagnostic::warning(
+                Code::SUSPICIOUS,
+                span,
+                format!("the horizon {horizon} is shorter than the lattice spacing {lc}: no bonds"),
+            )
+            .help("a horizon of about 3 spacings is usual"),
+        );
+    }
+    if !cx.world.lattice.basis.is_empty() && lc > 0.0 {
+        horizon::warn(horizon / lc, lc, span, cx);
+    }
+    Ok((PmbCoeff { c, horizon, s00, alpha }, moduli))
+}
+
+/// The micro-modulus whose short-range forces a state-based solid has: 18K/(πδ⁴).
+fn short_range(bulk: f64, horizon: f64) -> f64 {
+    18.0 * bulk / (std::f64::consts::PI * horizon.powi(4))
+}
+
+impl Solid {
+    fn unit(&self) -> ForceUnit {
+        let implied = if self.materials.is_empty() { ForceUnit::Density } else { ForceUnit::Newton };
+        self.unit.unwrap_or(implied)
+    }
+
+    /// The table with room for all types (`pair_style` may come before `create_box`).
+    fn grow(&mut self, types: usize) {
+        if self.table.types() == types {
+            return;
+        }
+        self.table = PmbTable::new(types);
+        self.law.moduli = vec![Moduli::default(); types];
+    }
+
+    /// The smallest density of a type's particles; in LAMMPS' convention their mass holds it.
+    fn lightest(&self, w: &World, kind: u16) -> Option<f64> {
+        let p = &w.particles;
+        let column = if self.unit() == ForceUnit::Newton { &p.density } else { &p.mass };
+        let of_kind = p.kind.iter().zip(column).filter(|(k, d)| **k == kind && **d > 0.0);
+        of_kind.map(|(_, d)| *d).reduce(f64::min)
+    }
+
+    /// Whether `neigh_modify exclude` concerns pairs that this style acts on.
+    fn loses_pairs(&self, w: &World) -> bool {
+        let (rules, p) = (&w.settings.neighbor, &w.particles);
+        let has = |bit: u32| (0..w.n()).any(|i| p.mask[i] & bit != 0 && self.covers(p.kind[i], p.kind[i]));
+        rules.exclude_types.iter().any(|&(a, b)| self.covers(a, b))
+            || rules.exclude_groups.iter().any(|&(a, b)| has(a) && has(b))
+    }
+
+    /// Whether two bonded types relax differently: the one number that a bond remembers cannot serve both.
+    fn relaxes_apart(&self) -> Option<(u16, u16)> {
+        let types = self.table.types() as u16;
+        let pairs = (1..=types).flat_map(|i| (i + 1..=types).map(move |j| (i, j)));
+        let own = |i: u16| (self.law.of(i).lambda, self.law.of(i).tau);
+        let mut of_ves = pairs.filter(|&(i, j)| self.covers(i, i) && self.covers(j, j));
+        of_ves.find(|&(i, j)| self.law.kind == LawKind::Ves && own(i) != own(j))
+    }
+
+    fn options(&self, w: &World) -> FamilyOptions {
+        let s = &w.settings;
+        FamilyOptions {
+            volume: self.volume,
+            unit: self.unit(),
+            lattice_spacing: w.lattice.spacing[0],
+            compat_lammps: s.lammps(),
+            layout: if s.force_list { Layout::List } else { Layout::Auto },
+            skip_rest: !s.no_skipping,
+            portable: s.portable,
+        }
+    }
+
+    fn cannot(&self, span: Span, why: &str) -> Result<()> {
+        fail(Code::CONFLICT, span, format!("{} {why}", self.name))
+    }
+}
+
+impl Pair for Solid {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        self.grow(cx.world.types);
+        args.eat(self.name);
+        let span = args.here();
+        let (coeff, moduli) = match self.materials.coeff(self.law.kind, pairs, args, cx)? {
+            Some(coeff) => coeff,
+            None => {
+                self.raw = true;
+                numbers(self.law.kind, args, cx)?
+            }
+        };
+        if self.raw && !self.materials.is_empty() {
+            return Err(Diagnostic::error(
+                Code::CONFLICT,
+                span,
+                "materials and plain numbers cannot be mixed in one peridynamic body: the one means forces, the other force densities",
+            )
+            .help("give every pair a `material` or `mix`, or every pair numbers")
+            .into());
+        }
+        for &(i, j) in pairs {
+            self.table.set(i, j, coeff).map_err(|e| e.at(span))?;
+            if i == j {
+                self.law.moduli[usize::from(i) - 1] = moduli;
+            }
+        }
+        Ok(())
+    }
+
+    fn covers(&self, i: u16, j: u16) -> bool {
+        (i.max(j) as usize) <= self.table.types() && self.table.get(i, j).is_some()
+    }
+
+    fn restrict(&mut self, pairs: &TypePairs) {
+        let mut table = PmbTable::new(self.table.types());
+        for &(i, j) in pairs {
+            // These coefficients were accepted before.
+            if let Some(Err(_)) = self.table.get(i, j).map(|c| table.set(i, j, *c)) {
+                return;
+            }
+        }
+        self.table = table;
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        let w = cx.world();
+        let [a, b, c] = w.lattice.spacing;
+        if !(a == b && b == c) {
+            self.cannot(span, "needs a lattice that is the same in x, y and z")?;
+        }
+        if self.loses_pairs(w) {
+            let text = format!(
+                "neigh_modify exclude takes pairs away from {}: perigrain cannot do that yet",
+                self.name
+            );
+            return fail(Code::NOT_SUPPORTED, span, text);
+        }
+        if let Some((i, j)) = self.relaxes_apart() {
+            let text = format!("types {i} and {j} relax differently: one body has one lambda and one tau");
+            return Err(Diagnostic::error(Code::NOT_SUPPORTED, span, text)
+                .help("give both types the same lambda and tau; K and G may differ")
+                .into());
+        }
+        let options = self.options(w);
+        cx.leave_out(
+            &format!("neighbour list of {}", self.name),
+            "bonds never change partners; close pairs are found by their stretch",
+        );
+        Ok(vec![Box::new(Force::new(self.clone(), options))])
+    }
+
+    fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        options::read(self, command, args, cx)
+    }
+
+    fn needs(&self) -> &'static [&'static str] {
+        if self.materials.is_empty() { &["volume", "density"] } else { &["volume"] }
+    }
+
+    fn stable_step(&self, w: &World, said: Option<f64>) -> Option<f64> {
+        let types = self.table.types() as u16;
+        let stiffest = |i: u16| {
+            let all = (1..=types).filter_map(|j| self.table.get(i, j));
+            if self.law.kind == LawKind::Pmb {
+                // Bonds sum up to 2π c δ² over a whole ball (Silling & Askari 2005, equation 34).
+                return all.map(|p| std::f64::consts::PI * p.c * p.horizon * p.horizon).reduce(f64::max);
+            }
+            // Fitted to the exact limits of the cubic lattice, 1.48 dx/√(K/ρ) at nu = 0.25 and 3.39 at 0.48 for a
+            // horizon of 3.015 dx (Bloch waves, weights of LAMMPS), less five per cent.
+            let m = self.law.of(i);
+            let shortest = all.map(|p| p.horizon).reduce(f64::min)?;
+            Some((0.61 * m.bulk + 6.6 * m.shear) / (shortest * shortest))
+        };
+        let ftm2v = w.settings.units.constants().ftm2v;
+        let step = |i: u16| {
+            let own = self.materials.density(i);
+            let rho = own.or_else(|| if w.n() > 0 { self.lightest(w, i) } else { said })?;
+            Some((rho / (ftm2v * stiffest(i)?)).sqrt())
+        };
+        (1..=types).filter_map(step).reduce(f64::min)
+    }
+
+    fn true_forces(&self) -> Option<bool> {
+        Some(self.unit() == ForceUnit::Newton)
+    }
+
+    fn check(&self, cx: &BuildCx) {
+        let w = cx.world;
+        if w.families.is_some() || !w.settings.lammps() {
+            return;
+        }
+        let alphas = self.table.iter().any(|c| c.alpha != 0.0);
+        if w.types > 1 && alphas {
+            cx.note(Diagnostic::note(
+                Code::COMPAT,
+                cx.span,
+                "compat lammps: one critical stretch per particle also across mixed types",
+            ));
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Pair> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,51 @@
+//! `pair_style peri/pmb`: bond-based peridynamics with the prototype microelastic brittle model.
+
+use super::start;
+use crate::diag::Result;
+use crate::lang::Args;
+use crate::styles::pair::{Pair, PairStyle};
+use crate::styles::{BuildCx, Doc, Style};
+use crate::world::families::LawKind;
+
+/// The style.
+pub struct PeriPmb;
+
+impl Style for PeriPmb {
+    fn name(&self) -> &'static str {
+        "peri/pmb"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "pair_style peri/pmb\n\
+                     pair_coeff i j c horizon s00 alpha\n\
+                     pair_coeff i j material ID horizon H [form bulk|shear|young] [s00 value] [alpha value]\n\
+                     pair_coeff i j mix arithmetic|harmonic|geometric\n\
+                     peri_modify [force density|newton] [volume lammps|none|full]",
+            summary: "Bond-based peridynamics: elastic bonds that break when stretched too far.",
+            text: "Every particle has bonds to all others within the `horizon` δ at the first run. A bond of reference \
+                length |ξ| and stretch s = (r − |ξ|)/|ξ| pulls with the force density `c` s w V_j; w is the partial \
+                volume weight. It breaks for good when s > `s00` − `alpha` max(s_min,i, s_min,j), with s_min the smallest \
+                stretch of each particle's live bonds in the step before; nothing breaks in the first step. Particles \
+                closer than min(0.9 of their distance at creation, 1.35 lattice spacings) repel each other with \
+                15 c/δ, bonded or not (Silling & Askari 2005; Parks et al. 2008).\n\n\
+                Units: c energy/length⁷ (force per volume²), horizon length, s00 and alpha without dimension. \
+                With numbers as coefficients forces are force densities and `mass` is the density, as in LAMMPS. \
+                A `material` turns engineering data into c and s00, its horizon counted in lattice spacings, and makes \
+                forces true forces and masses ρV (`peri_modify force newton`). `form` says which modulus the bonds keep, as they fix \
+                ν = 1/4: c = 18K/(πδ⁴) (`bulk`, the default), 30G/(πδ⁴) (`shear`, Walayat et al. 2023) or 12E/(πδ⁴) (`young`); \
+                s00 = √(10 G_c/(π c δ⁵)), or what is said here or by the material. `mix`, for two types that both have a \
+                material (no ranges), takes means of their data. Materials and plain numbers do not go together in one body.\n\n\
+                `peri_modify volume`: `lammps` weighs bonds within half a spacing of the horizon by \
+                (δ + dx/2 − |ξ|)/dx, `none` not at all, `full` extends the family to δ + dx/2, where that weight \
+                vanishes.",
+            example: "pair_style peri/pmb\npair_coeff * * 1.6863e22 0.0015001 5.0e-4 0.25",
+        }
+    }
+}
+
+impl PairStyle for PeriPmb {
+    fn build(&self, _args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
+        start("peri/pmb", LawKind::Pmb, cx)
+    }
+}

@@ -1,0 +1,179 @@
+//! Which material the bonds are made of: bond-based or ordinary state-based, and what of it outlives a step.
+
+/// How much a bond counts for its length in state-based sums (`peri_modify influence`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Influence {
+    /// 1/|xi|, as LAMMPS' state-based styles.
+    #[default]
+    Inverse,
+    /// 1 (Silling et al. 2007; Hartmann et al. 2023).
+    One,
+    /// exp(−|xi|²/δ²).
+    Gaussian,
+}
+
+impl Influence {
+    /// The words of a deck with their meaning.
+    pub const NAMES: [(&'static str, Influence); 3] =
+        [("inverse", Influence::Inverse), ("one", Influence::One), ("gaussian", Influence::Gaussian)];
+
+    /// ω of a bond of reference length `length` with horizon `delta`.
+    pub fn of(self, length: f64, delta: f64) -> f64 {
+        match self {
+            Self::Inverse => 1.0 / length,
+            Self::One => 1.0,
+            Self::Gaussian => (-(length / delta).powi(2)).exp(),
+        }
+    }
+}
+
+/// Moduli of a state-based material; what a law does not use is zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Moduli {
+    /// Bulk modulus.
+    pub bulk: f64,
+    /// Shear modulus.
+    pub shear: f64,
+    /// Share of the shear modulus that relaxes.
+    pub lambda: f64,
+    /// Its relaxation time.
+    pub tau: f64,
+    /// Yield stress in tension.
+    pub yield_stress: f64,
+}
+
+/// What bonds do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum LawKind {
+    /// Prototype microelastic brittle bonds.
+    #[default]
+    Pmb,
+    /// Linear elastic, ordinary state-based.
+    Lps,
+    /// The same with a relaxing deviatoric part.
+    Ves,
+    /// The same with a perfectly plastic deviatoric part.
+    Eps,
+}
+
+impl LawKind {
+    /// Whether forces depend on the dilatation of both ends.
+    pub fn has_states(self) -> bool {
+        self != Self::Pmb
+    }
+
+    /// Numbers that each bond remembers.
+    pub fn memory(self) -> usize {
+        match self {
+            Self::Pmb | Self::Lps => 0,
+            Self::Ves | Self::Eps => 2,
+        }
+    }
+}
+
+/// The law of all families of a scene.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Law {
+    /// Which.
+    pub kind: LawKind,
+    /// How bonds of different lengths count.
+    pub influence: Influence,
+    /// Moduli by type − 1.
+    pub moduli: Vec<Moduli>,
+    /// The time step of the last force evaluation: relaxation depends on it.
+    pub dt: f64,
+}
+
+impl Law {
+    /// The moduli of a type.
+    pub fn of(&self, kind: u16) -> Moduli {
+        self.moduli.get(usize::from(kind) - 1).copied().unwrap_or_default()
+    }
+}
+
+/// Columns that force kernels read, at most.
+pub const COLUMNS: usize = 5;
+
+/// What the sites (cells or records) of a body carry under a state-based law, and what its bonds remember.
+/// Columns start with as many unused entries as their owner says.
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub struct SiteState {
+    /// Weighted volume m = Σ ω w |xi|² V over the family at the start.
+    pub weighted: Vec<f64>,
+    /// Σ ω² w |xi|² V over it: how far the yield surface is.
+    pub spread: Vec<f64>,
+    /// Dilatation θ.
+    pub theta: Vec<f64>,
+    /// Dilatation at the last step that advanced.
+    pub before: Vec<f64>,
+    /// The part of it that is not yet relaxed.
+    pub unrelaxed: Vec<f64>,
+    /// Accumulated plastic multiplier.
+    pub plastic: Vec<f64>,
+    /// Numbers that each bond remembers; the layout knows the order.
+    pub memory: Vec<f64>,
+    /// Whether a lattice row has ever had a bond with something to remember: first and last coordinate.
+    pub awake: Vec<(i32, i32)>,
+    /// What the kernels read: up to [`COLUMNS`] columns, a stride apart.
+    #[serde(skip)]
+    pub columns: Vec<f64>,
+    /// What bonds remembered before this evaluation, where LAMMPS' energies need it.
+    #[serde(skip)]
+    pub earlier: Vec<f64>,
+    /// Sums being added up.
+    #[serde(skip)]
+    pub sums: Vec<f64>,
+    /// Constants of the first sweep, as [`super::lattice::LatticeBody::tables`].
+    #[serde(skip)]
+    pub tables: Vec<f64>,
+    /// Coordinates of each row beyond which no site has a dilatation.
+    #[serde(skip)]
+    pub active: Vec<(i32, i32)>,
+}
+
+impl SiteState {
+    /// Whether the law has states at all.
+    pub fn is_empty(&self) -> bool {
+        self.weighted.is_empty()
+    }
+
+    /// What the energies of bonds depend on.
+    pub fn remembered(&self) -> &[f64] {
+        if self.earlier.is_empty() { &self.memory } else { &self.earlier }
+    }
+
+    /// Memory held.
+    pub fn bytes(&self) -> usize {
+        8 * (self.weighted.len()
+            + self.spread.len()
+            + self.theta.len()
+            + self.before.len()
+            + self.unrelaxed.len()
+            + self.plastic.len()
+            + self.memory.len()
+            + self.earlier.len()
+            + self.columns.len()
+            + self.sums.len()
+            + self.tables.len()
+            + self.active.len()
+            + self.awake.len())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn influence_functions() {
+        assert_eq!(Influence::Inverse.of(0.5, 2.0), 2.0);
+        assert_eq!(Influence::One.of(0.5, 2.0), 1.0);
+        assert!((Influence::Gaussian.of(2.0, 2.0) - (-1.0f64).exp()).abs() < 1e-16);
+    }
+
+    #[test]
+    fn types_without_moduli_have_none() {
+        let law = Law { moduli: vec![Moduli { bulk: 2.0, ..Moduli::default() }], ..Law::default() };
+        assert_eq!((law.of(1).bulk, law.of(2).bulk), (2.0, 0.0));
+    }
+}
