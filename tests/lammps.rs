@@ -141,5 +141,12 @@ decks! {
     gr2_g_mixed
     gr2_g_rescale
     gr2_g_rescale_force
+    gr2_headon
+    gr2_hertz_hist
+    gr2_hertz_hist_lim
+    gr2_hooke
+    gr2_hooke_hist
+    gran_chute
     hyb_pmb_granular
+    hyb_pmb_hertz
 }

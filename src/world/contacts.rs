@@ -12,6 +12,12 @@ pub struct Contacts {
     pub history: Vec<f64>,
 }
 
+/// What one grain remembers of a contact, from what the other remembers: displacements across the normal, the first
+/// three numbers, are negative; rolling displacements and angles of twisting are the same.
+pub fn mirror(history: &mut [f64]) {
+    history.iter_mut().take(3).for_each(|a| *a = -*a);
+}
+
 impl Contacts {
     /// Replaces the contacts by those of `keys` (sorted), `width` numbers each: those that were there keep their
     /// history, new ones start with zeros, others are forgotten. `spare` is room that is used again.
@@ -58,12 +64,8 @@ impl Contacts {
     }
 
     /// Renames grains (LAMMPS gives new ids when some are deleted); `new(key)` is the new key, `None` for those gone,
-    /// and whether it is seen from the other side now, for which `mirror` turns what is remembered.
-    pub fn rename(
-        &mut self,
-        new: impl Fn([u32; 2]) -> Option<([u32; 2], bool)>,
-        mirror: impl Fn(&mut [f64]),
-    ) {
+    /// and whether it is seen from the other side now.
+    pub fn rename(&mut self, new: impl Fn([u32; 2]) -> Option<([u32; 2], bool)>) {
         let mut list: Vec<([u32; 2], Vec<f64>)> = vec![];
         for (k, key) in self.keys.iter().enumerate() {
             let Some((key, turned)) = new(*key) else { continue };
@@ -111,7 +113,7 @@ mod tests {
             let (a, b) = (tag(a), tag(b));
             Some(([a.min(b), a.max(b)], a > b))
         };
-        c.rename(new, |h| h.iter_mut().for_each(|a| *a = -*a));
+        c.rename(new);
         let expected =
             Contacts { keys: vec![[1, 2], [1, 3], [2, 3]], width: 1, history: vec![13.0, 12.0, -23.0] };
         assert_eq!(c, expected);

@@ -31,11 +31,10 @@ impl World {
             Some(([a.min(b), a.max(b)], a > b))
         };
         for c in self.contacts.values_mut() {
-            // Displacements and angles change sign with the side they are seen from.
-            c.rename(pair, |h| h.iter_mut().for_each(|a| *a = -*a));
+            c.rename(pair);
         }
         for c in self.wall_contacts.values_mut() {
-            c.rename(|[a, part]| Some(([*new.get(&a)?, part], false)), |_| {});
+            c.rename(|[a, part]| Some(([*new.get(&a)?, part], false)));
         }
     }
 }

@@ -248,7 +248,7 @@ mod tests {
         check("include in", &["include in.plate"]);
         check(":show runs/", &[":show runs/a.png"]);
         check(":show r", &[":show runs/"]);
-        check("help pair_style gran", &["help pair_style granular"]);
+        check("help pair_style granu", &["help pair_style granular"]);
         check("no_such_command x", &[]);
     }
 }

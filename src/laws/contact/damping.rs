@@ -16,7 +16,7 @@ pub enum Damping {
     /// `viscoelastic` (Brilliantov et al. 1996): η = η₀ a m̄, η₀ [1/(time length)].
     #[default]
     Viscoelastic,
-    /// `tsuji` (Tsuji et al. 1992): η = √2 α_T(e) √(m̄ k), k = F/δ.
+    /// `tsuji` (Tsuji et al. 1992): η = √2 α_T(e) √(m̄ k), k = F/δ; for `hooke` 2/√5 of that.
     Tsuji,
     /// `coeff_restitution`: η = α √(m̄ k) with β = −ln e/√(π² + ln² e): α = √5 β for forces ∝ δ^(3/2), 2 β for
     /// `hooke`; exact for both.
@@ -59,6 +59,8 @@ impl Damping {
             Damping::None => 0.0,
             Damping::Velocity | Damping::MassVelocity | Damping::Viscoelastic => eta,
             Damping::Tsuji if compat == Compat::Lammps => tsuji(eta),
+            // Tsuji's curve is that of forces ∝ δ^(3/2), where √5 β makes e; for linear ones 2 β does.
+            Damping::Tsuji if linear => 2.0 * (2.0_f64 / 5.0).sqrt() * tsuji(eta),
             Damping::Tsuji => std::f64::consts::SQRT_2 * tsuji(eta),
             Damping::CoeffRestitution => {
                 let log = eta.ln();

@@ -101,6 +101,8 @@ pub struct Grains<'a> {
     pub period: [f64; 3],
     /// The solid each particle belongs to, `NO_BODY` for grains; may be empty where no rule asks.
     pub body: &'a [u32],
+    /// Particles that nothing moves, of infinite mass to others; may be empty.
+    pub frozen: &'a [bool],
 }
 
 /// The body of a particle that belongs to no solid.
@@ -145,7 +147,10 @@ impl Grains<'_> {
         let d = difference(self.x, &self.period, p);
         let (radii, masses) = ([self.radius[i], self.radius[j]], [self.mass[i], self.mass[j]]);
         // Who is asked about touches, or has touched and still holds.
-        let g = Geometry::of_spheres(d, radii, masses, f64::INFINITY)?;
+        let mut g = Geometry::of_spheres(d, radii, masses, f64::INFINITY)?;
+        if let [true, _] | [_, true] = [i, j].map(|k| self.frozen.get(k) == Some(&true)) {
+            g.mass = if self.frozen[j] { masses[0] } else { masses[1] };
+        }
         if rule.curvature == Curvature::Both {
             return Some(g);
         }

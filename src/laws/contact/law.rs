@@ -162,7 +162,7 @@ pub struct Granular {
 impl ContactLaw for Granular {
     /// The tangential spring of i against j, then the rolling displacement, then the angle of twisting.
     fn memory(&self) -> usize {
-        self.spring.memory() + self.rolling.memory() + self.twisting.memory()
+        self.before_turning() + self.rolling.memory() + self.twisting.memory()
     }
 
     fn in_lanes(&self) -> bool {
@@ -199,7 +199,7 @@ impl ContactLaw for Granular {
         // Slip of the two surfaces: v_t − (R_i ω_i + R_j ω_j) × n, full radii as in LAMMPS.
         let spin = add(scale(g.radii[0], i.spin), scale(g.radii[1], j.spin));
         let slip = sub(v_across, cross(spin, g.normal));
-        let (own, rest) = history.split_at_mut(self.spring.memory());
+        let (own, rest) = history.split_at_mut(self.before_turning());
         let friction = self.spring.force(g.normal, a, form, slip, carried, own, step);
 
         let lever = cross(friction, g.normal);
@@ -217,16 +217,17 @@ impl ContactLaw for Granular {
         }
         w
     }
-
-    /// Displacements across the normal are those of i against j. A contact radius, the rolling displacement and the
-    /// angle of twisting are the same from both sides.
-    fn mirror(&self, history: &mut [f64]) {
-        let own = self.spring.memory().min(3).min(history.len());
-        history[..own].iter_mut().for_each(|a| *a = -*a);
-    }
 }
 
 impl Granular {
+    /// How many numbers stand before those of rolling and twisting, which are the same seen from j: at least the
+    /// three that are not.
+    #[inline]
+    fn before_turning(&self) -> usize {
+        let own = self.spring.memory();
+        if self.rolling.memory() + self.twisting.memory() > 0 { own.max(3) } else { own }
+    }
+
     /// Adds the torques against rolling and twisting.
     #[inline]
     fn turn<R: Real>(

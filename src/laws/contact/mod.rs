@@ -109,7 +109,8 @@ impl Wrench {
 
 /// A law of contact between spheres, written once for one contact and for lanes of contacts.
 pub trait ContactLaw: Copy + Sync {
-    /// How many numbers a contact remembers while it lasts; a contact that begins remembers zeros.
+    /// How many numbers a contact remembers while it lasts; a contact that begins remembers zeros. Seen from j the
+    /// first three are negative, the others the same (`world::contacts::mirror`).
     fn memory(&self) -> usize;
 
     /// Whether `contact` may be asked for several lanes at once; else it is asked for single contacts only.
@@ -131,11 +132,6 @@ pub trait ContactLaw: Copy + Sync {
         history: &mut [R],
         step: Advance,
     ) -> Wrench<R>;
-
-    /// What j remembers of i, from what i remembers of j.
-    fn mirror(&self, history: &mut [f64]) {
-        history.iter_mut().for_each(|a| *a = -*a);
-    }
 }
 
 /// Relative velocity of i against j, split along and across the normal.

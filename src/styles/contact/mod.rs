@@ -1,5 +1,6 @@
 //! Granular models as decks write them: shared by pair styles and walls.
 
+pub mod classic;
 pub mod words;
 
 use crate::diag::Span;

@@ -1,18 +1,14 @@
 //! `pair_style granular`: contacts of spheres, with models chosen per pair of types.
 
+mod declared;
 mod force;
 
-use super::{Pair, PairStyle, TypePairs};
-use crate::diag::{Code, Diagnostic, Result};
+pub use declared::{Declared, classic};
+
+use super::{Pair, PairStyle};
+use crate::diag::Result;
 use crate::lang::Args;
-use crate::laws::contact::driver::{Rule, Rules};
-use crate::laws::contact::{Damping, Granular, Twisting};
-use crate::neigh::list::{Reach, Wanted};
-use crate::plan::Op;
-use crate::styles::contact::{Coeff, words};
-use crate::styles::{BuildCx, Doc, SealCx, Style};
-use crate::world::Compat;
-use std::collections::BTreeMap;
+use crate::styles::{BuildCx, Doc, Style};
 
 /// The style.
 pub struct GranularStyle;
@@ -44,7 +40,7 @@ impl Style for GranularStyle {
                 with δ = a²/R̄ − 2 √(π γ a/E*): a contact that has been made lasts until it is torn off at −3π γ R̄, \
                 beyond touch. `eta` is a damping coefficient or a coefficient of restitution e, as `damping` says.\n\n\
                 `damping`: η = eta (`velocity`), eta m̄ (`mass_velocity`), eta a m̄ (`viscoelastic`, the default), \
-                √2 α_T(e) √(m̄ k) (`tsuji`), 2β √(m̄ k) for hooke and √5 β √(m̄ k) for the others \
+                √2 α_T(e) √(m̄ k) (`tsuji`; for hooke 2/√5 of it), 2β √(m̄ k) for hooke and √5 β √(m̄ k) for the others \
                 (`coeff_restitution`, β = −ln e/√(π²+ln²e)); k = F_n/δ. For the last two 0 < e ≤ 1; they do not go \
                 with dmt and jkr.\n\n\
                 `tangential`: F_t = −k_t ξ − x_gamma η v_t, at most `mu` |F_n|, for dmt and jkr mu |F_n + 2 F_pulloff| \
@@ -64,7 +60,7 @@ impl Style for GranularStyle {
                 by the number N of simultaneous ones, of the two particles (the larger number) or of the two bodies; \
                 action and reaction stay equal. `curvature impactor` takes R̄ = R of the grain where it meets a \
                 peridynamic solid, whose surface counts as flat (Walayat et al., table 1).\n\n\
-                `-compat lammps` has LAMMPS' faults: tsuji without its √2; the shear stiffness of mixed types from E* \
+                `-compat lammps` has LAMMPS' faults: tsuji without its √2 (and its 2/√5 for hooke); the shear stiffness of mixed types from E* \
                 in the place of both moduli; a sliding twist that takes the direction of the spin even where its \
                 spring pushes the other way.",
             example: "pair_style granular\n\
@@ -75,145 +71,9 @@ impl Style for GranularStyle {
 
 impl PairStyle for GranularStyle {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
-        if !cx.world.particles.style.sphere {
-            return Err(Diagnostic::error(
-                Code::WRONG_ORDER,
-                cx.span,
-                "pair_style granular needs particles with a radius",
-            )
-            .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
-            .into());
-        }
+        declared::needs_spheres(self.name(), cx)?;
         let number = args.peek_text().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
         let cutoff = if number { Some(args.positive("the global cutoff")?) } else { None };
-        Ok(Box::new(Declared { cutoff, given: BTreeMap::new(), only: None, memory: "granular".to_string() }))
+        Ok(Box::new(Declared::new(self.name(), cutoff)))
     }
 }
-
-/// The style with its coefficients.
-#[derive(Clone)]
-struct Declared {
-    cutoff: Option<f64>,
-    given: BTreeMap<(u16, u16), Coeff>,
-    /// As a sub-style: the pairs of types it acts on.
-    only: Option<Vec<(u16, u16)>>,
-    /// Where contact history is kept in the world.
-    memory: String,
-}
-
-impl Declared {
-    /// The law of a pair of types and its reach: given, or mixed from the like pairs.
-    fn rule(&self, i: u16, j: u16, compat: Compat) -> Result<Option<(Rule<Granular>, Reach)>> {
-        let reach = |c: Option<f64>| c.or(self.cutoff).map_or(Reach::Touch, Reach::Fixed);
-        if let Some(c) = self.given.get(&(i, j)) {
-            let rule = Rule { law: c.model.law(compat), average: c.average, curvature: c.curvature };
-            return Ok(Some((rule, reach(c.cutoff))));
-        }
-        let (Some(a), Some(b)) = (self.given.get(&(i, i)), self.given.get(&(j, j))) else { return Ok(None) };
-        let refuse = |one: &str, other: &str| {
-            let text = format!("types {i} and {j} cannot be mixed: `{one}` and `{other}` differ");
-            Diagnostic::error(Code::CONFLICT, b.span, text)
-                .label(a.span, "the other one")
-                .help(format!("give this pair a line of its own: `pair_coeff {i} {j} …`"))
-        };
-        if a.average != b.average || a.curvature != b.curvature {
-            return Err(refuse("average/curvature", "average/curvature").into());
-        }
-        let law = a.model.mixed(&b.model, compat).map_err(|e| refuse(e.0, e.1))?;
-        let cutoff = a.cutoff.zip(b.cutoff).map(|(p, q)| (p * q).sqrt());
-        Ok(Some((Rule { law, average: a.average, curvature: a.curvature }, reach(cutoff))))
-    }
-
-    /// A type whose Mindlin stiffness from its material is mixed with that of another material.
-    fn mixed_shear(&self) -> Option<&Coeff> {
-        let null = |c: &Coeff| c.model.tangential.stiffness.is_none();
-        let like = |k: &(u16, u16)| k.0 == k.1;
-        let types: Vec<_> = self.given.iter().filter(|(k, c)| like(k) && null(c)).collect();
-        let meets = |a: u16, b: u16| a < b && self.acts_on(a, b) && !self.given.contains_key(&(a, b));
-        let unlike = |a: &Coeff, b: &Coeff| a.model.normal.material() != b.model.normal.material();
-        let pairs = types.iter().flat_map(|a| types.iter().map(move |b| (a, b)));
-        pairs.into_iter().find(|(a, b)| meets(a.0.0, b.0.0) && unlike(a.1, b.1)).map(|(a, _)| a.1)
-    }
-
-    fn acts_on(&self, i: u16, j: u16) -> bool {
-        self.only.as_ref().is_none_or(|pairs| pairs.contains(&(i, j)))
-    }
-
-    /// Rules and reaches of all pairs of types it acts on.
-    fn tables(&self, types: usize, compat: Compat) -> Result<(Rules<Granular>, Wanted)> {
-        let (mut rules, mut wanted) = (Rules::new(types), Wanted::new(types));
-        for i in 1..=types as u16 {
-            for j in i..=types as u16 {
-                if !self.acts_on(i, j) {
-                    continue;
-                }
-                if let Some((rule, reach)) = self.rule(i, j, compat)? {
-                    rules.set(i, j, rule);
-                    wanted.set(i, j, reach);
-                }
-            }
-        }
-        Ok((rules, wanted))
-    }
-}
-
-impl Pair for Declared {
-    fn name(&self) -> &'static str {
-        "granular"
-    }
-
-    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        let coeff = words::coeff(args, &[])?;
-        self.given.extend(pairs.iter().map(|&p| (p, coeff)));
-        Ok(())
-    }
-
-    fn covers(&self, i: u16, j: u16) -> bool {
-        let has = |a: u16, b: u16| self.given.contains_key(&(a.min(b), a.max(b)));
-        has(i, j) || (has(i, i) && has(j, j))
-    }
-
-    fn restrict(&mut self, pairs: &TypePairs) {
-        self.only = Some(pairs.to_vec());
-    }
-
-    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let w = cx.world();
-        let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
-        Ok(vec![Box::new(force::Force::new(rules, wanted, self.memory.clone()))])
-    }
-
-    fn needs(&self) -> &'static [&'static str] {
-        &["diameter", "density"]
-    }
-
-    fn check(&self, cx: &BuildCx) {
-        let w = cx.world;
-        if let Err(e) = self.tables(w.types, w.settings.compat) {
-            e.0.into_iter().for_each(|d| cx.note(d));
-        }
-        if !w.settings.lammps() {
-            return;
-        }
-        if let Some(c) = self.given.values().find(|c| c.model.damping == Damping::Tsuji) {
-            let text = "compat lammps: damping tsuji without its factor √2";
-            cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
-        }
-        if let Some(c) = self.given.values().find(|c| c.model.twisting != Twisting::None) {
-            let text = "compat lammps: a sliding twist takes the direction of the spin, not of its torque";
-            cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
-        }
-        if let Some(c) = self.mixed_shear() {
-            let text =
-                "compat lammps: shear stiffness of mixed type pairs from E* in the place of both moduli";
-            cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
-        }
-    }
-
-    fn boxed(&self) -> Box<dyn Pair> {
-        Box::new(self.clone())
-    }
-}
-
-#[cfg(test)]
-mod tests;

@@ -1,5 +1,8 @@
 //! Pair styles: forces between particles.
 
+mod gran_hertz_history;
+mod gran_hooke;
+mod gran_hooke_history;
 mod granular;
 mod hybrid;
 mod peri;
@@ -85,6 +88,9 @@ pub trait Pair: Send {
 /// Every pair style.
 #[rustfmt::skip]
 pub const PAIRS: &[&dyn PairStyle] = &[
+    &gran_hertz_history::GranHertzHistory,
+    &gran_hooke::GranHooke,
+    &gran_hooke_history::GranHookeHistory,
     &granular::GranularStyle,
     &hybrid::Hybrid,
     &hybrid::Overlay,

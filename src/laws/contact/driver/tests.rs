@@ -66,6 +66,7 @@ fn evaluate(s: &Scene, average: Average, curvature: Curvature) -> (Vec<Vec3>, Ve
         tag: &s.tag,
         period,
         body: &s.body,
+        frozen: &[],
     };
     let mut sweep = Sweep::default();
     let mut memory = Contacts::default();

@@ -14,19 +14,34 @@ use crate::world::{Allowed, World};
 pub struct Force {
     rules: Rules<Granular>,
     wanted: Wanted,
-    memory: String,
+    /// The style's name, under which contact history is kept in the world.
+    style: &'static str,
+    /// What the op is called.
+    name: String,
     list: Vec<Pair>,
     /// The rebuild the list was made at.
     generation: Option<u64>,
     body: Vec<u32>,
+    /// Whether fix freeze holds a particle; empty without one.
+    frozen: Vec<bool>,
     sweep: Sweep,
 }
 
 impl Force {
     /// With nothing computed yet.
-    pub fn new(rules: Rules<Granular>, wanted: Wanted, memory: String) -> Self {
-        let sweep = Sweep::default();
-        Self { rules, wanted, memory, list: vec![], generation: None, body: vec![], sweep }
+    pub fn new(style: &'static str, rules: Rules<Granular>, wanted: Wanted) -> Self {
+        let (sweep, name) = (Sweep::default(), format!("pair {style}"));
+        Self {
+            rules,
+            wanted,
+            style,
+            name,
+            list: vec![],
+            generation: None,
+            body: vec![],
+            frozen: vec![],
+            sweep,
+        }
     }
 
     /// Which solid each particle belongs to, where some rule asks.
@@ -35,6 +50,14 @@ impl Force {
         let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
         if let (true, Some(families)) = (asked, &w.families) {
             self.body = solids(families, w.n());
+        }
+    }
+
+    /// Which particles fix freeze holds.
+    fn find_frozen(&mut self, w: &World) {
+        self.frozen.clear();
+        if let Some((_, group)) = &w.parts.frozen {
+            self.frozen.extend(w.particles.mask.iter().map(|m| m & group.bit() != 0));
         }
     }
 
@@ -73,7 +96,7 @@ impl Force {
 
 impl Op for Force {
     fn name(&self) -> &str {
-        "pair granular"
+        &self.name
     }
 
     fn stage(&self) -> Stage {
@@ -93,7 +116,8 @@ impl Op for Force {
             self.find_pairs(w)?;
         }
         let period = period(w)?;
-        let mut memory = w.contacts.remove(&self.memory).unwrap_or_default();
+        self.find_frozen(w);
+        let mut memory = w.contacts.remove(self.style).unwrap_or_default();
         // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
         let kept: Option<Contacts> = (t.setup && !w.settings.lammps()).then(|| memory.clone());
         let p = &w.particles;
@@ -107,6 +131,7 @@ impl Op for Force {
             tag: &p.tag,
             period,
             body: &self.body,
+            frozen: &self.frozen,
         };
         let step = Advance { dt: t.dt, history: !t.setup };
         self.sweep.run(&self.list, &grains, &self.rules, &mut memory, step);
@@ -117,7 +142,7 @@ impl Op for Force {
                 *total += part;
             }
         }
-        w.contacts.insert(self.memory.clone(), kept.unwrap_or(memory));
+        w.contacts.insert(self.style.to_string(), kept.unwrap_or(memory));
         Ok(())
     }
 

@@ -69,7 +69,7 @@ fn what_is_not_there_is_refused_by_name_at_its_place() {
 #[test]
 fn unlike_models_need_a_line_of_their_own() {
     let tail = "tangential mindlin 1e6 1.0 0.5";
-    let mut d = Declared { cutoff: None, given: BTreeMap::new(), only: None, memory: String::new() };
+    let mut d = Declared::new("granular", None);
     d.given.insert((1, 1), read(&format!("hertz 1e6 0.5 {tail}")).unwrap());
     d.given.insert((2, 2), read(&format!("hertz 4e6 0.5 {tail} damping tsuji")).unwrap());
     assert!(d.covers(1, 2) && d.covers(2, 1));
