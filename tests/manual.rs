@@ -84,6 +84,7 @@ const CHANGED: &[(&str, &str, &str)] = &[
     // A flat scene is periodic along z.
     ("fix enforce2d", "dimension", "dimension 2"),
     ("fix enforce2d", "boundary", "boundary s s p"),
+    ("fix deform", "boundary", "boundary f s s"),
     ("fix enforce2d", "lattice", "lattice sq 0.001"),
     (
         "fix enforce2d",

@@ -169,6 +169,10 @@ impl Env for RunEnv<'_> {
     fn timed_out(&self) -> bool {
         self.w.settings.timed_out()
     }
+
+    fn control(&self, name: &str) -> Option<f64> {
+        self.w.controls.get(name).copied()
+    }
     fn clock(&self) -> Clock {
         clock(self.w)
     }
@@ -310,6 +314,10 @@ impl Env for DeckEnv<'_> {
 
     fn timed_out(&self) -> bool {
         self.w.settings.timed_out()
+    }
+
+    fn control(&self, name: &str) -> Option<f64> {
+        self.w.controls.get(name).copied()
     }
     fn clock(&self) -> Clock {
         clock(self.w)

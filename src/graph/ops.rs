@@ -3,8 +3,8 @@
 use crate::diag::{Code, Diagnostic, Result};
 use crate::par;
 use crate::plan::{Access, Op, Stage, Tick};
-use crate::world::World;
 use crate::world::columns::HEATFLOW;
+use crate::world::{Domain, Particles, World};
 
 /// Wraps, shrinks, checks for lost particles and tells lists to rebuild, at LAMMPS' reneighbour times.
 pub struct Reneighbor {
@@ -46,7 +46,7 @@ impl Op for Reneighbor {
             return Ok(());
         }
         if s.check {
-            let half = 0.5 * s.skin;
+            let half = 0.5 * (s.skin - corners_moved(w)).max(0.0);
             let moved = farthest(w, t)?;
             if moved <= half * half {
                 return Ok(());
@@ -56,6 +56,27 @@ impl Op for Reneighbor {
         }
         w.rebuild.builds += 1;
         rebuild(w, t, self.lost)
+    }
+}
+
+/// How far the two corners of the box have moved since the last rebuild, together.
+fn corners_moved(w: &World) -> f64 {
+    let (Some(domain), Some([lo, hi])) = (&w.domain, w.rebuild.corners) else { return 0.0 };
+    let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum::<f64>().sqrt();
+    apart(domain.lo, lo) + apart(domain.hi, hi)
+}
+
+/// Particles about to be wrapped into a growing box get the velocity of the image they become.
+fn carry(domain: &Domain, p: &mut Particles) {
+    let Some(flow) = domain.flow else { return };
+    for i in (0..p.x.len()).filter(|&i| p.mask[i] & flow.group.bit() != 0) {
+        for d in (0..3).filter(|&d| domain.boundary.periodic(d)) {
+            if p.x[i][d] < domain.lo[d] {
+                p.v[i][d] += flow.rate[d];
+            } else if p.x[i][d] >= domain.hi[d] {
+                p.v[i][d] -= flow.rate[d];
+            }
+        }
     }
 }
 
@@ -97,6 +118,7 @@ fn rebuild(w: &mut World, t: &Tick, policy: Lost) -> Result<()> {
     if let Some(bad) = (0..n).find(|&i| p.x[i].iter().any(|a| !a.is_finite())) {
         return Err(not_finite(w, bad, t));
     }
+    carry(domain, p);
     p.image.wrap(domain, &mut p.x);
     domain.shrink(&p.x);
     let domain = &*domain;
@@ -138,6 +160,7 @@ fn too_far(w: &World, lost: &[usize], t: &Tick) -> crate::diag::Diagnostics {
 /// Keeps the present positions; those of creation are kept already.
 fn hold(w: &mut World) {
     let (p, rebuild) = (&w.particles, &mut w.rebuild);
+    rebuild.corners = w.domain.as_ref().map(|d| [d.lo, d.hi]);
     rebuild.unmoved = p.x == p.x0;
     if rebuild.unmoved {
         rebuild.held = Vec::new();

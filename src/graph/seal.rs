@@ -83,6 +83,11 @@ impl<'a> Sealer<'a> {
         }
     }
 
+    /// Whether a fix changes the box during the run.
+    pub fn deforms(&self) -> bool {
+        self.graph.fixes.iter().any(|f| f.fix.deforms() != [false; 3])
+    }
+
     /// What follows belongs to the line at `span`.
     pub fn at(&mut self, span: Span) {
         self.span = span;

@@ -254,7 +254,7 @@ impl Thermo {
         let mut layout = self.layout.clone();
         layout.norm = self.normalized(s.world());
         let mut sources = self.sources.clone();
-        if self.built_in && box_changes(s.world()) {
+        if self.built_in && (s.deforms() || box_changes(s.world())) {
             layout.columns.extend(Column::keyword("vol"));
             sources.push(Source::Keyword("vol".into(), Span::default()));
         }

@@ -85,6 +85,10 @@ pub trait Env {
     fn answer(&self, _question: Question, _category: &str, _name: &str, span: Span) -> Result<bool> {
         fail(Code::UNKNOWN_NAME, span, "there is no scene here")
     }
+    /// What a fix has set an internal-style variable to in the run going on.
+    fn control(&self, _name: &str) -> Option<f64> {
+        None
+    }
     /// Whether the limit of `timer timeout` has passed.
     fn timed_out(&self) -> bool {
         false

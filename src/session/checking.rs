@@ -34,6 +34,7 @@ impl Session {
             self.check_integrators(span, &mut found);
             self.check_step(span, &mut found);
         }
+        self.check_box(&mut found);
         crate::graph::dynamic::check(&self.graph, &self.world, &mut found);
         let (errors, notes) = found.0.into_iter().partition(|d| d.severity == crate::diag::Severity::Error);
         for note in Vec::into_iter(notes) {
@@ -158,6 +159,18 @@ impl Session {
     }
 
     /// No integrator at all, and two on one particle.
+    /// A length of the box obeys one fix.
+    fn check_box(&self, found: &mut Diagnostics) {
+        let fixes = &self.graph.fixes;
+        for (k, a) in fixes.iter().enumerate() {
+            let same = |b: &&crate::graph::FixNode| (0..3).any(|d| a.fix.deforms()[d] && b.fix.deforms()[d]);
+            if let Some(b) = fixes[k + 1..].iter().find(same) {
+                let text = format!("fixes `{}` and `{}` both change the same length of the box", a.id, b.id);
+                found.push(Diagnostic::error(Code::CONFLICT, b.span, text).label(a.span, "the other one"));
+            }
+        }
+    }
+
     fn check_integrators(&self, span: Span, found: &mut Diagnostics) {
         let moving: Vec<_> = self.graph.fixes.iter().filter(|f| f.fix.integrates()).collect();
         if moving.is_empty() {

@@ -53,6 +53,7 @@ pub const LAMMPS_ONLY: &[&str] = &[
 pub fn variable_kinds(vars: &Vars) -> BTreeMap<String, Shape> {
     let shape = |n: &str| match vars.kind(n) {
         Some(k) if k.per_particle() => Shape { atom: Some(1), ..Shape::default() },
+        Some(Kind::Internal) => Shape { scalar: true, settable: true, ..Shape::default() },
         Some(Kind::Vector) => Shape { vector: Shape::OPEN, ..Shape::default() },
         _ => Shape { scalar: true, ..Shape::default() },
     };

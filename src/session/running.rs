@@ -200,6 +200,9 @@ impl Session {
         self.world.clock.running = true;
         let outcome = self.steps(&mut plan, unchanged);
         self.world.clock.running = false;
+        for (name, value) in std::mem::take(&mut self.world.controls) {
+            self.vars.set_internal(&name, value);
+        }
         // What is put back at the end of a run changes the scene again.
         self.world.parts.changed &= outcome.is_err();
         let finished = plan.finish(&mut self.world);

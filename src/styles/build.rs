@@ -57,6 +57,8 @@ pub struct Shape {
     pub array_extensive: bool,
     /// The values are new at multiples of this step only; 0 and 1: at every step.
     pub every: i64,
+    /// It is a variable that commands and fixes may set (style internal).
+    pub settable: bool,
     /// Its values number particles into chunks.
     pub chunks: Option<Chunking>,
 }

@@ -53,13 +53,25 @@ pub struct Domain {
     pub min_hi: [f64; 3],
     /// Whether the scene lies in the plane z = 0: particles see no images along z.
     pub flat: bool,
+    /// How the box grows, where particles that cross a face take part (`fix deform … remap v`).
+    #[serde(default)]
+    pub flow: Option<Flow>,
+}
+
+/// A growing box whose faces carry particles along.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Flow {
+    /// How fast each length grows [length/time].
+    pub rate: [f64; 3],
+    /// Whose velocities change.
+    pub group: super::GroupId,
 }
 
 impl Domain {
     /// A box between two corners with these faces.
     pub fn new(lo: [f64; 3], hi: [f64; 3], boundary: Boundary) -> Self {
         let small = [0, 1, 2].map(|d| 1e-4 * (hi[d] - lo[d]));
-        Self { lo, hi, boundary, small, min_lo: lo, min_hi: hi, flat: false }
+        Self { lo, hi, boundary, small, min_lo: lo, min_hi: hi, flat: false, flow: None }
     }
 
     /// Moves shrink-wrapped faces a little outside, so that particles on the faces as given are inside (LAMMPS).

@@ -76,6 +76,9 @@ pub struct World {
     pub tally: Tally,
     /// Small state of fixes that outlives a run, by `kind/ID`.
     pub memo: BTreeMap<String, Vec<f64>>,
+    /// What fixes have set internal-style variables to in the present run.
+    #[serde(skip)]
+    pub controls: BTreeMap<String, f64>,
     /// When neighbour lists were last rebuilt.
     pub rebuild: Rebuild,
     /// Bonds between particles by their ids.

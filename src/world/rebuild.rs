@@ -9,6 +9,9 @@ pub struct Rebuild {
     pub step: i64,
     /// Positions at the last rebuild [length]; read them by [`World::held`](super::World::held).
     pub held: Vec<[f64; 3]>,
+    /// Corners of the box at the last rebuild: lists lose their reach when it changes.
+    #[serde(default)]
+    pub corners: Option<[[f64; 3]; 2]>,
     /// Everybody was where it was created, and `held` is empty.
     pub unmoved: bool,
     /// Rebuilds in the present run, setup not counted.

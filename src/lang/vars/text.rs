@@ -61,7 +61,7 @@ impl Vars {
                 Some(own.or_else(|| std::env::var(key).ok()).unwrap_or_default())
             }
             Data::Lines(l) => Some(l.now().to_owned()),
-            Data::Number(v) => Some(value_text(*v)),
+            Data::Number(v) => Some(value_text(env.control(name).unwrap_or(*v))),
             Data::Formula(e) if variable.kind == Kind::Equal => {
                 let mut trail = Trail::default();
                 trail.enter(name, span)?;
@@ -135,7 +135,7 @@ impl Vars {
                 picked_particle(all, r, env)
             }
             Data::Atoms(file) => picked_particle(file.values(r.span, env)?, r, env),
-            Data::Number(v) if r.index.is_empty() => Ok(Value::Number(*v)),
+            Data::Number(v) if r.index.is_empty() => Ok(Value::Number(env.control(&r.name).unwrap_or(*v))),
             _ if !r.index.is_empty() => {
                 let style = variable.kind.name();
                 let message = format!("`{}` is of style {style} and has no elements", r.name);

@@ -5,6 +5,7 @@ use crate::math::vec3::{Vec3, add, sub};
 use crate::neigh::list::{Pair, difference};
 use crate::par;
 use crate::world::contacts::Contacts;
+use crate::world::domain::Flow;
 
 /// Among how many simultaneous contacts a force is shared out (Walayat et al., eq. 14 and 19, made
 /// momentum-conserving: every contact's force and its reaction are divided by the same N).
@@ -99,6 +100,8 @@ pub struct Grains<'a> {
     pub tag: &'a [u32],
     /// Edge lengths of the box; zero where it does not repeat.
     pub period: [f64; 3],
+    /// How the box grows, and groups by particle, where images move with it.
+    pub flow: Option<(Flow, &'a [u32])>,
     /// The solid each particle belongs to, `NO_BODY` for grains; may be empty where no rule asks.
     pub body: &'a [u32],
     /// Particles that nothing moves, of infinite mass to others; may be empty.
@@ -123,6 +126,17 @@ impl Grains<'_> {
 
     fn motion(&self, i: u32) -> Motion {
         Motion { velocity: self.v[i as usize], spin: self.omega[i as usize] }
+    }
+
+    /// The motion of the second particle's image, which a growing box carries along.
+    fn image_motion(&self, p: &Pair) -> Motion {
+        let mut motion = self.motion(p.j);
+        if let Some((flow, mask)) = &self.flow
+            && mask[p.j as usize] & flow.group.bit() != 0
+        {
+            (0..3).for_each(|d| motion.velocity[d] += f64::from(p.shift[d]) * flow.rate[d]);
+        }
+        motion
     }
 
     /// Whether the two touch, or would still hold together if they had touched (`gaps`: some law lets them).
@@ -209,7 +223,7 @@ impl Sweep {
                 let Some(rule) = rules.get(a, b) else { continue };
                 let Some(g) = grains.geometry(p, rule) else { continue };
                 let remembered = &mut history.data[k * width..][..width];
-                *w = rule.law.contact(&g, &grains.motion(p.i), &grains.motion(p.j), remembered, step);
+                *w = rule.law.contact(&g, &grains.motion(p.i), &grains.image_motion(p), remembered, step);
                 if *share != 1.0 {
                     *w = w.scaled(*share);
                 }

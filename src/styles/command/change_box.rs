@@ -6,6 +6,7 @@ use super::replicate::say_box;
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::{Args, Word};
+use crate::styles::compute::near::bonds_allow;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
 use crate::world::{Boundary, Domain, Face, GroupId};
 
@@ -150,6 +151,8 @@ fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span:
             }
         }
     }
+    let before = cx.world.domain()?.lengths();
+    bonds_allow(cx.world, [0, 1, 2].map(|d| before[d] != domain.lengths()[d])).map_err(|e| e.at(span))?;
     cx.say("Changing box ...");
     for domain in boxes {
         cx.world.domain = Some(domain);

@@ -15,7 +15,7 @@ mod ke;
 mod ke_atom;
 mod momentum;
 mod msd;
-mod near;
+pub mod near;
 mod origin;
 mod pe;
 mod pe_atom;
@@ -24,6 +24,7 @@ mod pressure;
 pub mod property_atom;
 mod property_local;
 mod reduce;
+mod slice;
 mod temp;
 mod temp_sphere;
 
@@ -130,6 +131,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &property_local::PropertyLocal,
     &reduce::Reduce,
     &reduce::ReduceRegion,
+    &slice::Slice,
     &temp::Temp,
     &temp_sphere::TempSphere,
 ];

@@ -1,5 +1,6 @@
 //! Pairs of particles within a distance of each other, and clusters of them.
 
+use crate::diag::{Code, Diagnostic, Result};
 use crate::neigh::list::{Pair, Reach, View, Wanted, pairs};
 use crate::world::World;
 
@@ -65,6 +66,31 @@ pub fn bonds(w: &World, mut f: impl FnMut(u32, u32)) {
             }
         }
     }
+}
+
+/// Refuses to change lengths of the box that bonds cross: those would keep the length they had.
+///
+/// # Errors
+/// The ids of two particles bonded across a periodic face of such a dimension.
+pub fn bonds_allow(w: &World, changes: [bool; 3]) -> Result<()> {
+    let (period, p) = (periods(w), &w.particles);
+    let dims: Vec<usize> = (0..3).filter(|&d| changes[d] && period[d] > 0.0).collect();
+    let mut crossing = None;
+    if !dims.is_empty() {
+        bonds(w, |i, j| {
+            let (a, b) = (p.x0[i as usize], p.x0[j as usize]);
+            if dims.iter().any(|&d| (a[d] - b[d]).abs() > 0.5 * period[d]) {
+                crossing = Some([p.tag[i as usize], p.tag[j as usize]]);
+            }
+        });
+    }
+    let Some([a, b]) = crossing else { return Ok(()) };
+    let text = format!(
+        "peridynamic bonds cross this periodic face (of particles {a} and {b}): its length cannot change"
+    );
+    Err(Diagnostic::error(Code::NOT_SUPPORTED, None, text)
+        .help("make the boundary f, or pull at particles (`fix move`, `velocity`) instead of the box")
+        .into())
 }
 
 #[cfg(test)]

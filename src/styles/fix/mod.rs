@@ -9,6 +9,8 @@ mod ave_histo;
 mod ave_time;
 mod aveforce;
 mod bins;
+mod controller;
+mod deform;
 mod drag;
 mod dt_reset;
 mod elapsed;
@@ -107,6 +109,11 @@ pub trait Fix: Send {
         false
     }
 
+    /// Which lengths of the box it changes during a run.
+    fn deforms(&self) -> [bool; 3] {
+        [false; 3]
+    }
+
     /// What becomes of it in a minimization; as in LAMMPS, only some that change forces act.
     fn minimizing(&self) -> Minimizing {
         Minimizing::Idle
@@ -141,6 +148,8 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &ave_histo::AveHistoWeight,
     &ave_time::AveTime,
     &aveforce::AveForce,
+    &controller::Controller,
+    &deform::Deform,
     &drag::Drag,
     &dt_reset::DtReset,
     &enforce2d::Enforce2d,

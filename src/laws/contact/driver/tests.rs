@@ -64,6 +64,7 @@ fn evaluate(s: &Scene, average: Average, curvature: Curvature) -> (Vec<Vec3>, Ve
         mass: &s.mass,
         kind: &s.kind,
         tag: &s.tag,
+        flow: None,
         period,
         body: &s.body,
         frozen: &[],

@@ -130,6 +130,7 @@ impl Op for Force {
             kind: &p.kind,
             tag: &p.tag,
             period,
+            flow: w.domain()?.flow.map(|flow| (flow, &p.mask[..])),
             body: &self.body,
             frozen: &self.frozen,
         };
