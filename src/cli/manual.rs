@@ -3,6 +3,7 @@
 use super::args::Usage;
 use super::pages;
 use crate::diag::nearest;
+use crate::styles::bond::BONDS;
 use crate::styles::command::COMMANDS;
 use crate::styles::compute::COMPUTES;
 use crate::styles::dump::DUMPS;
@@ -63,6 +64,7 @@ pub fn pages() -> Vec<Page> {
         of("command", COMMANDS),
         own("command", pages::COMMANDS),
         of("pair_style", PAIRS),
+        of("bond_style", BONDS),
         of("fix", FIXES),
         of("compute", COMPUTES),
         of("dump", DUMPS),

@@ -1,7 +1,7 @@
 //! Lines that declare become nodes: pair styles, fixes, computes, dumps, thermo.
 
-use super::elsewhere;
 use super::node::{ComputeNode, DumpNode, FixNode, Graph, PairNode};
+use super::{bonds, elsewhere};
 use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use crate::lang::{Args, Command};
 use crate::styles::compute::COMPUTES;
@@ -12,7 +12,9 @@ use crate::styles::{BuildCx, Style, Use, UseKind};
 use crate::world::{GroupId, Said, World};
 
 /// The commands that declare.
-pub const DECLARATIONS: [&str; 18] = [
+pub const DECLARATIONS: [&str; 20] = [
+    "bond_style",
+    "bond_coeff",
     "pair_style",
     "pair_coeff",
     "pair_modify",
@@ -70,6 +72,8 @@ pub struct Declared {
 pub fn declare(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) -> Result<Declared> {
     let mut args = Args::new(cmd);
     let declared = match cmd.name.text.as_str() {
+        "bond_style" => bonds::bond_style(graph, w, &mut args, cx),
+        "bond_coeff" => bonds::bond_coeff(graph, w, &mut args, cx),
         "pair_style" => pair_style(graph, w, &mut args, cx),
         "pair_coeff" => pair_coeff(graph, w, &mut args, cx),
         "pair_modify" => fail(
@@ -126,6 +130,11 @@ fn keep_line(graph: &mut Graph, w: &World, cmd: &Command) {
                 node.lines.push(Said { words, lattice: w.lattice.clone() });
             }
         }
+        "bond_style" | "bond_coeff" => {
+            if let Some(node) = &mut graph.bond {
+                node.lines.push(Said { words, lattice: w.lattice.clone() });
+            }
+        }
         "fix" | "fix_modify" => {
             if let Some(node) = graph.fixes.iter_mut().find(|f| f.id == id) {
                 node.lines.push(words.join(" "));
@@ -170,7 +179,11 @@ fn provides(kind: UseKind, id: &str) -> Declared {
     Declared { provides: Some(Use { kind, name: id.to_string() }) }
 }
 
-fn needs_box(w: &World, args: &Args) -> Result<()> {
+/// Refuses a line that needs a box before there is one.
+///
+/// # Errors
+/// There is no box.
+pub fn needs_box(w: &World, args: &Args) -> Result<()> {
     if w.domain.is_some() {
         return Ok(());
     }

@@ -253,7 +253,7 @@ impl DeckEnv<'_> {
 impl Env for DeckEnv<'_> {
     fn keyword(&mut self, name: &str, vars: &Vars) -> Option<Result<Value>> {
         let (name, _, needs) = keywords::find(name)?;
-        let particles = ["atoms", "density", "fmax", "fnorm"].contains(name);
+        let particles = ["atoms", "bonds", "density", "fmax", "fnorm"].contains(name);
         // A deck may loop until a time is reached; no run of a check ever reaches it.
         let clock = ["step", "elapsed", "elaplong", "time", "dt"].contains(name);
         if self.checking && (!needs.is_empty() || particles || clock) {

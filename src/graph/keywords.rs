@@ -54,11 +54,11 @@ pub const KEYWORDS: &[Row] = &[
     ("evdwl", false, &[Pair]),
     ("ecoul", false, &[]),
     ("epair", false, &[Pair]),
-    ("ebond", false, &[]),
+    ("ebond", false, &[Pair]),
     ("eangle", false, &[]),
     ("edihed", false, &[]),
     ("eimp", false, &[]),
-    ("emol", false, &[]),
+    ("emol", false, &[Pair]),
     ("elong", false, &[]),
     ("etail", false, &[]),
     ("enthalpy", false, &[Pe, Temp, Press]),
@@ -118,7 +118,7 @@ pub fn find(name: &str) -> Option<&'static Row> {
     KEYWORDS.iter().find(|(n, ..)| *n == name)
 }
 
-/// A keyword's present value; zero for what no scene here has (Coulomb, bonds).
+/// A keyword's present value; zero for what no scene here has (Coulomb, angles).
 pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
     let n = w.n() as f64;
     let per_atom = if s.norm && n > 0.0 { 1.0 / n } else { 1.0 };
@@ -137,6 +137,8 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
         "ke" => ke(),
         "etotal" | "econserve" => pe() + ke(),
         "evdwl" | "epair" => w.tally.pair * per_atom,
+        "ebond" | "emol" => w.tally.bond * per_atom,
+        "bonds" => w.bonds.len() as f64,
         "enthalpy" => {
             pe() + ke() + scalar(s.press) * volume(w) / w.settings.units.constants().nktv2p * per_atom
         }

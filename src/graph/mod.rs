@@ -1,6 +1,7 @@
 //! Commands as a graph of declarations, acts and runs.
 
 pub mod answers;
+pub mod bonds;
 pub mod build;
 pub mod dynamic;
 mod elsewhere;

@@ -4,6 +4,7 @@ use super::restarts::Restarts;
 use super::thermo::Thermo;
 use crate::diag::{FileId, Span};
 use crate::lang::{RefKind, ValueRef};
+use crate::styles::bond::BondForce;
 use crate::styles::{Compute, Dump, Fix, Names, Pair, Shape, Use, UseKind};
 use crate::world::{GroupId, Said};
 use std::collections::BTreeMap;
@@ -45,6 +46,16 @@ pub struct PairNode {
     /// The style with its coefficients.
     pub pair: Box<dyn Pair>,
     /// The `pair_style` line.
+    pub span: Span,
+    /// All its lines, for restart files.
+    pub lines: Vec<Said>,
+}
+
+/// The bond style in force.
+pub struct BondNode {
+    /// The style with its coefficients.
+    pub force: Box<dyn BondForce>,
+    /// The `bond_style` line.
     pub span: Span,
     /// All its lines, for restart files.
     pub lines: Vec<Said>,
@@ -99,6 +110,8 @@ pub struct DumpNode {
 pub struct Graph {
     /// The pair style.
     pub pair: Option<PairNode>,
+    /// The bond style.
+    pub bond: Option<BondNode>,
     /// Fixes in order of definition.
     pub fixes: Vec<FixNode>,
     /// Computes in order of definition.
@@ -125,6 +138,12 @@ fn place(span: Span) -> (FileId, u32, u32) {
 impl Clone for PairNode {
     fn clone(&self) -> Self {
         Self { pair: self.pair.boxed(), span: self.span, lines: self.lines.clone() }
+    }
+}
+
+impl Clone for BondNode {
+    fn clone(&self) -> Self {
+        Self { force: self.force.boxed(), span: self.span, lines: self.lines.clone() }
     }
 }
 

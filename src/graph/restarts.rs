@@ -81,7 +81,7 @@ impl Restarts {
         let each = self.each.clone().map(|(n, p)| (n, Names::Each(p)));
         let turn = self.turn.clone().map(|(n, files)| (n, Names::Turn(files)));
         let op = |(every, names)| -> Box<dyn Op> {
-            Box::new(Write { every, names, pair: graph.pair_lines().to_vec(), declared: graph.declared() })
+            Box::new(Write { every, names, pair: graph.force_lines(), declared: graph.declared() })
         };
         each.into_iter().chain(turn).map(op).collect()
     }
@@ -172,15 +172,17 @@ pub fn claimable(name: &str) -> bool {
 }
 
 impl Graph {
-    /// The lines of the pair style in force.
-    pub fn pair_lines(&self) -> &[Said] {
-        self.pair.as_ref().map_or(&[], |p| &p.lines)
+    /// The lines of the pair style and the bond style in force.
+    pub fn force_lines(&self) -> Vec<Said> {
+        let pair = self.pair.iter().flat_map(|p| &p.lines);
+        pair.chain(self.bond.iter().flat_map(|b| &b.lines)).cloned().collect()
     }
 
     /// All lines in force that decide about forces and motion: those of the pair style, of fixes, and of the variables
     /// and computes they use.
     pub fn declared(&self) -> Vec<String> {
-        let pair = self.pair_lines().iter().map(|l| l.words.join(" "));
+        let lines = self.force_lines();
+        let pair = lines.iter().map(|l| l.words.join(" "));
         let fixes = self.fixes.iter().flat_map(|f| f.lines.iter().cloned());
         pair.chain(fixes).chain(self.behind_fixes()).collect()
     }

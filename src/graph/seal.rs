@@ -9,6 +9,7 @@ use crate::diag::{Code, Result, Span, fail};
 use crate::lang::{Dep, RefKind, Value, ValueRef, Vars};
 use crate::out::log::Log;
 use crate::plan::{Access, LeftOut, Op, OpClass, Placed, Stage, StepPlan, Tick, When};
+use crate::styles::bond::BondForce;
 use crate::styles::{Reading, SealCx, Shape, Text, Wants};
 use crate::world::{SlotId, World};
 use std::collections::BTreeMap;
@@ -347,6 +348,10 @@ impl SealCx for Sealer<'_> {
             Some(node) => node.compute.refresh(self, stage, when),
             None => fail(Code::UNKNOWN_NAME, self.span, format!("there is no compute `{id}`")),
         }
+    }
+
+    fn bonds(&self) -> Option<Box<dyn BondForce>> {
+        self.graph.bond.as_ref().map(|b| b.force.boxed())
     }
 
     fn ask_energy(&mut self, when: &When) {

@@ -29,6 +29,7 @@ impl Session {
     pub(super) fn check_run(&mut self, span: Span, moves: bool) -> Result<()> {
         let mut found = Diagnostics::default();
         self.check_pair(span, &mut found);
+        crate::graph::bonds::check(&self.graph, &self.world, span, &mut found);
         self.check_masses(span, &mut found);
         if moves {
             self.check_integrators(span, &mut found);

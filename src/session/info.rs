@@ -5,6 +5,7 @@ use crate::diag::{Code, Diagnostic, Result};
 use crate::graph::answers::SESSION_COMMANDS;
 use crate::graph::build::DECLARATIONS;
 use crate::lang::{Args, Word};
+use crate::styles::bond::BONDS;
 use crate::styles::command::COMMANDS;
 use crate::styles::compute::COMPUTES;
 use crate::styles::dump::DUMPS;
@@ -245,7 +246,7 @@ fn category(word: &Word) -> Result<&'static str> {
     .into())
 }
 
-const STYLES: [&str; 7] = ["all", "atom", "command", "compute", "dump", "fix", "pair"];
+const STYLES: [&str; 8] = ["all", "atom", "bond", "command", "compute", "dump", "fix", "pair"];
 
 /// The category of styles that may follow.
 fn styles(args: &mut Args) -> &'static str {
@@ -256,12 +257,13 @@ fn styles(args: &mut Args) -> &'static str {
 }
 
 fn list_of_styles(which: &str) -> String {
-    let table: [(&str, Vec<&str>); 6] = [
+    let table: [(&str, Vec<&str>); 7] = [
         ("atom", vec!["atomic", "bond", "bpm/sphere", "hybrid", "molecular", "peri", "sphere"]),
         ("command", COMMANDS.iter().map(|s| s.name()).chain(DECLARATIONS).chain(SESSION_COMMANDS).collect()),
         ("compute", COMPUTES.iter().map(|s| s.name()).collect()),
         ("dump", DUMPS.iter().map(|s| s.name()).collect()),
         ("fix", FIXES.iter().map(|s| s.name()).collect()),
+        ("bond", BONDS.iter().map(|s| s.name()).collect()),
         ("pair", PAIRS.iter().map(|s| s.name()).collect()),
     ];
     let mut text = "\nStyles information:\n".to_owned();

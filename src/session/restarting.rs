@@ -36,13 +36,13 @@ impl Session {
         self.world.spread_type_masses();
         let standing = self.ran && !self.world.parts.changed;
         let path = name.at(self.world.clock.step);
-        let (pair, declared) = (self.graph.pair_lines(), self.graph.declared());
-        save(&path, &self.world, self.ran, standing, pair, &declared).map_err(|e| e.at(word.span))
+        let (pair, declared) = (self.graph.force_lines(), self.graph.declared());
+        save(&path, &self.world, self.ran, standing, &pair, &declared).map_err(|e| e.at(word.span))
     }
 
     /// In check mode: files that a line would have written, for the lines that read them.
     pub(super) fn promise_restart(&mut self, name: String) {
-        let scene = Promise::Scene(Arc::new(self.world.clone()), self.graph.pair_lines().to_vec());
+        let scene = Promise::Scene(Arc::new(self.world.clone()), self.graph.force_lines());
         self.world.parts.promised.insert(name, scene);
     }
 
@@ -158,7 +158,7 @@ impl Session {
     /// Says the lines of the stored pair style again, each with the lattice that was in force.
     fn replay(&mut self, pair: &[Said], span: Span) -> Result<()> {
         let lattice = self.world.lattice.clone();
-        self.graph.pair = None;
+        (self.graph.pair, self.graph.bond) = (None, None);
         for said in pair {
             self.world.lattice = said.lattice.clone();
             let mut words = said.words.iter().map(|w| Word::new(w.as_str(), span));
@@ -183,6 +183,9 @@ impl Session {
         }
         if let Some(node) = &self.graph.pair {
             log.line(&format!("  restoring pair style {} from restart", node.pair.name()))?;
+        }
+        if let Some(node) = &self.graph.bond {
+            log.line(&format!("  restoring bond style {} from restart", node.force.name()))?;
         }
         log.line(&format!("  {} atoms at step {}", w.n(), w.clock.step))
     }

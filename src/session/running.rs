@@ -146,6 +146,11 @@ impl Session {
             let ops = node.pair.ops(&mut s)?;
             s.add(ops, node.span);
         }
+        if let Some(node) = &self.graph.bond {
+            s.at(node.span);
+            let ops = node.force.ops(&mut s)?;
+            s.add(ops, node.span);
+        }
         s.at(span);
         crate::graph::dynamic::seal(&mut s)?;
         let acts = |f: &&FixNode| !minimizing || f.fix.minimizing() == Minimizing::Acts;

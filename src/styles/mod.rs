@@ -3,6 +3,7 @@
 //! A style is one file and one line in its folder's table. It parses its own words, says what it needs,
 //! and hands ops to the step plan when a run is sealed.
 
+pub mod bond;
 pub mod build;
 pub mod command;
 pub mod compute;

@@ -1,5 +1,6 @@
 //! What styles may ask for while a run is sealed into a plan.
 
+use super::bond::BondForce;
 use crate::diag::{Result, Span};
 use crate::lang::{Param, ValueRef};
 use crate::out::log::Log;
@@ -157,6 +158,10 @@ pub trait SealCx {
     /// An unknown compute.
     fn refresh(&mut self, _id: &str, _stage: Stage, _when: &When) -> Result<Option<Box<dyn Op>>> {
         Ok(None)
+    }
+    /// The bond style in force.
+    fn bonds(&self) -> Option<Box<dyn BondForce>> {
+        None
     }
     /// Energies must be tallied whenever `when` fires.
     fn ask_energy(&mut self, when: &When);

@@ -11,9 +11,14 @@ pub struct Allowed<'a> {
 }
 
 impl<'a> Allowed<'a> {
-    /// Of a world.
+    /// Of a world, bonds included.
     pub fn new(w: &'a World) -> Self {
         Self { settings: &w.settings.neighbor, particles: &w.particles, barred: w.bonds.barred() }
+    }
+
+    /// Of `neigh_modify exclude` alone.
+    pub fn excluded(w: &'a World) -> Self {
+        Self { settings: &w.settings.neighbor, particles: &w.particles, barred: vec![] }
     }
 
     /// Whether pair forces act between these two.

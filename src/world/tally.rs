@@ -16,8 +16,14 @@ pub struct Tally {
     /// Virial of fixes that were told to add theirs (`fix_modify ID virial yes`).
     #[serde(default)]
     pub fixes: [f64; 6],
-    /// Energy per particle; empty when not asked for.
+    /// Energy per particle of all pairs; empty when not asked for.
     pub atom: Vec<f64>,
+    /// Energy of all bonds (LAMMPS' ebond).
+    pub bond: f64,
+    /// Virial of all bonds: xx yy zz xy xz yz.
+    pub bond_virial: [f64; 6],
+    /// Energy per particle of its bonds; empty when not asked for or where there are none.
+    pub bond_atom: Vec<f64>,
 }
 
 impl Tally {
@@ -29,6 +35,8 @@ impl Tally {
         self.pair = 0.0;
         self.virial = [0.0; 6];
         self.fixes = [0.0; 6];
+        (self.bond, self.bond_virial) = (0.0, [0.0; 6]);
+        self.bond_atom.clear();
         self.atom.clear();
         if atoms {
             self.atom.resize(n, 0.0);

@@ -7,9 +7,11 @@ mod change_box;
 mod comm_modify;
 pub(super) mod common;
 mod create_atoms;
+mod create_bonds;
 mod create_box;
 pub mod data;
 mod delete_atoms;
+mod delete_bonds;
 mod dimension;
 mod displace_atoms;
 mod group;
@@ -30,6 +32,7 @@ mod replicate;
 mod reset_atoms;
 mod reset_timestep;
 mod set;
+mod special_bonds;
 #[cfg(test)]
 mod testing;
 mod timestep;
@@ -108,4 +111,7 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &min_modify::MinModify,
     &neigh_modify::NeighModify,
     &write_data::WriteData,
+    &create_bonds::CreateBonds,
+    &delete_bonds::DeleteBonds,
+    &special_bonds::SpecialBonds,
 ];

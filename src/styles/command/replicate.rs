@@ -115,6 +115,9 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
     }
     cx.say("  1 by 1 by 1 MPI processor grid");
     cx.say(format!("  {} atoms", cx.world.n()));
+    if !cx.world.bonds.is_empty() {
+        cx.say(format!("  {} bonds", cx.world.bonds.len()));
+    }
     Ok(())
 }
 

@@ -1,5 +1,6 @@
 //! Computes: quantities read from the world, never changing it.
 
+mod bond_local;
 pub(super) mod chunk;
 mod cluster_atom;
 mod com;
@@ -102,6 +103,7 @@ pub trait Compute: Send {
 /// Every compute style.
 #[rustfmt::skip]
 pub const COMPUTES: &[&dyn ComputeStyle] = &[
+    &bond_local::BondLocal,
     &chunk::atom::ChunkAtom,
     &chunk::com::ComChunk,
     &chunk::property::PropertyChunk,
@@ -136,18 +138,26 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &temp_sphere::TempSphere,
 ];
 
-/// Keywords of `pe` and `pe/atom`: whether pairs and fixes count. Terms of styles that perigrain does not have
-/// are known and contribute nothing.
-fn energy_terms(args: &mut Args) -> Result<(bool, bool)> {
+/// Which terms of the potential energy count.
+#[derive(Clone, Copy)]
+struct Terms {
+    pair: bool,
+    bond: bool,
+    fix: bool,
+}
+
+/// Keywords of `pe` and `pe/atom`. Terms of styles that perigrain does not have are known and contribute nothing.
+fn energy_terms(args: &mut Args) -> Result<Terms> {
     let all = args.is_empty();
-    let (mut pair, mut fix) = (all, all);
+    let mut terms = Terms { pair: all, bond: all, fix: all };
     while !args.is_empty() {
-        let terms = ["pair", "bond", "angle", "dihedral", "improper", "kspace", "fix"];
-        match args.choice("term of the potential energy", &terms)? {
-            "pair" => pair = true,
-            "fix" => fix = true,
+        let known = ["pair", "bond", "angle", "dihedral", "improper", "kspace", "fix"];
+        match args.choice("term of the potential energy", &known)? {
+            "pair" => terms.pair = true,
+            "bond" => terms.bond = true,
+            "fix" => terms.fix = true,
             _ => {}
         }
     }
-    Ok((pair, fix))
+    Ok(terms)
 }

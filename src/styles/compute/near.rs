@@ -2,7 +2,8 @@
 
 use crate::diag::{Code, Diagnostic, Result};
 use crate::neigh::list::{Pair, Reach, View, Wanted, pairs};
-use crate::world::World;
+use crate::world::index::Index;
+use crate::world::{Bond, GroupId, World};
 
 /// Edge lengths of the box, zero where it does not repeat.
 pub fn periods(w: &World) -> [f64; 3] {
@@ -54,6 +55,16 @@ impl<'a> Clusters<'a> {
     pub fn name(&mut self, i: usize) -> f64 {
         f64::from(self.tag[self.root(i as u32) as usize])
     }
+}
+
+/// The bonds with both ends in a group, in the order of LAMMPS' lists.
+pub fn bonds_within(w: &World, group: GroupId) -> Vec<Bond> {
+    let p = &w.particles;
+    let index = Index::new(&p.tag);
+    let has = |tag: u32| index.find(tag, &p.tag).is_some_and(|i| p.mask[i] & group.bit() != 0);
+    let mut list = w.bonds.by_owner(&p.tag);
+    list.retain(|b| b.kind != 0 && b.ends.iter().all(|t| has(*t)));
+    list
 }
 
 /// Calls `f(i, j)` for every unbroken peridynamic bond, `i` < `j`.

@@ -1,6 +1,6 @@
 //! compute pe: potential energy.
 
-use super::{Compute, ComputeStyle, energy_terms};
+use super::{Compute, ComputeStyle, Terms, energy_terms};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
 use crate::plan::{Op, Stage, When};
@@ -19,7 +19,7 @@ impl Style for Pe {
         Doc {
             syntax: "compute ID all pe [pair fix bond angle dihedral improper kspace …]",
             summary: "Potential energy of the whole scene.",
-            text: "Scalar (extensive), in energy units: what pair styles have tallied (`pair`) and the energies of \
+            text: "Scalar (extensive), in energy units: what pair styles have tallied (`pair`), bonds (`bond`) and the energies of \
                    fixes with `fix_modify ID energy yes` (`fix`). Without keywords all terms count, with keywords only \
                    those named; terms that no style of the scene has are 0. For peridynamic particles in LAMMPS' \
                    convention it is a sum of energy densities.",
@@ -33,16 +33,15 @@ impl ComputeStyle for Pe {
         if cx.group != GroupId::ALL {
             return fail(Code::BAD_VALUE, cx.span, "compute pe must use the group `all`");
         }
-        let (pair, fix) = energy_terms(args)?;
-        Ok(Box::new(Declared { id: cx.id.to_string(), pair, fix }))
+        let terms = energy_terms(args)?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), terms }))
     }
 }
 
 #[derive(Clone)]
 struct Declared {
     id: String,
-    pair: bool,
-    fix: bool,
+    terms: Terms,
 }
 
 impl Compute for Declared {
@@ -51,15 +50,15 @@ impl Compute for Declared {
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let pair = self.pair;
-        if pair {
+        let Terms { pair, bond, fix } = self.terms;
+        if pair || bond {
             cx.ask_energy(when);
         }
-        let names = if self.fix { cx.energy_fixes() } else { vec![] };
+        let names = if fix { cx.energy_fixes() } else { vec![] };
         let fixes: Vec<SlotId> = names.iter().map(|n| cx.slot(n)).collect();
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "tally", move |w, t, out| {
             let mut energy = 0.0;
-            if pair {
+            if pair || bond {
                 match w.tally.step {
                     Some(step) if step != t.step => {
                         return fail(
@@ -68,7 +67,10 @@ impl Compute for Declared {
                             format!("the energy is known for step {step}, not for step {}", t.step),
                         );
                     }
-                    _ => energy += w.tally.pair,
+                    _ => {
+                        energy += if pair { w.tally.pair } else { 0.0 };
+                        energy += if bond { w.tally.bond } else { 0.0 };
+                    }
                 }
             }
             for &f in &fixes {

@@ -1,6 +1,6 @@
 //! compute pe/atom: potential energy of each particle.
 
-use super::{Compute, ComputeStyle, energy_terms};
+use super::{Compute, ComputeStyle, Terms, energy_terms};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
 use crate::plan::{Op, Stage, When};
@@ -29,8 +29,8 @@ impl Style for PeAtom {
 
 impl ComputeStyle for PeAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let (pair, _) = energy_terms(args)?;
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, pair }))
+        let terms = energy_terms(args)?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, terms }))
     }
 }
 
@@ -38,7 +38,7 @@ impl ComputeStyle for PeAtom {
 struct Declared {
     id: String,
     group: GroupId,
-    pair: bool,
+    terms: Terms,
 }
 
 impl Compute for Declared {
@@ -47,13 +47,13 @@ impl Compute for Declared {
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let (group, pair) = (self.group, self.pair);
-        if pair {
+        let (group, Terms { pair, bond, .. }) = (self.group, self.terms);
+        if pair || bond {
             cx.ask_atom_energy(when);
         }
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "tally mask", move |w, t, out| {
             let tally = &w.tally;
-            if pair
+            if (pair || bond)
                 && (tally.step.is_some_and(|s| s != t.step) || (tally.step.is_some() && !tally.with_atoms))
             {
                 return fail(
@@ -62,14 +62,10 @@ impl Compute for Declared {
                     format!("energies per particle are not known at step {}", t.step),
                 );
             }
-            per_particle(
-                w,
-                group,
-                out,
-                |i| {
-                    if pair { tally.atom.get(i).copied().unwrap_or(0.0) } else { 0.0 }
-                },
-            );
+            let of = |yes: bool, list: &[f64], i: usize| {
+                if yes { list.get(i).copied().unwrap_or(0.0) } else { 0.0 }
+            };
+            per_particle(w, group, out, |i| of(pair, &tally.atom, i) + of(bond, &tally.bond_atom, i));
             Ok(())
         }))
     }

@@ -23,7 +23,7 @@ impl Style for Pressure {
             syntax: "compute ID all pressure temp-ID [ke pair fix virial …]",
             summary: "Pressure of the whole box and its tensor.",
             text: "Scalar (intensive), in pressure units: P = (dof k_B T + W_xx + W_yy + W_zz) / (3 V), with T and dof of \
-                   compute temp-ID, the virial W of all pairs, and the volume V of the present box (area and 2 instead \
+                   compute temp-ID, the virial W of all pairs and bonds, and the volume V of the present box (area and 2 instead \
                    of 3 in two dimensions). Vector of 6: xx yy zz xy xz yz of (Σ m v_a v_b + W_ab) / V. Without \
                    keywords all terms count; `ke`, `pair` … choose some, `virial` is all but `ke`; terms that no style \
                    of the scene has are 0; `fix` is what `fix_modify ID virial yes` adds. `NULL` for temp-ID where `ke` is not wanted. \
@@ -39,13 +39,15 @@ impl ComputeStyle for Pressure {
             return fail(Code::BAD_VALUE, cx.span, "compute pressure must use the group `all`");
         }
         let temp = args.expect("the ID of a temperature compute, or NULL")?;
-        let (mut ke, mut pair, mut fix) = (args.is_empty(), args.is_empty(), args.is_empty());
+        let (mut ke, all) = (args.is_empty(), args.is_empty());
+        let mut parts = Parts { pair: all, bond: all, fix: all };
         while let Some(word) = args.peek() {
             match args.choice("keyword of compute pressure", KEYWORDS)? {
                 "ke" => ke = true,
-                "pair" => pair = true,
-                "fix" => fix = true,
-                "virial" => (pair, fix) = (true, true),
+                "pair" => parts.pair = true,
+                "bond" => parts.bond = true,
+                "fix" => parts.fix = true,
+                "virial" => parts = Parts { pair: true, bond: true, fix: true },
                 "pair/hybrid" => {
                     return fail(
                         Code::NOT_SUPPORTED,
@@ -57,7 +59,7 @@ impl ComputeStyle for Pressure {
             }
         }
         let temperature = if ke { Some(temperature(temp, cx)?) } else { None };
-        Ok(Box::new(Declared { id: cx.id.to_string(), temperature, pair, fix }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), temperature, parts }))
     }
 }
 
@@ -85,8 +87,21 @@ fn temperature(word: &Word, cx: &BuildCx) -> Result<ValueRef> {
 struct Declared {
     id: String,
     temperature: Option<ValueRef>,
+    parts: Parts,
+}
+
+/// Which parts of the virial count.
+#[derive(Clone, Copy)]
+struct Parts {
     pair: bool,
+    bond: bool,
     fix: bool,
+}
+
+impl Parts {
+    fn any(self) -> bool {
+        self.pair || self.bond || self.fix
+    }
 }
 
 impl Compute for Declared {
@@ -95,8 +110,8 @@ impl Compute for Declared {
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let (pair, fix) = (self.pair, self.fix);
-        if pair || fix {
+        let parts = self.parts;
+        if parts.any() {
             cx.ask_virial(when);
         }
         let kinetic = match &self.temperature {
@@ -104,7 +119,7 @@ impl Compute for Declared {
             None => None,
         };
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "tally box", move |w, t, out| {
-            let virial = if pair || fix { virial(w, t.step, pair, fix)? } else { [0.0; 6] };
+            let virial = if parts.any() { virial(w, t.step, parts)? } else { [0.0; 6] };
             let (trace, tensor) = match &kinetic {
                 Some((reading, r)) => kinetic_part(w, reading, r)?,
                 None => (0.0, [0.0; 6]),
@@ -135,14 +150,15 @@ impl Compute for Declared {
     }
 }
 
-fn virial(w: &World, step: i64, pair: bool, fix: bool) -> Result<[f64; 6]> {
+fn virial(w: &World, step: i64, parts: Parts) -> Result<[f64; 6]> {
     let tally = &w.tally;
     let part = |yes: bool, v: [f64; 6]| if yes { v } else { [0.0; 6] };
     match tally.step {
         None => Ok([0.0; 6]),
         Some(s) if s == step && tally.with_virial => {
-            let (pairs, fixes) = (part(pair, tally.virial), part(fix, tally.fixes));
-            Ok(std::array::from_fn(|k| pairs[k] + fixes[k]))
+            let (pairs, bonds) = (part(parts.pair, tally.virial), part(parts.bond, tally.bond_virial));
+            let fixes = part(parts.fix, tally.fixes);
+            Ok(std::array::from_fn(|k| pairs[k] + bonds[k] + fixes[k]))
         }
         Some(_) => fail(Code::WRONG_ORDER, None, format!("the virial is not known at step {step}")),
     }

@@ -1,6 +1,6 @@
 //! compute property/local: which particles touch, and which are bonded.
 
-use super::near::{bonds, within};
+use super::near::{bonds, bonds_within, within};
 use super::{Compute, ComputeStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Word};
@@ -24,8 +24,9 @@ impl Style for PropertyLocal {
             summary: "Ids and types of the two ends of every contact, or of every bond.",
             text: "Local vector for one attribute, array for several; a row for each pair with both ends in the group, in the \
                    order of their ids. `patom1 patom2 ptype1 ptype2`: ids and types of spheres that touch, with `cutoff \
-                   radius` (closer than the sum of their radii). `batom1 batom2`: ids of the ends of every unbroken \
-                   peridynamic bond, `btype`: 1; in LAMMPS these are the bonds of molecules. Attributes of pairs and of bonds \
+                   radius` (closer than the sum of their radii). `batom1 batom2 btype`: ids of the ends and type of every \
+                   bond, in the order of the first one's place in storage; without an atom style that has bonds, of every unbroken \
+                   peridynamic bond, whose type is 1 (in LAMMPS these have no such list). Attributes of pairs and of bonds \
                    do not mix. LAMMPS' `cutoff type`, `natom1 …` (its neighbour lists, with their skin) and those of angles, \
                    dihedrals and impropers are refused. `dump local` writes them, `compute reduce … inputs local` adds \
                    them up.",
@@ -40,24 +41,30 @@ enum Of {
     Bond,
 }
 
-type Getter = fn(&World, u32, u32) -> f64;
-
-fn tag(w: &World, i: u32) -> f64 {
-    f64::from(w.particles.tag[i as usize])
+/// A contact or bond: ids and types of the ends, type of the bond.
+struct Row {
+    tags: [u32; 2],
+    kinds: [u16; 2],
+    bond: i32,
 }
 
-fn kind(w: &World, i: u32) -> f64 {
-    f64::from(w.particles.kind[i as usize])
+impl Row {
+    fn of(w: &World, i: u32, j: u32) -> Self {
+        let (p, ends) = (&w.particles, [i as usize, j as usize]);
+        Row { tags: ends.map(|i| p.tag[i]), kinds: ends.map(|i| p.kind[i]), bond: 1 }
+    }
 }
+
+type Getter = fn(&Row) -> f64;
 
 const ATTRIBUTES: &[(&str, Of, Getter)] = &[
-    ("patom1", Of::Contact, |w, i, _| tag(w, i)),
-    ("patom2", Of::Contact, |w, _, j| tag(w, j)),
-    ("ptype1", Of::Contact, |w, i, _| kind(w, i)),
-    ("ptype2", Of::Contact, |w, _, j| kind(w, j)),
-    ("batom1", Of::Bond, |w, i, _| tag(w, i)),
-    ("batom2", Of::Bond, |w, _, j| tag(w, j)),
-    ("btype", Of::Bond, |_, _, _| 1.0),
+    ("patom1", Of::Contact, |r| f64::from(r.tags[0])),
+    ("patom2", Of::Contact, |r| f64::from(r.tags[1])),
+    ("ptype1", Of::Contact, |r| f64::from(r.kinds[0])),
+    ("ptype2", Of::Contact, |r| f64::from(r.kinds[1])),
+    ("batom1", Of::Bond, |r| f64::from(r.tags[0])),
+    ("batom2", Of::Bond, |r| f64::from(r.tags[1])),
+    ("btype", Of::Bond, |r| f64::from(r.bond)),
 ];
 
 /// LAMMPS' attributes that perigrain does not have.
@@ -97,7 +104,8 @@ impl ComputeStyle for PropertyLocal {
         }
         args.finish()?;
         let style = cx.world.particles.style;
-        let (there, need) = if of == Of::Bond { (style.peri, "peri") } else { (style.sphere, "sphere") };
+        let (there, need) =
+            if of == Of::Bond { (style.peri || style.bonded, "bond") } else { (style.sphere, "sphere") };
         if !there {
             let text = format!("these attributes need `atom_style {need}`");
             return fail(Code::INCOMPLETE, cx.span, text);
@@ -143,22 +151,29 @@ impl Compute for Declared {
         let me = self.clone();
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "x radius mask families", move |w, _, out| {
             let has = |i: usize| w.particles.mask[i] & me.group.bit() != 0;
-            let mut pairs: Vec<(u32, u32)> = vec![];
+            let mut rows: Vec<Row> = vec![];
             match me.of {
                 Of::Contact => {
                     let found = within(w, Reach::Touch, &|i, j| has(i) && has(j));
-                    pairs.extend(found.iter().map(|p| (p.i, p.j)));
+                    rows.extend(found.iter().map(|p| Row::of(w, p.i, p.j)));
+                }
+                Of::Bond if w.particles.style.bonded => {
+                    rows.extend(bonds_within(w, me.group).iter().map(|b| Row {
+                        tags: b.ends,
+                        kinds: [0; 2],
+                        bond: b.kind,
+                    }));
                 }
                 Of::Bond => bonds(w, |i, j| {
                     if has(i as usize) && has(j as usize) {
-                        pairs.push((i, j));
+                        rows.push(Row::of(w, i, j));
                     }
                 }),
             }
             out.local_cols = me.getters.len();
             out.local.clear();
-            for (i, j) in pairs {
-                out.local.extend(me.getters.iter().map(|g| g(w, i, j)));
+            for row in rows {
+                out.local.extend(me.getters.iter().map(|g| g(&row)));
             }
             Ok(())
         }))

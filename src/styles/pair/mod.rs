@@ -6,6 +6,9 @@ mod gran_hooke_history;
 mod granular;
 mod hybrid;
 mod peri;
+pub mod materials;
+mod peri_pmb;
+mod zero;
 
 use super::{BuildCx, SealCx, Style};
 use crate::diag::{Code, Result, fail};
@@ -98,4 +101,6 @@ pub const PAIRS: &[&dyn PairStyle] = &[
     &peri::PeriLps,
     &peri::PeriPmb,
     &peri::PeriVes,
+    &peri_pmb::PeriPmb,
+    &zero::ZeroStyle,
 ];

@@ -1,0 +1,86 @@
+//! `bond_style` and `bond_coeff`: lines that declare forces along bonds.
+
+use super::build::{Context, Declared, needs_box, style};
+use super::node::{BondNode, Graph};
+use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
+use crate::lang::Args;
+use crate::styles::bond::{BONDS, BondForce};
+use crate::world::{GroupId, World};
+use std::collections::BTreeMap;
+
+/// `bond_style STYLE …`, `bond_style none`.
+pub fn bond_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    if args.eat("none") {
+        args.finish()?;
+        graph.bond = None;
+        w.bonds.coeffs = None;
+        w.touch();
+        return Ok(Declared::default());
+    }
+    if !w.particles.style.bonded {
+        let text = format!("particles of atom_style {} have no bonds", w.particles.style.name());
+        let d = Diagnostic::error(Code::CONFLICT, args.name_span(), text);
+        return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
+    }
+    let style = style(BONDS, "bond", args)?;
+    let force = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    args.finish()?;
+    enter(graph, w, force, cx.span, false);
+    Ok(Declared::default())
+}
+
+/// `bond_coeff TYPES …`.
+pub fn bond_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    needs_box(w, args)?;
+    let Some(node) = &graph.bond else {
+        let d =
+            Diagnostic::error(Code::WRONG_ORDER, args.name_span(), "bond_coeff comes before any bond_style");
+        return Err(d.help("put a `bond_style` line first").into());
+    };
+    if w.bonds.types == 0 {
+        let d = Diagnostic::error(Code::CONFLICT, args.here(), "there are no bond types");
+        return Err(d.help("say how many: `create_box … bond/types N`").into());
+    }
+    let (first, last) = args.type_range(w.bonds.types)?;
+    let kinds: Vec<u16> = (first..=last).collect();
+    let mut force = node.force.boxed();
+    force.coeff(&kinds, args, &cx.build(graph, w, "", GroupId::ALL))?;
+    args.finish()?;
+    let span = node.span;
+    enter(graph, w, force, span, true);
+    Ok(Declared::default())
+}
+
+/// Puts a style in force, with the lines of the former one where it only gained coefficients.
+fn enter(graph: &mut Graph, w: &mut World, force: Box<dyn BondForce>, span: Span, same: bool) {
+    let texts = (1..=w.bonds.types).filter_map(|k| Some((k, force.written(k as u16)?)));
+    w.bonds.coeffs = Some((force.name().to_string(), texts.collect::<BTreeMap<_, _>>()));
+    let lines = graph.bond.take().filter(|_| same).map_or(vec![], |node| node.lines);
+    graph.bond = Some(BondNode { force, span, lines });
+    w.touch();
+}
+
+/// Bonds without a style, types without coefficients.
+pub fn check(graph: &Graph, w: &World, span: Span, found: &mut Diagnostics) {
+    let Some(node) = &graph.bond else {
+        if !w.bonds.is_empty() {
+            let text = "there are bonds but no bond_style: they exert no forces";
+            found.push(
+                Diagnostic::warning(Code::NO_FORCES, span, text)
+                    .help("`bond_style zero` says that this is meant"),
+            );
+        }
+        return;
+    };
+    let missing: Vec<String> =
+        (1..=w.bonds.types).filter(|&k| !node.force.covers(k as u16)).map(|k| k.to_string()).collect();
+    if !missing.is_empty() {
+        let text = format!(
+            "bond_style {} has no coefficients for bond types {}",
+            node.force.name(),
+            missing.join(", ")
+        );
+        let d = Diagnostic::error(Code::INCOMPLETE, span, text).label(node.span, "bond_style given here");
+        found.push(d.help(format!("add `bond_coeff {} …`", missing[0])));
+    }
+}

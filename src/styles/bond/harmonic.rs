@@ -1,0 +1,100 @@
+//! bond harmonic: springs along bonds.
+
+use super::pull::Along;
+use super::{BondForce, BondStyle, Pull};
+use crate::diag::Result;
+use crate::lang::Args;
+use crate::math::cformat::general;
+use crate::plan::Op;
+use crate::styles::{BuildCx, Doc, SealCx, Style};
+use std::collections::BTreeMap;
+
+/// The style.
+pub struct HarmonicStyle;
+
+impl Style for HarmonicStyle {
+    fn name(&self) -> &'static str {
+        "harmonic"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "bond_style harmonic\nbond_coeff T K r0",
+            summary: "Springs along bonds.",
+            text: "E = K (r − r0)²: the usual ½ is in K [energy/length²], r0 is a length. The force at length r is 2 K (r − r0).",
+            example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
+                      create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\n\
+                      create_bonds single/bond 1 1 2\nbond_style harmonic\nbond_coeff 1 50.0 1.0\nfix 1 all nve\n\
+                      thermo_style custom step ebond\nrun 10",
+        }
+    }
+}
+
+impl BondStyle for HarmonicStyle {
+    fn build(&self, _args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn BondForce>> {
+        Ok(Box::<Harmonic>::default())
+    }
+}
+
+/// Stiffness and length at rest by type.
+#[derive(Clone, Default)]
+struct Harmonic {
+    springs: BTreeMap<u16, [f64; 2]>,
+}
+
+fn pull([k, r0]: [f64; 2], r: f64) -> Pull {
+    let stretch = r - r0;
+    let force = -2.0 * k * stretch;
+    Pull { energy: k * stretch * stretch, force_per_length: if r > 0.0 { force / r } else { 0.0 } }
+}
+
+impl BondForce for Harmonic {
+    fn name(&self) -> &'static str {
+        "harmonic"
+    }
+
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        let spring = [args.number("the stiffness K")?, args.number("the length r0")?];
+        self.springs.extend(kinds.iter().map(|&k| (k, spring)));
+        Ok(())
+    }
+
+    fn covers(&self, kind: u16) -> bool {
+        self.springs.contains_key(&kind)
+    }
+
+    fn restrict(&mut self, kinds: &[u16]) {
+        self.springs.retain(|k, _| kinds.contains(k));
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let springs = self.springs.clone();
+        let law = move |kind: u16, r: f64| springs.get(&kind).map(|s| pull(*s, r));
+        Ok(vec![Box::new(Along::new("bond harmonic", cx.span(), law))])
+    }
+
+    fn single(&self, kind: u16, r: f64) -> Option<Pull> {
+        self.springs.get(&kind).map(|s| pull(*s, r))
+    }
+
+    fn written(&self, kind: u16) -> Option<String> {
+        self.springs.get(&kind).map(|s| s.map(|a| general(a, 16)).join(" "))
+    }
+
+    fn boxed(&self) -> Box<dyn BondForce> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_force_is_the_slope_of_the_energy() {
+        let (spring, r, h) = ([7.0, 1.2], 1.5, 1e-6);
+        let slope = (pull(spring, r + h).energy - pull(spring, r - h).energy) / (2.0 * h);
+        // Central differences of a parabola are exact but for rounding, about 1e-16/1e-6.
+        assert!((pull(spring, r).force_per_length * r + slope).abs() < 1e-8);
+        assert_eq!(pull(spring, 1.2), Pull::default());
+    }
+}

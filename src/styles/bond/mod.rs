@@ -1,0 +1,62 @@
+//! Bond styles: forces along bonds between particles.
+
+mod harmonic;
+mod hybrid;
+mod pull;
+mod zero;
+
+use super::{BuildCx, SealCx, Style};
+use crate::diag::Result;
+use crate::lang::Args;
+use crate::plan::Op;
+pub use pull::{Pull, apart};
+
+/// A bond style: one file, one line in `BONDS`.
+pub trait BondStyle: Style {
+    /// Reads the words after the style's name.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>>;
+}
+
+/// A declared bond style with its coefficients.
+pub trait BondForce: Send + Sync {
+    /// The style's name.
+    fn name(&self) -> &'static str;
+
+    /// Reads the words of `bond_coeff` after the types.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, cx: &BuildCx) -> Result<()>;
+
+    /// Whether a bond type has coefficients.
+    fn covers(&self, kind: u16) -> bool;
+
+    /// Limits the style to some bond types (as a sub-style of `hybrid`); by default it acts on all.
+    fn restrict(&mut self, _kinds: &[u16]) {}
+
+    /// The ops it contributes to a step.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>>;
+
+    /// What a bond of this type does at length `r`, for `compute bond/local`; `None` where that takes more than a length.
+    fn single(&self, kind: u16, r: f64) -> Option<Pull>;
+
+    /// The coefficients of a type as a data file has them.
+    fn written(&self, kind: u16) -> Option<String>;
+
+    /// A copy, so that a failing line changes nothing.
+    fn boxed(&self) -> Box<dyn BondForce>;
+}
+
+/// Every bond style.
+#[rustfmt::skip]
+pub const BONDS: &[&dyn BondStyle] = &[
+    &harmonic::HarmonicStyle,
+    &hybrid::Hybrid,
+    &zero::ZeroStyle,
+];

@@ -1,0 +1,135 @@
+//! The op of bonds whose force depends on their length alone.
+
+use crate::diag::{Code, Diagnostic, Result, Span};
+use crate::math::vec3::{Vec3, add, sub};
+use crate::par;
+use crate::plan::{Access, Op, Stage, Tick};
+use crate::world::index::Index;
+use crate::world::{Bond, World};
+
+/// What a bond does at some length.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pull {
+    /// Energy.
+    pub energy: f64,
+    /// Force over length: positive pushes the ends apart.
+    pub force_per_length: f64,
+}
+
+/// A bond whose ends have been found.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Found {
+    /// Type.
+    pub kind: u16,
+    /// Places of the ends in storage.
+    pub ends: [usize; 2],
+}
+
+/// All bonds that act and that `wants` wants, with the places of their ends.
+///
+/// # Errors
+/// An end that is gone.
+pub fn find(w: &World, wants: impl Fn(&Bond) -> bool, span: Span) -> Result<Vec<(usize, Found)>> {
+    let tags = &w.particles.tag;
+    let index = Index::new(tags);
+    let mut list = vec![];
+    for (k, bond) in w.bonds.list.iter().enumerate().filter(|(_, b)| b.is_on() && wants(b)) {
+        let [Some(a), Some(b)] = bond.ends.map(|t| index.find(t, tags)) else {
+            let text =
+                format!("an end of the bond between particles {} and {} is gone", bond.ends[0], bond.ends[1]);
+            return Err(Diagnostic::error(Code::LOST, span, text)
+                .help("`delete_atoms … bond yes` takes bonds of deleted particles along")
+                .into());
+        };
+        list.push((k, Found { kind: bond.kind as u16, ends: [a, b] }));
+    }
+    Ok(list)
+}
+
+/// x_a − x_b across the nearest periodic faces.
+pub fn apart(w: &World, lengths: &Vec3, ends: [usize; 2]) -> Vec3 {
+    let x = &w.particles.x;
+    let d = sub(x[ends[0]], x[ends[1]]);
+    std::array::from_fn(
+        |k| if lengths[k] > 0.0 { d[k] - lengths[k] * (d[k] / lengths[k]).round() } else { d[k] },
+    )
+}
+
+/// Edge lengths of the box, zero where it does not repeat.
+pub fn periods(w: &World) -> Result<Vec3> {
+    let domain = w.domain()?;
+    let (lengths, periodic) = (domain.lengths(), domain.periodic());
+    Ok(std::array::from_fn(|d| if periodic[d] { lengths[d] } else { 0.0 }))
+}
+
+/// Forces along the bonds of one style.
+pub struct Along<F> {
+    name: String,
+    span: Span,
+    law: F,
+    /// Rebuild and change of bonds at which `list` was made.
+    made: Option<(u64, u64)>,
+    list: Vec<(usize, Found)>,
+    pulls: Vec<(Vec3, Pull)>,
+}
+
+impl<F: Fn(u16, f64) -> Option<Pull> + Send + Sync> Along<F> {
+    /// With a law of type and length; types without one are none of its business.
+    pub fn new(name: impl Into<String>, span: Span, law: F) -> Self {
+        Self { name: name.into(), span, law, made: None, list: vec![], pulls: vec![] }
+    }
+}
+
+impl<F: Fn(u16, f64) -> Option<Pull> + Send + Sync> Op for Along<F> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn stage(&self) -> Stage {
+        Stage::Force
+    }
+    fn access(&self) -> Access {
+        Access::new("x bonds", "f tally")
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let now = (w.rebuild.generation, w.bonds.changes);
+        if t.setup || self.made != Some(now) {
+            self.list = find(w, |b| (self.law)(b.kind as u16, 1.0).is_some(), self.span)?;
+            self.made = Some(now);
+        }
+        let lengths = periods(w)?;
+        self.pulls.clear();
+        self.pulls.resize(self.list.len(), Default::default());
+        let (law, world) = (&self.law, &*w);
+        par::each((&mut self.pulls[..], &self.list[..]), |_, (pulls, list)| {
+            for (out, (_, found)) in pulls.iter_mut().zip(list) {
+                let d = apart(world, &lengths, found.ends);
+                let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+                *out = (d, law(found.kind, r).unwrap_or_default());
+            }
+        });
+        for ((_, found), (d, pull)) in self.list.iter().zip(&self.pulls) {
+            let force = d.map(|d| d * pull.force_per_length);
+            tally(w, t, found.ends, d, &force, pull.energy);
+        }
+        Ok(())
+    }
+}
+
+/// Adds a force to one end of a bond and its opposite to the other, with energy and virial.
+pub fn tally(w: &mut World, t: &Tick, ends: [usize; 2], d: &Vec3, force: &Vec3, energy: f64) {
+    let f = &mut w.particles.f;
+    f[ends[0]] = add(f[ends[0]], *force);
+    f[ends[1]] = sub(f[ends[1]], *force);
+    if t.energy {
+        w.tally.bond += energy;
+    }
+    if t.atom_energy {
+        w.tally.bond_atom.resize(w.particles.x.len(), 0.0);
+        ends.iter().for_each(|&i| w.tally.bond_atom[i] += 0.5 * energy);
+    }
+    if t.virial {
+        for (k, (a, b)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
+            w.tally.bond_virial[k] += d[a] * force[b];
+        }
+    }
+}
