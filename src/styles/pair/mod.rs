@@ -5,9 +5,8 @@ mod gran_hooke;
 mod gran_hooke_history;
 mod granular;
 mod hybrid;
-mod peri;
 pub mod materials;
-mod peri_pmb;
+mod peri;
 mod zero;
 
 use super::{BuildCx, SealCx, Style};
@@ -101,6 +100,5 @@ pub const PAIRS: &[&dyn PairStyle] = &[
     &peri::PeriLps,
     &peri::PeriPmb,
     &peri::PeriVes,
-    &peri_pmb::PeriPmb,
     &zero::ZeroStyle,
 ];
