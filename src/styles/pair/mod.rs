@@ -5,7 +5,6 @@ mod gran_hooke;
 mod gran_hooke_history;
 mod granular;
 mod hybrid;
-pub mod materials;
 mod peri;
 mod zero;
 
