@@ -14,6 +14,7 @@ mod restarting;
 mod running;
 mod shell;
 mod stability;
+mod staggering;
 mod timer;
 mod unused;
 

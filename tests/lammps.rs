@@ -149,4 +149,5 @@ decks! {
     gran_chute
     hyb_pmb_granular
     hyb_pmb_hertz
+    hyb_respa
 }

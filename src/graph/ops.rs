@@ -2,7 +2,7 @@
 
 use crate::diag::{Code, Diagnostic, Result};
 use crate::par;
-use crate::plan::{Access, Op, Stage, Tick};
+use crate::plan::{Access, Op, Phase, Stage, Tick};
 use crate::world::columns::HEATFLOW;
 use crate::world::{Domain, Particles, World};
 
@@ -189,7 +189,8 @@ impl Op for ClearForces {
             let n = w.particles.len();
             w.columns.scalar(&heat, n).fill(0.0);
         }
-        if t.energy || t.virial {
+        // In steps of two lengths bonds have tallied by now.
+        if (t.energy || t.virial) && !matches!(t.phase, Phase::Long(_)) {
             w.tally.clear(t.step, t.virial, t.atom_energy, w.particles.len());
         }
         Ok(())

@@ -6,5 +6,5 @@ pub mod op;
 pub mod schedule;
 
 pub use meter::Meter;
-pub use op::{Access, Op, OpClass, Stage, Tick, When};
+pub use op::{Access, Beat, Op, OpClass, Phase, Solids, Stage, Tick, When};
 pub use schedule::{LeftOut, Placed, StepPlan};

@@ -152,6 +152,46 @@ impl std::fmt::Display for When {
     }
 }
 
+/// Which part of a step of two lengths this is (`run_style staggered`).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Phase {
+    /// The step has one length.
+    #[default]
+    Whole,
+    /// The long step: everything moves but solids, which only feel the slow forces.
+    Long(Arc<Solids>),
+    /// One of the short steps: solids move under the forces of their bonds.
+    Short(Arc<Solids>),
+}
+
+/// Who moves in short steps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solids {
+    /// Whether particles of a type (from 1) belong to peridynamic solids.
+    pub kinds: Vec<bool>,
+    /// Group bits of particles that drift in the long step as well (the scheme printed by Hartmann et al.).
+    pub twice: u32,
+}
+
+impl Solids {
+    /// Whether a type is a solid's.
+    #[inline]
+    pub fn has(&self, kind: u16) -> bool {
+        self.kinds.get(usize::from(kind).wrapping_sub(1)).copied().unwrap_or(false)
+    }
+}
+
+/// In which steps of two lengths an op acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beat {
+    /// In the long ones.
+    Long,
+    /// In the short ones: forces inside peridynamic solids.
+    Short,
+    /// In both: what moves particles, and what takes components of forces away.
+    Both,
+}
+
 /// What an op may know of the present step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
@@ -175,6 +215,8 @@ pub struct Tick {
     pub virial: bool,
     /// Somebody reads per-particle energies at this step.
     pub atom_energy: bool,
+    /// Which part of a step of two lengths.
+    pub phase: Phase,
 }
 
 impl Tick {
@@ -191,6 +233,7 @@ impl Tick {
             energy: false,
             virial: false,
             atom_energy: false,
+            phase: Phase::Whole,
         }
     }
 }
@@ -244,6 +287,10 @@ pub trait Op: Send {
     /// Whether it acts in the setup of a run too.
     fn in_setup(&self) -> bool {
         self.stage().in_setup()
+    }
+    /// In which steps of two lengths it acts.
+    fn beat(&self) -> Beat {
+        Beat::Long
     }
     /// The row of the timing table.
     fn class(&self) -> OpClass {

@@ -1,6 +1,6 @@
 //! Ops in the order of a step, with what was left out and why.
 
-use super::{Meter, Op, OpClass, Stage, Tick, When};
+use super::{Beat, Meter, Op, OpClass, Stage, Tick, When};
 use crate::diag::{Diagnostics, Result, Span};
 use crate::world::World;
 use std::time::{Duration, Instant};
@@ -73,10 +73,22 @@ impl StepPlan {
     /// # Errors
     /// The first op's that fails, with the place of its command.
     pub fn run(&mut self, w: &mut World, t: &Tick, stages: &[Stage]) -> Result<()> {
+        self.run_beats(w, t, stages, &[Beat::Long, Beat::Short, Beat::Both])
+    }
+
+    /// Runs the ops of some stages at this tick, of those that act in some of the steps of two lengths.
+    ///
+    /// # Errors
+    /// As `run`.
+    pub fn run_beats(&mut self, w: &mut World, t: &Tick, stages: &[Stage], beats: &[Beat]) -> Result<()> {
         for p in &mut self.ops {
             let stage = p.op.stage();
             let fires = p.when.fires(t) || (t.ending && stage == Stage::Output && p.when != When::Never);
-            if !stages.contains(&stage) || (t.setup && !p.op.in_setup()) || !fires {
+            if !stages.contains(&stage)
+                || !beats.contains(&p.op.beat())
+                || (t.setup && !p.op.in_setup())
+                || !fires
+            {
                 continue;
             }
             let begin = Instant::now();

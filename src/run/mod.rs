@@ -1,6 +1,7 @@
 //! The loops over a sealed plan: steps in time, and minimization.
 
 pub mod minimize;
+pub mod staggered;
 pub mod verlet;
 
 pub use verlet::{Made, Outcome, Watch, verlet};

@@ -2,7 +2,7 @@
 
 use crate::diag::Result;
 use crate::par;
-use crate::plan::{Stage, StepPlan, Tick};
+use crate::plan::{Phase, Stage, StepPlan, Tick};
 use crate::world::{Halt, World};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -85,6 +85,19 @@ fn tally_anew(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
 /// # Errors
 /// The first op's that fails; the world is then as that op left it.
 pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Result<Outcome> {
+    steps(plan, w, watch, |plan, w, t| plan.run(w, t, &Stage::ALL))
+}
+
+/// Makes the steps of a run, each by `step`.
+///
+/// # Errors
+/// As [`verlet`].
+pub(super) fn steps(
+    plan: &mut StepPlan,
+    w: &mut World,
+    watch: &mut dyn Watch,
+    step: impl Fn(&mut StepPlan, &mut World, &Tick) -> Result<()> + Sync,
+) -> Result<Outcome> {
     let (begin, cpu) = (Instant::now(), cpu_seconds());
     let first = w.clock.step;
     let mut interrupted = false;
@@ -100,7 +113,7 @@ pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Resu
         w.clock.step += 1;
         let mut t = tick(w, false);
         plan.ask(&mut t);
-        par::inside(|| plan.run(w, &t, &Stage::ALL))?;
+        par::inside(|| step(plan, w, &t))?;
         let c = &w.clock;
         let (done, total) = (c.step - first, c.last - first);
         watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });
@@ -148,6 +161,7 @@ pub(super) fn tick(w: &World, setup: bool) -> Tick {
         energy: false,
         virial: false,
         atom_energy: false,
+        phase: Phase::Whole,
     }
 }
 

@@ -36,7 +36,6 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "plugin",
     "prd",
     "python",
-    "run_style",
     "server",
     "tad",
     "temper",

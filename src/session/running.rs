@@ -10,6 +10,7 @@ use crate::graph::{FixNode, Role};
 use crate::lang::{Args, Command, Script, Word};
 use crate::out::thermo::{Finish, Section};
 use crate::plan::{OpClass, Stage, StepPlan, When, explain};
+use crate::run::staggered::{self, Staggered};
 use crate::run::verlet;
 use crate::styles::Reading;
 use crate::styles::fix::Minimizing;
@@ -203,7 +204,8 @@ impl Session {
             self.say_notes()?;
         }
         self.world.clock.running = true;
-        let outcome = self.steps(&mut plan, unchanged);
+        let two = self.staggered(span)?;
+        let outcome = self.steps(&mut plan, unchanged, two.as_ref());
         self.world.clock.running = false;
         for (name, value) in std::mem::take(&mut self.world.controls) {
             self.vars.set_internal(&name, value);
@@ -227,11 +229,23 @@ impl Session {
         Ok(())
     }
 
-    fn steps(&mut self, plan: &mut StepPlan, unchanged: bool) -> Result<verlet::Outcome> {
-        verlet::setup(plan, &mut self.world, unchanged)?;
+    fn steps(
+        &mut self,
+        plan: &mut StepPlan,
+        unchanged: bool,
+        two: Option<&Staggered>,
+    ) -> Result<verlet::Outcome> {
+        let (w, watch) = (&mut self.world, self.watch.as_mut());
+        match two {
+            None => verlet::setup(plan, w, unchanged)?,
+            Some(s) => staggered::setup(plan, w, unchanged, s)?,
+        }
         plan.reset_meters();
-        self.world.clock.began = Some(Instant::now());
-        verlet::verlet(plan, &mut self.world, self.watch.as_mut())
+        w.clock.began = Some(Instant::now());
+        match two {
+            None => verlet::verlet(plan, w, watch),
+            Some(s) => staggered::staggered(plan, w, watch, s),
+        }
     }
 
     /// What a run, or a minimization with its own block of text, says at its end.

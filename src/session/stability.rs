@@ -2,6 +2,7 @@
 
 use super::Session;
 use crate::diag::{Code, Diagnostic, Diagnostics, Span};
+use crate::world::RunStyle;
 
 impl Session {
     /// A warning where the time step is beyond what the pair style can vouch for.
@@ -15,7 +16,14 @@ impl Session {
         let parts = node.pair.parts();
         let all = parts.into_iter().chain([node.pair.as_ref()]);
         let limit = all.filter_map(|p| p.stable_step(&self.world, density)).fold(f64::INFINITY, f64::min);
-        let dt = self.world.clock.dt;
+        // Solids may move in shorter steps than the deck's, or feel their bonds more rarely.
+        let dt = self.world.clock.dt
+            * match self.world.settings.run_style {
+                RunStyle::Verlet => 1.0,
+                RunStyle::Staggered { ratio: Some(m), rare: true, .. } => m as f64,
+                RunStyle::Staggered { ratio: Some(m), .. } => 1.0 / m as f64,
+                RunStyle::Staggered { ratio: None, .. } => 0.0,
+            };
         if dt <= limit {
             return;
         }

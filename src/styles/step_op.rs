@@ -2,7 +2,7 @@
 
 use crate::diag::Result;
 use crate::par;
-use crate::plan::{Access, Op, Stage, Tick, When};
+use crate::plan::{Access, Beat, Op, Stage, Tick, When};
 use crate::world::{GroupId, Slot, SlotId, World};
 
 /// An op whose whole work is one closure at one stage.
@@ -12,6 +12,7 @@ pub struct StepOp<F> {
     access: Access,
     when: When,
     in_setup: bool,
+    beat: Beat,
     act: F,
 }
 
@@ -21,7 +22,15 @@ where
 {
     /// Acts every step at `stage`, and in the setup of a run where that stage usually does.
     pub fn new(name: impl Into<String>, stage: Stage, access: Access, act: F) -> Self {
-        Self { name: name.into(), stage, access, when: When::Always, in_setup: stage.in_setup(), act }
+        Self {
+            name: name.into(),
+            stage,
+            access,
+            when: When::Always,
+            in_setup: stage.in_setup(),
+            beat: Beat::Long,
+            act,
+        }
     }
 
     /// Acts at other times.
@@ -35,6 +44,13 @@ where
     #[must_use]
     pub fn in_setup(mut self, yes: bool) -> Self {
         self.in_setup = yes;
+        self
+    }
+
+    /// Acts in short steps of two lengths too: moves solids, or takes components of their forces away.
+    #[must_use]
+    pub fn in_short_steps(mut self) -> Self {
+        self.beat = Beat::Both;
         self
     }
 
@@ -62,6 +78,9 @@ where
     }
     fn in_setup(&self) -> bool {
         self.in_setup
+    }
+    fn beat(&self) -> Beat {
+        self.beat
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         (self.act)(w, t)

@@ -110,6 +110,7 @@ impl Bench {
             energy: true,
             virial: true,
             atom_energy: true,
+            phase: Default::default(),
         }
     }
 

@@ -7,6 +7,11 @@ pub const TEMPERATURE: &str = "temperature";
 /// The property of fix property/atom that holds the heat flowing into particles, summed anew in each step.
 pub const HEATFLOW: &str = "heatflow";
 
+/// The vector column that keeps the slow part of the forces between steps of two lengths.
+pub const SLOW_FORCES: &str = "staggered/slow";
+/// The vector column of the forces of bonds in steps of two lengths.
+pub const BOND_FORCES: &str = "staggered/bonds";
+
 /// Named scalar and vector columns, kept in step with the particles.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Columns {

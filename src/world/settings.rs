@@ -51,6 +51,23 @@ impl Default for NeighborSettings {
     }
 }
 
+/// How steps are made (`run_style`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum RunStyle {
+    /// Velocity Verlet, one length of steps.
+    #[default]
+    Verlet,
+    /// Short steps for peridynamic solids, or rare ones where grains are the faster.
+    Staggered {
+        /// Short steps per long one; `None`: as many as the solids' stability asks for.
+        ratio: Option<i64>,
+        /// Grains are the faster ones: bonds act at each `ratio`-th step.
+        rare: bool,
+        /// Whose particles drift in the long step as well (the scheme as printed by Hartmann et al.).
+        twice: Option<super::GroupId>,
+    },
+}
+
 /// Choices of a deck that concern everybody.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Settings {
@@ -64,6 +81,8 @@ pub struct Settings {
     pub boundary: super::Boundary,
     /// Neighbour-list policy.
     pub neighbor: NeighborSettings,
+    /// How steps are made.
+    pub run_style: RunStyle,
     /// The list layout for every peridynamic body (`-layout list`).
     #[serde(skip)]
     pub force_list: bool,

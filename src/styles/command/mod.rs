@@ -31,6 +31,7 @@ mod region;
 mod replicate;
 mod reset_atoms;
 mod reset_timestep;
+mod run_style;
 mod set;
 mod special_bonds;
 #[cfg(test)]
@@ -106,6 +107,7 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &material::MaterialStyle,
     &timestep::Timestep,
     &reset_timestep::ResetTimestep,
+    &run_style::RunStyleCommand,
     &neighbor::Neighbor,
     &min_style::MinStyleCommand,
     &min_modify::MinModify,

@@ -4,7 +4,7 @@ use super::{Fix, FixStyle};
 use crate::diag::Result;
 use crate::lang::Args;
 use crate::par;
-use crate::plan::{Access, Op, Stage};
+use crate::plan::{Access, Op, Phase, Stage, Tick};
 use crate::styles::matter::{Masses, check_masses};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
@@ -53,16 +53,16 @@ impl Fix for Declared {
             Stage::InitialIntegrate,
             Access::new("f mass mask", "x v"),
             move |w, t| {
-                kick_and_drift(w, group, t.dt);
+                kick_and_drift(w, group, t);
                 Ok(())
             },
         );
         let second =
             StepOp::new(name, Stage::FinalIntegrate, Access::new("f mass mask", "v"), move |w, t| {
-                kick(w, group, t.dt);
+                kick(w, group, t);
                 Ok(())
             });
-        Ok(vec![first.boxed(), second.boxed()])
+        Ok(vec![first.in_short_steps().boxed(), second.in_short_steps().boxed()])
     }
 
     fn integrates(&self) -> bool {
@@ -79,9 +79,12 @@ pub fn half_step(w: &World, dt: f64) -> f64 {
     0.5 * dt * w.settings.units.constants().ftm2v
 }
 
-/// First half of a step: v += Δt/2 · f/m, x += Δt · v.
-pub fn kick_and_drift(w: &mut World, group: GroupId, dt: f64) {
-    let half = half_step(w, dt);
+/// First half of a step: v += Δt/2 · f/m, x += Δt · v. In steps of two lengths solids drift in the short ones.
+pub fn kick_and_drift(w: &mut World, group: GroupId, t: &Tick) {
+    let (half, dt) = (half_step(w, t.dt), t.dt);
+    if t.phase != Phase::Whole {
+        return some(w, group, &t.phase, half, dt);
+    }
     let p = &mut w.particles;
     let bit = group.bit();
     if p.style.own_mass() {
@@ -105,8 +108,11 @@ pub fn kick_and_drift(w: &mut World, group: GroupId, dt: f64) {
 }
 
 /// Second half of a step: v += Δt/2 · f/m.
-pub fn kick(w: &mut World, group: GroupId, dt: f64) {
-    let half = half_step(w, dt);
+pub fn kick(w: &mut World, group: GroupId, t: &Tick) {
+    let half = half_step(w, t.dt);
+    if t.phase != Phase::Whole {
+        return some(w, group, &t.phase, half, 0.0);
+    }
     let p = &mut w.particles;
     let bit = group.bit();
     let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
@@ -114,6 +120,31 @@ pub fn kick(w: &mut World, group: GroupId, dt: f64) {
         for (k, ((v, f), mask)) in v.iter_mut().zip(f).zip(mask).enumerate() {
             if mask & bit != 0 {
                 kicked(v, f, half / masses.get(start + k));
+            }
+        }
+    });
+}
+
+/// Half a step of two lengths: in the long one all are kicked and all but solids drift, in the short ones solids do both.
+fn some(w: &mut World, group: GroupId, phase: &Phase, half: f64, dt: f64) {
+    let p = &mut w.particles;
+    let bit = group.bit();
+    let acts = |kind: u16, mask: u32| match phase {
+        Phase::Whole => (true, true),
+        Phase::Long(solids) => (true, !solids.has(kind) || mask & solids.twice != 0),
+        Phase::Short(solids) => (solids.has(kind), true),
+    };
+    let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
+    let columns = (&mut p.x[..], &mut p.v[..], &p.f[..], &p.mask[..], &p.kind[..]);
+    par::each(columns, |start, (x, v, f, mask, kind)| {
+        for (k, ((((x, v), f), mask), kind)) in x.iter_mut().zip(v).zip(f).zip(mask).zip(kind).enumerate() {
+            let (kicks, drifts) = acts(*kind, *mask);
+            if mask & bit == 0 || !kicks {
+                continue;
+            }
+            let v = kicked(v, f, half / masses.get(start + k));
+            if drifts {
+                drifted(x, v, dt);
             }
         }
     });

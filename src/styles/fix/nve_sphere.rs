@@ -5,7 +5,7 @@ use super::{Fix, FixStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
 use crate::par;
-use crate::plan::{Access, Op, Stage};
+use crate::plan::{Access, Op, Phase, Stage, Tick};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
 use crate::world::{GroupId, World};
@@ -87,16 +87,16 @@ impl Fix for Declared {
         let name = format!("fix {} nve/sphere", self.id);
         let access = || Access::new("f torque mass radius mask", "x v omega");
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
-            kick_and_drift(w, group, t.dt);
-            turn(w, group, inertia, t.dt);
+            kick_and_drift(w, group, t);
+            turn(w, group, inertia, t);
             Ok(())
         });
         let second = StepOp::new(name, Stage::FinalIntegrate, access(), move |w, t| {
-            kick(w, group, t.dt);
-            turn(w, group, inertia, t.dt);
+            kick(w, group, t);
+            turn(w, group, inertia, t);
             Ok(())
         });
-        Ok(vec![first.boxed(), second.boxed()])
+        Ok(vec![first.in_short_steps().boxed(), second.in_short_steps().boxed()])
     }
 
     fn integrates(&self) -> bool {
@@ -108,9 +108,12 @@ impl Fix for Declared {
     }
 }
 
-/// Half a step of rotation: ω += Δt/2 · torque/I.
-fn turn(w: &mut World, group: GroupId, inertia: f64, dt: f64) {
-    let half = 0.5 * dt * w.settings.units.constants().ftm2v / inertia;
+/// Half a step of rotation: ω += Δt/2 · torque/I; bonds of solids turn nothing, so that short steps have none of it.
+fn turn(w: &mut World, group: GroupId, inertia: f64, t: &Tick) {
+    if matches!(t.phase, Phase::Short(_)) {
+        return;
+    }
+    let half = 0.5 * t.dt * w.settings.units.constants().ftm2v / inertia;
     let p = &mut w.particles;
     let bit = group.bit();
     let columns = (&mut p.omega[..], &p.torque[..], &p.radius[..], &p.mass[..], &p.mask[..]);

@@ -3,7 +3,7 @@
 use super::{Fix, FixStyle, Minimizing, region_keyword};
 use crate::diag::Result;
 use crate::lang::{Args, Param};
-use crate::plan::{Access, Op, Stage, When};
+use crate::plan::{Access, Op, Phase, Stage, When};
 use crate::styles::command::common::param_or_null;
 use crate::styles::matter::{Chosen, change_forces, publish};
 use crate::styles::step_op::StepOp;
@@ -73,19 +73,24 @@ impl Fix for Declared {
             if t.unchanged {
                 return Ok(());
             }
-            let before = change_forces(w, &chosen, |w, i, f| {
+            // In steps of two lengths the value belongs to the long ones, and what bonds did comes from the last short one.
+            let short = matches!(t.phase, Phase::Short(_));
+            let mut before = change_forces(w, &chosen, |w, i, f| {
                 let before = *f;
                 for d in 0..3 {
                     if let Some(reading) = force[d] {
-                        f[d] = reading.atom(w, i);
+                        f[d] = if short { 0.0 } else { reading.atom(w, i) };
                     }
                 }
                 before
             });
+            if matches!(t.phase, Phase::Long(_)) {
+                before.iter_mut().zip(&w.slots.get(slot).vector).for_each(|(all, bonds)| *all += bonds);
+            }
             publish(w, slot, t, 0.0, &before);
             Ok(())
         });
-        Ok(vec![op.boxed()])
+        Ok(vec![op.in_short_steps().boxed()])
     }
 
     fn shape(&self) -> Shape {

@@ -169,6 +169,10 @@ impl Pair for Declared {
         }
     }
 
+    fn solid(&self, kind: u16) -> bool {
+        self.users(kind, kind).is_some_and(|list| list.iter().any(|&k| self.subs[k].solid(kind)))
+    }
+
     fn parts(&self) -> Vec<&dyn Pair> {
         self.subs.iter().map(AsRef::as_ref).collect()
     }

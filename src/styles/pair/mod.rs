@@ -74,6 +74,11 @@ pub trait Pair: Send {
         None
     }
 
+    /// Whether particles of a type belong to peridynamic solids.
+    fn solid(&self, kind: u16) -> bool {
+        self.true_forces().is_some() && self.covers(kind, kind)
+    }
+
     /// The sub-styles of a `hybrid`.
     fn parts(&self) -> Vec<&dyn Pair> {
         vec![]

@@ -2,7 +2,7 @@
 
 use super::{Pair, Solid};
 use crate::diag::{Code, Diagnostic, Result};
-use crate::plan::{Access, Op, Stage, Tick};
+use crate::plan::{Access, Beat, Op, Stage, Tick};
 use crate::world::families::{Bounds, Families, FamilyOptions, ForceUnit, PeriTally, PeriView};
 use crate::world::{Domain, World};
 
@@ -28,6 +28,10 @@ impl Op for Force {
 
     fn stage(&self) -> Stage {
         Stage::Force
+    }
+
+    fn beat(&self) -> Beat {
+        Beat::Short
     }
 
     fn access(&self) -> Access {

@@ -1,0 +1,94 @@
+//! Steps of two lengths: who moves in which, and whether the scene suits them.
+
+use super::{Session, refuse};
+use crate::diag::{Code, Diagnostic, Result, Span};
+use crate::plan::Solids;
+use crate::run::staggered::{Ratio, Staggered};
+use crate::world::RunStyle;
+use std::sync::Arc;
+
+/// What part of the longest stable step `m auto` uses.
+const SAFETY: f64 = 0.8;
+
+impl Session {
+    /// How steps of two lengths are made, if the deck wants them.
+    ///
+    /// # Errors
+    /// A scene without both kinds of particle, fixes that cannot take part, and no estimate for `m auto`.
+    pub(super) fn staggered(&self, span: Span) -> Result<Option<Staggered>> {
+        let RunStyle::Staggered { ratio, rare, twice } = self.world.settings.run_style else {
+            return Ok(None);
+        };
+        let place = self.run_style_place(span);
+        let solids = Arc::new(self.solids(twice.map_or(0, |g| g.bit())));
+        let p = &self.world.particles;
+        let solid = |i: usize| solids.has(p.kind[i]);
+        let (some, all) = ((0..p.len()).any(solid), (0..p.len()).all(solid));
+        if !some || all {
+            let text = if some { "every particle is peridynamic" } else { "no particle is peridynamic" };
+            return Err(Diagnostic::error(
+                Code::CONFLICT,
+                place,
+                format!("steps of two lengths need grains and peridynamic solids, and here {text}"),
+            )
+            .help("say `run_style verlet`")
+            .into());
+        }
+        self.refuse_movers(&solid)?;
+        let ratio = match (ratio, rare) {
+            (Some(m), true) => Ratio::Rare(m),
+            (Some(m), false) => Ratio::Short(m),
+            (None, _) => match self.solid_step() {
+                Some(limit) => Ratio::Within(SAFETY * limit),
+                None => {
+                    return refuse(
+                        Code::INCOMPLETE,
+                        place,
+                        "`m auto` finds no stable step of the peridynamic solids: say `m N`",
+                    );
+                }
+            },
+        };
+        Ok(Some(Staggered { solids, ratio }))
+    }
+
+    /// The line that asked for steps of two lengths.
+    fn run_style_place(&self, span: Span) -> Span {
+        let line = self.graph.nodes.iter().rev().find(|n| n.text.starts_with("run_style"));
+        line.map_or(span, |n| n.span)
+    }
+
+    /// Who moves in short steps.
+    fn solids(&self, twice: u32) -> Solids {
+        let solid = |k: u16| self.graph.pair.as_ref().is_some_and(|node| node.pair.solid(k));
+        Solids { kinds: (1..=self.world.types as u16).map(solid).collect(), twice }
+    }
+
+    /// The longest stable step of the solids.
+    fn solid_step(&self) -> Option<f64> {
+        let node = self.graph.pair.as_ref()?;
+        let mut parts = node.pair.parts();
+        parts.push(node.pair.as_ref());
+        parts.into_iter().filter_map(|p| p.stable_step(&self.world, None)).reduce(f64::min)
+    }
+
+    /// Refuses fixes that move solids in a way that knows no short steps.
+    fn refuse_movers(&self, solid: &impl Fn(usize) -> bool) -> Result<()> {
+        const KNOWN: [&str; 2] = ["nve", "nve/sphere"];
+        let p = &self.world.particles;
+        let moves = |f: &&crate::graph::FixNode| {
+            let takes_over = (f.fix.integrates() && !KNOWN.contains(&f.style)) || f.style == "aveforce";
+            takes_over && (0..p.len()).any(|i| p.mask[i] & f.group.bit() != 0 && solid(i))
+        };
+        match self.graph.fixes.iter().find(moves) {
+            None => Ok(()),
+            Some(f) => {
+                let text =
+                    format!("fix {} cannot act on peridynamic particles in steps of two lengths", f.style);
+                Err(Diagnostic::error(Code::CONFLICT, f.span, text)
+                    .help("move them by `fix nve` and hold parts of them with `fix setforce`, or say `run_style verlet`")
+                    .into())
+            }
+        }
+    }
+}
