@@ -4,8 +4,6 @@
 pub const STYLES: &[(&str, &str)] = &[
     ("pair", "bpm/spring"),
     ("pair", "lj/cut"),
-    ("fix", "wall/gran"),
-    ("fix", "wall/gran/region"),
     ("fix", "pour"),
     ("fix", "deposit"),
     ("fix", "rigid"),

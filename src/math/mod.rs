@@ -3,4 +3,5 @@
 pub mod cformat;
 pub mod real;
 pub mod rng;
+pub mod triangle;
 pub mod vec3;

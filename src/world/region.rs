@@ -1,10 +1,13 @@
 //! Regions: volumes of space by shape, side and union, tested point by point; they may follow variables.
 
+mod faces;
 mod motion;
 mod shape;
+mod surface;
 
 pub use motion::{Motion, Turn, Variable, turned};
 pub use shape::{Shape, across};
+pub use surface::{Look, Near};
 
 use crate::diag::{Code, Result, fail};
 

@@ -12,6 +12,7 @@ pub mod normal;
 pub mod slider;
 pub mod tangential;
 pub mod turning;
+pub mod walls;
 
 pub use damping::Damping;
 pub use law::{Arm, Classic, Granular, Model, Unmixable};

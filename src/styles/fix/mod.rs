@@ -41,6 +41,7 @@ mod store_state;
 mod vector;
 mod viscous;
 mod viscous_sphere;
+mod wall;
 mod window;
 
 use super::{BuildCx, SealCx, Shape, Style};
@@ -178,6 +179,8 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &vector::VectorFix,
     &viscous::Viscous,
     &viscous_sphere::ViscousSphere,
+    &wall::gran::WallGran,
+    &wall::region::WallGranRegion,
 ];
 
 /// Takes the region after the keyword `region`.

@@ -179,6 +179,25 @@ impl Shape {
         }
     }
 
+    /// The shape's number `k`, counted as `region` reads them; 0 for what `set` does not reach.
+    pub(super) fn get(&self, k: usize) -> f64 {
+        let corner = |lo: &[f64; 3], hi: &[f64; 3]| if k.is_multiple_of(2) { lo[k / 2] } else { hi[k / 2] };
+        let row = |numbers: &[f64]| numbers.get(k).copied().unwrap_or(0.0);
+        match self {
+            Shape::Block { lo, hi } => corner(lo, hi),
+            Shape::Prism { lo, hi, .. } if k < 6 => corner(lo, hi),
+            Shape::Prism { tilt, .. } => tilt[k - 6],
+            Shape::Cylinder { center: [a, b], radius, .. } => row(&[*a, *b, *radius]),
+            Shape::Cone { center: [a, b], radius: [r, s], lo, hi, .. } => row(&[*a, *b, *r, *s, *lo, *hi]),
+            Shape::Sphere { center: [x, y, z], radius } => row(&[*x, *y, *z, *radius]),
+            Shape::Ellipsoid { center: first, half: second }
+            | Shape::Plane { point: first, normal: second } => {
+                row(&[first[0], first[1], first[2], second[0], second[1], second[2]])
+            }
+            Shape::Union(_) | Shape::Intersect(_) => 0.0,
+        }
+    }
+
     /// What is wrong with the shape's numbers, if anything.
     pub fn fault(&self) -> Option<&'static str> {
         let wrong = |bad: bool, text: &'static str| bad.then_some(text);

@@ -1,0 +1,242 @@
+//! Contacts of spheres with walls: who touches where, what each contact remembers, what it does.
+
+use super::driver::Grains;
+use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
+use crate::math::vec3::{Vec3, add, cross, scale, sub};
+use crate::par;
+use crate::world::contacts::Contacts;
+pub use crate::world::region::Near;
+
+/// Something spheres lean on.
+pub trait Wall: Sync {
+    /// Whether a sphere at `x` may come nearer than `reach` to the wall, from whatever side; generous where that is
+    /// not easily told. `spare` is room.
+    fn close(&self, x: Vec3, reach: f64, spare: &mut Vec<Near>) -> bool;
+
+    /// Finds the places of the wall nearer than `reach` to `x`, at most one for each of its parts.
+    fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>);
+}
+
+/// A sphere that touches a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Which particle.
+    pub grain: u32,
+    /// Where.
+    pub near: Near,
+}
+
+/// One evaluation of all contacts with a wall; keeps its room from step to step.
+#[derive(Clone, Debug, Default)]
+pub struct WallSweep {
+    /// Particles that may come near the wall, by their tags.
+    list: Vec<u32>,
+    touching: Vec<Touch>,
+    keys: Vec<[u32; 2]>,
+    wrenches: Vec<Wrench>,
+    spare: Vec<f64>,
+}
+
+impl WallSweep {
+    /// Lists the particles with a bit of `group` that may come within `skin` of touching the wall.
+    pub fn list<L: ContactLaw>(
+        &mut self,
+        wall: &dyn Wall,
+        grains: &Grains,
+        mask: &[u32],
+        group: u32,
+        law: &L,
+        skin: f64,
+    ) {
+        let some = |range: std::ops::Range<usize>| {
+            let mut spare = vec![];
+            let member = |i: &usize| mask[*i] & group != 0;
+            let near = |i: &usize| {
+                let radius = grains.radius[*i];
+                wall.close(grains.x[*i], radius + law.gap(radius) + skin, &mut spare)
+            };
+            range.filter(member).filter(near).map(|i| i as u32).collect::<Vec<u32>>()
+        };
+        self.list = par::reduce(grains.x.len(), some, join).unwrap_or_default();
+        self.list.sort_unstable_by_key(|i| grains.tag[*i as usize]);
+    }
+
+    /// Evaluates the contacts among the listed particles; `memory` follows: contacts that ended are forgotten.
+    pub fn run<L: ContactLaw>(
+        &mut self,
+        wall: &dyn Wall,
+        grains: &Grains,
+        law: &L,
+        memory: &mut Contacts,
+        step: Advance,
+    ) {
+        self.find(wall, grains, law, memory);
+        let width = law.memory();
+        self.keys.clear();
+        self.keys.extend(self.touching.iter().map(|t| [grains.tag[t.grain as usize], t.near.part]));
+        memory.carry(&self.keys, width, &mut self.spare);
+        self.wrenches.clear();
+        self.wrenches.resize(self.touching.len(), Wrench::default());
+        let history = par::Rows { data: &mut memory.history[..], width };
+        par::each(
+            (&mut self.wrenches[..], history, &self.touching[..]),
+            |_, (wrenches, history, touching)| {
+                for (k, (w, t)) in wrenches.iter_mut().zip(touching).enumerate() {
+                    let i = t.grain as usize;
+                    let motion = Motion { velocity: grains.v[i], spin: grains.omega[i] };
+                    let wall = Motion { velocity: t.near.velocity, spin: [0.0; 3] };
+                    let geometry = geometry(&t.near, grains.radius[i], grains.mass[i]);
+                    *w =
+                        law.contact(&geometry, &motion, &wall, &mut history.data[k * width..][..width], step);
+                }
+            },
+        );
+    }
+
+    fn find<L: ContactLaw>(&mut self, wall: &dyn Wall, grains: &Grains, law: &L, memory: &Contacts) {
+        let list = &self.list[..];
+        let some = |range: std::ops::Range<usize>| {
+            let (mut touching, mut near) = (vec![], vec![]);
+            for &grain in &list[range] {
+                let i = grain as usize;
+                let radius = grains.radius[i];
+                near.clear();
+                // Hollow walls have larger effective radii, so that cohesion may reach farther than on flat ones.
+                wall.near(grains.x[i], radius + 2.0 * law.gap(radius), &mut near);
+                near.sort_by_key(|n| n.part);
+                let touches = |n: &&Near| {
+                    n.distance < radius
+                        || (n.distance < radius + law.gap(effective(radius, n.radius))
+                            && memory.get([grains.tag[i], n.part]).is_some())
+                };
+                touching.extend(near.iter().filter(touches).map(|n| Touch { grain, near: *n }));
+            }
+            touching
+        };
+        self.touching = par::reduce(list.len(), some, join).unwrap_or_default();
+    }
+
+    /// Adds forces and torques to the particles; what the wall feels: force, and torque about `center`.
+    pub fn scatter(&self, f: &mut [Vec3], torque: &mut [Vec3], x: &[Vec3], center: Vec3) -> [f64; 6] {
+        let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+        for (t, w) in self.contacts() {
+            let i = t.grain as usize;
+            f[i] = add(f[i], w.force);
+            torque[i] = add(torque[i], w.torque_i);
+            force = sub(force, w.force);
+            moment = sub(moment, add(w.torque_i, cross(sub(x[i], center), w.force)));
+        }
+        [force[0], force[1], force[2], moment[0], moment[1], moment[2]]
+    }
+
+    /// The contacts of the last evaluation and what they do.
+    pub fn contacts(&self) -> impl Iterator<Item = (&Touch, &Wrench)> {
+        self.touching.iter().zip(&self.wrenches)
+    }
+
+    /// How many particles are looked at in each step.
+    pub fn listed(&self) -> usize {
+        self.list.len()
+    }
+}
+
+fn join<T>(mut a: Vec<T>, mut b: Vec<T>) -> Vec<T> {
+    a.append(&mut b);
+    a
+}
+
+/// R̄ of a sphere on a wall with this radius of curvature: R where the wall is flat, or too hollow for the sphere.
+fn effective(radius: f64, wall: f64) -> f64 {
+    if wall == 0.0 {
+        return radius;
+    }
+    let curvature = radius * wall / (radius + wall);
+    if curvature > 0.0 && curvature.is_finite() { curvature } else { radius }
+}
+
+/// The contact as laws see it: the wall is a sphere of radius 0 and infinite mass.
+fn geometry(near: &Near, radius: f64, mass: f64) -> Geometry {
+    Geometry {
+        normal: near.normal,
+        overlap: radius - near.distance,
+        radii: [radius, 0.0],
+        curvature: effective(radius, near.radius),
+        mass,
+    }
+}
+
+/// Planes across one axis, facing each other: part 0 the lower, part 1 the upper one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Planes {
+    /// The axis, 0 to 2.
+    pub axis: usize,
+    /// Where they are.
+    pub lo: Option<f64>,
+    /// Where they are.
+    pub hi: Option<f64>,
+    /// How they move.
+    pub velocity: Vec3,
+    /// Of two planes only the nearer one acts, as LAMMPS has it.
+    pub nearer: bool,
+}
+
+impl Wall for Planes {
+    fn close(&self, x: Vec3, reach: f64, _spare: &mut Vec<Near>) -> bool {
+        let near = |plane: Option<f64>| plane.is_some_and(|p| (x[self.axis] - p).abs() < reach);
+        near(self.lo) || near(self.hi)
+    }
+
+    fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
+        let height = |plane: Option<f64>, sign: f64| plane.map(|p| sign * (x[self.axis] - p));
+        let sides = [height(self.lo, 1.0), height(self.hi, -1.0)];
+        let hidden = match sides {
+            [Some(lo), Some(hi)] if self.nearer => Some(usize::from(lo < hi)),
+            _ => None,
+        };
+        for (part, sign) in [1.0, -1.0].into_iter().enumerate().filter(|(part, _)| hidden != Some(*part)) {
+            let Some(height) = sides[part] else { continue };
+            let mut normal = [0.0; 3];
+            // What is beyond the plane is pushed on, as from its other side (LAMMPS).
+            normal[self.axis] = if height < 0.0 { -sign } else { sign };
+            let (distance, part) = (height.abs(), part as u32);
+            if distance < reach {
+                out.push(Near { part, normal, distance, radius: 0.0, velocity: self.velocity });
+            }
+        }
+    }
+}
+
+/// An endless cylinder about the z axis, felt from both sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tube {
+    /// Its radius.
+    pub radius: f64,
+    /// How it moves as a whole.
+    pub velocity: Vec3,
+    /// Speed of its surface about the axis: clockwise seen from above where positive.
+    pub spin: f64,
+}
+
+impl Wall for Tube {
+    fn close(&self, x: Vec3, reach: f64, _spare: &mut Vec<Near>) -> bool {
+        (x[0].hypot(x[1]) - self.radius).abs() < reach
+    }
+
+    fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
+        let r = (x[0] * x[0] + x[1] * x[1]).sqrt();
+        let depth = self.radius - r;
+        let away = if r > 0.0 { [x[0] / r, x[1] / r, 0.0] } else { [1.0, 0.0, 0.0] };
+        if depth.abs() < reach {
+            out.push(Near {
+                part: 0,
+                normal: scale(if depth >= 0.0 { -1.0 } else { 1.0 }, away),
+                distance: depth.abs(),
+                radius: if depth > 0.0 { -2.0 * self.radius } else { 2.0 * self.radius },
+                velocity: add(self.velocity, [self.spin * away[1], -self.spin * away[0], 0.0]),
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,117 @@
+//! Walls of granular scenes: what the fixes wall/gran, wall/gran/region and wall/mesh have in common.
+
+pub mod gran;
+mod op;
+pub mod region;
+mod words;
+
+use super::Fix;
+use crate::diag::{Code, Diagnostic, Result, Span};
+use crate::laws::contact::walls::Wall;
+use crate::plan::{Op, Tick};
+use crate::styles::{BuildCx, SealCx, Shape};
+use crate::world::{GroupId, World};
+use words::Material;
+
+/// A wall of some form during a run.
+trait Surface: Send {
+    /// Puts the wall where it is at this step; an upper bound of how far its points have moved since the last call.
+    fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64>;
+
+    /// The wall as it is now.
+    fn wall<'a>(&'a self, w: &'a World) -> Box<dyn Wall + 'a>;
+}
+
+/// A declared wall: what its form is, and all that does not depend on the form.
+trait Form: Clone + Send + 'static {
+    /// The word in the deck.
+    const STYLE: &'static str;
+
+    /// The wall for a run.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>>;
+
+    /// Captures what it must know of the moment it is declared, under `key`.
+    fn declare(&self, w: &mut World, key: &str);
+}
+
+/// What all walls have.
+#[derive(Clone)]
+struct Common {
+    id: String,
+    group: GroupId,
+    material: Material,
+    /// Whether each particle's contact is told.
+    contacts: bool,
+    /// About which point the wall's torque is meant.
+    center: [f64; 3],
+}
+
+impl Common {
+    /// Where small state of the fix is kept in the world.
+    fn key(&self, style: &str) -> String {
+        format!("{style}/{}", self.id)
+    }
+}
+
+#[derive(Clone)]
+struct Declared<F> {
+    common: Common,
+    form: F,
+}
+
+impl<F: Form> Fix for Declared<F> {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let surface = self.form.surface(&self.common, cx)?;
+        Ok(vec![Box::new(op::WallOp::new(F::STYLE, &self.common, surface, cx))])
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.form.declare(w, &self.common.key(F::STYLE));
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.memo.remove(&self.common.key(F::STYLE));
+        w.wall_contacts.remove(&self.common.id);
+    }
+
+    fn shape(&self) -> Shape {
+        let atom = self.common.contacts.then_some(op::COLUMNS);
+        Shape { vector: 6, vector_extensive: true, atom, ..Shape::default() }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+/// Refuses particles without a radius.
+fn needs_spheres(cx: &BuildCx, style: &str) -> Result<()> {
+    if cx.world.particles.style.sphere {
+        return Ok(());
+    }
+    let text = format!("fix {style} needs particles with a radius");
+    let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
+    Err(d.help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck").into())
+}
+
+/// Refuses a wall across a direction in which the box repeats.
+fn not_across_periodic(cx: &BuildCx, axes: &[usize], span: Span) -> Result<()> {
+    let Some(domain) = &cx.world.domain else {
+        let text = "the simulation box is not defined yet: a create_box must come first";
+        return Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, text).into());
+    };
+    let periodic = domain.periodic();
+    match axes.iter().find(|d| periodic[**d]) {
+        None => Ok(()),
+        Some(d) => {
+            let name = ["x", "y", "z"][*d];
+            let text = format!("this wall stands across {name}, where the box is periodic");
+            let d = Diagnostic::error(Code::CONFLICT, span, text);
+            Err(d.help(format!("make {name} fixed or shrink-wrapped with `boundary`")).into())
+        }
+    }
+}

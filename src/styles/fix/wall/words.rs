@@ -1,0 +1,130 @@
+//! Words that all walls share: the force style with its numbers, and keywords.
+
+use super::Common;
+use crate::diag::{Code, Diagnostic, Result, Span, fail};
+use crate::lang::{Args, Word};
+use crate::laws::contact::driver::{Average, Curvature};
+use crate::laws::contact::{Arm, Damping, Granular, Model, Normal};
+use crate::styles::BuildCx;
+use crate::styles::contact::words;
+use crate::world::Compat;
+
+/// Force styles of walls.
+const STYLES: [&str; 4] = ["granular", "hooke", "hooke/history", "hertz/history"];
+
+/// Keywords of every wall.
+pub const KEYWORDS: [&str; 4] = ["contacts", "temperature", "material", "about"];
+
+/// What a wall and the grains on it are made of.
+#[derive(Clone, Copy)]
+pub struct Material {
+    /// The model of the contacts.
+    pub model: Model,
+    /// The wall's own, where `material` gave one.
+    pub own: Option<Model>,
+    /// Where the model is said.
+    pub span: Span,
+}
+
+impl Material {
+    /// The law of the wall's contacts.
+    pub fn law(&self, compat: Compat) -> Granular {
+        match &self.own {
+            None => self.model.law(compat),
+            Some(wall) => self.model.mixed(wall, compat).unwrap_or_else(|_| self.model.law(compat)),
+        }
+    }
+}
+
+/// Reads the force style and its numbers, up to one of the words that name the wall.
+///
+/// # Errors
+/// Every mistake in them.
+pub fn force(args: &mut Args, ends: &[&str]) -> Result<Material> {
+    let word = args.expect("the force style")?;
+    let span = word.span;
+    let model = match word.text.as_str() {
+        "granular" => granular(args, ends)?,
+        style if STYLES.contains(&style) => {
+            let text = format!("walls with `{style}` are not in perigrain yet");
+            return Err(Diagnostic::error(Code::NOT_SUPPORTED, span, text).help("there is: granular").into());
+        }
+        _ => {
+            let text = format!("unknown force style of a wall: `{}`", word.text);
+            let d = Diagnostic::error(Code::UNKNOWN_STYLE, span, text);
+            return Err(match crate::diag::nearest(&word.text, STYLES) {
+                Some(n) => d.help(format!("did you mean `{n}`?")),
+                None => d.help(format!("known here: {}", STYLES.join(" "))),
+            }
+            .into());
+        }
+    };
+    // As in LAMMPS, friction takes hold of a grain on a wall at its full radius, whatever the overlap.
+    Ok(Material { model: Model { arm: Arm::Radius, ..model }, own: None, span })
+}
+
+fn granular(args: &mut Args, ends: &[&str]) -> Result<Model> {
+    let c = words::coeff(args, ends)?;
+    let wrong = if c.average != Average::None {
+        "`average` is for contacts of particles with each other"
+    } else if c.curvature != Curvature::Both {
+        "`curvature` is for contacts of particles with each other"
+    } else if c.cutoff.is_some() {
+        "`cutoff` is for contacts of particles with each other"
+    } else {
+        return Ok(c.model);
+    };
+    fail(Code::CONFLICT, c.span, format!("{wrong}: a wall has no use for it"))
+}
+
+/// Reads one keyword that every wall knows; whether the word is one.
+///
+/// # Errors
+/// Mistakes in its numbers.
+pub fn keyword(word: &Word, args: &mut Args, common: &mut Common) -> Result<bool> {
+    match word.text.as_str() {
+        "contacts" => common.contacts = true,
+        "material" => common.material.own = Some(own_material(word, args, &common.material.model)?),
+        "about" => {
+            common.center = [args.number("x")?, args.number("y")?, args.number("z")?];
+        }
+        "temperature" => {
+            let text = "walls that conduct heat are not in perigrain yet";
+            return fail(Code::NOT_SUPPORTED, word.span, text);
+        }
+        _ => return Ok(false),
+    }
+    Ok(true)
+}
+
+/// `material E nu`: the wall's own elastic constants; the others are those of the model.
+fn own_material(word: &Word, args: &mut Args, model: &Model) -> Result<Model> {
+    let young = args.positive("Young's modulus of the wall")?;
+    let at = args.here();
+    let poisson = args.number("Poisson's ratio of the wall")?;
+    if !(-1.0..=0.5).contains(&poisson) {
+        let text = format!("Poisson's ratio lies between -1 and 0.5, {poisson} does not");
+        return fail(Code::BAD_VALUE, at, text);
+    }
+    let normal = match model.normal {
+        Normal::HertzMaterial { eta, .. } => Normal::HertzMaterial { young, eta, poisson },
+        Normal::Dmt { eta, cohesion, .. } => Normal::Dmt { young, eta, poisson, cohesion },
+        Normal::Jkr { eta, cohesion, .. } => Normal::Jkr { young, eta, poisson, cohesion },
+        other => {
+            let text =
+                format!("a wall of another material needs a normal model with one, not {}", other.name());
+            let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+            return Err(d.help("take `granular hertz/material E eta nu …`").into());
+        }
+    };
+    Ok(Model { normal, ..*model })
+}
+
+/// The wall's common part before its keywords are read.
+pub fn common(cx: &BuildCx, material: Material) -> Common {
+    if cx.world.settings.lammps() && material.model.damping == Damping::Tsuji {
+        let text = "compat lammps: damping tsuji without its factor √2";
+        cx.note(Diagnostic::note(Code::COMPAT, material.span, text));
+    }
+    Common { id: cx.id.to_string(), group: cx.group, material, contacts: false, center: [0.0; 3] }
+}
