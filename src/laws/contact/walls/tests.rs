@@ -44,6 +44,7 @@ impl Scene {
             tag: &self.tag,
             period: [0.0; 3],
             body: &[],
+            frozen: &[],
         }
     }
 }

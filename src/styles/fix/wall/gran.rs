@@ -53,7 +53,7 @@ impl Style for WallGran {
 impl FixStyle for WallGran {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         needs_spheres(cx, "wall/gran")?;
-        let material = words::force(args, &WALLS)?;
+        let material = words::force(args, cx, &WALLS)?;
         let mut common = words::common(cx, material);
         let (mut form, span) = wall(args, cx)?;
         while let Some(word) = args.next() {

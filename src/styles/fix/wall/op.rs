@@ -161,6 +161,7 @@ impl Op for WallOp {
             tag: &p.tag,
             period: [0.0; 3],
             body: &[],
+            frozen: &[],
         };
         self.list(w, &grains);
         let wall = self.surface.wall(w);

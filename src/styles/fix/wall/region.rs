@@ -48,7 +48,7 @@ impl Style for WallGranRegion {
 impl FixStyle for WallGranRegion {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         needs_spheres(cx, "wall/gran/region")?;
-        let material = words::force(args, &["region"])?;
+        let material = words::force(args, cx, &["region"])?;
         let mut common = words::common(cx, material);
         let word = args.expect("the word `region`")?;
         if word.text != "region" {

@@ -1,12 +1,12 @@
 //! Words that all walls share: the force style with its numbers, and keywords.
 
 use super::Common;
-use crate::diag::{Code, Diagnostic, Result, Span, fail};
+use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use crate::lang::{Args, Word};
 use crate::laws::contact::driver::{Average, Curvature};
 use crate::laws::contact::{Arm, Damping, Granular, Model, Normal};
 use crate::styles::BuildCx;
-use crate::styles::contact::words;
+use crate::styles::contact::{classic, words};
 use crate::world::Compat;
 
 /// Force styles of walls.
@@ -40,15 +40,18 @@ impl Material {
 ///
 /// # Errors
 /// Every mistake in them.
-pub fn force(args: &mut Args, ends: &[&str]) -> Result<Material> {
+pub fn force(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Material> {
     let word = args.expect("the force style")?;
     let span = word.span;
+    let classic = |hertz: bool, history: bool, args: &mut Args| {
+        let numbers = classic::numbers(args, hertz, cx.world.settings.units)?;
+        Ok::<_, Diagnostics>(Model::classic(hertz, history, &numbers))
+    };
     let model = match word.text.as_str() {
         "granular" => granular(args, ends)?,
-        style if STYLES.contains(&style) => {
-            let text = format!("walls with `{style}` are not in perigrain yet");
-            return Err(Diagnostic::error(Code::NOT_SUPPORTED, span, text).help("there is: granular").into());
-        }
+        "hooke" => classic(false, false, args)?,
+        "hooke/history" => classic(false, true, args)?,
+        "hertz/history" => classic(true, true, args)?,
         _ => {
             let text = format!("unknown force style of a wall: `{}`", word.text);
             let d = Diagnostic::error(Code::UNKNOWN_STYLE, span, text);
