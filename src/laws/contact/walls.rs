@@ -1,6 +1,5 @@
 //! Contacts of spheres with walls: who touches where, what each contact remembers, what it does.
 
-use super::driver::Grains;
 use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
 use crate::math::vec3::{Vec3, add, cross, scale, sub};
 use crate::par;
@@ -15,6 +14,23 @@ pub trait Wall: Sync {
 
     /// Finds the places of the wall nearer than `reach` to `x`, at most one for each of its parts.
     fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>);
+}
+
+/// The particles as walls see them: columns of equal length.
+#[derive(Clone, Copy)]
+pub struct Spheres<'a> {
+    /// Positions [length].
+    pub x: &'a [Vec3],
+    /// Velocities [length/time].
+    pub v: &'a [Vec3],
+    /// Angular velocities [1/time].
+    pub omega: &'a [Vec3],
+    /// Radii [length].
+    pub radius: &'a [f64],
+    /// Masses.
+    pub mass: &'a [f64],
+    /// Identities.
+    pub tag: &'a [u32],
 }
 
 /// A sphere that touches a wall.
@@ -42,7 +58,7 @@ impl WallSweep {
     pub fn list<L: ContactLaw>(
         &mut self,
         wall: &dyn Wall,
-        grains: &Grains,
+        grains: &Spheres,
         mask: &[u32],
         group: u32,
         law: &L,
@@ -65,7 +81,7 @@ impl WallSweep {
     pub fn run<L: ContactLaw>(
         &mut self,
         wall: &dyn Wall,
-        grains: &Grains,
+        grains: &Spheres,
         law: &L,
         memory: &mut Contacts,
         step: Advance,
@@ -93,7 +109,7 @@ impl WallSweep {
         );
     }
 
-    fn find<L: ContactLaw>(&mut self, wall: &dyn Wall, grains: &Grains, law: &L, memory: &Contacts) {
+    fn find<L: ContactLaw>(&mut self, wall: &dyn Wall, grains: &Spheres, law: &L, memory: &Contacts) {
         let list = &self.list[..];
         let some = |range: std::ops::Range<usize>| {
             let (mut touching, mut near) = (vec![], vec![]);

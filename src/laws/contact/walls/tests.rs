@@ -16,7 +16,6 @@ struct Scene {
     v: Vec<Vec3>,
     omega: Vec<Vec3>,
     radius: Vec<f64>,
-    kind: Vec<u16>,
     tag: Vec<u32>,
 }
 
@@ -28,23 +27,18 @@ impl Scene {
             v: vec![v; n],
             omega: vec![[0.0; 3]; n],
             radius: vec![1.0; n],
-            kind: vec![1; n],
             tag: (1..=n as u32).rev().collect(),
         }
     }
 
-    fn grains(&self) -> Grains<'_> {
-        Grains {
+    fn grains(&self) -> Spheres<'_> {
+        Spheres {
             x: &self.x,
             v: &self.v,
             omega: &self.omega,
             radius: &self.radius,
             mass: &self.radius,
-            kind: &self.kind,
             tag: &self.tag,
-            period: [0.0; 3],
-            body: &[],
-            frozen: &[],
         }
     }
 }

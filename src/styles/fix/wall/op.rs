@@ -2,8 +2,7 @@
 
 use super::{Common, Surface};
 use crate::diag::Result;
-use crate::laws::contact::driver::Grains;
-use crate::laws::contact::walls::WallSweep;
+use crate::laws::contact::walls::{Spheres, WallSweep};
 use crate::laws::contact::{Advance, Granular};
 use crate::math::vec3::{scale, sub};
 use crate::out::log::Log;
@@ -60,7 +59,7 @@ impl WallOp {
     }
 
     /// Finds out anew who may touch the wall, where particles or wall have moved too far since.
-    fn list(&mut self, w: &World, grains: &Grains) {
+    fn list(&mut self, w: &World, grains: &Spheres) {
         let s = &w.settings.neighbor;
         // Only then no particle is ever farther than half a skin from where it was at the last rebuild.
         let followed = s.check && s.every == 1 && s.delay == 0 && !s.once;
@@ -151,18 +150,8 @@ impl Op for WallOp {
         // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
         let kept: Option<Contacts> = (t.setup && !w.settings.lammps()).then(|| memory.clone());
         let p = &w.particles;
-        let grains = Grains {
-            x: &p.x,
-            v: &p.v,
-            omega: &p.omega,
-            radius: &p.radius,
-            mass: &p.mass,
-            kind: &p.kind,
-            tag: &p.tag,
-            period: [0.0; 3],
-            body: &[],
-            frozen: &[],
-        };
+        let grains =
+            Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
         self.list(w, &grains);
         let wall = self.surface.wall(w);
         let step = Advance { dt: t.dt, history: !t.setup };
