@@ -24,7 +24,7 @@ fn coeff(k: f64, s00: f64, alpha: f64) -> PmbCoeff {
 }
 
 /// A block hit from the side by a smaller one that was made apart from it: bonds break, both touch.
-fn impact(types: u16) -> Scene {
+pub fn impact(types: u16) -> Scene {
     let mut s = Scene::new(DX, 4e-8, usize::from(types));
     s.fill(DX, [[0, 9], [0, 7], [0, 6]], 1, 2200.0, |_| true);
     let first = s.x.len();
@@ -42,7 +42,7 @@ fn impact(types: u16) -> Scene {
 }
 
 /// Types in layers across x, so that rows along y or z stay of one type; or scattered, so that none do.
-fn impact_of_types(scattered: bool) -> Scene {
+pub fn impact_of_types(scattered: bool) -> Scene {
     let mut s = impact(3);
     let mut scatter = Scatter(7);
     for i in 0..s.x.len() {
@@ -56,7 +56,7 @@ fn impact_of_types(scattered: bool) -> Scene {
 }
 
 /// Points on no lattice.
-fn rubble() -> Scene {
+pub fn rubble() -> Scene {
     let mut s = impact(2);
     let mut scatter = Scatter(3);
     for i in 0..s.x.len() {
@@ -71,7 +71,7 @@ fn rubble() -> Scene {
 }
 
 /// A periodic block under random velocities, drifting through its faces.
-fn periodic(cells: [i32; 3], jitter: f64) -> Scene {
+pub fn periodic(cells: [i32; 3], jitter: f64) -> Scene {
     let mut s = Scene::new(DX, 4e-8, 1);
     s.fill(DX, cells.map(|n| [0, n - 1]), 1, 2200.0, |_| true);
     s.bounds =

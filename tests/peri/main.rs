@@ -5,4 +5,5 @@ mod golden;
 mod layouts;
 mod patch;
 mod scene;
+mod states;
 mod textbook;

@@ -16,6 +16,7 @@ pub struct Scene {
     pub bounds: Bounds,
     pub table: PmbTable,
     pub options: FamilyOptions,
+    pub law: Law,
     pub families: Option<Families>,
     pub energy: f64,
     pub virial: [f64; 6],
@@ -36,6 +37,7 @@ impl Scene {
             bounds: Bounds { lo: [-1.0; 3], hi: [1.0; 3], periodic: [false; 3] },
             table: PmbTable::new(types),
             options: FamilyOptions::new(dx),
+            law: Law { dt, ..Law::default() },
             families: None,
             energy: 0.0,
             virial: [0.0; 6],
@@ -87,7 +89,7 @@ impl Scene {
 
     /// Setup of the first run.
     pub fn setup(&mut self) {
-        let families = Families::build(&self.view(), &self.table, self.options).unwrap();
+        let families = Families::build_of(&self.view(), &self.table, self.options, self.law.clone()).unwrap();
         self.families = Some(families);
         self.forces(false);
     }

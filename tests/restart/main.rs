@@ -58,9 +58,24 @@ const IMPACT_AGAIN: &str = "pair_style hybrid/overlay peri/pmb granular\n\
     compute dmg all damage/atom\ncompute dsum all reduce sum c_dmg\n\
     thermo_style custom step time dt ke c_dsum f_3[1] f_4\nthermo_modify format float %24.17g\nthermo 5\n";
 
-const SCENES: [Scene; 4] = [
+/// The same block of state-based materials.
+const LPS_AGAIN: &str = "pair_style peri/lps\npair_coeff * * 14e9 6e9 0.0030001 0.0015 0.25\nneighbor 0.0006 bin\n\
+    fix 1 all nve\ntimestep 5.0e-8\ncompute dil all dilatation/atom\ncompute dsum all reduce sum c_dil\n\
+    thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
+const VES_AGAIN: &str = "pair_style peri/ves\npair_coeff * * 14e9 6e9 0.0030001 0.0015 0.25 0.6 4e-7\nneighbor 0.0006 bin\n\
+    fix 1 all nve\ntimestep 5.0e-8\ncompute dil all dilatation/atom\ncompute dsum all reduce sum c_dil\n\
+    thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
+const EPS_AGAIN: &str = "pair_style peri/eps\npair_coeff * * 14e9 6e9 0.0030001 0.0035 0.25 1e7\nneighbor 0.0006 bin\n\
+    fix 1 all nve\ntimestep 5.0e-8\ncompute flow all plasticity/atom\ncompute dsum all reduce sum c_flow\n\
+    thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
+
+const SCENES: [Scene; 8] = [
     Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
     Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
+    Scene { name: "lps", make: BLOCK, again: LPS_AGAIN, steps: 60, list: false },
+    Scene { name: "ves", make: BLOCK, again: VES_AGAIN, steps: 60, list: false },
+    Scene { name: "eps", make: BLOCK, again: EPS_AGAIN, steps: 60, list: false },
+    Scene { name: "eps, list", make: BLOCK, again: EPS_AGAIN, steps: 40, list: true },
     Scene { name: "pile", make: PILE, again: PILE_AGAIN, steps: 400, list: false },
     Scene { name: "impact", make: IMPACT, again: IMPACT_AGAIN, steps: 60, list: false },
 ];
