@@ -124,7 +124,6 @@ pub struct SiteState {
     #[serde(skip)]
     pub sums: Vec<f64>,
     /// Constants of the first sweep, as [`super::lattice::LatticeBody::tables`].
-    #[serde(skip)]
     pub tables: Vec<f64>,
     /// Coordinates of each row beyond which no site has a dilatation.
     #[serde(skip)]

@@ -49,7 +49,7 @@ pub struct Sites<'a> {
 
 impl Settling<'_> {
     fn stiffness(&self) -> Vec<Stiffness> {
-        let types = 1..=self.law.moduli.len() as u16;
+        let types = 1..=self.table.types() as u16;
         let of = |kind: u16| {
             let m = self.law.of(kind);
             let horizon = self.table.get(kind, kind).map_or(1.0, |c| c.horizon);
