@@ -4,8 +4,6 @@
 pub const STYLES: &[(&str, &str)] = &[
     ("pair", "bpm/spring"),
     ("pair", "lj/cut"),
-    ("fix", "pour"),
-    ("fix", "deposit"),
     ("fix", "rigid"),
     ("fix", "rigid/small"),
     ("fix", "nvt"),

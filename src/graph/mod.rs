@@ -17,5 +17,6 @@ mod said;
 pub mod seal;
 pub mod show;
 pub mod thermo;
+pub mod welcome;
 
 pub use node::{ComputeNode, DumpNode, FixNode, Graph, Node, NodeId, PairNode, Role};

@@ -38,6 +38,11 @@ impl Op for Reneighbor {
         if t.setup {
             w.rebuild.builds = 0;
             w.rebuild.dangerous = 0;
+            w.rebuild.due = false;
+            return rebuild(w, t, self.lost);
+        }
+        if std::mem::take(&mut w.rebuild.due) {
+            w.rebuild.builds += 1;
             return rebuild(w, t, self.lost);
         }
         let s = &w.settings.neighbor;

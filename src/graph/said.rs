@@ -6,7 +6,7 @@ use super::seal::Sealer;
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::{Clock, Dep, Env, Expr, RefKind, Value, ValueRef, Vars, substitute};
 use crate::plan::{Stage, When};
-use crate::styles::{SealCx, Text};
+use crate::styles::{PlaceTest, SealCx, Text};
 use crate::world::{SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -23,8 +23,25 @@ pub fn text(
     stage: Stage,
     when: &When,
 ) -> Result<Text> {
+    let needed = depends(text, span, &vars)?;
+    let from = sources(s, needed, span, stage, when)?;
+    let (text, declared) = (text.to_string(), s.declared());
+    Ok(Box::new(move |w| {
+        let mut env = RunEnv { w, declared: &declared, from: &from };
+        substitute(&text, span, &vars, &mut env)
+    }))
+}
+
+/// Where the values that formulas need are found, planned.
+fn sources(
+    s: &mut Sealer,
+    needed: Vec<Dep>,
+    span: Span,
+    stage: Stage,
+    when: &When,
+) -> Result<BTreeMap<String, SlotId>> {
     let mut from = BTreeMap::new();
-    for dep in depends(text, span, &vars)? {
+    for dep in needed {
         let (name, slot): (String, SlotId) = match dep {
             Dep::Keyword(k) => match s.keyword(&k, span, stage, when)? {
                 crate::styles::Reading::Scalar(slot) => (k, slot),
@@ -34,10 +51,40 @@ pub fn text(
         };
         from.insert(name, slot);
     }
-    let (text, declared) = (text.to_string(), s.declared());
-    Ok(Box::new(move |w| {
+    Ok(from)
+}
+
+/// Plans the values that a variable needs and returns what asks it about a place, with internal-style variables set to
+/// the coordinates.
+///
+/// # Errors
+/// Unknown variables, and those to be set that are of another style.
+pub fn test(
+    s: &mut Sealer,
+    vars: Arc<Vars>,
+    r: &ValueRef,
+    sets: &[Option<ValueRef>; 3],
+    stage: Stage,
+    when: &When,
+) -> Result<PlaceTest> {
+    let mut vars = Vars::clone(&vars);
+    for variable in sets.iter().flatten() {
+        if !vars.set_internal(&variable.name, 0.0) {
+            let text = format!("variable `{}` must be of style internal", variable.name);
+            return fail(Code::WRONG_KIND, variable.span, text);
+        }
+    }
+    let from = sources(s, of_variable(&r.name, &vars), r.span, stage, when)?;
+    let (r, sets, declared) = (r.clone(), sets.clone(), s.declared());
+    Ok(Box::new(move |w, x| {
+        for (variable, x) in sets.iter().zip(x).filter_map(|(v, x)| v.as_ref().map(|v| (v, x))) {
+            vars.set_internal(&variable.name, x);
+        }
         let mut env = RunEnv { w, declared: &declared, from: &from };
-        substitute(&text, span, &vars, &mut env)
+        match vars.value(&r.name, r.span, &mut env)? {
+            Value::Number(a) => Ok(a != 0.0),
+            _ => fail(Code::WRONG_KIND, r.span, format!("`{r}` has no single number")),
+        }
     }))
 }
 

@@ -10,7 +10,7 @@ use crate::lang::{Dep, RefKind, Value, ValueRef, Vars};
 use crate::out::log::Log;
 use crate::plan::{Access, LeftOut, Op, OpClass, Placed, Stage, StepPlan, Tick, When};
 use crate::styles::bond::BondForce;
-use crate::styles::{Reading, SealCx, Shape, Text, Wants};
+use crate::styles::{PlaceTest, Pull, Reading, SealCx, Shape, Text, Wants};
 use crate::world::{SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -87,6 +87,11 @@ impl<'a> Sealer<'a> {
     /// Whether a fix changes the box during the run.
     pub fn deforms(&self) -> bool {
         self.graph.fixes.iter().any(|f| f.fix.deforms() != [false; 3])
+    }
+
+    /// What is declared.
+    pub fn graph(&self) -> &'a Graph {
+        self.graph
     }
 
     /// What follows belongs to the line at `span`.
@@ -336,6 +341,22 @@ impl SealCx for Sealer<'_> {
 
     fn steps(&mut self, r: &ValueRef) -> Result<When> {
         said::steps(self.world, &self.vars, r)
+    }
+
+    fn test(
+        &mut self,
+        r: &ValueRef,
+        sets: &[Option<ValueRef>; 3],
+        stage: Stage,
+        when: &When,
+    ) -> Result<PlaceTest> {
+        let vars = self.vars.clone();
+        said::test(self, vars, r, sets, stage, when)
+    }
+
+    fn pulls(&self) -> Vec<Pull> {
+        let flat = self.world.settings.two_dimensional;
+        self.graph.fixes.iter().filter_map(|f| f.fix.pull(flat)).collect()
     }
 
     fn log(&self) -> Log {

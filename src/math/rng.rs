@@ -19,6 +19,17 @@ impl ParkMiller {
         Self { state: u64::from(seed), spare: None }
     }
 
+    /// Where the stream stands, as numbers that [`Self::resumed`] takes: the state, and a Gaussian number held back
+    /// (NaN for none).
+    pub fn stand(&self) -> [f64; 2] {
+        [self.state as f64, self.spare.unwrap_or(f64::NAN)]
+    }
+
+    /// The stream that stood there.
+    pub fn resumed([state, spare]: [f64; 2]) -> Self {
+        Self { state: state as u64, spare: (!spare.is_nan()).then_some(spare) }
+    }
+
     /// Starts the stream again; a Gaussian number still held back is forgotten.
     pub fn reset(&mut self, seed: u32) {
         *self = Self::new(seed);

@@ -11,6 +11,8 @@ pub enum Stage {
     InitialIntegrate,
     /// After the drift.
     PostIntegrate,
+    /// Particles come and go.
+    Exchange,
     /// Wrap, shrink, lost test, lists.
     Neighbor,
     /// Before forces: clear them.
@@ -29,9 +31,10 @@ pub enum Stage {
 
 impl Stage {
     /// All stages in order.
-    pub const ALL: [Stage; 9] = [
+    pub const ALL: [Stage; 10] = [
         Stage::InitialIntegrate,
         Stage::PostIntegrate,
+        Stage::Exchange,
         Stage::Neighbor,
         Stage::PreForce,
         Stage::Force,
@@ -45,7 +48,11 @@ impl Stage {
     pub fn in_setup(self) -> bool {
         !matches!(
             self,
-            Stage::InitialIntegrate | Stage::PostIntegrate | Stage::FinalIntegrate | Stage::EndOfStep
+            Stage::InitialIntegrate
+                | Stage::PostIntegrate
+                | Stage::Exchange
+                | Stage::FinalIntegrate
+                | Stage::EndOfStep
         )
     }
 
@@ -54,6 +61,7 @@ impl Stage {
         match self {
             Stage::InitialIntegrate => "initial integrate",
             Stage::PostIntegrate => "post integrate",
+            Stage::Exchange => "exchange",
             Stage::Neighbor => "neighbor",
             Stage::PreForce => "pre force",
             Stage::Force => "force",

@@ -160,6 +160,8 @@ impl Session {
             let ops = f.fix.ops(&mut s)?;
             s.add(ops, f.span);
         }
+        s.at(span);
+        crate::graph::welcome::seal(&mut s);
         for d in &self.graph.dumps {
             s.at(d.span);
             let op = d.dump.op(&mut s, d.every)?;
@@ -184,6 +186,8 @@ impl Session {
         self.settle_resume(span)?;
         let unchanged = self.ran && !self.world.parts.changed && (!self.world.settings.lammps() || !pre);
         let mut plan = self.seal(span)?;
+        self.notes.append(std::mem::take(&mut self.world.parts.notes));
+        self.say_notes()?;
         if self.options.mode == Mode::Plan {
             self.options.log.line(explain::text(&plan, false).trim_end())?;
             self.world.clock.step += steps;
@@ -213,10 +217,12 @@ impl Session {
         // What is put back at the end of a run changes the scene again.
         self.world.parts.changed &= outcome.is_err();
         let finished = plan.finish(&mut self.world);
+        self.notes.append(std::mem::take(&mut self.world.parts.notes));
         let outcome = outcome.map_err(|e| e.at(span))?;
         finished?;
         self.ran = true;
         self.interrupted |= outcome.interrupted;
+        self.say_notes()?;
         self.say_end(&plan, &outcome, None, post && self.timer.tables())?;
         if self.world.clock.halt == Halt::All && self.world.settings.timed_out() {
             let step = self.world.clock.step;

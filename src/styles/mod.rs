@@ -11,6 +11,7 @@ mod contact;
 pub mod dump;
 pub mod fix;
 pub mod matter;
+pub mod newcomers;
 pub mod pair;
 pub mod seal;
 pub mod step_op;
@@ -23,7 +24,7 @@ pub use compute::{Compute, ComputeStyle};
 pub use dump::{Dump, DumpStyle};
 pub use fix::{Fix, FixStyle};
 pub use pair::{Pair, PairStyle, TypePairs};
-pub use seal::{Reading, SealCx, Text, Wants};
+pub use seal::{PlaceTest, Pull, Reading, SealCx, Text, Wants};
 
 /// What the manual says of a style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

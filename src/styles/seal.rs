@@ -106,6 +106,18 @@ pub enum Wants {
 /// A text whose values are put in anew at each call.
 pub type Text = Box<dyn FnMut(&World) -> Result<String> + Send>;
 
+/// Decides about a place: whether a variable is not zero there.
+pub type PlaceTest = Box<dyn FnMut(&World, [f64; 3]) -> Result<bool> + Send>;
+
+/// The acceleration that a fix gives to everyone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pull {
+    /// Always the same [acceleration in force/mass units].
+    Constant([f64; 3]),
+    /// As variables say.
+    Varying,
+}
+
 /// What a style may ask for while a run is sealed.
 pub trait SealCx {
     /// The world as the run starts: columns may be made here.
@@ -150,6 +162,19 @@ pub trait SealCx {
     /// # Errors
     /// Unknown variables, and a step that is not later than the one before.
     fn steps(&mut self, r: &ValueRef) -> Result<When>;
+    /// A test of places: the internal-style variables `sets` take x, y, z, then the equal-style variable `r` decides.
+    ///
+    /// # Errors
+    /// Unknown variables, and those of other styles.
+    fn test(
+        &mut self,
+        r: &ValueRef,
+        sets: &[Option<ValueRef>; 3],
+        stage: Stage,
+        when: &When,
+    ) -> Result<PlaceTest>;
+    /// The accelerations of the fixes gravity in force.
+    fn pulls(&self) -> Vec<Pull>;
     /// Where a run speaks.
     fn log(&self) -> Log;
     /// The op that gives a compute a new beginning after a snapshot (`dump_modify refresh`); `None` if it has none.

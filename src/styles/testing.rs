@@ -1,7 +1,8 @@
 //! A bench for unit tests of styles: a small world, lines as a deck has them, and a sealing without a graph.
 
 use super::{
-    BuildCx, Compute, ComputeStyle, Fix, FixStyle, Names, Reading, SealCx, Shape, Text, UseKind, Wants,
+    BuildCx, Compute, ComputeStyle, Fix, FixStyle, Names, PlaceTest, Pull, Reading, SealCx, Shape, Text,
+    UseKind, Wants,
 };
 use crate::diag::{Code, Diagnostics, FileId, Result, Span, fail};
 use crate::lang::{Args, Command, RefKind, ValueRef, Word};
@@ -24,6 +25,8 @@ pub struct Bench {
     pub computes: BTreeMap<String, Shape>,
     /// Slots of fixes whose energy counts.
     pub energy_fixes: Vec<String>,
+    /// Accelerations of fixes gravity.
+    pub pulls: Vec<Pull>,
 }
 
 impl Bench {
@@ -202,6 +205,18 @@ impl SealCx for Bench {
     }
     fn steps(&mut self, _r: &ValueRef) -> Result<When> {
         Ok(When::At([3, 5].into()))
+    }
+    fn test(
+        &mut self,
+        _r: &ValueRef,
+        _sets: &[Option<ValueRef>; 3],
+        _stage: Stage,
+        _when: &When,
+    ) -> Result<PlaceTest> {
+        Ok(Box::new(|_, x| Ok(x[0] > 0.0)))
+    }
+    fn pulls(&self) -> Vec<Pull> {
+        self.pulls.clone()
     }
     fn log(&self) -> Log {
         Log::silent()

@@ -111,6 +111,8 @@ pub struct Parts {
     pub facts: BTreeMap<String, Arc<str>>,
     /// The fix freeze in force and its group: contact laws take these grains for infinitely heavy.
     pub frozen: Option<(String, GroupId)>,
+    /// What ops have to say about the deck; told when the run is over.
+    pub notes: crate::diag::Diagnostics,
     /// While a deck is only checked: files that its lines so far would have written, by name.
     pub promised: BTreeMap<String, Promise>,
     /// What came from a restart file and the deck may say again: `region/ID`, `material/ID`, and state of fixes and
@@ -176,6 +178,7 @@ impl World {
         }
         self.slots.gather(old, n);
         self.slots.invalidate();
+        self.rebuild.roster += 1;
         self.touch();
     }
 

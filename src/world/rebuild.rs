@@ -21,4 +21,8 @@ pub struct Rebuild {
     /// Particles deleted beyond fixed faces that thermo output has not told of.
     #[serde(default)]
     pub lost: u64,
+    /// Particles have come or gone in this step: everything is rebuilt.
+    pub due: bool,
+    /// Counts how often particles have come or gone since the program began.
+    pub roster: u64,
 }

@@ -128,6 +128,23 @@ impl Fix for Declared {
         self.columns().iter().for_each(|c| w.columns.remove(c));
     }
 
+    fn welcome(&self, w: &mut World) {
+        let [radius, mass] = self.columns();
+        if !w.memo.contains_key(&radius) {
+            return;
+        }
+        let n = w.n();
+        let mut kept = std::mem::take(w.columns.scalar(&radius, n));
+        let mut masses = std::mem::take(w.columns.scalar(&mass, n));
+        for (i, (radius, mass)) in kept.iter_mut().zip(&mut masses).enumerate() {
+            if *mass == 0.0 {
+                (*radius, *mass) = (w.particles.radius[i], w.particles.mass[i]);
+            }
+        }
+        *w.columns.scalar(&radius, n) = kept;
+        *w.columns.scalar(&mass, n) = masses;
+    }
+
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let when = if self.every == 0 { When::First } else { When::First.or(When::Every(self.every)) };
         let size = cx.value(&self.size, Stage::PreForce, &when)?;

@@ -1,6 +1,6 @@
 //! fix addtorque: forces that turn a group as one body.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::Result;
 use crate::lang::{Args, Param};
 use crate::math::vec3::{Vec3, add, cross, dot, scale, sub};
@@ -78,6 +78,10 @@ impl Fix for Declared {
             Ok(())
         });
         Ok(vec![op.boxed()])
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
     }
 
     fn shape(&self) -> Shape {

@@ -1,6 +1,6 @@
 //! fix freeze: grains that nothing moves.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
 use crate::plan::{Access, Op, Stage};
@@ -80,6 +80,10 @@ impl Fix for Declared {
             Ok(())
         });
         Ok(vec![op.boxed()])
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Absent
     }
 
     fn shape(&self) -> Shape {

@@ -7,7 +7,7 @@ use crate::plan::{Access, Op, Stage, When};
 use crate::styles::command::common::{choice_or_refuse, variable_param};
 use crate::styles::matter::{Chosen, Masses, change_forces, check_masses, publish};
 use crate::styles::step_op::StepOp;
-use crate::styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use crate::styles::{BuildCx, Doc, Pull, Reading, SealCx, Shape, Style};
 use crate::world::{GroupId, World};
 
 /// The style.
@@ -19,7 +19,7 @@ impl Style for Gravity {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group gravity g chute angle | spherical phi theta | vector x y z",
+            syntax: "fix ID group gravity g chute angle | spherical phi theta | vector x y z [disable]",
             summary: "Pulls every particle of the group with the same acceleration.",
             text: "f ← f + m g e, with g in force/mass units and the direction e: `vector x y z`, of whatever length; \
                    `chute angle`, tilted by that angle from −z (in two dimensions −y) towards +x; `spherical phi theta`, \
@@ -27,7 +27,8 @@ impl Style for Gravity {
                    Angles in degrees. Each parameter is a number or `v_name` of an equal-style variable, evaluated each \
                    step. Scalar (extensive): the potential energy −Σ m g e·x of the positions in the box; `fix_modify ID \
                    energy yes` adds it to the potential energy. Acts with the particles' mass: for peridynamic particles \
-                   in LAMMPS' convention that is the density, as f is a force density.",
+                   in LAMMPS' convention that is the density, as f is a force density. With `disable` it acts on nobody, and is there for fixes \
+                   that ask for the acceleration (`fix pour`).",
             example: "fix g all gravity 9.81 vector 0 0 -1",
         }
     }
@@ -60,8 +61,9 @@ impl FixStyle for Gravity {
         {
             return fail(Code::BAD_VALUE, span, "`vector 0 0 0` has no direction");
         }
+        let disabled = args.eat("disable");
         args.finish()?;
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, magnitude, direction }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, magnitude, direction, disabled }))
     }
 }
 
@@ -71,6 +73,8 @@ struct Declared {
     group: GroupId,
     magnitude: Param,
     direction: Direction,
+    /// Acts on nobody.
+    disabled: bool,
 }
 
 /// A direction as it is read during a run.
@@ -83,8 +87,7 @@ enum Pointer {
 
 impl Pointer {
     /// The unit vector now.
-    fn unit(self, w: &World) -> [f64; 3] {
-        let flat = w.settings.two_dimensional;
+    fn unit(self, w: &World, flat: bool) -> [f64; 3] {
         match self {
             Pointer::Chute(angle) => turned(0.0, 180.0 - angle.get(w), flat),
             Pointer::Angles { phi, theta } => turned(phi.get(w), theta.get(w), flat),
@@ -120,13 +123,13 @@ impl Fix for Declared {
             Direction::Spherical(phi, theta) => Pointer::Angles { phi: read(phi)?, theta: read(theta)? },
             Direction::Vector(x, y, z) => Pointer::Vector([read(x)?, read(y)?, read(z)?]),
         };
-        let slot = cx.slot(&format!("f_{}", self.id));
+        let (slot, disabled) = (cx.slot(&format!("f_{}", self.id)), self.disabled);
         let access = Access::new("f x mass mask", "f");
         let op = StepOp::new(format!("fix {} gravity", self.id), Stage::PostForce, access, move |w, t| {
-            if t.unchanged {
+            if t.unchanged || disabled {
                 return Ok(());
             }
-            let (g, unit) = (magnitude.get(w), pointer.unit(w));
+            let (g, unit) = (magnitude.get(w), pointer.unit(w, w.settings.two_dimensional));
             let [ax, ay, az] = unit.map(|e| g * e);
             let [energy] = change_forces(w, &chosen, |w, i, f| {
                 let (m, [x, y, z]) = (Masses::of(w).get(i), w.particles.x[i]);
@@ -151,6 +154,28 @@ impl Fix for Declared {
 
     fn minimizing(&self) -> Minimizing {
         Minimizing::Absent
+    }
+
+    fn pull(&self, flat: bool) -> Option<Pull> {
+        let number = |p: &Param| match p {
+            Param::Number(a) => Some(Reading::Const(*a)),
+            Param::Ref(_) => None,
+        };
+        let pointer = match &self.direction {
+            Direction::Chute(angle) => number(angle).map(Pointer::Chute),
+            Direction::Spherical(phi, theta) => {
+                number(phi).zip(number(theta)).map(|(phi, theta)| Pointer::Angles { phi, theta })
+            }
+            Direction::Vector(x, y, z) => {
+                number(x).zip(number(y)).zip(number(z)).map(|((x, y), z)| Pointer::Vector([x, y, z]))
+            }
+        };
+        let Param::Number(g) = self.magnitude else { return Some(Pull::Varying) };
+        let world = World::default();
+        Some(match pointer {
+            Some(pointer) => Pull::Constant(pointer.unit(&world, flat).map(|e| g * e)),
+            None => Pull::Varying,
+        })
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

@@ -11,10 +11,13 @@ mod aveforce;
 mod bins;
 mod controller;
 mod deform;
+mod crowd;
+mod deposit;
 mod drag;
 mod dt_reset;
 mod elapsed;
 mod enforce2d;
+mod evaporate;
 mod extremes;
 mod freeze;
 mod gravity;
@@ -30,6 +33,7 @@ mod nve_noforce;
 mod nve_sphere;
 mod path;
 mod planeforce;
+mod pour;
 mod print;
 mod property_atom;
 mod recenter;
@@ -44,7 +48,7 @@ mod viscous_sphere;
 mod wall;
 mod window;
 
-use super::{BuildCx, SealCx, Shape, Style};
+use super::{BuildCx, Pull, SealCx, Shape, Style};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, ValueRef};
 use crate::plan::Op;
@@ -125,6 +129,19 @@ pub trait Fix: Send {
         false
     }
 
+    /// Whether it makes particles during a run.
+    fn makes_particles(&self) -> bool {
+        false
+    }
+
+    /// Takes note of particles that another fix has made during a run.
+    fn welcome(&self, _w: &mut World) {}
+
+    /// The acceleration it gives to everyone, in a flat scene or another.
+    fn pull(&self, _flat: bool) -> Option<Pull> {
+        None
+    }
+
     /// Options of `fix_modify ID …` other than `energy`, which the graph keeps.
     ///
     /// # Errors
@@ -151,9 +168,11 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &aveforce::AveForce,
     &controller::Controller,
     &deform::Deform,
+    &deposit::Deposit,
     &drag::Drag,
     &dt_reset::DtReset,
     &enforce2d::Enforce2d,
+    &evaporate::Evaporate,
     &extremes::ExtremesStyle,
     &freeze::Freeze,
     &gravity::Gravity,
@@ -168,6 +187,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &nve_noforce::NveNoForce,
     &nve_sphere::NveSphere,
     &planeforce::PlaneForce,
+    &pour::Pour,
     &print::Print,
     &property_atom::PropertyAtomFix,
     &recenter::Recenter,

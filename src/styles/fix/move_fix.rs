@@ -154,6 +154,10 @@ impl Fix for Declared {
         w.columns.remove(&self.key());
     }
 
+    fn welcome(&self, w: &mut World) {
+        self.capture(w);
+    }
+
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let (group, path, key, span) = (self.group, self.path.clone(), self.key(), cx.span());
         let free = path.given().map(|g| !g);

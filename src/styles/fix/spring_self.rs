@@ -68,6 +68,10 @@ impl Fix for Declared {
         w.columns.remove(&self.key());
     }
 
+    fn welcome(&self, w: &mut World) {
+        keep_places(w, &self.key(), self.group, unwrapped);
+    }
+
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let (span, key, along) = (cx.span(), self.key(), self.along);
         let chosen = Chosen::new(cx.world(), self.group, None, span)?;

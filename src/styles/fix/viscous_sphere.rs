@@ -1,6 +1,6 @@
 //! fix viscous/sphere: a torque against the spin of spheres.
 
-use super::{Fix, FixStyle};
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Param};
 use crate::par;
@@ -114,6 +114,10 @@ impl Fix for Declared {
             Ok(())
         });
         Ok(vec![op.boxed()])
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

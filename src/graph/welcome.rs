@@ -1,0 +1,48 @@
+//! Particles that join during a run: fixes and computes take note of where they begin.
+
+use super::seal::Sealer;
+use crate::diag::Result;
+use crate::plan::{Access, Op, Stage, Tick};
+use crate::styles::{Compute, Fix, SealCx};
+use crate::world::World;
+
+/// Adds the op, where some fix makes particles.
+pub fn seal(s: &mut Sealer) {
+    let graph = s.graph();
+    if !graph.fixes.iter().any(|f| f.fix.makes_particles()) {
+        return;
+    }
+    let fixes = graph.fixes.iter().map(|f| f.fix.boxed()).collect();
+    let computes = graph.computes.iter().map(|c| c.compute.boxed()).collect();
+    let op = Welcome { fixes, computes, roster: s.world().rebuild.roster };
+    let span = s.span();
+    s.add(vec![Box::new(op)], span);
+}
+
+/// Tells everybody when particles have joined.
+struct Welcome {
+    fixes: Vec<Box<dyn Fix>>,
+    computes: Vec<Box<dyn Compute>>,
+    /// Who was there when they were told last.
+    roster: u64,
+}
+
+impl Op for Welcome {
+    fn name(&self) -> &str {
+        "welcome"
+    }
+    fn stage(&self) -> Stage {
+        Stage::Exchange
+    }
+    fn access(&self) -> Access {
+        Access::new("x image", "columns")
+    }
+    fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
+        if self.roster != w.rebuild.roster {
+            self.roster = w.rebuild.roster;
+            self.fixes.iter().for_each(|f| f.welcome(w));
+            self.computes.iter().for_each(|c| c.welcome(w));
+        }
+        Ok(())
+    }
+}

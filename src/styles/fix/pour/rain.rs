@@ -1,0 +1,175 @@
+//! The op of fix pour: batches of spheres in a falling stream.
+
+use super::Pouring;
+use crate::diag::{Code, Diagnostic, Result, Span};
+use crate::out::log::Log;
+use crate::plan::{Access, Op, Stage, Tick};
+use crate::styles::fix::crowd::Crowd;
+use crate::styles::matter::publish;
+use crate::styles::newcomers::{Account, Newcomer, admit};
+use crate::world::{SlotId, World};
+
+/// Pours.
+pub struct Rain {
+    name: String,
+    fix: Pouring,
+    span: Span,
+    slot: SlotId,
+    /// The acceleration downwards.
+    gravity: f64,
+    /// Spheres of a whole batch.
+    batch: u64,
+    /// Steps between two batches.
+    every: i64,
+    /// Spheres of this run's batches that found no place, and the first step at which that was so.
+    failed: Option<(u64, i64)>,
+}
+
+impl Rain {
+    /// Reckons batches and says so.
+    pub fn new(
+        fix: &Pouring,
+        w: &mut World,
+        gravity: f64,
+        span: Span,
+        slot: SlotId,
+        log: &Log,
+    ) -> Result<Self> {
+        let flat = w.settings.two_dimensional;
+        let (space, one) = (fix.volume.space(flat), fix.sizes.space(flat));
+        let batch = (fix.fraction * space / one) as u64;
+        if batch == 0 {
+            let text = format!(
+                "the insertion region takes no sphere: {} of its {space} is less than one sphere's {one}",
+                fix.fraction
+            );
+            return Err(Diagnostic::error(Code::BAD_VALUE, span, text)
+                .help("enlarge the region, raise the volume fraction of `vol`, or pour smaller spheres")
+                .into());
+        }
+        let down = if flat { 1 } else { 2 };
+        let (lo, hi) = fix.volume.corners();
+        let relative = fix.fall - fix.rate;
+        let time =
+            (relative + (relative * relative + 2.0 * gravity * (hi[down] - lo[down])).sqrt()) / gravity;
+        let every = ((time / w.clock.dt + 0.5) as i64).max(1);
+        let mut account = Account::load(w, &fix.key()).unwrap_or_else(|| Account::maker(w, fix.seed));
+        let now = w.clock.step;
+        let planned = account.next.filter(|n| (now + 1..=now + every).contains(n) && !w.settings.lammps());
+        let first = planned.unwrap_or(now + 1);
+        account.next = (account.done < fix.count).then_some(first);
+        account.store(w, &fix.key());
+        if let Some(left) = fix.count.checked_sub(account.done).filter(|n| *n > 0) {
+            let last = first + ((left - 1) / batch) as i64 * every;
+            log.line(&format!("Particle insertion: {batch} every {every} steps, {left} by step {last}"))?;
+        }
+        w.slots.get_mut(slot).scalar = account.done as f64;
+        let name = format!("fix {} pour", fix.id);
+        Ok(Self { name, fix: fix.clone(), span, slot, gravity, batch, every, failed: None })
+    }
+
+    /// The spheres of one batch.
+    fn batch(&self, w: &World, t: &Tick, account: &mut Account) -> Result<Vec<Newcomer>> {
+        let (fix, domain) = (&self.fix, w.domain()?);
+        let flat = w.settings.two_dimensional;
+        let down = if flat { 1 } else { 2 };
+        let wanted = self.batch.min(fix.count - account.done);
+        let (mut lo, mut hi) = fix.volume.corners();
+        let risen = (t.step - account.start) as f64 * t.dt * fix.rate;
+        (lo[down], hi[down]) = (lo[down] + risen, hi[down] + risen);
+        let mut crowd = self.crowd(w, domain, lo, hi);
+        let (mut made, mut left) = (vec![], wanted.saturating_mul(fix.tries));
+        let stream = &mut account.stream;
+        let between = |[a, b]: [f64; 2], u: f64| a + u * (b - a);
+        while (made.len() as u64) < wanted {
+            let deep = stream.uniform();
+            let height = hi[down] - deep * deep * (hi[down] - lo[down]);
+            let radius = fix.sizes.sample(stream);
+            let mut place = None;
+            while left > 0 && place.is_none() {
+                left -= 1;
+                let x = fix.volume.place(height, flat, stream);
+                place = crowd.fits(x, radius).then_some(x);
+            }
+            let Some(x) = place else { break };
+            crowd.add(x, radius);
+            // v = vz + g t and z = top + vz t + g t²/2 without t.
+            let fallen = -(fix.fall * fix.fall - 2.0 * self.gravity * (x[down] - hi[down])).sqrt();
+            let mut v = [between(fix.drift[0], stream.uniform()), fallen, 0.0];
+            if !flat {
+                v = [v[0], between(fix.drift[1], stream.uniform()), fallen];
+            }
+            let density = between(fix.density, stream.uniform());
+            made.push(Newcomer { kind: fix.kind, x, v, size: Some([radius, density]) });
+        }
+        Ok(made)
+    }
+
+    /// Who is near the region already.
+    fn crowd<'a>(
+        &self,
+        w: &World,
+        domain: &'a crate::world::Domain,
+        lo: [f64; 3],
+        hi: [f64; 3],
+    ) -> Crowd<'a> {
+        let own = self.fix.sizes.largest();
+        let p = &w.particles;
+        let widest = p.radius.iter().fold(own, |a, r| r.max(a));
+        let mut crowd = Crowd::new(domain, lo, hi, own + widest);
+        let middle: [f64; 3] = std::array::from_fn(|d| 0.5 * (lo[d] + hi[d]));
+        for (x, r) in p.x.iter().zip(&p.radius) {
+            let off = domain.minimum_image(std::array::from_fn(|d| x[d] - middle[d]));
+            if (0..3).all(|d| off[d].abs() <= 0.5 * (hi[d] - lo[d]) + own + r) {
+                crowd.add(*x, *r);
+            }
+        }
+        crowd
+    }
+}
+
+impl Op for Rain {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn stage(&self) -> Stage {
+        Stage::Exchange
+    }
+    fn access(&self) -> Access {
+        Access::new("x radius", "everything")
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let key = self.fix.key();
+        let Some(mut account) = Account::load(w, &key).filter(|a| a.next == Some(t.step)) else {
+            return Ok(());
+        };
+        let wanted = self.batch.min(self.fix.count - account.done);
+        let made = self.batch(w, t, &mut account)?;
+        let first = self.fix.ids.first(w, &account);
+        admit(w, self.fix.group, first, &made)?;
+        account.done += made.len() as u64;
+        account.last_tag = first + made.len() as u32 - 1;
+        account.next = (account.done < self.fix.count).then_some(t.step + self.every);
+        account.store(w, &key);
+        let missing = wanted - made.len() as u64;
+        if missing > 0 {
+            let (before, step) = self.failed.unwrap_or((0, t.step));
+            self.failed = Some((before + missing, step));
+        }
+        w.rebuild.due = true;
+        publish(w, self.slot, t, account.done as f64, &[]);
+        Ok(())
+    }
+    fn finish(&mut self, w: &mut World) -> Result<()> {
+        if let Some((count, step)) = self.failed.take() {
+            let text =
+                format!("fewer insertions than planned: {count} spheres found no place, from step {step} on");
+            w.parts.notes.push(
+                Diagnostic::warning(Code::SUSPICIOUS, self.span, text)
+                    .help("lower the volume fraction of `vol` (0.2 to 0.4 is usual), or allow more attempts")
+                    .help("or see that what was poured before has left the region: a larger or higher one, a larger vz"),
+            );
+        }
+        Ok(())
+    }
+}
