@@ -35,7 +35,8 @@ impl Style for Deposit {
                    Random numbers and their order are LAMMPS'. A second run goes on where the first one ended, also after a restart. \
                    Steps whose particle found no place are made up for by later ones and warned about at the end of the run. \
                    Molecules (`mol molfrac rigid shake orient`) are refused. Scalar (intensive): how many there are so far.",
-            example: "fix dep grains deposit 3 2 5 4711 region half vz -1 -1 near 0.0005 units box",
+            example: "region high block -0.002 0.002 -0.002 0.002 0.005 0.008 units box\n\
+                      fix dep grains deposit 3 2 5 4711 region high vz -1 -1 near 0.0015 units box",
         }
     }
 }
