@@ -8,6 +8,7 @@ mod flow;
 mod inert;
 mod info;
 mod interactive;
+mod later;
 mod minimizing;
 mod rerunning;
 mod restarting;
@@ -129,6 +130,10 @@ pub struct Session {
     told: std::collections::BTreeSet<String>,
     timer: timer::Timer,
     born: std::time::Instant,
+    /// The pair style was refused (`check` mode): that there is none is no news.
+    pairless: bool,
+    /// Texts looked at for definitions of variables, and the names found.
+    later: (usize, Arc<std::collections::BTreeSet<String>>),
     /// The variable table's names as the graph knows them.
     seen_names: u64,
 }
@@ -165,6 +170,8 @@ impl Session {
             told: Default::default(),
             timer: Default::default(),
             born: std::time::Instant::now(),
+            pairless: false,
+            later: Default::default(),
             seen_names: 0,
         };
         for (name, values) in s.options.vars.clone() {
@@ -342,8 +349,15 @@ impl Session {
         self.thermo_computes();
         let (notes, uses) = (RefCell::default(), RefCell::default());
         let cx = Context { span: cmd.span, checking: self.checking(), notes: &notes, uses: &uses };
+        if cmd.name.text == "fix" {
+            self.graph.later = later::defined(&self.sources, &mut self.later);
+        }
         let outcome = declare(&mut self.graph, &mut self.world, cmd, &cx);
+        self.graph.later = Default::default();
         self.notes.append(notes.into_inner());
+        if cmd.name.text == "pair_style" {
+            self.pairless = outcome.is_err();
+        }
         let declared = outcome?;
         self.record(cmd, Role::Declare, declared.provides, uses.into_inner(), vec![]);
         Ok(())

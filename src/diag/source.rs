@@ -78,6 +78,11 @@ impl Sources {
         list
     }
 
+    /// All texts so far.
+    pub fn texts(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().map(|s| s.text.as_str())
+    }
+
     /// The text with this id; the empty text if there is none.
     pub fn get(&self, id: FileId) -> Option<&Source> {
         self.0.get(id.0 as usize).map(AsRef::as_ref)

@@ -8,7 +8,7 @@ use crate::styles::command::COMMANDS;
 use crate::styles::compute::COMPUTES;
 use crate::styles::fix::FIXES;
 use crate::styles::pair::PAIRS;
-use crate::world::World;
+use crate::world::{Newton, World};
 
 /// Commands of the session and of the cursor through the deck, which stand in no table.
 pub const SESSION_COMMANDS: [&str; 25] = [
@@ -82,7 +82,8 @@ pub fn setting(w: &World, checking: bool, name: &str) -> Option<Value> {
         "dimension" => flag(!w.settings.two_dimensional) + 2.0,
         "box_exist" => flag(w.domain.is_some()),
         "nthreads" => crate::par::threads() as f64,
-        "newton_pair" | "newton_bond" => 1.0,
+        "newton_pair" => flag(w.settings.newton.pair),
+        "newton_bond" => flag(w.settings.newton.bond),
         "nlocal" | "nall" if checking => return Some(Value::Unknown),
         "nlocal" | "nall" => w.n() as f64,
         "ntypes" => w.types as f64,
@@ -173,12 +174,16 @@ fn active(w: &World, declared: &Declared, category: &str, name: &str, span: Span
     };
     match category {
         "package" => named(&["gpu", "intel", "kokkos", "omp"], false),
-        "newton" => named(&["pair", "bond", "any"], true),
+        "newton" => {
+            let Newton { pair, bond } = w.settings.newton;
+            let yes = (name != "bond" && pair) || (name != "pair" && bond);
+            named(&["pair", "bond", "any"], yes)
+        }
         "pair" => named(
             &["single", "respa", "manybody", "tail", "shift"],
             name == "single" && declared.pair.is_some(),
         ),
-        "comm_style" => named(&["brick", "tiled"], name == "brick"),
+        "comm_style" => named(&["brick", "tiled"], (name == "tiled") == w.settings.tiled),
         "min_style" => Ok(name == w.settings.minimizer.style.name()),
         "run_style" => Ok(name == "verlet"),
         "atom_style" => Ok(name == atom_style(w)),

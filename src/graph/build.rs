@@ -109,7 +109,7 @@ pub fn declare(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) ->
         }
         "restart" => {
             let mut restarts = graph.restarts.clone();
-            restarts.declare(&mut args)?;
+            restarts.declare(&mut args, &cx.build(graph, w, "", GroupId::ALL))?;
             args.finish()?;
             graph.restarts = restarts;
             Ok(Declared::default())

@@ -126,6 +126,8 @@ pub struct Graph {
     pub nodes: Vec<Node>,
     /// Variables by name and what they offer. Kept in step with the variable table for look-ups.
     pub variables: BTreeMap<String, Shape>,
+    /// While a fix is read: variables that the deck defines somewhere, perhaps after it.
+    pub later: std::sync::Arc<std::collections::BTreeSet<String>>,
     /// The latest node of each place of a deck.
     latest: BTreeMap<(FileId, u32, u32), usize>,
 }
@@ -214,6 +216,10 @@ impl Names for Graph {
 
     fn fix(&self, id: &str) -> Option<Shape> {
         self.find_fix(id).map(|f| f.fix.shape())
+    }
+
+    fn defined_later(&self, name: &str) -> bool {
+        self.later.contains(name)
     }
 
     fn variable_shape(&self, name: &str) -> Option<Shape> {

@@ -1,23 +1,42 @@
 //! `restart`: restart files written while a run goes on.
 
 use super::node::{FixNode, Graph};
+use super::seal::Sealer;
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
-use crate::lang::Args;
+use crate::lang::{Args, ValueRef};
 use crate::out::file::Pattern;
 use crate::out::restart::{Saving, write};
 use crate::plan::{Access, Op, Stage, Tick, When};
-use crate::styles::{Use, UseKind};
+use crate::styles::{BuildCx, SealCx, Use, UseKind};
 use crate::world::{Said, World};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+
+/// At which steps restart files are written.
+#[derive(Clone, Debug)]
+pub enum Rhythm {
+    /// At multiples.
+    Every(i64),
+    /// At those that a variable names one after another.
+    Named(ValueRef),
+}
+
+impl Rhythm {
+    fn when(&self, s: &mut Sealer) -> Result<When> {
+        match self {
+            Rhythm::Every(n) => Ok(When::Every(*n)),
+            Rhythm::Named(r) => s.steps(r),
+        }
+    }
+}
 
 /// Which restart files are wanted; both kinds may be.
 #[derive(Clone, Debug, Default)]
 pub struct Restarts {
     /// A file of its own for each step that is a multiple.
-    pub each: Option<(i64, Pattern)>,
+    pub each: Option<(Rhythm, Pattern)>,
     /// Two files in turn.
-    pub turn: Option<(i64, [PathBuf; 2])>,
+    pub turn: Option<(Rhythm, [PathBuf; 2])>,
     /// The line.
     pub span: Span,
 }
@@ -26,17 +45,24 @@ pub struct Restarts {
 const NEXT: &str = "restart/next";
 
 impl Restarts {
-    /// Reads `restart 0`, `restart N root` or `restart N file1 file2`.
+    /// Reads `restart 0`, `restart N root` or `restart N file1 file2`; N may be a variable.
     ///
     /// # Errors
     /// Every mistake in the line.
-    pub fn declare(&mut self, args: &mut Args) -> Result<()> {
-        if args.peek_text().starts_with("v_") {
-            let text = "restart with a variable interval is not there yet";
-            return fail(Code::NOT_SUPPORTED, args.here(), text);
-        }
-        let every = args.integer_from(0, "the interval of restart files")?;
-        if every == 0 {
+    pub fn declare(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let named = match args.peek() {
+            Some(word) if word.text.starts_with("v_") => ValueRef::parse(&word.text, word.span)?,
+            _ => None,
+        };
+        let every = match named {
+            Some(r) => {
+                args.next();
+                cx.value(&r, false)?;
+                Rhythm::Named(r)
+            }
+            None => Rhythm::Every(args.integer_from(0, "the interval of restart files")?),
+        };
+        if matches!(every, Rhythm::Every(0)) {
             args.finish()?;
             *self = Self::default();
             return Ok(());
@@ -77,13 +103,18 @@ impl Restarts {
     }
 
     /// The ops that write them.
-    pub fn ops(&self, graph: &Graph) -> Vec<Box<dyn Op>> {
+    ///
+    /// # Errors
+    /// A variable that does not lead on.
+    pub fn ops(&self, graph: &Graph, s: &mut Sealer) -> Result<Vec<Box<dyn Op>>> {
         let each = self.each.clone().map(|(n, p)| (n, Names::Each(p)));
         let turn = self.turn.clone().map(|(n, files)| (n, Names::Turn(files)));
-        let op = |(every, names)| -> Box<dyn Op> {
-            Box::new(Write { every, names, pair: graph.force_lines(), declared: graph.declared() })
-        };
-        each.into_iter().chain(turn).map(op).collect()
+        let mut ops: Vec<Box<dyn Op>> = vec![];
+        for (rhythm, names) in each.into_iter().chain(turn) {
+            let (pair, declared) = (graph.force_lines(), graph.declared());
+            ops.push(Box::new(Write { when: rhythm.when(s)?, names, pair, declared }));
+        }
+        Ok(ops)
     }
 }
 
@@ -111,9 +142,9 @@ enum Names {
     Turn([PathBuf; 2]),
 }
 
-/// Writes a restart file at multiples of `every`, but not where a run begins.
+/// Writes a restart file at its steps, but not where a run begins.
 struct Write {
-    every: i64,
+    when: When,
     names: Names,
     pair: Vec<Said>,
     declared: Vec<String>,
@@ -130,7 +161,7 @@ impl Op for Write {
         Access::new("everything", "restart file")
     }
     fn when(&self) -> When {
-        When::Every(self.every)
+        self.when.clone()
     }
     fn in_setup(&self) -> bool {
         false

@@ -4,7 +4,7 @@ use super::Session;
 use crate::diag::{Code, Diagnostic, Diagnostics, Label, Result, Span};
 use crate::graph::build::Context;
 use crate::lang::{Command, Script, Word};
-use crate::styles::Pair;
+use crate::styles::{Pair, Use, UseKind};
 use crate::world::GroupId;
 use std::cell::RefCell;
 
@@ -36,6 +36,7 @@ impl Session {
             self.check_step(span, &mut found);
         }
         self.check_box(&mut found);
+        self.check_variables(&mut found);
         crate::graph::dynamic::check(&self.graph, &self.world, &mut found);
         let (errors, notes) = found.0.into_iter().partition(|d| d.severity == crate::diag::Severity::Error);
         for note in Vec::into_iter(notes) {
@@ -82,6 +83,9 @@ impl Session {
 
     fn check_pair(&self, span: Span, found: &mut Diagnostics) {
         let Some(node) = &self.graph.pair else {
+            if self.checking() && self.pairless {
+                return;
+            }
             found.push(
                 Diagnostic::warning(Code::NO_FORCES, span, "no pair_style: particles do not feel each other")
                     .help("this is right for free flight only"),
@@ -160,6 +164,24 @@ impl Session {
     }
 
     /// No integrator at all, and two on one particle.
+    /// Variables that fixes wait for have been defined by now.
+    fn check_variables(&self, found: &mut Diagnostics) {
+        for f in &self.graph.fixes {
+            let wanted = Use { kind: UseKind::Fix, name: f.id.clone() };
+            let Some(id) = self.graph.provider(&wanted) else { continue };
+            for u in self.graph.nodes[id.0].uses.iter().filter(|u| u.kind == UseKind::Variable) {
+                if !self.graph.variables.contains_key(&u.name) {
+                    let text =
+                        format!("fix `{}` needs variable `{}`, which is not defined yet", f.id, u.name);
+                    found.push(
+                        Diagnostic::error(Code::UNKNOWN_VARIABLE, f.span, text)
+                            .help("put its `variable` line before this run"),
+                    );
+                }
+            }
+        }
+    }
+
     /// A length of the box obeys one fix.
     fn check_box(&self, found: &mut Diagnostics) {
         let fixes = &self.graph.fixes;

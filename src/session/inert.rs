@@ -24,8 +24,9 @@ impl Session {
                 "perigrain chooses its kernels itself; threads are set by `-threads N`"
             }
             "comm_style" => {
-                args.choice("communication style", &["brick", "tiled"])?;
+                let style = args.choice("communication style", &["brick", "tiled"])?;
                 args.finish()?;
+                self.world.settings.tiled = style == "tiled";
                 "perigrain is one process with threads"
             }
             "balance" => {

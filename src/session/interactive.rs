@@ -115,6 +115,8 @@ impl Session {
             shelled: _,
             told: _,
             born: _,
+            pairless: _,
+            later: _,
             seen_names: _,
         } = self;
         let shared = earlier.filter(|e| self.same_particles(e)).map(|e| e.world.clone());

@@ -168,7 +168,11 @@ impl Session {
             s.add(vec![op], d.span);
         }
         s.at(span);
-        s.add(self.graph.restarts.ops(&self.graph), self.graph.restarts.span);
+        let restarts = &self.graph.restarts;
+        s.at(restarts.span);
+        let ops = restarts.ops(&self.graph, &mut s)?;
+        s.add(ops, restarts.span);
+        s.at(span);
         let energy =
             minimizing.then(|| s.keyword_total("pe", span, Stage::EndOfStep, &When::Always)).transpose()?;
         let row = self.graph.thermo.op(&mut s, self.options.log.clone())?;

@@ -100,6 +100,10 @@ pub trait Names {
     fn fix(&self, id: &str) -> Option<Shape>;
     /// The values a variable offers: one per particle of atom style, a vector, else one number.
     fn variable_shape(&self, name: &str) -> Option<Shape>;
+    /// Whether a variable that does not exist yet is defined somewhere in the deck, and this line may wait for it.
+    fn defined_later(&self, _name: &str) -> bool {
+        false
+    }
     /// Whether a variable is atom-style (`Some(true)`), any other style (`Some(false)`), or absent.
     fn variable(&self, name: &str) -> Option<bool> {
         self.variable_shape(name).map(|s| s.atom.is_some())
@@ -221,6 +225,11 @@ impl BuildCx<'_> {
     pub fn reading(&self, r: &ValueRef, wants: Wants) -> Result<()> {
         let (kind, what) = kind_of(r);
         let Some(shape) = self.shape(r) else {
+            if r.kind == RefKind::Variable && self.names.defined_later(&r.name) {
+                // What it offers is seen when the run is sealed.
+                self.uses(kind, &r.name);
+                return Ok(());
+            }
             let known = self.names.all(kind);
             let text = format!("there is no {what} `{}`", r.name);
             let mut d = Diagnostic::error(Code::unknown(what), r.span, text);

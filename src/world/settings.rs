@@ -15,6 +15,21 @@ pub enum Compat {
     Lammps,
 }
 
+/// What `newton` has said; it changes nothing but the answers to formulas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Newton {
+    /// For pairs.
+    pub pair: bool,
+    /// For bonds.
+    pub bond: bool,
+}
+
+impl Default for Newton {
+    fn default() -> Self {
+        Self { pair: true, bond: true }
+    }
+}
+
 /// When neighbour lists are rebuilt (`neighbor`, `neigh_modify`).
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct NeighborSettings {
@@ -92,6 +107,12 @@ pub struct Settings {
     /// The portable kernels even where faster ones would run.
     #[serde(skip)]
     pub portable: bool,
+    /// `newton` of pairs and bonds, as formulas ask for it.
+    #[serde(skip)]
+    pub newton: Newton,
+    /// `comm_style tiled`, as formulas ask for it.
+    #[serde(skip)]
+    pub tiled: bool,
     /// What `min_style` and `min_modify` have chosen.
     #[serde(skip)]
     pub minimizer: super::Minimizer,

@@ -13,7 +13,8 @@ pub(super) const RESTART: Entry = (
             written in turn; a restarted run goes on with the one it did not come from. Both kinds may be in force. \
             `restart 0` ends both. What is in a file and how it is read is on the page of `read_restart`.\n\n\
             A file is written beside its place, brought to the disk and then moved there: whenever the program or the \
-            machine dies, a file of this name is whole. A variable as interval and LAMMPS' `%`, `fileper` and `nfile` (one \
+            machine dies, a file of this name is whole. `N` may be `v_name`: the variable names the next step each time, by \
+            `logfreq()`, `stride()` and the like. LAMMPS' `%`, `fileper` and `nfile` (one \
             file per processor) are refused.",
         example: "restart 2 plate.*.restart\nrestart 4 even.restart odd.restart\nrun 4",
     },

@@ -6,8 +6,8 @@ use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
 use crate::math::cformat::general;
 use crate::styles::{BuildCx, Doc, Style};
-use crate::world::Domain;
 use crate::world::region::{INFINITE, Shape};
+use crate::world::{Domain, Region};
 
 /// The command.
 pub struct CreateBox;
@@ -60,6 +60,9 @@ impl CommandStyle for CreateBox {
         if matches!(region.shape, Shape::Prism { .. }) {
             return Err(common::not_here(word, "a triclinic box: the prism"));
         }
+        if cx.checking && region.motion.is_none() && region.follows() && !region.outside {
+            return Ok(guessed_box(region, types as usize, bond_types(a, cx)?));
+        }
         if region.motion.is_some() || region.outside {
             return fail(
                 Code::WRONG_KIND,
@@ -93,6 +96,27 @@ impl CommandStyle for CreateBox {
             Ok(())
         }))
     }
+}
+
+/// While a deck is only checked: a box of some size where variables will say how large it is.
+fn guessed_box(region: &Region, types: usize, bond_types: usize) -> Box<dyn Act> {
+    let (mut lo, mut hi) = match &region.shape {
+        Shape::Block { lo, hi } => (*lo, *hi),
+        _ => ([f64::NAN; 3], [f64::NAN; 3]),
+    };
+    for d in 0..3 {
+        if lo[d].is_nan() {
+            lo[d] = if hi[d].is_nan() { -0.5 } else { hi[d] - 1.0 };
+        }
+        hi[d] = if hi[d] > lo[d] { hi[d] } else { lo[d] + 1.0 };
+    }
+    setting(move |cx| {
+        let flat = cx.world.settings.two_dimensional;
+        cx.world.domain = Some(Domain { flat, ..Domain::new(lo, hi, cx.world.settings.boundary) });
+        (cx.world.types, cx.world.bonds.types) = (types, bond_types);
+        cx.world.type_mass = vec![None; types];
+        Ok(())
+    })
 }
 
 /// Room for bonds: their types count, lists grow as they must.

@@ -26,12 +26,13 @@ impl Style for Newton {
 
 impl CommandStyle for Newton {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        a.flag("newton")?;
-        if !a.is_empty() {
-            a.flag("newton for bonds")?;
-        }
+        let pair = a.flag("newton")?;
+        let bond = if a.is_empty() { pair } else { a.flag("newton for bonds")? };
         let text = "newton has no effect here: every pair is computed once";
         cx.note(Diagnostic::note(Code::NO_EFFECT, a.name_span(), text));
-        Ok(setting(|_| Ok(())))
+        Ok(setting(move |cx| {
+            cx.world.settings.newton = crate::world::Newton { pair, bond };
+            Ok(())
+        }))
     }
 }

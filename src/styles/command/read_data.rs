@@ -321,6 +321,8 @@ impl Reading {
             cx.say(line);
         }
         let domain = self.domain(cx.world, data);
+        let faces = (domain.lo[2], domain.hi[2]);
+        common::check_flat(domain.boundary, faces, domain.flat).map_err(|e| e.at(self.file.span))?;
         let bit = self.group(cx)?;
         self.tell(cx, data, &domain);
         let w = &mut *cx.world;

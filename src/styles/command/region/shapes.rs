@@ -97,9 +97,18 @@ impl<'r, 'a> Reader<'r, 'a> {
 
     fn range(&mut self, d: usize) -> Result<(f64, f64)> {
         let span = self.a.here();
-        let lo = self.bound(d, false)?;
+        let unknown = |a: &Args| a.peek().is_some_and(|w| w.unknown);
+        let guessed = unknown(self.a);
+        let mut lo = self.bound(d, false)?;
         let span = span.to(self.a.here());
-        let hi = self.bound(d, true)?;
+        let guessed = [guessed, unknown(self.a)];
+        let mut hi = self.bound(d, true)?;
+        // What only a run can tell leaves room between the bounds (`perigrain check`).
+        match guessed {
+            [_, true] if hi <= lo => hi = lo + self.spacing[d],
+            [true, false] if hi <= lo => lo = hi - self.spacing[d],
+            _ => {}
+        }
         if lo > hi {
             let text = format!("the lower bound {lo} lies above the upper bound {hi}");
             return fail(Code::BAD_VALUE, span, text);
