@@ -101,7 +101,8 @@ impl<'a> Sealer<'a> {
 
     /// Places a provider so that it runs before what is added to `stage` next.
     fn provide(&mut self, op: Box<dyn Op>, when: When, provides: String) {
-        self.plan.add(Placed { op, when, from: Some(self.span), provides, meter: Default::default() });
+        let placed = Placed::new(op, Some(self.span));
+        self.plan.add(Placed { when, provides, ..placed });
     }
 
     fn enter(&mut self, name: String, span: Span) -> Result<()> {

@@ -1,6 +1,7 @@
 //! Small vectors and matrices, decompositions, random numbers.
 
 pub mod cformat;
+pub mod four;
 pub mod real;
 pub mod rng;
 pub mod triangle;

@@ -3,3 +3,4 @@
 pub mod family;
 pub mod grid;
 pub mod list;
+pub mod slabs;

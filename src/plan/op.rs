@@ -225,6 +225,8 @@ pub struct Tick {
     pub atom_energy: bool,
     /// Which part of a step of two lengths.
     pub phase: Phase,
+    /// Somebody reads the world's contacts at this step.
+    pub contacts: bool,
 }
 
 impl Tick {
@@ -242,6 +244,7 @@ impl Tick {
             virial: false,
             atom_energy: false,
             phase: Phase::Whole,
+            contacts: false,
         }
     }
 }
@@ -262,6 +265,11 @@ impl Access {
             reads: reads.split(' ').filter(|s| !s.is_empty()).collect(),
             writes: writes.split(' ').filter(|s| !s.is_empty()).collect(),
         }
+    }
+
+    /// Whether this is read.
+    pub fn reads(&self, what: &str) -> bool {
+        self.reads.iter().any(|r| *r == what || *r == "everything")
     }
 }
 

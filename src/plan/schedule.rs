@@ -15,6 +15,8 @@ pub struct Placed {
     pub from: Option<Span>,
     /// The value it provides, as `c_dmg`; empty for ops that provide none to others.
     pub provides: String,
+    /// Whether it reads the world's contacts.
+    pub reads_contacts: bool,
     /// What it has cost.
     pub meter: Meter,
 }
@@ -22,8 +24,8 @@ pub struct Placed {
 impl Placed {
     /// An op at its own times.
     pub fn new(op: Box<dyn Op>, from: Option<Span>) -> Self {
-        let when = op.when();
-        Self { op, when, from, provides: String::new(), meter: Meter::default() }
+        let (when, reads_contacts) = (op.when(), op.access().reads("contacts"));
+        Self { op, when, from, provides: String::new(), reads_contacts, meter: Meter::default() }
     }
 }
 
@@ -66,6 +68,7 @@ impl StepPlan {
         t.energy = energy || atoms;
         t.virial = virial;
         t.atom_energy = atoms;
+        t.contacts = self.ops.iter().any(|p| p.reads_contacts && p.when.fires(t));
     }
 
     /// Runs the ops of some stages at this tick.

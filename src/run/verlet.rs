@@ -162,6 +162,7 @@ pub(super) fn tick(w: &World, setup: bool) -> Tick {
         virial: false,
         atom_energy: false,
         phase: Phase::Whole,
+        contacts: false,
     }
 }
 

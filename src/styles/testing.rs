@@ -114,6 +114,7 @@ impl Bench {
             virial: true,
             atom_energy: true,
             phase: Default::default(),
+            contacts: true,
         }
     }
 

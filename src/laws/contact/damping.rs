@@ -71,7 +71,7 @@ impl Damping {
     }
 
     /// η over its constant, for contact radius `a`, normal stiffness F/δ = `secant` and effective mass.
-    #[inline]
+    #[inline(always)]
     pub fn form<R: Real>(self, a: R, secant: R, mass: R) -> R {
         match self {
             Damping::None | Damping::Velocity => mass.like(1.0),

@@ -43,7 +43,7 @@ pub struct Push<R> {
 
 impl Elastic {
     /// The radius of the area of contact.
-    #[inline]
+    #[inline(always)]
     pub fn radius<R: Real>(&self, g: &Geometry<R>) -> R {
         match self.form {
             Form::Jkr => self.jkr_radius(g.curvature, g.overlap),
@@ -52,7 +52,7 @@ impl Elastic {
     }
 
     /// The force for an area of contact of radius `a`.
-    #[inline]
+    #[inline(always)]
     pub fn push<R: Real>(&self, g: &Geometry<R>, a: R) -> Push<R> {
         let zero = g.overlap.like(0.0);
         let secant = match self.form {

@@ -173,7 +173,7 @@ impl ContactLaw for Granular {
         self.elastic.gap(curvature)
     }
 
-    #[inline]
+    #[inline(always)]
     fn contact<R: Real>(
         &self,
         g: &Geometry<R>,
@@ -222,14 +222,14 @@ impl ContactLaw for Granular {
 impl Granular {
     /// How many numbers stand before those of rolling and twisting, which are the same seen from j: at least the
     /// three that are not.
-    #[inline]
+    #[inline(always)]
     fn before_turning(&self) -> usize {
         let own = self.spring.memory();
         if self.rolling.memory() + self.twisting.memory() > 0 { own.max(3) } else { own }
     }
 
     /// Adds the torques against rolling and twisting.
-    #[inline]
+    #[inline(always)]
     fn turn<R: Real>(
         &self,
         g: &Geometry<R>,

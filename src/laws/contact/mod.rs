@@ -7,6 +7,7 @@ pub mod bodies;
 pub mod damping;
 pub mod driver;
 pub mod elastic;
+pub mod fast;
 pub mod law;
 pub mod normal;
 pub mod slider;
@@ -136,7 +137,7 @@ pub trait ContactLaw: Copy + Sync {
 }
 
 /// Relative velocity of i against j, split along and across the normal.
-#[inline]
+#[inline(always)]
 fn split_velocity<R: Real>(g: &Geometry<R>, i: &Motion<R>, j: &Motion<R>) -> (R, Vec3<R>) {
     use crate::math::vec3::{dot, scale};
     let relative = sub(i.velocity, j.velocity);

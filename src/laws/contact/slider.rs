@@ -36,7 +36,7 @@ pub struct Slider<R> {
 impl<R: Real> Slider<R> {
     /// F = −k ξ − η v, at most the limit; `xi` moves on by v dt and is shortened to what the slider carries when
     /// it slides (Luding 2008, eq. 20).
-    #[inline]
+    #[inline(always)]
     pub fn force(&self, xi: &mut Vec3<R>, memory: Memory, step: Advance) -> Vec3<R> {
         if step.history {
             self.advance(xi, memory, step.dt);
@@ -65,7 +65,7 @@ impl<R: Real> Slider<R> {
     }
 
     /// What is remembered, turned with the normal and moved on.
-    #[inline]
+    #[inline(always)]
     fn advance(&self, xi: &mut Vec3<R>, memory: Memory, dt: f64) {
         let dt = self.limit.like(dt);
         if memory == Memory::Projected {
@@ -85,7 +85,7 @@ impl<R: Real> Slider<R> {
 }
 
 /// `xi` without its component `tilt` along `n`, at its old length.
-#[inline]
+#[inline(always)]
 fn into_plane<R: Real>(xi: Vec3<R>, n: Vec3<R>, tilt: R) -> Vec3<R> {
     let flat = sub(xi, scale(tilt, n));
     let flat_length = length(flat);

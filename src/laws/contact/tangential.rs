@@ -184,7 +184,7 @@ impl Spring {
 
     /// The tangential force on i, at most `mu` times `carried`, the normal force that counts for friction; `a`: radius
     /// of the contact, `form`: the normal damping over its constant, `v`: slip velocity.
-    #[inline]
+    #[inline(always)]
     pub fn force<R: Real>(
         &self,
         n: Vec3<R>,

@@ -63,7 +63,7 @@ impl Rolling {
 
     /// The torque on i against the rolling velocity R̄ ω × n (Wang et al. 2015), ω the difference of spins, at most
     /// `mu` times the normal force `carried` at the arm R̄; its opposite acts on j.
-    #[inline]
+    #[inline(always)]
     pub fn torque<R: Real>(
         &self,
         g: &Geometry<R>,
@@ -130,7 +130,7 @@ impl Twisting {
     ///
     /// LAMMPS 22Jul2025 gives a sliding twist the direction of the velocity even where the spring pushes the other
     /// way, which `compat` reproduces.
-    #[inline]
+    #[inline(always)]
     pub fn torque<R: Real>(
         &self,
         spring: &Spring,

@@ -144,7 +144,7 @@ impl Pair for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let w = cx.world();
         let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
-        Ok(vec![Box::new(Force::new(self.name, rules, wanted))])
+        Ok(vec![Box::new(Force::new(self.name, rules, wanted, w.types))])
     }
 
     fn needs(&self) -> &'static [&'static str] {

@@ -3,12 +3,16 @@
 use crate::diag::Result;
 use crate::laws::contact::bodies::solids;
 use crate::laws::contact::driver::{Average, Curvature, Grains, Rules, Sweep};
+use crate::laws::contact::fast::{Fast, Frame, Laws, MOST_GRAINS, MOST_MEMORY};
 use crate::laws::contact::{Advance, ContactLaw, Granular};
 use crate::math::vec3::Vec3;
 use crate::neigh::list::{Pair, Reach, View, Wanted, pairs};
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::world::contacts::Contacts;
 use crate::world::{Allowed, World};
+
+/// Largest radius in units of the smallest up to which one grid of cells serves all.
+const ALIKE: f64 = 4.0;
 
 /// Forces and torques of all granular contacts of one pair style.
 pub struct Force {
@@ -18,39 +22,32 @@ pub struct Force {
     style: &'static str,
     /// What the op is called.
     name: String,
-    list: Vec<Pair>,
-    /// The rebuild the list was made at.
-    generation: Option<u64>,
-    body: Vec<u32>,
     /// Whether fix freeze holds a particle; empty without one.
     frozen: Vec<bool>,
+    /// The rebuild the lists were made at.
+    generation: Option<u64>,
+    plain: Plain,
+    /// The fast loop, where it knows all the rules.
+    fast: Option<Fast<Granular>>,
+    /// Whether the fast loop has the contacts now.
+    is_fast: bool,
+}
+
+/// The plain loop: knows every rule, at any size ratio.
+#[derive(Default)]
+struct Plain {
+    list: Vec<Pair>,
+    body: Vec<u32>,
     sweep: Sweep,
 }
 
 impl Force {
     /// With nothing computed yet.
-    pub fn new(style: &'static str, rules: Rules<Granular>, wanted: Wanted) -> Self {
-        let (sweep, name) = (Sweep::default(), format!("pair {style}"));
-        Self {
-            rules,
-            wanted,
-            style,
-            name,
-            list: vec![],
-            generation: None,
-            body: vec![],
-            frozen: vec![],
-            sweep,
-        }
-    }
-
-    /// Which solid each particle belongs to, where some rule asks.
-    fn find_bodies(&mut self, w: &World) {
-        self.body.clear();
-        let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
-        if let (true, Some(families)) = (asked, &w.families) {
-            self.body = solids(families, w.n());
-        }
+    pub fn new(style: &'static str, rules: Rules<Granular>, wanted: Wanted, types: usize) -> Self {
+        let fast = laws(&rules, &wanted, types).map(Fast::new);
+        let (name, plain) = (format!("pair {style}"), Plain::default());
+        let frozen = vec![];
+        Self { rules, wanted, style, name, frozen, generation: None, plain, fast, is_fast: false }
     }
 
     /// Which particles fix freeze holds.
@@ -58,6 +55,15 @@ impl Force {
         self.frozen.clear();
         if let Some((_, group)) = &w.parts.frozen {
             self.frozen.extend(w.particles.mask.iter().map(|m| m & group.bit() != 0));
+        }
+    }
+
+    /// Which solid each particle belongs to, where some rule asks.
+    fn find_bodies(&mut self, w: &World) {
+        self.plain.body.clear();
+        let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
+        if let (true, Some(families)) = (asked, &w.families) {
+            self.plain.body = solids(families, w.n());
         }
     }
 
@@ -81,15 +87,64 @@ impl Force {
         wanted
     }
 
-    /// The list, from the positions of the last rebuild: later positions are within half a skin of those.
-    fn find_pairs(&mut self, w: &World) -> Result<()> {
-        let p = &w.particles;
-        let held = w.held();
-        let x = if held.len() == p.len() { held } else { &p.x };
-        let v = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: period(w)? };
-        let allowed = Allowed::new(w);
-        self.list = pairs(&v, &self.reaching(w), w.settings.neighbor.skin, &|i, j| allowed.pair(i, j));
+    /// Lists from the positions of the last rebuild: later positions are within half a skin of those.
+    fn renew(&mut self, w: &mut World) -> Result<()> {
         self.generation = Some(w.rebuild.generation);
+        let period = period(w)?;
+        let skin = w.settings.neighbor.skin;
+        let suits = suits(w, period);
+        if let Some(fast) = self.fast.as_mut().filter(|_| suits) {
+            let known = if self.is_fast { None } else { w.contacts.remove(self.style) };
+            let frame = Frame { lo: w.domain()?.lo, period, skin };
+            let allowed = Allowed::new(w);
+            let grains = Grains { x: built_at(w), ..grains(w, period, &[], &[])? };
+            fast.rebuild(&grains, &frame, known.as_ref(), &|i, j| allowed.pair(i, j));
+            self.is_fast = true;
+            return Ok(());
+        }
+        self.hand_over(w);
+        let p = &w.particles;
+        let v = View { x: built_at(w), tag: &p.tag, kind: &p.kind, radius: &p.radius, period };
+        let allowed = Allowed::new(w);
+        self.plain.list = pairs(&v, &self.reaching(w), skin, &|i, j| allowed.pair(i, j));
+        Ok(())
+    }
+
+    /// The fast loop gives its contacts back to the world.
+    fn hand_over(&mut self, w: &mut World) {
+        if let Some(fast) = self.fast.as_mut().filter(|_| std::mem::take(&mut self.is_fast)) {
+            w.contacts.insert(self.style.to_string(), fast.contacts());
+            fast.clear();
+        }
+    }
+
+    fn run_fast(&mut self, w: &mut World, t: &Tick, period: Vec3, store: bool) -> Result<()> {
+        let Some(fast) = &mut self.fast else { return Ok(()) };
+        w.contacts.remove(self.style);
+        let step = Advance { dt: t.dt, history: !t.setup };
+        let virial = fast.run(&grains(w, period, &[], &self.frozen)?, step, store, t.virial);
+        fast.scatter(&mut w.particles.f, &mut w.particles.torque);
+        if t.virial {
+            add(&mut w.tally.virial, virial);
+        }
+        if t.contacts {
+            w.contacts.insert(self.style.to_string(), fast.contacts());
+        }
+        Ok(())
+    }
+
+    fn run_plain(&mut self, w: &mut World, t: &Tick, period: Vec3, store: bool) -> Result<()> {
+        let mut memory = w.contacts.remove(self.style).unwrap_or_default();
+        let kept: Option<Contacts> = (!store).then(|| memory.clone());
+        let plain = &mut self.plain;
+        let grains = grains(w, period, &plain.body, &self.frozen)?;
+        let step = Advance { dt: t.dt, history: !t.setup };
+        plain.sweep.run(&plain.list, &grains, &self.rules, &mut memory, step);
+        plain.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
+        if t.virial {
+            add(&mut w.tally.virial, plain.sweep.virial(&w.particles.x, &period));
+        }
+        w.contacts.insert(self.style.to_string(), kept.unwrap_or(memory));
         Ok(())
     }
 }
@@ -104,7 +159,7 @@ impl Op for Force {
     }
 
     fn access(&self) -> Access {
-        Access::new("x v omega radius mass type contacts", "f torque contacts tally")
+        Access::new("x v omega radius mass type", "f torque contacts tally")
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
@@ -112,44 +167,87 @@ impl Op for Force {
         if t.setup || self.generation.is_none() {
             self.find_bodies(w);
         }
-        if self.generation != Some(w.rebuild.generation) {
-            self.find_pairs(w)?;
+        let stale = self.is_fast && self.fast.as_ref().is_some_and(|f| f.len() != w.n());
+        if stale || self.generation != Some(w.rebuild.generation) {
+            self.renew(w)?;
         }
         let period = period(w)?;
-        self.find_frozen(w);
-        let mut memory = w.contacts.remove(self.style).unwrap_or_default();
         // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
-        let kept: Option<Contacts> = (t.setup && !w.settings.lammps()).then(|| memory.clone());
-        let p = &w.particles;
-        let grains = Grains {
-            x: &p.x,
-            v: &p.v,
-            omega: &p.omega,
-            radius: &p.radius,
-            mass: &p.mass,
-            kind: &p.kind,
-            tag: &p.tag,
-            period,
-            flow: w.domain()?.flow.map(|flow| (flow, &p.mask[..])),
-            body: &self.body,
-            frozen: &self.frozen,
-        };
-        let step = Advance { dt: t.dt, history: !t.setup };
-        self.sweep.run(&self.list, &grains, &self.rules, &mut memory, step);
-        self.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
-        if t.virial {
-            let virial = self.sweep.virial(&w.particles.x, &period);
-            for (total, part) in w.tally.virial.iter_mut().zip(virial) {
-                *total += part;
-            }
-        }
-        w.contacts.insert(self.style.to_string(), kept.unwrap_or(memory));
+        let store = !t.setup || w.settings.lammps();
+        self.find_frozen(w);
+        if self.is_fast { self.run_fast(w, t, period, store) } else { self.run_plain(w, t, period, store) }
+    }
+
+    fn finish(&mut self, w: &mut World) -> Result<()> {
+        self.hand_over(w);
+        self.generation = None;
         Ok(())
     }
 
-    fn bytes(&self, _w: &World) -> u64 {
+    fn bytes(&self, w: &World) -> u64 {
+        if let Some(fast) = self.fast.as_ref().filter(|_| self.is_fast) {
+            // Short lists with history, records of grains in and out.
+            return (fast.pairs()[1] * 44 + w.n() * 400) as u64;
+        }
         // Pairs read with both ends (12 + 2 × 32 bytes); per contact both ends' state, wrench and history.
-        (self.list.len() * 76 + self.sweep.len() * 400) as u64
+        (self.plain.list.len() * 76 + self.plain.sweep.len() * 400) as u64
+    }
+}
+
+/// The laws as the fast loop wants them; `None` where some rule is not for it.
+fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<Granular>> {
+    let plain = rules.any(|r| {
+        r.average != Average::None
+            || r.curvature != Curvature::Both
+            || r.law.gap(1.0) != 0.0
+            || r.law.memory() > MOST_MEMORY
+    });
+    let touch = |a, b| wanted.get(a, b).is_none_or(|r| r == Reach::Touch);
+    let all = 1..=types as u16;
+    if plain || !all.clone().all(|a| all.clone().all(|b| touch(a, b))) {
+        return None;
+    }
+    Laws::new(types, |a, b| rules.get(a, b).map(|r| r.law))
+}
+
+/// Whether the fast loop can take these particles.
+fn suits(w: &World, period: Vec3) -> bool {
+    let p = &w.particles;
+    let bounds = |(lo, hi): (f64, f64), r: &f64| (lo.min(*r), hi.max(*r));
+    let (least, most) = p.radius.iter().fold((f64::INFINITY, 0.0), bounds);
+    let reach = 2.0 * most + w.settings.neighbor.skin;
+    // Two grains must not meet in two images at once.
+    let wide = period.iter().all(|l| *l == 0.0 || *l >= 2.0 * reach);
+    let still = w.domain.as_ref().is_none_or(|d| d.flow.is_none());
+    still && w.families.is_none() && !p.is_empty() && p.len() <= MOST_GRAINS && most <= ALIKE * least && wide
+}
+
+/// The positions the lists are made from.
+fn built_at(w: &World) -> &[Vec3] {
+    let held = w.held();
+    if held.len() == w.n() { held } else { &w.particles.x }
+}
+
+fn grains<'a>(w: &'a World, period: Vec3, body: &'a [u32], frozen: &'a [bool]) -> Result<Grains<'a>> {
+    let p = &w.particles;
+    Ok(Grains {
+        x: &p.x,
+        v: &p.v,
+        omega: &p.omega,
+        radius: &p.radius,
+        mass: &p.mass,
+        kind: &p.kind,
+        tag: &p.tag,
+        period,
+        flow: w.domain()?.flow.map(|flow| (flow, &p.mask[..])),
+        body,
+        frozen,
+    })
+}
+
+fn add(total: &mut [f64; 6], part: [f64; 6]) {
+    for (total, part) in total.iter_mut().zip(part) {
+        *total += part;
     }
 }
 

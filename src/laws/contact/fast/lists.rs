@@ -1,0 +1,176 @@
+//! The two lists of each slab: pairs within the skin, and of those the pairs within the thin skin.
+
+use super::sweep::{self, HERE_BITS};
+use super::{Fast, NONE};
+use crate::laws::contact::ContactLaw;
+use crate::neigh::slabs::{HERE, Run};
+use crate::par;
+use std::sync::{Mutex, PoisonError};
+
+/// Pairs: the place of one grain, place and image of the other. Filled up with pairs of nobody to a multiple of four.
+#[derive(Clone, Debug, Default)]
+pub struct Pairs {
+    /// The place of the grain that lies in the slab.
+    pub i: Vec<u32>,
+    /// The place of the other and the image it is seen in.
+    pub w: Vec<u32>,
+}
+
+/// Pairs within the thin skin, in the order of the long list.
+#[derive(Clone, Debug, Default)]
+pub struct Short {
+    /// See [`Pairs`].
+    pub i: Vec<u32>,
+    /// See [`Pairs`].
+    pub w: Vec<u32>,
+    /// Which pair of the long list.
+    pub t: Vec<u32>,
+    /// Per pair: what its contact remembers, and the number of the step it last touched.
+    pub history: Vec<f64>,
+}
+
+impl Short {
+    fn clear(&mut self) {
+        self.i.clear();
+        self.w.clear();
+        self.t.clear();
+        self.history.clear();
+    }
+}
+
+/// What belongs to one slab.
+#[derive(Clone, Debug, Default)]
+pub struct Slab {
+    /// Pairs within the skin.
+    pub long: Pairs,
+    /// Pairs within the thin skin.
+    pub short: Short,
+    /// Σ d ⊗ F of the last evaluation, where it was asked for.
+    pub virial: [f64; 6],
+}
+
+impl<L: ContactLaw> Fast<L> {
+    /// Long lists from these positions and radii by place.
+    pub(super) fn make_long(
+        &mut self,
+        at: &[[f64; 4]],
+        skin: f64,
+        keep: &(impl Fn(usize, usize) -> bool + Sync),
+    ) {
+        let mut lists = std::mem::take(&mut self.lists);
+        lists.resize(self.slabs.count(), Slab::default());
+        let shared = par::Shared::new(&mut lists);
+        let this = &*self;
+        par::for_rows(this.slabs.count(), |k| {
+            // SAFETY: each part writes its own slab.
+            let slab = unsafe { &mut shared.get(k..k + 1)[0] };
+            this.search(k, at, skin, keep, &mut slab.long);
+        });
+        drop(shared);
+        self.lists = lists;
+    }
+
+    fn search(
+        &self,
+        k: usize,
+        at: &[[f64; 4]],
+        skin: f64,
+        keep: &(impl Fn(usize, usize) -> bool + Sync),
+        out: &mut Pairs,
+    ) {
+        out.i.clear();
+        out.w.clear();
+        let order = &self.slabs.order;
+        let mut runs = vec![];
+        for cell in self.slabs.slab(k) {
+            let own = self.slabs.places(cell);
+            if own.is_empty() {
+                continue;
+            }
+            self.slabs.runs(cell, &mut runs);
+            for i in own.clone() {
+                let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
+                let a = at[i];
+                for run in std::iter::once(&rest).chain(&runs) {
+                    let shift = self.shifts[run.image as usize];
+                    let others = &at[run.from as usize..run.to as usize];
+                    for (b, j) in others.iter().zip(run.from..) {
+                        let d =
+                            [a[0] - (b[0] + shift[0]), a[1] - (b[1] + shift[1]), a[2] - (b[2] + shift[2])];
+                        let reach = a[3] + b[3] + skin;
+                        if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach
+                            && self.laws.which(self.kind[i], self.kind[j as usize]) != NONE
+                            && keep(order[i] as usize, order[j as usize] as usize)
+                        {
+                            out.i.push(i as u32);
+                            out.w.push(j | run.image << HERE_BITS);
+                        }
+                    }
+                }
+            }
+        }
+        let nobody = self.len() as u32;
+        while !out.i.len().is_multiple_of(4) {
+            out.i.push(nobody);
+            out.w.push(nobody | HERE << HERE_BITS);
+        }
+    }
+
+    /// Short lists from the present positions; contacts keep what they remember.
+    pub(super) fn make_short(&mut self) {
+        let book = self.book.take();
+        let mut lists = std::mem::take(&mut self.lists);
+        let spare = Mutex::new(std::mem::take(&mut self.spare));
+        let open = || spare.lock().unwrap_or_else(PoisonError::into_inner);
+        let slabs = par::Shared::new(&mut lists);
+        let this = &*self;
+        par::for_rows(slabs.len(), |k| {
+            // SAFETY: each part writes its own slab.
+            let slab = unsafe { &mut slabs.get(k..k + 1)[0] };
+            let mut room = open().pop().unwrap_or_default();
+            room.clear();
+            // SAFETY: `near` asks the processor; list entries are places of records.
+            unsafe { sweep::near(this, slab, this.thin, |t| room.t.push(t)) };
+            // Nobody is always near nobody.
+            while room.t.last().is_some_and(|t| slab.long.i[*t as usize] as usize == this.len()) {
+                room.t.pop();
+            }
+            this.fill_short(slab, book.as_ref(), &mut room);
+            std::mem::swap(&mut slab.short, &mut room);
+            open().push(room);
+        });
+        drop(slabs);
+        self.spare = spare.into_inner().unwrap_or_else(PoisonError::into_inner);
+        self.lists = lists;
+    }
+
+    /// Fills in pairs and memory of a new short list that knows its pairs of the long list.
+    fn fill_short(&self, slab: &Slab, book: Option<&super::Book>, new: &mut Short) {
+        let (old, width) = (&slab.short, self.width);
+        let nobody = self.len() as u32;
+        new.i.extend(new.t.iter().map(|t| slab.long.i[*t as usize]));
+        new.w.extend(new.t.iter().map(|t| slab.long.w[*t as usize]));
+        while !new.i.len().is_multiple_of(4) {
+            new.i.push(nobody);
+            new.w.push(nobody | HERE << HERE_BITS);
+        }
+        new.history.resize(new.i.len() * width, 0.0);
+        let mut at = 0;
+        for (k, t) in new.t.iter().enumerate() {
+            let row = &mut new.history[k * width..][..width];
+            if let Some(book) = book {
+                self.look_up(book, new.i[k], new.w[k], row);
+                continue;
+            }
+            while old.t.get(at).is_some_and(|o| o < t) {
+                at += 1;
+            }
+            if old.t.get(at) == Some(t) {
+                row.copy_from_slice(&old.history[at * width..][..width]);
+            } else {
+                row[width - 1] = -1.0;
+            }
+        }
+        new.history[new.t.len() * width..].fill(-1.0);
+    }
+}

@@ -1,0 +1,152 @@
+//! What contacts remember, carried from list to list and to and from the world.
+
+use super::Fast;
+use super::lists::Short;
+use crate::laws::contact::ContactLaw;
+use crate::world::contacts::{Contacts, mirror};
+use std::ops::Range;
+
+/// Contacts by the place of the grain with the smaller tag, seen from that grain.
+#[derive(Clone, Debug)]
+pub struct Book {
+    start: Vec<u32>,
+    partner: Vec<u32>,
+    width: usize,
+    history: Vec<f64>,
+}
+
+impl Book {
+    /// What the contact of two places remembers, the one of the smaller tag first.
+    #[inline]
+    pub fn get(&self, first: u32, second: u32) -> Option<&[f64]> {
+        let of: Range<usize> = self.start[first as usize] as usize..self.start[first as usize + 1] as usize;
+        let k = of.start + self.partner[of].iter().position(|p| *p == second)?;
+        Some(&self.history[k * self.width..][..self.width])
+    }
+}
+
+/// Where each tag stands.
+enum Places {
+    /// By tag; `u32::MAX` where there is none.
+    Table(Vec<u32>),
+    /// Tag and place, sorted.
+    List(Vec<[u32; 2]>),
+}
+
+impl Places {
+    fn new(tag: &[u32]) -> Self {
+        let last = tag.iter().copied().max().unwrap_or(0) as usize;
+        if last > 8 * tag.len() + 1024 {
+            let mut list: Vec<[u32; 2]> = tag.iter().zip(0..).map(|(t, k)| [*t, k]).collect();
+            list.sort_unstable();
+            return Self::List(list);
+        }
+        let mut table = vec![u32::MAX; last + 1];
+        tag.iter().zip(0..).for_each(|(t, k)| table[*t as usize] = k);
+        Self::Table(table)
+    }
+
+    fn of(&self, tag: u32) -> Option<u32> {
+        match self {
+            Self::Table(t) => t.get(tag as usize).copied().filter(|k| *k != u32::MAX),
+            Self::List(list) => list.binary_search_by_key(&tag, |[t, _]| *t).ok().map(|k| list[k][1]),
+        }
+    }
+}
+
+impl<L: ContactLaw> Fast<L> {
+    /// The contacts of the last evaluation and the known ones, for grains that stand in this order now.
+    pub(super) fn remember(&self, tag: &[u32], known: Option<&Contacts>) -> Book {
+        let places = Places::new(tag);
+        let width = self.width - 1;
+        let mut start = vec![0; tag.len() + 1];
+        let both = |a: u32, b: u32| places.of(a).zip(places.of(b));
+        self.each_live(|[a, b], _| {
+            if let Some((p, _)) = both(a, b) {
+                start[p as usize] += 1;
+            }
+        });
+        for &[a, b] in known.iter().flat_map(|c| &c.keys) {
+            if let Some((p, _)) = both(a, b) {
+                start[p as usize] += 1;
+            }
+        }
+        let mut sum = 0;
+        for s in &mut start {
+            sum += *s;
+            *s = sum;
+        }
+        let (mut partner, mut history) = (vec![0; sum as usize], vec![0.0; sum as usize * width]);
+        let mut put = |[a, b]: [u32; 2], h: &[f64]| {
+            if let Some((p, q)) = both(a, b) {
+                // Filled from behind: each start ends up at its first contact.
+                start[p as usize] -= 1;
+                let k = start[p as usize] as usize;
+                partner[k] = q;
+                let kept = width.min(h.len());
+                history[k * width..][..kept].copy_from_slice(&h[..kept]);
+            }
+        };
+        if let Some(c) = known {
+            for (k, key) in c.keys.iter().enumerate().rev() {
+                put(*key, &c.history[k * c.width..][..c.width]);
+            }
+        }
+        self.each_live(&mut put);
+        Book { start, partner, width, history }
+    }
+
+    /// Calls `f` with the tags of both grains, the smaller first, and what their contact remembers.
+    fn each_live(&self, mut f: impl FnMut([u32; 2], &[f64])) {
+        let memory = self.width - 1;
+        let mut turned = [0.0; super::MOST_MEMORY];
+        for list in &self.lists {
+            let short = &list.short;
+            for k in (0..short.i.len()).filter(|k| short.history[(k + 1) * self.width - 1] == self.now) {
+                let (i, j) = (short.i[k] as usize, super::sweep::place(short.w[k]) as usize);
+                let h = &short.history[k * self.width..][..memory];
+                if self.tag[i] <= self.tag[j] {
+                    f([self.tag[i], self.tag[j]], h);
+                } else {
+                    turned[..memory].copy_from_slice(h);
+                    mirror(&mut turned[..memory]);
+                    f([self.tag[j], self.tag[i]], &turned[..memory]);
+                }
+            }
+        }
+    }
+
+    /// Writes what the book holds of a pair of places into the row of a short list: what is remembered and the step.
+    pub(super) fn look_up(&self, book: &Book, i: u32, w: u32, row: &mut [f64]) {
+        let j = super::sweep::place(w);
+        let memory = self.width - 1;
+        row.fill(0.0);
+        row[memory] = -1.0;
+        let first = self.tag[i as usize] <= self.tag[j as usize];
+        let found = if first { book.get(i, j) } else { book.get(j, i) };
+        if let Some(h) = found {
+            row[..memory].copy_from_slice(h);
+            row[memory] = self.now;
+            if !first {
+                mirror(&mut row[..memory]);
+            }
+        }
+    }
+
+    /// The contacts of the last evaluation that remembered, as the world keeps them.
+    pub fn contacts(&self) -> Contacts {
+        let memory = self.laws.memory();
+        let live =
+            |s: &Short| (0..s.i.len()).filter(|k| s.history[(k + 1) * self.width - 1] == self.now).count();
+        let count = self.lists.iter().map(|l| live(&l.short)).sum();
+        let (mut keys, mut history) = (Vec::with_capacity(count), Vec::with_capacity(count * memory));
+        self.each_live(|key, h| {
+            keys.push((key, keys.len() as u32));
+            history.extend_from_slice(&h[..memory]);
+        });
+        keys.sort_unstable();
+        let sorted =
+            keys.iter().flat_map(|(_, k)| &history[*k as usize * memory..][..memory]).copied().collect();
+        Contacts { keys: keys.iter().map(|(key, _)| *key).collect(), width: memory, history: sorted }
+    }
+}

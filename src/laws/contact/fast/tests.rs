@@ -1,0 +1,217 @@
+//! The fast loop against the plain driver on dense packings that move, are rebuilt and have several laws.
+
+use super::*;
+use crate::laws::contact::driver::{Average, Curvature, Rule, Rules, Sweep};
+use crate::laws::contact::{
+    Classic, Damping, Friction, Granular, Model, Normal, Rolling, Sds, Tangential, Twisting,
+};
+use crate::math::rng::ParkMiller;
+use crate::neigh::list::{Reach, View, Wanted, pairs};
+use crate::world::Compat;
+
+#[derive(Clone)]
+struct Scene {
+    x: Vec<Vec3>,
+    v: Vec<Vec3>,
+    omega: Vec<Vec3>,
+    radius: Vec<f64>,
+    mass: Vec<f64>,
+    kind: Vec<u16>,
+    tag: Vec<u32>,
+    frozen: Vec<bool>,
+    period: [f64; 3],
+}
+
+const SKIN: f64 = 0.2;
+const DT: f64 = 2e-3;
+
+/// A disturbed lattice of overlapping grains of two types and many sizes, in no particular order of tags.
+fn scene(period: [f64; 3]) -> Scene {
+    let mut random = ParkMiller::new(4711);
+    let mut any = |lo: f64, hi: f64| lo + (hi - lo) * random.uniform();
+    let mut x = vec![];
+    for k in 0..7 * 6 * 9 {
+        let site = [k % 7, k / 7 % 6, k / 42].map(|c| f64::from(c) * 0.95 + 0.4);
+        x.push(site.map(|a| a + any(-0.1, 0.1)));
+    }
+    let n = x.len();
+    let vector = |_: usize| std::array::from_fn(|_| any(-1.0, 1.0));
+    let v: Vec<Vec3> = (0..n).map(vector).collect();
+    let mut any = |lo: f64, hi: f64| lo + (hi - lo) * random.uniform();
+    Scene {
+        omega: v.iter().map(|v| [v[1], v[2], v[0]]).collect(),
+        radius: (0..n).map(|_| any(0.35, 0.6)).collect(),
+        mass: (0..n).map(|_| any(0.5, 2.0)).collect(),
+        kind: (0..n).map(|k| 1 + u16::from(k % 3 == 0)).collect(),
+        tag: (0..n as u32).map(|k| (k * 5) % n as u32 + 1).collect(),
+        frozen: (0..n).map(|k| k % 11 == 0).collect(),
+        v,
+        x,
+        period,
+    }
+}
+
+/// The law of two types: there are three, one of them with all that contacts can remember.
+fn between(a: u16, b: u16) -> Granular {
+    let stiffness = 200.0 * f64::from(a + b);
+    let normal = Normal::Hertz { stiffness, eta: 3.0 };
+    let friction = |kind| Tangential::new(kind, Some(stiffness), 0.4, 0.1 * f64::from(a + b));
+    let sds = |stiffness| Sds { stiffness, damping: 0.3, mu: 0.2 };
+    let mindlin = Model::new(normal, Damping::Viscoelastic, friction(Friction::Mindlin));
+    let model = match a + b {
+        2 => mindlin,
+        3 => {
+            let (stiffness, gamma) = ([stiffness; 2], [4.0, 1.0]);
+            Model::classic(false, true, &Classic { stiffness, gamma, mu: 0.5, limit_damping: true })
+        }
+        _ => Model { rolling: Rolling::Sds(sds(50.0)), twisting: Twisting::Sds(sds(5.0)), ..mindlin },
+    };
+    model.law(Compat::Perigrain)
+}
+
+impl Scene {
+    fn grains(&self) -> Grains<'_> {
+        let Self { x, v, omega, radius, mass, kind, tag, frozen, period } = self;
+        Grains { x, v, omega, radius, mass, kind, tag, period: *period, flow: None, body: &[], frozen }
+    }
+
+    /// Half of the pairs of type 2 are excluded.
+    fn keep(&self, i: usize, j: usize) -> bool {
+        self.kind[i] != 2 || self.kind[j] != 2 || (self.tag[i] + self.tag[j]) % 2 == 0
+    }
+
+    fn advance(&mut self, f: &[Vec3], torque: &[Vec3]) {
+        for i in 0..self.x.len() {
+            for d in 0..3 {
+                self.v[i][d] += DT * f[i][d] / self.mass[i];
+                self.omega[i][d] += DT * torque[i][d] / (0.4 * self.mass[i] * self.radius[i].powi(2));
+                self.x[i][d] += DT * self.v[i][d];
+            }
+        }
+    }
+
+    fn wrap(&mut self) {
+        for x in &mut self.x {
+            (0..3).filter(|d| self.period[*d] > 0.0).for_each(|d| x[d] = x[d].rem_euclid(self.period[d]));
+        }
+    }
+
+    fn zeros(&self) -> Vec<Vec3> {
+        vec![[0.0; 3]; self.x.len()]
+    }
+}
+
+/// Forces, torques, contacts and virials of some steps, with lists made anew every seventh.
+trait Loop {
+    fn step(&mut self, s: &Scene, k: usize) -> (Vec<Vec3>, Vec<Vec3>, Contacts, [f64; 6]);
+}
+
+struct PlainLoop {
+    list: Vec<crate::neigh::list::Pair>,
+    sweep: Sweep,
+    memory: Contacts,
+}
+
+impl Loop for PlainLoop {
+    fn step(&mut self, s: &Scene, k: usize) -> (Vec<Vec3>, Vec<Vec3>, Contacts, [f64; 6]) {
+        let (mut wanted, mut rules) = (Wanted::new(2), Rules::new(2));
+        for (a, b) in [(1, 1), (1, 2), (2, 2)] {
+            wanted.set(a, b, Reach::Touch);
+            let (average, curvature) = (Average::None, Curvature::Both);
+            rules.set(a, b, Rule { law: between(a, b), average, curvature });
+        }
+        if k % 7 == 0 {
+            let view = View { x: &s.x, tag: &s.tag, kind: &s.kind, radius: &s.radius, period: s.period };
+            self.list = pairs(&view, &wanted, SKIN, &|i, j| s.keep(i, j));
+        }
+        self.sweep.run(&self.list, &s.grains(), &rules, &mut self.memory, Advance { dt: DT, history: true });
+        let (mut f, mut torque) = (s.zeros(), s.zeros());
+        self.sweep.scatter(&mut f, &mut torque);
+        (f, torque, self.memory.clone(), self.sweep.virial(&s.x, &s.period))
+    }
+}
+
+struct FastLoop {
+    fast: Fast<Granular>,
+    /// Contacts go through the world at every rebuild.
+    through_world: bool,
+}
+
+impl FastLoop {
+    fn new(through_world: bool) -> Self {
+        Self { fast: Fast::new(Laws::new(2, |a, b| Some(between(a, b))).unwrap()), through_world }
+    }
+}
+
+impl Loop for FastLoop {
+    fn step(&mut self, s: &Scene, k: usize) -> (Vec<Vec3>, Vec<Vec3>, Contacts, [f64; 6]) {
+        if k % 7 == 0 {
+            let known = self.through_world.then(|| self.fast.contacts());
+            if self.through_world {
+                self.fast.clear();
+            }
+            let frame = Frame { lo: [0.0; 3], period: s.period, skin: SKIN };
+            self.fast.rebuild(&s.grains(), &frame, known.as_ref(), &|i, j| s.keep(i, j));
+        }
+        let step = Advance { dt: DT, history: true };
+        // An evaluation that stores nothing changes nothing.
+        self.fast.run(&s.grains(), step, false, false);
+        let virial = self.fast.run(&s.grains(), step, true, true);
+        let (mut f, mut torque) = (s.zeros(), s.zeros());
+        self.fast.scatter(&mut f, &mut torque);
+        (f, torque, self.fast.contacts(), virial)
+    }
+}
+
+const PERIODS: [[f64; 3]; 3] = [[0.0; 3], [6.65, 5.7, 0.0], [6.65, 5.7, 8.55]];
+
+#[test]
+fn the_numbers_of_the_plain_driver() {
+    for period in PERIODS {
+        let mut s = scene(period);
+        let mut plain = PlainLoop { list: vec![], sweep: Sweep::default(), memory: Contacts::default() };
+        let mut fast = FastLoop::new(false);
+        let mut ended = 0;
+        for k in 0..40 {
+            if k % 7 == 0 {
+                s.wrap();
+            }
+            let (f, torque, contacts, virial) = plain.step(&s, k);
+            let (f2, torque2, contacts2, virial2) = fast.step(&s, k);
+            assert_eq!(contacts.keys, contacts2.keys);
+            // One contact has the same bits in both loops; sums of a dozen forces of size 100 differ by their order.
+            // What differs grows with the steps, by collisions, hence the width.
+            let near = |a: f64, b: f64| (a - b).abs() < 1e-9 * (1.0 + a.abs());
+            let same = |a: &[Vec3], b: &[Vec3]| {
+                a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| near(*a, *b))
+            };
+            assert!(same(&f, &f2) && same(&torque, &torque2), "step {k}");
+            assert!(contacts.history.iter().zip(&contacts2.history).all(|(a, b)| near(*a, *b)));
+            assert!(virial.iter().zip(&virial2).all(|(a, b)| (a - b).abs() < 1e-8 * (1.0 + virial[0].abs())));
+            ended += usize::from(k > 0 && contacts.len() != 0);
+            s.advance(&f, &torque);
+        }
+        assert_eq!(ended, 39);
+    }
+}
+
+#[test]
+fn the_same_bits_for_threads_and_across_the_world() {
+    let run = |through_world: bool, threads: usize| {
+        par::set_threads(threads);
+        let (mut s, mut fast) = (scene(PERIODS[2]), FastLoop::new(through_world));
+        for k in 0..30 {
+            if k % 7 == 0 {
+                s.wrap();
+            }
+            let (f, torque, ..) = fast.step(&s, k);
+            s.advance(&f, &torque);
+        }
+        par::set_threads(1);
+        (s.x, s.omega, fast.fast.contacts())
+    };
+    let one = run(false, 1);
+    assert!(one.2.len() > 300);
+    assert_eq!(one, run(false, 2));
+    assert_eq!(one, run(true, 1));
+}

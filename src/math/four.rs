@@ -1,0 +1,326 @@
+//! Four numbers side by side: a plain array for any processor, one AVX register where there is one, same bits.
+
+use super::real::Real;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Four lanes that a formula is evaluated on at once, and the moves between rows in memory and lanes.
+///
+/// Only [`Four::load`] makes values from nothing: who may call it may use the operators as well.
+pub trait Four: Real {
+    /// Four consecutive numbers, aligned or not.
+    ///
+    /// # Safety
+    /// `p` must be readable for four numbers; the processor must have what the form needs.
+    unsafe fn load(p: *const f64) -> Self;
+    /// Writes four consecutive numbers.
+    ///
+    /// # Safety
+    /// `p` must be writable for four numbers.
+    unsafe fn store(self, p: *mut f64);
+    /// The same number four times.
+    ///
+    /// # Safety
+    /// The processor must have what the form needs.
+    unsafe fn splat(a: f64) -> Self;
+    /// Element `l` of row `k` becomes element `k` of row `l`.
+    fn transpose(rows: [Self; 4]) -> [Self; 4];
+    /// Lane `k` of a mask as bit `k`.
+    fn bits(mask: Self::Mask) -> u32;
+    /// Asks for the memory at `p` ahead of its use.
+    fn prefetch<T>(p: *const T);
+}
+
+/// Four lanes as an array.
+#[derive(Clone, Copy, Debug)]
+pub struct Plain([f64; 4]);
+
+impl Plain {
+    #[inline(always)]
+    fn zip(self, b: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self([f(self.0[0], b.0[0]), f(self.0[1], b.0[1]), f(self.0[2], b.0[2]), f(self.0[3], b.0[3])])
+    }
+}
+
+/// The eight operators of a number, each from one expression of two values in lanes.
+macro_rules! operators {
+    ($lanes:ty, $a:ident $b:ident: $($trait:ident $method:ident $e:expr;)*) => {$(
+        impl $trait for $lanes {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, $b: Self) -> Self {
+                let $a = self;
+                $e
+            }
+        }
+        impl $trait<f64> for $lanes {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, $b: f64) -> Self {
+                let ($a, $b) = (self, self.like($b));
+                $e
+            }
+        }
+    )*};
+}
+
+operators! { Plain, a b:
+    Add add a.zip(b, |a, b| a + b);
+    Sub sub a.zip(b, |a, b| a - b);
+    Mul mul a.zip(b, |a, b| a * b);
+    Div div a.zip(b, |a, b| a / b);
+}
+
+impl Neg for Plain {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.map(|a| -a))
+    }
+}
+
+impl Real for Plain {
+    type Mask = [bool; 4];
+
+    #[inline(always)]
+    fn like(self, a: f64) -> Self {
+        Self([a; 4])
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f64::abs))
+    }
+    #[inline(always)]
+    fn most(self, other: Self) -> Self {
+        self.zip(other, Real::most)
+    }
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        self.zip(other, Real::least)
+    }
+    #[inline(always)]
+    fn above(self, other: Self) -> [bool; 4] {
+        std::array::from_fn(|k| self.0[k] > other.0[k])
+    }
+    #[inline(always)]
+    fn both(a: [bool; 4], b: [bool; 4]) -> [bool; 4] {
+        std::array::from_fn(|k| a[k] && b[k])
+    }
+    #[inline(always)]
+    fn choose(mask: [bool; 4], yes: Self, no: Self) -> Self {
+        Self(std::array::from_fn(|k| if mask[k] { yes.0[k] } else { no.0[k] }))
+    }
+    #[inline(always)]
+    fn any(mask: [bool; 4]) -> bool {
+        mask.iter().any(|m| *m)
+    }
+    #[inline(always)]
+    fn each(self, f: impl Fn(f64) -> f64) -> Self {
+        Self(self.0.map(f))
+    }
+}
+
+impl Four for Plain {
+    #[inline(always)]
+    unsafe fn load(p: *const f64) -> Self {
+        // SAFETY: readable by the caller's promise.
+        Self(unsafe { p.cast::<[f64; 4]>().read() })
+    }
+    #[inline(always)]
+    unsafe fn store(self, p: *mut f64) {
+        // SAFETY: writable by the caller's promise.
+        unsafe { p.cast::<[f64; 4]>().write(self.0) }
+    }
+    #[inline(always)]
+    unsafe fn splat(a: f64) -> Self {
+        Self([a; 4])
+    }
+    #[inline(always)]
+    fn transpose(rows: [Self; 4]) -> [Self; 4] {
+        std::array::from_fn(|l| Self(std::array::from_fn(|k| rows[k].0[l])))
+    }
+    #[inline(always)]
+    fn bits(mask: [bool; 4]) -> u32 {
+        (0..4).map(|k| u32::from(mask[k]) << k).sum()
+    }
+    #[inline(always)]
+    fn prefetch<T>(_: *const T) {}
+}
+
+/// Whether the processor has AVX2.
+pub fn has_avx2() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    {
+        is_x86_feature_detected!("avx2")
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        false
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub use x86::Avx2;
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use std::arch::x86_64::*;
+    use std::ops::{Add, Div, Mul, Neg, Sub};
+
+    use super::{Four, Real};
+
+    /// Four lanes in one AVX register. There is a value of this type only where the processor has AVX2: its
+    /// constructors are unsafe and promise that.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Avx2(__m256d);
+
+    // SAFETY (all blocks): a value exists, so the processor has AVX2; or the caller promises that.
+
+    operators! { Avx2, a b:
+        Add add Avx2(unsafe { _mm256_add_pd(a.0, b.0) });
+        Sub sub Avx2(unsafe { _mm256_sub_pd(a.0, b.0) });
+        Mul mul Avx2(unsafe { _mm256_mul_pd(a.0, b.0) });
+        Div div Avx2(unsafe { _mm256_div_pd(a.0, b.0) });
+    }
+
+    impl Neg for Avx2 {
+        type Output = Self;
+        #[inline(always)]
+        fn neg(self) -> Self {
+            Self(unsafe { _mm256_xor_pd(_mm256_set1_pd(-0.0), self.0) })
+        }
+    }
+
+    impl Real for Avx2 {
+        type Mask = __m256d;
+
+        #[inline(always)]
+        fn like(self, a: f64) -> Self {
+            Self(unsafe { _mm256_set1_pd(a) })
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(unsafe { _mm256_sqrt_pd(self.0) })
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+        }
+        #[inline(always)]
+        fn most(self, other: Self) -> Self {
+            Self(unsafe { _mm256_max_pd(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn least(self, other: Self) -> Self {
+            Self(unsafe { _mm256_min_pd(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn above(self, other: Self) -> __m256d {
+            unsafe { _mm256_cmp_pd::<_CMP_GT_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn both(a: __m256d, b: __m256d) -> __m256d {
+            unsafe { _mm256_and_pd(a, b) }
+        }
+        #[inline(always)]
+        fn choose(mask: __m256d, yes: Self, no: Self) -> Self {
+            Self(unsafe { _mm256_blendv_pd(no.0, yes.0, mask) })
+        }
+        #[inline(always)]
+        fn any(mask: __m256d) -> bool {
+            unsafe { _mm256_movemask_pd(mask) != 0 }
+        }
+        #[inline(always)]
+        fn each(self, f: impl Fn(f64) -> f64) -> Self {
+            let mut a = [0.0; 4];
+            unsafe { _mm256_storeu_pd(a.as_mut_ptr(), self.0) };
+            a = a.map(f);
+            Self(unsafe { _mm256_loadu_pd(a.as_ptr()) })
+        }
+    }
+
+    impl Four for Avx2 {
+        #[inline(always)]
+        unsafe fn load(p: *const f64) -> Self {
+            Self(unsafe { _mm256_loadu_pd(p) })
+        }
+        #[inline(always)]
+        unsafe fn store(self, p: *mut f64) {
+            unsafe { _mm256_storeu_pd(p, self.0) }
+        }
+        #[inline(always)]
+        unsafe fn splat(a: f64) -> Self {
+            Self(unsafe { _mm256_set1_pd(a) })
+        }
+        #[inline(always)]
+        fn transpose(rows: [Self; 4]) -> [Self; 4] {
+            let [a, b, c, d] = rows;
+            unsafe {
+                let (ab, cd) = (_mm256_unpacklo_pd(a.0, b.0), _mm256_unpacklo_pd(c.0, d.0));
+                let (hi_ab, hi_cd) = (_mm256_unpackhi_pd(a.0, b.0), _mm256_unpackhi_pd(c.0, d.0));
+                [
+                    Self(_mm256_permute2f128_pd::<0x20>(ab, cd)),
+                    Self(_mm256_permute2f128_pd::<0x20>(hi_ab, hi_cd)),
+                    Self(_mm256_permute2f128_pd::<0x31>(ab, cd)),
+                    Self(_mm256_permute2f128_pd::<0x31>(hi_ab, hi_cd)),
+                ]
+            }
+        }
+        #[inline(always)]
+        fn bits(mask: __m256d) -> u32 {
+            unsafe { _mm256_movemask_pd(mask) as u32 }
+        }
+        #[inline(always)]
+        fn prefetch<T>(p: *const T) {
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(p.cast()) }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every operation on a few numbers, as bits.
+    unsafe fn all<F: Four>() -> Vec<u64> {
+        let (a, b) = ([1.5, -2.25, 0.0, 9.0], [0.3, 7.0, -0.0, f64::NAN]);
+        let mut out = vec![];
+        // SAFETY: arrays of four numbers.
+        let (a, b) = unsafe { (F::load(a.as_ptr()), F::load(b.as_ptr())) };
+        let mut put = |x: F| {
+            let mut y = [0.0; 4];
+            // SAFETY: an array of four numbers.
+            unsafe { x.store(y.as_mut_ptr()) };
+            // The sign of a NaN is nobody's promise.
+            out.extend(y.map(|y: f64| if y.is_nan() { 7 } else { y.to_bits() }));
+        };
+        for x in [a + b, a - b, a * b, a / b, -a, a.abs(), a.abs().sqrt(), a + 0.1, a - 0.1, a * 3.0, a / 7.0]
+        {
+            put(x);
+        }
+        for x in [a.most(b), b.most(a), a.least(b), b.least(a), a.each(f64::cbrt), a.like(4.0)] {
+            put(x);
+        }
+        let mask = a.above(b);
+        put(F::choose(mask, a, b));
+        F::transpose([a, b, a + b, a - b]).into_iter().for_each(&mut put);
+        let none = F::both(mask, b.above(a));
+        out.extend([F::bits(mask), F::any(mask).into(), F::any(none).into()].map(u64::from));
+        out
+    }
+
+    #[test]
+    fn both_forms_give_the_same_bits() {
+        // SAFETY: the portable form needs nothing.
+        let plain = unsafe { all::<Plain>() };
+        assert_eq!(plain[plain.len() - 3..], [1, 1, 0]);
+        #[cfg(target_arch = "x86_64")]
+        if has_avx2() {
+            // SAFETY: just asked.
+            assert_eq!(unsafe { all::<Avx2>() }, plain);
+        }
+    }
+}

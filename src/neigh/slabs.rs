@@ -1,0 +1,248 @@
+//! Particles in the order of cells, and cells in slabs: the spatial order that granular loops and the world work in.
+
+use super::grid::extent;
+use std::ops::Range;
+
+/// Layers of cells in a slab: fixed, because it decides the order in which forces are added up.
+const LAYERS: usize = 2;
+/// Cells per particle at most; beyond that cells grow.
+const SPARSE: usize = 4;
+
+/// Points sorted by cell: along a fast axis, then a middle one, then a slow one; within a cell by tag. The order is a
+/// function of positions and tags alone.
+#[derive(Clone, Debug, Default)]
+pub struct Slabs {
+    /// Fast, middle and slow axis.
+    axes: [usize; 3],
+    /// Cells along these.
+    cells: [usize; 3],
+    /// Whether these repeat.
+    repeats: [bool; 3],
+    lo: [f64; 3],
+    per_length: [f64; 3],
+    /// First place of each cell, and the number of all places.
+    start: Vec<u32>,
+    /// The point at each place.
+    pub order: Vec<u32>,
+}
+
+/// A run of neighbouring places and the image they are seen in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// First place.
+    pub from: u32,
+    /// Past the last place.
+    pub to: u32,
+    /// The code of the image, see [`shift_of`].
+    pub image: u32,
+}
+
+/// The image in which nothing is shifted.
+pub const HERE: u32 = 13;
+
+/// How many periods an image is away along x, y and z.
+pub fn shift_of(image: u32) -> [f64; 3] {
+    [image % 3, image / 3 % 3, image / 9 % 3].map(|k| f64::from(k) - 1.0)
+}
+
+impl Slabs {
+    /// Sorts all points into cells of at least `edge`; `lo` and `period` describe the box, `period` is zero where it does not
+    /// repeat, and elsewhere at least `edge`.
+    pub fn sort(&mut self, x: &[[f64; 3]], tag: &[u32], edge: f64, lo: &[f64; 3], period: &[f64; 3]) {
+        self.lay_out(x, edge, lo, period);
+        let cell: Vec<u32> = x.iter().map(|p| self.cell_of(p)).collect();
+        self.start.clear();
+        self.start.resize(self.cells.iter().product::<usize>() + 1, 0);
+        cell.iter().for_each(|&c| self.start[c as usize + 1] += 1);
+        for c in 1..self.start.len() {
+            self.start[c] += self.start[c - 1];
+        }
+        let mut next = self.start.clone();
+        self.order.clear();
+        self.order.resize(x.len(), 0);
+        for (i, &c) in cell.iter().enumerate() {
+            self.order[next[c as usize] as usize] = i as u32;
+            next[c as usize] += 1;
+        }
+        for c in self.start.windows(2) {
+            let members = &mut self.order[c[0] as usize..c[1] as usize];
+            if !members.is_sorted_by_key(|&i| tag[i as usize]) {
+                members.sort_unstable_by_key(|&i| tag[i as usize]);
+            }
+        }
+    }
+
+    fn lay_out(&mut self, x: &[[f64; 3]], edge: f64, lo: &[f64; 3], period: &[f64; 3]) {
+        let (from, to) = extent(x, 0..x.len() as u32);
+        let open = |d: usize| period[d] == 0.0;
+        let origin: [f64; 3] = std::array::from_fn(|d| if open(d) { from[d] } else { lo[d] });
+        let length: [f64; 3] =
+            std::array::from_fn(|d| if open(d) { (to[d] - from[d]).max(0.0) } else { period[d] });
+        let room = (64 + SPARSE * x.len()) as f64;
+        let mut size = edge.max(f64::MIN_POSITIVE);
+        let count = loop {
+            let along = |d: usize| (length[d] / size).floor() + if open(d) { 1.0 } else { 0.0 };
+            let count = [0, 1, 2].map(|d| along(d).max(1.0));
+            let all = count[0] * count[1] * count[2];
+            if all <= room || x.is_empty() {
+                break count.map(|c| if x.is_empty() { 1 } else { c as usize });
+            }
+            size *= (all / room).cbrt().clamp(1.01, 1e100);
+        };
+        // The slow axis: the longest of those that do not repeat, or the longest of all if these are thin.
+        let slow = |open_only: bool| (0..3).filter(|&d| !open_only || open(d)).max_by_key(|&d| count[d]);
+        let thin = |d: &usize| count[*d] < 4 * LAYERS;
+        let slowest = slow(true).filter(|d| !thin(d)).or(slow(false)).unwrap_or(2);
+        let mut rest = [0, 1, 2].into_iter().filter(|&d| d != slowest);
+        self.axes = [rest.next().unwrap_or(0), rest.next().unwrap_or(1), slowest];
+        self.cells = self.axes.map(|d| count[d]);
+        self.repeats = self.axes.map(|d| !open(d));
+        self.lo = self.axes.map(|d| origin[d]);
+        self.per_length = self.axes.map(|d| if open(d) { 1.0 / size } else { count[d] as f64 / length[d] });
+    }
+
+    fn cell_of(&self, x: &[f64; 3]) -> u32 {
+        // A float below zero becomes 0 in the cast.
+        let at: [usize; 3] = std::array::from_fn(|k| {
+            (((x[self.axes[k]] - self.lo[k]) * self.per_length[k]) as usize).min(self.cells[k] - 1)
+        });
+        ((at[2] * self.cells[1] + at[1]) * self.cells[0] + at[0]) as u32
+    }
+
+    /// Number of slabs. Pairs of a slab ([`Slabs::runs`]) lie in it or reach into the next one, of the last into the
+    /// first where the slow axis repeats; there are then an even number of slabs, or one.
+    pub fn count(&self) -> usize {
+        let slabs = (self.cells[2] / LAYERS).max(1);
+        if self.repeats[2] && slabs > 1 { slabs & !1 } else { slabs }
+    }
+
+    /// The cells of slab `k`.
+    pub fn slab(&self, k: usize) -> Range<usize> {
+        let (layers, slabs, layer) = (self.cells[2], self.count(), self.cells[0] * self.cells[1]);
+        k * layers / slabs * layer..(k + 1) * layers / slabs * layer
+    }
+
+    /// The places of a cell.
+    pub fn places(&self, cell: usize) -> Range<usize> {
+        self.start[cell] as usize..self.start[cell + 1] as usize
+    }
+
+    /// The half neighbourhood of a cell beyond itself: every pair of neighbouring cells, each in each of its images,
+    /// occurs from one side only.
+    pub fn runs(&self, cell: usize, out: &mut Vec<Run>) {
+        out.clear();
+        let [nx, ny, _] = self.cells;
+        let at = [cell % nx, cell / nx % ny, cell / (nx * ny)];
+        self.row(at, [1..2, 0..1, 0..1], out);
+        self.row(at, [-1..2, 1..2, 0..1], out);
+        for y in -1..2 {
+            self.row(at, [-1..2, y..y + 1, 1..2], out);
+        }
+    }
+
+    /// Cells at offsets along the fast axis in one row.
+    fn row(&self, at: [usize; 3], [dx, dy, dz]: [Range<i32>; 3], out: &mut Vec<Run>) {
+        let wrapped = |k: usize, offset: i32| {
+            let (c, n) = (at[k] as i32 + offset, self.cells[k] as i32);
+            match self.repeats[k] {
+                _ if (0..n).contains(&c) => Some((c as usize, 0)),
+                true => Some((c.rem_euclid(n) as usize, c.div_euclid(n))),
+                false => None,
+            }
+        };
+        let (Some((y, sy)), Some((z, sz))) = (wrapped(1, dy.start), wrapped(2, dz.start)) else { return };
+        for (x, sx) in dx.filter_map(|dx| wrapped(0, dx)) {
+            let mut shift = [0; 3];
+            (shift[self.axes[0]], shift[self.axes[1]], shift[self.axes[2]]) = (sx, sy, sz);
+            let image = (HERE as i32 + shift[0] + 3 * shift[1] + 9 * shift[2]) as u32;
+            let cell = (z * self.cells[1] + y) * self.cells[0] + x;
+            let run = Run { from: self.start[cell], to: self.start[cell + 1], image };
+            match out.last_mut() {
+                Some(last) if last.to == run.from && last.image == image => last.to = run.to,
+                _ => out.push(run),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::rng::ParkMiller;
+    use std::collections::BTreeSet;
+
+    fn points(n: usize, box_: [f64; 3]) -> Vec<[f64; 3]> {
+        let mut random = ParkMiller::new(7);
+        (0..n).map(|_| box_.map(|l| l * random.uniform())).collect()
+    }
+
+    /// Pairs closer than `cut`, each with the image of the second, by looking at everything.
+    fn all(x: &[[f64; 3]], cut: f64, period: [f64; 3]) -> BTreeSet<(usize, usize, u32)> {
+        let mut found = BTreeSet::new();
+        for image in 0..27 {
+            let s = shift_of(image);
+            if (0..3).any(|d| period[d] == 0.0 && s[d] != 0.0) {
+                continue;
+            }
+            for (i, j) in (0..x.len()).flat_map(|i| (0..i).map(move |j| (i, j))) {
+                let square: f64 = (0..3).map(|d| (x[i][d] - x[j][d] - s[d] * period[d]).powi(2)).sum();
+                if square < cut * cut {
+                    found.insert((i, j, image));
+                }
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn every_pair_is_met_once_and_slabs_reach_only_into_the_next() {
+        let edges = [8.0, 3.2, 5.0];
+        let x = points(300, edges);
+        let tag: Vec<u32> = (0..300).map(|i| (i * 7919) % 300).collect();
+        for period in [[0.0; 3], edges, [8.0, 0.0, 0.0], [0.0, 3.2, 5.0]] {
+            let mut slabs = Slabs::default();
+            slabs.sort(&x, &tag, 1.0, &[0.0; 3], &period);
+            let (mut found, mut runs) = (BTreeSet::new(), vec![]);
+            for k in 0..slabs.count() {
+                let next = slabs.slab((k + 1) % slabs.count());
+                for cell in slabs.slab(k) {
+                    let own = slabs.places(cell);
+                    slabs.runs(cell, &mut runs);
+                    for i in own.clone() {
+                        let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
+                        for r in runs.iter().chain([&rest]) {
+                            for j in r.from as usize..r.to as usize {
+                                let reach =
+                                    |c: &Range<usize>| c.clone().any(|c| slabs.places(c).contains(&j));
+                                assert!(reach(&slabs.slab(k)) || reach(&next));
+                                let (a, b) = (slabs.order[i] as usize, slabs.order[j] as usize);
+                                let entry = if a > b { (a, b, r.image) } else { (b, a, 26 - r.image) };
+                                assert!(found.insert(entry), "{entry:?} twice");
+                            }
+                        }
+                    }
+                }
+            }
+            let wanted = all(&x, 1.0, period);
+            assert!(wanted.len() > 500 && wanted.is_subset(&found), "{period:?}");
+        }
+    }
+
+    #[test]
+    fn the_order_depends_on_places_and_tags_alone() {
+        let x = points(200, [3.0; 3]);
+        let tag: Vec<u32> = (0..200).collect();
+        let sorted = |x: &[[f64; 3]], tag: &[u32]| {
+            let mut s = Slabs::default();
+            s.sort(x, tag, 1.0, &[0.0; 3], &[0.0; 3]);
+            s.order.iter().map(|&i| tag[i as usize]).collect::<Vec<_>>()
+        };
+        let (back, mixed): (Vec<_>, Vec<_>) = x.iter().copied().zip(tag.iter().copied()).rev().unzip();
+        assert_eq!(sorted(&x, &tag), sorted(&back, &mixed));
+        assert_eq!(sorted(&[], &[]), []);
+        // Far points do not cost memory.
+        let mut s = Slabs::default();
+        s.sort(&[[0.0; 3], [1e12, 3.0, 4.0]], &[1, 2], 1.0, &[0.0; 3], &[0.0; 3]);
+        assert!(s.start.len() < 200);
+    }
+}
