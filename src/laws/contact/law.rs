@@ -203,14 +203,10 @@ impl ContactLaw for Granular {
         let friction = self.spring.force(g.normal, a, form, slip, carried, own, step);
 
         let lever = cross(friction, g.normal);
-        let arm = |k: usize| match self.arm {
-            Arm::Middle => g.radii[k] - g.overlap * 0.5,
-            Arm::Radius => g.radii[k],
-        };
         let mut w = Wrench {
             force: add(scale(normal_force, g.normal), friction),
-            torque_i: scale(arm(0), lever),
-            torque_j: scale(arm(1), lever),
+            torque_i: scale(self.arm(g, 0), lever),
+            torque_j: scale(self.arm(g, 1), lever),
         };
         if self.rolling.memory() + self.twisting.memory() > 0 {
             self.turn(g, i, j, [a, form, carried], rest, step, &mut w);
@@ -220,6 +216,15 @@ impl ContactLaw for Granular {
 }
 
 impl Granular {
+    /// How far from the centre of i (0) or j (1) the tangential force acts.
+    #[inline(always)]
+    fn arm<R: Real>(&self, g: &Geometry<R>, k: usize) -> R {
+        match self.arm {
+            Arm::Middle => g.radii[k] - g.overlap * 0.5,
+            Arm::Radius => g.radii[k],
+        }
+    }
+
     /// How many numbers stand before those of rolling and twisting, which are the same seen from j: at least the
     /// three that are not.
     #[inline(always)]

@@ -291,6 +291,13 @@ impl<F: Four> Group<F> {
         unsafe { F::transpose([F::load(p[0]), F::load(p[1]), F::load(p[2]), F::load(p[3])]) }
     }
 
+    /// The first four numbers of four records of eight, turned into lanes.
+    #[inline(always)]
+    unsafe fn records(p: *const f64, k: &[usize; 4]) -> [F; 4] {
+        // SAFETY: passed on.
+        unsafe { Self::rows([p.add(8 * k[0]), p.add(8 * k[1]), p.add(8 * k[2]), p.add(8 * k[3])]) }
+    }
+
     #[inline(always)]
     unsafe fn act<L: ContactLaw, const W: usize>(
         &self,
@@ -313,11 +320,8 @@ impl<F: Four> Group<F> {
                 apart(cx.position, cx.shifts, i[3] as u32, w[3], one),
             ]);
             let m: *const f64 = cx.motion.as_ptr().cast();
-            let row = |k: usize, half: usize| m.add(8 * k + half);
-            let [a0, a1, a2, mi] = Self::rows([row(i[0], 0), row(i[1], 0), row(i[2], 0), row(i[3], 0)]);
-            let [b0, b1, b2, mj] = Self::rows([row(j[0], 0), row(j[1], 0), row(j[2], 0), row(j[3], 0)]);
-            let [p0, p1, p2, ri] = Self::rows([row(i[0], 4), row(i[1], 4), row(i[2], 4), row(i[3], 4)]);
-            let [q0, q1, q2, rj] = Self::rows([row(j[0], 4), row(j[1], 4), row(j[2], 4), row(j[3], 4)]);
+            let ([a0, a1, a2, mi], [p0, p1, p2, ri]) = (Self::records(m, &i), Self::records(m.add(4), &i));
+            let ([b0, b1, b2, mj], [q0, q1, q2, rj]) = (Self::records(m, &j), Self::records(m.add(4), &j));
 
             let past = slab.short.history.as_mut_ptr();
             let h = [past.add(W * k[0]), past.add(W * k[1]), past.add(W * k[2]), past.add(W * k[3])];
@@ -363,13 +367,18 @@ impl<F: Four> Group<F> {
         }
     }
 
+    /// Lanes of vectors, turned into rows. (No closure: those are not inlined into code for AVX2.)
+    #[inline(always)]
+    fn of(&self, v: &Vec3<F>) -> [F; 4] {
+        F::transpose([v[0], v[1], v[2], self.zero])
+    }
+
     /// Forces and torques into the records, contact by contact.
     #[inline(always)]
     unsafe fn add<L>(&self, cx: &Cx<L>, j: &[usize; 4], w: &Wrench<F>, count: usize) {
         // SAFETY: passed on.
         unsafe {
-            let rows = |v: Vec3<F>| F::transpose([v[0], v[1], v[2], self.zero]);
-            let (force, ti, tj) = (rows(w.force), rows(w.torque_i), rows(w.torque_j));
+            let (force, ti, tj) = (self.of(&w.force), self.of(&w.torque_i), self.of(&w.torque_j));
             let f: *mut f64 = cx.force.as_ptr().cast();
             for lane in 0..4 {
                 if lane >= count {
