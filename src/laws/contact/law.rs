@@ -116,7 +116,7 @@ impl Model {
         let spring = self.tangential.spring(&other.tangential, normals, eta, mixed, compat);
         let by_radius = !matches!(elastic.form, Form::None | Form::Hooke)
             || self.damping == Damping::Viscoelastic
-            || spring.kind.by_radius()
+            || spring.by_radius()
             || twisting == Twisting::Marshall;
         Granular {
             elastic,

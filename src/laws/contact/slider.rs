@@ -25,6 +25,8 @@ pub struct Slider<R> {
     pub n: Vec3<R>,
     /// k [force/length].
     pub stiffness: R,
+    /// The stiffness by which a spring that slides is shortened: k, but where LAMMPS is wrong.
+    pub slack: R,
     /// η [mass/time].
     pub damping: R,
     /// The largest force it carries.
@@ -57,8 +59,8 @@ impl<R: Real> Slider<R> {
             (elastic, R::both(slides, stretched))
         } else {
             // Without stiffness no displacement carries a force: it stays as it is.
-            let stiff = self.stiffness.above(zero);
-            (scale(zero.like(-1.0) / self.stiffness, elastic), R::both(R::both(slides, stretched), stiff))
+            let stiff = self.slack.above(zero);
+            (scale(zero.like(-1.0) / self.slack, elastic), R::both(R::both(slides, stretched), stiff))
         };
         *xi = choose::<R>(fits, carried, *xi);
         choose::<R>(slides, sliding, trial)

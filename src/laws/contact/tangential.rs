@@ -145,7 +145,9 @@ impl Tangential {
             (Drag::Own(a), Drag::Own(b)) => geometric(a, b),
             (Drag::Own(a), Drag::Times(_)) | (Drag::Times(_), Drag::Own(a)) => a,
         };
-        Spring { kind: self.kind, stiffness, damping, mu: geometric(self.mu, other.mu) }
+        let classic = matches!(self.kind, Friction::LinearHistoryClassic | Friction::MindlinClassic);
+        let loose = compat == Compat::Lammps && classic && matches!(self.drag, Drag::Times(_));
+        Spring { kind: self.kind, stiffness, damping, mu: geometric(self.mu, other.mu), loose }
     }
 }
 
@@ -170,9 +172,17 @@ pub struct Spring {
     pub damping: f64,
     /// Coefficient of friction.
     pub mu: f64,
+    /// LAMMPS 22Jul2025's `…_classic` springs of granular models and walls: the contact radius stiffens
+    /// `linear_history_classic` too, and is forgotten where a spring that slides is shortened.
+    pub loose: bool,
 }
 
 impl Spring {
+    /// Whether its stiffness grows with the radius of the contact.
+    pub fn by_radius(&self) -> bool {
+        self.kind.by_radius() || self.loose
+    }
+
     /// How many numbers it remembers: a displacement or force and, to shrink it, the contact radius.
     pub fn memory(&self) -> usize {
         match self.kind {
@@ -197,7 +207,7 @@ impl Spring {
     ) -> Vec3<R> {
         let limit = carried * self.mu;
         let damping = form * self.damping;
-        let stiffness = if self.kind.by_radius() { a * self.stiffness } else { a.like(self.stiffness) };
+        let stiffness = if self.by_radius() { a * self.stiffness } else { a.like(self.stiffness) };
         match self.kind {
             Friction::None => [a.like(0.0); 3],
             Friction::LinearNohistory => {
@@ -213,7 +223,9 @@ impl Spring {
                     xi = scale(R::choose(shrinks, a / history[3], a.like(1.0)), xi);
                     history[3] = a;
                 }
-                let force = Slider { n, stiffness, damping, limit, v }.force(&mut xi, kind.memory(), step);
+                let slack = if self.loose { a.like(self.stiffness) } else { stiffness };
+                let slider = Slider { n, stiffness, slack, damping, limit, v };
+                let force = slider.force(&mut xi, kind.memory(), step);
                 history[..3].copy_from_slice(&xi);
                 force
             }

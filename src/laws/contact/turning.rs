@@ -78,6 +78,7 @@ impl Rolling {
         let slider = Slider {
             n: g.normal,
             stiffness: like(c.stiffness),
+            slack: like(c.stiffness),
             damping: like(c.damping),
             limit: carried * c.mu,
             v,

@@ -14,6 +14,11 @@ pub trait Wall: Sync {
 
     /// Finds the places of the wall nearer than `reach` to `x`, at most one for each of its parts.
     fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>);
+
+    /// Whether a sticky sphere that touched there holds on until it is torn off.
+    fn holds(&self, _near: &Near) -> bool {
+        true
+    }
 }
 
 /// The particles as walls see them: columns of equal length.
@@ -122,7 +127,8 @@ impl WallSweep {
                 near.sort_by_key(|n| n.part);
                 let touches = |n: &&Near| {
                     n.distance < radius
-                        || (n.distance < radius + law.gap(effective(radius, n.radius))
+                        || (wall.holds(n)
+                            && n.distance < radius + law.gap(effective(radius, n.radius))
                             && memory.get([grains.tag[i], n.part]).is_some())
                 };
                 touching.extend(near.iter().filter(touches).map(|n| Touch { grain, near: *n }));
@@ -231,6 +237,8 @@ pub struct Tube {
     pub velocity: Vec3,
     /// Speed of its surface about the axis: clockwise seen from above where positive.
     pub spin: f64,
+    /// Sticky spheres hold on from outside only, as LAMMPS has it.
+    pub lammps: bool,
 }
 
 impl Wall for Tube {
@@ -251,6 +259,10 @@ impl Wall for Tube {
                 velocity: add(self.velocity, [self.spin * away[1], -self.spin * away[0], 0.0]),
             });
         }
+    }
+
+    fn holds(&self, near: &Near) -> bool {
+        !self.lammps || near.radius > 0.0
     }
 }
 

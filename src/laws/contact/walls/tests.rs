@@ -106,7 +106,7 @@ fn two_planes_act_together_unless_lammps_is_meant() {
 
 #[test]
 fn a_tube_is_hollow_inside_and_turns() {
-    let tube = Tube { radius: 5.0, velocity: [0.0, 0.0, 2.0], spin: 3.0 };
+    let tube = Tube { radius: 5.0, velocity: [0.0, 0.0, 2.0], spin: 3.0, lammps: false };
     let mut out = vec![];
     tube.near([0.0, 4.5, 7.0], 1.0, &mut out);
     let n = out[0];

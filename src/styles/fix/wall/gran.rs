@@ -39,6 +39,10 @@ impl Style for WallGran {
                 moves in its own plane at V; a cylinder along z, or about z for x and y, clockwise seen from above.\n\n\
                 `contacts` offers 8 columns per particle: 1 where it touches, the force on it, the wall's nearest point, \
                 its radius.\n\n\
+                LAMMPS 22Jul2025 has faults that perigrain has under `-compat lammps` alone: springs of `hooke/history`, \
+                `hertz/history` and the `…_classic` models on walls hang on the contact radius and lose it when they slide; \
+                a cylinder with `shear x` or `y` also flies along that axis; sticky grains hold on to hollow walls and regions \
+                no longer than they touch.\n\n\
                 Not in LAMMPS: `material E nu` gives the wall elastic constants of its own, for 1/E* and 1/G* of two \
                 unlike bodies; the global vector is the force on the wall (1–3) and the torque on it (4–6) about the \
                 origin or the point `about`. Only grains near the wall are looked at, so that a wall far from most costs \
@@ -259,7 +263,10 @@ impl Surface for Running {
                 let [lo, hi] = [lo, hi].map(|p| p.map(|p| p + by));
                 Box::new(Planes { axis, lo, hi, velocity, nearer })
             }
-            Place::Tube(radius) => Box::new(Tube { radius, velocity, spin: self.spin }),
+            Place::Tube(radius) => {
+                let lammps = w.settings.lammps();
+                Box::new(Tube { radius, velocity, spin: self.spin, lammps })
+            }
         }
     }
 }

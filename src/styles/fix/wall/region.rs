@@ -36,8 +36,9 @@ impl Style for WallGranRegion {
                 change since the step before, zero in the first). `region ID delete` and a new `region ID` of the same \
                 name between runs change the wall.\n\n\
                 LAMMPS takes cones for hollow from outside, open cylinders for flat from outside, feels nothing of a \
-                union's outside, and lets only cylinders and spheres push while they change their size; perigrain does \
-                the same under `-compat lammps` alone. Keywords and values as those of `fix wall/gran`.",
+                union's outside, misses contacts beside the ends of an ellipsoid's axes, takes moving parts of unions and \
+                intersections for resting ones, and lets only cylinders and spheres push while they change their size; \
+                perigrain does the same under `-compat lammps` alone. Keywords and values as those of `fix wall/gran`.",
             example: "region funnel cone z 0.0 0.0 0.001 0.005 -0.001 0.006 units box open 1 open 2\n\
                       fix funnel grains wall/gran/region granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential \
                       mindlin NULL 1.0 0.5 region funnel",
@@ -163,5 +164,10 @@ impl Wall for Faces<'_> {
         if let Some(region) = self.region {
             region.near(x, reach, &self.look, out);
         }
+    }
+
+    fn holds(&self, _near: &Near) -> bool {
+        // LAMMPS lets go of regions at once.
+        !self.look.lammps
     }
 }

@@ -4,7 +4,7 @@ use super::Common;
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use crate::lang::{Args, Word};
 use crate::laws::contact::driver::{Average, Curvature};
-use crate::laws::contact::{Arm, Damping, Granular, Model, Normal};
+use crate::laws::contact::{Arm, Damping, Drag, Friction, Granular, Model, Normal};
 use crate::styles::BuildCx;
 use crate::styles::contact::{classic, words};
 use crate::world::Compat;
@@ -45,7 +45,13 @@ pub fn force(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Material> {
     let span = word.span;
     let classic = |hertz: bool, history: bool, args: &mut Args| {
         let numbers = classic::numbers(args, hertz, cx.world.settings.units)?;
-        Ok::<_, Diagnostics>(Model::classic(hertz, history, &numbers))
+        let mut model = Model::classic(hertz, history, &numbers);
+        let [gamma_n, gamma_t] = numbers.gamma;
+        if gamma_n > 0.0 {
+            // Walls are granular models to LAMMPS, with all that is wrong about their springs.
+            model.tangential.drag = Drag::Times(gamma_t / gamma_n);
+        }
+        Ok::<_, Diagnostics>(model)
     };
     let model = match word.text.as_str() {
         "granular" => granular(args, ends)?,
@@ -125,9 +131,17 @@ fn own_material(word: &Word, args: &mut Args, model: &Model) -> Result<Model> {
 
 /// The wall's common part before its keywords are read.
 pub fn common(cx: &BuildCx, material: Material) -> Common {
-    if cx.world.settings.lammps() && material.model.damping == Damping::Tsuji {
-        let text = "compat lammps: damping tsuji without its factor √2";
-        cx.note(Diagnostic::note(Code::COMPAT, material.span, text));
+    let classic = [Friction::LinearHistoryClassic, Friction::MindlinClassic];
+    for (is_so, text) in [
+        (material.model.damping == Damping::Tsuji, "compat lammps: damping tsuji without its factor √2"),
+        (
+            classic.contains(&material.model.tangential.kind),
+            "compat lammps: springs of walls with history hang on the contact radius, and lose it when they slide",
+        ),
+    ] {
+        if is_so && cx.world.settings.lammps() {
+            cx.note(Diagnostic::note(Code::COMPAT, material.span, text));
+        }
     }
     Common { id: cx.id.to_string(), group: cx.group, material, contacts: false, center: [0.0; 3] }
 }
