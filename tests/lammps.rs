@@ -82,8 +82,8 @@ fn agree(a: &Outcome, b: &Outcome, rule: &Rule, what: &str) {
 fn run(deck: &str, v: Variant) -> Outcome {
     let folder = tempfile::tempdir().unwrap();
     let text = stored(&format!("decks/{deck}.in"));
-    if text.contains("data.peri") {
-        fs::write(folder.path().join("data.peri"), stored("decks/data.peri")).unwrap();
+    for data in ["data.peri", "data.sphere"].into_iter().filter(|data| text.contains(data)) {
+        fs::write(folder.path().join(data), stored(&format!("decks/{data}"))).unwrap();
     }
     fs::write(folder.path().join("in.deck"), text).unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_perigrain"));
@@ -147,6 +147,11 @@ decks! {
     gr2_hooke
     gr2_hooke_hist
     gran_chute
+    gran_walls
+    misc_cgs
+    misc_micro
+    misc_data_sphere
+    misc_restart_gran
     hyb_pmb_granular
     hyb_pmb_hertz
     hyb_respa
