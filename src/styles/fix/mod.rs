@@ -9,6 +9,7 @@ mod ave_histo;
 mod ave_time;
 mod aveforce;
 mod bins;
+mod components;
 mod controller;
 mod crowd;
 mod deform;

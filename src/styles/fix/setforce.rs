@@ -1,14 +1,13 @@
 //! fix setforce: forces replaced by given ones.
 
-use super::{Fix, FixStyle, Minimizing, region_keyword};
+use super::components::Components;
+use super::{Fix, FixStyle, Minimizing};
 use crate::diag::Result;
-use crate::lang::{Args, Param};
-use crate::plan::{Access, Op, Phase, Stage, When};
-use crate::styles::command::common::param_or_null;
-use crate::styles::matter::{Chosen, change_forces, publish};
+use crate::lang::Args;
+use crate::plan::{Access, Op, Phase, Stage};
+use crate::styles::matter::{change_forces, publish};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
-use crate::world::GroupId;
 
 /// The style.
 pub struct SetForce;
@@ -33,40 +32,20 @@ impl Style for SetForce {
 
 impl FixStyle for SetForce {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let mut force = [const { None }; 3];
-        for (force, what) in force.iter_mut().zip(["fx", "fy", "fz"]) {
-            *force = param_or_null(args, what)?;
-            force.iter().try_for_each(|p| cx.param(p, true))?;
-        }
-        let mut region = None;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "region" => region = Some(region_keyword(args, cx)?),
-                _ => return Err(args.unknown(word, &["region"])),
-            }
-        }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, force, region }))
+        let components = Components::read(args, cx, true)?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), components }))
     }
 }
 
 #[derive(Clone)]
 struct Declared {
     id: String,
-    group: GroupId,
-    force: [Option<Param>; 3],
-    region: Option<String>,
+    components: Components,
 }
 
 impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let span = cx.span();
-        let chosen = Chosen::new(cx.world(), self.group, self.region.as_deref(), span)?;
-        let mut force = [None; 3];
-        for (reading, param) in force.iter_mut().zip(&self.force) {
-            if let Some(p) = param {
-                *reading = Some(cx.param(p, Stage::PostForce, &When::Always)?);
-            }
-        }
+        let (chosen, force) = self.components.seal(cx)?;
         let slot = cx.slot(&format!("f_{}", self.id));
         let access = Access::new("f x mask", "f");
         let op = StepOp::new(format!("fix {} setforce", self.id), Stage::PostForce, access, move |w, t| {
