@@ -10,8 +10,5 @@ pub const STYLES: &[(&str, &str)] = &[
     ("fix", "npt"),
     ("fix", "langevin"),
     ("fix", "wall/reflect"),
-    ("compute", "stress/atom"),
-    ("compute", "contact/atom"),
-    ("compute", "pair/local"),
     ("dump", "movie"),
 ];

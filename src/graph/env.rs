@@ -234,7 +234,8 @@ impl DeckEnv<'_> {
         let stands = tally.step == Some(t.step) && !self.w.parts.changed;
         let short = (wanted.energy && !stands)
             || (wanted.virial && !(stands && tally.with_virial))
-            || (wanted.atom_energy && !(stands && tally.with_atoms));
+            || (wanted.atom_energy && !(stands && tally.with_atoms))
+            || (wanted.atom_virial && !(stands && tally.with_atom_virial));
         if short {
             return Err(Diagnostic::error(
                 Code::WRONG_ORDER,

@@ -17,6 +17,7 @@ mod said;
 pub mod seal;
 pub mod show;
 pub mod thermo;
+pub mod virials;
 pub mod welcome;
 
 pub use node::{ComputeNode, DumpNode, FixNode, Graph, Node, NodeId, PairNode, Role};

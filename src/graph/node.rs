@@ -241,6 +241,12 @@ impl Names for Graph {
         })
     }
 
+    fn pair_styles(&self) -> Vec<&'static str> {
+        let Some(node) = &self.pair else { return vec![] };
+        let parts = node.pair.parts();
+        std::iter::once(node.pair.name()).chain(parts.iter().map(|p| p.name())).collect()
+    }
+
     fn users(&self, name: &Use) -> Vec<String> {
         let uses = |span: Span| self.nodes.iter().any(|n| n.span == span && n.uses.contains(name));
         let fixes = self.fixes.iter().filter(|f| uses(f.span)).map(|f| format!("fix {}", f.id));

@@ -197,6 +197,7 @@ impl Op for ClearForces {
         // In steps of two lengths bonds have tallied by now.
         if (t.energy || t.virial) && !matches!(t.phase, Phase::Long(_)) {
             w.tally.clear(t.step, t.virial, t.atom_energy, w.particles.len());
+            w.tally.clear_atom_virial(t.atom_virial, w.particles.len());
         }
         Ok(())
     }

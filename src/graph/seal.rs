@@ -10,6 +10,7 @@ use crate::lang::{Dep, RefKind, Value, ValueRef, Vars};
 use crate::out::log::Log;
 use crate::plan::{Access, LeftOut, Op, OpClass, Placed, Stage, StepPlan, Tick, When};
 use crate::styles::bond::BondForce;
+use crate::styles::pair::probe::Probe;
 use crate::styles::{PlaceTest, Pull, Reading, SealCx, Shape, Text, Wants};
 use crate::world::{SlotId, World};
 use std::collections::BTreeMap;
@@ -386,6 +387,14 @@ impl SealCx for Sealer<'_> {
 
     fn ask_atom_energy(&mut self, when: &When) {
         self.plan.atom_energy.push(when.clone());
+    }
+
+    fn ask_atom_virial(&mut self, when: &When) {
+        self.plan.atom_virial.push(when.clone());
+    }
+
+    fn probes(&mut self) -> Result<Vec<Box<dyn Probe>>> {
+        self.graph.pair.as_ref().map_or(Ok(vec![]), |node| node.pair.probes(self.world))
     }
 
     fn energy_fixes(&self) -> Vec<String> {

@@ -227,6 +227,8 @@ pub struct Tick {
     pub phase: Phase,
     /// Somebody reads the world's contacts at this step.
     pub contacts: bool,
+    /// Somebody reads per-particle virials at this step.
+    pub atom_virial: bool,
 }
 
 impl Tick {
@@ -245,6 +247,7 @@ impl Tick {
             atom_energy: false,
             phase: Phase::Whole,
             contacts: false,
+            atom_virial: false,
         }
     }
 }

@@ -51,6 +51,8 @@ pub struct StepPlan {
     pub virial: Vec<When>,
     /// When somebody reads per-particle energies.
     pub atom_energy: Vec<When>,
+    /// When somebody reads per-particle virials.
+    pub atom_virial: Vec<When>,
 }
 
 impl StepPlan {
@@ -65,9 +67,11 @@ impl StepPlan {
     pub fn ask(&self, t: &mut Tick) {
         let any = |list: &[When]| list.iter().any(|w| t.ending || w.fires(t));
         let (energy, virial, atoms) = (any(&self.energy), any(&self.virial), any(&self.atom_energy));
+        let atom_virial = any(&self.atom_virial);
         t.energy = energy || atoms;
-        t.virial = virial;
+        t.virial = virial || atom_virial;
         t.atom_energy = atoms;
+        t.atom_virial = atom_virial;
         t.contacts = self.ops.iter().any(|p| p.reads_contacts && p.when.fires(t));
     }
 

@@ -69,7 +69,8 @@ fn tally_anew(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
     let stands = have.step == Some(t.step);
     let enough = (!t.energy || stands)
         && (!t.virial || (stands && have.with_virial))
-        && (!t.atom_energy || (stands && have.with_atoms));
+        && (!t.atom_energy || (stands && have.with_atoms))
+        && (!t.atom_virial || (stands && have.with_atom_virial));
     if enough {
         return Ok(());
     }
@@ -163,6 +164,7 @@ pub(super) fn tick(w: &World, setup: bool) -> Tick {
         atom_energy: false,
         phase: Phase::Whole,
         contacts: false,
+        atom_virial: false,
     }
 }
 

@@ -177,6 +177,8 @@ impl Session {
             minimizing.then(|| s.keyword_total("pe", span, Stage::EndOfStep, &When::Always)).transpose()?;
         let row = self.graph.thermo.op(&mut s, self.options.log.clone())?;
         s.add(vec![row], span);
+        s.at(span);
+        crate::graph::virials::seal(&mut s)?;
         s.say_what_is_missing();
         Ok((s.plan, energy))
     }

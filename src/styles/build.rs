@@ -121,6 +121,10 @@ pub trait Names {
             _ => s.array_extensive,
         })
     }
+    /// The pair style in force and its sub-styles.
+    fn pair_styles(&self) -> Vec<&'static str> {
+        vec![]
+    }
     /// The fixes, computes and dumps in force that use a name, as `fix ball`.
     fn users(&self, _name: &Use) -> Vec<String> {
         vec![]

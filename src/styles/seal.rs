@@ -5,6 +5,7 @@ use crate::diag::{Result, Span};
 use crate::lang::{Param, ValueRef};
 use crate::out::log::Log;
 use crate::plan::{Op, Stage, When};
+use crate::styles::pair::probe::Probe;
 use crate::world::{SlotId, World};
 
 /// Where an op finds a value while it runs; the plan makes sure it is fresh.
@@ -194,6 +195,13 @@ pub trait SealCx {
     fn ask_virial(&mut self, when: &When);
     /// Per-particle energies must be tallied whenever `when` fires.
     fn ask_atom_energy(&mut self, when: &When);
+    /// Per-particle virials must be tallied whenever `when` fires.
+    fn ask_atom_virial(&mut self, when: &When);
+    /// What the pair styles can be asked about single pairs. Whoever asks reads `contacts`.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn probes(&mut self) -> Result<Vec<Box<dyn Probe>>>;
     /// Slots of fixes whose energy counts (`fix_modify ID energy yes`), for the potential energy.
     fn energy_fixes(&self) -> Vec<String>;
     /// Says what this scene does without, and why.

@@ -1,13 +1,14 @@
 //! A bench for unit tests of styles: a small world, lines as a deck has them, and a sealing without a graph.
 
 use super::{
-    BuildCx, Compute, ComputeStyle, Fix, FixStyle, Names, PlaceTest, Pull, Reading, SealCx, Shape, Text,
-    UseKind, Wants,
+    BuildCx, Compute, ComputeStyle, Fix, FixStyle, Names, Pair, PlaceTest, Pull, Reading, SealCx, Shape,
+    Text, UseKind, Wants,
 };
 use crate::diag::{Code, Diagnostics, FileId, Result, Span, fail};
 use crate::lang::{Args, Command, RefKind, ValueRef, Word};
 use crate::out::log::Log;
 use crate::plan::{Op, Stage, Tick, When};
+use crate::styles::pair::probe::Probe;
 use crate::world::{AtomStyle, Boundary, Domain, GroupId, SlotId, World};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -23,6 +24,8 @@ pub struct Bench {
     pub atom: BTreeMap<String, Vec<f64>>,
     /// Computes.
     pub computes: BTreeMap<String, Shape>,
+    /// The pair style.
+    pub pair: Option<Box<dyn Pair>>,
     /// Slots of fixes whose energy counts.
     pub energy_fixes: Vec<String>,
     /// Accelerations of fixes gravity.
@@ -115,6 +118,7 @@ impl Bench {
             atom_energy: true,
             phase: Default::default(),
             contacts: true,
+            atom_virial: true,
         }
     }
 
@@ -225,6 +229,10 @@ impl SealCx for Bench {
     fn ask_energy(&mut self, _when: &When) {}
     fn ask_virial(&mut self, _when: &When) {}
     fn ask_atom_energy(&mut self, _when: &When) {}
+    fn ask_atom_virial(&mut self, _when: &When) {}
+    fn probes(&mut self) -> Result<Vec<Box<dyn Probe>>> {
+        self.pair.as_ref().map_or(Ok(vec![]), |p| p.probes(&self.world))
+    }
     fn energy_fixes(&self) -> Vec<String> {
         self.energy_fixes.clone()
     }

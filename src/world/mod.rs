@@ -150,6 +150,14 @@ impl World {
         }
     }
 
+    /// Edge lengths of the box, zero where it does not repeat.
+    pub fn periods(&self) -> [f64; 3] {
+        self.domain.as_ref().map_or([0.0; 3], |d| {
+            let lengths = d.lengths();
+            std::array::from_fn(|k| if d.boundary.periodic(k) { lengths[k] } else { 0.0 })
+        })
+    }
+
     /// Number of particles.
     pub fn n(&self) -> usize {
         self.particles.len()

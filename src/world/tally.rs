@@ -1,5 +1,7 @@
 //! Energy and virial of the present step, as force ops add them up.
 
+use std::collections::BTreeMap;
+
 /// What the force ops of a step have tallied.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Tally {
@@ -24,6 +26,21 @@ pub struct Tally {
     pub bond_virial: [f64; 6],
     /// Energy per particle of its bonds; empty when not asked for or where there are none.
     pub bond_atom: Vec<f64>,
+    /// Energy of each pair style that has one, by its name.
+    #[serde(default)]
+    pub styles: BTreeMap<String, f64>,
+    /// Whether per-particle virials were asked for.
+    #[serde(default)]
+    pub with_atom_virial: bool,
+    /// Virial of all pairs per particle, half of a pair's for each end; empty when not asked for.
+    #[serde(default)]
+    pub atom_virial: Vec<[f64; 6]>,
+    /// The same of all bonds.
+    #[serde(default)]
+    pub atom_bonds: Vec<[f64; 6]>,
+    /// Of fixes that were told to add theirs.
+    #[serde(default)]
+    pub atom_fixes: Vec<[f64; 6]>,
 }
 
 impl Tally {
@@ -37,9 +54,28 @@ impl Tally {
         self.fixes = [0.0; 6];
         (self.bond, self.bond_virial) = (0.0, [0.0; 6]);
         self.bond_atom.clear();
+        self.styles.clear();
         self.atom.clear();
         if atoms {
             self.atom.resize(n, 0.0);
         }
+        self.clear_atom_virial(false, n);
+    }
+
+    /// Starts a step's per-particle virials at zero, where they are asked for.
+    pub fn clear_atom_virial(&mut self, asked: bool, n: usize) {
+        self.with_atom_virial = asked;
+        for list in [&mut self.atom_virial, &mut self.atom_bonds, &mut self.atom_fixes] {
+            list.clear();
+            if asked {
+                list.resize(n, [0.0; 6]);
+            }
+        }
+    }
+
+    /// Adds the energy of a pair style.
+    pub fn add_pair(&mut self, style: &str, energy: f64) {
+        self.pair += energy;
+        *self.styles.entry(style.to_string()).or_default() += energy;
     }
 }

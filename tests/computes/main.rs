@@ -115,3 +115,8 @@ fn threads_leave_every_bit_as_it_is() {
     set_threads(3);
     assert_eq!(one, run("three", &deck, false));
 }
+
+#[test]
+fn contacts_agree() {
+    agrees("contacts");
+}

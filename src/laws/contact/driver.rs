@@ -241,6 +241,11 @@ impl Sweep {
         self.touching.is_empty()
     }
 
+    /// The contacts of the last evaluation and what each does.
+    pub fn contacts(&self) -> impl Iterator<Item = (&Pair, &Wrench)> {
+        self.touching.iter().zip(&self.wrenches)
+    }
+
     /// Adds forces and torques to their particles, in the order of the list.
     pub fn scatter(&self, f: &mut [Vec3], torque: &mut [Vec3]) {
         for (p, w) in self.touching.iter().zip(&self.wrenches) {

@@ -64,9 +64,7 @@ impl Repulsion<'_, '_, '_> {
 /// Adds energies of both ends and the virial of the force `pull` times `d` on the first.
 pub fn add(t: &mut PeriTally, (i, e_i): (usize, f64), (j, e_j): (usize, f64), pull: f64, d: [f64; 3]) {
     t.energy += e_i + e_j;
-    for (v, (a, b)) in t.virial.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {
-        *v += pull * d[a] * d[b];
-    }
+    t.add_virial(i, j, pull, d);
     if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
         atoms[i] += e_i;
         atoms[j] += e_j;

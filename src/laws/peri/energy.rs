@@ -32,7 +32,7 @@ pub fn tally<K: Kernels + RowKernels>(
     let mut rows = std::mem::take(&mut families.scratch.rows);
     let options = families.options;
     for body in &families.lattices {
-        if t.per_atom_energy.is_none() && body.cell_kind.is_empty() {
+        if !t.per_atom() && body.cell_kind.is_empty() {
             whole_rows::<K>(body, view, &options, &families.scratch.windows, &mut rows);
             collect(&rows, t);
             continue;
@@ -40,7 +40,7 @@ pub fn tally<K: Kernels + RowKernels>(
         sum(body.rows.len(), &mut rows, t, |slot, f| lattice_row(body, slot, view, families, &options, f));
     }
     let list = &families.list;
-    if t.per_atom_energy.is_none() {
+    if !t.per_atom() {
         list_rows::<K>(list, period, &options, &mut rows);
         collect(&rows, t);
     } else {
@@ -51,7 +51,7 @@ pub fn tally<K: Kernels + RowKernels>(
 
 /// Adds up `row(k, add)` for `k` below `n` in a fixed order, and per particle if asked for.
 fn sum(n: usize, rows: &mut Vec<Sums>, t: &mut PeriTally, row: impl Fn(usize, &mut Add) + Sync) {
-    if t.per_atom_energy.is_some() {
+    if t.per_atom() {
         for k in 0..n {
             row(k, &mut |i, j, pull, d| add(t, i, j, pull, d));
         }

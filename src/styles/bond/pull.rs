@@ -130,6 +130,9 @@ pub fn tally(w: &mut World, t: &Tick, ends: [usize; 2], d: &Vec3, force: &Vec3, 
     if t.virial {
         for (k, (a, b)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
             w.tally.bond_virial[k] += d[a] * force[b];
+            if t.atom_virial {
+                ends.iter().for_each(|&i| w.tally.atom_bonds[i][k] += 0.5 * d[a] * force[b]);
+            }
         }
     }
 }

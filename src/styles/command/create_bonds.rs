@@ -5,7 +5,6 @@ use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::Args;
 use crate::neigh::list::{Reach, View, Wanted, pairs};
-use crate::styles::compute::near::periods;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
 use crate::world::index::Index;
 use crate::world::{Allowed, Bond, GroupId, World};
@@ -147,7 +146,7 @@ fn within(w: &World, groups: [GroupId; 2], range: [f64; 2]) -> Vec<[u32; 2]> {
         // Both ends of the range count: the list's own test is open above.
         (a..=w.types as u16).for_each(|b| wanted.set(a, b, Reach::Fixed(range[1] * (1.0 + 1e-12))));
     }
-    let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: periods(w) };
+    let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
     let is = |i: usize, g: GroupId| p.mask[i] & g.bit() != 0;
     let weights = w.bonds.weights;
     let barred: Vec<[u32; 2]> = w

@@ -1,6 +1,6 @@
 //! compute bond/local: lengths, energies and forces of bonds.
 
-use super::near::{bonds_within, periods};
+use super::near::bonds_within;
 use super::{Compute, ComputeStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
@@ -168,7 +168,7 @@ impl Compute for Declared {
         }
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "x v bonds mask", move |w, _, out| {
             let p = &w.particles;
-            let (index, lengths, masses) = (Index::new(&p.tag), periods(w), Masses::of(w));
+            let (index, lengths, masses) = (Index::new(&p.tag), w.periods(), Masses::of(w));
             let mvv2e = w.settings.units.constants().mvv2e;
             out.local_cols = me.values.len();
             out.local.clear();

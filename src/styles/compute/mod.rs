@@ -4,12 +4,14 @@ mod bond_local;
 pub(super) mod chunk;
 mod cluster_atom;
 mod com;
+mod contact_atom;
 mod coord_atom;
 mod damage_atom;
 mod dilatation_atom;
 mod displace_atom;
 mod erotate_sphere;
 mod erotate_sphere_atom;
+mod fabric;
 mod global_atom;
 mod gyration;
 mod ke;
@@ -18,6 +20,8 @@ mod momentum;
 mod msd;
 pub mod near;
 mod origin;
+mod pair;
+mod pair_local;
 mod pe;
 mod pe_atom;
 mod plasticity_atom;
@@ -26,6 +30,7 @@ pub mod property_atom;
 mod property_local;
 mod reduce;
 mod slice;
+mod stress_atom;
 mod temp;
 mod temp_sphere;
 
@@ -113,18 +118,22 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &cluster_atom::ClusterAtom,
     &cluster_atom::FragmentAtom,
     &com::Com,
+    &contact_atom::ContactAtom,
     &coord_atom::CoordAtom,
     &damage_atom::DamageAtom,
     &dilatation_atom::DilatationAtom,
     &displace_atom::DisplaceAtom,
     &erotate_sphere::ErotateSphere,
     &erotate_sphere_atom::ErotateSphereAtom,
+    &fabric::Fabric,
     &global_atom::GlobalAtom,
     &gyration::Gyration,
     &ke::Ke,
     &ke_atom::KeAtom,
     &momentum::Momentum,
     &msd::Msd,
+    &pair::PairEnergy,
+    &pair_local::PairLocal,
     &pe::Pe,
     &pe_atom::PeAtom,
     &plasticity_atom::PlasticityAtom,
@@ -134,6 +143,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &reduce::Reduce,
     &reduce::ReduceRegion,
     &slice::Slice,
+    &stress_atom::StressAtom,
     &temp::Temp,
     &temp_sphere::TempSphere,
 ];
@@ -144,6 +154,16 @@ struct Terms {
     pair: bool,
     bond: bool,
     fix: bool,
+}
+
+/// Refuses what needs radii where particles have none.
+fn need_spheres(what: &str, cx: &BuildCx) -> Result<()> {
+    if cx.world.particles.style.sphere {
+        return Ok(());
+    }
+    Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, format!("{what} needs spheres"))
+        .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
+        .into())
 }
 
 /// Keywords of `pe` and `pe/atom`. Terms of styles that perigrain does not have are known and contribute nothing.

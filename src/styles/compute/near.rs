@@ -1,27 +1,40 @@
 //! Pairs of particles within a distance of each other, and clusters of them.
 
 use crate::diag::{Code, Diagnostic, Result};
-use crate::neigh::list::{Pair, Reach, View, Wanted, pairs};
+use crate::neigh::list::{Pair, Reach, View, Wanted, difference, pairs};
 use crate::world::index::Index;
-use crate::world::{Bond, GroupId, World};
+use crate::world::{Allowed, Bond, GroupId, World};
 
-/// Edge lengths of the box, zero where it does not repeat.
-pub fn periods(w: &World) -> [f64; 3] {
-    w.domain.as_ref().map_or([0.0; 3], |d| {
-        let l = d.lengths();
-        std::array::from_fn(|k| if d.boundary.periodic(k) { l[k] } else { 0.0 })
-    })
+/// Every pair closer than `reach` that `keep` lets pass, once, in the order of their ids; pairs that
+/// exclusions and bonds take away are none.
+pub fn within(w: &World, reach: Reach, keep: &(impl Fn(usize, usize) -> bool + Sync)) -> Vec<Pair> {
+    search(w, reach, 0.0, keep)
 }
 
-/// Every pair closer than `reach` that `keep` lets pass, once, in the order of their ids.
-pub fn within(w: &World, reach: Reach, keep: &(impl Fn(usize, usize) -> bool + Sync)) -> Vec<Pair> {
+fn search(w: &World, reach: Reach, skin: f64, keep: &(impl Fn(usize, usize) -> bool + Sync)) -> Vec<Pair> {
     let p = &w.particles;
     let mut wanted = Wanted::new(w.types);
     for a in 1..=w.types as u16 {
         (a..=w.types as u16).for_each(|b| wanted.set(a, b, reach));
     }
-    let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: periods(w) };
-    pairs(&view, &wanted, 0.0, keep)
+    let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
+    let allowed = Allowed::new(w);
+    pairs(&view, &wanted, skin, &|i, j| keep(i, j) && allowed.pair(i, j))
+}
+
+/// Every pair of spheres no further apart than the sum of their radii that `keep` lets pass, as `within`.
+pub fn touching(w: &World, keep: &(impl Fn(usize, usize) -> bool + Sync)) -> Vec<Pair> {
+    let p = &w.particles;
+    // What touches in one point is no closer than the sum of the radii: search a little further, then look.
+    let margin = 1e-9 * p.radius.iter().fold(0.0, |most: f64, r| most.max(*r));
+    let mut found = search(w, Reach::Touch, margin, keep);
+    let period = w.periods();
+    found.retain(|pair| {
+        let d = difference(&p.x, &period, pair);
+        let sum = p.radius[pair.i as usize] + p.radius[pair.j as usize];
+        d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= sum * sum
+    });
+    found
 }
 
 /// Sets that grow together: each has the smallest id of its members as its name.
@@ -84,7 +97,7 @@ pub fn bonds(w: &World, mut f: impl FnMut(u32, u32)) {
 /// # Errors
 /// The ids of two particles bonded across a periodic face of such a dimension.
 pub fn bonds_allow(w: &World, changes: [bool; 3]) -> Result<()> {
-    let (period, p) = (periods(w), &w.particles);
+    let (period, p) = (w.periods(), &w.particles);
     let dims: Vec<usize> = (0..3).filter(|&d| changes[d] && period[d] > 0.0).collect();
     let mut crossing = None;
     if !dims.is_empty() {

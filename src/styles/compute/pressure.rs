@@ -39,31 +39,42 @@ impl ComputeStyle for Pressure {
             return fail(Code::BAD_VALUE, cx.span, "compute pressure must use the group `all`");
         }
         let temp = args.expect("the ID of a temperature compute, or NULL")?;
-        let (mut ke, all) = (args.is_empty(), args.is_empty());
-        let mut parts = Parts { pair: all, bond: all, fix: all };
-        while let Some(word) = args.peek() {
-            match args.choice("keyword of compute pressure", KEYWORDS)? {
-                "ke" => ke = true,
-                "pair" => parts.pair = true,
-                "bond" => parts.bond = true,
-                "fix" => parts.fix = true,
-                "virial" => parts = Parts { pair: true, bond: true, fix: true },
-                "pair/hybrid" => {
-                    return fail(
-                        Code::NOT_SUPPORTED,
-                        word.span,
-                        "the pressure of one sub-style of pair_style hybrid is not in perigrain",
-                    );
-                }
-                _ => {}
-            }
-        }
+        let (ke, parts) = terms("compute pressure", args)?;
         let temperature = if ke { Some(temperature(temp, cx)?) } else { None };
         Ok(Box::new(Declared { id: cx.id.to_string(), temperature, parts }))
     }
 }
 
-fn temperature(word: &Word, cx: &BuildCx) -> Result<ValueRef> {
+/// The terms of a pressure or stress that a line names, or all where it names none: the kinetic one and the parts of the
+/// virial. Those that no style has are known and contribute nothing.
+///
+/// # Errors
+/// Other words.
+pub(super) fn terms(who: &str, args: &mut Args) -> Result<(bool, Parts)> {
+    let all = args.is_empty();
+    let (mut ke, mut parts) = (all, Parts { pair: all, bond: all, fix: all });
+    while let Some(word) = args.peek() {
+        match args.choice(&format!("keyword of {who}"), KEYWORDS)? {
+            "ke" => ke = true,
+            "pair" => parts.pair = true,
+            "bond" => parts.bond = true,
+            "fix" => parts.fix = true,
+            "virial" => parts = Parts { pair: true, bond: true, fix: true },
+            "pair/hybrid" => {
+                let text = format!("{who} of one sub-style of pair_style hybrid is not in perigrain");
+                return fail(Code::NOT_SUPPORTED, word.span, text);
+            }
+            _ => {}
+        }
+    }
+    Ok((ke, parts))
+}
+
+/// The temperature compute that a word names.
+///
+/// # Errors
+/// `NULL`, unknown names and other computes.
+pub(super) fn temperature(word: &Word, cx: &BuildCx) -> Result<ValueRef> {
     if word.text == "NULL" {
         return Err(Diagnostic::error(
             Code::WRONG_KIND,
@@ -91,15 +102,19 @@ struct Declared {
 }
 
 /// Which parts of the virial count.
-#[derive(Clone, Copy)]
-struct Parts {
-    pair: bool,
-    bond: bool,
-    fix: bool,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parts {
+    /// Of all pairs.
+    pub pair: bool,
+    /// Of all bonds.
+    pub bond: bool,
+    /// Of fixes.
+    pub fix: bool,
 }
 
 impl Parts {
-    fn any(self) -> bool {
+    /// Whether some part counts.
+    pub fn any(self) -> bool {
         self.pair || self.bond || self.fix
     }
 }

@@ -1,11 +1,13 @@
 //! compute property/local: which particles touch, and which are bonded.
 
 use super::near::{bonds, bonds_within, within};
+use super::pair_local::{answering, of_group};
 use super::{Compute, ComputeStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Word};
 use crate::neigh::list::Reach;
 use crate::plan::{Op, Stage, When};
+use crate::styles::pair::probe::look_all;
 use crate::styles::step_op::{Wanted, fill};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 use crate::world::{GroupId, SlotId, World};
@@ -19,16 +21,19 @@ impl Style for PropertyLocal {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group property/local patom1|patom2|ptype1|ptype2 … cutoff radius\n\
+            syntax: "compute ID group property/local patom1|patom2|ptype1|ptype2 … [cutoff type|radius]\n\
+                     compute ID group property/local natom1|natom2|ntype1|ntype2 …\n\
                      compute ID group property/local batom1|batom2|btype …",
-            summary: "Ids and types of the two ends of every contact, or of every bond.",
+            summary: "Ids and types of the two ends of every pair, contact or bond.",
             text: "Local vector for one attribute, array for several; a row for each pair with both ends in the group, in the \
-                   order of their ids. `patom1 patom2 ptype1 ptype2`: ids and types of spheres that touch, with `cutoff \
-                   radius` (closer than the sum of their radii). `batom1 batom2 btype`: ids of the ends and type of every \
+                   order of their ids. `patom1 patom2 ptype1 ptype2`: ids and types of the pairs of compute pair/local with the \
+                   same `cutoff`: those within the cutoff of their types, or with `radius` spheres closer than the sum of \
+                   their radii, for which no pair style is needed. `natom1 …`: the pairs of the neighbour list, which \
+                   reaches one skin further and is as old as its last rebuild. `batom1 batom2 btype`: ids of the ends and type of every \
                    bond, in the order of the first one's place in storage; without an atom style that has bonds, of every unbroken \
-                   peridynamic bond, whose type is 1 (in LAMMPS these have no such list). Attributes of pairs and of bonds \
-                   do not mix. LAMMPS' `cutoff type`, `natom1 …` (its neighbour lists, with their skin) and those of angles, \
-                   dihedrals and impropers are refused. `dump local` writes them, `compute reduce … inputs local` adds \
+                   peridynamic bond, whose type is 1 (in LAMMPS these have no such list). Attributes of the three \
+                   kinds do not mix. Those of angles, dihedrals and impropers are refused; peridynamic styles cannot be asked \
+                   for pairs and lists yet. `dump local` writes them, `compute reduce … inputs local` adds \
                    them up.",
             example: "compute b all property/local batom1 batom2",
         }
@@ -37,7 +42,10 @@ impl Style for PropertyLocal {
 
 #[derive(Clone, Copy, PartialEq)]
 enum Of {
+    /// Pairs of pair/local.
     Contact,
+    /// Pairs of neighbour lists.
+    List,
     Bond,
 }
 
@@ -62,6 +70,10 @@ const ATTRIBUTES: &[(&str, Of, Getter)] = &[
     ("patom2", Of::Contact, |r| f64::from(r.tags[1])),
     ("ptype1", Of::Contact, |r| f64::from(r.kinds[0])),
     ("ptype2", Of::Contact, |r| f64::from(r.kinds[1])),
+    ("natom1", Of::List, |r| f64::from(r.tags[0])),
+    ("natom2", Of::List, |r| f64::from(r.tags[1])),
+    ("ntype1", Of::List, |r| f64::from(r.kinds[0])),
+    ("ntype2", Of::List, |r| f64::from(r.kinds[1])),
     ("batom1", Of::Bond, |r| f64::from(r.tags[0])),
     ("batom2", Of::Bond, |r| f64::from(r.tags[1])),
     ("btype", Of::Bond, |r| f64::from(r.bond)),
@@ -69,8 +81,8 @@ const ATTRIBUTES: &[(&str, Of, Getter)] = &[
 
 /// LAMMPS' attributes that perigrain does not have.
 const ELSEWHERE: &[&str] = &[
-    "natom1", "natom2", "ntype1", "ntype2", "aatom1", "aatom2", "aatom3", "atype", "datom1", "datom2",
-    "datom3", "datom4", "dtype", "iatom1", "iatom2", "iatom3", "iatom4", "itype",
+    "aatom1", "aatom2", "aatom3", "atype", "datom1", "datom2", "datom3", "datom4", "dtype", "iatom1",
+    "iatom2", "iatom3", "iatom4", "itype",
 ];
 
 impl ComputeStyle for PropertyLocal {
@@ -82,7 +94,7 @@ impl ComputeStyle for PropertyLocal {
             if list.first().is_some_and(|(first, _)| *first != of) {
                 let text = format!("`{}` cannot stand beside the attributes before it", word.text);
                 return Err(Diagnostic::error(Code::CONFLICT, word.span, text)
-                    .help("use one compute for contacts and another for bonds")
+                    .help("use one compute for pairs, another for lists and a third for bonds")
                     .into());
             }
             list.push((of, getter));
@@ -91,27 +103,20 @@ impl ComputeStyle for PropertyLocal {
             args.expect("an attribute, as `batom1`")?;
             return fail(Code::MISSING_ARGUMENT, args.here(), "an attribute is missing before `cutoff`");
         };
+        let mut touching = false;
         if args.eat("cutoff") {
-            let word = args.expect("`radius`")?;
-            if word.text != "radius" {
-                let text = format!("`cutoff {}` is not in perigrain: write `cutoff radius`", word.text);
-                return fail(Code::NOT_SUPPORTED, word.span, text);
-            }
-        } else if of == Of::Contact {
-            return Err(Diagnostic::error(Code::MISSING_ARGUMENT, args.here(), "`cutoff radius` is missing")
-                .help("LAMMPS' default `cutoff type` is not in perigrain; `cutoff radius` lists spheres that touch")
-                .into());
+            touching = args.choice("cutoff", &["type", "radius"])? == "radius";
         }
         args.finish()?;
         let style = cx.world.particles.style;
-        let (there, need) =
-            if of == Of::Bond { (style.peri || style.bonded, "bond") } else { (style.sphere, "sphere") };
-        if !there {
-            let text = format!("these attributes need `atom_style {need}`");
-            return fail(Code::INCOMPLETE, cx.span, text);
+        if of == Of::Bond && !style.peri && !style.bonded {
+            return fail(Code::INCOMPLETE, cx.span, "these attributes need `atom_style bond`");
+        }
+        if touching {
+            super::need_spheres("`cutoff radius`", cx)?;
         }
         let getters = list.into_iter().map(|(_, g)| g).collect();
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, of, getters }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, of, touching, getters }))
     }
 }
 
@@ -122,7 +127,7 @@ fn attribute(word: &Word) -> Result<(Of, Getter)> {
     }
     if ELSEWHERE.contains(&name) {
         let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, format!("`{name}` is not in perigrain"));
-        return Err(d.help("contacts are patom1 patom2 ptype1 ptype2, bonds batom1 batom2 btype").into());
+        return Err(d.help("pairs are patom1 patom2 ptype1 ptype2, lists natom1 …, bonds batom1 …").into());
     }
     let known: Vec<&str> = ATTRIBUTES.iter().map(|a| a.0).collect();
     Err(Diagnostic::error(
@@ -139,6 +144,8 @@ struct Declared {
     id: String,
     group: GroupId,
     of: Of,
+    /// `cutoff radius`.
+    touching: bool,
     getters: Vec<Getter>,
 }
 
@@ -147,12 +154,26 @@ impl Compute for Declared {
         Shape { local: self.getters.len(), ..Shape::default() }
     }
 
-    fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let me = self.clone();
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x radius mask families", move |w, _, out| {
+        let alone = me.of == Of::Bond || (me.of == Of::Contact && me.touching);
+        let mut probes = if alone { vec![] } else { answering(&self.id, cx)? };
+        let reads = if alone { "x radius mask families" } else { "x v omega radius mass type mask contacts" };
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let has = |i: usize| w.particles.mask[i] & me.group.bit() != 0;
             let mut rows: Vec<Row> = vec![];
             match me.of {
+                Of::List => {
+                    let listed = probes.iter().flat_map(|p| p.listed(w));
+                    let chosen = listed.filter(|p| p.iter().all(|&i| has(i as usize)));
+                    rows.extend(chosen.map(|[i, j]| Row::of(w, i, j)));
+                    rows.sort_by_key(|r| r.tags);
+                }
+                Of::Contact if !me.touching => {
+                    let found = look_all(&mut probes, w, true)?;
+                    let chosen = found.iter().filter(|p| of_group(w, me.group, p));
+                    rows.extend(chosen.map(|p| Row::of(w, p.i, p.j)));
+                }
                 Of::Contact => {
                     let found = within(w, Reach::Touch, &|i, j| has(i) && has(j));
                     rows.extend(found.iter().map(|p| Row::of(w, p.i, p.j)));
@@ -199,11 +220,10 @@ mod tests {
         assert_eq!(b.evaluate(&*c).unwrap().local, [2.0, 1.0, 3.0, 2.0]);
         for words in [
             "",
-            "patom1",
-            "natom1",
             "patom1 batom1 cutoff radius",
+            "patom1 natom1",
             "batom1",
-            "patom1 cutoff type",
+            "patom1 cutoff skin",
             "patom3",
             "cutoff radius",
         ] {

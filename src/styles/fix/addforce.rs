@@ -5,7 +5,7 @@ use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Param, RefKind, ValueRef};
 use crate::plan::{Access, Op, Stage, When};
 use crate::styles::command::common::variable_param;
-use crate::styles::matter::{Chosen, change_forces, publish, sum, unwrapped};
+use crate::styles::matter::{Chosen, ChosenNow, change_forces, publish, sum, unwrapped};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use crate::world::{GroupId, World};
@@ -115,6 +115,15 @@ impl Fix for Declared {
                 let added = virial_of(w, &chosen, &force);
                 (0..6).for_each(|k| w.tally.fixes[k] += added[k]);
             }
+            if virial && t.atom_virial {
+                let mut atoms = std::mem::take(&mut w.tally.atom_fixes);
+                let now = chosen.now(w);
+                for (i, own) in atoms.iter_mut().enumerate() {
+                    let added = virial_of_one(w, &now, &force, i);
+                    (0..6).for_each(|k| own[k] += added[k]);
+                }
+                w.tally.atom_fixes = atoms;
+            }
             if t.unchanged {
                 return Ok(());
             }
@@ -164,13 +173,16 @@ impl Fix for Declared {
 /// Σ f x of the added force with unwrapped positions: xx yy zz xy xz yz.
 fn virial_of(w: &World, chosen: &Chosen, force: &[Reading; 3]) -> [f64; 6] {
     let (p, chosen) = (&w.particles, chosen.now(w));
-    sum::<6>(&p.mask, GroupId::ALL, |i| {
-        if !chosen.has(p.mask[i], p.x[i]) {
-            return [0.0; 6];
-        }
-        let (x, [fx, fy, fz]) = (unwrapped(w, i), force.map(|r| r.atom(w, i)));
-        [fx * x[0], fy * x[1], fz * x[2], fx * x[1], fx * x[2], fy * x[2]]
-    })
+    sum::<6>(&p.mask, GroupId::ALL, |i| virial_of_one(w, &chosen, force, i))
+}
+
+/// The part of particle `i`.
+fn virial_of_one(w: &World, chosen: &ChosenNow, force: &[Reading; 3], i: usize) -> [f64; 6] {
+    if !chosen.has(w.particles.mask[i], w.particles.x[i]) {
+        return [0.0; 6];
+    }
+    let (x, [fx, fy, fz]) = (unwrapped(w, i), force.map(|r| r.atom(w, i)));
+    [fx * x[0], fy * x[1], fz * x[2], fx * x[1], fx * x[2], fy * x[2]]
 }
 
 #[cfg(test)]

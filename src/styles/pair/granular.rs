@@ -2,6 +2,7 @@
 
 mod declared;
 mod force;
+pub mod reach;
 
 pub use declared::{Declared, classic};
 

@@ -1,10 +1,12 @@
 //! `pair_style hybrid` and `hybrid/overlay`: several pair styles, each for its own pairs of types.
 
+use super::probe::Probe;
 use super::{PAIRS, Pair, PairStyle, TypePairs};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
 use crate::plan::Op;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
+use crate::world::World;
 use std::collections::BTreeMap;
 
 /// `hybrid`: one sub-style per pair of types.
@@ -155,6 +157,14 @@ impl Pair for Declared {
             ops.append(&mut self.limited(k, types).ops(cx)?);
         }
         Ok(ops)
+    }
+
+    fn probes(&self, w: &World) -> Result<Vec<Box<dyn Probe>>> {
+        let mut all = vec![];
+        for k in 0..self.subs.len() {
+            all.append(&mut self.limited(k, w.types).probes(w)?);
+        }
+        Ok(all)
     }
 
     fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {

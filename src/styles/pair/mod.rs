@@ -1,13 +1,16 @@
 //! Pair styles: forces between particles.
 
+pub mod contact_probe;
 mod gran_hertz_history;
 mod gran_hooke;
 mod gran_hooke_history;
 mod granular;
 mod hybrid;
 mod peri;
+pub mod probe;
 mod zero;
 
+use self::probe::Probe;
 use super::{BuildCx, SealCx, Style};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
@@ -48,6 +51,14 @@ pub trait Pair: Send {
     /// # Errors
     /// What is missing in the scene.
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>>;
+
+    /// What it, or each sub-style of a `hybrid`, can be asked about single pairs of particles.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn probes(&self, _w: &World) -> Result<Vec<Box<dyn Probe>>> {
+        Ok(vec![])
+    }
 
     /// `peri_modify …` and the like: options by command name.
     ///

@@ -221,6 +221,27 @@ pub struct PeriTally<'a> {
     pub virial: [f64; 6],
     /// Energy (density) of each particle, added to.
     pub per_atom_energy: Option<&'a mut [f64]>,
+    /// Virial of each particle, half of a bond's for each end, added to.
+    pub per_atom_virial: Option<&'a mut [[f64; 6]]>,
+}
+
+impl PeriTally<'_> {
+    /// Whether something is wanted of each particle.
+    pub fn per_atom(&self) -> bool {
+        self.per_atom_energy.is_some() || self.per_atom_virial.is_some()
+    }
+
+    /// Adds the virial of the force `pull` times `d` on `i` from `j`.
+    pub fn add_virial(&mut self, i: usize, j: usize, pull: f64, d: [f64; 3]) {
+        let product = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(a, b)| pull * d[a] * d[b]);
+        self.virial.iter_mut().zip(product).for_each(|(v, p)| *v += p);
+        if let Some(atoms) = self.per_atom_virial.as_deref_mut() {
+            for k in 0..6 {
+                atoms[i][k] += 0.5 * product[k];
+                atoms[j][k] += 0.5 * product[k];
+            }
+        }
+    }
 }
 
 /// What families need to know about particles: columns of equal length, and the box.

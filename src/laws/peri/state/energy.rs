@@ -193,7 +193,5 @@ fn add(families: &Families, view: &PeriView, b: &Bond, t: &mut PeriTally) {
     };
     // Force density times the one volume of the virial, or the force itself: V_i V_j either way.
     let pull = -0.5 * (near.0 + far.0) * b.share * b.volume[0] * b.volume[1];
-    for (v, (i, j)) in t.virial.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {
-        *v += pull * b.y[i] * b.y[j];
-    }
+    t.add_virial(b.ends[0], b.ends[1], pull, b.y);
 }

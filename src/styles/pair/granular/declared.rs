@@ -8,9 +8,11 @@ use crate::laws::contact::{Damping, Granular, Model, Twisting};
 use crate::neigh::list::{Reach, Wanted};
 use crate::plan::Op;
 use crate::styles::contact::{Coeff, words};
+use crate::styles::pair::contact_probe::{ContactProbe, Own};
+use crate::styles::pair::probe::Probe;
 use crate::styles::pair::{Pair, TypePairs};
 use crate::styles::{BuildCx, SealCx};
-use crate::world::Compat;
+use crate::world::{Compat, World};
 use std::collections::BTreeMap;
 
 /// A granular pair style with its coefficients.
@@ -145,6 +147,12 @@ impl Pair for Declared {
         let w = cx.world();
         let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
         Ok(vec![Box::new(Force::new(self.name, rules, wanted, w.types))])
+    }
+
+    fn probes(&self, w: &World) -> Result<Vec<Box<dyn Probe>>> {
+        let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
+        let own = if self.name == "granular" { Own::Granular } else { Own::Gran };
+        Ok(vec![Box::new(ContactProbe::new(self.name, rules, wanted, own))])
     }
 
     fn needs(&self) -> &'static [&'static str] {

@@ -50,6 +50,10 @@ impl Op for Force {
         if t.atom_energy {
             sums.per_atom_energy = Some(&mut atoms);
         }
+        let mut virials = std::mem::take(&mut w.tally.atom_virial);
+        if t.atom_virial {
+            sums.per_atom_virial = Some(&mut virials);
+        }
         let advance = match t.setup {
             // LAMMPS advances bonds in the setup of every run but the first.
             true => w.settings.lammps() && !first && !t.unchanged,
@@ -60,8 +64,8 @@ impl Op for Force {
         families.force(&view(w)?, &mut f, advance, tally);
         w.particles.f = f;
         let (energy, virial) = (sums.energy, sums.virial);
-        w.tally.atom = atoms;
-        w.tally.pair += energy;
+        (w.tally.atom, w.tally.atom_virial) = (atoms, virials);
+        w.tally.add_pair(self.style.name, energy);
         for (total, part) in w.tally.virial.iter_mut().zip(virial) {
             *total += part;
         }

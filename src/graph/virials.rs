@@ -1,0 +1,57 @@
+//! Virials of single particles, for steps at which somebody reads them.
+
+use super::seal::Sealer;
+use crate::diag::Result;
+use crate::plan::{Access, Op, Stage, Tick, When};
+use crate::styles::SealCx;
+use crate::styles::pair::probe::{Probe, look_all};
+use crate::world::World;
+
+/// Adds the op that asks pair styles for the virials of particles; after everything that may read them.
+///
+/// # Errors
+/// What is missing in the scene.
+pub fn seal(s: &mut Sealer) -> Result<()> {
+    let Some(when) = s.plan.atom_virial.iter().cloned().reduce(When::or) else { return Ok(()) };
+    let probes = s.probes()?;
+    if !probes.is_empty() {
+        let span = s.span();
+        s.add(vec![Box::new(Virials { probes, when })], span);
+    }
+    Ok(())
+}
+
+/// Asks every pair after the forces of a step: positions and velocities are still those that forces saw.
+struct Virials {
+    probes: Vec<Box<dyn Probe>>,
+    when: When,
+}
+
+impl Op for Virials {
+    fn name(&self) -> &str {
+        "virials of particles"
+    }
+    fn stage(&self) -> Stage {
+        Stage::Force
+    }
+    fn access(&self) -> Access {
+        Access::new("x v omega radius mass type contacts", "tally")
+    }
+    fn when(&self) -> When {
+        self.when.clone()
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if !t.atom_virial {
+            return Ok(());
+        }
+        let pairs = look_all(&mut self.probes, w, false)?;
+        let atoms = &mut w.tally.atom_virial;
+        for p in &pairs {
+            let virial = p.virial();
+            for i in [p.i, p.j] {
+                (0..6).for_each(|k| atoms[i as usize][k] += 0.5 * virial[k]);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,167 @@
+//! What touching grains do to each other at a moment, by the rules of any granular pair style.
+
+use super::granular::reach::{largest, reaching};
+use super::probe::{Interaction, OWN, Probe};
+use crate::diag::Result;
+use crate::laws::contact::bodies::solids;
+use crate::laws::contact::driver::{Average, Curvature, Grains, Rules, Sweep};
+use crate::laws::contact::{Advance, ContactLaw, Wrench};
+use crate::math::vec3::{Vec3, cross, dot, length, scale, sub};
+use crate::neigh::list::{Pair, Reach, View, Wanted, difference, pairs};
+use crate::world::{Allowed, World};
+
+/// The numbers a granular style gives to each pair, in LAMMPS' order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Own {
+    /// `granular`: tangential force and its size, rolling force and its size, twisting torque, x_i − x_j.
+    Granular,
+    /// `gran/…`: tangential force and its size, relative velocity along and across the line of centres.
+    Gran,
+}
+
+/// Evaluates the contacts of one pair style.
+pub struct ContactProbe<L> {
+    name: &'static str,
+    rules: Rules<L>,
+    wanted: Wanted,
+    own: Own,
+    sweep: Sweep,
+}
+
+impl<L: ContactLaw> ContactProbe<L> {
+    /// Of the pairs of types that `wanted` names, with the contacts kept in the world under the style's name.
+    pub fn new(name: &'static str, rules: Rules<L>, wanted: Wanted, own: Own) -> Self {
+        Self { name, rules, wanted, own, sweep: Sweep::default() }
+    }
+
+    /// Pairs that may touch: those of the neighbour list, as it was when lists were last rebuilt.
+    fn list(&self, w: &World) -> Vec<Pair> {
+        let held = w.held();
+        let x = if held.len() == w.n() { held } else { &w.particles.x };
+        near(w, x, &reaching(&self.rules, &self.wanted, w), w.settings.neighbor.skin)
+    }
+
+    /// Pairs of spheres closer than the largest of their types, or than the cutoff given by hand.
+    fn within_cutoffs(&self, w: &World) -> Vec<Pair> {
+        let largest = largest(w);
+        let mut wanted = Wanted::new(w.types);
+        for a in 1..=w.types as u16 {
+            for b in a..=w.types as u16 {
+                let touch = largest[usize::from(a) - 1] + largest[usize::from(b) - 1];
+                match self.wanted.get(a, b) {
+                    Some(Reach::Touch) => wanted.set(a, b, Reach::Fixed(touch)),
+                    Some(fixed) => wanted.set(a, b, fixed),
+                    None => {}
+                }
+            }
+        }
+        near(w, &w.particles.x, &wanted, 0.0)
+    }
+}
+
+/// Pairs at the places `x` that exclusions leave.
+fn near(w: &World, x: &[Vec3], wanted: &Wanted, skin: f64) -> Vec<Pair> {
+    let p = &w.particles;
+    let view = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
+    let allowed = Allowed::new(w);
+    pairs(&view, wanted, skin, &|i, j| allowed.pair(i, j))
+}
+
+impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn own(&self) -> usize {
+        match self.own {
+            Own::Granular => 12,
+            Own::Gran => 10,
+        }
+    }
+
+    fn listed(&self, w: &World) -> Vec<[u32; 2]> {
+        self.list(w).iter().map(|p| [p.i, p.j]).collect()
+    }
+
+    fn look(&mut self, w: &World, idle: bool) -> Result<Vec<Interaction>> {
+        let p = &w.particles;
+        let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
+        let body = match &w.families {
+            Some(families) if asked => solids(families, w.n()),
+            _ => vec![],
+        };
+        let held = w.parts.frozen.as_ref().map(|(_, group)| group.bit());
+        let frozen: Vec<bool> = held.map_or(vec![], |bit| p.mask.iter().map(|m| m & bit != 0).collect());
+        let grains = Grains {
+            x: &p.x,
+            v: &p.v,
+            omega: &p.omega,
+            radius: &p.radius,
+            mass: &p.mass,
+            kind: &p.kind,
+            tag: &p.tag,
+            period: w.periods(),
+            body: &body,
+            frozen: &frozen,
+            flow: w.domain()?.flow.map(|flow| (flow, &p.mask[..])),
+        };
+        let mut memory = w.contacts.get(self.name).cloned().unwrap_or_default();
+        let still = Advance { dt: w.clock.dt, history: false };
+        let list = self.list(w);
+        self.sweep.run(&list, &grains, &self.rules, &mut memory, still);
+        let acting = self.sweep.contacts().map(|(pair, wrench)| interaction(&grains, pair, wrench, self.own));
+        if !idle {
+            return Ok(acting.collect());
+        }
+        let mut acting = acting.peekable();
+        let mut all = vec![];
+        for pair in self.within_cutoffs(w) {
+            let key = |i: u32, j: u32| (p.tag[i as usize], p.tag[j as usize]);
+            while let Some(a) = acting.next_if(|a| key(a.i, a.j) < key(pair.i, pair.j)) {
+                all.push(a);
+            }
+            let d = difference(&p.x, &grains.period, &pair);
+            all.push(match acting.next_if(|a| (a.i, a.j) == (pair.i, pair.j) && a.d == d) {
+                Some(a) => a,
+                None => Interaction { i: pair.i, j: pair.j, d, ..Interaction::default() },
+            });
+        }
+        all.extend(acting);
+        Ok(all)
+    }
+}
+
+fn interaction(grains: &Grains, pair: &Pair, wrench: &Wrench, own: Own) -> Interaction {
+    let (i, j) = (pair.i as usize, pair.j as usize);
+    let d = difference(grains.x, &grains.period, pair);
+    let distance = length(d);
+    let n = scale(1.0 / distance, d);
+    let across = sub(wrench.force, scale(dot(wrench.force, n), n));
+    let mut numbers = [0.0; OWN];
+    numbers[..3].copy_from_slice(&across);
+    numbers[3] = length(across);
+    match own {
+        Own::Granular => {
+            // What the torque has beyond that of the tangential force, which acts in the middle of the overlap.
+            let radii = [grains.radius[i], grains.radius[j]];
+            let overlap = radii[0] + radii[1] - distance;
+            let rest = sub(wrench.torque_i, scale(radii[0] - 0.5 * overlap, cross(across, n)));
+            // Rounding of torques that cancel is no torque.
+            let torque = length(wrench.torque_i);
+            let rest = if length(rest) > 1e-12 * torque { rest } else { [0.0; 3] };
+            // The rolling torque is R n × F with R = R_i R_j / (R_i + R_j).
+            let rolling = scale((radii[0] + radii[1]) / (radii[0] * radii[1]), cross(rest, n));
+            numbers[4..7].copy_from_slice(&rolling);
+            numbers[7] = length(rolling);
+            numbers[8] = dot(rest, n);
+            numbers[9..12].copy_from_slice(&d);
+        }
+        Own::Gran => {
+            let relative = sub(grains.v[i], grains.v[j]);
+            let along = scale(dot(relative, n), n);
+            numbers[4..7].copy_from_slice(&along);
+            numbers[7..10].copy_from_slice(&sub(relative, along));
+        }
+    }
+    Interaction { i: pair.i, j: pair.j, d, force: wrench.force, energy: 0.0, own: numbers }
+}

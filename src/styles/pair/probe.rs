@@ -1,0 +1,93 @@
+//! What pairs of particles do to each other at a moment, asked of any pair style.
+
+use crate::diag::Result;
+use crate::math::vec3::{Vec3, dot, length, scale, sub};
+use crate::world::World;
+
+/// How many numbers of its own a pair style may give to each pair.
+pub const OWN: usize = 12;
+
+/// Two particles and what they do to each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Interaction {
+    /// The particle of smaller tag.
+    pub i: u32,
+    /// The other.
+    pub j: u32,
+    /// x_i − x_j, of the images that meet [length].
+    pub d: Vec3,
+    /// Force on i [force].
+    pub force: Vec3,
+    /// Energy of the pair [energy].
+    pub energy: f64,
+    /// What the style says of it besides (`p1`, `p2` … of compute pair/local).
+    pub own: [f64; OWN],
+}
+
+impl Interaction {
+    /// Distance of the two [length].
+    pub fn distance(&self) -> f64 {
+        length(self.d)
+    }
+
+    /// The part of the force along the line of centres, positive where it pushes apart [force].
+    pub fn central(&self) -> f64 {
+        dot(self.force, self.d) / self.distance()
+    }
+
+    /// The part of the force across the line of centres, on i [force].
+    pub fn across(&self) -> Vec3 {
+        sub(self.force, scale(self.central() / self.distance(), self.d))
+    }
+
+    /// d ⊗ F, the pair's virial: xx yy zz xy xz yz [energy].
+    pub fn virial(&self) -> [f64; 6] {
+        [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(a, b)| self.d[a] * self.force[b])
+    }
+}
+
+/// A pair style's answer about single pairs. It reads the world as it is after forces are computed: contact history
+/// has moved on already and is only looked at.
+pub trait Probe: Send {
+    /// The pair style.
+    fn name(&self) -> &'static str;
+
+    /// How many numbers of its own each pair has.
+    fn own(&self) -> usize;
+
+    /// The pairs of its neighbour list, made when lists were last rebuilt, in the order of the two tags.
+    fn listed(&self, w: &World) -> Vec<[u32; 2]>;
+
+    /// Every pair that acts, in the order of the two tags; with `idle` also pairs that do not touch but are within the
+    /// cutoff of their types.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn look(&mut self, w: &World, idle: bool) -> Result<Vec<Interaction>>;
+}
+
+/// What several styles say, pair by pair: forces, energies and numbers of their own of one pair add up.
+///
+/// # Errors
+/// As [`Probe::look`].
+pub fn look_all(probes: &mut [Box<dyn Probe>], w: &World, idle: bool) -> Result<Vec<Interaction>> {
+    let mut all: Vec<Interaction> = vec![];
+    for p in probes.iter_mut() {
+        all.append(&mut p.look(w, idle)?);
+    }
+    if probes.len() < 2 {
+        return Ok(all);
+    }
+    let tag = |i: u32| w.particles.tag[i as usize];
+    all.sort_by_key(|p| (tag(p.i), tag(p.j)));
+    all.dedup_by(|later, first| {
+        let same = (later.i, later.j) == (first.i, first.j) && later.d == first.d;
+        if same {
+            (0..3).for_each(|k| first.force[k] += later.force[k]);
+            (0..OWN).for_each(|k| first.own[k] += later.own[k]);
+            first.energy += later.energy;
+        }
+        same
+    });
+    Ok(all)
+}
