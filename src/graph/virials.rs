@@ -2,7 +2,7 @@
 
 use super::seal::Sealer;
 use crate::diag::Result;
-use crate::plan::{Access, Op, Stage, Tick, When};
+use crate::plan::{Access, Op, Stage, Tick};
 use crate::styles::SealCx;
 use crate::styles::pair::probe::{Probe, look_all};
 use crate::world::World;
@@ -12,11 +12,13 @@ use crate::world::World;
 /// # Errors
 /// What is missing in the scene.
 pub fn seal(s: &mut Sealer) -> Result<()> {
-    let Some(when) = s.plan.atom_virial.iter().cloned().reduce(When::or) else { return Ok(()) };
+    if s.plan.atom_virial.is_empty() {
+        return Ok(());
+    }
     let probes = s.probes()?;
     if !probes.is_empty() {
         let span = s.span();
-        s.add(vec![Box::new(Virials { probes, when })], span);
+        s.add(vec![Box::new(Virials { probes })], span);
     }
     Ok(())
 }
@@ -24,7 +26,6 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
 /// Asks every pair after the forces of a step: positions and velocities are still those that forces saw.
 struct Virials {
     probes: Vec<Box<dyn Probe>>,
-    when: When,
 }
 
 impl Op for Virials {
@@ -35,10 +36,8 @@ impl Op for Virials {
         Stage::Force
     }
     fn access(&self) -> Access {
-        Access::new("x v omega radius mass type contacts", "tally")
-    }
-    fn when(&self) -> When {
-        self.when.clone()
+        // Contacts are there whenever virials of particles are asked for.
+        Access::new("x v omega radius mass type", "tally")
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if !t.atom_virial {

@@ -72,7 +72,8 @@ impl StepPlan {
         t.virial = virial || atom_virial;
         t.atom_energy = atoms;
         t.atom_virial = atom_virial;
-        t.contacts = self.ops.iter().any(|p| p.reads_contacts && p.when.fires(t));
+        let reads = |p: &Placed| p.reads_contacts && (t.ending || p.when.fires(t));
+        t.contacts = atom_virial || self.ops.iter().any(reads);
     }
 
     /// Runs the ops of some stages at this tick.

@@ -1,5 +1,6 @@
 //! What touching grains do to each other at a moment, by the rules of any granular pair style.
 
+use super::granular::force::{built_at, grains};
 use super::granular::reach::{largest, reaching};
 use super::probe::{Interaction, OWN, Probe};
 use crate::diag::Result;
@@ -36,9 +37,7 @@ impl<L: ContactLaw> ContactProbe<L> {
 
     /// Pairs that may touch: those of the neighbour list, as it was when lists were last rebuilt.
     fn list(&self, w: &World) -> Vec<Pair> {
-        let held = w.held();
-        let x = if held.len() == w.n() { held } else { &w.particles.x };
-        near(w, x, &reaching(&self.rules, &self.wanted, w), w.settings.neighbor.skin)
+        near(w, built_at(w), &reaching(&self.rules, &self.wanted, w), w.settings.neighbor.skin)
     }
 
     /// Pairs of spheres closer than the largest of their types, or than the cutoff given by hand.
@@ -92,19 +91,7 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
         };
         let held = w.parts.frozen.as_ref().map(|(_, group)| group.bit());
         let frozen: Vec<bool> = held.map_or(vec![], |bit| p.mask.iter().map(|m| m & bit != 0).collect());
-        let grains = Grains {
-            x: &p.x,
-            v: &p.v,
-            omega: &p.omega,
-            radius: &p.radius,
-            mass: &p.mass,
-            kind: &p.kind,
-            tag: &p.tag,
-            period: w.periods(),
-            body: &body,
-            frozen: &frozen,
-            flow: w.domain()?.flow.map(|flow| (flow, &p.mask[..])),
-        };
+        let grains = grains(w, w.periods(), &body, &frozen)?;
         let mut memory = w.contacts.get(self.name).cloned().unwrap_or_default();
         let still = Advance { dt: w.clock.dt, history: false };
         let list = self.list(w);

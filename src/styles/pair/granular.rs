@@ -1,7 +1,7 @@
 //! `pair_style granular`: contacts of spheres, with models chosen per pair of types.
 
 mod declared;
-mod force;
+pub mod force;
 pub mod reach;
 
 pub use declared::{Declared, classic};

@@ -1,5 +1,6 @@
 //! The op of granular contacts: list when it is due, contacts, forces and torques.
 
+use super::reach::reaching;
 use crate::diag::Result;
 use crate::laws::contact::bodies::solids;
 use crate::laws::contact::driver::{Average, Curvature, Grains, Rules, Sweep};
@@ -67,26 +68,6 @@ impl Force {
         }
     }
 
-    /// How far types reach for each other, with what contacts that hold span beyond touch.
-    fn reaching(&self, w: &World) -> Wanted {
-        let mut wanted = self.wanted.clone();
-        let mut largest = vec![0.0_f64; w.types];
-        for (kind, r) in w.particles.kind.iter().zip(&w.particles.radius) {
-            let of_type = &mut largest[usize::from(*kind) - 1];
-            *of_type = of_type.max(*r);
-        }
-        let types = 1..=w.types as u16;
-        for (a, b) in types.clone().flat_map(|a| types.clone().map(move |b| (a, b))) {
-            let [ra, rb] = [a, b].map(|k| largest[usize::from(k) - 1]);
-            let (Some(rule), Some(Reach::Touch)) = (self.rules.get(a, b), wanted.get(a, b)) else { continue };
-            let gap = if ra + rb > 0.0 { rule.law.gap(ra * rb / (ra + rb)) } else { 0.0 };
-            if gap > 0.0 {
-                wanted.set(a, b, Reach::Beyond(gap));
-            }
-        }
-        wanted
-    }
-
     /// Lists from the positions of the last rebuild: later positions are within half a skin of those.
     fn renew(&mut self, w: &mut World) -> Result<()> {
         self.generation = Some(w.rebuild.generation);
@@ -106,7 +87,8 @@ impl Force {
         let p = &w.particles;
         let v = View { x: built_at(w), tag: &p.tag, kind: &p.kind, radius: &p.radius, period };
         let allowed = Allowed::new(w);
-        self.plain.list = pairs(&v, &self.reaching(w), skin, &|i, j| allowed.pair(i, j));
+        self.plain.list =
+            pairs(&v, &reaching(&self.rules, &self.wanted, w), skin, &|i, j| allowed.pair(i, j));
         Ok(())
     }
 
@@ -223,12 +205,13 @@ fn suits(w: &World, period: Vec3) -> bool {
 }
 
 /// The positions the lists are made from.
-fn built_at(w: &World) -> &[Vec3] {
+pub fn built_at(w: &World) -> &[Vec3] {
     let held = w.held();
     if held.len() == w.n() { held } else { &w.particles.x }
 }
 
-fn grains<'a>(w: &'a World, period: Vec3, body: &'a [u32], frozen: &'a [bool]) -> Result<Grains<'a>> {
+/// What contacts see of the particles.
+pub fn grains<'a>(w: &'a World, period: Vec3, body: &'a [u32], frozen: &'a [bool]) -> Result<Grains<'a>> {
     let p = &w.particles;
     Ok(Grains {
         x: &p.x,
