@@ -1,5 +1,6 @@
 //! Small vectors and matrices, decompositions, random numbers.
 
+pub mod body;
 pub mod cformat;
 pub mod four;
 pub mod real;

@@ -31,7 +31,6 @@ pub const LAMMPS_ONLY: &[&str] = &[
     "kspace_modify",
     "kspace_style",
     "mdi",
-    "molecule",
     "neb",
     "plugin",
     "prd",

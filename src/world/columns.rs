@@ -55,6 +55,11 @@ impl Columns {
         self.scalars.get(name).map(Vec::as_slice)
     }
 
+    /// The scalar columns whose names end like this.
+    pub fn ending<'a>(&'a self, tail: &'a str) -> impl Iterator<Item = &'a [f64]> {
+        self.scalars.iter().filter(move |(name, _)| name.ends_with(tail)).map(|(_, c)| c.as_slice())
+    }
+
     /// Forgets a column of either kind.
     pub fn remove(&mut self, name: &str) {
         self.scalars.remove(name);

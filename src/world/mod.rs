@@ -47,6 +47,9 @@ pub use slots::{Offers, Slot, SlotId, Slots};
 pub use tally::Tally;
 pub use template::Template;
 
+/// How names of columns end that hold the mass of the rigid body a particle belongs to, 0 for none.
+pub const CONTACT_MASS: &str = "/contact mass";
+
 /// Everything that outlives a step. It decides nothing: commands change it, ops advance it.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct World {
@@ -188,6 +191,17 @@ impl World {
         self.slots.invalidate();
         self.rebuild.roster += 1;
         self.touch();
+    }
+
+    /// Masses as contacts see them: particles of rigid bodies have that of the body.
+    pub fn contact_masses(&self) -> std::borrow::Cow<'_, [f64]> {
+        let own = &self.particles.mass;
+        let bodies: Vec<&[f64]> = self.columns.ending(CONTACT_MASS).collect();
+        if bodies.is_empty() {
+            return own.as_slice().into();
+        }
+        let of_body = |i: usize| bodies.iter().filter_map(|b| b.get(i).copied()).find(|m| *m > 0.0);
+        (0..own.len()).map(|i| of_body(i).unwrap_or(own[i])).collect::<Vec<f64>>().into()
     }
 
     /// Copies the masses of types into the per-particle column where particles have none of their own.

@@ -1,5 +1,7 @@
 //! Templates of molecules: what one file of the `molecule` command says.
 
+use super::{Bond, World};
+use crate::math::body::{Quat, apply, matrix};
 use std::f64::consts::PI;
 
 /// A group of particles to be put into a scene as a whole: a molecule or a clump.
@@ -36,6 +38,16 @@ impl Template {
         [0, 1, 2].map(|d| self.places.iter().map(|x| x[d]).sum::<f64>() / n)
     }
 
+    /// Places of its particles when its centre lies at `at` and it is turned.
+    pub fn turned(&self, at: [f64; 3], q: Quat) -> Vec<[f64; 3]> {
+        let (centre, m) = (self.centre(), matrix(q));
+        let place = |x: &[f64; 3]| {
+            let d = apply(&m, [x[0] - centre[0], x[1] - centre[1], x[2] - centre[2]]);
+            [0, 1, 2].map(|k| d[k] + at[k])
+        };
+        self.places.iter().map(place).collect()
+    }
+
     /// The radius of the sphere about the centre that holds all, radii included.
     pub fn extent(&self) -> f64 {
         let centre = self.centre();
@@ -58,5 +70,56 @@ impl Template {
     /// The largest molecule number in it; 1 where the file does not say.
     pub fn last_molecule(&self) -> u32 {
         self.molecules.iter().copied().max().unwrap_or(1)
+    }
+}
+
+/// How copies of a template are numbered.
+#[derive(Clone, Copy, Debug)]
+pub struct Numbering {
+    /// The id before the first new one.
+    pub tag: u32,
+    /// The molecule ID before the first new one.
+    pub molecule: u32,
+    /// Added to the types of the template.
+    pub kind: u16,
+}
+
+impl Numbering {
+    /// Behind all that is there.
+    pub fn behind(w: &World, kind: u16) -> Self {
+        Self { tag: w.particles.last_tag(), molecule: w.particles.last_molecule(), kind }
+    }
+}
+
+impl World {
+    /// Puts a copy of a template with its bonds at these places, which are wrapped into the box, and counts on. Which pairs count as
+    /// bonded (`bonds.find_special`) and the length of other columns are for the caller to settle after the last copy.
+    pub fn insert_molecule(&mut self, t: &Template, at: &[[f64; 3]], numbers: &mut Numbering) {
+        let masses = if self.particles.style.own_mass() { t.sphere_masses() } else { None };
+        let first = numbers.tag;
+        for (k, x) in at.iter().enumerate() {
+            let (mut x, mut image) = (*x, [0; 3]);
+            if let Some(domain) = &self.domain {
+                domain.wrap(&mut x, &mut image);
+            }
+            numbers.tag += 1;
+            let p = &mut self.particles;
+            p.push(numbers.tag, t.kinds.get(k).copied().unwrap_or(1) + numbers.kind, x);
+            let i = p.x.len() - 1;
+            p.image.set(i, image);
+            if let (Some(r), Some(slot)) = (t.radii.get(k), p.radius.get_mut(i)) {
+                *slot = *r;
+            }
+            if let Some(m) = masses.as_ref().and_then(|m| m.get(k)) {
+                p.mass[i] = *m;
+            }
+            if let Some(slot) = p.molecule.get_mut(i) {
+                *slot = numbers.molecule + t.molecules.get(k).copied().unwrap_or(1);
+            }
+        }
+        for (kind, ends) in &t.bonds {
+            self.bonds.push(Bond::new(i32::from(*kind), ends.map(|k| first + k)));
+        }
+        numbers.molecule += t.last_molecule();
     }
 }

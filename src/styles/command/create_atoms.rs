@@ -1,16 +1,18 @@
 //! `create_atoms`: particles on lattice sites, single ones, at random places, or on a surface.
 
 mod mesh;
+mod molecules;
 mod places;
 pub(super) mod subset;
 
-use super::common::{self, bad_keyword, in_group, not_here, scales, seed, units_lattice, unknown_style};
+use super::common::{self, bad_keyword, in_group, scales, seed, units_lattice, unknown_style};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, RefKind, ValueRef, Word};
 use crate::math::cformat::general;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
 use crate::world::{World, memory};
+use molecules::Copies;
 use places::{Maker, New, Place, Test};
 use subset::{Amount, Subset};
 
@@ -31,7 +33,8 @@ impl Style for CreateAtoms {
         Doc {
             syntax: "create_atoms TYPE box | region ID | single X Y Z | random N SEED ID|NULL | mesh FILE  \
                      [basis M TYPE] [ratio P SEED] [subset N SEED] [var NAME] [set x|y|z NAME] … [group ID] \
-                     [units lattice|box] [remap yes|no] [overlap D] [maxtry N] [meshmode bisect R|qrand D] [radscale S]",
+                     [units lattice|box] [remap yes|no] [overlap D] [maxtry N] [meshmode bisect R|qrand D] [radscale S] \
+                     [mol ID SEED] [rotate ANGLE X Y Z]",
             summary: "Creates particles on the sites of the lattice, at one place, at random places, or on a surface.",
             text: "Sites are taken in LAMMPS' order (third lattice edge slowest, basis points fastest) and must lie in \
                    lo ≤ x < hi of the box; along periodic dimensions both faces move down by about 1e-6 of the edge \
@@ -51,7 +54,10 @@ impl Style for CreateAtoms {
                    from the triangle, times `radscale`.\n\n\
                    New ids follow the largest one in use; `group` puts the new particles into a group, made if it is not \
                    there. A sphere starts with diameter 1 and density 1, a peridynamic particle with volume 1 and mass \
-                   1. Molecules (`mol`, `rotate`) are refused.",
+                   1.\n\n\
+                   `mol ID SEED` puts a copy of a `molecule` template in each place, its centre there, turned at random or as \
+                   `rotate ANGLE X Y Z` [degrees, axis] says; TYPE, which may be 0, is added to the types of the template. Copies \
+                   get molecule IDs behind the largest one. LAMMPS' random turns. Not with `overlap` and `basis`.",
             example: "create_atoms 1 region disc subset 20 4711",
         }
     }
@@ -65,6 +71,7 @@ struct Creation {
     basis: Vec<u16>,
     lattice_units: bool,
     test: Option<Test>,
+    mol: Option<Copies>,
     group: Option<String>,
     /// Said before the particles are made.
     note: Vec<String>,
@@ -74,12 +81,21 @@ impl CommandStyle for CreateAtoms {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         common::domain(cx)?;
         let types = cx.world.types;
-        let kind = one_type(a, types)?;
+        let first = a.here();
+        let kind = type_or_zero(a, types)?;
         let style = a.expect("box, region, single, random or mesh")?;
         let (place, note) = place(style, a, cx)?;
         let basis = vec![kind; cx.world.lattice.basis.len()];
-        let mut c = Creation { kind, place, basis, lattice_units: true, test: None, group: None, note };
+        let mut c =
+            Creation { kind, place, basis, lattice_units: true, test: None, mol: None, group: None, note };
         keywords(a, cx, style, &mut c)?;
+        match &c.mol {
+            Some(mol) => mol.check_types(kind, types)?,
+            None if kind == 0 => {
+                return fail(Code::BAD_VALUE, first, format!("there are types 1 to {types}, not 0"));
+            }
+            None => {}
+        }
         if let Place::Single { x, .. } = &mut c.place {
             let scale = scales(cx.world, c.lattice_units);
             *x = [0, 1, 2].map(|d| x[d] * scale[d]);
@@ -119,6 +135,7 @@ fn place(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<(Place, Vec<String>
 fn keywords(a: &mut Args, cx: &BuildCx, style: &Word, c: &mut Creation) -> Result<()> {
     let (mut variable, mut sets) = (None, [None, None, None]);
     let mut start = style.span;
+    let mut rotate = None;
     while let Some(word) = a.next() {
         match (word.text.as_str(), &mut c.place) {
             ("basis", Place::Lattice { .. }) => basis_type(a, &mut c.basis, cx.world.types)?,
@@ -139,12 +156,36 @@ fn keywords(a: &mut Args, cx: &BuildCx, style: &Word, c: &mut Creation) -> Resul
                 sets[d] = Some(deciding(a, cx, "an internal-style variable")?);
             }
             ("group", _) => c.group = Some(group(a, cx)?),
-            ("mol" | "rotate", _) => return Err(not_here(word, "molecules: the keyword")),
+            ("mol", Place::Lattice { .. } | Place::Single { .. } | Place::Random { .. }) => {
+                c.mol = Some(molecules::copies(a, cx)?);
+            }
+            ("rotate", _) => rotate = Some((word, molecules::rotate(a)?)),
             (name, _) if KEYWORDS.contains(&name) => {
                 let text = format!("`{name}` does not go with create_atoms {}", style.text);
                 return fail(Code::CONFLICT, word.span, text);
             }
             _ => return Err(bad_keyword(a, word, &KEYWORDS, &[])),
+        }
+    }
+    match (&mut c.mol, rotate) {
+        (Some(mol), Some((_, q))) => mol.turned = Some(q),
+        (None, Some((word, _))) => {
+            return fail(Code::CONFLICT, word.span, "`rotate` turns molecules: `mol` is missing");
+        }
+        _ => {}
+    }
+    if c.mol.is_some() {
+        if let Place::Random { overlap, .. } = &c.place
+            && *overlap > 0.0
+        {
+            return fail(
+                Code::NOT_SUPPORTED,
+                style.span,
+                "create_atoms random: `overlap` does not go with `mol` in perigrain",
+            );
+        }
+        if c.basis.iter().any(|k| *k != c.kind) {
+            return fail(Code::CONFLICT, style.span, "`basis` gives types to particles, not to molecules");
         }
     }
     c.test = match (variable, sets.iter().any(Option::is_some)) {
@@ -180,6 +221,15 @@ fn group(a: &mut Args, cx: &BuildCx) -> Result<String> {
         }
         _ => Ok(name),
     }
+}
+
+/// A type, or 0 where that of a molecule template counts.
+fn type_or_zero(a: &mut Args, types: usize) -> Result<u16> {
+    if a.peek_text() != "0" {
+        return one_type(a, types);
+    }
+    a.next();
+    Ok(0)
 }
 
 fn one_type(a: &mut Args, types: usize) -> Result<u16> {
@@ -238,7 +288,14 @@ fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {
         cx.note(Diagnostic::warning(Code::SUSPICIOUS, None, text));
     }
     let first = cx.world.n();
-    add(cx.world, &places)?;
+    let count = match &c.mol {
+        Some(mol) => mol.put(cx.world, &places, c.kind)?,
+        None => add(cx.world, &places)?,
+    };
+    let n = cx.world.n();
+    cx.world.columns.resize(n);
+    cx.world.spread_type_masses();
+    cx.world.touch();
     if let Some(name) = &c.group
         && let Some(group) = cx.world.groups.find_or_add(name)
     {
@@ -252,14 +309,14 @@ fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {
     }
     let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
     let units = if c.lattice_units { "lattice" } else { "box" };
-    cx.say(format!("Created {} atoms", places.len()));
+    cx.say(format!("Created {count} atoms"));
     let (lo, hi) = (text(domain.lo), text(domain.hi));
     cx.say(format!("  using {units} units in orthogonal box = ({lo}) to ({hi})"));
     Ok(())
 }
 
 /// Puts the new particles behind the present ones, with the ids that follow.
-fn add(world: &mut World, places: &[New]) -> Result<()> {
+fn add(world: &mut World, places: &[New]) -> Result<usize> {
     let last = world.particles.last_tag();
     if u32::try_from(places.len()).ok().and_then(|n| last.checked_add(n)).is_none() {
         return fail(Code::TOO_LARGE, None, "more particles than there are ids");
@@ -273,11 +330,7 @@ fn add(world: &mut World, places: &[New]) -> Result<()> {
             *slot = radius;
         }
     }
-    let n = world.n();
-    world.columns.resize(n);
-    world.spread_type_masses();
-    world.touch();
-    Ok(())
+    Ok(places.len())
 }
 
 #[cfg(test)]
@@ -372,7 +425,7 @@ mod tests {
         assert_eq!(refused(&w, "create_atoms 1 box").0, "box");
         assert_eq!(refused(&w, "create_atoms 2 single 0 0 0").0, "2");
         assert_eq!(refused(&w, "create_atoms 1 region c").0, "c");
-        assert_eq!(refused(&w, "create_atoms 1 single 0 0 0 mol a 3").0, "mol");
+        assert_eq!(refused(&w, "create_atoms 1 single 0 0 0 mol a 3").0, "a");
         assert_eq!(refused(&w, "create_atoms 1 single 0 0 0 overlap 3").0, "overlap");
         assert_eq!(
             refused(&Default::default(), "create_atoms 1 single 0 0 0").0,

@@ -20,6 +20,7 @@ mod mass;
 mod material;
 mod min_modify;
 mod min_style;
+mod molecule;
 pub mod momentum;
 mod neigh_modify;
 mod neighbor;
@@ -116,4 +117,5 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &create_bonds::CreateBonds,
     &delete_bonds::DeleteBonds,
     &special_bonds::SpecialBonds,
+    &molecule::Molecule,
 ];

@@ -38,6 +38,7 @@ mod pour;
 mod print;
 mod property_atom;
 mod recenter;
+mod rigid;
 mod setforce;
 mod spring;
 mod spring_self;
@@ -192,6 +193,8 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &print::Print,
     &property_atom::PropertyAtomFix,
     &recenter::Recenter,
+    &rigid::Rigid,
+    &rigid::RigidSmall,
     &setforce::SetForce,
     &spring::Spring,
     &spring_self::SpringSelf,

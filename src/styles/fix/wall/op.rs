@@ -149,9 +149,9 @@ impl Op for WallOp {
         let mut memory = w.wall_contacts.remove(&self.id).unwrap_or_default();
         // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
         let kept: Option<Contacts> = (t.setup && !w.settings.lammps()).then(|| memory.clone());
-        let p = &w.particles;
+        let (p, masses) = (&w.particles, w.contact_masses());
         let grains =
-            Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
+            Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &masses, tag: &p.tag };
         self.list(w, &grains);
         let wall = self.surface.wall(w);
         let step = Advance { dt: t.dt, history: !t.setup };

@@ -104,7 +104,9 @@ impl Force {
         let Some(fast) = &mut self.fast else { return Ok(()) };
         w.contacts.remove(self.style);
         let step = Advance { dt: t.dt, history: !t.setup };
-        let virial = fast.run(&grains(w, period, &[], &self.frozen)?, step, store, t.virial);
+        let masses = w.contact_masses();
+        let grains = Grains { mass: &masses, ..grains(w, period, &[], &self.frozen)? };
+        let virial = fast.run(&grains, step, store, t.virial);
         fast.scatter(&mut w.particles.f, &mut w.particles.torque);
         if t.virial {
             add(&mut w.tally.virial, virial);
@@ -119,7 +121,8 @@ impl Force {
         let mut memory = w.contacts.remove(self.style).unwrap_or_default();
         let kept: Option<Contacts> = (!store).then(|| memory.clone());
         let plain = &mut self.plain;
-        let grains = grains(w, period, &plain.body, &self.frozen)?;
+        let masses = w.contact_masses();
+        let grains = Grains { mass: &masses, ..grains(w, period, &plain.body, &self.frozen)? };
         let step = Advance { dt: t.dt, history: !t.setup };
         plain.sweep.run(&plain.list, &grains, &self.rules, &mut memory, step);
         plain.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
