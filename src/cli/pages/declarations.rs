@@ -29,6 +29,34 @@ pub(super) const PAIR_COEFF: Entry = (
     },
 );
 
+pub(super) const BOND_STYLE: Entry = (
+    "bond_style",
+    Doc {
+        syntax: "bond_style STYLE word …\nbond_style none",
+        summary: "Chooses the forces along bonds.",
+        text: "Each style has a page of its own, as `perigrain doc bond_style harmonic`. Needs an atom style with bonds. A new \
+            `bond_style` forgets the coefficients of the old one; with `none`, or without the command, bonds exert no forces and \
+            a run of a scene with bonds draws a warning. Restart files hold style and coefficients.",
+        example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
+                  create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\ncreate_bonds single/bond 1 1 2\n\
+                  bond_style harmonic\nbond_coeff 1 50.0 1.0\nfix 1 all nve\nrun 10",
+    },
+);
+
+pub(super) const BOND_COEFF: Entry = (
+    "bond_coeff",
+    Doc {
+        syntax: "bond_coeff T word …",
+        summary: "Gives the coefficients of the bond style for some bond types.",
+        text: "`T` is a bond type or a range: `2`, `*`, `2*`, `*4`, `2*4`. What the words are is on the page of the bond style; \
+            with `hybrid` they begin with the name of the sub-style. It needs `bond_style` and the box before it, and every \
+            bond type must have coefficients when a run begins.",
+        example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
+                  create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\ncreate_bonds single/bond 1 1 2\n\
+                  bond_style harmonic\nbond_coeff 1 50.0 1.0\nfix 1 all nve\nrun 10",
+    },
+);
+
 pub(super) const PERI_MODIFY: Entry = (
     "peri_modify",
     Doc {

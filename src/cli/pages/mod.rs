@@ -28,6 +28,8 @@ pub const COMMANDS: &[Entry] = &[
     language::QUIT,
     declarations::PAIR_STYLE,
     declarations::PAIR_COEFF,
+    declarations::BOND_STYLE,
+    declarations::BOND_COEFF,
     declarations::PERI_MODIFY,
     declarations::FIX,
     declarations::FIX_MODIFY,
