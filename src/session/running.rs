@@ -230,6 +230,7 @@ impl Session {
         self.interrupted |= outcome.interrupted;
         self.say_notes()?;
         self.say_end(&plan, &outcome, None, post && self.timer.tables())?;
+        self.say_deep(span)?;
         if self.world.clock.halt == Halt::All && self.world.settings.timed_out() {
             let step = self.world.clock.step;
             self.options.log.line(&format!("Wall time limit reached at step {step}"))?;

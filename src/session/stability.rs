@@ -1,7 +1,7 @@
-//! The longest stable time step of peridynamic bodies, compared with the deck's.
+//! The longest time steps of peridynamic bodies and of contacts, compared with the deck's; overlaps that are too deep.
 
 use super::Session;
-use crate::diag::{Code, Diagnostic, Diagnostics, Span};
+use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use crate::world::RunStyle;
 
 impl Session {
@@ -24,11 +24,12 @@ impl Session {
                 RunStyle::Staggered { ratio: Some(m), .. } => 1.0 / m as f64,
                 RunStyle::Staggered { ratio: None, .. } => 0.0,
             };
+        let line = self.graph.nodes.iter().rev().find(|n| n.text.starts_with("timestep"));
+        let place = line.map_or(span, |n| n.span);
+        self.check_contacts(place, density, found);
         if dt <= limit {
             return;
         }
-        let line = self.graph.nodes.iter().rev().find(|n| n.text.starts_with("timestep"));
-        let place = line.map_or(span, |n| n.span);
         let text = format!("the time step {dt:e} is longer than peridynamic bonds allow: about {limit:.2e}");
         found.push(
             Diagnostic::warning(Code::UNSTABLE, place, text)
@@ -37,14 +38,55 @@ impl Session {
         );
     }
 
+    /// A warning where contacts of grains last less than ten steps.
+    fn check_contacts(&self, place: Span, density: Option<f64>, found: &mut Diagnostics) {
+        let Some(node) = &self.graph.pair else { return };
+        let said = density.zip(self.said("diameter").reduce(f64::min));
+        let all = node.pair.parts().into_iter().chain([node.pair.as_ref()]);
+        let contact = all.filter_map(|p| p.contact_time(&self.world, said)).fold(f64::INFINITY, f64::min);
+        let dt = self.world.clock.dt;
+        if dt <= 0.1 * contact {
+            return;
+        }
+        let text = format!(
+            "the time step {dt:e} is longer than a tenth of a contact, which lasts about {contact:.2e}"
+        );
+        found.push(
+            Diagnostic::warning(Code::UNSTABLE, place, text)
+                .help(format!("say `timestep {:.1e}` or less, or take softer grains", 0.05 * contact)),
+        );
+    }
+
     /// The largest density that the deck has set, for a check that has no particles: no other particles' density
     /// shall draw a warning.
     fn density(&self) -> Option<f64> {
-        let sets = self.graph.nodes.iter().filter(|n| n.settles.contains(&"density"));
-        let said = sets.filter_map(|n| {
-            let mut words = n.text.split_whitespace().skip_while(|w| *w != "density");
+        self.said("density").reduce(f64::max)
+    }
+
+    /// The positive numbers that the deck has set for all particles of some kind.
+    fn said<'a>(&'a self, fact: &'a str) -> impl Iterator<Item = f64> + 'a {
+        let sets = self.graph.nodes.iter().filter(move |n| n.settles.contains(&fact));
+        let said = sets.filter_map(move |n| {
+            let mut words = n.text.split_whitespace().skip_while(|w| *w != fact);
             words.nth(1)?.parse::<f64>().ok()
         });
-        said.filter(|d| *d > 0.0).reduce(f64::max)
+        said.filter(|d| *d > 0.0)
+    }
+
+    /// Tells once of grains that a run has pushed far into each other.
+    pub(super) fn say_deep(&mut self, span: Span) -> Result<()> {
+        let Some(deep) = self.world.parts.deep.as_mut().filter(|d| !d.told) else { return Ok(()) };
+        deep.told = true;
+        let ([i, j], part) = (deep.ids, 100.0 * deep.part);
+        let text = format!(
+            "particles {i} and {j} overlap by {part:.0} % of the smaller radius at step {}: contact laws hold below 10 %",
+            deep.step
+        );
+        self.note_once(
+            Diagnostic::warning(Code::SUSPICIOUS, span, text)
+                .help("take stiffer grains, or look for particles that were created inside each other")
+                .help("only the first such pair is reported"),
+        );
+        self.say_notes()
     }
 }

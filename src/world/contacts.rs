@@ -12,6 +12,19 @@ pub struct Contacts {
     pub history: Vec<f64>,
 }
 
+/// Grains that overlap so far that contact laws mean little.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deep {
+    /// When it was first seen.
+    pub step: i64,
+    /// The two grains.
+    pub ids: [u32; 2],
+    /// Overlap over the smaller radius.
+    pub part: f64,
+    /// Whether the user has been told.
+    pub told: bool,
+}
+
 /// What one grain remembers of a contact, from what the other remembers: displacements across the normal, the first
 /// three numbers, are negative; rolling displacements and angles of twisting are the same.
 pub fn mirror(history: &mut [f64]) {

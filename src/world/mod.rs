@@ -112,6 +112,8 @@ pub struct Parts {
     pub changed: bool,
     /// Text facts that styles leave for the log's end, by name.
     pub facts: BTreeMap<String, Arc<str>>,
+    /// The first grains seen to overlap by more than a tenth of a radius during a run.
+    pub deep: Option<contacts::Deep>,
     /// The fix freeze in force and its group: contact laws take these grains for infinitely heavy.
     pub frozen: Option<(String, GroupId)>,
     /// What ops have to say about the deck; told when the run is over.

@@ -146,7 +146,8 @@ impl Grains<'_> {
         let [ri, rj] = [p.i, p.j].map(|k| self.radius[k as usize]);
         let (square, sum) = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2], ri + rj);
         if square < sum * sum {
-            return Meeting::Touch;
+            let deep = sum - DEEP * ri.min(rj);
+            return if square < deep * deep { Meeting::Deep } else { Meeting::Touch };
         }
         if !gaps {
             return Meeting::Apart;
@@ -184,7 +185,12 @@ enum Meeting {
     /// Beyond touch, but within what an existing contact spans.
     Near,
     Touch,
+    /// Overlapping by more than `DEEP` of the smaller radius.
+    Deep,
 }
+
+/// Overlap over the smaller radius beyond which laws of contact mean little.
+pub const DEEP: f64 = 0.1;
 
 /// One evaluation of all contacts; keeps its room from step to step.
 #[derive(Clone, Debug, Default)]
@@ -196,6 +202,7 @@ pub struct Sweep {
     counts: Vec<u32>,
     names: Vec<[u64; 2]>,
     wrenches: Vec<Wrench>,
+    deep: Option<Pair>,
     spare: Vec<f64>,
 }
 
@@ -236,6 +243,16 @@ impl Sweep {
         self.touching.len()
     }
 
+    /// The first pair of the last evaluation that overlaps by more than [`DEEP`] of the smaller radius: its ids and
+    /// that part.
+    pub fn deep(&self, grains: &Grains) -> Option<([u32; 2], f64)> {
+        let p = self.deep?;
+        let [ri, rj] = [p.i, p.j].map(|k| grains.radius[k as usize]);
+        let d = difference(grains.x, &grains.period, &p);
+        let part = (ri + rj - crate::math::vec3::length(d)) / ri.min(rj);
+        Some(([p.i, p.j].map(|k| grains.tag[k as usize]), part))
+    }
+
     /// Whether nothing touched.
     pub fn is_empty(&self) -> bool {
         self.touching.is_empty()
@@ -254,6 +271,25 @@ impl Sweep {
             f[j] = sub(f[j], w.force);
             torque[i] = add(torque[i], w.torque_i);
             torque[j] = add(torque[j], w.torque_j);
+        }
+    }
+
+    /// Adds the heat that flows through the contacts to `flow`, from the temperatures of all particles.
+    pub fn conduct<L: ContactLaw>(
+        &self,
+        grains: &Grains,
+        rules: &Rules<L>,
+        temperature: &[f64],
+        flow: &mut [f64],
+    ) {
+        for p in &self.touching {
+            let (i, j) = (p.i as usize, p.j as usize);
+            let Some(rule) = rules.get(grains.kind[i], grains.kind[j]) else { continue };
+            let Some(g) = grains.geometry(p, rule) else { continue };
+            let Some(conductance) = rule.law.conductance(&g) else { continue };
+            let into = conductance * (temperature[j] - temperature[i]);
+            flow[i] += into;
+            flow[j] -= into;
         }
     }
 
@@ -281,11 +317,16 @@ impl Sweep {
         let tags = |p: &Pair| [grains.tag[p.i as usize], grains.tag[p.j as usize]];
         self.touching.clear();
         self.keys.clear();
+        self.deep = None;
         for (p, meeting) in list.iter().zip(&self.flags) {
             let holds = match meeting {
                 Meeting::Apart => false,
                 Meeting::Near => memory.get(tags(p)).is_some(),
                 Meeting::Touch => true,
+                Meeting::Deep => {
+                    self.deep.get_or_insert(*p);
+                    true
+                }
             };
             if holds {
                 self.touching.push(*p);

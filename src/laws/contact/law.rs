@@ -3,7 +3,9 @@
 use super::elastic::{Elastic, Form};
 use super::tangential::{Drag, Friction, Spring};
 use super::turning::{Rolling, Twisting};
-use super::{Advance, ContactLaw, Damping, Geometry, Motion, Normal, Tangential, Wrench, split_velocity};
+use super::{
+    Advance, ContactLaw, Damping, Geometry, Heat, Motion, Normal, Tangential, Wrench, split_velocity,
+};
 use crate::math::real::Real;
 use crate::math::vec3::{add, cross, scale, sub};
 use crate::world::Compat;
@@ -31,6 +33,8 @@ pub struct Model {
     pub rolling: Rolling,
     /// Against twisting.
     pub twisting: Twisting,
+    /// Conduction of heat.
+    pub heat: Heat,
     /// `limit_damping`: the normal force never pulls.
     pub limit_damping: bool,
     /// Lever arms of the tangential force.
@@ -63,6 +67,7 @@ impl Model {
             tangential,
             rolling: Rolling::None,
             twisting: Twisting::None,
+            heat: Heat::None,
             limit_damping: false,
             arm: Arm::Middle,
         }
@@ -102,9 +107,16 @@ impl Model {
         Ok(self.pair(other, true, compat))
     }
 
-    fn names(&self) -> [&'static str; 5] {
+    fn names(&self) -> [&'static str; 6] {
         let m = self;
-        [m.normal.name(), m.damping.name(), m.tangential.name(), m.rolling.name(), m.twisting.name()]
+        [
+            m.normal.name(),
+            m.damping.name(),
+            m.tangential.name(),
+            m.rolling.name(),
+            m.twisting.name(),
+            m.heat.name(),
+        ]
     }
 
     fn pair(&self, other: &Model, mixed: bool, compat: Compat) -> Granular {
@@ -126,6 +138,7 @@ impl Model {
             spring,
             rolling: self.rolling.mixed(&other.rolling),
             twisting,
+            heat: self.heat.mixed(&other.heat),
             arm: self.arm,
             by_radius,
             compat,
@@ -151,6 +164,8 @@ pub struct Granular {
     pub rolling: Rolling,
     /// Against twisting.
     pub twisting: Twisting,
+    /// Conduction of heat.
+    pub heat: Heat,
     /// Lever arms of the tangential force.
     pub arm: Arm,
     /// Whether some part asks for the radius of the contact.
@@ -166,11 +181,15 @@ impl ContactLaw for Granular {
     }
 
     fn in_lanes(&self) -> bool {
-        self.elastic.form != Form::Jkr
+        self.elastic.form != Form::Jkr && self.heat == Heat::None
     }
 
     fn gap(&self, curvature: f64) -> f64 {
         self.elastic.gap(curvature)
+    }
+
+    fn conductance(&self, g: &Geometry) -> Option<f64> {
+        (self.heat != Heat::None).then(|| self.heat.conductance(self.elastic.radius(g)))
     }
 
     #[inline(always)]

@@ -8,6 +8,7 @@ pub mod damping;
 pub mod driver;
 pub mod elastic;
 pub mod fast;
+pub mod heat;
 pub mod law;
 pub mod normal;
 pub mod slider;
@@ -16,6 +17,7 @@ pub mod turning;
 pub mod walls;
 
 pub use damping::Damping;
+pub use heat::Heat;
 pub use law::{Arm, Classic, Granular, Model, Unmixable};
 pub use normal::Normal;
 pub use tangential::{Drag, Friction, Tangential};
@@ -123,6 +125,12 @@ pub trait ContactLaw: Copy + Sync {
     /// How far apart the surfaces may be before an existing contact ends (cohesion) [length].
     fn gap(&self, _curvature: f64) -> f64 {
         0.0
+    }
+
+    /// Heat that flows from the warmer to the colder side, over the difference of temperatures
+    /// [energy/(time temperature)]; `None` where the law knows no heat.
+    fn conductance(&self, _g: &Geometry) -> Option<f64> {
+        None
     }
 
     /// Force and torques of one contact; `history`, [`ContactLaw::memory`] numbers, moves on with it.

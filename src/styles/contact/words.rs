@@ -4,7 +4,7 @@ use super::Coeff;
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use crate::lang::{Args, Word};
 use crate::laws::contact::driver::{Average, Curvature};
-use crate::laws::contact::{Damping, Friction, Model, Normal, Rolling, Sds, Tangential, Twisting};
+use crate::laws::contact::{Damping, Friction, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting};
 
 /// Keywords after the normal model.
 const KEYWORDS: [&str; 9] = [
@@ -44,7 +44,7 @@ pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
             "limit_damping" => limit = Some(word.span),
             "rolling" => c.model.rolling = rolling(args)?,
             "twisting" => c.model.twisting = twisting(args)?,
-            "heat" => heat(args)?,
+            "heat" => c.model.heat = heat(args)?,
             "cutoff" => c.cutoff = Some(args.positive("the cutoff")?),
             "average" => {
                 c.average = match args.choice("way of averaging", &["none", "particle", "body"])? {
@@ -186,13 +186,13 @@ fn sds(part: &str, args: &mut Args) -> Result<Sds> {
     })
 }
 
-/// Conduction of heat, which can only be `none` so far.
-fn heat(args: &mut Args) -> Result<()> {
+fn heat(args: &mut Args) -> Result<Heat> {
     let word = args.expect("the heat model")?;
     match word.text.as_str() {
-        "none" => Ok(()),
-        "radius" | "area" => Err(not_yet("heat model", word, "none")),
-        _ => Err(unknown(word, "heat model", &["none"])),
+        "none" => Ok(Heat::None),
+        "area" => Ok(Heat::Area(args.non_negative("the heat transfer coefficient")?)),
+        "radius" => Ok(Heat::Radius(args.non_negative("the conductivity")?)),
+        _ => Err(unknown(word, "heat model", &["none", "area", "radius"])),
     }
 }
 

@@ -1,6 +1,7 @@
 //! `pair_style granular`: contacts of spheres, with models chosen per pair of types.
 
 mod declared;
+mod durations;
 pub mod force;
 pub mod reach;
 
@@ -22,7 +23,7 @@ impl Style for GranularStyle {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "pair_style granular [cutoff]\n\
-                     pair_coeff i j normal … tangential … [damping …] [rolling …] [twisting …] [limit_damping] \
+                     pair_coeff i j normal … tangential … [damping …] [rolling …] [twisting …] [heat …] [limit_damping] \
                      [cutoff C] [average none|particle|body] [curvature both|impactor]\n\
                      normal: none | hooke kn eta | hertz kn eta | hertz/material E eta nu | dmt E eta nu gamma | \
                      jkr E eta nu gamma\n\
@@ -31,7 +32,8 @@ impl Style for GranularStyle {
                      linear_history_classic kt x_gamma mu | mindlin_classic kt x_gamma mu | \
                      mindlin[/force] kt|NULL x_gamma mu | mindlin_rescale[/force] kt|NULL x_gamma mu\n\
                      rolling: none | sds k gamma mu\n\
-                     twisting: none | marshall | sds k gamma mu",
+                     twisting: none | marshall | sds k gamma mu\n\
+                     heat: none | area h | radius k",
             summary: "Contacts of spheres: a law along the normal, damping, friction, rolling and twisting resistance.",
             text: "Spheres with overlap δ = R_i + R_j − r > 0 push each other along the normal with F_n − η v_n; \
                 R̄ = R_i R_j/(R_i + R_j), m̄ = m_i m_j/(m_i + m_j), a = √(R̄ δ). `limit_damping` cuts this force off at \
@@ -44,6 +46,19 @@ impl Style for GranularStyle {
                 √2 α_T(e) √(m̄ k) (`tsuji`; for hooke 2/√5 of it), 2β √(m̄ k) for hooke and √5 β √(m̄ k) for the others \
                 (`coeff_restitution`, β = −ln e/√(π²+ln²e)); k = F_n/δ. For the last two 0 < e ≤ 1; they do not go \
                 with dmt and jkr.\n\n\
+                Which damping makes a wanted e: `coeff_restitution` does, exactly and at any velocity, `tsuji` to 0.5 %. \
+                A constant `eta` does so only for hooke: 2β √(m̄ kn) as `velocity`, 2β √(kn/m̄) as `mass_velocity` \
+                (and as gamma_n of pair_style gran/hooke). With hertz and a constant eta, and with `viscoelastic`, e \
+                falls as grains get faster. `limit_damping` takes the pull at the end of a contact away, so that grains \
+                leave faster than asked. Measured:\n\n\
+                | e asked | 0.1 | 0.2 | 0.3 | 0.4 | 0.5 | 0.7 | 0.8 | 0.9 | 0.95 |\n\
+                |---|---|---|---|---|---|---|---|---|---|\n\
+                | coeff_restitution | 0.100 | 0.200 | 0.300 | 0.400 | 0.500 | 0.700 | 0.800 | 0.900 | 0.950 |\n\
+                | the same with limit_damping | 0.253 | 0.325 | 0.397 | 0.472 | 0.550 | 0.718 | 0.808 | 0.902 | 0.951 |\n\
+                | tsuji | 0.100 | 0.200 | 0.300 | 0.399 | 0.500 | 0.700 | 0.799 | 0.900 | 0.951 |\n\
+                | the same with limit_damping | 0.252 | 0.325 | 0.397 | 0.472 | 0.550 | 0.718 | 0.807 | 0.902 | 0.952 |\n\
+                | tsuji of LAMMPS 22Jul2025, hertz | 0.235 | 0.343 | 0.440 | 0.530 | 0.616 | 0.778 | 0.853 | 0.928 | 0.965 |\n\
+                | the same with limit_damping | 0.350 | 0.429 | 0.503 | 0.574 | 0.646 | 0.788 | 0.858 | 0.929 | 0.965 |\n\n\
                 `tangential`: F_t = −k_t ξ − x_gamma η v_t, at most `mu` |F_n|, for dmt and jkr mu |F_n + 2 F_pulloff| \
                 with F_n before damping. ξ is the slip accumulated while the contact lasts, turned with the tangent \
                 plane and shortened to what slides (Luding 2008). `linear_nohistory` has no spring; `mindlin…` take \
@@ -55,6 +70,8 @@ impl Style for GranularStyle {
                 most mu times the normal force, acts only as a torque with arm R̄. `twisting`: the same for the spin \
                 about the normal; `marshall` takes k_t a²/2, x_gamma η a²/2 and 2/3 a mu of the tangential model \
                 (k_t before any factor a).\n\n\
+                `heat`: between particles of temperatures T flows h π a² (T_j − T_i) (`area`) or 2 k a (T_j − T_i) \
+                (`radius`), see fix heat/flow.\n\n\
                 Type pairs without a line of their own mix those of the like pairs, of which the words must be the \
                 same: geometric means, E* and G* as above. `cutoff` sets the reach of the neighbour list by hand.\n\n\
                 Not in LAMMPS: `none` for normal, damping and tangential; `average` divides the force of each contact \

@@ -80,6 +80,12 @@ pub trait Pair: Send {
         None
     }
 
+    /// How long the shortest contact of grains lasts [time units]; `None` if there are none. `said` is the density and the
+    /// smallest diameter that the deck has set, for a check without particles.
+    fn contact_time(&self, _w: &World, _said: Option<(f64, f64)>) -> Option<f64> {
+        None
+    }
+
     /// For peridynamic styles: whether forces are true forces (else force densities, as LAMMPS).
     fn true_forces(&self) -> Option<bool> {
         None

@@ -5,6 +5,7 @@
 //! A step tests the distances of the short list four at a time and evaluates the law for four contacts at a time; slabs
 //! in two colours keep the order of additions for any number of threads.
 
+mod deep;
 mod lists;
 mod memory;
 mod sweep;
@@ -114,6 +115,8 @@ pub struct Fast<L> {
     width: usize,
     /// What contacts remembered before the lists were made anew.
     book: Option<Book>,
+    /// The pair of smallest ids that overlapped too far when lists were made anew, and by which part of its radius.
+    pub deep: Option<([u32; 2], f64)>,
     /// Room for new short lists.
     spare: Vec<Short>,
 }
@@ -138,6 +141,7 @@ impl<L: ContactLaw> Fast<L> {
             now: 0.0,
             width,
             book: None,
+            deep: None,
             spare: vec![],
         }
     }
@@ -229,8 +233,12 @@ impl<L: ContactLaw> Fast<L> {
         self.gather(grains);
         // Two grains came closer by twice what one moved at most.
         if 2.0 * self.moved >= self.thin {
+            let anew = self.book.is_some();
             self.make_short();
             self.moved = 0.0;
+            if anew {
+                self.deep = self.find_deep();
+            }
         }
         self.force.fill([0.0; 8]);
         self.sweep(step, store, virial, !grains.frozen.is_empty());

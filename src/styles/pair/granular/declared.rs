@@ -1,6 +1,7 @@
 //! Granular pair styles with their coefficients: rules by pair of types, given or mixed.
 
-use super::force::Force;
+use super::durations;
+use super::force::{Force, conducts};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
 use crate::laws::contact::driver::{Average, Curvature, Rule, Rules};
@@ -12,6 +13,7 @@ use crate::styles::pair::contact_probe::{ContactProbe, Own};
 use crate::styles::pair::probe::Probe;
 use crate::styles::pair::{Pair, TypePairs};
 use crate::styles::{BuildCx, SealCx};
+use crate::world::columns::{HEATFLOW, TEMPERATURE};
 use crate::world::{Compat, World};
 use std::collections::BTreeMap;
 
@@ -146,6 +148,13 @@ impl Pair for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let w = cx.world();
         let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
+        let columns = &w.columns;
+        if conducts(&rules) && [TEMPERATURE, HEATFLOW].iter().any(|name| columns.custom(name).is_none()) {
+            let text = "contacts that conduct heat need particles with a temperature";
+            return Err(Diagnostic::error(Code::INCOMPLETE, cx.span(), text)
+                .help("add `fix ID all property/atom temperature heatflow` and `set group all temperature …`")
+                .into());
+        }
         Ok(vec![Box::new(Force::new(self.name, rules, wanted, w.types))])
     }
 
@@ -153,6 +162,11 @@ impl Pair for Declared {
         let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
         let own = if self.name == "granular" { Own::Granular } else { Own::Gran };
         Ok(vec![Box::new(ContactProbe::new(self.name, rules, wanted, own))])
+    }
+
+    fn contact_time(&self, w: &World, said: Option<(f64, f64)>) -> Option<f64> {
+        let rules = self.tables(w.types, w.settings.compat).ok()?.0;
+        durations::shortest(w, &rules, said)
     }
 
     fn needs(&self) -> &'static [&'static str] {

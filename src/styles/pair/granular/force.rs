@@ -5,11 +5,12 @@ use crate::diag::Result;
 use crate::laws::contact::bodies::solids;
 use crate::laws::contact::driver::{Average, Curvature, Grains, Rules, Sweep};
 use crate::laws::contact::fast::{Fast, Frame, Laws, MOST_GRAINS, MOST_MEMORY};
-use crate::laws::contact::{Advance, ContactLaw, Granular};
+use crate::laws::contact::{Advance, ContactLaw, Granular, Heat};
 use crate::math::vec3::Vec3;
 use crate::neigh::list::{Pair, Reach, View, Wanted, pairs};
 use crate::plan::{Access, Op, Stage, Tick};
-use crate::world::contacts::Contacts;
+use crate::world::columns::{HEATFLOW, TEMPERATURE};
+use crate::world::contacts::{Contacts, Deep};
 use crate::world::{Allowed, World};
 
 /// Largest radius in units of the smallest up to which one grid of cells serves all.
@@ -107,6 +108,7 @@ impl Force {
         let masses = w.contact_masses();
         let grains = Grains { mass: &masses, ..grains(w, period, &[], &self.frozen)? };
         let virial = fast.run(&grains, step, store, t.virial);
+        let deep = fast.deep;
         fast.scatter(&mut w.particles.f, &mut w.particles.torque);
         if t.virial {
             add(&mut w.tally.virial, virial);
@@ -114,6 +116,7 @@ impl Force {
         if t.contacts {
             w.contacts.insert(self.style.to_string(), fast.contacts());
         }
+        report(w, t, deep);
         Ok(())
     }
 
@@ -125,6 +128,17 @@ impl Force {
         let grains = Grains { mass: &masses, ..grains(w, period, &plain.body, &self.frozen)? };
         let step = Advance { dt: t.dt, history: !t.setup };
         plain.sweep.run(&plain.list, &grains, &self.rules, &mut memory, step);
+        let deep = plain.sweep.deep(&grains);
+        let names = [TEMPERATURE, HEATFLOW].map(|name| w.columns.custom(name));
+        if let (true, [Some(temperature), Some(heat)]) = (conducts(&self.rules), names) {
+            let n = w.particles.len();
+            let mut flow = std::mem::take(w.columns.scalar(&heat, n));
+            let temperature = w.columns.scalar(&temperature, n).clone();
+            let grains = self::grains(w, period, &plain.body, &self.frozen)?;
+            plain.sweep.conduct(&grains, &self.rules, &temperature, &mut flow);
+            *w.columns.scalar(&heat, n) = flow;
+        }
+        report(w, t, deep);
         plain.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
         if t.virial {
             add(&mut w.tally.virial, plain.sweep.virial(&w.particles.x, &period));
@@ -185,6 +199,7 @@ fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<G
         r.average != Average::None
             || r.curvature != Curvature::Both
             || r.law.gap(1.0) != 0.0
+            || r.law.heat != Heat::None
             || r.law.memory() > MOST_MEMORY
     });
     let touch = |a, b| wanted.get(a, b).is_none_or(|r| r == Reach::Touch);
@@ -229,6 +244,18 @@ pub fn grains<'a>(w: &'a World, period: Vec3, body: &'a [u32], frozen: &'a [bool
         body,
         frozen,
     })
+}
+
+/// Whether some contacts conduct heat.
+pub fn conducts(rules: &Rules<Granular>) -> bool {
+    rules.any(|r| r.law.heat != Heat::None)
+}
+
+/// Keeps the first grains that were seen too deep in each other.
+fn report(w: &mut World, t: &Tick, deep: Option<([u32; 2], f64)>) {
+    if let (Some((ids, part)), None) = (deep, &w.parts.deep) {
+        w.parts.deep = Some(Deep { step: t.step, ids, part, told: false });
+    }
 }
 
 fn add(total: &mut [f64; 6], part: [f64; 6]) {

@@ -49,7 +49,7 @@ fn what_is_not_there_is_refused_by_name_at_its_place() {
         (format!("{h} mindlin 1 1 0.5 rolling sds 1 1"), Code::MISSING_ARGUMENT, "1"),
         (format!("{h} mindlin 1 1 0.5 twisting sds 1 -1 1"), Code::BAD_VALUE, "-1"),
         (format!("{h} mindlin 1 1 0.5 twisting marshal"), Code::UNKNOWN_STYLE, "marshal"),
-        (format!("{h} mindlin 1 1 0.5 heat area 2"), Code::NOT_SUPPORTED, "area"),
+        (format!("{h} mindlin 1 1 0.5 heat area -2"), Code::BAD_VALUE, "-2"),
         (format!("{h} mindlin 1 1 0.5 dampng tsuji"), Code::UNKNOWN_KEYWORD, "dampng"),
         (format!("{h} mindlin 1 1 -0.5"), Code::BAD_VALUE, "-0.5"),
         ("hertz 1e6 1.5 tangential mindlin 1 1 0.5 damping tsuji".to_string(), Code::BAD_VALUE, "hertz"),

@@ -1,0 +1,28 @@
+//! Grains that overlap so far that contact laws mean little.
+
+use super::Fast;
+use super::sweep::{HERE_BITS, place};
+use crate::laws::contact::ContactLaw;
+use crate::laws::contact::driver::DEEP;
+
+impl<L: ContactLaw> Fast<L> {
+    /// The pair of smallest ids that overlaps by more than [`DEEP`] of the smaller radius, and by which part.
+    pub(super) fn find_deep(&self) -> Option<([u32; 2], f64)> {
+        let of = |i: u32, w: u32| {
+            let (i, j) = (i as usize, place(w) as usize);
+            let (a, b, s) = (self.position[i], self.position[j], self.shifts[(w >> HERE_BITS) as usize]);
+            let d = [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])];
+            let (sum, least) = (a[3] + b[3], a[3].min(b[3]));
+            let deep = sum - DEEP * least;
+            let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+            // What fills lists up has no radius.
+            if least <= 0.0 || square >= deep * deep {
+                return None;
+            }
+            let (p, q) = (self.tag[i], self.tag[j]);
+            Some(([p.min(q), p.max(q)], (sum - square.sqrt()) / least))
+        };
+        let pairs = self.lists.iter().flat_map(|l| l.short.i.iter().zip(&l.short.w));
+        pairs.filter_map(|(&i, &w)| of(i, w)).min_by_key(|(ids, _)| *ids)
+    }
+}
