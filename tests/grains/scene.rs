@@ -1,0 +1,99 @@
+//! Small scenes of grains, run step by step.
+
+use perigrain::out::log::{Buffer, Log};
+use perigrain::session::{Options, Session};
+use perigrain::world::World;
+use std::f64::consts::PI;
+
+/// A deck at work.
+pub struct Scene {
+    session: Session,
+    screen: Buffer,
+}
+
+impl Scene {
+    /// Works off the lines that make the scene.
+    pub fn new(deck: &str) -> Self {
+        let screen = Buffer::default();
+        let options = Options { log: Log::new(Some(Box::new(screen.clone()))), ..Options::default() };
+        let mut scene = Self { session: Session::new(options).unwrap(), screen };
+        scene.say(deck);
+        scene
+    }
+
+    /// More lines.
+    pub fn say(&mut self, deck: &str) {
+        let done = self.session.run_text("in.deck", deck);
+        done.unwrap_or_else(|e| panic!("{deck}\n{e}\n{}", self.screen.text()));
+    }
+
+    /// Some steps.
+    pub fn step(&mut self, steps: usize) {
+        self.say(&format!("run {steps} post no"));
+    }
+
+    /// The particles.
+    pub fn world(&self) -> &World {
+        &self.session.world
+    }
+}
+
+/// Deck lines: an empty box from −`half` to `half`, with `types` types of spheres.
+pub fn empty(half: f64, types: usize) -> String {
+    format!(
+        "units si\natom_style sphere\nboundary f f f\nnewton off\ncomm_modify vel yes\n\
+         region world block {0} {half} {0} {half} {0} {half} units box\ncreate_box {types} world\n",
+        -half
+    )
+}
+
+/// Deck lines: a sphere of this type at a place, moving and spinning; its number, counted from 1, is `id`.
+pub fn sphere(
+    [id, kind]: [usize; 2],
+    x: [f64; 3],
+    [radius, density]: [f64; 2],
+    v: [f64; 3],
+    omega: [f64; 3],
+) -> String {
+    format!(
+        "create_atoms {kind} single {} {} {} units box\ngroup g{id} id {id}\n\
+         set atom {id} diameter {}\nset atom {id} density {density}\n\
+         velocity g{id} set {} {} {} units box\nset atom {id} omega {} {} {}\n",
+        x[0],
+        x[1],
+        x[2],
+        2.0 * radius,
+        v[0],
+        v[1],
+        v[2],
+        omega[0],
+        omega[1],
+        omega[2]
+    )
+}
+
+/// Deck lines: one granular model for all, free spheres, a time step.
+pub fn law(model: &str, dt: f64) -> String {
+    format!(
+        "pair_style granular\npair_coeff * * {model}\nfix move all nve/sphere\ntimestep {dt}\n\
+         thermo_style custom step\nthermo 1000000\nneigh_modify delay 0 every 1 check yes\n"
+    )
+}
+
+/// Mass of a sphere.
+pub fn mass(radius: f64, density: f64) -> f64 {
+    4.0 / 3.0 * PI * radius.powi(3) * density
+}
+
+/// Hertz' closed form of a central impact at relative velocity `v`: stiffness k of F = k δ^1.5, effective mass;
+/// largest overlap (5 m v²/(4 k))^(2/5), largest force, duration 2.943275 δ/v.
+pub fn hertz(k: f64, mass: f64, v: f64) -> [f64; 3] {
+    let overlap = (5.0 * mass * v * v / (4.0 * k)).powf(0.4);
+    [overlap, k * overlap.powf(1.5), 2.943_275 * overlap / v]
+}
+
+/// `a` within a part `tolerance` of `b`.
+#[track_caller]
+pub fn close(what: &str, a: f64, b: f64, tolerance: f64) {
+    assert!((a - b).abs() <= tolerance * b.abs(), "{what}: {a:.6e} instead of {b:.6e}");
+}
