@@ -115,7 +115,7 @@ pub struct Fast<L> {
     width: usize,
     /// What contacts remembered before the lists were made anew.
     book: Option<Book>,
-    /// The pair of smallest ids that overlapped too far when lists were made anew, and by which part of its radius.
+    /// The pair of smallest ids that overlapped too far when short lists were made anew, and by which part of its radius.
     pub deep: Option<([u32; 2], f64)>,
     /// Room for new short lists.
     spare: Vec<Short>,
@@ -233,12 +233,9 @@ impl<L: ContactLaw> Fast<L> {
         self.gather(grains);
         // Two grains came closer by twice what one moved at most.
         if 2.0 * self.moved >= self.thin {
-            let anew = self.book.is_some();
             self.make_short();
             self.moved = 0.0;
-            if anew {
-                self.deep = self.find_deep();
-            }
+            self.deep = self.deep.or_else(|| self.find_deep());
         }
         self.force.fill([0.0; 8]);
         self.sweep(step, store, virial, !grains.frozen.is_empty());
