@@ -91,6 +91,8 @@ pub struct World {
     pub templates: BTreeMap<String, Arc<[Template]>>,
     /// Peridynamic bonds, from the first run on.
     pub families: Option<families::Families>,
+    /// Cracks that wait for bonds to be there.
+    pub cracks: Vec<families::Crack>,
     /// What touching grains remember, by pair style.
     pub contacts: BTreeMap<String, contacts::Contacts>,
     /// What grains touching a wall remember, by the wall's fix.

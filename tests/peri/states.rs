@@ -13,7 +13,8 @@ const KINDS: [LawKind; 3] = [LawKind::Lps, LawKind::Ves, LawKind::Eps];
 
 fn moduli(kind: LawKind, factor: f64) -> Moduli {
     let (lambda, tau) = if kind == LawKind::Ves { (0.6, 3e-7) } else { (0.0, 0.0) };
-    Moduli { bulk: K * factor, shear: G * factor * factor, lambda, tau, yield_stress: 2e6 * factor }
+    let (bulk, shear, yield_stress) = (K * factor, G * factor * factor, 2e6 * factor);
+    Moduli { bulk, shear, lambda, tau, yield_stress, ..Moduli::default() }
 }
 
 /// Gives a scene a state-based law; types differ in their moduli.

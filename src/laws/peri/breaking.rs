@@ -34,14 +34,16 @@ pub trait Bonds: Sync + Sized {
     fn sites(&self) -> usize;
 }
 
-/// Breaks what has to break; `found` is scratch.
+/// Breaks what has to break, except bonds of sites that are `spared`; `found` is scratch.
 pub fn break_bonds<K: StretchKernels, B: Bonds>(
     body: &mut B,
     options: &FamilyOptions,
     found: &mut Vec<Candidate>,
+    spared: &dyn Fn(u32) -> bool,
 ) {
     found.clear();
     body.candidates::<K>(found);
+    found.retain(|c| !c.ends.iter().any(|site| spared(*site)));
     if !found.is_empty() && (options.compat_lammps || found.iter().any(|c| c.alpha != 0.0)) {
         judge::<K, B>(body, options, found);
     }

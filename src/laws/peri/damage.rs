@@ -117,6 +117,9 @@ impl Families {
         self.family_volume = moved(&self.family_volume, old_to_new, n, 0.0);
         self.family_size = moved(&self.family_size, old_to_new, n, 0);
         self.hurt = vec![true; n];
+        if !self.lasting.is_empty() {
+            self.lasting = moved(&self.lasting, old_to_new, n, false);
+        }
         self.place = moved(&self.place, old_to_new, n, u32::MAX);
         self.reference = self.reference.take().map(|r| moved(&r, old_to_new, n, [0.0; 3]));
         let loose = self.near.loose.iter();

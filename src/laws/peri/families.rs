@@ -23,8 +23,8 @@ use crate::neigh::family::{detect, lattice as cells, list as records};
 use crate::par::{self, Shared};
 use crate::world::families::lattice::RowMotion;
 use crate::world::families::{
-    Bounds, Candidate, Families, FamilyOptions, ForceUnit, Law, Layout, NearPairs, PeriTally, PeriView,
-    PmbTable, Scratch,
+    Bounds, Candidate, Families, FamilyOptions, ForceUnit, Law, LawKind, Layout, NearPairs, PeriTally,
+    PeriView, PmbTable, Scratch,
 };
 
 impl Families {
@@ -55,6 +55,7 @@ impl Families {
             place: vec![u32::MAX; n],
             family_volume: vec![0.0; n],
             family_size: vec![0; n],
+            lasting: vec![],
             hurt: vec![false; n],
             near: NearPairs::default(),
             scratch: Scratch::default(),
@@ -77,7 +78,8 @@ impl Families {
         let mut listed = Vec::new();
         let mut wraps = false;
         for (k, members) in bodies.members.iter().enumerate() {
-            let free = self.options.layout == Layout::Auto && !bodies.wraps[k];
+            let free =
+                self.options.layout == Layout::Auto && !bodies.wraps[k] && self.suits_lattice(view, members);
             let sites = if free { detect::sites(view, members, bodies.nearest[k]) } else { None };
             let (volume, size) = (&mut self.family_volume, &mut self.family_size);
             let body = sites.and_then(|sites| {
@@ -94,6 +96,15 @@ impl Families {
         listed.sort_unstable();
         let (volume, size) = (&mut self.family_volume, &mut self.family_size);
         self.list = records::lay_out(view, &listed, wraps, &self.table, &self.options, volume, size);
+    }
+
+    /// Lattice kernels of bonds with memory know one pair of types and one volume.
+    fn suits_lattice(&self, view: &PeriView, members: &[u32]) -> bool {
+        let of = |p: u32| (view.kind[p as usize], view.volume[p as usize].to_bits());
+        let kind = self.law.kind;
+        kind == LawKind::Pmb
+            || !kind.bond_based()
+            || members.first().is_none_or(|first| members.iter().all(|p| of(*p) == of(*first)))
     }
 
     /// Numbers cells and records through all bodies.
@@ -131,7 +142,7 @@ impl Families {
         for body in &mut self.lattices {
             tables::refresh(body, view, table, &self.options, &self.law);
         }
-        list::refresh(&mut self.list, view, table, &self.options);
+        list::refresh(&mut self.list, view, table, &self.options, &self.law);
     }
 
     /// Takes in particles created since: they have no family, but short-range contact.
@@ -276,11 +287,20 @@ impl Families {
         let mut found: Vec<Candidate> = std::mem::take(&mut self.scratch.candidates);
         let mut ends = std::mem::take(&mut self.scratch.ends);
         ends.clear();
+        let lasting = std::mem::take(&mut self.lasting);
+        let lasts = |p: u32| lasting.get(p as usize).copied().unwrap_or(false);
         for body in &mut self.lattices {
-            break_bonds::<K, _>(body, &self.options, &mut found);
+            let particle = std::mem::take(&mut body.particle);
+            let spared = |cell: u32| lasts(particle[cell as usize]);
+            break_bonds::<K, _>(body, &self.options, &mut found, &spared);
+            body.particle = particle;
             ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
         }
-        break_bonds::<K, _>(&mut Periodic(&mut self.list, period), &self.options, &mut found);
+        let particle = std::mem::take(&mut self.list.particle);
+        let spared = |record: u32| lasts(particle[record as usize]);
+        break_bonds::<K, _>(&mut Periodic(&mut self.list, period), &self.options, &mut found, &spared);
+        self.list.particle = particle;
+        self.lasting = lasting;
         ends.extend(found.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
         for &[i, j] in &ends {
             self.hurt[i as usize] = true;

@@ -5,21 +5,23 @@ use super::list_kernel::{RowKernels, RowTask, dead};
 use crate::par::{self, Shared};
 use crate::world::families::lattice::RowMotion;
 use crate::world::families::list::{ListBody, PairConstants, Record};
-use crate::world::families::{FamilyOptions, ForceUnit, PeriView, PmbTable, VolumeRule, Window};
+use crate::world::families::{FamilyOptions, ForceUnit, Law, PeriView, PmbTable, VolumeRule, Window};
 use std::ops::Range;
 
 /// Fills constants, types and volumes.
-pub fn refresh(body: &mut ListBody, view: &PeriView, table: &PmbTable, options: &FamilyOptions) {
+pub fn refresh(body: &mut ListBody, view: &PeriView, table: &PmbTable, options: &FamilyOptions, law: &Law) {
     let n = body.kinds.len();
     body.pairs.clear();
     for pair in 0..n * n {
-        let constants = table.get(body.kinds[pair / n], body.kinds[pair % n]).map(|k| {
+        let (a, b) = (body.kinds[pair / n], body.kinds[pair % n]);
+        let yields = law.yields(a, b);
+        let constants = table.get(a, b).map(|k| {
             let half = 0.5 * options.lattice_spacing;
             let weight = match options.volume {
                 VolumeRule::None => [1.0, 0.0],
                 _ => [1.0 + (k.horizon - half) / (2.0 * half), 1.0 / (2.0 * half)],
             };
-            PairConstants { c: k.c, s00: k.s00, alpha: k.alpha, horizon: k.horizon, weight }
+            PairConstants { c: k.c, s00: k.s00, alpha: k.alpha, horizon: k.horizon, yields, weight }
         });
         body.pairs.push(constants.unwrap_or(PairConstants { s00: f64::INFINITY, ..Default::default() }));
     }

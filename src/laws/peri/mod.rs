@@ -1,8 +1,10 @@
 //! Peridynamic laws: what a bond does, and what engineering moduli mean for it.
 
 mod breaking;
+pub mod calibration;
 mod chunk;
 mod contact;
+mod cut;
 pub mod damage;
 mod energy;
 pub mod families;

@@ -46,7 +46,7 @@ pub fn refresh(
     }
     fill_tables(body, table, options, first);
     if law.kind.has_states() {
-        super::state::tables::fill(body, options, law, if various { 1.0 } else { first });
+        super::state::tables::fill(body, table, options, law, if various { 1.0 } else { first });
     }
 }
 

@@ -57,9 +57,9 @@ fn read(args: &mut Args, base: Option<Material>, id: &str) -> Result<Material> {
             return Err(Diagnostic::error(
                 Code::NOT_SUPPORTED,
                 word.span,
-                "perigrain has no yielding bonds (syc) yet",
+                "a material has no syc: the stretch at which bonds flow is said in pair_coeff",
             )
-            .help("leave it out: bonds are elastic until they break")
+            .help("write `pair_style peri/pmb/plastic` and `pair_coeff … material ID horizon H syc V`")
             .into());
         }
         let key = args.choice("material property", &KEYS)?;

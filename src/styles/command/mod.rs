@@ -25,6 +25,7 @@ pub mod momentum;
 mod neigh_modify;
 mod neighbor;
 mod newton;
+pub mod peri_crack;
 mod processors;
 mod read_data;
 pub mod read_dump;
@@ -106,6 +107,7 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &reset_atoms::ResetAtomIds,
     &mass::Mass,
     &material::MaterialStyle,
+    &peri_crack::PeriCrack,
     &timestep::Timestep,
     &reset_timestep::ResetTimestep,
     &run_style::RunStyleCommand,

@@ -77,6 +77,13 @@ fn build(name: &'static str, overlay: bool, args: &mut Args, cx: &BuildCx) -> Re
                 .help("one is enough: coefficients may differ for every pair of types")
                 .into());
         }
+        let solid = |name: &str| name.starts_with("peri/");
+        if let Some(first) = subs.iter().find(|s| solid(s.name()) && solid(sub)) {
+            let text = format!("`{sub}` beside `{}`: one scene has one peridynamic style", first.name());
+            return Err(Diagnostic::error(Code::NOT_SUPPORTED, word, text)
+                .help("coefficients may differ for every pair of types; LAMMPS crashes here without a word")
+                .into());
+        }
         let Some(style) = PAIRS.iter().find(|s| s.name() == sub) else { continue };
         subs.push(style.build(args, cx)?);
     }

@@ -6,7 +6,7 @@ mod gran_hooke;
 mod gran_hooke_history;
 mod granular;
 mod hybrid;
-mod peri;
+pub mod peri;
 pub mod probe;
 mod zero;
 
@@ -120,6 +120,7 @@ pub const PAIRS: &[&dyn PairStyle] = &[
     &peri::PeriEps,
     &peri::PeriLps,
     &peri::PeriPmb,
+    &peri::PeriPmbPlastic,
     &peri::PeriVes,
     &zero::ZeroStyle,
 ];

@@ -40,6 +40,8 @@ pub struct Moduli {
     pub tau: f64,
     /// Yield stress in tension.
     pub yield_stress: f64,
+    /// Stretch at which microelastic bonds flow, below zero.
+    pub syc: f64,
 }
 
 /// What bonds do.
@@ -54,18 +56,28 @@ pub enum LawKind {
     Ves,
     /// The same with a perfectly plastic deviatoric part.
     Eps,
+    /// Microelastic bonds that flow in compression.
+    Yield,
+    /// Microelastic bonds whose compression is cut off, without memory.
+    Flat,
 }
 
 impl LawKind {
-    /// Whether forces depend on the dilatation of both ends.
+    /// Whether forces are swept as those of states: with columns of sites or memory of bonds.
     pub fn has_states(self) -> bool {
         self != Self::Pmb
+    }
+
+    /// Whether a bond's force depends on nothing but the bond.
+    pub fn bond_based(self) -> bool {
+        matches!(self, Self::Pmb | Self::Yield | Self::Flat)
     }
 
     /// Numbers that each bond remembers.
     pub fn memory(self) -> usize {
         match self {
-            Self::Pmb | Self::Lps => 0,
+            Self::Pmb | Self::Lps | Self::Flat => 0,
+            Self::Yield => 1,
             Self::Ves | Self::Eps => 2,
         }
     }
@@ -80,11 +92,20 @@ pub struct Law {
     pub influence: Influence,
     /// Moduli by type − 1.
     pub moduli: Vec<Moduli>,
+    /// Stretches below which bonds flow, by pair of types (row by row); empty where none do.
+    pub yields: Vec<f64>,
     /// The time step of the last force evaluation: relaxation depends on it.
     pub dt: f64,
 }
 
 impl Law {
+    /// The (negative) stretch at which bonds between two types begin to flow.
+    pub fn yields(&self, a: u16, b: u16) -> f64 {
+        let types = self.moduli.len();
+        let place = (usize::from(a) - 1) * types + usize::from(b) - 1;
+        self.yields.get(place).copied().unwrap_or(f64::NEG_INFINITY)
+    }
+
     /// The moduli of a type.
     pub fn of(&self, kind: u16) -> Moduli {
         self.moduli.get(usize::from(kind) - 1).copied().unwrap_or_default()

@@ -31,6 +31,8 @@ pub struct PairConstants {
     pub alpha: f64,
     /// Horizon.
     pub horizon: f64,
+    /// Stretch at which bonds begin to flow.
+    pub yields: f64,
     /// Weight of partial volumes: min(1, `weight[0] - weight[1] |xi|`).
     pub weight: [f64; 2],
 }

@@ -5,12 +5,14 @@ use std::sync::Mutex;
 use crate::diag::{Code, Diagnostic, Result};
 
 mod cells;
+mod crack;
 pub mod lattice;
 pub mod law;
 pub mod list;
 mod measures;
 
 pub use cells::Cells;
+pub use crack::Crack;
 pub use law::{Influence, Law, LawKind, Moduli};
 pub use measures::Measures;
 
@@ -283,6 +285,8 @@ pub struct Families {
     pub family_volume: Vec<f64>,
     /// Number of partners at the start, per particle.
     pub family_size: Vec<u16>,
+    /// Particles whose bonds never break; empty if there are none.
+    pub lasting: Vec<bool>,
     /// Whether a particle may have lost a bond: damage need not be counted elsewhere.
     pub hurt: Vec<bool>,
     /// Pairs without a living bond that may come into short-range contact.

@@ -391,7 +391,7 @@ pub unsafe fn run<K: StateKernels, W: BondLaw>(
         if a.various.is_some() {
             return K::pull::<W, CLOSED, true, true, true>(a, s);
         }
-        if W::MEMORY > 0 {
+        if !W::SERIES {
             return K::pull::<W, CLOSED, true, true, false>(a, s);
         }
         match (degree, masked, track) {

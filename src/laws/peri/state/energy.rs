@@ -1,8 +1,11 @@
 //! Energy and virial under state-based laws.
 
 use super::super::single::Single;
-use super::law::{BondLaw, Elastic, Ends, Plastic, PlasticLammps, Stretch, Viscous, ViscousLammps, closed};
-use super::list::bond;
+use super::law::{
+    BondLaw, Elastic, Ends, Flattened, Plastic, PlasticLammps, Stretch, Viscous, ViscousLammps, Yielding,
+    closed,
+};
+use super::list::{Weighing, bond};
 use super::settle::{columns_of, moment};
 use crate::world::families::lattice::{LANES, LatticeBody, PAD};
 use crate::world::families::law::{COLUMNS, SiteState};
@@ -63,8 +66,7 @@ fn lattice(families: &Families, view: &PeriView, body: &LatticeBody, t: &mut Per
         for e in 0..entries {
             let xi = body.xi(e);
             let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let omega = law.influence.of(length, body.horizon);
-            let share = omega * options.volume.weight(length, body.horizon, options.lattice_spacing);
+            let weight = options.volume.weight(length, body.horizon, options.lattice_spacing);
             for cell in row.start as usize..(row.start + row.len) as usize {
                 if !body.lives(cell, e) {
                     continue;
@@ -74,6 +76,10 @@ fn lattice(families: &Families, view: &PeriView, body: &LatticeBody, t: &mut Per
                 let z = body.z(1, cell, to, e);
                 let first = (cell / LANES * entries + e) * numbers * LANES + cell % LANES;
                 let ends = [body.particle[cell] as usize, body.particle[to] as usize];
+                let (a, b) = (view.kind[ends[0]], view.kind[ends[1]]);
+                let c = families.table.get(a, b).map_or(0.0, |k| k.c);
+                let (omega, share) =
+                    Weighing::of(law).weigh(length, weight, (c, body.horizon, law.yields(a, b)));
                 add(
                     families,
                     view,
@@ -114,7 +120,7 @@ fn listed(families: &Families, view: &PeriView, list: &ListBody, period: [f64; 3
     for i in 0..list.record.len() {
         for k in list.own(i).filter(|&k| list.lives(k)) {
             let j = list.partner[k] as usize;
-            let b = bond(list, (i, j), period, law.influence, options);
+            let b = bond(list, (i, j), period, Weighing::of(law), options);
             let ends = [i, j].map(|r| list.particle[r] as usize);
             add(
                 families,
@@ -140,6 +146,15 @@ fn listed(families: &Families, view: &PeriView, list: &ListBody, period: [f64; 3
     }
 }
 
+/// Adds an energy density of a particle, or with its volume an energy.
+fn share_out(t: &mut PeriTally, p: usize, density: f64, volume: Option<f64>) {
+    let energy = density * volume.unwrap_or(1.0);
+    t.energy += energy;
+    if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
+        atoms[p] += energy;
+    }
+}
+
 /// Adds one bond's energies and virial.
 fn add(families: &Families, view: &PeriView, b: &Bond, t: &mut PeriTally) {
     let (law, options) = (&families.law, &families.options);
@@ -150,6 +165,20 @@ fn add(families: &Families, view: &PeriView, b: &Bond, t: &mut PeriTally) {
     for end in 0..2 {
         let (p, at) = (b.ends[end], b.at[end]);
         let m = b.state.weighted[at];
+        if law.kind.bond_based() {
+            // Each end has half of the bond's energy.
+            let square = match law.kind {
+                LawKind::Flat if s < b.omega => b.omega * (2.0 * s - b.omega),
+                _ => (s - b.memory[0]).powi(2),
+            };
+            share_out(
+                t,
+                p,
+                0.25 * b.share * b.length * b.length * square * b.volume[1 - end],
+                newton.then_some(b.volume[end]),
+            );
+            continue;
+        }
         if m <= 0.0 {
             continue;
         }
@@ -165,14 +194,8 @@ fn add(families: &Families, view: &PeriView, b: &Bond, t: &mut PeriTally) {
         let partner = b.volume[1 - end];
         let shear = 15.0 * law.of(view.kind[p]).shear / m;
         let half = if compat { 0.25 } else { 0.5 };
-        let mut energy = half * shear * b.share * b.length * b.length * square * partner;
-        if newton {
-            energy *= b.volume[end];
-        }
-        t.energy += energy;
-        if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
-            atoms[p] += energy;
-        }
+        let energy = half * shear * b.share * b.length * b.length * square * partner;
+        share_out(t, p, energy, newton.then_some(b.volume[end]));
     }
     let columns = |at: usize| -> [Single; COLUMNS] {
         let count = columns_of(law.kind, compat);
@@ -185,6 +208,8 @@ fn add(families: &Families, view: &PeriView, b: &Bond, t: &mut PeriTally) {
     let (near, far) = unsafe {
         match (law.kind, compat) {
             (LawKind::Pmb | LawKind::Lps, _) => Elastic::pull(&b.stretch, omega, &ends, &mut memory, &now),
+            (LawKind::Yield, _) => Yielding::pull(&b.stretch, omega, &ends, &mut memory, &now),
+            (LawKind::Flat, _) => Flattened::pull(&b.stretch, omega, &ends, &mut memory, &now),
             (LawKind::Ves, false) => Viscous::pull(&b.stretch, omega, &ends, &mut memory, &now),
             (LawKind::Ves, true) => ViscousLammps::pull(&b.stretch, omega, &ends, &mut memory, &now),
             (LawKind::Eps, false) => Plastic::pull(&b.stretch, omega, &ends, &mut memory, &now),

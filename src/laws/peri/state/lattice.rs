@@ -4,7 +4,8 @@ use super::super::chunk::Chunk;
 use super::super::lattice::{Sweep, extent, open};
 use super::chunk::{Cells, StateKernels, run, run_term};
 use super::law::{
-    Dilatation, Elastic, Moment, Norm, NormLammps, Plastic, PlasticLammps, Term, Viscous, ViscousLammps,
+    Dilatation, Elastic, Flattened, Moment, Norm, NormLammps, Plastic, PlasticLammps, Term, Viscous,
+    ViscousLammps, Yielding,
 };
 use crate::par::Shared;
 use crate::world::families::lattice::{LANES, LatticeBody, PAD};
@@ -59,6 +60,8 @@ impl States<'_> {
         unsafe {
             match (self.kind, self.compat) {
                 (LawKind::Lps | LawKind::Pmb, _) => run::<K, Elastic>(data, &cells, degree, masked, track),
+                (LawKind::Yield, _) => run::<K, Yielding>(data, &cells, degree, masked, track),
+                (LawKind::Flat, _) => run::<K, Flattened>(data, &cells, degree, masked, track),
                 (LawKind::Ves, false) => run::<K, Viscous>(data, &cells, degree, masked, track),
                 (LawKind::Ves, true) => run::<K, ViscousLammps>(data, &cells, degree, masked, track),
                 (LawKind::Eps, false) => run::<K, Plastic>(data, &cells, degree, masked, track),

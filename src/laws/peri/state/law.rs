@@ -41,6 +41,8 @@ pub trait BondLaw: Sync {
     const COLUMNS: usize;
     /// Numbers that a bond remembers, at most two.
     const MEMORY: usize;
+    /// Whether s/(1 + s) is all it needs of the stretch: there are series for that.
+    const SERIES: bool = false;
     /// The pull on the first end and on the second, over ω w V; `memory` is brought up to date.
     ///
     /// # Safety
@@ -75,6 +77,7 @@ pub struct Elastic;
 impl BondLaw for Elastic {
     const COLUMNS: usize = 2;
     const MEMORY: usize = 0;
+    const SERIES: bool = true;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(
         bond: &Stretch<L>,
@@ -222,6 +225,47 @@ impl BondLaw for PlasticLammps {
     }
 }
 
+/// A microelastic bond that flows where its elastic stretch is below a limit, which stands in the place of ω; what has
+/// flowed is remembered (Walayat et al. 2023, Eq. 6).
+pub struct Yielding;
+
+impl BondLaw for Yielding {
+    const COLUMNS: usize = 0;
+    const MEMORY: usize = 1;
+    #[inline(always)]
+    unsafe fn pull<L: Lanes>(
+        bond: &Stretch<L>,
+        limit: L,
+        _: &Ends<L>,
+        memory: &mut [L; 2],
+        moment: &Moment,
+    ) -> (L, L) {
+        // SAFETY: passed on to the caller.
+        unsafe {
+            let excess = bond.s.sub(memory[0]).sub(limit).min(L::splat(0.0));
+            memory[0] = excess.fma(L::splat(moment.flow), memory[0]);
+            let pull = bond.s.sub(memory[0]).mul(bond.inverse);
+            (pull, pull)
+        }
+    }
+}
+
+/// The same equation taken literally, as a function of the stretch.
+pub struct Flattened;
+
+impl BondLaw for Flattened {
+    const COLUMNS: usize = 0;
+    const MEMORY: usize = 0;
+    #[inline(always)]
+    unsafe fn pull<L: Lanes>(bond: &Stretch<L>, limit: L, _: &Ends<L>, _: &mut [L; 2], _: &Moment) -> (L, L) {
+        // SAFETY: passed on to the caller.
+        unsafe {
+            let pull = bond.s.max(limit).mul(bond.inverse);
+            (pull, pull)
+        }
+    }
+}
+
 /// The dilatation: Σ ω w |xi|² s V = mθ/3.
 pub struct Dilatation;
 
@@ -350,6 +394,30 @@ mod tests {
         // SAFETY: plain arithmetic.
         unsafe { Viscous::pull(&b, Single(1.0), &ends, &mut memory, &look) };
         assert_eq!(kept.map(|m| m.0), memory.map(|m| m.0));
+    }
+
+    #[test]
+    fn a_cycle_of_a_bond_that_yields() {
+        // Walayat et al. 2023, Eq. 6: a plateau in compression; after unloading the bond is left shorter.
+        let (limit, ends) = (Single(-0.02), [end([0.0; COLUMNS]); 2]);
+        let mut memory = [Single(0.0); 2];
+        for (s, plastic, flat) in [
+            (0.01, 0.01, 0.01),
+            (-0.01, -0.01, -0.01),
+            (-0.05, -0.02, -0.02),
+            (-0.03, 0.0, -0.02),
+            (0.0, 0.03, 0.0),
+        ] {
+            // SAFETY: plain arithmetic.
+            unsafe {
+                let (p, _) = Yielding::pull(&bond(s), limit, &ends, &mut memory, &NOW);
+                let (f, _) = Flattened::pull(&bond(s), limit, &ends, &mut [Single(0.0); 2], &NOW);
+                assert!(
+                    (p.0 * (1.0 + s) - plastic).abs() < 1e-16 && (f.0 * (1.0 + s) - flat).abs() < 1e-16,
+                    "{s}"
+                );
+            }
+        }
     }
 
     #[test]

@@ -6,15 +6,15 @@ use super::super::lattice::{MAY_BREAK, Mode, SQUEEZED, least_critical};
 use super::super::list::reach_of;
 use super::super::single::Single;
 use super::law::{
-    BondLaw, Dilatation, Elastic, Ends, Moment, Norm, NormLammps, Plastic, PlasticLammps, Stretch, Term,
-    Viscous, ViscousLammps, closed,
+    BondLaw, Dilatation, Elastic, Ends, Flattened, Moment, Norm, NormLammps, Plastic, PlasticLammps, Stretch,
+    Term, Viscous, ViscousLammps, Yielding, closed,
 };
 use super::settle::{Settling, Sites};
 use super::window;
 use crate::par::{self, Shared};
 use crate::world::families::law::COLUMNS;
 use crate::world::families::list::{ListBody, PairConstants};
-use crate::world::families::{FamilyOptions, Influence, LawKind, PeriView, Window};
+use crate::world::families::{FamilyOptions, Influence, Law, LawKind, PeriView, Window};
 
 /// The sweeps over the list.
 pub fn body(
@@ -49,7 +49,7 @@ pub fn body(
             options,
             period,
             moment: settling.moment,
-            influence: settling.law.influence,
+            weighing: Weighing::of(settling.law),
             numbers: kind.memory(),
         };
         let slabs = list.slabs();
@@ -69,10 +69,12 @@ pub fn body(
         list.state.sums = sums;
     };
     let moving = list.moving.clone();
-    add_up(list, &|s, slab, sums| {
-        s.add_up::<Dilatation>(slab, &moving, &mut window(windows), sums);
-    });
-    settling.dilatations(&mut list.state, &sites);
+    if !kind.bond_based() {
+        add_up(list, &|s, slab, sums| {
+            s.add_up::<Dilatation>(slab, &moving, &mut window(windows), sums);
+        });
+        settling.dilatations(&mut list.state, &sites);
+    }
     if kind == LawKind::Eps {
         add_up(list, &|s, slab, sums| match settling.compat {
             true => s.add_up::<NormLammps>(slab, &active, &mut window(windows), sums),
@@ -85,6 +87,8 @@ pub fn body(
         let w = &mut window(windows);
         match (kind, settling.compat) {
             (LawKind::Pmb | LawKind::Lps, _) => s.pull::<Elastic>(slab, &active, w, f),
+            (LawKind::Yield, _) => s.pull::<Yielding>(slab, &active, w, f),
+            (LawKind::Flat, _) => s.pull::<Flattened>(slab, &active, w, f),
             (LawKind::Ves, false) => s.pull::<Viscous>(slab, &active, w, f),
             (LawKind::Ves, true) => s.pull::<ViscousLammps>(slab, &active, w, f),
             (LawKind::Eps, false) => s.pull::<Plastic>(slab, &active, w, f),
@@ -126,8 +130,35 @@ struct Sweep<'a> {
     options: &'a FamilyOptions,
     period: [f64; 3],
     moment: Moment,
-    influence: Influence,
+    weighing: Weighing,
     numbers: usize,
+}
+
+/// What a bond counts.
+#[derive(Clone, Copy)]
+pub enum Weighing {
+    /// ω w.
+    Influence(Influence),
+    /// c w/|xi|, with the stretch at which it flows in the place of ω.
+    Bond,
+}
+
+impl Weighing {
+    /// That of a law.
+    pub fn of(law: &Law) -> Self {
+        if law.kind.bond_based() { Self::Bond } else { Self::Influence(law.influence) }
+    }
+
+    /// ω and ω w, or what stands for them.
+    pub fn weigh(self, length: f64, weight: f64, (c, horizon, yields): (f64, f64, f64)) -> (f64, f64) {
+        match self {
+            Self::Bond => (yields, c * weight / length),
+            Self::Influence(influence) => {
+                let omega = influence.of(length, horizon);
+                (omega, omega * weight)
+            }
+        }
+    }
 }
 
 /// One bond.
@@ -151,7 +182,7 @@ pub fn bond(
     body: &ListBody,
     (i, j): (usize, usize),
     period: [f64; 3],
-    influence: Influence,
+    weighing: Weighing,
     options: &FamilyOptions,
 ) -> Bond {
     let (a, b) = (&body.record[i], &body.record[j]);
@@ -176,8 +207,8 @@ pub fn bond(
     if !live {
         (stretch.s, stretch.share) = (Single(0.0), Single(0.0));
     }
-    let omega = influence.of(length, pair.horizon);
-    let share = omega * (pair.weight[0] - pair.weight[1] * length).min(1.0);
+    let weight = (pair.weight[0] - pair.weight[1] * length).min(1.0);
+    let (omega, share) = weighing.weigh(length, weight, (pair.c, pair.horizon, pair.yields));
     Bond { y, z: if live { z } else { 0.0 }, length, omega, share, stretch }
 }
 
@@ -221,7 +252,7 @@ impl Sweep<'_> {
             let mut sum = 0.0;
             for k in body.own(i).filter(|&k| body.lives(k)) {
                 let j = body.partner[k] as usize;
-                let b = bond(body, (i, j), self.period, self.influence, self.options);
+                let b = bond(body, (i, j), self.period, self.weighing, self.options);
                 let ends: Ends<Single> = [near, self.columns(j, T::COLUMNS)];
                 // SAFETY: plain arithmetic.
                 let (a, c) = unsafe { T::terms(&b.stretch, Single(b.omega), &ends, &self.recall(k)) };
@@ -295,7 +326,7 @@ impl Sweep<'_> {
         let (mut high, mut low, mut sum) = (0.0f64, 0.0f64, [0.0; 3]);
         for k in body.own(i).filter(|&k| body.lives(k)) {
             let j = body.partner[k] as usize;
-            let b = bond(body, (i, j), self.period, self.influence, self.options);
+            let b = bond(body, (i, j), self.period, self.weighing, self.options);
             let ends: Ends<Single> = [near, self.columns(j, W::COLUMNS)];
             let mut memory = self.recall(k);
             // SAFETY: plain arithmetic.

@@ -132,8 +132,10 @@ fn lattice_body<K: Kernels + chunk::StateKernels>(
         });
         body.state.sums = sums;
     };
-    add_up(body, Sum::Dilatation, states);
-    settling.dilatations(&mut body.state, &sites);
+    if !kind.bond_based() {
+        add_up(body, Sum::Dilatation, states);
+        settling.dilatations(&mut body.state, &sites);
+    }
     if kind == LawKind::Eps {
         add_up(body, if settling.compat { Sum::NormLammps } else { Sum::Norm }, spread);
         settling.flow(&mut body.state, &sites);

@@ -146,6 +146,7 @@ impl Settling<'_> {
 /// Columns that a law uses.
 pub fn columns_of(kind: LawKind, compat: bool) -> usize {
     match (kind, compat) {
+        (LawKind::Yield | LawKind::Flat, _) => 0,
         (LawKind::Pmb | LawKind::Lps, _) | (LawKind::Ves, false) => 2,
         (LawKind::Ves, true) => 3,
         (LawKind::Eps, false) => 4,

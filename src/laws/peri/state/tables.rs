@@ -6,7 +6,7 @@ use super::chunk::OMEGA;
 use crate::world::families::lattice::{CONSTANTS, LANES, LatticeBody, PAD};
 use crate::world::families::law::SiteState;
 use crate::world::families::list::ListBody;
-use crate::world::families::{FamilyOptions, ForceUnit, Law, PeriView};
+use crate::world::families::{FamilyOptions, ForceUnit, Law, PeriView, PmbTable};
 
 /// √(1 + z) − 1 = Σ `STRETCH[k]` z^(k + 1): the binomial series.
 const STRETCH: [f64; 8] = [
@@ -20,19 +20,29 @@ const STRETCH: [f64; 8] = [
     -429.0 / 32768.0,
 ];
 
-/// Fills the tables of constants: the same for all pairs of types, since moduli belong to the ends. `volume` is that of
+/// Fills the tables of constants: under state-based laws the same for all pairs of types, since moduli belong to the
+/// ends; under bond-based ones c/|xi| stands for ω, and the place of ω has the stretch at which bonds flow. `volume` is that of
 /// all sites, or 1 where they have various ones.
-pub fn fill(body: &mut LatticeBody, options: &FamilyOptions, law: &Law, volume: f64) {
+pub fn fill(body: &mut LatticeBody, table: &PmbTable, options: &FamilyOptions, law: &Law, volume: f64) {
     let forces = if options.unit == ForceUnit::Newton { volume * volume } else { volume };
     body.tables.clear();
     body.state.tables.clear();
-    for _ in 0..body.kinds.len().pow(2) {
+    let n = body.kinds.len();
+    for pair in 0..n * n {
+        let (a, b) = (body.kinds[pair / n], body.kinds[pair % n]);
+        let c = table.get(a, b).map_or(0.0, |k| k.c);
         for e in 0..body.stencil.len() {
             let xi = body.xi(e);
             let square = xi.iter().map(|x| x * x).sum::<f64>();
             let length = square.sqrt();
-            let omega = law.influence.of(length, body.horizon);
-            let share = omega * options.volume.weight(length, body.horizon, options.lattice_spacing);
+            let weight = options.volume.weight(length, body.horizon, options.lattice_spacing);
+            let (omega, share) = match law.kind.bond_based() {
+                true => (law.yields(a, b), c * weight / length),
+                false => {
+                    let omega = law.influence.of(length, body.horizon);
+                    (omega, omega * weight)
+                }
+            };
             let mut row = [0.0; CONSTANTS];
             row[constant::XI..constant::XI + 3].copy_from_slice(&xi);
             row[constant::DEAD] = options.dead_band(length) * square;

@@ -3,6 +3,7 @@
 use super::{Pair, Solid};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::plan::{Access, Beat, Op, Stage, Tick};
+use crate::styles::command::peri_crack::missed;
 use crate::world::families::{Bounds, Families, FamilyOptions, ForceUnit, PeriTally, PeriView};
 use crate::world::{Domain, World};
 
@@ -93,6 +94,24 @@ impl Force {
             }
         };
         w.families = Some(families);
+        self.mark(w)
+    }
+
+    /// Cracks that have waited for families, and particles whose bonds never break.
+    fn mark(&self, w: &mut World) -> Result<()> {
+        let Some(mut families) = w.families.take() else { return Ok(()) };
+        for crack in std::mem::take(&mut w.cracks) {
+            if families.cut(&view(w)?, |a, b| crack.cuts(a, b)) == 0 {
+                return Err(missed(&crack).into());
+            }
+        }
+        families.lasting.clear();
+        if !self.style.lasting.is_empty() {
+            let start = families.reference.as_deref().unwrap_or(&w.particles.x0);
+            let lasts = |x: &[f64; 3]| self.style.lasting.iter().any(|r| r.contains(*x));
+            families.lasting = start.iter().map(lasts).collect();
+        }
+        w.families = Some(families);
         Ok(())
     }
 
@@ -123,7 +142,11 @@ impl Force {
     }
 }
 
-fn view(w: &World) -> Result<PeriView<'_>> {
+/// What families need to know of particles.
+///
+/// # Errors
+/// Without a box.
+pub fn view(w: &World) -> Result<PeriView<'_>> {
     let Domain { lo, hi, .. } = *w.domain()?;
     let p = &w.particles;
     let bounds = Bounds { lo, hi, periodic: w.domain()?.periodic() };

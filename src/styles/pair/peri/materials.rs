@@ -1,6 +1,6 @@
 //! Coefficients of peridynamic bonds from materials: `pair_coeff … material ID …` and `pair_coeff … mix RULE`.
 
-use super::{Coeff, short_range};
+use super::{Coeff, below_zero, short_range};
 use crate::diag::{Code, Diagnostic, Result, Severity, Span, fail, nearest};
 use crate::lang::Args;
 use crate::laws::peri::moduli::{self, BOND_NU, Elastic, Form, Mix};
@@ -93,7 +93,7 @@ impl Materials {
 impl Stuff {
     /// What LAMMPS would have been told: c, horizon, s00, alpha.
     fn coeff(&self) -> PmbCoeff {
-        let states = self.law.has_states();
+        let states = !self.law.bond_based();
         let c = match states {
             true => short_range(self.solid.bulk(), self.horizon),
             false => self.form.micro_modulus(self.solid, self.horizon),
@@ -143,6 +143,7 @@ impl Stuff {
             density: rule.mean(self.density, other.density),
             strength,
             alpha: rule.mean(self.alpha, other.alpha),
+            extra: Moduli { syc: -rule.mean(-self.extra.syc, -other.extra.syc), ..self.extra },
             ..*self
         })
     }
@@ -153,7 +154,7 @@ impl Stuff {
             Some(Strength::FractureEnergy(g)) => g,
             _ => {
                 let p = self.coeff();
-                match self.law.has_states() {
+                match !self.law.bond_based() {
                     true => moduli::fracture_energy_of_states(p.s00, self.solid, p.horizon),
                     false => moduli::fracture_energy(p.s00, p.c, p.horizon),
                 }
@@ -169,6 +170,7 @@ fn keywords(law: LawKind) -> &'static [&'static str] {
         LawKind::Lps => &[],
         LawKind::Ves => &["lambda", "tau"],
         LawKind::Eps => &["yield"],
+        LawKind::Yield | LawKind::Flat => &["form", "syc"],
     }
 }
 
@@ -188,9 +190,9 @@ fn stuff(law: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
     let mut horizon = None;
     let mut s = of(m, law);
     let mut chosen = false;
-    let mut missing: Vec<&str> = if law.has_states() { keywords(law).to_vec() } else { vec![] };
+    let mut missing: Vec<&str> = keywords(law).iter().copied().filter(|k| *k != "form").collect();
     let known: Vec<&'static str> = [&["horizon", "s00", "alpha"], keywords(law)].concat();
-    while let Some(word) = args.peek() {
+    while let Some(word) = args.peek().filter(|w| !matches!(w.text.as_str(), "plastic" | "nonlinear")) {
         let key = args.choice("keyword of a material", &known)?;
         missing.retain(|k| *k != key);
         match key {
@@ -213,6 +215,11 @@ fn stuff(law: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
                     return fail(Code::BAD_VALUE, at, "lambda is the share of G that relaxes: from 0 to 1");
                 }
             }
+            "syc" => {
+                let at = args.here();
+                s.extra.syc = args.number("syc")?;
+                below_zero(s.extra.syc, at)?;
+            }
             "tau" => s.extra.tau = args.positive("tau")?,
             "yield" => s.extra.yield_stress = args.positive("the yield stress")?,
             _ => s.alpha = args.non_negative("alpha")?,
@@ -234,7 +241,7 @@ fn stuff(law: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
         let text = format!("this style needs `{key}` beside the material");
         return fail(Code::MISSING_ARGUMENT, args.here(), text);
     }
-    if !law.has_states() && s.solid.defies_bonds() {
+    if law.bond_based() && s.solid.defies_bonds() {
         let said = poisson(&id.text, &s, id.span);
         // Who names the modulus to keep knows that the others are off.
         cx.note(if chosen { Diagnostic { severity: Severity::Note, ..said } } else { said });

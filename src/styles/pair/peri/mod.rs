@@ -6,22 +6,26 @@ mod horizon;
 mod lps;
 pub mod materials;
 mod options;
+mod plastic;
 mod pmb;
 mod ves;
 
 use super::{Pair, TypePairs};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::Args;
+use crate::laws::peri::calibration::constants;
 use crate::plan::Op;
 use crate::styles::{BuildCx, SealCx};
-use crate::world::World;
 use crate::world::families::{
     FamilyOptions, ForceUnit, Law, LawKind, Layout, Moduli, PmbCoeff, PmbTable, VolumeRule,
 };
+use crate::world::{Region, World};
 pub use eps::PeriEps;
 use force::Force;
+pub use force::view;
 pub use lps::PeriLps;
 use materials::Materials;
+pub use plastic::PeriPmbPlastic;
 pub use pmb::PeriPmb;
 pub use ves::PeriVes;
 
@@ -37,6 +41,19 @@ struct Solid {
     /// `peri_modify force`, if it was said.
     unit: Option<ForceUnit>,
     volume: VolumeRule,
+    calibrate: Calibrate,
+    /// The rule of unloading that a line has said.
+    unloading: Option<LawKind>,
+    /// Regions whose particles' bonds never break.
+    lasting: Vec<Region>,
+}
+
+/// Which constant of the lattice the micro-modulus makes right.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Calibrate {
+    No,
+    Bulk,
+    Young,
 }
 
 /// Starts a style: particles must have volumes.
@@ -59,6 +76,9 @@ fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair
         raw: false,
         unit: None,
         volume: VolumeRule::Lammps,
+        calibrate: Calibrate::No,
+        unloading: None,
+        lasting: vec![],
     }))
 }
 
@@ -68,7 +88,7 @@ type Coeff = (PmbCoeff, Moduli);
 /// Reads the coefficients of a law as LAMMPS writes them.
 fn numbers(kind: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
     let (mut c, mut moduli) = (0.0, Moduli::default());
-    if kind == LawKind::Pmb {
+    if kind.bond_based() {
         c = args.non_negative("the micro-modulus c")?;
     } else {
         moduli.bulk = args.positive("the bulk modulus K")?;
@@ -87,10 +107,15 @@ fn numbers(kind: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
             }
             moduli.tau = args.positive("the relaxation time tau")?;
         }
+        LawKind::Yield | LawKind::Flat => {
+            let at = args.here();
+            moduli.syc = args.number("the stretch syc at which bonds flow")?;
+            below_zero(moduli.syc, at)?;
+        }
         LawKind::Eps => moduli.yield_stress = args.positive("the yield stress")?,
-        LawKind::Pmb | LawKind::Lps => {}
+        _ => {}
     }
-    if kind != LawKind::Pmb {
+    if !kind.bond_based() {
         c = short_range(moduli.bulk, horizon);
     }
     let lc = cx.world.lattice.spacing[0];
@@ -108,6 +133,14 @@ fn numbers(kind: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
         horizon::warn(horizon / lc, lc, span, cx);
     }
     Ok((PmbCoeff { c, horizon, s00, alpha }, moduli))
+}
+
+/// Bonds flow in compression.
+fn below_zero(syc: f64, at: Span) -> Result<()> {
+    if syc < 0.0 {
+        return Ok(());
+    }
+    fail(Code::BAD_VALUE, at, format!("syc is a stretch in compression, below zero: {syc}"))
 }
 
 /// The micro-modulus whose short-range forces a state-based solid has: 18K/(πδ⁴).
@@ -146,6 +179,33 @@ impl Solid {
             || rules.exclude_groups.iter().any(|&(a, b)| has(a) && has(b))
     }
 
+    /// The rule for yielding bonds on their way back, at the end of a line.
+    fn unloading(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        if !matches!(self.law.kind, LawKind::Yield | LawKind::Flat) {
+            return Ok(());
+        }
+        let at = args.here();
+        let said = match args.peek_text() {
+            "plastic" => LawKind::Yield,
+            "nonlinear" => LawKind::Flat,
+            _ if self.unloading.is_some() => return Ok(()),
+            _ => LawKind::Yield,
+        };
+        if self.unloading.is_some_and(|known| known != said) {
+            let text = "another pair has the other rule of unloading: one rule holds for all";
+            return fail(Code::CONFLICT, at, text);
+        }
+        if matches!(args.peek_text(), "plastic" | "nonlinear") {
+            args.next();
+            self.unloading = Some(said);
+        }
+        if cx.world.families.is_some() && self.law.kind != said {
+            return fail(Code::WRONG_ORDER, at, "the rule of unloading cannot change after the first run");
+        }
+        self.law.kind = said;
+        Ok(())
+    }
+
     /// Whether two bonded types relax differently: the one number that a bond remembers cannot serve both.
     fn relaxes_apart(&self) -> Option<(u16, u16)> {
         let types = self.table.types() as u16;
@@ -166,6 +226,25 @@ impl Solid {
             skip_rest: !s.no_skipping,
             portable: s.portable,
         }
+    }
+
+    /// The coefficients with micro-moduli that are right on a simple cubic lattice of this spacing.
+    fn calibrated(&self, spacing: f64, span: Span) -> Result<PmbTable> {
+        let mut table = self.table.clone();
+        if self.calibrate == Calibrate::No || !self.law.kind.bond_based() {
+            return Ok(table);
+        }
+        let types = table.types() as u16;
+        for (i, j) in (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j))) {
+            let Some(own) = self.table.get(i, j).copied() else { continue };
+            let lattice = constants(own.horizon / spacing, self.volume);
+            let ratio = if self.calibrate == Calibrate::Bulk { lattice.bulk } else { lattice.young };
+            if lattice.neighbours == 0 {
+                self.cannot(span, "cannot be calibrated: its horizon reaches no neighbour")?;
+            }
+            table.set(i, j, PmbCoeff { c: own.c / ratio, ..own })?;
+        }
+        Ok(table)
     }
 
     fn cannot(&self, span: Span, why: &str) -> Result<()> {
@@ -189,6 +268,7 @@ impl Pair for Solid {
                 numbers(self.law.kind, args, cx)?
             }
         };
+        self.unloading(args, cx)?;
         if self.raw && !self.materials.is_empty() {
             return Err(Diagnostic::error(
                 Code::CONFLICT,
@@ -202,6 +282,13 @@ impl Pair for Solid {
             self.table.set(i, j, coeff).map_err(|e| e.at(span))?;
             if i == j {
                 self.law.moduli[usize::from(i) - 1] = moduli;
+            }
+            let types = self.table.types();
+            if matches!(self.law.kind, LawKind::Yield | LawKind::Flat) {
+                self.law.yields.resize(types * types, f64::NEG_INFINITY);
+                let (a, b) = (usize::from(i) - 1, usize::from(j) - 1);
+                self.law.yields[a * types + b] = moduli.syc;
+                self.law.yields[b * types + a] = moduli.syc;
             }
         }
         Ok(())
@@ -247,7 +334,9 @@ impl Pair for Solid {
             &format!("neighbour list of {}", self.name),
             "bonds never change partners; close pairs are found by their stretch",
         );
-        Ok(vec![Box::new(Force::new(self.clone(), options))])
+        let mut style = self.clone();
+        style.table = self.calibrated(a, span)?;
+        Ok(vec![Box::new(Force::new(style, options))])
     }
 
     fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
@@ -262,7 +351,7 @@ impl Pair for Solid {
         let types = self.table.types() as u16;
         let stiffest = |i: u16| {
             let all = (1..=types).filter_map(|j| self.table.get(i, j));
-            if self.law.kind == LawKind::Pmb {
+            if self.law.kind.bond_based() {
                 // Bonds sum up to 2π c δ² over a whole ball (Silling & Askari 2005, equation 34).
                 return all.map(|p| std::f64::consts::PI * p.c * p.horizon * p.horizon).reduce(f64::max);
             }

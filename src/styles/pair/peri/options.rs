@@ -1,12 +1,12 @@
 //! `peri_modify`: options of peridynamic styles.
 
-use super::Solid;
+use super::{Calibrate, Solid};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
 use crate::styles::BuildCx;
-use crate::world::families::{ForceUnit, Influence, LawKind, VolumeRule};
+use crate::world::families::{ForceUnit, Influence, VolumeRule};
 
-const KNOWN: [&str; 3] = ["force", "volume", "influence"];
+const KNOWN: [&str; 5] = ["force", "volume", "influence", "calibrate", "nofail"];
 
 /// Reads the words of a `peri_modify`.
 ///
@@ -40,7 +40,7 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
                 };
             }
             "influence" => {
-                if style.law.kind == LawKind::Pmb {
+                if style.law.kind.bond_based() {
                     let text =
                         "peri_modify influence concerns state-based styles: peri/lps, peri/ves, peri/eps";
                     return fail(Code::CONFLICT, word.span, text);
@@ -49,7 +49,23 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
                 let found = Influence::NAMES.iter().find(|n| n.0 == name);
                 style.law.influence = found.map_or_else(Influence::default, |n| n.1);
             }
-            "calibrate" | "broken" | "family" | "nofail" => {
+            "calibrate" => {
+                let how = args.choice("what to calibrate", &["no", "bulk", "young"])?;
+                if !style.law.kind.bond_based() && how != "no" {
+                    let text = "peri_modify calibrate concerns bond-based styles: a state-based solid has its bulk modulus on any lattice";
+                    return fail(Code::CONFLICT, word.span, text);
+                }
+                style.calibrate = match how {
+                    "bulk" => Calibrate::Bulk,
+                    "young" => Calibrate::Young,
+                    _ => Calibrate::No,
+                };
+            }
+            "nofail" => {
+                args.choice("what lasts", &["region"])?;
+                style.lasting.push(cx.region(args.expect("a region")?)?.clone());
+            }
+            "broken" | "family" => {
                 return fail(
                     Code::NOT_SUPPORTED,
                     word.span,
