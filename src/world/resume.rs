@@ -52,7 +52,13 @@ impl World {
         let columns = self.columns.split_off(|name| !belongs(name));
         let names: Vec<String> = self.memo.keys().filter(|name| belongs(name)).cloned().collect();
         let memo: Vec<_> = names.iter().filter_map(|name| self.memo.remove_entry(name)).collect();
+        // What a fix offered then it offers still: `declare` shows it the present.
+        let offered = key.rsplit('/').next().and_then(|id| self.slots.find(&format!("f_{id}")));
+        let offered = offered.map(|id| (id, self.slots.get(id).clone()));
         let outcome = declare(self);
+        if let Some((id, slot)) = offered {
+            *self.slots.get_mut(id) = slot;
+        }
         self.columns.put(columns);
         self.memo.extend(memo);
         outcome

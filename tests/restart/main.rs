@@ -80,13 +80,30 @@ const EPS_AGAIN: &str = "pair_style peri/eps\npair_coeff * * 14e9 6e9 0.0030001 
     fix 1 all nve\ntimestep 5.0e-8\ncompute flow all plasticity/atom\ncompute dsum all reduce sum c_flow\n\
     thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
 
-const SCENES: [Scene; 10] = [
+/// The block with everything that averages, keeps a list or remembers where particles were.
+const AVERAGES_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.0030001 0.0015 0.25\nneighbor 0.0006 bin\n\
+    fix 1 all nve\ntimestep 5.0e-8\ncompute m all msd com yes\ncompute mav all msd\n\
+    compute moved all displace/atom\ncompute far all reduce max c_moved[4]\n\
+    compute slabs all chunk/atom bin/1d x lower 0.002 units box\n\
+    fix t all ave/time 2 3 10 c_m[4] c_thermo_temp ave running\n\
+    fix w all ave/time 5 2 10 c_m[4] c_far ave window 3\nfix tv all ave/time 2 5 10 c_thermo_press mode vector\n\
+    fix c all ave/chunk 2 3 10 slabs vx density/number ave running\n\
+    fix cw all ave/chunk 1 7 10 slabs vx temp ave window 2\n\
+    fix h all ave/histo 5 2 10 -20 20 8 vx mode vector ave running\nfix a all ave/atom 2 4 10 vx fx\n\
+    compute ra all reduce sum f_a[1] f_a[2]\nfix keep all vector 4 c_m[4] c_far nmax 6\nfix s all store/state 15 x vx\n\
+    compute rs all reduce sum f_s[1] f_s[2]\nvariable late equal f_keep[1][1]\n\
+    thermo_style custom step pe c_m[4] c_mav[4] c_far f_t[1] f_t[2] f_w[1] f_w[2] f_tv[2] f_c[1][3] f_c[2][4] f_cw[2][3] f_h[1] \
+    f_h[4] f_h[3][2] c_ra[1] c_ra[2] c_rs[2]\n\
+    thermo_modify format float %24.17g\nthermo 10\n";
+
+const SCENES: [Scene; 11] = [
     Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
     Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
     Scene { name: "lps", make: BLOCK, again: LPS_AGAIN, steps: 60, list: false },
     Scene { name: "ves", make: BLOCK, again: VES_AGAIN, steps: 60, list: false },
     Scene { name: "eps", make: BLOCK, again: EPS_AGAIN, steps: 60, list: false },
     Scene { name: "eps, list", make: BLOCK, again: EPS_AGAIN, steps: 40, list: true },
+    Scene { name: "averages", make: BLOCK, again: AVERAGES_AGAIN, steps: 60, list: false },
     Scene { name: "pile", make: PILE, again: PILE_AGAIN, steps: 400, list: false },
     Scene { name: "stiff pile", make: PILE, again: STIFF_AGAIN, steps: 200, list: false },
     Scene { name: "older pile", make: PILE, again: OLDER_AGAIN, steps: 200, list: false },
