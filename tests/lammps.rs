@@ -147,6 +147,7 @@ decks! {
     gr2_hooke
     gr2_hooke_hist
     gran_chute
+    gran_drag
     gran_walls
     misc_cgs
     misc_micro
