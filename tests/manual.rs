@@ -98,7 +98,14 @@ const CHANGED: &[(&str, &str, &str)] = &[
 ];
 
 /// Files that examples read: name, text.
-const FILES: &[(&str, &str)] = &[("plate.inc", "print \"from the other file\"\n")];
+const FILES: &[(&str, &str)] = &[
+    ("plate.inc", "print \"from the other file\"\n"),
+    (
+        "blade.stl",
+        "solid blade\nfacet normal 0 0 1\nouter loop\nvertex -3 -3 0\nvertex 3 -3 0\nvertex 0 3 0\nendloop\nendfacet\n\
+         endsolid blade\n",
+    ),
+];
 
 /// What examples must print besides running: title, a line.
 const PRINTS: &[(&str, &str)] = &[

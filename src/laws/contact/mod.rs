@@ -10,6 +10,7 @@ pub mod elastic;
 pub mod fast;
 pub mod heat;
 pub mod law;
+pub mod mesh;
 pub mod normal;
 pub mod slider;
 pub mod tangential;

@@ -19,6 +19,11 @@ pub trait Wall: Sync {
     fn holds(&self, _near: &Near) -> bool {
         true
     }
+
+    /// Whether a contact with part `to` may go on with the springs of one with part `from` that ends.
+    fn passes(&self, _from: u32, _to: u32) -> bool {
+        false
+    }
 }
 
 /// The particles as walls see them: columns of equal length.
@@ -95,6 +100,7 @@ impl WallSweep {
         let width = law.memory();
         self.keys.clear();
         self.keys.extend(self.touching.iter().map(|t| [grains.tag[t.grain as usize], t.near.part]));
+        self.hand_over(wall, memory);
         memory.carry(&self.keys, width, &mut self.spare);
         self.wrenches.clear();
         self.wrenches.resize(self.touching.len(), Wrench::default());
@@ -138,6 +144,31 @@ impl WallSweep {
         self.touching = par::reduce(list.len(), some, join).unwrap_or_default();
     }
 
+    /// Gives contacts that begin the springs of contacts of the same particle that end, where the wall lets them pass.
+    fn hand_over(&self, wall: &dyn Wall, memory: &mut Contacts) {
+        for key in &self.keys {
+            let [tag, part] = *key;
+            if memory.keys.binary_search(key).is_ok() {
+                continue;
+            }
+            let from = memory.keys.partition_point(|k| k[0] < tag);
+            let to = memory.keys.partition_point(|k| k[0] <= tag);
+            let ends = |old: &[u32; 2]| self.keys.binary_search(old).is_err() && wall.passes(old[1], part);
+            let Some(at) = memory.keys[from..to].iter().position(ends).map(|k| from + k) else { continue };
+            memory.keys[at][1] = part;
+            // Into its place among the particle's contacts.
+            let mut at = at;
+            while at > from && memory.keys[at - 1] > memory.keys[at] {
+                swap(memory, at - 1);
+                at -= 1;
+            }
+            while at + 1 < to && memory.keys[at] > memory.keys[at + 1] {
+                swap(memory, at);
+                at += 1;
+            }
+        }
+    }
+
     /// Adds forces and torques to the particles; what the wall feels: force, and torque about `center`.
     pub fn scatter(&self, f: &mut [Vec3], torque: &mut [Vec3], x: &[Vec3], center: Vec3) -> [f64; 6] {
         let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
@@ -160,6 +191,14 @@ impl WallSweep {
     pub fn listed(&self) -> usize {
         self.list.len()
     }
+}
+
+/// Lets contact `at` and the next one change places.
+fn swap(memory: &mut Contacts, at: usize) {
+    memory.keys.swap(at, at + 1);
+    let width = memory.width;
+    let (first, second) = memory.history[at * width..][..2 * width].split_at_mut(width);
+    first.swap_with_slice(second);
 }
 
 fn join<T>(mut a: Vec<T>, mut b: Vec<T>) -> Vec<T> {

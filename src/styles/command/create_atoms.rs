@@ -1,6 +1,6 @@
 //! `create_atoms`: particles on lattice sites, single ones, at random places, or on a surface.
 
-mod mesh;
+pub mod mesh;
 mod molecules;
 mod places;
 pub(super) mod subset;

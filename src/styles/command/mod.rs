@@ -6,7 +6,7 @@ mod boundary;
 mod change_box;
 mod comm_modify;
 pub(super) mod common;
-mod create_atoms;
+pub mod create_atoms;
 mod create_bonds;
 mod create_box;
 pub mod data;

@@ -205,6 +205,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &viscous_sphere::ViscousSphere,
     &wall::gran::WallGran,
     &wall::region::WallGranRegion,
+    &wall::mesh::WallMesh,
 ];
 
 /// Takes the region after the keyword `region`.

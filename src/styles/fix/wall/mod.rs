@@ -1,13 +1,14 @@
 //! Walls of granular scenes: what the fixes wall/gran, wall/gran/region and wall/mesh have in common.
 
 pub mod gran;
+pub mod mesh;
 mod op;
 pub mod region;
 mod words;
 
 use super::Fix;
 use crate::diag::{Code, Diagnostic, Result, Span};
-use crate::laws::contact::walls::Wall;
+use crate::laws::contact::walls::{Wall, WallSweep};
 use crate::plan::{Op, Tick};
 use crate::styles::{BuildCx, SealCx, Shape};
 use crate::world::{GroupId, World};
@@ -20,12 +21,19 @@ trait Surface: Send {
 
     /// The wall as it is now.
     fn wall<'a>(&'a self, w: &'a World) -> Box<dyn Wall + 'a>;
+
+    /// Local values of the contacts that were found, [`Form::LOCAL`] columns.
+    fn local(&mut self, _w: &mut World, _contacts: &WallSweep, _t: &Tick) -> Vec<f64> {
+        vec![]
+    }
 }
 
 /// A declared wall: what its form is, and all that does not depend on the form.
 trait Form: Clone + Send + 'static {
     /// The word in the deck.
     const STYLE: &'static str;
+    /// Columns of local values.
+    const LOCAL: usize = 0;
 
     /// The wall for a run.
     ///
@@ -65,7 +73,7 @@ struct Declared<F> {
 impl<F: Form> Fix for Declared<F> {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let surface = self.form.surface(&self.common, cx)?;
-        Ok(vec![Box::new(op::WallOp::new(F::STYLE, &self.common, surface, cx))])
+        Ok(vec![Box::new(op::WallOp::new(F::STYLE, F::LOCAL, &self.common, surface, cx))])
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
@@ -74,13 +82,15 @@ impl<F: Form> Fix for Declared<F> {
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.common.key(F::STYLE));
+        let key = self.common.key(F::STYLE);
+        let inner = format!("{key}/");
+        w.memo.retain(|name, _| *name != key && !name.starts_with(&inner));
         w.wall_contacts.remove(&self.common.id);
     }
 
     fn shape(&self) -> Shape {
         let atom = self.common.contacts.then_some(op::COLUMNS);
-        Shape { vector: 6, vector_extensive: true, atom, ..Shape::default() }
+        Shape { vector: 6, vector_extensive: true, atom, local: F::LOCAL, ..Shape::default() }
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

@@ -31,6 +31,8 @@ pub struct WallOp {
     travelled: f64,
     slot: SlotId,
     contacts: bool,
+    /// Columns of local values.
+    local: usize,
     center: [f64; 3],
     log: Log,
     /// A deep overlap has been told of.
@@ -39,7 +41,13 @@ pub struct WallOp {
 
 impl WallOp {
     /// With nothing computed yet.
-    pub fn new(style: &str, common: &Common, surface: Box<dyn Surface>, cx: &mut dyn SealCx) -> Self {
+    pub fn new(
+        style: &str,
+        local: usize,
+        common: &Common,
+        surface: Box<dyn Surface>,
+        cx: &mut dyn SealCx,
+    ) -> Self {
         let compat = cx.world().settings.compat;
         Self {
             name: format!("fix {} {style}", common.id),
@@ -52,6 +60,7 @@ impl WallOp {
             travelled: 0.0,
             slot: cx.slot(&format!("f_{}", common.id)),
             contacts: common.contacts,
+            local,
             center: common.center,
             log: cx.log(),
             told: false,
@@ -105,11 +114,13 @@ impl WallOp {
         ))
     }
 
-    fn publish(&self, w: &mut World, t: &Tick, felt: [f64; 6]) {
+    fn publish(&mut self, w: &mut World, t: &Tick, felt: [f64; 6]) {
         let n = w.n();
+        let local = self.surface.local(w, &self.sweep, t);
         let mut out = w.slots.take(self.slot);
         out.vector.clear();
         out.vector.extend(felt);
+        (out.local, out.local_cols) = (local, self.local);
         if self.contacts {
             out.cols = COLUMNS;
             out.atom.clear();
