@@ -149,6 +149,9 @@ decks! {
     gran_chute
     gran_drag
     gran_walls
+    gran_drag
+    gran_deposit
+    gran_pour
     misc_cgs
     misc_micro
     misc_data_sphere

@@ -1,6 +1,6 @@
 //! Thermo keywords: what each is computed from, and its value.
 
-use crate::world::{Clock, SlotId, World};
+use crate::world::{Clock, Slot, SlotId, World};
 
 /// What a keyword's value is computed from besides the world itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,6 +118,13 @@ pub fn find(name: &str) -> Option<&'static Row> {
     KEYWORDS.iter().find(|(n, ..)| *n == name)
 }
 
+/// Kinetic energy from a temperature's values. LAMMPS takes it from the temperature itself, and so has none where no
+/// degree of freedom is left.
+fn kinetic(w: &World, temp: &Slot) -> f64 {
+    let still = w.settings.lammps() && temp.inner.first().is_some_and(|dof| *dof <= 0.0);
+    if still { 0.0 } else { temp.vector.iter().take(3).sum::<f64>() * 0.5 }
+}
+
 /// A keyword's present value; zero for what no scene here has (Coulomb, angles).
 pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
     let n = w.n() as f64;
@@ -126,7 +133,7 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
     let press = |k: usize| s.press.and_then(|id| w.slots.get(id).vector.get(k).copied()).unwrap_or(0.0);
     let pe = || scalar(s.pe) * per_atom;
     // The tensor of the temperature compute holds Σ m v v in energy units: half its trace is the energy.
-    let ke = || s.temp.map_or(0.0, |id| w.slots.get(id).vector.iter().take(3).sum::<f64>()) * 0.5 * per_atom;
+    let ke = || s.temp.map_or(0.0, |id| kinetic(w, w.slots.get(id))) * per_atom;
     let edges = |k: usize| w.domain.as_ref().map_or(0.0, |d| d.lengths()[k]);
     let lo = |k: usize| w.domain.as_ref().map_or(0.0, |d| d.lo[k]);
     let hi = |k: usize| w.domain.as_ref().map_or(0.0, |d| d.hi[k]);

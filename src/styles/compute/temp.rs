@@ -3,11 +3,11 @@
 use super::{Compute, ComputeStyle};
 use crate::diag::Result;
 use crate::lang::Args;
-use crate::plan::{Op, Stage, When};
+use crate::plan::{Op, Stage, Tick, When};
 use crate::styles::matter::{Masses, check_masses, count, sum};
 use crate::styles::step_op::{Wanted, fill};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
-use crate::world::{GroupId, SlotId};
+use crate::world::{GroupId, SlotId, World};
 
 /// The style.
 pub struct Temp;
@@ -23,7 +23,8 @@ impl Style for Temp {
             text: "Scalar (intensive): T = Σ m v² / (dof k_B) with dof = d N − `extra/dof`, where d is the dimension and \
                    `extra/dof` is d unless `compute_modify ID extra/dof n` says otherwise; 0 where dof is not \
                    positive. Vector of 6 (extensive): Σ m v_a v_b for xx yy zz xy xz yz, in energy units. N is counted \
-                   anew at each use, so that `compute_modify ID dynamic/dof` has nothing to change.",
+                   anew at each use; only under `-compat lammps` at the beginning of a run unless `compute_modify ID dynamic/dof yes` says \
+                   otherwise.",
             example: "compute t all temp",
         }
     }
@@ -32,7 +33,7 @@ impl Style for Temp {
 impl ComputeStyle for Temp {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         args.finish()?;
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, extra: None }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, extra: None, dynamic: false }))
     }
 }
 
@@ -41,6 +42,25 @@ struct Declared {
     id: String,
     group: GroupId,
     extra: Option<f64>,
+    dynamic: bool,
+}
+
+/// Degrees of freedom, which LAMMPS counts at the beginning of a run unless `dynamic/dof yes` says otherwise.
+pub(super) struct Freedom {
+    /// Counted at each use.
+    pub dynamic: bool,
+    /// What was counted when the run began.
+    pub begun: Option<f64>,
+}
+
+impl Freedom {
+    /// The number that counts, of the present one.
+    pub fn now(&mut self, w: &World, t: &Tick, present: f64) -> f64 {
+        if t.setup || self.begun.is_none() {
+            self.begun = Some(present);
+        }
+        if w.settings.lammps() && !self.dynamic { self.begun.unwrap_or(present) } else { present }
+    }
 }
 
 impl Compute for Declared {
@@ -51,7 +71,8 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, extra, span) = (self.group, self.extra, cx.span());
         check_masses(cx.world(), span)?;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "v mass mask", move |w, _, out| {
+        let mut freedom = Freedom { dynamic: self.dynamic, begun: None };
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, "v mass mask", move |w, t, out| {
             let (p, masses) = (&w.particles, Masses::of(w));
             let units = w.settings.units.constants();
             let [mv2, tensor @ ..] = sum::<7>(&p.mask, group, |i| {
@@ -60,7 +81,7 @@ impl Compute for Declared {
                 [mv2, m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z]
             });
             let dimension = if w.settings.two_dimensional { 2.0 } else { 3.0 };
-            let dof = dimension * count(w, group) as f64 - extra.unwrap_or(dimension);
+            let dof = freedom.now(w, t, dimension * count(w, group) as f64 - extra.unwrap_or(dimension));
             out.scalar = if dof > 0.0 { mv2 * (units.mvv2e / (dof * units.boltz)) } else { 0.0 };
             out.vector.clear();
             out.vector.extend(tensor.map(|k| k * units.mvv2e));
@@ -75,7 +96,7 @@ impl Compute for Declared {
         while !args.is_empty() {
             match args.choice("option of a temperature", &["extra/dof", "extra", "dynamic/dof", "dynamic"])? {
                 "extra/dof" | "extra" => self.extra = Some(args.number("the number of degrees of freedom")?),
-                _ => drop(args.flag("dynamic/dof")?),
+                _ => self.dynamic = args.flag("dynamic/dof")?,
             }
         }
         Ok(())

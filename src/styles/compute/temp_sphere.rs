@@ -1,6 +1,7 @@
 //! compute temp/sphere: temperature of spheres that fly and spin.
 
 use super::erotate_sphere::{INERTIA, needs_spheres};
+use super::temp::Freedom;
 use super::{Compute, ComputeStyle};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
@@ -26,7 +27,7 @@ impl Style for TempSphere {
                    translation. `extra/dof` of compute_modify is taken off, with `dof all` 3 (2) unless it is said, with \
                    `dof rotate` nothing. 0 where no freedom is left. Vector of 6 \
                    (extensive): Σ (m v_a v_b + I ω_a ω_b) for xx yy zz xy xz yz, in energy units. Spheres are counted anew at \
-                   each use. `bias` names a temperature that takes a flow away; there is none in perigrain, and it is \
+                   each use (see `compute temp`). `bias` names a temperature that takes a flow away; there is none in perigrain, and it is \
                    refused.",
             example: "compute t all temp/sphere",
         }
@@ -57,7 +58,7 @@ impl ComputeStyle for TempSphere {
                 _ => return Err(args.unknown(word, &["dof", "bias"])),
             }
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, rotate, extra: None }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, rotate, extra: None, dynamic: false }))
     }
 }
 
@@ -68,6 +69,7 @@ struct Declared {
     /// Rotation alone.
     rotate: bool,
     extra: Option<f64>,
+    dynamic: bool,
 }
 
 impl Declared {
@@ -90,8 +92,9 @@ impl Compute for Declared {
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let me = self.clone();
+        let mut freedom = Freedom { dynamic: self.dynamic, begun: None };
         let reads = "v omega radius mass mask";
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, t, out| {
             let p = &w.particles;
             let units = w.settings.units.constants();
             let tensor: [f64; 6] = sum(&p.mask, me.group, |i| {
@@ -101,7 +104,7 @@ impl Compute for Declared {
                 let pair = |a: usize, b: usize| fly * v[a] * v[b] + spin * o[a] * o[b];
                 [pair(0, 0), pair(1, 1), pair(2, 2), pair(0, 1), pair(0, 2), pair(1, 2)]
             });
-            let (twice, dof) = (tensor[0] + tensor[1] + tensor[2], me.freedom(w));
+            let (twice, dof) = (tensor[0] + tensor[1] + tensor[2], freedom.now(w, t, me.freedom(w)));
             out.scalar = if dof > 0.0 { twice * (units.mvv2e / (dof * units.boltz)) } else { 0.0 };
             out.vector.clear();
             out.vector.extend(tensor.map(|k| k * units.mvv2e));
@@ -116,7 +119,7 @@ impl Compute for Declared {
         while !args.is_empty() {
             match args.choice("option of a temperature", &["extra/dof", "extra", "dynamic/dof", "dynamic"])? {
                 "extra/dof" | "extra" => self.extra = Some(args.number("the number of degrees of freedom")?),
-                _ => drop(args.flag("dynamic/dof")?),
+                _ => self.dynamic = args.flag("dynamic/dof")?,
             }
         }
         Ok(())

@@ -201,12 +201,12 @@ impl Fix for Depositing {
         let slot = cx.slot(&format!("f_{}", self.id));
         let w = cx.world();
         let Some(mut account) = Account::load(w, &self.key()) else { return Ok(vec![]) };
-        if account.next.is_none() {
+        if account.next.is_none() && account.done == 0 {
             self.check_distance(w, span);
         }
         let now = w.clock.step;
         let planned = account.next.filter(|n| (now + 1..=now + self.every).contains(n));
-        account.next = Some(planned.unwrap_or(now + 1));
+        account.next = (account.done < self.count).then(|| planned.unwrap_or(now + 1));
         account.store(w, &self.key());
         w.slots.get_mut(slot).scalar = account.done as f64;
         let name = format!("fix {} deposit", self.id);
@@ -249,7 +249,7 @@ impl Op for Drop {
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let (fix, key) = (&self.fix, self.fix.key());
-        let due = |a: &Account| a.next == Some(t.step) && a.done < fix.count;
+        let due = |a: &Account| a.next == Some(t.step);
         let Some(mut account) = Account::load(w, &key).filter(due) else { return Ok(()) };
         // LAMMPS counts the steps to the next insertion.
         let offset = (t.step + fix.every - account.start) as f64 * t.dt * fix.rate;
@@ -262,7 +262,7 @@ impl Op for Drop {
             }
             None => self.failed += 1,
         }
-        account.next = Some(t.step + fix.every);
+        account.next = (account.done < fix.count).then_some(t.step + fix.every);
         account.store(w, &key);
         w.rebuild.due = true;
         publish(w, self.slot, t, account.done as f64, &[]);
