@@ -149,7 +149,6 @@ decks! {
     gran_chute
     gran_drag
     gran_walls
-    gran_drag
     gran_deposit
     gran_pour
     misc_cgs
