@@ -7,6 +7,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 ///
 /// Only [`Four::load`] makes values from nothing: who may call it may use the operators as well.
 pub trait Four: Real {
+    /// Whether it is worth compiling loops for special cases.
+    const FAST: bool;
     /// Four consecutive numbers, aligned or not.
     ///
     /// # Safety
@@ -124,6 +126,7 @@ impl Real for Plain {
 }
 
 impl Four for Plain {
+    const FAST: bool = false;
     #[inline(always)]
     unsafe fn load(p: *const f64) -> Self {
         // SAFETY: readable by the caller's promise.
@@ -243,6 +246,7 @@ mod x86 {
     }
 
     impl Four for Avx2 {
+        const FAST: bool = true;
         #[inline(always)]
         unsafe fn load(p: *const f64) -> Self {
             Self(unsafe { _mm256_loadu_pd(p) })

@@ -4,7 +4,7 @@ use super::elastic::{Elastic, Form};
 use super::tangential::{Drag, Friction, Spring};
 use super::turning::{Rolling, Twisting};
 use super::{
-    Advance, ContactLaw, Damping, Geometry, Heat, Motion, Normal, Tangential, Wrench, split_velocity,
+    Advance, ContactLaw, Damping, Geometry, Heat, Loop, Motion, Normal, Tangential, Wrench, split_velocity,
 };
 use crate::math::real::Real;
 use crate::math::vec3::{add, cross, scale, sub};
@@ -232,9 +232,44 @@ impl ContactLaw for Granular {
         }
         w
     }
+
+    #[inline(always)]
+    fn within(&self, work: impl Loop<Self>) {
+        use {Damping::*, Form::*, Friction::*};
+        if let Some(law) = self.known(Hertz, Viscoelastic, MindlinClassic, Arm::Radius) {
+            return work.run(&law);
+        }
+        if let Some(law) = self.known(Hooke, MassVelocity, LinearHistoryClassic, Arm::Radius) {
+            return work.run(&law);
+        }
+        if let Some(law) = self.known(Hertz, Tsuji, Mindlin, Arm::Middle) {
+            return work.run(&law);
+        }
+        work.run(self);
+    }
 }
 
 impl Granular {
+    /// Itself, where it has this form and no resistance to rolling and twisting; the form is then known to the compiler.
+    #[inline(always)]
+    fn known(&self, form: Form, damping: Damping, kind: Friction, arm: Arm) -> Option<Self> {
+        let plain = self.rolling == Rolling::None && self.twisting == Twisting::None;
+        let same = self.elastic.form == form
+            && self.damping == damping
+            && self.spring.kind == kind
+            && self.arm == arm;
+        (same && plain).then_some(Self {
+            elastic: Elastic { form, ..self.elastic },
+            damping,
+            spring: Spring { kind, ..self.spring },
+            rolling: Rolling::None,
+            twisting: Twisting::None,
+            arm,
+            by_radius: kind.by_radius() || form == Form::Hertz,
+            ..*self
+        })
+    }
+
     /// How far from the centre of i (0) or j (1) the tangential force acts.
     #[inline(always)]
     fn arm<R: Real>(&self, g: &Geometry<R>, k: usize) -> R {

@@ -143,6 +143,19 @@ pub trait ContactLaw: Copy + Sync {
         history: &mut [R],
         step: Advance,
     ) -> Wrench<R>;
+
+    /// Hands the law to a loop. A law of many forms does so in one place for each frequent form, where the form is
+    /// written out: the loop is then compiled without the others.
+    #[inline(always)]
+    fn within(&self, work: impl Loop<Self>) {
+        work.run(self);
+    }
+}
+
+/// A loop over contacts of one law.
+pub trait Loop<L> {
+    /// Runs it.
+    fn run(self, law: &L);
 }
 
 /// Relative velocity of i against j, split along and across the normal.

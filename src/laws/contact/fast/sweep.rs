@@ -2,11 +2,12 @@
 
 use super::lists::{Short, Slab};
 use super::{Fast, Laws, MOST_MEMORY, NONE, has_avx2};
-use crate::laws::contact::{Advance, ContactLaw, Geometry, Motion, Wrench};
+use crate::laws::contact::{Advance, ContactLaw, Geometry, Loop, Motion, Wrench};
 use crate::math::four::{Four, Plain};
 use crate::math::real::Real;
 use crate::math::vec3::Vec3;
 use crate::par;
+use std::marker::PhantomData;
 
 /// Bits of a list entry that hold a place; the image stands above them.
 pub const PLACE_BITS: u32 = 27;
@@ -240,7 +241,6 @@ unsafe fn of_law<F: Four, L: ContactLaw, const W: usize>(
     // What stands behind the last hit is looked at and not used.
     let last = hits[count - 1];
     hits[count..count + AHEAD + 4].fill(last);
-    let memory = law.memory();
     // SAFETY: passed on.
     unsafe {
         if !law.in_lanes() {
@@ -249,14 +249,35 @@ unsafe fn of_law<F: Four, L: ContactLaw, const W: usize>(
             }
             return;
         }
-        for k in (0..count).step_by(4) {
-            for ahead in &hits[k + AHEAD..k + AHEAD + 4] {
-                let j = place(*slab.short.w.as_ptr().add(*ahead as usize)) as usize;
-                F::prefetch(cx.motion.as_ptr().add(j));
-                F::prefetch(cx.force.as_ptr().add(j));
+        let fours = Fours::<F, L, W> { cx, slab, hits, count, lanes: PhantomData };
+        if W == 4 && F::FAST { law.within(fours) } else { fours.run(law) }
+    }
+}
+
+/// The loop over contacts of one law, four at a time.
+struct Fours<'a, 'b, F, L, const W: usize> {
+    cx: &'a Cx<'b, L>,
+    slab: &'a mut Slab,
+    hits: &'a [u32],
+    count: usize,
+    lanes: PhantomData<F>,
+}
+
+impl<F: Four, L: ContactLaw, const W: usize> Loop<L> for Fours<'_, '_, F, L, W> {
+    #[inline(always)]
+    fn run(self, law: &L) {
+        let (cx, hits, memory) = (self.cx, self.hits, law.memory());
+        for k in (0..self.count).step_by(4) {
+            // SAFETY: hits are pairs of the list, and their entries places of records; `of_law` made it.
+            unsafe {
+                for ahead in &hits[k + AHEAD..k + AHEAD + 4] {
+                    let j = place(*self.slab.short.w.as_ptr().add(*ahead as usize)) as usize;
+                    F::prefetch(cx.motion.as_ptr().add(j));
+                    F::prefetch(cx.force.as_ptr().add(j));
+                }
+                let group = Group::<F>::load(&self.slab.short, hits.as_ptr().add(k));
+                group.act::<L, W>(cx, law, memory, self.slab, (self.count - k).min(4));
             }
-            let group = Group::<F>::load(cx, &slab.short, hits.as_ptr().add(k));
-            group.act::<L, W>(cx, law, memory, slab, (count - k).min(4));
         }
     }
 }
@@ -271,7 +292,7 @@ struct Group<F> {
 
 impl<F: Four> Group<F> {
     #[inline(always)]
-    unsafe fn load<L>(_: &Cx<L>, short: &Short, hits: *const u32) -> Self {
+    unsafe fn load(short: &Short, hits: *const u32) -> Self {
         // SAFETY: passed on.
         unsafe {
             let k = [*hits, *hits.add(1), *hits.add(2), *hits.add(3)];
