@@ -1,6 +1,6 @@
 //! fix nve/sphere: velocity Verlet of spheres, translation and rotation.
 
-use super::nve::{kick, kick_and_drift};
+use super::nve::{half_step, kick, kick_and_drift};
 use super::{Fix, FixStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
@@ -87,11 +87,19 @@ impl Fix for Declared {
         let name = format!("fix {} nve/sphere", self.id);
         let access = || Access::new("f torque mass radius mask", "x v omega");
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
+            if t.phase == Phase::Whole {
+                whole::<true>(w, group, inertia, t);
+                return Ok(());
+            }
             kick_and_drift(w, group, t);
             turn(w, group, inertia, t);
             Ok(())
         });
         let second = StepOp::new(name, Stage::FinalIntegrate, access(), move |w, t| {
+            if t.phase == Phase::Whole {
+                whole::<false>(w, group, inertia, t);
+                return Ok(());
+            }
             kick(w, group, t);
             turn(w, group, inertia, t);
             Ok(())
@@ -106,6 +114,33 @@ impl Fix for Declared {
     fn boxed(&self) -> Box<dyn Fix> {
         Box::new(self.clone())
     }
+}
+
+/// Half a step of velocities and spins, and with `DRIFT` a step of positions, in one pass over memory.
+fn whole<const DRIFT: bool>(w: &mut World, group: GroupId, inertia: f64, t: &Tick) {
+    let half = half_step(w, t.dt);
+    let half_turn = half / inertia;
+    let p = &mut w.particles;
+    let bit = group.bit();
+    let moved = (&mut p.x[..], &mut p.v[..], &mut p.omega[..]);
+    let columns = (moved, &p.f[..], &p.torque[..], &p.radius[..], &p.mass[..], &p.mask[..]);
+    par::each(columns, |_, ((x, v, omega), f, torque, radius, mass, mask)| {
+        let moved = x.iter_mut().zip(v).zip(omega);
+        let given = f.iter().zip(torque).zip(radius).zip(mass).zip(mask);
+        for (((x, v), omega), ((((f, torque), r), m), mask)) in moved.zip(given) {
+            if mask & bit == 0 {
+                continue;
+            }
+            let (by_m, by_i) = (half / m, half_turn / (r * r * m));
+            for d in 0..3 {
+                v[d] += by_m * f[d];
+                omega[d] += by_i * torque[d];
+                if DRIFT {
+                    x[d] += t.dt * v[d];
+                }
+            }
+        }
+    });
 }
 
 /// Half a step of rotation: ω += Δt/2 · torque/I; bonds of solids turn nothing, so that short steps have none of it.

@@ -188,6 +188,7 @@ impl<L: ContactLaw> Fast<L> {
         self.position.resize(n + 1, [0.0; 4]);
         self.motion.resize(n + 1, [0.0; 8]);
         self.motion[n] = [0.0; 8];
+        self.force.clear();
         self.force.resize(n + 1, [0.0; 8]);
         for (image, shift) in self.shifts.iter_mut().take(27).enumerate() {
             let s = shift_of(image as u32);
@@ -202,14 +203,19 @@ impl<L: ContactLaw> Fast<L> {
         self.moved = f64::INFINITY;
     }
 
-    /// Takes the grains' present state into the records.
+    /// Takes the grains' present state into the records: in the order of the grains, as writing two records somewhere
+    /// costs less than reading five columns somewhere.
     fn gather(&mut self, grains: &Grains) {
         let n = self.len();
-        let columns = (&mut self.position[..n], &mut self.motion[..n], &self.slabs.order[..]);
-        let copy = |_: usize, (position, motion, order): (&mut [[f64; 4]], &mut [[f64; 8]], &[u32])| {
+        let place = &self.place[..n];
+        let position = par::Shared::new(&mut self.position);
+        let motion = par::Shared::new(&mut self.motion);
+        let copy = |range: std::ops::Range<usize>| {
             let (mut far, mut grown) = (0.0_f64, 0.0_f64);
-            for ((p, m), &i) in position.iter_mut().zip(motion).zip(order) {
-                let i = i as usize;
+            for i in range {
+                let k = place[i] as usize;
+                // SAFETY: every grain has a place of its own.
+                let (p, m) = unsafe { (&mut position.get(k..k + 1)[0], &mut motion.get(k..k + 1)[0]) };
                 let new = record(grains, i);
                 let d = [new[0] - p[0], new[1] - p[1], new[2] - p[2]];
                 far = far.max(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
@@ -223,11 +229,11 @@ impl<L: ContactLaw> Fast<L> {
             [far, grown]
         };
         let join = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
-        let [far, grown] = par::reduce_each(columns, copy, join).unwrap_or([0.0; 2]);
+        let [far, grown] = par::reduce(n, copy, join).unwrap_or([0.0; 2]);
         self.moved += far.sqrt() + grown;
     }
 
-    /// Evaluates all contacts for the grains' present state. With `store` they remember, else nothing is changed but
+    /// Evaluates all contacts for the grains' present state; [`Fast::scatter`] must follow. With `store` they remember, else nothing is changed but
     /// forces. With `virial` returns Σ d ⊗ F: xx yy zz xy xz yz.
     pub fn run(&mut self, grains: &Grains, step: Advance, store: bool, virial: bool) -> [f64; 6] {
         self.gather(grains);
@@ -237,7 +243,6 @@ impl<L: ContactLaw> Fast<L> {
             self.moved = 0.0;
             self.deep = self.deep.or_else(|| self.find_deep());
         }
-        self.force.fill([0.0; 8]);
         self.sweep(step, store, virial, !grains.frozen.is_empty());
         self.now += if store { 1.0 } else { 0.0 };
         let mut total = [0.0; 6];
@@ -247,15 +252,19 @@ impl<L: ContactLaw> Fast<L> {
         total
     }
 
-    /// Adds forces and torques to the grains' own.
-    pub fn scatter(&self, f: &mut [Vec3], torque: &mut [Vec3]) {
+    /// Adds forces and torques to the grains' own. Once after each evaluation.
+    pub fn scatter(&mut self, f: &mut [Vec3], torque: &mut [Vec3]) {
+        let force = par::Shared::new(&mut self.force);
         par::each((f, torque, &self.place[..]), |_, (f, torque, place)| {
             for ((f, torque), &k) in f.iter_mut().zip(torque).zip(place) {
-                let own = &self.force[k as usize];
+                // SAFETY: every grain has a place of its own.
+                let own = unsafe { &mut force.get(k as usize..k as usize + 1)[0] };
                 for d in 0..3 {
                     f[d] += own[d];
                     torque[d] += own[4 + d];
                 }
+                // The next evaluation starts from zero.
+                *own = [0.0; 8];
             }
         });
     }

@@ -156,6 +156,7 @@ impl Loop for FastLoop {
         let step = Advance { dt: DT, history: true };
         // An evaluation that stores nothing changes nothing.
         self.fast.run(&s.grains(), step, false, false);
+        self.fast.scatter(&mut s.zeros(), &mut s.zeros());
         let virial = self.fast.run(&s.grains(), step, true, true);
         let (mut f, mut torque) = (s.zeros(), s.zeros());
         self.fast.scatter(&mut f, &mut torque);
