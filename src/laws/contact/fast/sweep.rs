@@ -187,13 +187,16 @@ unsafe fn contacts<F: Four, L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mu
             k += 4;
         }
         let ready = if k == end { count } else { count - count % BLOCK };
+        // The evaluation writes behind the hits it is given.
+        let mut rest = [0; BLOCK];
+        rest[..count - ready].copy_from_slice(&hits[ready..count]);
         // SAFETY: passed on.
         unsafe { evaluate::<F, L, W>(cx, slab, &mut hits, ready) };
         if k == end {
             break;
         }
-        hits.copy_within(ready..count, 0);
         count -= ready;
+        hits[..count].copy_from_slice(&rest[..count]);
     }
 }
 
