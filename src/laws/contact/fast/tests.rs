@@ -76,8 +76,11 @@ impl Scene {
         Grains { x, v, omega, radius, mass, kind, tag, period: *period, flow: None, body: &[], frozen }
     }
 
-    /// Half of the pairs of type 2 are excluded.
+    /// Half of the pairs of type 2 are excluded, and pairs of two frozen grains, between which nobody defines a mass.
     fn keep(&self, i: usize, j: usize) -> bool {
+        if self.frozen[i] && self.frozen[j] {
+            return false;
+        }
         self.kind[i] != 2 || self.kind[j] != 2 || (self.tag[i] + self.tag[j]) % 2 == 0
     }
 
