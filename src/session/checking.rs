@@ -122,6 +122,10 @@ impl Session {
     /// Facts of the scene that a pair style uses and nobody has set.
     fn check_facts(&self, pair: &dyn Pair, span: Span, found: &mut Diagnostics) {
         for fact in pair.needs() {
+            // LAMMPS' default, spheres of diameter and density 1, is what reduced units are for.
+            if self.world.settings.units.name() == "lj" && ["diameter", "density"].contains(fact) {
+                continue;
+            }
             // `set … mass` is as good as a density.
             if self.settled(fact) || (*fact == "density" && self.settled("mass")) {
                 continue;

@@ -160,7 +160,7 @@ fn memory(w: &World) -> String {
         format!("{alive:?} {:?} {:?}", f.list.alive, f.hurt)
     });
     let state: Vec<_> = w.memo.iter().filter(|(name, _)| !name.starts_with("restart/")).collect();
-    format!("{bonds:?} {:?} {state:?} {:?}", w.contacts, w.particles.image)
+    format!("{bonds:?} {:?} {:?} {state:?} {:?}", w.contacts, w.wall_contacts, w.particles.image)
 }
 
 #[test]
@@ -173,7 +173,8 @@ fn a_run_cut_in_two_has_the_bits_of_one() {
         let whole_rows = rows(&said);
         // There is something to lose: broken bonds, or springs of contacts.
         let broken = whole.families.as_ref().is_some_and(|f| f.hurt.iter().any(|h| *h));
-        let springs = whole.contacts.values().flat_map(|c| &c.history).any(|h| *h != 0.0);
+        let touching = whole.contacts.values().chain(whole.wall_contacts.values());
+        let springs = touching.flat_map(|c| &c.history).any(|h| *h != 0.0);
         let grains = s.name.ends_with("pile") || s.name == "rain";
         assert!(if grains { springs } else { broken }, "{}", s.name);
         // Files are written on the way, and the run they come from is not disturbed.

@@ -32,9 +32,11 @@ pub trait Bonds: Sync + Sized {
     fn measures(&mut self) -> &mut Measures;
     /// Number of sites.
     fn sites(&self) -> usize;
+    /// The particle at a site.
+    fn particle(&self, site: u32) -> u32;
 }
 
-/// Breaks what has to break, except bonds of sites that are `spared`; `found` is scratch.
+/// Breaks what has to break, except bonds of particles that are `spared`; `found` is scratch.
 pub fn break_bonds<K: StretchKernels, B: Bonds>(
     body: &mut B,
     options: &FamilyOptions,
@@ -43,7 +45,7 @@ pub fn break_bonds<K: StretchKernels, B: Bonds>(
 ) {
     found.clear();
     body.candidates::<K>(found);
-    found.retain(|c| !c.ends.iter().any(|site| spared(*site)));
+    found.retain(|c| !c.ends.iter().any(|site| spared(body.particle(*site))));
     if !found.is_empty() && (options.compat_lammps || found.iter().any(|c| c.alpha != 0.0)) {
         judge::<K, B>(body, options, found);
     }
@@ -165,5 +167,8 @@ impl Bonds for Periodic<'_> {
 
     fn sites(&self) -> usize {
         self.0.record.len()
+    }
+    fn particle(&self, site: u32) -> u32 {
+        self.0.particle[site as usize]
     }
 }

@@ -287,20 +287,13 @@ impl Families {
         let mut found: Vec<Candidate> = std::mem::take(&mut self.scratch.candidates);
         let mut ends = std::mem::take(&mut self.scratch.ends);
         ends.clear();
-        let lasting = std::mem::take(&mut self.lasting);
-        let lasts = |p: u32| lasting.get(p as usize).copied().unwrap_or(false);
+        let lasting = &self.lasting;
+        let spared = |p: u32| lasting.get(p as usize).copied().unwrap_or(false);
         for body in &mut self.lattices {
-            let particle = std::mem::take(&mut body.particle);
-            let spared = |cell: u32| lasts(particle[cell as usize]);
             break_bonds::<K, _>(body, &self.options, &mut found, &spared);
-            body.particle = particle;
             ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
         }
-        let particle = std::mem::take(&mut self.list.particle);
-        let spared = |record: u32| lasts(particle[record as usize]);
         break_bonds::<K, _>(&mut Periodic(&mut self.list, period), &self.options, &mut found, &spared);
-        self.list.particle = particle;
-        self.lasting = lasting;
         ends.extend(found.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
         for &[i, j] in &ends {
             self.hurt[i as usize] = true;

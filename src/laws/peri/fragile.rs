@@ -276,4 +276,7 @@ impl Bonds for LatticeBody {
     fn sites(&self) -> usize {
         self.particle.len()
     }
+    fn particle(&self, site: u32) -> u32 {
+        self.particle[site as usize]
+    }
 }
