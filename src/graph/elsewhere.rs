@@ -2,7 +2,6 @@
 
 /// LAMMPS styles of our field that perigrain does not have yet, by kind; named so that nobody searches for a typo.
 pub const STYLES: &[(&str, &str)] = &[
-    ("pair", "bpm/spring"),
     ("pair", "lj/cut"),
     ("fix", "rigid/nve"),
     ("fix", "rigid/nvt"),

@@ -1,5 +1,6 @@
 //! Bond styles: forces along bonds between particles.
 
+mod bpm_spring;
 mod harmonic;
 mod hybrid;
 mod pull;
@@ -56,6 +57,7 @@ pub trait BondForce: Send + Sync {
 /// Every bond style.
 #[rustfmt::skip]
 pub const BONDS: &[&dyn BondStyle] = &[
+    &bpm_spring::BpmSpring,
     &harmonic::HarmonicStyle,
     &hybrid::Hybrid,
     &zero::ZeroStyle,

@@ -1,5 +1,6 @@
 //! Pair styles: forces between particles.
 
+mod bpm_spring;
 pub mod contact_probe;
 mod gran_hertz_history;
 mod gran_hooke;
@@ -111,6 +112,7 @@ pub trait Pair: Send {
 /// Every pair style.
 #[rustfmt::skip]
 pub const PAIRS: &[&dyn PairStyle] = &[
+    &bpm_spring::BpmSpringStyle,
     &gran_hertz_history::GranHertzHistory,
     &gran_hooke::GranHooke,
     &gran_hooke_history::GranHookeHistory,

@@ -1,0 +1,138 @@
+//! `pair_style bpm/spring`: damped repulsion of particles of bonded solids.
+
+use super::{Pair, PairStyle, TypePairs};
+use crate::diag::Result;
+use crate::lang::Args;
+use crate::math::vec3::{add, dot, sub};
+use crate::neigh::list::{Pair as Near, Reach, View, Wanted, difference, pairs};
+use crate::plan::{Access, Op, Stage, Tick};
+use crate::styles::{BuildCx, Doc, SealCx, Style};
+use crate::world::{Allowed, World};
+use std::collections::BTreeMap;
+
+/// The style.
+pub struct BpmSpringStyle;
+
+impl Style for BpmSpringStyle {
+    fn name(&self) -> &'static str {
+        "bpm/spring"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "pair_style bpm/spring\npair_coeff I J k rc gamma",
+            summary: "Damped repulsion within a distance, for particles of bonded solids.",
+            text: "F = k (rc − r) − γ (1 − (r/rc)⁸) r̂·v pushes particles apart while r < rc, with the energy k (rc − r)²/2. Bonded particles \
+                   are left out as `special_bonds` says. Every pair of types needs coefficients of its own (LAMMPS mixes).",
+            example: "pair_style bpm/spring\npair_coeff * * 1.0 0.0009 0.5",
+        }
+    }
+}
+
+impl PairStyle for BpmSpringStyle {
+    fn build(&self, _args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Pair>> {
+        Ok(Box::<Springs>::default())
+    }
+}
+
+/// Stiffness, cutoff and damping by pair of types.
+#[derive(Clone, Default)]
+struct Springs {
+    table: BTreeMap<(u16, u16), [f64; 3]>,
+}
+
+impl Pair for Springs {
+    fn name(&self) -> &'static str {
+        "bpm/spring"
+    }
+
+    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        let k = args.non_negative("the stiffness k")?;
+        let spring = [k, args.positive("the cutoff rc")?, args.non_negative("the damping gamma")?];
+        self.table.extend(pairs.iter().map(|p| (*p, spring)));
+        Ok(())
+    }
+
+    fn covers(&self, i: u16, j: u16) -> bool {
+        self.table.contains_key(&(i.min(j), i.max(j)))
+    }
+
+    fn restrict(&mut self, pairs: &TypePairs) {
+        self.table.retain(|p, _| pairs.contains(p));
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let mut wanted = Wanted::new(cx.world().types);
+        self.table.iter().for_each(|((a, b), s)| wanted.set(*a, *b, Reach::Fixed(s[1])));
+        Ok(vec![Box::new(Repulsion { law: self.clone(), wanted, made: None, list: vec![] })])
+    }
+
+    fn boxed(&self) -> Box<dyn Pair> {
+        Box::new(self.clone())
+    }
+}
+
+/// The op.
+struct Repulsion {
+    law: Springs,
+    wanted: Wanted,
+    /// Rebuild and change of bonds at which the list was made.
+    made: Option<(u64, u64)>,
+    list: Vec<Near>,
+}
+
+impl Op for Repulsion {
+    fn name(&self) -> &str {
+        "pair bpm/spring"
+    }
+    fn stage(&self) -> Stage {
+        Stage::Force
+    }
+    fn access(&self) -> Access {
+        Access::new("x v type bonds", "f tally")
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let period = w.periods();
+        let now = (w.rebuild.generation, w.bonds.changes);
+        if t.setup || self.made != Some(now) {
+            let (p, allowed) = (&w.particles, Allowed::new(w));
+            let held = w.held();
+            let x = if held.len() == p.len() { held } else { &p.x };
+            let view = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period };
+            self.list = pairs(&view, &self.wanted, w.settings.neighbor.skin, &|i, j| allowed.pair(i, j));
+            self.made = Some(now);
+        }
+        for pair in &self.list {
+            let (i, j) = (pair.i as usize, pair.j as usize);
+            let p = &mut w.particles;
+            let kinds = (p.kind[i].min(p.kind[j]), p.kind[i].max(p.kind[j]));
+            let Some([k, cut, gamma]) = self.law.table.get(&kinds).copied() else { continue };
+            let d = difference(&p.x, &period, pair);
+            let square = dot(d, d);
+            if square >= cut * cut {
+                continue;
+            }
+            let r = square.sqrt();
+            let near = 1.0 - (r / cut).powi(2).powi(2).powi(2);
+            let v = sub(p.v[i], p.v[j]);
+            let force = (k * (cut - r) - gamma * dot(d, v) * near / r) / r;
+            let f = d.map(|d| d * force);
+            p.f[i] = add(p.f[i], f);
+            p.f[j] = sub(p.f[j], f);
+            let energy = 0.5 * k * (cut - r) * (cut - r);
+            if t.energy {
+                w.tally.pair += energy;
+            }
+            if t.atom_energy {
+                [i, j].iter().for_each(|&i| w.tally.atom[i] += 0.5 * energy);
+            }
+            if t.virial {
+                for (s, (a, b)) in
+                    w.tally.virial.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)])
+                {
+                    *s += d[a] * f[b];
+                }
+            }
+        }
+        Ok(())
+    }
+}
