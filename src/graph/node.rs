@@ -241,6 +241,10 @@ impl Names for Graph {
         })
     }
 
+    fn fix_style(&self, id: &str) -> Option<&'static str> {
+        self.find_fix(id).map(|f| f.style)
+    }
+
     fn pair_styles(&self) -> Vec<&'static str> {
         let Some(node) = &self.pair else { return vec![] };
         let parts = node.pair.parts();

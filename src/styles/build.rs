@@ -121,6 +121,10 @@ pub trait Names {
             _ => s.array_extensive,
         })
     }
+    /// The style of a fix.
+    fn fix_style(&self, _id: &str) -> Option<&'static str> {
+        None
+    }
     /// The pair style in force and its sub-styles.
     fn pair_styles(&self) -> Vec<&'static str> {
         vec![]

@@ -16,10 +16,11 @@ impl Style for Neighbor {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "neighbor SKIN bin|nsq",
+            syntax: "neighbor SKIN bin|nsq|multi",
             summary: "Sets the extra reach of neighbour lists [length].",
             text: "Lists are rebuilt when a particle has moved half the skin (see `neigh_modify`). How they are built is \
-                   perigrain's business: `bin` and `nsq` give the same lists; `multi` is refused.",
+                   perigrain's business: all words give the same lists, which search each size of particle by \
+                   itself where sizes differ; `multi/old` is refused.",
             example: "neighbor 0.5 bin",
         }
     }
@@ -28,7 +29,7 @@ impl Style for Neighbor {
 impl CommandStyle for Neighbor {
     fn parse(&self, a: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Act>> {
         let skin = a.non_negative("the skin")?;
-        choice_or_refuse(a, "way of building lists", &["bin", "nsq"], &["multi", "multi/old"])?;
+        choice_or_refuse(a, "way of building lists", &["bin", "nsq", "multi"], &["multi/old"])?;
         Ok(setting(move |cx| {
             cx.world.settings.neighbor.skin = skin;
             Ok(())

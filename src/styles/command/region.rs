@@ -7,7 +7,7 @@ use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Param, Word};
 use crate::math::vec3::length;
-use crate::styles::{BuildCx, Doc, Style, UseKind};
+use crate::styles::{BuildCx, Doc, Style, Use, UseKind};
 use crate::world::Region;
 use crate::world::region::{Motion, Shape, Turn, Variable};
 use shapes::Reader;
@@ -118,7 +118,14 @@ fn delete(cx: &BuildCx, name: String, word: &Word) -> Result<Box<dyn Act>> {
     if !cx.world.regions.contains_key(&name) {
         return fail(Code::UNKNOWN_REGION, word.span, format!("there is no region `{name}`"));
     }
-    cx.unused(UseKind::Region, word)?;
+    // Walls look their region up at every run: it may be made anew until then.
+    let wall = |user: &String| {
+        let style = user.strip_prefix("fix ").and_then(|id| cx.names.fix_style(id));
+        style == Some("wall/gran/region")
+    };
+    if !cx.names.users(&Use { kind: UseKind::Region, name: name.clone() }).iter().all(wall) {
+        cx.unused(UseKind::Region, word)?;
+    }
     if let Some(group) = cx.world.groups.follower(&name) {
         let text = format!("region `{name}` is still used by the dynamic group `{group}`");
         return fail(Code::CONFLICT, word.span, text);
