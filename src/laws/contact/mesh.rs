@@ -48,7 +48,9 @@ impl Mesh {
     /// # Errors
     /// The number (from 0) of a triangle without area.
     pub fn new(triangles: Vec<Triangle>) -> Result<Self, usize> {
-        if let Some(bad) = triangles.iter().position(|t| !(area(t) > FLAT * longest(t).powi(2))) {
+        // Corners that are not finite have no area either.
+        let flat = |t: &Triangle| area(t).is_nan() || area(t) <= FLAT * longest(t).powi(2);
+        if let Some(bad) = triangles.iter().position(flat) {
             return Err(bad);
         }
         let corners = weld(&triangles);
@@ -97,7 +99,7 @@ impl Mesh {
             let d = sub(x, nearest(x, &self.triangles[*k as usize]).0);
             dot(d, d) < reach * reach
         };
-        self.grid.cells(x, reach).any(|members| members.iter().any(|k| near(k)))
+        self.grid.cells(x, reach).any(|members| members.iter().any(&near))
     }
 
     /// The places nearer than `reach`: one for each face, edge or corner that is nearest in its surroundings, and of

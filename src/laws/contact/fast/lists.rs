@@ -66,7 +66,6 @@ impl<L: ContactLaw> Fast<L> {
             let slab = unsafe { &mut shared.get(k..k + 1)[0] };
             this.search(k, at, skin, keep, &mut slab.long);
         });
-        drop(shared);
         self.lists = lists;
     }
 
@@ -139,7 +138,6 @@ impl<L: ContactLaw> Fast<L> {
             std::mem::swap(&mut slab.short, &mut room);
             open().push(room);
         });
-        drop(slabs);
         self.spare = spare.into_inner().unwrap_or_else(PoisonError::into_inner);
         self.lists = lists;
     }

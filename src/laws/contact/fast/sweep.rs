@@ -76,7 +76,6 @@ impl<L: ContactLaw> Fast<L> {
                 }
             }
         });
-        drop((cx, slabs));
         self.lists = lists;
     }
 }

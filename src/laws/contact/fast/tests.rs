@@ -81,7 +81,7 @@ impl Scene {
         if self.frozen[i] && self.frozen[j] {
             return false;
         }
-        self.kind[i] != 2 || self.kind[j] != 2 || (self.tag[i] + self.tag[j]) % 2 == 0
+        self.kind[i] != 2 || self.kind[j] != 2 || (self.tag[i] + self.tag[j]).is_multiple_of(2)
     }
 
     fn advance(&mut self, f: &[Vec3], torque: &[Vec3]) {
@@ -124,7 +124,7 @@ impl Loop for PlainLoop {
             let (average, curvature) = (Average::None, Curvature::Both);
             rules.set(a, b, Rule { law: between(a, b), average, curvature });
         }
-        if k % 7 == 0 {
+        if k.is_multiple_of(7) {
             let view = View { x: &s.x, tag: &s.tag, kind: &s.kind, radius: &s.radius, period: s.period };
             self.list = pairs(&view, &wanted, SKIN, &|i, j| s.keep(i, j));
         }
@@ -149,7 +149,7 @@ impl FastLoop {
 
 impl Loop for FastLoop {
     fn step(&mut self, s: &Scene, k: usize) -> (Vec<Vec3>, Vec<Vec3>, Contacts, [f64; 6]) {
-        if k % 7 == 0 {
+        if k.is_multiple_of(7) {
             let known = self.through_world.then(|| self.fast.contacts());
             if self.through_world {
                 self.fast.clear();
@@ -193,7 +193,7 @@ fn the_numbers_of_the_plain_driver() {
             assert!(same(&f, &f2) && same(&torque, &torque2), "step {k}");
             assert!(contacts.history.iter().zip(&contacts2.history).all(|(a, b)| near(*a, *b)));
             assert!(virial.iter().zip(&virial2).all(|(a, b)| (a - b).abs() < 1e-8 * (1.0 + virial[0].abs())));
-            ended += usize::from(k > 0 && contacts.len() != 0);
+            ended += usize::from(k > 0 && !contacts.is_empty());
             s.advance(&f, &torque);
         }
         assert_eq!(ended, 39);

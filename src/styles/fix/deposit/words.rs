@@ -13,9 +13,12 @@ const KEYWORDS: [&str; 19] = [
     "target", "units", "mol", "molfrac", "rigid", "orient",
 ];
 
+/// A region and the corners of the box around it.
+type Bounded = (Region, ([f64; 3], [f64; 3]));
+
 /// What the keywords said, in the units of the line.
 struct Said {
-    region: Option<(Region, ([f64; 3], [f64; 3]))>,
+    region: Option<Bounded>,
     variable: Option<ValueRef>,
     sets: [Option<ValueRef>; 3],
     lattice: bool,
@@ -115,7 +118,7 @@ fn pair(args: &mut Args, what: &str) -> Result<[f64; 2]> {
     Ok([args.number(&format!("the smallest {what}"))?, args.number(&format!("the largest {what}"))?])
 }
 
-fn region(word: &Word, cx: &BuildCx) -> Result<(Region, ([f64; 3], [f64; 3]))> {
+fn region(word: &Word, cx: &BuildCx) -> Result<Bounded> {
     let region = cx.region(word)?.clone();
     let Some((lo, hi)) = region.bounds() else {
         let text = format!("region `{}` has no box around it, or moves", word.text);
