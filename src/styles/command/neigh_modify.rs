@@ -148,6 +148,6 @@ mod tests {
         assert_eq!(refused(&w, "neigh_modify exclude type 1 3").0, "3");
         assert_eq!(refused(&w, "neigh_modify exclude molecule all").0, "molecule");
         assert_eq!(refused(&w, "neigh_modify evry 2").0, "evry");
-        assert_eq!(refused(&w, "neighbor 0.2 multi").0, "multi");
+        assert_eq!(refused(&w, "neighbor 0.2 multi/old").0, "multi/old");
     }
 }
