@@ -17,6 +17,7 @@ mod said;
 pub mod seal;
 pub mod show;
 pub mod thermo;
+mod values;
 pub mod virials;
 pub mod welcome;
 

@@ -1,14 +1,14 @@
 //! Declarations and world become a step plan: values before their readers, and only what somebody reads.
 
 use super::answers::Declared;
-use super::env::RunEnv;
 use super::keywords::{self, Need, Sources};
 use super::node::Graph;
 use super::said;
+use super::values::{Evaluate, Keyword, Once};
 use crate::diag::{Code, Result, Span, fail};
-use crate::lang::{Dep, RefKind, Value, ValueRef, Vars};
+use crate::lang::{Dep, RefKind, ValueRef, Vars};
 use crate::out::log::Log;
-use crate::plan::{Access, LeftOut, Op, OpClass, Placed, Stage, StepPlan, Tick, When};
+use crate::plan::{LeftOut, Op, Placed, Stage, StepPlan, When};
 use crate::styles::bond::BondForce;
 use crate::styles::pair::probe::Probe;
 use crate::styles::{PlaceTest, Pull, Reading, SealCx, Shape, Text, Wants};
@@ -406,118 +406,5 @@ impl SealCx for Sealer<'_> {
         if !self.plan.left_out.contains(&l) {
             self.plan.left_out.push(l);
         }
-    }
-}
-
-/// A compute's op, at the stage of its reader, at most once per step.
-struct Once {
-    op: Box<dyn Op>,
-    stage: Stage,
-    slot: SlotId,
-}
-
-impl Op for Once {
-    fn name(&self) -> &str {
-        self.op.name()
-    }
-    fn stage(&self) -> Stage {
-        self.stage
-    }
-    fn access(&self) -> Access {
-        self.op.access()
-    }
-    fn in_setup(&self) -> bool {
-        true
-    }
-    fn class(&self) -> OpClass {
-        OpClass::Output
-    }
-    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        if w.slots.get(self.slot).step == Some(t.step) {
-            return Ok(());
-        }
-        self.op.run(w, t)
-    }
-}
-
-/// A thermo keyword on its way into a slot.
-struct Keyword {
-    name: &'static str,
-    sources: Sources,
-    slot: SlotId,
-    stage: Stage,
-}
-
-impl Op for Keyword {
-    fn name(&self) -> &str {
-        self.name
-    }
-    fn stage(&self) -> Stage {
-        self.stage
-    }
-    fn access(&self) -> Access {
-        Access::default()
-    }
-    fn in_setup(&self) -> bool {
-        true
-    }
-    fn class(&self) -> OpClass {
-        OpClass::Output
-    }
-    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let value = keywords::value(self.name, w, &self.sources);
-        let slot = w.slots.get_mut(self.slot);
-        slot.scalar = value;
-        slot.step = Some(t.step);
-        Ok(())
-    }
-}
-
-/// A variable on its way into a slot.
-struct Evaluate {
-    declared: Arc<Declared>,
-    name: String,
-    variable: String,
-    span: Span,
-    vars: Arc<Vars>,
-    from: BTreeMap<String, SlotId>,
-    slot: SlotId,
-    stage: Stage,
-}
-
-impl Op for Evaluate {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn stage(&self) -> Stage {
-        self.stage
-    }
-    fn access(&self) -> Access {
-        Access::default()
-    }
-    fn in_setup(&self) -> bool {
-        true
-    }
-    fn class(&self) -> OpClass {
-        OpClass::Output
-    }
-    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let mut env = RunEnv { w, declared: &self.declared, from: &self.from };
-        let value = self.vars.value(&self.variable, self.span, &mut env)?;
-        let slot = w.slots.get_mut(self.slot);
-        slot.step = Some(t.step);
-        match value {
-            Value::Number(a) => slot.scalar = a,
-            Value::Atom(list) => (slot.atom, slot.cols) = (list, 1),
-            Value::Vector(list) => slot.vector = list,
-            Value::Unknown => {
-                return fail(
-                    Code::WRONG_KIND,
-                    self.span,
-                    format!("variable `{}` has no number here", self.variable),
-                );
-            }
-        }
-        Ok(())
     }
 }

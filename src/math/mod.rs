@@ -2,6 +2,7 @@
 
 pub mod body;
 pub mod cformat;
+pub mod forest;
 pub mod four;
 pub mod real;
 pub mod rng;

@@ -1,6 +1,7 @@
 //! Which peridynamic solid each particle belongs to.
 
 use super::driver::NO_BODY;
+use crate::math::forest::{find, join};
 use crate::world::families::Families;
 
 /// The solid of each of `n` particles: the smallest index among all that bonds connected at the start, broken ones
@@ -15,17 +16,4 @@ pub fn solids(families: &Families, n: usize) -> Vec<u32> {
         }
     }
     (0..n as u32).map(|i| if bonded[i as usize] { find(&mut root, i) } else { NO_BODY }).collect()
-}
-
-fn find(root: &mut [u32], mut i: u32) -> u32 {
-    while root[i as usize] != i {
-        root[i as usize] = root[root[i as usize] as usize];
-        i = root[i as usize];
-    }
-    i
-}
-
-fn join(root: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (find(root, a), find(root, b));
-    root[a.max(b) as usize] = a.min(b);
 }

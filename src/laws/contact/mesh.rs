@@ -1,6 +1,7 @@
 //! Walls of triangles: which places a sphere touches, edges and corners counted once.
 
 use super::walls::Near;
+use crate::math::forest::{find, join};
 use crate::math::triangle::{Feature, nearest};
 use crate::math::vec3::{Vec3, cross, dot, length, scale, sub};
 use std::collections::BTreeMap;
@@ -71,7 +72,7 @@ impl Mesh {
                 }
             }
         }
-        let patch = (0..patch.len() as u32).map(|k| root(&mut patch, k)).collect();
+        let patch = (0..patch.len() as u32).map(|k| find(&mut patch, k)).collect();
         let open_edges = sides.values().filter(|s| s.len() == 1).count();
         let grid = Grid::new(&triangles);
         Ok(Self { triangles, corners, patch, grid, open_edges })
@@ -251,19 +252,6 @@ fn weld(triangles: &[Triangle]) -> Vec<[u32; 3]> {
         *known.entry(p.map(|a| (a + 0.0).to_bits())).or_insert(next)
     };
     triangles.iter().map(|t| [number(&t[0]), number(&t[1]), number(&t[2])]).collect()
-}
-
-fn root(patch: &mut [u32], mut k: u32) -> u32 {
-    while patch[k as usize] != k {
-        patch[k as usize] = patch[patch[k as usize] as usize];
-        k = patch[k as usize];
-    }
-    k
-}
-
-fn join(patch: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(patch, a), root(patch, b));
-    patch[a.max(b) as usize] = a.min(b);
 }
 
 #[cfg(test)]

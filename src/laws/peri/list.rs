@@ -93,6 +93,67 @@ pub fn reach_of(body: &ListBody, slab: usize) -> (Range<usize>, Range<usize>) {
     (own, next)
 }
 
+/// Zero forces for so many records of a window.
+pub fn clear(window: &mut Window, records: usize) {
+    let length = 4 * records;
+    if window.force.len() < length {
+        window.force.resize(length, 0.0);
+    }
+    window.force[..length].fill(0.0);
+}
+
+/// Adds what a window has gathered for `records`, in their order, to the particles' forces.
+pub fn hand_back(
+    body: &ListBody,
+    records: impl Iterator<Item = usize>,
+    window: &Window,
+    f: &Shared<[f64; 3]>,
+) {
+    for (k, i) in records.enumerate() {
+        let p = body.particle[i] as usize;
+        if p < f.len() {
+            // SAFETY: in bounds; slabs that reach a particle run one after the other.
+            let f = unsafe { &mut *f.as_ptr().add(p) };
+            let w = &window.force[4 * k..4 * k + 3];
+            let share = body.record[i].share;
+            *f = [f[0] + share * w[0], f[1] + share * w[1], f[2] + share * w[2]];
+        }
+    }
+}
+
+/// What the bonds of a record are watched for: breaking, and contact in spite of the bond.
+pub struct Watch {
+    /// The smallest s00 and the largest alpha of all pairs of types.
+    limit: (f64, f64),
+    /// See [`ListBody::contact`].
+    contact: f64,
+    mode: Mode,
+}
+
+impl Watch {
+    /// For the bonds of a body.
+    pub fn new(body: &ListBody, mode: Mode) -> Self {
+        let limit =
+            body.pairs.iter().fold((f64::INFINITY, 0.0f64), |l, p| (l.0.min(p.s00), l.1.max(p.alpha)));
+        Self { limit, contact: body.contact, mode }
+    }
+
+    /// Notes the largest z and −z among a record's bonds.
+    #[inline]
+    pub fn note(&self, [high, low]: [f64; 2], tension: &mut f32, flagged: &mut u8) {
+        let floor = least_critical(self.limit, f64::from(*tension));
+        if self.mode.armed && self.mode.advance && high >= floor {
+            *flagged |= MAY_BREAK;
+        }
+        if low >= -self.contact {
+            *flagged |= SQUEEZED;
+        }
+        if self.mode.advance {
+            *tension = (high * (1.0 + 1e-6)) as f32;
+        }
+    }
+}
+
 /// The list during one force evaluation, with the columns that its slabs write.
 pub struct Sweep<'a> {
     /// The bonds.
@@ -127,14 +188,9 @@ impl Sweep<'_> {
         if rest && self.mode.skip {
             return;
         }
-        let length = 4 * (own.len() + next.len());
-        if window.force.len() < length {
-            window.force.resize(length, 0.0);
-        }
-        window.force[..length].fill(0.0);
+        clear(window, own.len() + next.len());
         let periodic = self.period.iter().any(|p| p.is_finite());
-        let limit =
-            body.pairs.iter().fold((f64::INFINITY, 0.0f64), |l, p| (l.0.min(p.s00), l.1.max(p.alpha)));
+        let watch = Watch::new(body, self.mode);
         let closes = body.ring && slab + 1 == slabs;
         let dead = dead(&self.options);
         let force = window.force.as_mut_ptr().wrapping_sub(4 * own.start);
@@ -148,27 +204,9 @@ impl Sweep<'_> {
                     (true, true) => K::row::<true, true>(&task),
                 }
             };
-            let floor = least_critical(limit, f64::from(tension[k]));
-            if self.mode.armed && self.mode.advance && high >= floor {
-                flagged[k] |= MAY_BREAK;
-            }
-            if low >= -body.contact {
-                flagged[k] |= SQUEEZED;
-            }
-            if self.mode.advance {
-                tension[k] = (high * (1.0 + 1e-6)) as f32;
-            }
+            watch.note([high, low], &mut tension[k], &mut flagged[k]);
         }
-        for (k, i) in own.chain(next).enumerate() {
-            let p = body.particle[i] as usize;
-            if p < f.len() {
-                // SAFETY: in bounds; slabs that reach a particle run one after the other.
-                let f = unsafe { &mut *f.as_ptr().add(p) };
-                let w = &window.force[4 * k..4 * k + 3];
-                let share = body.record[i].share;
-                *f = [f[0] + share * w[0], f[1] + share * w[1], f[2] + share * w[2]];
-            }
-        }
+        hand_back(body, own.chain(next), window, f);
     }
 }
 

@@ -1,5 +1,6 @@
 //! Bodies: which particles hang together by bonds, and which of them sit on a lattice.
 
+use crate::math::forest::{find, join};
 use crate::world::families::{Cells, FamilyOptions, PeriView, PmbTable};
 
 /// The bodies of a scene.
@@ -61,9 +62,7 @@ pub fn bodies(view: &PeriView, table: &PmbTable, options: &FamilyOptions) -> Bod
     let mut shortest = vec![f64::INFINITY; n];
     let mut crosses = vec![false; n];
     bonds(view, 0..n as u32, table, options, |i, j, rsq, wraps| {
-        let (a, b) = (root(&mut parent, i), root(&mut parent, j));
-        let (low, high) = (a.min(b), a.max(b));
-        parent[high as usize] = low;
+        join(&mut parent, i, j);
         shortest[i as usize] = shortest[i as usize].min(rsq);
         shortest[j as usize] = shortest[j as usize].min(rsq);
         crosses[i as usize] |= wraps;
@@ -74,7 +73,7 @@ pub fn bodies(view: &PeriView, table: &PmbTable, options: &FamilyOptions) -> Bod
         if shortest[i].is_infinite() {
             continue;
         }
-        let r = root(&mut parent, i as u32) as usize;
+        let r = find(&mut parent, i as u32) as usize;
         if body[r] == u32::MAX {
             body[r] = found.members.len() as u32;
             found.members.push(vec![]);
@@ -87,14 +86,6 @@ pub fn bodies(view: &PeriView, table: &PmbTable, options: &FamilyOptions) -> Bod
         found.wraps[b] |= crosses[i];
     }
     found
-}
-
-fn root(parent: &mut [u32], mut i: u32) -> u32 {
-    while parent[i as usize] != i {
-        parent[i as usize] = parent[parent[i as usize] as usize];
-        i = parent[i as usize];
-    }
-    i
 }
 
 /// A lattice that carries a body.

@@ -1,6 +1,7 @@
 //! Pairs of particles within a distance of each other, and clusters of them.
 
 use crate::diag::{Code, Diagnostic, Result};
+use crate::math::forest::find;
 use crate::neigh::list::{Pair, Reach, View, Wanted, difference, pairs};
 use crate::world::index::Index;
 use crate::world::{Allowed, Bond, GroupId, World};
@@ -49,24 +50,16 @@ impl<'a> Clusters<'a> {
         Self { parent: (0..tag.len() as u32).collect(), tag }
     }
 
-    fn root(&mut self, mut i: u32) -> u32 {
-        while self.parent[i as usize] != i {
-            self.parent[i as usize] = self.parent[self.parent[i as usize] as usize];
-            i = self.parent[i as usize];
-        }
-        i
-    }
-
     /// Joins the sets of two particles.
     pub fn join(&mut self, i: u32, j: u32) {
-        let (a, b) = (self.root(i), self.root(j));
+        let (a, b) = (find(&mut self.parent, i), find(&mut self.parent, j));
         let (low, high) = if self.tag[a as usize] <= self.tag[b as usize] { (a, b) } else { (b, a) };
         self.parent[high as usize] = low;
     }
 
     /// The smallest id in the set of a particle.
     pub fn name(&mut self, i: usize) -> f64 {
-        f64::from(self.tag[self.root(i as u32) as usize])
+        f64::from(self.tag[find(&mut self.parent, i as u32) as usize])
     }
 }
 

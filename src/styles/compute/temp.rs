@@ -7,7 +7,7 @@ use crate::plan::{Op, Stage, Tick, When};
 use crate::styles::matter::{Masses, check_masses, count, sum};
 use crate::styles::step_op::{Wanted, fill};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
-use crate::world::{GroupId, SlotId, World};
+use crate::world::{GroupId, Slot, SlotId, World};
 
 /// The style.
 pub struct Temp;
@@ -33,7 +33,7 @@ impl Style for Temp {
 impl ComputeStyle for Temp {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         args.finish()?;
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, extra: None, dynamic: false }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, rules: Rules::default() }))
     }
 }
 
@@ -41,16 +41,56 @@ impl ComputeStyle for Temp {
 struct Declared {
     id: String,
     group: GroupId,
-    extra: Option<f64>,
+    rules: Rules,
+}
+
+/// How a temperature counts degrees of freedom (`compute_modify`), and how it offers what it has found.
+#[derive(Clone, Default)]
+pub(super) struct Rules {
+    /// Degrees of freedom taken off, where the deck says so.
+    pub extra: Option<f64>,
+    /// Under `-compat lammps`: counted at each use, not at the beginning of a run.
     dynamic: bool,
+}
+
+impl Rules {
+    /// Reads the options of `compute_modify`.
+    ///
+    /// # Errors
+    /// Unknown words and what is no number.
+    pub fn modify(&mut self, args: &mut Args) -> Result<()> {
+        while !args.is_empty() {
+            match args.choice("option of a temperature", &["extra/dof", "extra", "dynamic/dof", "dynamic"])? {
+                "extra/dof" | "extra" => self.extra = Some(args.number("the number of degrees of freedom")?),
+                _ => self.dynamic = args.flag("dynamic/dof")?,
+            }
+        }
+        Ok(())
+    }
+
+    /// The count for one run.
+    pub fn freedom(&self) -> Freedom {
+        Freedom { dynamic: self.dynamic, begun: None }
+    }
+}
+
+/// Offers twice the kinetic energy as a temperature, its tensor (xx yy zz xy xz yz), both in units of mass × velocity²,
+/// and the degrees of freedom, which the pressure reads.
+pub(super) fn offer(w: &World, out: &mut Slot, twice: f64, tensor: [f64; 6], dof: f64) {
+    let units = w.settings.units.constants();
+    out.scalar = if dof > 0.0 { twice * (units.mvv2e / (dof * units.boltz)) } else { 0.0 };
+    out.vector.clear();
+    out.vector.extend(tensor.map(|k| k * units.mvv2e));
+    out.inner.clear();
+    out.inner.push(dof);
 }
 
 /// Degrees of freedom, which LAMMPS counts at the beginning of a run unless `dynamic/dof yes` says otherwise.
 pub(super) struct Freedom {
     /// Counted at each use.
-    pub dynamic: bool,
+    dynamic: bool,
     /// What was counted when the run began.
-    pub begun: Option<f64>,
+    begun: Option<f64>,
 }
 
 impl Freedom {
@@ -69,12 +109,11 @@ impl Compute for Declared {
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let (group, extra, span) = (self.group, self.extra, cx.span());
+        let (group, extra, span) = (self.group, self.rules.extra, cx.span());
         check_masses(cx.world(), span)?;
-        let mut freedom = Freedom { dynamic: self.dynamic, begun: None };
+        let mut freedom = self.rules.freedom();
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "v mass mask", move |w, t, out| {
             let (p, masses) = (&w.particles, Masses::of(w));
-            let units = w.settings.units.constants();
             let [mv2, tensor @ ..] = sum::<7>(&p.mask, group, |i| {
                 let ([x, y, z], m) = (p.v[i], masses.get(i));
                 let mv2 = (x * x + y * y + z * z) * m;
@@ -82,24 +121,13 @@ impl Compute for Declared {
             });
             let dimension = if w.settings.two_dimensional { 2.0 } else { 3.0 };
             let dof = freedom.now(w, t, dimension * count(w, group) as f64 - extra.unwrap_or(dimension));
-            out.scalar = if dof > 0.0 { mv2 * (units.mvv2e / (dof * units.boltz)) } else { 0.0 };
-            out.vector.clear();
-            out.vector.extend(tensor.map(|k| k * units.mvv2e));
-            // The pressure reads the degrees of freedom here.
-            out.inner.clear();
-            out.inner.push(dof);
+            offer(w, out, mv2, tensor, dof);
             Ok(())
         }))
     }
 
     fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        while !args.is_empty() {
-            match args.choice("option of a temperature", &["extra/dof", "extra", "dynamic/dof", "dynamic"])? {
-                "extra/dof" | "extra" => self.extra = Some(args.number("the number of degrees of freedom")?),
-                _ => self.dynamic = args.flag("dynamic/dof")?,
-            }
-        }
-        Ok(())
+        self.rules.modify(args)
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

@@ -1,7 +1,7 @@
 //! compute temp/sphere: temperature of spheres that fly and spin.
 
 use super::erotate_sphere::{INERTIA, needs_spheres};
-use super::temp::Freedom;
+use super::temp::{Rules, offer};
 use super::{Compute, ComputeStyle};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
@@ -58,7 +58,7 @@ impl ComputeStyle for TempSphere {
                 _ => return Err(args.unknown(word, &["dof", "bias"])),
             }
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, rotate, extra: None, dynamic: false }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, rotate, rules: Rules::default() }))
     }
 }
 
@@ -68,8 +68,7 @@ struct Declared {
     group: GroupId,
     /// Rotation alone.
     rotate: bool,
-    extra: Option<f64>,
-    dynamic: bool,
+    rules: Rules,
 }
 
 impl Declared {
@@ -81,7 +80,7 @@ impl Declared {
         let [count] = sum(&p.mask, self.group, |i| [if p.radius[i] > 0.0 { fly + spin } else { fly }]);
         let centre = if flat { 2.0 } else { 3.0 };
         // LAMMPS takes the centre's motion off only where translation counts.
-        count - self.extra.unwrap_or(if self.rotate { 0.0 } else { centre })
+        count - self.rules.extra.unwrap_or(if self.rotate { 0.0 } else { centre })
     }
 }
 
@@ -92,11 +91,10 @@ impl Compute for Declared {
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let me = self.clone();
-        let mut freedom = Freedom { dynamic: self.dynamic, begun: None };
+        let mut freedom = self.rules.freedom();
         let reads = "v omega radius mass mask";
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, t, out| {
             let p = &w.particles;
-            let units = w.settings.units.constants();
             let tensor: [f64; 6] = sum(&p.mask, me.group, |i| {
                 let (v, o, m) = (p.v[i], p.omega[i], p.mass[i]);
                 let fly = if me.rotate { 0.0 } else { m };
@@ -105,24 +103,13 @@ impl Compute for Declared {
                 [pair(0, 0), pair(1, 1), pair(2, 2), pair(0, 1), pair(0, 2), pair(1, 2)]
             });
             let (twice, dof) = (tensor[0] + tensor[1] + tensor[2], freedom.now(w, t, me.freedom(w)));
-            out.scalar = if dof > 0.0 { twice * (units.mvv2e / (dof * units.boltz)) } else { 0.0 };
-            out.vector.clear();
-            out.vector.extend(tensor.map(|k| k * units.mvv2e));
-            // The pressure reads the degrees of freedom here.
-            out.inner.clear();
-            out.inner.push(dof);
+            offer(w, out, twice, tensor, dof);
             Ok(())
         }))
     }
 
     fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        while !args.is_empty() {
-            match args.choice("option of a temperature", &["extra/dof", "extra", "dynamic/dof", "dynamic"])? {
-                "extra/dof" | "extra" => self.extra = Some(args.number("the number of degrees of freedom")?),
-                _ => self.dynamic = args.flag("dynamic/dof")?,
-            }
-        }
-        Ok(())
+        self.rules.modify(args)
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

@@ -2,8 +2,8 @@
 
 use std::sync::Mutex;
 
-use super::super::lattice::{MAY_BREAK, Mode, SQUEEZED, least_critical};
-use super::super::list::reach_of;
+use super::super::lattice::Mode;
+use super::super::list::{Watch, clear, hand_back, reach_of};
 use super::super::single::Single;
 use super::law::{
     BondLaw, Dilatation, Elastic, Ends, Flattened, Moment, Norm, NormLammps, Plastic, PlasticLammps, Stretch,
@@ -282,36 +282,13 @@ impl Sweep<'_> {
         if rest && self.mode.skip {
             return;
         }
-        let length = 4 * (own.len() + next.len());
-        if window.force.len() < length {
-            window.force.resize(length, 0.0);
-        }
-        window.force[..length].fill(0.0);
-        let limit =
-            body.pairs.iter().fold((f64::INFINITY, 0.0f64), |l, p| (l.0.min(p.s00), l.1.max(p.alpha)));
+        clear(window, own.len() + next.len());
+        let watch = Watch::new(body, self.mode);
         for (k, i) in own.clone().enumerate() {
             let (high, low) = self.pull_one::<W>(i, &own, window);
-            let floor = least_critical(limit, f64::from(tension[k]));
-            if self.mode.armed && self.mode.advance && high >= floor {
-                flagged[k] |= MAY_BREAK;
-            }
-            if low >= -body.contact {
-                flagged[k] |= SQUEEZED;
-            }
-            if self.mode.advance {
-                tension[k] = (high * (1.0 + 1e-6)) as f32;
-            }
+            watch.note([high, low], &mut tension[k], &mut flagged[k]);
         }
-        for (k, i) in own.chain(next).enumerate() {
-            let p = body.particle[i] as usize;
-            if p < f.len() {
-                // SAFETY: in bounds; slabs that reach a particle run one after the other.
-                let f = unsafe { &mut *f.as_ptr().add(p) };
-                let w = &window.force[4 * k..4 * k + 3];
-                let share = body.record[i].share;
-                *f = [f[0] + share * w[0], f[1] + share * w[1], f[2] + share * w[2]];
-            }
-        }
+        hand_back(body, own.chain(next), window, f);
     }
 
     /// Adds the forces of one record's bonds; returns the largest z and the largest −z.

@@ -1,0 +1,139 @@
+//! The ops that put values of computes, thermo keywords and variables into slots.
+
+use super::answers::Declared;
+use super::env::RunEnv;
+use super::keywords::{self, Sources};
+use crate::diag::{Code, Result, Span, fail};
+use crate::lang::{Value, Vars};
+use crate::plan::{Access, Op, OpClass, Stage, Tick};
+use crate::world::{SlotId, World};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A compute's op, at the stage of its reader, at most once per step.
+pub(super) struct Once {
+    /// The op.
+    pub(super) op: Box<dyn Op>,
+    /// The stage of its reader.
+    pub(super) stage: Stage,
+    /// Where the value goes.
+    pub(super) slot: SlotId,
+}
+
+impl Op for Once {
+    fn name(&self) -> &str {
+        self.op.name()
+    }
+    fn stage(&self) -> Stage {
+        self.stage
+    }
+    fn access(&self) -> Access {
+        self.op.access()
+    }
+    fn in_setup(&self) -> bool {
+        true
+    }
+    fn class(&self) -> OpClass {
+        OpClass::Output
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if w.slots.get(self.slot).step == Some(t.step) {
+            return Ok(());
+        }
+        self.op.run(w, t)
+    }
+}
+
+/// A thermo keyword on its way into a slot.
+pub(super) struct Keyword {
+    /// The keyword.
+    pub(super) name: &'static str,
+    /// What it reads.
+    pub(super) sources: Sources,
+    /// Where the value goes.
+    pub(super) slot: SlotId,
+    /// The stage of its reader.
+    pub(super) stage: Stage,
+}
+
+impl Op for Keyword {
+    fn name(&self) -> &str {
+        self.name
+    }
+    fn stage(&self) -> Stage {
+        self.stage
+    }
+    fn access(&self) -> Access {
+        Access::default()
+    }
+    fn in_setup(&self) -> bool {
+        true
+    }
+    fn class(&self) -> OpClass {
+        OpClass::Output
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let value = keywords::value(self.name, w, &self.sources);
+        let slot = w.slots.get_mut(self.slot);
+        slot.scalar = value;
+        slot.step = Some(t.step);
+        Ok(())
+    }
+}
+
+/// A variable on its way into a slot.
+pub(super) struct Evaluate {
+    /// What formulas may ask about declarations.
+    pub(super) declared: Arc<Declared>,
+    /// For plan and timing.
+    pub(super) name: String,
+    /// The variable.
+    pub(super) variable: String,
+    /// Where it is used.
+    pub(super) span: Span,
+    /// All variables.
+    pub(super) vars: Arc<Vars>,
+    /// Where the values that its formula names are.
+    pub(super) from: BTreeMap<String, SlotId>,
+    /// Where the value goes.
+    pub(super) slot: SlotId,
+    /// The stage of its reader.
+    pub(super) stage: Stage,
+}
+
+impl Op for Evaluate {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn stage(&self) -> Stage {
+        self.stage
+    }
+    fn access(&self) -> Access {
+        Access::default()
+    }
+    fn in_setup(&self) -> bool {
+        true
+    }
+    fn class(&self) -> OpClass {
+        OpClass::Output
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let mut env = RunEnv { w, declared: &self.declared, from: &self.from };
+        let value = self.vars.value(&self.variable, self.span, &mut env)?;
+        let slot = w.slots.get_mut(self.slot);
+        slot.step = Some(t.step);
+        match value {
+            Value::Number(a) => slot.scalar = a,
+            Value::Atom(list) => (slot.atom, slot.cols) = (list, 1),
+            Value::Vector(list) => slot.vector = list,
+            Value::Unknown => {
+                return fail(
+                    Code::WRONG_KIND,
+                    self.span,
+                    format!("variable `{}` has no number here", self.variable),
+                );
+            }
+        }
+        Ok(())
+    }
+}
