@@ -81,86 +81,206 @@ fn test_4_gross_sliding_at_an_angle() {
     close("ω'", a.spin, 544.25, 1e-2);
 }
 
+/// Each kind of spring at angles to the normal: exit velocity and spin that LAMMPS 22Jul2025 prints for the same deck,
+/// and those of the motion integrated apart in 20,000 steps.
+type Angled = (&'static str, [(f64, [f64; 2], [f64; 2]); 3]);
+const ANGLED: [Angled; 4] = [
+    (
+        "mindlin",
+        [
+            (5.0, [0.3223966674, 8.755364643], [0.32239, 8.757]),
+            (10.0, [0.4719212721, 102.6533104], [0.47192, 102.65]),
+            (20.0, [0.8249158448, 254.4813571], [0.82492, 254.48]),
+        ],
+    ),
+    (
+        "mindlin/force",
+        [
+            (5.0, [0.3033716993, 18.26784869], [0.30277, 18.567]),
+            (10.0, [0.4823841466, 97.42187315], [0.48246, 97.38]),
+            (20.0, [0.810323351, 261.777604], [0.81054, 261.67]),
+        ],
+    ),
+    (
+        "mindlin_rescale",
+        [
+            (5.0, [0.3022906886, 18.80835407], [0.30230, 18.803]),
+            (10.0, [0.469965565, 103.631164], [0.46987, 103.68]),
+            (20.0, [0.8367417059, 248.5684266], [0.83656, 248.66]),
+        ],
+    ),
+    (
+        "mindlin_rescale/force",
+        [
+            (5.0, [0.292768737, 23.56932987], [0.29222, 23.843]),
+            (10.0, [0.4804246305, 98.40163118], [0.48041, 98.41]),
+            (20.0, [0.8249158448, 254.4813571], [0.82492, 254.48]),
+        ],
+    ),
+];
+
 #[test]
-fn mindlin_springs_stick_and_slide_as_integrated_apart() {
+fn mindlin_springs_stick_and_slide_as_in_lammps_and_as_integrated_apart() {
     // physics.md 4.4: alumina of radius 5 mm on a half-space, E* = 62.952 GPa, G* = 13.5147 GPa, μ = 0.092, 3.9 m/s,
-    // e = 1. At each angle to the normal: exit velocity and spin of a spring that remembers its force, largest normal
-    // force. Maw, Barber & Fawcett's curve has sticking, partial and full sliding in this range.
+    // e = 1; its "rescale variant" (0.30230 at 5°) is the one that remembers a displacement. At 45° and 85° it slides
+    // throughout, whatever the spring.
     let (radius, density, speed, mu) = (0.005, 4000.0, 3.9_f64, 0.092);
     let k = [4.0 / 3.0 * 6.2952e10, 8.0 * 1.35147e10];
-    let cases = [
-        (5.0, [0.30277, 18.57], 1168.0),
-        (10.0, [0.48246, 97.4], 1152.0),
-        (20.0, [0.81055, 261.7], 1089.0),
-        (45.0, [2.2503, 253.71], 774.1),
-        (85.0, [3.8226, 31.271], 62.775),
+    let sliding = [
+        (45.0, [2.25029662, 253.7099134], [2.25030, 253.71]),
+        (85.0, [3.822616362, 31.27148053], [3.82262, 31.271]),
     ];
-    for (degrees, expected, force) in cases {
-        let angle = f64::to_radians(degrees);
+    let forces = [(5.0, 1168.0), (10.0, 1152.0), (20.0, 1089.0), (45.0, 774.1), (85.0, 62.775)];
+    for (kind, cases) in ANGLED {
+        for ((degrees, lammps, apart), (_, force)) in cases.into_iter().chain(sliding).zip(forces) {
+            let angle = f64::to_radians(degrees);
+            let v = [speed * angle.sin(), speed * angle.cos()];
+            let time = hertz(k[0] * f64::sqrt(radius), mass(radius, density), v[1])[2];
+            let model = format!("hertz {} 0 damping velocity tangential {kind} {} 0 {mu}", k[0], k[1]);
+            let a = meet([radius, density], v, 0.0, &model, time);
+            let what = format!("{kind} at {degrees}°");
+            // LAMMPS' ten printed digits.
+            close(&format!("{what}: velocity, LAMMPS"), a.across, lammps[0], 1e-8);
+            close(&format!("{what}: spin, LAMMPS"), a.spin, lammps[1], 1e-8);
+            // The step that ends the largest force lies up to half a step from it.
+            close(&format!("{what}: force"), a.normal, force, 2e-4);
+            // A remembered force is late by half a step, an error of first order that sticking at 5° shows most: at
+            // 400 steps 2.0e-3 of v, at 4000 1.8e-4; it is 16 times as large a part of the small spin.
+            let late = if degrees < 6.0 && kind.ends_with("force") { 2.5e-3 } else { 4e-4 };
+            close(&format!("{what}: velocity"), a.across, apart[0], late);
+            close(&format!("{what}: spin"), a.spin, apart[1], if late > 1e-3 { 2e-2 } else { 6e-4 });
+        }
+    }
+}
+
+/// Maw, Barber & Fawcett's impact of a sphere (Wear 38, 1976, 101–114) of slip ψ1: what it returns as ψ2, e = 1.
+///
+/// The contact is a row of independent springs under a parabola, E* across and 4 G* along each unit of its length, each
+/// of which sticks or slides by itself: this row has exactly the forces of Cattaneo's and Mindlin's solution under any
+/// history (Popov & Heß 2015, chapter 5; Lyashenko & Popov, Sci. Rep. 5, 2015, 8479). Here in units of E*, m, R and v_n.
+fn maw(kappa: f64, psi: f64) -> f64 {
+    const SPRINGS: usize = 400;
+    const STEPS: f64 = 4000.0;
+    let (mu, mut s, mut v, mut depth) = (0.1, psi * 0.1 / kappa, 1.0, 0.0);
+    let [deepest, _, time] = hertz(4.0 / 3.0, 1.0, 1.0);
+    let (dt, width) = (time / STEPS, 1.001 * deepest.sqrt() / SPRINGS as f64);
+    let mut stretch = [0.0_f64; SPRINGS];
+    loop {
+        depth += 0.5 * v * dt;
+        let (mut normal, mut across) = (0.0, 0.0);
+        for (n, u) in stretch.iter_mut().enumerate() {
+            let x = (n as f64 + 0.5) * width;
+            let push = 2.0 * width * (depth - x * x);
+            let stiffness = 2.0 * width * kappa;
+            *u = if push > 0.0 {
+                (*u + s * dt).clamp(-mu * push / stiffness, mu * push / stiffness)
+            } else {
+                0.0
+            };
+            normal += push.max(0.0);
+            across += stiffness * *u;
+        }
+        // A force across changes the slip of a sphere by 1 + m R²/I = 7/2 times F/m.
+        v -= normal * dt;
+        s -= 3.5 * across * dt;
+        depth += 0.5 * v * dt;
+        if depth <= 0.0 {
+            return kappa * s / mu;
+        }
+    }
+}
+
+#[test]
+fn maw_barber_and_fawcetts_curve() {
+    // κ = 0.8587 (physics.md 4.4). Nine angles from sticking to sliding; ψ = κ s/(μ v_n).
+    let (radius, density, speed, mu) = (0.005, 4000.0, 3.9_f64, 0.092);
+    let k = [4.0 / 3.0 * 6.2952e10, 8.0 * 1.35147e10];
+    let kappa = 4.0 * 1.35147 / 6.2952;
+    // The curve itself; with four times the springs and steps it moves by less than 2e-4.
+    let printed = [
+        (0.25, 0.05661),
+        (0.5, 0.08255),
+        (1.0, 0.01874),
+        (2.0, -0.73973),
+        (3.0, -1.33217),
+        (4.0, -1.48804),
+        (5.0, -1.01081),
+        (6.0, -0.01090),
+        (8.0, 8.0 - 7.0 * kappa),
+    ];
+    // How far one spring with a limit is off, since it does not slide part by part: integrated apart in 40,000 steps.
+    let spring = [0.2215, 0.3898, 0.5175, -0.3545, -1.0917, -1.3865, -1.0108, -0.0109, 8.0 - 7.0 * kappa];
+    for ((psi, after), one) in printed.into_iter().zip(spring) {
+        let exact = maw(kappa, psi);
+        assert!((exact - after).abs() < 3e-4, "ψ1 = {psi}: {exact} instead of {after}");
+        let angle = (psi * mu / kappa).atan();
         let v = [speed * angle.sin(), speed * angle.cos()];
         let time = hertz(k[0] * f64::sqrt(radius), mass(radius, density), v[1])[2];
-        let model = format!("hertz {} 1 damping none tangential mindlin/force {} 0 {mu}", k[0], k[1]);
+        let model = format!("hertz {} 0 damping velocity tangential mindlin/force {} 0 {mu}", k[0], k[1]);
         let a = meet([radius, density], v, 0.0, &model, time);
-        let what = format!("at {degrees}°");
-        close(&format!("{what}: force"), a.normal, force, 2e-3);
-        close(&format!("{what}: velocity"), a.across, expected[0], 3e-3);
-        // The integration had a rigid sphere; here the arm is shorter by up to δ/2R = 0.2 %, and spins at small
-        // angles are differences of large opposite parts.
-        close(&format!("{what}: spin"), a.spin, expected[1], 2e-2);
+        let got = kappa * (a.across - a.spin * radius) / (mu * v[1]);
+        // The half step by which the force is late: 7/2 κ/μ … in ψ below 1 % of its largest change, 7κ.
+        assert!((got - one).abs() < 0.01 * 7.0 * kappa, "ψ1 = {psi}: {got} instead of {one}");
+        // Against the curve: exact where all of it slides, ψ1 ≥ 7κ − 1; else within one half, on its side.
+        let apart = if psi > 7.0 * kappa - 1.0 { 1e-3 } else { 0.51 };
+        assert!((got - exact).abs() < apart && got > exact - 1e-3, "ψ1 = {psi}: {got}, curve {exact}");
     }
 }
 
 #[test]
 fn test_5_from_sticking_to_sliding() {
     // Radius 10 µm, v_n = 5 m/s, μ = 0.3, e = 1: ψ = κ s/(μ v_n) with the slip s of the surface before and after, κ =
-    // 2(1−ν)/(2−ν). Sliding throughout, ψ1 ≥ 7κ − 1, lies on ψ2 = ψ1 − 7κ (Maw, Barber & Fawcett 1976).
+    // 2(1−ν)/(2−ν), against Maw, Barber & Fawcett's curve as far as one spring follows it (see above).
     let (radius, vn, mu) = (1e-5, 5.0, 0.3);
     for (young, nu, density) in [(208e9, 0.3, 7850.0), (1e9, 0.4, 1400.0)] {
         let k = rigid(young, nu);
         let kappa = 2.0 * (1.0 - nu) / (2.0 - nu);
         let time = hertz(k[0] * f64::sqrt(radius), mass(radius, density), vn)[2];
         let psi = |v: f64| kappa * v / (mu * vn);
-        let mut curve = vec![];
         for vt in [0.1, 2.0, 5.0, 8.0, 11.0, 20.0, 70.0] {
             let text = format!("hertz {} 0 damping velocity tangential mindlin/force {} 0 {mu}", k[0], k[1]);
             let a = meet([radius, density], [vt, vn], 0.0, &text, time);
-            let after = psi(a.across - a.spin * radius);
-            if psi(vt) > 7.0 * kappa {
-                // The overlap shortens the arm: by 12 % of a radius for polyethylene.
-                close(
-                    &format!("{young} {vt}"),
-                    after,
-                    psi(vt) - 7.0 * kappa,
-                    if young > 1e10 { 2e-2 } else { 0.3 },
-                );
-            }
-            curve.push((psi(vt), after));
+            let (after, exact) = (psi(a.across - a.spin * radius), maw(kappa, psi(vt)));
+            let apart = if psi(vt) > 7.0 * kappa - 1.0 { 1e-3 } else { 0.51 };
+            assert!((after - exact).abs() < apart, "{young} {vt}: {after} instead of {exact}");
         }
-        // Between sticking and sliding the surface comes back the other way.
-        let least = curve.iter().map(|c| c.1).fold(f64::INFINITY, f64::min);
-        assert!(least < -0.8 && least > -2.0, "{curve:?}");
     }
 }
 
-/// What the spring's stretching takes from friction at first touch.
-const SLOW: f64 = 1.5e-2;
+/// The e to ask of `coeff_restitution` where `limit_damping` lets 0.5 come out: its α is 0.57082 (test-cases.md 2c).
+const HALF: f64 = 0.436_27;
+
+/// The part of friction's impulse that a spring without a dashpot owes while it is stretched first, for ω r/v_n = `ratio`.
+///
+/// In units of k = m̄ = v_n = 1 the limit starts as μ (α δ^¼ + δ^1.5), the dashpot's push before all, the spring with
+/// (3/2) κ `ratio` δ^1.5, δ = t: they meet at δ^(5/4) = μ α/((3/2) κ `ratio` − μ). The whole impulse is μ (1 + e).
+fn late(ratio: f64, nu: f64, mu: f64) -> f64 {
+    const ALPHA: f64 = 0.57082;
+    let rise = 3.0 * (1.0 - nu) / (2.0 - nu) * ratio;
+    let depth = (mu * ALPHA / (rise - mu)).powf(0.8);
+    let missing = mu * ALPHA * depth.powf(1.25) / 1.25 - 0.4 * (rise - mu) * depth.powf(2.5);
+    missing / (1.5 * mu)
+}
+
+/// What is left: the time step's 4e-4 in e at 400 steps per contact (restitution.rs), and a twentieth of `late`, up to
+/// 1.1 %, in which the sphere already slows down.
+const STEP: f64 = 1.2e-3;
 
 #[test]
 fn test_6_a_spinning_sphere_on_a_plane() {
-    // Radius 0.1 m, 0.2 m/s, μ = 0.4, e about 0.5: v_t' = μ (1+e) v_n and ω' = ω − 5/2 μ (1+e) v_n/r while it slides,
-    // r ω > 7/2 μ (1+e) v_n; aluminium and copper. The forces never pull, so that friction has one sign of F_n. At first
-    // touch the dashpot pushes before the spring across is stretched, which takes up to 1 % from slow spins.
+    // Radius 0.1 m, 0.2 m/s, μ = 0.4, e = 0.5: v_t' = μ (1+e) v_n and ω' = ω − 5/2 μ (1+e) v_n/r while it slides,
+    // r ω > 7/2 μ (1+e) v_n; aluminium and copper. The forces never pull, so that friction has one sign of F_n.
     let (radius, vn, mu) = (0.1, 0.2, 0.4);
     for (young, nu, density) in [(70e9, 0.33, 2700.0), (120e9, 0.35, 8900.0)] {
         let k = rigid(young, nu);
         let time = hertz(k[0] * f64::sqrt(radius), mass(radius, density), vn)[2];
-        let model = format!("{} limit_damping", model(k, 0.44, mu));
+        let model = format!("{} limit_damping", model(k, HALF, mu));
         for omega in [6.0, 12.0, 21.0] {
             let a = meet([radius, density], [0.0, vn], omega, &model, time);
-            let push = mu * (vn + a.up);
-            close("e", a.up / vn, 0.5, 2e-2);
-            close("v_t'", a.across, push, SLOW);
-            close("ω − ω'", omega - a.spin, 2.5 * push / radius, SLOW);
+            let push = mu * 1.5 * vn * (1.0 - late(omega * radius / vn, nu, mu));
+            close("e", a.up / vn, 0.5, STEP);
+            close("v_t'", a.across, push, STEP);
+            close("ω − ω'", omega - a.spin, 2.5 * push / radius, STEP);
         }
         // Slow spin sticks: less friction than the limit.
         let a = meet([radius, density], [0.0, vn], 0.175, &model, time);
@@ -199,7 +319,7 @@ fn test_8_a_spinning_sphere_on_a_heavy_one() {
     {
         for omega in [8.0, 15.0] {
             let m = format!(
-                "hertz/material {young} 0.44 {nu} damping coeff_restitution limit_damping tangential mindlin NULL 0 {mu}"
+                "hertz/material {young} {HALF} {nu} damping coeff_restitution limit_damping tangential mindlin NULL 0 {mu}"
             );
             let deck = empty(2.0, 2)
                 + &sphere([1, 1], [0.6, 0.0, 0.0], [0.1, density], [-vn, 0.0, 0.0], [0.0, 0.0, omega])
@@ -209,10 +329,11 @@ fn test_8_a_spinning_sphere_on_a_heavy_one() {
             scene.step(steps);
             let p = &scene.world().particles;
             assert!(p.f[0] == [0.0; 3] && p.v[0][0] > 0.0, "not apart yet");
-            let push = mu * (vn + p.v[0][0]);
-            close("e", p.v[0][0] / vn, 0.5, 2e-2);
-            close("v_t'", p.v[0][1].abs() / push, 1.0, SLOW);
-            close("ω − ω'", (omega - p.omega[0][2]) * 0.1 / push, 2.5, SLOW);
+            let push = mu * 1.5 * vn * (1.0 - late(omega * 0.1 / vn, nu, mu));
+            // The heavy sphere is not fixed: it has 125,000 times the mass.
+            close("e", p.v[0][0] / vn, 0.5, STEP);
+            close("v_t'", p.v[0][1].abs() / push, 1.0, STEP);
+            close("ω − ω'", (omega - p.omega[0][2]) * 0.1 / push, 2.5, STEP);
         }
     }
 }
