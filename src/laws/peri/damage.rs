@@ -62,7 +62,7 @@ impl Families {
     }
 
     /// Calls `f` for all partners of a particle.
-    fn each(&self, i: usize, mut f: impl FnMut(Neighbour)) {
+    pub(super) fn each(&self, i: usize, mut f: impl FnMut(Neighbour)) {
         let place = self.place.get(i).copied().unwrap_or(u32::MAX);
         if place == u32::MAX {
             return;

@@ -10,6 +10,7 @@ mod energy;
 pub mod families;
 mod fragile;
 mod gather;
+pub mod kinematics;
 mod lanes;
 #[cfg(target_arch = "x86_64")]
 mod lanes512;

@@ -1,7 +1,7 @@
 //! compute damage/atom: the share of each particle's family that it has lost.
 
 use super::{Compute, ComputeStyle};
-use crate::diag::{Code, Diagnostic, Result};
+use crate::diag::Result;
 use crate::lang::Args;
 use crate::plan::{Op, Stage, When};
 use crate::styles::step_op::{Wanted, fill, per_particle};
@@ -30,15 +30,7 @@ impl Style for DamageAtom {
 impl ComputeStyle for DamageAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         args.finish()?;
-        if !cx.world.particles.style.peri {
-            return Err(Diagnostic::error(
-                Code::WRONG_ORDER,
-                cx.span,
-                "damage/atom needs particles with bonds",
-            )
-            .help("put `atom_style peri` (or `hybrid sphere peri`) at the top of the deck")
-            .into());
-        }
+        super::need_bonds("damage/atom", cx)?;
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group }))
     }
 }

@@ -1,7 +1,7 @@
 //! compute dilatation/atom: the relative change of volume of each peridynamic particle.
 
 use super::{Compute, ComputeStyle};
-use crate::diag::{Code, Diagnostic, Result};
+use crate::diag::Result;
 use crate::lang::Args;
 use crate::plan::{Op, Stage, When};
 use crate::styles::step_op::{Wanted, fill, per_particle};
@@ -41,12 +41,7 @@ pub(super) fn state_of_particles(
     cx: &BuildCx,
 ) -> Result<Box<dyn Compute>> {
     args.finish()?;
-    if !cx.world.particles.style.peri {
-        let text = format!("{name} needs particles with bonds");
-        return Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, text)
-            .help("put `atom_style peri` (or `hybrid sphere peri`) at the top of the deck")
-            .into());
-    }
+    super::need_bonds(name, cx)?;
     Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, value }))
 }
 

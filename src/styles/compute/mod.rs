@@ -24,6 +24,8 @@ mod pair;
 mod pair_local;
 mod pe;
 mod pe_atom;
+mod peri_energy_atom;
+mod peri_measures;
 mod plasticity_atom;
 mod pressure;
 pub mod property_atom;
@@ -136,6 +138,10 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &pair_local::PairLocal,
     &pe::Pe,
     &pe_atom::PeAtom,
+    &peri_energy_atom::PeriEnergyAtom,
+    &peri_measures::CauchyAtom,
+    &peri_measures::DefgradAtom,
+    &peri_measures::StrainAtom,
     &plasticity_atom::PlasticityAtom,
     &pressure::Pressure,
     &property_atom::PropertyAtom,
@@ -163,6 +169,16 @@ fn need_spheres(what: &str, cx: &BuildCx) -> Result<()> {
     }
     Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, format!("{what} needs spheres"))
         .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
+        .into())
+}
+
+/// Refuses what needs families where particles cannot have any.
+fn need_bonds(what: &str, cx: &BuildCx) -> Result<()> {
+    if cx.world.particles.style.peri {
+        return Ok(());
+    }
+    Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, format!("{what} needs particles with bonds"))
+        .help("put `atom_style peri` (or `hybrid sphere peri`) at the top of the deck")
         .into())
 }
 
