@@ -9,7 +9,7 @@ impl Session {
     pub(super) fn check_step(&self, span: Span, found: &mut Diagnostics) {
         let Some(node) = &self.graph.pair else { return };
         // A fix that chooses the step by itself knows better.
-        if self.graph.fixes.iter().any(|f| f.style == "dt/reset") {
+        if self.graph.fixes.iter().any(|f| f.style.starts_with("dt/")) {
             return;
         }
         let density = self.density();

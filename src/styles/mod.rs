@@ -8,6 +8,7 @@ pub mod build;
 pub mod command;
 pub mod compute;
 mod contact;
+mod critical;
 pub mod dump;
 pub mod fix;
 pub mod matter;

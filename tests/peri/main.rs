@@ -3,6 +3,7 @@
 
 mod golden;
 mod layouts;
+mod limits;
 mod patch;
 mod scene;
 mod states;

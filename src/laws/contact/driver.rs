@@ -192,6 +192,22 @@ enum Meeting {
 /// Overlap over the smaller radius beyond which laws of contact mean little.
 pub const DEEP: f64 = 0.1;
 
+/// One contact of an evaluation.
+pub struct Seen<'a, L> {
+    /// Who touches.
+    pub pair: &'a Pair,
+    /// By which law.
+    pub law: &'a L,
+    /// How.
+    pub geometry: Geometry,
+    /// What the contact remembers.
+    pub history: &'a [f64],
+    /// What it does, its share taken.
+    pub wrench: &'a Wrench,
+    /// The part of the law's force that counts.
+    pub share: f64,
+}
+
 /// One evaluation of all contacts; keeps its room from step to step.
 #[derive(Clone, Debug, Default)]
 pub struct Sweep {
@@ -261,6 +277,22 @@ impl Sweep {
     /// The contacts of the last evaluation and what each does.
     pub fn contacts(&self) -> impl Iterator<Item = (&Pair, &Wrench)> {
         self.touching.iter().zip(&self.wrenches)
+    }
+
+    /// The same with geometry, law and memory, which must be that of the last evaluation.
+    pub fn each<L: ContactLaw>(
+        &self,
+        grains: &Grains,
+        rules: &Rules<L>,
+        memory: &Contacts,
+        mut act: impl FnMut(Seen<'_, L>),
+    ) {
+        for (k, (pair, wrench)) in self.contacts().enumerate() {
+            let rule = rules.get(grains.kind[pair.i as usize], grains.kind[pair.j as usize]);
+            let Some((rule, g)) = rule.and_then(|r| Some((r, grains.geometry(pair, r)?))) else { continue };
+            let history = memory.history.get(k * memory.width..(k + 1) * memory.width).unwrap_or(&[]);
+            act(Seen { pair, law: &rule.law, geometry: g, history, wrench, share: self.shares[k] });
+        }
     }
 
     /// Adds forces and torques to their particles, in the order of the list.

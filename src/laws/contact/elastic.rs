@@ -75,6 +75,45 @@ impl Elastic {
         }
     }
 
+    /// The energy of an overlap, ∫ F dδ from touch on. With adhesion it is negative at first.
+    pub fn energy(&self, g: &Geometry) -> f64 {
+        let (k, depth) = (self.stiffness, g.overlap.max(0.0));
+        match self.form {
+            Form::None => 0.0,
+            Form::Hooke => 0.5 * k * depth * depth,
+            Form::Hertz => 0.4 * k * (g.curvature * depth).sqrt() * depth * depth,
+            Form::Dmt => {
+                let pull_off = 4.0 * PI * self.cohesion * g.curvature;
+                0.4 * k * (g.curvature * depth).sqrt() * depth * depth - pull_off * g.overlap
+            }
+            Form::Jkr => {
+                // Simpson's rule; the force is smooth in δ but at the tear, where the slope is infinite.
+                const PANELS: usize = 64;
+                let at = |k: usize| {
+                    let overlap = g.overlap * k as f64 / PANELS as f64;
+                    let g = Geometry { overlap, ..*g };
+                    self.push(&g, self.radius(&g)).force
+                };
+                let weight = |k: usize| [1.0, 4.0, 2.0][usize::from(k != 0 && k != PANELS) * (2 - k % 2)];
+                let sum: f64 = (0..=PANELS).map(|k| weight(k) * at(k)).sum();
+                sum * g.overlap / (3 * PANELS) as f64
+            }
+        }
+    }
+
+    /// dF/dδ [force/length].
+    pub fn tangent(&self, g: &Geometry) -> f64 {
+        let small = 1e-6 * g.overlap.abs();
+        if small == 0.0 {
+            return if self.form == Form::Hooke { self.stiffness } else { 0.0 };
+        }
+        let at = |overlap: f64| {
+            let g = Geometry { overlap, ..*g };
+            self.push(&g, self.radius(&g)).force
+        };
+        (at(g.overlap + small) - at(g.overlap - small)) / (2.0 * small)
+    }
+
     /// How far the surfaces of an existing contact come apart before it breaks: −δ where a JKR contact tears under a
     /// given force, a³ = 9π γ R̄²/(4 E*).
     pub fn gap(&self, curvature: f64) -> f64 {

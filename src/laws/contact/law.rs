@@ -4,7 +4,8 @@ use super::elastic::{Elastic, Form};
 use super::tangential::{Drag, Friction, Spring};
 use super::turning::{Rolling, Twisting};
 use super::{
-    Advance, ContactLaw, Damping, Geometry, Heat, Loop, Motion, Normal, Tangential, Wrench, split_velocity,
+    Advance, ContactLaw, Damping, Geometry, Heat, Loop, Motion, Normal, Stored, Tangential, Wrench,
+    split_velocity,
 };
 use crate::math::real::Real;
 use crate::math::vec3::{add, cross, scale, sub};
@@ -190,6 +191,16 @@ impl ContactLaw for Granular {
 
     fn conductance(&self, g: &Geometry) -> Option<f64> {
         (self.heat != Heat::None).then(|| self.heat.conductance(self.elastic.radius(g)))
+    }
+
+    fn springs(&self, g: &Geometry) -> [f64; 2] {
+        [self.elastic.tangent(g).max(0.0), self.spring.present(self.elastic.radius(g))]
+    }
+
+    fn stored(&self, g: &Geometry, history: &[f64]) -> Stored {
+        let a = self.elastic.radius(g);
+        let push = self.elastic.push(g, a).force;
+        Stored { push, normal: self.elastic.energy(g), across: self.spring.energy(a, history) }
     }
 
     #[inline(always)]

@@ -99,6 +99,17 @@ pub struct Wrench<R = f64> {
     pub torque_j: Vec3<R>,
 }
 
+/// The conservative side of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stored {
+    /// Elastic and cohesive force along the normal, without damping [force].
+    pub push: f64,
+    /// Work that this force can give back [energy].
+    pub normal: f64,
+    /// Energy of the tangential spring [energy].
+    pub across: f64,
+}
+
 impl Wrench {
     /// The same contact shared among several: every part times `s`.
     #[must_use]
@@ -132,6 +143,16 @@ pub trait ContactLaw: Copy + Sync {
     /// [energy/(time temperature)]; `None` where the law knows no heat.
     fn conductance(&self, _g: &Geometry) -> Option<f64> {
         None
+    }
+
+    /// Stiffness of the contact along and across the normal as it is now, dF/dδ and k_t [force/length].
+    fn springs(&self, _g: &Geometry) -> [f64; 2] {
+        [0.0; 2]
+    }
+
+    /// What the contact holds, given what it remembers.
+    fn stored(&self, _g: &Geometry, _history: &[f64]) -> Stored {
+        Stored::default()
     }
 
     /// Force and torques of one contact; `history`, [`ContactLaw::memory`] numbers, moves on with it.

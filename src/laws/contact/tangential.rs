@@ -192,6 +192,27 @@ impl Spring {
         }
     }
 
+    /// k_t of a contact of radius `a` [force/length]; 0 of friction without springs.
+    pub fn present(&self, a: f64) -> f64 {
+        match self.kind {
+            Friction::None | Friction::LinearNohistory => 0.0,
+            _ if self.by_radius() => self.stiffness * a,
+            _ => self.stiffness,
+        }
+    }
+
+    /// The energy of a spring that remembers `history`: ½ k_t ξ², or F²/(2 k_t) where a force is remembered.
+    pub fn energy(&self, a: f64, history: &[f64]) -> f64 {
+        let stiffness = self.present(a);
+        let [x, y, z, ..] = *history else { return 0.0 };
+        let square = x * x + y * y + z * z;
+        match self.kind.memory() {
+            Memory::Force if stiffness > 0.0 => 0.5 * square / stiffness,
+            Memory::Force => 0.0,
+            _ => 0.5 * stiffness * square,
+        }
+    }
+
     /// The tangential force on i, at most `mu` times `carried`, the normal force that counts for friction; `a`: radius
     /// of the contact, `form`: the normal damping over its constant, `v`: slip velocity.
     #[inline(always)]

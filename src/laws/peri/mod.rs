@@ -15,6 +15,7 @@ mod lanes;
 #[cfg(target_arch = "x86_64")]
 mod lanes512;
 mod lattice;
+mod limit;
 mod list;
 mod list_kernel;
 pub mod moduli;

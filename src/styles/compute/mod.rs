@@ -9,6 +9,7 @@ mod coord_atom;
 mod damage_atom;
 mod dilatation_atom;
 mod displace_atom;
+mod dt_critical;
 mod erotate_sphere;
 mod erotate_sphere_atom;
 mod fabric;
@@ -125,6 +126,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &damage_atom::DamageAtom,
     &dilatation_atom::DilatationAtom,
     &displace_atom::DisplaceAtom,
+    &dt_critical::DtCritical,
     &erotate_sphere::ErotateSphere,
     &erotate_sphere_atom::ErotateSphereAtom,
     &fabric::Fabric,

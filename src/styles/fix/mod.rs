@@ -15,6 +15,7 @@ mod crowd;
 mod deform;
 mod deposit;
 mod drag;
+mod dt_critical;
 mod dt_reset;
 mod elapsed;
 mod enforce2d;
@@ -172,6 +173,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &deform::Deform,
     &deposit::Deposit,
     &drag::Drag,
+    &dt_critical::DtCritical,
     &dt_reset::DtReset,
     &enforce2d::Enforce2d,
     &evaporate::Evaporate,

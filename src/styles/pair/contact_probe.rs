@@ -2,13 +2,14 @@
 
 use super::granular::force::{built_at, grains};
 use super::granular::reach::{largest, reaching};
-use super::probe::{Interaction, OWN, Probe};
+use super::probe::{Balance, Interaction, OWN, Probe, Springs};
 use crate::diag::Result;
 use crate::laws::contact::bodies::solids;
 use crate::laws::contact::driver::{Average, Curvature, Grains, Rules, Sweep};
 use crate::laws::contact::{Advance, ContactLaw, Wrench};
 use crate::math::vec3::{Vec3, cross, dot, length, scale, sub};
 use crate::neigh::list::{Pair, Reach, View, Wanted, difference, pairs};
+use crate::world::contacts::Contacts;
 use crate::world::{Allowed, World};
 
 /// The numbers a granular style gives to each pair, in LAMMPS' order.
@@ -27,17 +28,47 @@ pub struct ContactProbe<L> {
     wanted: Wanted,
     own: Own,
     sweep: Sweep,
+    /// The list of a rebuild.
+    listed: Option<(u64, Vec<Pair>)>,
 }
 
 impl<L: ContactLaw> ContactProbe<L> {
     /// Of the pairs of types that `wanted` names, with the contacts kept in the world under the style's name.
     pub fn new(name: &'static str, rules: Rules<L>, wanted: Wanted, own: Own) -> Self {
-        Self { name, rules, wanted, own, sweep: Sweep::default() }
+        Self { name, rules, wanted, own, sweep: Sweep::default(), listed: None }
     }
 
     /// Pairs that may touch: those of the neighbour list, as it was when lists were last rebuilt.
     fn list(&self, w: &World) -> Vec<Pair> {
         near(w, built_at(w), &reaching(&self.rules, &self.wanted, w), w.settings.neighbor.skin)
+    }
+
+    /// Evaluates all contacts at the present places and velocities, with the memory they have, and reads the outcome.
+    fn evaluated<T>(
+        &mut self,
+        w: &World,
+        read: impl FnOnce(&Grains, &Rules<L>, &Sweep, &Contacts) -> T,
+    ) -> Result<T> {
+        let p = &w.particles;
+        let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
+        let body = match &w.families {
+            Some(families) if asked => solids(families, w.n()),
+            _ => vec![],
+        };
+        let held = w.parts.frozen.as_ref().map(|(_, group)| group.bit());
+        let frozen: Vec<bool> = held.map_or(vec![], |bit| p.mask.iter().map(|m| m & bit != 0).collect());
+        let masses = w.contact_masses();
+        let grains = Grains { mass: &masses, ..grains(w, w.periods(), &body, &frozen)? };
+        let mut memory = w.contacts.get(self.name).cloned().unwrap_or_default();
+        let still = Advance { dt: w.clock.dt, history: false };
+        let stands = |(made, _): &(u64, Vec<Pair>)| *made == w.rebuild.generation && w.clock.running;
+        let list = match self.listed.take().filter(stands) {
+            Some((_, list)) => list,
+            None => self.list(w),
+        };
+        self.sweep.run(&list, &grains, &self.rules, &mut memory, still);
+        self.listed = Some((w.rebuild.generation, list));
+        Ok(read(&grains, &self.rules, &self.sweep, &memory))
     }
 
     /// Pairs of spheres closer than the largest of their types, or than the cutoff given by hand.
@@ -84,30 +115,21 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
 
     fn look(&mut self, w: &World, idle: bool) -> Result<Vec<Interaction>> {
         let p = &w.particles;
-        let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
-        let body = match &w.families {
-            Some(families) if asked => solids(families, w.n()),
-            _ => vec![],
-        };
-        let held = w.parts.frozen.as_ref().map(|(_, group)| group.bit());
-        let frozen: Vec<bool> = held.map_or(vec![], |bit| p.mask.iter().map(|m| m & bit != 0).collect());
-        let grains = grains(w, w.periods(), &body, &frozen)?;
-        let mut memory = w.contacts.get(self.name).cloned().unwrap_or_default();
-        let still = Advance { dt: w.clock.dt, history: false };
-        let list = self.list(w);
-        self.sweep.run(&list, &grains, &self.rules, &mut memory, still);
-        let acting = self.sweep.contacts().map(|(pair, wrench)| interaction(&grains, pair, wrench, self.own));
+        let own = self.own;
+        let acting = self.evaluated(w, |grains, _, sweep, _| {
+            sweep.contacts().map(|(pair, wrench)| interaction(grains, pair, wrench, own)).collect::<Vec<_>>()
+        })?;
         if !idle {
-            return Ok(acting.collect());
+            return Ok(acting);
         }
-        let mut acting = acting.peekable();
+        let mut acting = acting.into_iter().peekable();
         let mut all = vec![];
         for pair in self.within_cutoffs(w) {
             let key = |i: u32, j: u32| (p.tag[i as usize], p.tag[j as usize]);
             while let Some(a) = acting.next_if(|a| key(a.i, a.j) < key(pair.i, pair.j)) {
                 all.push(a);
             }
-            let d = difference(&p.x, &grains.period, &pair);
+            let d = difference(&p.x, &w.periods(), &pair);
             all.push(match acting.next_if(|a| (a.i, a.j) == (pair.i, pair.j) && a.d == d) {
                 Some(a) => a,
                 None => Interaction { i: pair.i, j: pair.j, d, ..Interaction::default() },
@@ -115,6 +137,42 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
         }
         all.extend(acting);
         Ok(all)
+    }
+
+    fn springs(&mut self, w: &World) -> Result<Vec<Springs>> {
+        self.evaluated(w, |grains, rules, sweep, memory| {
+            let mut all = vec![];
+            sweep.each(grains, rules, memory, |c| {
+                let g = &c.geometry;
+                all.push(Springs {
+                    ends: [c.pair.i, c.pair.j],
+                    normal: g.normal,
+                    stiffness: c.law.springs(g).map(|k| c.share * k),
+                    arms: g.radii.map(|r| r - 0.5 * g.overlap),
+                });
+            });
+            all
+        })
+    }
+
+    fn balance(&mut self, w: &World) -> Result<Balance> {
+        self.evaluated(w, |grains, rules, sweep, memory| {
+            let mut sum = Balance::default();
+            sweep.each(grains, rules, memory, |c| {
+                let (i, j) = (c.pair.i as usize, c.pair.j as usize);
+                let (n, f) = (c.geometry.normal, c.wrench.force);
+                let stored = c.law.stored(&c.geometry, c.history);
+                let v = sub(grains.v[i], grains.v[j]);
+                let (along, central) = (dot(v, n), dot(f, n));
+                let turning =
+                    dot(c.wrench.torque_i, grains.omega[i]) + dot(c.wrench.torque_j, grains.omega[j]);
+                sum.stored[0] += c.share * stored.normal;
+                sum.stored[1] += c.share * stored.across;
+                sum.damping -= (central - c.share * stored.push) * along;
+                sum.across -= dot(f, v) - central * along + turning;
+            });
+            sum
+        })
     }
 }
 

@@ -46,6 +46,31 @@ impl Interaction {
     }
 }
 
+/// The springs of one contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Springs {
+    /// Who touch.
+    pub ends: [u32; 2],
+    /// Unit vector between the centres.
+    pub normal: Vec3,
+    /// Stiffness along it and across it [force/length].
+    pub stiffness: [f64; 2],
+    /// How far from each centre they touch [length].
+    pub arms: [f64; 2],
+}
+
+/// What the contacts of a pair style hold and turn into heat at a moment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Balance {
+    /// Energy of overlaps and of tangential springs [energy].
+    pub stored: [f64; 2],
+    /// Power that dashpots along the normal take up [force length/time].
+    pub damping: f64,
+    /// Power of everything across the normal and of torques, springs included: what these do not keep is friction
+    /// [force length/time].
+    pub across: f64,
+}
+
 /// A pair style's answer about single pairs. It reads the world as it is after forces are computed: contact history
 /// has moved on already and is only looked at.
 pub trait Probe: Send {
@@ -64,6 +89,22 @@ pub trait Probe: Send {
     /// # Errors
     /// What is missing in the scene.
     fn look(&mut self, w: &World, idle: bool) -> Result<Vec<Interaction>>;
+
+    /// The springs of all contacts.
+    ///
+    /// # Errors
+    /// As `look`.
+    fn springs(&mut self, _w: &World) -> Result<Vec<Springs>> {
+        Ok(vec![])
+    }
+
+    /// What all contacts hold and take up at the present velocities.
+    ///
+    /// # Errors
+    /// As `look`.
+    fn balance(&mut self, _w: &World) -> Result<Balance> {
+        Ok(Balance::default())
+    }
 }
 
 /// What several styles say, pair by pair: forces, energies and numbers of their own of one pair add up.

@@ -1,0 +1,179 @@
+//! fix dt/critical: a time step that follows the stability limits of the scene.
+
+use super::{Fix, FixStyle};
+use crate::diag::{Code, Result, fail};
+use crate::lang::Args;
+use crate::plan::{Access, Op, Stage, When};
+use crate::styles::critical::{self, Estimate};
+use crate::styles::matter::publish;
+use crate::styles::step_op::StepOp;
+use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
+use crate::world::{GroupId, RunStyle, World};
+
+/// The style.
+pub struct DtCritical;
+
+impl Style for DtCritical {
+    fn name(&self) -> &'static str {
+        "dt/critical"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID all dt/critical N safety [pd cfl|silling|exact] [max T]",
+            summary: "Sets the time step to a part of what peridynamic solids and contacts stand.",
+            text: "In the setup of a run and every N steps the step becomes `safety` times the shorter of the two limits of \
+                   compute dt/critical (`pd exact` unless said otherwise), at most T. As bonds break and contacts come and go \
+                   the limits change, and the step follows. Under `run_style staggered` the long step becomes the grains' \
+                   limit, shortened to what `m N` short steps of the solids fill; with `faster grains` the step becomes the \
+                   grains', shortened to the N-th part of the solids'. Where no limit is known, as for grains that do not \
+                   touch, the step is T, or stays. Scalar (intensive): the last step at which it changed.\n\n\
+                   Contacts that begin between two looks are stiffer than was known: give T, or a small N. `pd exact` costs \
+                   some 50 to 200 force evaluations per look.",
+            example: "fix ct all dt/critical 100 0.8 pd exact max 2.0e-7",
+        }
+    }
+}
+
+impl FixStyle for DtCritical {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        if cx.group != GroupId::ALL {
+            return fail(Code::BAD_VALUE, cx.span, "fix dt/critical must use the group `all`");
+        }
+        let every = args.integer_from(1, "the number of steps between two looks")?;
+        let span = args.here();
+        let safety = args.positive("the part of the limit")?;
+        if safety >= 1.0 {
+            return fail(
+                Code::BAD_VALUE,
+                span,
+                format!("a part of the limit is below 1: {safety} lets waves grow"),
+            );
+        }
+        let mut rule = Rule { how: Estimate::Exact, safety, longest: None };
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "pd" => rule.how = Estimate::read(args)?,
+                "max" => rule.longest = Some(args.positive("the longest step")?),
+                _ => return Err(args.unknown(word, &["pd", "max"])),
+            }
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), every, rule }))
+    }
+}
+
+/// How the step follows from the limits.
+#[derive(Clone, Copy)]
+struct Rule {
+    how: Estimate,
+    safety: f64,
+    longest: Option<f64>,
+}
+
+impl Rule {
+    fn step(&self, w: &World, solids: f64, grains: f64) -> f64 {
+        let limit = match w.settings.run_style {
+            RunStyle::Verlet => solids.min(grains),
+            RunStyle::Staggered { ratio: None, .. } => grains,
+            RunStyle::Staggered { ratio: Some(m), rare: false, .. } => grains.min(m as f64 * solids),
+            RunStyle::Staggered { ratio: Some(m), .. } => grains.min(solids / m as f64),
+        };
+        let step = (self.safety * limit).min(self.longest.unwrap_or(f64::INFINITY));
+        if step.is_finite() { step } else { w.clock.dt }
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    every: i64,
+    rule: Rule,
+}
+
+impl Declared {
+    fn memo(&self) -> String {
+        format!("dt/critical/{}", self.id)
+    }
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        w.memo.insert(self.memo(), vec![w.clock.step as f64]);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.memo.remove(&self.memo());
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (rule, memo) = (self.rule, self.memo());
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let mut probes = cx.probes()?;
+        let access = Access::new("x v radius mass type volume families contacts", "dt");
+        let op =
+            StepOp::new(format!("fix {} dt/critical", self.id), Stage::EndOfStep, access, move |w, t| {
+                let mut last = w.memo.get(&memo).and_then(|m| m.first().copied()).unwrap_or(0.0);
+                // As one long run would: a run that continues another one does not look.
+                if !t.unchanged {
+                    let (solids, grains) =
+                        (critical::solids(w, rule.how)?, critical::grains(w, &mut probes)?);
+                    let dt = rule.step(w, solids, grains);
+                    if dt != w.clock.dt {
+                        w.clock.set_dt(dt);
+                        last = t.step as f64;
+                        w.memo.insert(memo.clone(), vec![last]);
+                    }
+                }
+                publish(w, slot, t, last, &[]);
+                Ok(())
+            });
+        let when = When::Every(self.every).or(When::First);
+        Ok(vec![op.when(when).in_setup(true).boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, ..Shape::default() }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::styles::testing::Bench;
+    use crate::world::AtomStyle;
+
+    #[test]
+    fn the_step_suits_the_way_steps_are_made() {
+        let mut w = World::default();
+        w.clock.dt = 7.0;
+        let rule = Rule { how: Estimate::Cfl, safety: 0.5, longest: None };
+        let staggered = |ratio, rare| RunStyle::Staggered { ratio, rare, twice: None };
+        let inf = f64::INFINITY;
+        for (style, solids, grains, step) in [
+            (RunStyle::Verlet, 2.0, 8.0, 1.0),
+            (RunStyle::Verlet, 2.0, inf, 1.0),
+            (RunStyle::Verlet, inf, inf, 7.0),
+            (staggered(Some(3), false), 2.0, 8.0, 3.0),
+            (staggered(Some(5), false), 2.0, 8.0, 4.0),
+            (staggered(None, false), 2.0, 8.0, 4.0),
+            (staggered(None, false), 2.0, inf, 7.0),
+            (staggered(Some(4), true), 8.0, 3.0, 1.0),
+        ] {
+            w.settings.run_style = style;
+            assert_eq!(rule.step(&w, solids, grains), step, "{style:?}");
+        }
+        assert_eq!(Rule { longest: Some(0.25), ..rule }.step(&w, inf, inf), 0.25);
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let b = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
+        for words in ["", "0 0.8", "10", "10 1.0", "10 0.8 pd fast", "10 0.8 max 0", "10 0.8 emax 3"] {
+            assert!(b.fix(&DtCritical, words).is_err(), "{words}");
+        }
+    }
+}
