@@ -7,9 +7,9 @@ use super::node::Graph;
 use super::regions;
 use super::seal::Sealer;
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
-use crate::lang::{Clock, Env, Question, RefKind, Value, ValueRef, Vars};
+use crate::lang::{Clock, Env, Question, RefKind, Value, ValueRef, Vars, Word};
 use crate::plan::{Op, Stage, StepPlan, Tick, When};
-use crate::styles::{Reading, SealCx, Values};
+use crate::styles::{Flow, Motion, Reading, SealCx, Values};
 use crate::world::{SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -377,6 +377,20 @@ impl Values for DeckValues<'_> {
             w.slots.get_mut(slot).empty();
         }
         Ok(values)
+    }
+
+    fn flow(&mut self, w: &mut World, compute: &ValueRef) -> Result<Flow> {
+        match self.graph.find_compute(&compute.name).and_then(|c| c.compute.flow(w)) {
+            Some(flow) => Ok(flow),
+            None => fail(Code::WRONG_KIND, compute.span, format!("`{compute}` takes no flow away")),
+        }
+    }
+
+    fn stop(&mut self, w: &mut World, fix: &Word, what: Motion) -> Result<()> {
+        match self.graph.find_fix(&fix.text) {
+            Some(node) => node.fix.stop(w, what, fix.span),
+            None => fail(Code::UNKNOWN_NAME, fix.span, format!("there is no fix `{}`", fix.text)),
+        }
     }
 }
 

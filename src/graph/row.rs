@@ -4,10 +4,11 @@ use crate::diag::Result;
 use crate::math::cformat::Value;
 use crate::out;
 use crate::out::log::Log;
-use crate::out::thermo::{Column, Layout, memory_line};
+use crate::out::thermo::{Column, Kind, Layout, memory_line};
 use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::Reading;
-use crate::world::World;
+use crate::world::{RowValue, TableRow, World};
+use std::sync::Arc;
 
 /// Prints a row.
 pub struct Row {
@@ -31,6 +32,16 @@ impl Row {
         let values =
             self.readings.iter().zip(&self.layout.columns).map(|(r, c)| r.get(w) / share(c)).collect();
         (columns, out::rows::Row { step: t.step, time: w.clock.time(), values })
+    }
+
+    /// The row as dumps repeat it.
+    fn repeated(&self, w: &World, t: &Tick) -> TableRow {
+        let (_, row) = self.kept(w, t);
+        let value = |(c, x): (&Column, f64)| match c.kind {
+            Kind::Int => (c.usual_header(), RowValue::Whole(x as i64)),
+            _ => (c.usual_header(), RowValue::Real(x)),
+        };
+        TableRow { step: t.step, values: self.layout.columns.iter().zip(row.values).map(value).collect() }
     }
 }
 
@@ -63,7 +74,7 @@ impl Op for Row {
             .map(|(r, c)| {
                 let a = r.get(w);
                 match c.kind {
-                    crate::out::thermo::Kind::Int => Value::Int(a as i64),
+                    Kind::Int => Value::Int(a as i64),
                     _ => Value::Float(a),
                 }
             })
@@ -71,6 +82,7 @@ impl Op for Row {
         let cpu = w.clock.began.map_or(0.0, |b| b.elapsed().as_secs_f64());
         self.log.line(&self.layout.row(t.step, cpu, w.n() as u64, &values))?;
         self.log.row(|| self.kept(w, t));
+        w.parts.row = Some(Arc::new(self.repeated(w, t)));
         if self.layout.flush { self.log.flush() } else { Ok(()) }
     }
     fn finish(&mut self, _w: &mut World) -> Result<()> {

@@ -4,6 +4,7 @@ use std::io::Write;
 
 use super::dump::{Field, write_rows};
 use crate::math::cformat::{Format, Value, shortest};
+use crate::world::{RowValue, TableRow};
 
 /// A number as `%g`.
 fn g(x: f64) -> String {
@@ -36,6 +37,8 @@ pub struct Yaml<'a> {
     pub time: Option<f64>,
     /// Boundary letters, as `pp ff sm`.
     pub boundary: &'a str,
+    /// The row of the step table, for `thermo yes`.
+    pub row: Option<&'a TableRow>,
     /// Lower and upper faces of the box.
     pub bounds: [[f64; 2]; 3],
     /// Whether to write all this.
@@ -69,7 +72,20 @@ impl Yaml<'_> {
         for letter in self.boundary.chars().filter(|c| *c != ' ') {
             write!(to, "{letter}, ")?;
         }
-        writeln!(to, "]\nbox:")?;
+        writeln!(to, "]")?;
+        if let Some(row) = self.row {
+            write!(to, "thermo:\n  - keywords: [ ")?;
+            row.values.iter().try_for_each(|(name, _)| write!(to, "{name}, "))?;
+            write!(to, "]\n  - data: [ ")?;
+            for (_, value) in &row.values {
+                match value {
+                    RowValue::Whole(k) => write!(to, "{k}, ")?,
+                    RowValue::Real(x) => write!(to, "{}, ", shortest(*x))?,
+                }
+            }
+            writeln!(to, "]")?;
+        }
+        writeln!(to, "box:")?;
         for [lo, hi] in self.bounds {
             writeln!(to, "  - [ {}, {} ]", shortest(lo), shortest(hi))?;
         }

@@ -162,6 +162,12 @@ impl Session {
         }
         s.at(span);
         crate::graph::welcome::seal(&mut s);
+        // Elsewhere LAMMPS' order: dumps before the row.
+        let row_first = self.graph.dumps.iter().any(|d| d.dump.repeats_row());
+        if row_first {
+            let row = self.graph.thermo.op(&mut s, self.options.log.clone())?;
+            s.add(vec![row], span);
+        }
         for d in &self.graph.dumps {
             s.at(d.span);
             let op = d.dump.op(&mut s, d.every)?;
@@ -175,8 +181,10 @@ impl Session {
         s.at(span);
         let energy =
             minimizing.then(|| s.keyword_total("pe", span, Stage::EndOfStep, &When::Always)).transpose()?;
-        let row = self.graph.thermo.op(&mut s, self.options.log.clone())?;
-        s.add(vec![row], span);
+        if !row_first {
+            let row = self.graph.thermo.op(&mut s, self.options.log.clone())?;
+            s.add(vec![row], span);
+        }
         s.at(span);
         crate::graph::virials::seal(&mut s)?;
         s.say_what_is_missing();

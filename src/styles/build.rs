@@ -1,10 +1,9 @@
 //! What styles may know while a line of the deck is read, and what acts may use while they act.
 
-use crate::diag::{Code, Diagnostic, Diagnostics, Result, Source, Span, fail, nearest};
-use crate::lang::{Command, Param, RefKind, ValueRef, Word};
+use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail, nearest};
+use crate::lang::{Param, RefKind, ValueRef, Word};
 use crate::world::{GroupId, Offers, Region, World};
 use std::cell::RefCell;
-use std::sync::Arc;
 
 use super::Wants;
 
@@ -59,6 +58,8 @@ pub struct Shape {
     pub every: i64,
     /// It is a variable that commands and fixes may set (style internal).
     pub settable: bool,
+    /// It is a temperature that takes a flow away first.
+    pub flow: bool,
     /// Its values number particles into chunks.
     pub chunks: Option<Chunking>,
 }
@@ -401,74 +402,5 @@ fn check_number(r: &ValueRef, what: &str, shape: &Shape) -> Result<()> {
         }
         [_, _] => wrong(format!("{what} `{name}` has no global array")),
         _ => wrong(format!("{what} `{name}` has no global vector")),
-    }
-}
-
-/// Evaluates what a deck refers to, between runs.
-pub trait Values {
-    /// One number.
-    ///
-    /// # Errors
-    /// Unknown names, values that are not available between runs.
-    fn scalar(&mut self, w: &mut World, r: &ValueRef) -> Result<f64>;
-    /// One number per particle.
-    ///
-    /// # Errors
-    /// As `scalar`.
-    fn per_atom(&mut self, w: &mut World, r: &ValueRef) -> Result<Vec<f64>>;
-    /// One number, after internal-style variables have been given these values.
-    ///
-    /// # Errors
-    /// As `scalar`, and variables that are not internal-style.
-    fn with_internal(&mut self, w: &mut World, r: &ValueRef, set: &[(&ValueRef, f64)]) -> Result<f64>;
-}
-
-/// What an act may use.
-pub struct ActCx<'a> {
-    /// What it changes.
-    pub world: &'a mut World,
-    /// Values of variables, computes and fixes.
-    pub values: &'a mut dyn Values,
-    /// The whole line, for messages.
-    pub span: Span,
-    /// Lines for screen and log, as `Created 64 atoms`.
-    pub said: &'a mut Vec<String>,
-    /// Declaring lines that a file held, with its text: worked off right after the act.
-    pub then: &'a mut Vec<(Command, Arc<Source>)>,
-    /// Warnings.
-    pub notes: &'a RefCell<Diagnostics>,
-}
-
-impl ActCx<'_> {
-    /// Says a line on screen and log.
-    pub fn say(&mut self, line: impl Into<String>) {
-        self.said.push(line.into());
-    }
-
-    /// Leaves a warning or note.
-    pub fn note(&self, d: Diagnostic) {
-        self.notes.borrow_mut().push(d.at(self.span));
-    }
-
-    /// The value of a parameter now.
-    ///
-    /// # Errors
-    /// As `Values::scalar`.
-    pub fn number(&mut self, p: &Param) -> Result<f64> {
-        match p {
-            Param::Number(a) => Ok(*a),
-            Param::Ref(r) => self.values.scalar(self.world, r),
-        }
-    }
-
-    /// The value of a parameter for each particle now.
-    ///
-    /// # Errors
-    /// As `Values::per_atom`.
-    pub fn per_atom(&mut self, p: &Param) -> Result<Vec<f64>> {
-        match p {
-            Param::Number(a) => Ok(vec![*a; self.world.n()]),
-            Param::Ref(r) => self.values.per_atom(self.world, r),
-        }
     }
 }

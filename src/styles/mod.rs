@@ -3,8 +3,9 @@
 //! A style is one file and one line in its folder's table. It parses its own words, says what it needs,
 //! and hands ops to the step plan when a run is sealed.
 
+pub mod act;
 pub mod bond;
-pub mod build;
+mod build;
 pub mod command;
 pub mod compute;
 mod contact;
@@ -19,7 +20,8 @@ pub mod step_op;
 #[cfg(test)]
 mod testing;
 
-pub use build::{ActCx, BuildCx, Chunking, Names, Shape, Use, UseKind, Values};
+pub use act::{ActCx, Flow, Motion, Values};
+pub use build::{BuildCx, Chunking, Names, Shape, Use, UseKind};
 pub use command::{Act, CommandStyle};
 pub use compute::{Compute, ComputeStyle};
 pub use dump::{Dump, DumpStyle};

@@ -125,8 +125,28 @@ pub struct Parts {
     /// What came from a restart file and the deck may say again: `region/ID`, `material/ID`, and state of fixes and
     /// computes as `STYLE/ID`.
     pub restored: BTreeSet<String>,
+    /// The latest row of the step table, for dumps that repeat it.
+    pub row: Option<Arc<TableRow>>,
     /// What a restart file said about the scene, until the first run after it.
     pub resume: Option<Arc<Resume>>,
+}
+
+/// A row of the step table.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TableRow {
+    /// Its step.
+    pub step: i64,
+    /// The columns' usual names and the numbers.
+    pub values: Vec<(String, RowValue)>,
+}
+
+/// A number of the step table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RowValue {
+    /// A whole number.
+    Whole(i64),
+    /// Any other.
+    Real(f64),
 }
 
 impl Parts {

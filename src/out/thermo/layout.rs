@@ -42,6 +42,11 @@ impl Column {
     pub fn reference(word: &str, extensive: bool) -> Self {
         Self { name: word.into(), header: word.into(), kind: Kind::Float, extensive }
     }
+
+    /// What stands above the column unless `colname` says otherwise.
+    pub fn usual_header(&self) -> String {
+        keyword(&self.name).map_or(self.name.clone(), |k| k.header.into())
+    }
 }
 
 /// Columns and formats of a thermo table.
@@ -122,7 +127,7 @@ impl Layout {
     /// `thermo_modify colname default`.
     pub fn rename_default(&mut self) {
         for c in &mut self.columns {
-            c.header = keyword(&c.name).map_or(c.name.clone(), |k| k.header.into());
+            c.header = c.usual_header();
         }
     }
 

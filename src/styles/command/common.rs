@@ -64,6 +64,15 @@ pub fn axis(a: &mut Args, what: &str) -> Result<usize> {
     })
 }
 
+/// Takes a component of velocity: `vx`, `vy` or `vz`.
+pub fn velocity_axis(a: &mut Args) -> Result<usize> {
+    Ok(match a.choice("velocity component", &["vx", "vy", "vz"])? {
+        "vx" => 0,
+        "vy" => 1,
+        _ => 2,
+    })
+}
+
 /// Takes a seed of the Park–Miller stream.
 pub fn seed(a: &mut Args) -> Result<u32> {
     let span = a.here();

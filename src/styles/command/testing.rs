@@ -3,7 +3,7 @@
 use super::COMMANDS;
 use crate::diag::{Diagnostics, FileId, Result, Span, fail};
 use crate::lang::{Args, Command, ValueRef, Word};
-use crate::styles::{ActCx, BuildCx, Names, Shape, UseKind, Values};
+use crate::styles::{ActCx, BuildCx, Flow, Motion, Names, Shape, UseKind, Values};
 use crate::world::{GroupId, World};
 use std::cell::RefCell;
 
@@ -40,6 +40,12 @@ impl Values for Table<'_> {
             return fail(crate::diag::Code::UNKNOWN_NAME, r.span, "no such variable");
         };
         Ok((0..w.n()).map(|i| f(w, i)).collect())
+    }
+    fn flow(&mut self, w: &mut World, _compute: &ValueRef) -> Result<Flow> {
+        Ok(Flow { taken: vec![[0.0; 3]; w.n()], group: GroupId::ALL, whole: [false; 3] })
+    }
+    fn stop(&mut self, _w: &mut World, fix: &Word, _what: Motion) -> Result<()> {
+        fail(crate::diag::Code::UNKNOWN_NAME, fix.span, "no such fix")
     }
 }
 

@@ -1,18 +1,20 @@
 //! `velocity`: gives particles velocities, changes or scales them.
 
-use super::common::{self, axis, on_particles, param_or_null, ramp, scales, seed, units_lattice};
-use super::momentum::{Members, temperature};
+mod options;
+
+use super::common::{self, axis, on_particles, param_or_null, ramp, scales, seed, velocity_axis};
+use super::momentum::{Members, temperature as temperature_of};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Result, fail};
-use crate::lang::{Args, Param, RefKind, ValueRef, Word};
+use crate::lang::{Args, Param, Word};
 use crate::math::rng::ParkMiller;
-use crate::styles::{ActCx, BuildCx, Doc, Style};
+use crate::math::vec3::{Vec3, sub};
+use crate::styles::{ActCx, BuildCx, Doc, Flow, Motion, Style};
 use crate::world::{GroupId, World};
+use options::{Loop, Options, options};
 
 /// The command.
 pub struct Velocity;
-
-const KEYWORDS: [&str; 9] = ["dist", "sum", "mom", "rot", "temp", "bias", "loop", "rigid", "units"];
 
 impl Style for Velocity {
     fn name(&self) -> &'static str {
@@ -23,12 +25,13 @@ impl Style for Velocity {
         Doc {
             syntax: "velocity GROUP create T SEED | set VX VY VZ | scale T | ramp vx|vy|vz VLO VHI x|y|z CLO CHI | \
                      zero linear|angular  [dist uniform|gaussian] [sum yes|no] [mom yes|no] [rot yes|no] \
-                     [loop all|local|geom] [temp COMPUTE] [units lattice|box]",
+                     [loop all|local|geom] [temp COMPUTE] [bias yes|no] [rigid FIX] [units lattice|box]",
             summary: "Gives the particles of a group velocities.",
             text: "`create` draws from LAMMPS' Park–Miller stream, number by number as LAMMPS does, takes away the mean \
                    (`mom yes`, default) and the rotation (`rot yes`), and scales to the temperature T, where \
                    T = Σ m v² / ((3N − 3) k), in flat scenes (2N − 2). `temp` names a temperature compute that says the \
-                   present temperature instead, also for `scale`. `loop all` draws for ids 1 … N in order, `local` in storage order, `geom` by a \
+                   present temperature instead, also for `scale`; with `bias yes` the flow that it takes away stays as it is, and \
+                   the rest is made or scaled. `zero … rigid FIX` stops each body of a fix rigid by itself, its particles following. `loop all` draws for ids 1 … N in order, `local` in storage order, `geom` by a \
                    stream for each place. `set` takes numbers, `NULL` or variables. `ramp` is linear between two \
                    coordinates and constant beyond. `sum yes` adds to the present velocities. Velocities and coordinates \
                    of `set` and `ramp` are in lattice spacings (per time) unless `units box` is said: in SI decks with a \
@@ -38,14 +41,6 @@ impl Style for Velocity {
     }
 }
 
-/// In which order random numbers are given out.
-#[derive(Clone, Copy, PartialEq)]
-enum Loop {
-    All,
-    Local,
-    Geom,
-}
-
 enum Action {
     Create { temperature: f64, seed: u32 },
     Set([Option<Param>; 3]),
@@ -53,17 +48,6 @@ enum Action {
     Ramp { along: usize, by: [f64; 2], axis: usize, between: [f64; 2] },
     ZeroLinear,
     ZeroAngular,
-}
-
-struct Options {
-    gaussian: bool,
-    sum: bool,
-    momentum: bool,
-    rotation: bool,
-    order: Loop,
-    lattice: bool,
-    /// The compute that says the temperature.
-    compute: Option<ValueRef>,
 }
 
 impl CommandStyle for Velocity {
@@ -108,14 +92,6 @@ impl CommandStyle for Velocity {
     }
 }
 
-fn velocity_axis(a: &mut Args) -> Result<usize> {
-    Ok(match a.choice("velocity component", &["vx", "vy", "vz"])? {
-        "vx" => 0,
-        "vy" => 1,
-        _ => 2,
-    })
-}
-
 /// Refuses velocities out of the plane of a flat scene.
 fn stays_flat(action: &Action, style: &Word) -> Result<()> {
     let leaves = match action {
@@ -131,71 +107,28 @@ fn stays_flat(action: &Action, style: &Word) -> Result<()> {
     }
 }
 
-fn options(a: &mut Args, cx: &BuildCx) -> Result<Options> {
-    let mut o = Options {
-        gaussian: false,
-        sum: false,
-        momentum: true,
-        rotation: false,
-        order: Loop::All,
-        lattice: true,
-        compute: None,
-    };
-    while let Some(word) = a.next() {
-        match word.text.as_str() {
-            "dist" => o.gaussian = a.choice("distribution", &["uniform", "gaussian"])? == "gaussian",
-            "sum" => o.sum = a.flag("sum")?,
-            "mom" => o.momentum = a.flag("mom")?,
-            "rot" => o.rotation = a.flag("rot")?,
-            "loop" => {
-                o.order = match a.choice("loop", &["all", "local", "geom"])? {
-                    "all" => Loop::All,
-                    "local" => Loop::Local,
-                    _ => Loop::Geom,
-                }
-            }
-            "units" => o.lattice = units_lattice(a)?,
-            "temp" => o.compute = Some(temperature_compute(a, cx)?),
-            "bias" => {
-                let value = a.peek().cloned();
-                if let (true, Some(w)) = (a.flag("bias")?, value) {
-                    let text = "no temperature compute here has a bias to take away";
-                    return fail(Code::NOT_SUPPORTED, w.span, text);
-                }
-            }
-            "rigid" => {
-                let id = a.expect("a fix")?;
-                let text = format!("there is no rigid body fix `{}`", id.text);
-                return fail(Code::UNKNOWN_NAME, id.span, text);
-            }
-            _ => return Err(a.unknown(word, &KEYWORDS)),
-        }
-    }
-    Ok(o)
-}
-
-/// The compute that a word names, if it is one of temperature.
-fn temperature_compute(a: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
-    let word = a.expect("a compute")?;
-    let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
-    cx.value(&r, false)?;
-    match cx.names.compute_style(&word.text) {
-        Some(style) if !style.starts_with("temp") => {
-            let text = format!("compute `{}` is of style {style} and computes no temperature", word.text);
-            fail(Code::WRONG_KIND, word.span, text)
-        }
-        _ => Ok(r),
-    }
-}
-
 fn apply(cx: &mut ActCx, group: GroupId, action: &Action, o: &Options) -> Result<()> {
     let scale = scales(cx.world, o.lattice);
     let members = Members::new(cx.world, group);
+    if let (Some(fix), Action::ZeroLinear | Action::ZeroAngular) = (&o.rigid, action) {
+        let what = if matches!(action, Action::ZeroLinear) { Motion::Linear } else { Motion::Angular };
+        return cx.values.stop(cx.world, fix, what);
+    }
     match action {
         Action::Create { temperature, seed } => {
+            let old = members.velocities(cx.world);
+            let flow = take_flow_away(cx, o)?;
             let mut new = created(cx.world, &members, *seed, o)?;
-            rescale(cx, &members, &mut new, *temperature, o)?;
-            members.write(cx.world, &new, o.sum);
+            let now = match &flow {
+                None => present(cx, &members, &new, o)?,
+                Some(_) => temperature_of(cx.world, &members, &new),
+            };
+            rescale(&mut new, now, *temperature)?;
+            members.write(cx.world, &new, false);
+            give_back(cx.world, &flow);
+            if o.sum {
+                members.write(cx.world, &old, true);
+            }
         }
         Action::Set(values) => {
             for (d, value) in values.iter().enumerate() {
@@ -209,9 +142,16 @@ fn apply(cx: &mut ActCx, group: GroupId, action: &Action, o: &Options) -> Result
             }
         }
         Action::Scale { temperature } => {
+            let old = members.velocities(cx.world);
+            let now = present(cx, &members, &old, o)?;
+            let flow = take_flow_away(cx, o)?;
             let mut new = members.velocities(cx.world);
-            rescale(cx, &members, &mut new, *temperature, o)?;
-            members.write(cx.world, &new, o.sum);
+            rescale(&mut new, now, *temperature)?;
+            members.write(cx.world, &new, false);
+            give_back(cx.world, &flow);
+            if o.sum {
+                members.write(cx.world, &old, true);
+            }
         }
         Action::Ramp { along, by, axis, between } => {
             let by = by.map(|b| scale[*along] * b);
@@ -290,20 +230,42 @@ fn draws(w: &World, members: &Members, seed: u32, o: &Options) -> Result<Vec<[f6
     }
 }
 
-fn rescale(cx: &mut ActCx, members: &Members, v: &mut [[f64; 3]], target: f64, o: &Options) -> Result<()> {
-    let now = match &o.compute {
-        None => temperature(cx.world, members, v),
-        Some(compute) => {
-            // The compute sees the new velocities where its own group has them.
-            let before = members.velocities(cx.world);
-            members.write(cx.world, v, false);
-            cx.world.slots.invalidate();
-            let now = cx.number(&Param::Ref(compute.clone()));
-            members.write(cx.world, &before, false);
-            cx.world.slots.invalidate();
-            now?
+/// With `bias yes`: takes the flow away from all particles and returns it.
+fn take_flow_away(cx: &mut ActCx, o: &Options) -> Result<Option<Flow>> {
+    let Some(compute) = o.compute.as_ref().filter(|_| o.bias) else { return Ok(None) };
+    let flow = cx.values.flow(cx.world, compute)?;
+    for (v, taken) in cx.world.particles.v.iter_mut().zip(&flow.taken) {
+        *v = sub(*v, *taken);
+    }
+    Ok(Some(flow))
+}
+
+/// Adds the flow again; components that are nothing but flow are what they were.
+fn give_back(w: &mut World, flow: &Option<Flow>) {
+    let Some(flow) = flow else { return };
+    let p = &mut w.particles;
+    for (i, (v, taken)) in p.v.iter_mut().zip(&flow.taken).enumerate() {
+        let inside = p.mask[i] & flow.group.bit() != 0;
+        for d in 0..3 {
+            v[d] = if inside && flow.whole[d] { taken[d] } else { v[d] + taken[d] };
         }
-    };
+    }
+}
+
+/// The present temperature of these velocities of the group.
+fn present(cx: &mut ActCx, members: &Members, v: &[Vec3], o: &Options) -> Result<f64> {
+    let Some(compute) = &o.compute else { return Ok(temperature_of(cx.world, members, v)) };
+    // The compute sees the new velocities where its own group has them.
+    let before = members.velocities(cx.world);
+    members.write(cx.world, v, false);
+    cx.world.slots.invalidate();
+    let now = cx.number(&Param::Ref(compute.clone()));
+    members.write(cx.world, &before, false);
+    cx.world.slots.invalidate();
+    now
+}
+
+fn rescale(v: &mut [Vec3], now: f64, target: f64) -> Result<()> {
     if now == 0.0 {
         return fail(Code::CONFLICT, None, "the group's velocities have temperature 0 and cannot be scaled");
     }
@@ -386,7 +348,7 @@ mod tests {
             ("velocity g spin 1 1 1", "spin"),
             ("velocity g create -1 3", "-1"),
             ("velocity g create 1 0", "0"),
-            ("velocity g set 1 1 1 bias yes", "yes"),
+            ("velocity g set 1 1 1 bias yes", "bias"),
             ("velocity g zero linear rigid mine", "mine"),
             ("velocity g scale 1 temp mine", "mine"),
             ("velocity g ramp vq 1 1 x 0 1", "vq"),

@@ -35,9 +35,10 @@ mod reduce;
 mod slice;
 mod stress_atom;
 mod temp;
+mod temp_flow;
 mod temp_sphere;
 
-use super::{BuildCx, SealCx, Shape, Style};
+use super::{BuildCx, Flow, SealCx, Shape, Style};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
 use crate::plan::{Op, Stage, When};
@@ -101,6 +102,11 @@ pub trait Compute: Send {
         Ok(())
     }
 
+    /// What a temperature takes away from velocities before it looks at them, if it does (`Shape::flow`).
+    fn flow(&self, _w: &World) -> Option<Flow> {
+        None
+    }
+
     /// Uses another temperature, if it uses one (`thermo_modify temp`).
     fn take_temperature(&mut self, _temperature: &crate::lang::ValueRef) {}
 
@@ -153,6 +159,9 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &slice::Slice,
     &stress_atom::StressAtom,
     &temp::Temp,
+    &temp_flow::TempCom,
+    &temp_flow::TempPartial,
+    &temp_flow::TempRamp,
     &temp_sphere::TempSphere,
 ];
 

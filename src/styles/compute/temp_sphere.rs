@@ -27,8 +27,8 @@ impl Style for TempSphere {
                    translation. `extra/dof` of compute_modify is taken off, with `dof all` 3 (2) unless it is said, with \
                    `dof rotate` nothing. 0 where no freedom is left. Vector of 6 \
                    (extensive): Σ (m v_a v_b + I ω_a ω_b) for xx yy zz xy xz yz, in energy units. Spheres are counted anew at \
-                   each use (see `compute temp`). `bias` names a temperature that takes a flow away; there is none in perigrain, and it is \
-                   refused.",
+                   each use (see `compute temp`). `bias` is refused: \
+                   temp/com, temp/partial and temp/ramp say the temperature without a flow.",
             example: "compute t all temp/sphere",
         }
     }
@@ -42,20 +42,15 @@ impl ComputeStyle for TempSphere {
             match word.text.as_str() {
                 "dof" => rotate = args.choice("value of dof", &["all", "rotate"])? == "rotate",
                 "bias" => {
-                    let id = args.expect("a temperature")?;
-                    let text = if cx.names.compute(&id.text).is_none() {
-                        Diagnostic::error(
-                            Code::UNKNOWN_COMPUTE,
-                            id.span,
-                            format!("there is no compute `{}`", id.text),
+                    let text = "compute temp/sphere takes no flow away in perigrain";
+                    let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
+                    return Err(d
+                        .help(
+                            "compute temp/com, temp/partial or temp/ramp, and temp/sphere with `dof rotate`",
                         )
-                    } else {
-                        let text = format!("compute `{}` takes no flow velocity away", id.text);
-                        Diagnostic::error(Code::WRONG_KIND, id.span, text)
-                    };
-                    return Err(text.help("leave `bias` out").into());
+                        .into());
                 }
-                _ => return Err(args.unknown(word, &["dof", "bias"])),
+                _ => return Err(args.unknown(word, &["dof"])),
             }
         }
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, rotate, rules: Rules::default() }))

@@ -43,7 +43,9 @@ impl Style for Yaml {
             syntax: "dump ID group yaml N file attribute …",
             summary: "Writes chosen attributes of the group's particles every N steps as YAML documents.",
             text: "Attributes and `dump_modify` are those of `dump custom`; each snapshot is a YAML document that any YAML \
-                   reader takes. `dump_modify thermo` is refused: `thermo_modify line yaml` writes thermo output as YAML.",
+                   reader takes. `dump_modify ID thermo yes` puts the row of the step table into snapshots of steps that have \
+                   one, each number with all its digits and under its usual name. In the first snapshot of a second run \
+                   LAMMPS repeats the last run's row; here it is that run's own.",
             example: "dump 1 all yaml 100 flow.yaml id type x y z",
         }
     }

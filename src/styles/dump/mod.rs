@@ -45,6 +45,11 @@ pub trait Dump: Send {
         None
     }
 
+    /// Whether snapshots repeat the row of the step table, which must then be there before them.
+    fn repeats_row(&self) -> bool {
+        false
+    }
+
     /// A copy, so that a failing `dump_modify` changes nothing.
     fn boxed(&self) -> Box<dyn Dump>;
 }

@@ -32,7 +32,7 @@ const PAGE: &str = "Attributes: `id type mass proc procp1`, positions `x y z`, a
     snapshot; `thresh none`). This style adds `colname N name`, `format line \"…\"`, `format int %d`, `format float %g`, \
     `format N %…` (one column), `format none`, `header yes|no`, `time yes|no` and `units yes|no` (further header lines). \
     `balance buffer flush` and `types numeric` are read and without effect; `nfile fileper at sfactor tfactor precision \
-    unwrap thermo triclinic/general` are refused by name.\n\n\
+    unwrap triclinic/general` are refused by name.\n\n\
     Rows are sorted by id unless told otherwise (LAMMPS: unsorted). A `*` in the file name becomes the step, and each \
     snapshot then has a file of its own that appears only when it is complete. A name that ends in `.gz` is compressed; \
     binary files are refused.";
@@ -115,7 +115,8 @@ impl Form {
     fn keywords(self, atom: bool) -> &'static [&'static str] {
         match self {
             Form::Native if atom => &["colname", "format", "header", "image", "scale", "time", "units"],
-            Form::Native | Form::Yaml => &["colname", "format", "header", "time", "units"],
+            Form::Native => &["colname", "format", "header", "time", "units"],
+            Form::Yaml => &["colname", "format", "header", "thermo", "time", "units"],
             Form::Xyz => &["format", "time"],
             Form::Cfg(_) => &["format"],
         }
@@ -161,6 +162,7 @@ pub(super) struct Text {
     names: Vec<(usize, String)>,
     time: bool,
     units: bool,
+    thermo: bool,
 }
 
 impl Dump for Text {
@@ -198,12 +200,13 @@ impl Dump for Text {
             let bounds = [0, 1, 2].map(|k| [domain.lo[k], domain.hi[k]]);
             let (step, rows, time) = (shot.step, &shot.rows, dump.time.then(|| w.clock.time()));
             let units = dump.units.then(|| w.settings.units.name());
+            let row = w.parts.row.as_deref().filter(|r| dump.thermo && r.step == step);
             target.write(step, |to| match dump.form {
                 Form::Xyz => forms::xyz(to, step, time, rows, &fields),
                 Form::Cfg(scale) => forms::cfg(to, scale, domain.lengths(), rows, &fields),
                 Form::Yaml => {
-                    let head =
-                        forms::Yaml { step, units, time, boundary: &letters, bounds, header: dump.header };
+                    let (boundary, header) = (letters.as_str(), dump.header);
+                    let head = forms::Yaml { step, units, time, boundary, row, bounds, header };
                     head.write(to, rows, &fields)
                 }
                 Form::Native => {
@@ -231,6 +234,10 @@ impl Dump for Text {
         self.base.every()
     }
 
+    fn repeats_row(&self) -> bool {
+        self.thermo
+    }
+
     fn boxed(&self) -> Box<dyn Dump> {
         Box::new(self.clone())
     }
@@ -240,7 +247,17 @@ impl Text {
     /// A dump of these columns.
     pub(super) fn new(base: Base, form: Form, layout: Layout) -> Self {
         let formats = Formats::default();
-        Self { base, form, header: true, layout, formats, names: vec![], time: false, units: false }
+        Self {
+            base,
+            form,
+            header: true,
+            layout,
+            formats,
+            names: vec![],
+            time: false,
+            units: false,
+            thermo: false,
+        }
     }
 
     /// Another format for a column (from 0) than the usual one, until `dump_modify format` says more.
@@ -261,6 +278,7 @@ impl Text {
             ("header", _) => self.header = args.flag("header")?,
             ("time", _) => self.time = args.flag("time")?,
             ("units", _) => self.units = args.flag("units")?,
+            ("thermo", _) => self.thermo = args.flag("thermo")?,
             ("format", _) => self.format(args)?,
             ("colname", _) => self.rename(args)?,
             ("scale", Layout::Atom { scaled, .. }) => *scaled = args.flag("scale")?,

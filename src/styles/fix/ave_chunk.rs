@@ -34,7 +34,7 @@ impl Style for AveChunk {
                    samples' own means, or of their sums. `ave one|running|window M`: each average for itself, the mean of all \
                    so far, or of the last M. `adof` (3, or 2 in flat scenes) and `cdof` (0): degrees of freedom per particle \
                    and per chunk for `temp`. `file name`, `append name`, `overwrite` (needs `ave running`), `format %g`, \
-                   `title1 title2 title3`. `bias` is refused: no temperature here removes one.\n\n\
+                   `title1 title2 title3`. `bias` is refused: chunks have no flow of their own to take away.\n\n\
                    During the samples of an average the number of chunks stays as it is; with `ave running` and `window` for \
                    good. Global array (intensive): a row per chunk with its original number where the compute compresses, \
                    the coordinates of its bin, the number of particles and the values; 0 before the first average.",
@@ -135,7 +135,7 @@ impl FixStyle for AveChunk {
                 "cdof" => fix.cdof = args.number("degrees of freedom per chunk")?,
                 "format" => fix.format = number_format(args)?,
                 "bias" => {
-                    let text = "fix ave/chunk bias: no temperature of perigrain removes a bias";
+                    let text = "fix ave/chunk takes no flow away in perigrain";
                     return fail(Code::NOT_SUPPORTED, word.span, text);
                 }
                 other if fix.output.read(other, args)? => {}

@@ -51,8 +51,8 @@ mod viscous_sphere;
 mod wall;
 mod window;
 
-use super::{BuildCx, Pull, SealCx, Shape, Style};
-use crate::diag::{Code, Diagnostic, Result, fail};
+use super::{BuildCx, Motion, Pull, SealCx, Shape, Style};
+use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::{Args, ValueRef};
 use crate::plan::Op;
 use crate::world::World;
@@ -135,6 +135,14 @@ pub trait Fix: Send {
     /// Whether it makes particles during a run.
     fn makes_particles(&self) -> bool {
         false
+    }
+
+    /// Stops its rigid bodies, each by itself (`velocity … zero … rigid ID`).
+    ///
+    /// # Errors
+    /// A fix without bodies, or bodies that cannot be.
+    fn stop(&self, _w: &mut World, _what: Motion, span: Span) -> Result<()> {
+        fail(Code::WRONG_KIND, span, "this fix has no rigid bodies")
     }
 
     /// Takes note of particles that another fix has made during a run.

@@ -11,7 +11,7 @@ use crate::plan::{Access, Op, Stage};
 use crate::styles::command::common::range_from;
 use crate::styles::matter::check_masses;
 use crate::styles::step_op::StepOp;
-use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
+use crate::styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
 use crate::world::{GroupId, World};
 use bodies::Split;
 
@@ -296,6 +296,21 @@ impl Fix for Declared {
             Ok(())
         });
         Ok(vec![bodies.boxed(), first.boxed(), second.in_setup(true).boxed()])
+    }
+
+    fn stop(&self, w: &mut World, what: Motion, span: Span) -> Result<()> {
+        self.begin(w, span)?;
+        self.adopt(w, span)?;
+        let mut bodies = self.load(w);
+        for body in &mut bodies {
+            match what {
+                Motion::Linear => body.v = [0.0; 3],
+                Motion::Angular => (body.momentum, body.omega) = ([0.0; 3], [0.0; 3]),
+            }
+        }
+        self.carry(w, &bodies);
+        self.store(w, &bodies);
+        Ok(())
     }
 
     fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {

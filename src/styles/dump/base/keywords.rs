@@ -38,7 +38,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("tfactor", "is for dump xtc, which perigrain does not have"),
     ("precision", "is for dump xtc, which perigrain does not have"),
     ("unwrap", "is for dumps dcd and xtc, which perigrain does not have: dump xu yu zu"),
-    ("thermo", "is not in perigrain: use thermo_modify line yaml"),
+    ("thermo", "is for dump yaml"),
     ("triclinic/general", "is for tilted boxes, which perigrain does not have"),
     ("header", "is for text dumps"),
     ("label", "is for dump local"),

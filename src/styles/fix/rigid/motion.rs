@@ -128,6 +128,12 @@ impl Declared {
         virial
     }
 
+    /// Velocities and spins of the particles as their bodies have them now, outside of a run.
+    pub fn carry(&self, w: &mut World, bodies: &[Body]) {
+        // No time passes: the virial means nothing.
+        self.follow(w, bodies, 1.0, false);
+    }
+
     /// The values that decks can read.
     pub fn publish(&self, w: &mut World, t: &Tick, slot: SlotId) {
         let bodies = self.load(w);
