@@ -7,12 +7,15 @@ use crate::world::RunStyle;
 impl Session {
     /// A warning where the time step is beyond what the pair style can vouch for.
     pub(super) fn check_step(&self, span: Span, found: &mut Diagnostics) {
-        let Some(node) = &self.graph.pair else { return };
         // A fix that chooses the step by itself knows better.
         if self.graph.fixes.iter().any(|f| f.style.starts_with("dt/")) {
             return;
         }
         let density = self.density();
+        let line = self.graph.nodes.iter().rev().find(|n| n.text.starts_with("timestep"));
+        let place = line.map_or(span, |n| n.span);
+        self.check_contacts(place, density, found);
+        let Some(node) = &self.graph.pair else { return };
         let parts = node.pair.parts();
         let all = parts.into_iter().chain([node.pair.as_ref()]);
         let limit = all.filter_map(|p| p.stable_step(&self.world, density)).fold(f64::INFINITY, f64::min);
@@ -24,9 +27,6 @@ impl Session {
                 RunStyle::Staggered { ratio: Some(m), .. } => 1.0 / m as f64,
                 RunStyle::Staggered { ratio: None, .. } => 0.0,
             };
-        let line = self.graph.nodes.iter().rev().find(|n| n.text.starts_with("timestep"));
-        let place = line.map_or(span, |n| n.span);
-        self.check_contacts(place, density, found);
         if dt <= limit {
             return;
         }
@@ -38,18 +38,24 @@ impl Session {
         );
     }
 
-    /// A warning where contacts of grains last less than ten steps.
+    /// A warning where contacts of grains, with each other or with walls, last less than ten steps.
     fn check_contacts(&self, place: Span, density: Option<f64>, found: &mut Diagnostics) {
-        let Some(node) = &self.graph.pair else { return };
         let said = density.zip(self.said("diameter").reduce(f64::min));
-        let all = node.pair.parts().into_iter().chain([node.pair.as_ref()]);
-        let contact = all.filter_map(|p| p.contact_time(&self.world, said)).fold(f64::INFINITY, f64::min);
+        let pairs = self.graph.pair.iter().flat_map(|n| n.pair.parts().into_iter().chain([n.pair.as_ref()]));
+        let pairs = pairs.filter_map(|p| Some((p.contact_time(&self.world, said)?, String::new())));
+        let walls = self.graph.fixes.iter();
+        let walls = walls.filter_map(|f| {
+            Some((f.fix.contact_time(&self.world, said)?, format!(" with the wall of fix {}", f.id)))
+        });
+        let Some((contact, wall)) = pairs.chain(walls).reduce(|a, b| if b.0 < a.0 { b } else { a }) else {
+            return;
+        };
         let dt = self.world.clock.dt;
         if dt <= 0.1 * contact {
             return;
         }
         let text = format!(
-            "the time step {dt:e} is longer than a tenth of a contact, which lasts about {contact:.2e}"
+            "the time step {dt:e} is longer than a tenth of a contact{wall}, which lasts about {contact:.2e}"
         );
         found.push(
             Diagnostic::warning(Code::UNSTABLE, place, text)

@@ -1,6 +1,7 @@
 //! Granular models as decks write them: shared by pair styles and walls.
 
 pub mod classic;
+pub mod durations;
 pub mod words;
 
 use crate::diag::Span;

@@ -148,6 +148,12 @@ pub trait Fix: Send {
     /// Takes note of particles that another fix has made during a run.
     fn welcome(&self, _w: &mut World) {}
 
+    /// How long the shortest contacts with it last, if it is a wall for grains; `said`: density and diameter in the
+    /// deck, for a check that has no particles.
+    fn contact_time(&self, _w: &World, _said: Option<(f64, f64)>) -> Option<f64> {
+        None
+    }
+
     /// The acceleration it gives to everyone, in a flat scene or another.
     fn pull(&self, _flat: bool) -> Option<Pull> {
         None

@@ -1,7 +1,6 @@
 //! `pair_style granular`: contacts of spheres, with models chosen per pair of types.
 
 mod declared;
-mod durations;
 pub mod force;
 pub mod reach;
 

@@ -10,6 +10,7 @@ use super::Fix;
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::laws::contact::walls::{Wall, WallSweep};
 use crate::plan::{Op, Tick};
+use crate::styles::contact::durations;
 use crate::styles::{BuildCx, SealCx, Shape};
 use crate::world::{GroupId, World};
 use words::Material;
@@ -91,6 +92,11 @@ impl<F: Form> Fix for Declared<F> {
     fn shape(&self) -> Shape {
         let atom = self.common.contacts.then_some(op::COLUMNS);
         Shape { vector: 6, vector_extensive: true, atom, local: F::LOCAL, ..Shape::default() }
+    }
+
+    fn contact_time(&self, w: &World, said: Option<(f64, f64)>) -> Option<f64> {
+        let law = self.common.material.law(w.settings.compat);
+        durations::on_wall(w, &law, self.common.group.bit(), said)
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

@@ -1,6 +1,5 @@
 //! Granular pair styles with their coefficients: rules by pair of types, given or mixed.
 
-use super::durations;
 use super::force::{Force, conducts};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
@@ -8,7 +7,7 @@ use crate::laws::contact::driver::{Average, Curvature, Rule, Rules};
 use crate::laws::contact::{Damping, Granular, Model, Twisting};
 use crate::neigh::list::{Reach, Wanted};
 use crate::plan::Op;
-use crate::styles::contact::{Coeff, words};
+use crate::styles::contact::{Coeff, durations, words};
 use crate::styles::pair::contact_probe::{ContactProbe, Own};
 use crate::styles::pair::probe::Probe;
 use crate::styles::pair::{Pair, TypePairs};
@@ -166,7 +165,7 @@ impl Pair for Declared {
 
     fn contact_time(&self, w: &World, said: Option<(f64, f64)>) -> Option<f64> {
         let rules = self.tables(w.types, w.settings.compat).ok()?.0;
-        durations::shortest(w, &rules, said)
+        durations::between_grains(w, &rules, said)
     }
 
     fn needs(&self) -> &'static [&'static str] {
