@@ -14,6 +14,7 @@ mod rerunning;
 mod restarting;
 mod running;
 mod shell;
+mod solids;
 mod stability;
 mod staggering;
 mod timer;

@@ -5,6 +5,8 @@ use super::seal::Sealer;
 use crate::diag::{Code, Diagnostic, Diagnostics, Result};
 use crate::lang::{RefKind, ValueRef};
 use crate::plan::{Access, Op, Stage, Tick, When};
+use crate::styles::step_op::StepOp;
+use crate::styles::surface::choose;
 use crate::styles::{Reading, SealCx};
 use crate::world::{Dynamic, GroupId, World};
 
@@ -29,6 +31,22 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
         let op = Choose { title: format!("group {name} dynamic"), group, rule, chosen, when };
         let span = s.span();
         s.add(vec![Box::new(op)], span);
+    }
+    let surfaces: Vec<_> = s.world().groups.surfaces().to_vec();
+    for (group, surface) in surfaces {
+        let Some(every) = surface.every else { continue };
+        let title = format!("group {} surface", s.world().groups.name(group));
+        let op =
+            StepOp::new(title, Stage::EndOfStep, Access::new("x volume families", "mask"), move |w, _| {
+                if choose(w, group.bit(), &surface) {
+                    // Contacts are looked for anew in the next step.
+                    w.rebuild.due = true;
+                }
+                Ok(())
+            });
+        let when = When::First.or(When::Every(every));
+        let span = s.span();
+        s.add(vec![op.when(when).in_setup(true).boxed()], span);
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! Ops in the order of a step, with what was left out and why.
 
-use super::{Beat, Meter, Op, OpClass, Stage, Tick, When};
+use super::{Beat, Guard, Meter, Op, OpClass, Stage, Tick, When};
 use crate::diag::{Diagnostics, Result, Span};
 use crate::world::World;
 use std::time::{Duration, Instant};
@@ -53,6 +53,8 @@ pub struct StepPlan {
     pub atom_energy: Vec<When>,
     /// When somebody reads per-particle virials.
     pub atom_virial: Vec<When>,
+    /// Who watches the energy.
+    pub guard: Option<Guard>,
 }
 
 impl StepPlan {
@@ -107,6 +109,14 @@ impl StepPlan {
             outcome.map_err(|e| placed_error(e, p, t))?;
         }
         Ok(())
+    }
+
+    /// Makes ops of forces give what they hold of the scene back to the world; they take it up anew at their next step.
+    ///
+    /// # Errors
+    /// As `finish`.
+    pub fn release(&mut self, w: &mut World) -> Result<()> {
+        self.ops.iter_mut().filter(|p| p.op.stage() == Stage::Force).try_for_each(|p| p.op.finish(w))
     }
 
     /// Tells every op that the run is over.

@@ -5,7 +5,7 @@
 //! `m` velocity-Verlet steps under their bonds alone. Symplectic, and momentum is conserved. Where grains are the
 //! faster ones, bonds act at every m-th step, with m times their force.
 
-use super::verlet::{Outcome, Watch, tick};
+use super::verlet::{MOTION, Outcome, Watch, tick};
 use crate::diag::Result;
 use crate::plan::{Beat, Phase, Solids, Stage, StepPlan, Tick};
 use crate::world::World;
@@ -80,18 +80,18 @@ pub fn staggered(
     super::verlet::steps(plan, w, watch, |plan, w, t| step(plan, w, t, s))
 }
 
-/// One step of two lengths; a plain one where one short step fills the long one.
+/// One step of two lengths up to its outputs; a plain one where one short step fills the long one.
 ///
 /// # Errors
 /// The first op's that fails.
 fn step(plan: &mut StepPlan, w: &mut World, t: &Tick, s: &Staggered) -> Result<()> {
     match s.ratio {
-        Ratio::Rare(1) => return plan.run(w, t, &Stage::ALL),
+        Ratio::Rare(1) => return plan.run(w, t, &MOTION),
         Ratio::Rare(m) => {
             plan.run(w, t, &[Stage::InitialIntegrate, Stage::PostIntegrate])?;
             plan.run(w, t, &[Stage::Neighbor, Stage::PreForce])?;
             rare(plan, w, t, m)?;
-            return plan.run(w, t, &[Stage::FinalIntegrate, Stage::EndOfStep, Stage::Output]);
+            return plan.run(w, t, &[Stage::FinalIntegrate]);
         }
         Ratio::Short(_) | Ratio::Within(_) => {}
     }
@@ -99,7 +99,7 @@ fn step(plan: &mut StepPlan, w: &mut World, t: &Tick, s: &Staggered) -> Result<(
     if m == 1 {
         w.columns.remove(BOND_FORCES);
         w.columns.remove(SLOW_FORCES);
-        return plan.run(w, t, &Stage::ALL);
+        return plan.run(w, t, &MOTION);
     }
     if w.columns.get_vector(BOND_FORCES).is_none_or(|c| c.len() != w.n()) {
         split(plan, w, s)?;
@@ -118,7 +118,7 @@ fn step(plan: &mut StepPlan, w: &mut World, t: &Tick, s: &Staggered) -> Result<(
     plan.run_beats(w, &long, &[Stage::Force, Stage::PostForce], &slow)?;
     plan.run_beats(w, &long, &[Stage::FinalIntegrate], &slow)?;
     join(w);
-    plan.run_beats(w, &long, &[Stage::EndOfStep, Stage::Output], &slow)
+    Ok(())
 }
 
 /// `m` velocity-Verlet steps of the solids under their bonds; `f` holds bond forces before and after.

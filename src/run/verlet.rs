@@ -1,5 +1,6 @@
 //! Velocity Verlet over a sealed plan: the loop, short enough to read aloud.
 
+use super::guarded::{Guarded, Verdict};
 use crate::diag::Result;
 use crate::par;
 use crate::plan::{Phase, Stage, StepPlan, Tick};
@@ -86,10 +87,25 @@ fn tally_anew(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
 /// # Errors
 /// The first op's that fails; the world is then as that op left it.
 pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Result<Outcome> {
-    steps(plan, w, watch, |plan, w, t| plan.run(w, t, &Stage::ALL))
+    steps(plan, w, watch, |plan, w, t| plan.run(w, t, &MOTION))
 }
 
-/// Makes the steps of a run, each by `step`.
+/// The stages of a step before anything is put out.
+pub(super) const MOTION: [Stage; 8] = [
+    Stage::InitialIntegrate,
+    Stage::PostIntegrate,
+    Stage::Exchange,
+    Stage::Neighbor,
+    Stage::PreForce,
+    Stage::Force,
+    Stage::PostForce,
+    Stage::FinalIntegrate,
+];
+
+/// And those that put out.
+const OUTPUTS: [Stage; 2] = [Stage::EndOfStep, Stage::Output];
+
+/// Makes the steps of a run, each by `step` and then its outputs.
 ///
 /// # Errors
 /// As [`verlet`].
@@ -102,6 +118,10 @@ pub(super) fn steps(
     let (begin, cpu) = (Instant::now(), cpu_seconds());
     let first = w.clock.step;
     let mut interrupted = false;
+    let mut guard = match plan.guard.take() {
+        Some(guard) => Some(Guarded::new(guard, plan, w)?),
+        None => None,
+    };
     while w.clock.step < w.clock.last && w.clock.halt == Halt::No {
         if w.settings.stop.load(Ordering::Relaxed) {
             interrupted = true;
@@ -114,11 +134,22 @@ pub(super) fn steps(
         w.clock.step += 1;
         let mut t = tick(w, false);
         plan.ask(&mut t);
-        par::inside(|| step(plan, w, &t))?;
+        match &mut guard {
+            None => par::inside(|| step(plan, w, &t).and_then(|()| plan.run(w, &t, &OUTPUTS)))?,
+            Some(guard) => {
+                let made = par::inside(|| step(plan, w, &t));
+                if guard.judge(plan, w, &t, made)? == Verdict::Back {
+                    continue;
+                }
+                plan.run(w, &t, &OUTPUTS)?;
+                guard.keep(plan, w, &t)?;
+            }
+        }
         let c = &w.clock;
         let (done, total) = (c.step - first, c.last - first);
         watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });
     }
+    plan.guard = guard.map(Guarded::into_guard);
     let steps = w.clock.step - first;
     Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })
 }

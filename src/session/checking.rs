@@ -35,6 +35,8 @@ impl Session {
             self.check_integrators(span, &mut found);
             self.check_step(span, &mut found);
         }
+        self.check_surfaces(&mut found);
+        self.check_breaking(&mut found);
         self.check_box(&mut found);
         self.check_variables(&mut found);
         crate::graph::dynamic::check(&self.graph, &self.world, &mut found);
@@ -167,7 +169,6 @@ impl Session {
         }
     }
 
-    /// No integrator at all, and two on one particle.
     /// Variables that fixes wait for have been defined by now.
     fn check_variables(&self, found: &mut Diagnostics) {
         for f in &self.graph.fixes {
@@ -198,6 +199,7 @@ impl Session {
         }
     }
 
+    /// No integrator at all, and two on one particle.
     fn check_integrators(&self, span: Span, found: &mut Diagnostics) {
         let moving: Vec<_> = self.graph.fixes.iter().filter(|f| f.fix.integrates()).collect();
         if moving.is_empty() {

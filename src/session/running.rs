@@ -4,6 +4,7 @@ use super::{Mode, Session, refuse};
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::graph::build::{Context, once_dump};
 use crate::graph::env::DeckEnv;
+use crate::graph::ledger;
 use crate::graph::ops::{ClearForces, Reneighbor};
 use crate::graph::seal::Sealer;
 use crate::graph::{FixNode, Role};
@@ -153,14 +154,25 @@ impl Session {
             s.add(ops, node.span);
         }
         s.at(span);
+        let booked = !minimizing && ledger::wanted(&s);
+        if booked {
+            ledger::begin(&mut s);
+        }
         crate::graph::dynamic::seal(&mut s)?;
         let acts = |f: &&FixNode| !minimizing || f.fix.minimizing() == Minimizing::Acts;
         for f in self.graph.fixes.iter().filter(acts) {
             s.at(f.span);
             let ops = f.fix.ops(&mut s)?;
+            let stages = ledger::stages(&ops);
             s.add(ops, f.span);
+            if booked {
+                ledger::mark(&mut s, f, &stages);
+            }
         }
         s.at(span);
+        if booked {
+            ledger::end(&mut s)?;
+        }
         crate::graph::welcome::seal(&mut s);
         // Elsewhere LAMMPS' order: dumps before the row.
         let row_first = self.graph.dumps.iter().any(|d| d.dump.repeats_row());
@@ -187,6 +199,9 @@ impl Session {
         }
         s.at(span);
         crate::graph::virials::seal(&mut s)?;
+        if !minimizing {
+            crate::graph::guard::seal(&mut s)?;
+        }
         s.say_what_is_missing();
         Ok((s.plan, energy))
     }

@@ -30,12 +30,28 @@ impl Session {
         if dt <= limit {
             return;
         }
-        let text = format!("the time step {dt:e} is longer than peridynamic bonds allow: about {limit:.2e}");
+        let (whose, place, remedy) = self.step_remedy(limit, place);
+        let text = format!("{whose} {dt:e} is longer than peridynamic bonds allow: about {limit:.2e}");
         found.push(
             Diagnostic::warning(Code::UNSTABLE, place, text)
                 .help("beyond √(ρ/(π c δ²)) the shortest waves grow from step to step (Silling & Askari 2005, section 6)")
-                .help(format!("say `timestep {:.1e}` or less", 0.8 * limit)),
+                .help(remedy),
         );
+    }
+
+    /// Which step is too long for bonds, where that is said, and what to say instead.
+    fn step_remedy(&self, limit: f64, place: Span) -> (&'static str, Span, String) {
+        let whole = self.world.clock.dt;
+        match self.world.settings.run_style {
+            RunStyle::Staggered { ratio: Some(m), rare, .. } if m > 1 => {
+                let remedy = match rare {
+                    false => format!("say `m {}` or more", (whole / (0.8 * limit)).ceil()),
+                    true => format!("say `m {}` or less", (0.8 * limit / whole).floor().max(1.0)),
+                };
+                (if rare { "the rare step" } else { "the short step" }, self.run_style_place(place), remedy)
+            }
+            _ => ("the time step", place, format!("say `timestep {:.1e}` or less", 0.8 * limit)),
+        }
     }
 
     /// A warning where contacts of grains, with each other or with walls, last less than ten steps.

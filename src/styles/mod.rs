@@ -12,11 +12,13 @@ mod contact;
 mod critical;
 pub mod dump;
 pub mod fix;
+pub mod ledger;
 pub mod matter;
 pub mod newcomers;
 pub mod pair;
 pub mod seal;
 pub mod step_op;
+pub mod surface;
 #[cfg(test)]
 mod testing;
 

@@ -1,5 +1,6 @@
-//! Which pairs of particles may act on each other: `neigh_modify exclude` and `special_bonds`.
+//! Which pairs of particles may act on each other: `neigh_modify exclude`, `special_bonds` and surfaces of solids.
 
+use super::families::Families;
 use super::{NeighborSettings, Particles, World};
 
 /// The rules as they stand.
@@ -8,17 +9,25 @@ pub struct Allowed<'a> {
     particles: &'a Particles,
     /// Bonded pairs without pair forces, ascending.
     barred: Vec<[u32; 2]>,
+    /// Group bits of solids and of their hybrid particles.
+    surfaces: Vec<[u32; 2]>,
+    /// Families of solids that have hybrid particles.
+    families: Option<(&'a Families, [f64; 3])>,
 }
 
 impl<'a> Allowed<'a> {
     /// Of a world, bonds included.
     pub fn new(w: &'a World) -> Self {
-        Self { settings: &w.settings.neighbor, particles: &w.particles, barred: w.bonds.barred() }
+        let bits = w.groups.surfaces().iter().map(|(g, s)| [s.parent.bit(), g.bit()]);
+        let surfaces: Vec<[u32; 2]> = bits.collect();
+        let families = w.families.as_ref().filter(|_| !surfaces.is_empty()).map(|f| (f, w.periods()));
+        Self { barred: w.bonds.barred(), surfaces, families, ..Self::excluded(w) }
     }
 
     /// Of `neigh_modify exclude` alone.
     pub fn excluded(w: &'a World) -> Self {
-        Self { settings: &w.settings.neighbor, particles: &w.particles, barred: vec![] }
+        let (settings, particles) = (&w.settings.neighbor, &w.particles);
+        Self { settings, particles, barred: vec![], surfaces: vec![], families: None }
     }
 
     /// Whether pair forces act between these two.
@@ -36,6 +45,18 @@ impl<'a> Allowed<'a> {
         !s.exclude_groups.iter().any(groups)
             && !s.exclude_types.iter().any(types)
             && !s.exclude_molecules.iter().any(molecules)
+            && (self.surfaces.is_empty() || self.meet(i, j))
             && (self.barred.is_empty() || self.barred.binary_search(&tags()).is_err())
+    }
+
+    /// Whether neither end lies inside a solid, and they are not of one family.
+    fn meet(&self, i: usize, j: usize) -> bool {
+        let p = self.particles;
+        let inside =
+            |mask: u32| self.surfaces.iter().any(|[parent, own]| mask & parent != 0 && mask & own == 0);
+        if inside(p.mask[i]) || inside(p.mask[j]) {
+            return false;
+        }
+        self.families.is_none_or(|(families, period)| !families.related(&p.x0, &p.kind, period, i, j))
     }
 }

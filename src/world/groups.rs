@@ -1,6 +1,7 @@
 //! Named sets of particles, one bit each, and how dynamic ones choose theirs.
 
 use super::region::Variable;
+use super::surface::Surface;
 
 /// Index of a group; its bit in every particle's mask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
@@ -34,13 +35,16 @@ pub struct Dynamic {
 pub struct Groups {
     names: [Option<String>; 32],
     dynamic: [Option<Dynamic>; 32],
+    /// Groups of hybrid particles.
+    #[serde(default)]
+    surfaces: Vec<(GroupId, Surface)>,
 }
 
 impl Default for Groups {
     fn default() -> Self {
         let mut names = [const { None }; 32];
         names[0] = Some("all".to_string());
-        Self { names, dynamic: [const { None }; 32] }
+        Self { names, dynamic: [const { None }; 32], surfaces: vec![] }
     }
 }
 
@@ -64,6 +68,7 @@ impl Groups {
     pub fn remove(&mut self, id: GroupId) {
         self.names[id.0 as usize] = None;
         self.dynamic[id.0 as usize] = None;
+        self.set_surface(id, None);
     }
 
     /// How a dynamic group chooses; nothing for static groups.
@@ -74,6 +79,17 @@ impl Groups {
     /// Makes a group dynamic, or static with `None`.
     pub fn set_dynamic(&mut self, id: GroupId, rule: Option<Dynamic>) {
         self.dynamic[id.0 as usize] = rule;
+    }
+
+    /// The groups of hybrid particles in order of definition.
+    pub fn surfaces(&self) -> &[(GroupId, Surface)] {
+        &self.surfaces
+    }
+
+    /// Makes a group one of hybrid particles, or no longer with `None`.
+    pub fn set_surface(&mut self, id: GroupId, surface: Option<Surface>) {
+        self.surfaces.retain(|(own, _)| *own != id);
+        self.surfaces.extend(surface.map(|s| (id, s)));
     }
 
     /// The dynamic groups in order of definition.

@@ -22,6 +22,7 @@ pub mod region;
 pub mod resume;
 pub mod settings;
 pub mod slots;
+pub mod surface;
 pub mod tally;
 pub mod template;
 

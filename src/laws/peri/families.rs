@@ -58,6 +58,8 @@ impl Families {
             lasting: vec![],
             hurt: vec![false; n],
             near: NearPairs::default(),
+            released: 0.0,
+            counts_released: false,
             scratch: Scratch::default(),
         };
         families.lay_out(view);
@@ -265,6 +267,9 @@ impl Families {
         advance: bool,
         tally: Option<&mut PeriTally>,
     ) {
+        if self.options.no_repulsion {
+            return;
+        }
         let (within, all) = self.ranges(view, moved, advance);
         let closer = self.update_near(view, within, all, advance);
         let mut repulsion = Repulsion { view, table: &self.table, options: &self.options, f, tally };
@@ -272,9 +277,13 @@ impl Families {
     }
 
     /// Breaks bonds and makes this step the previous one.
-    fn advance<K: StretchKernels>(&mut self, view: &PeriView, period: [f64; 3]) {
+    fn advance<K: Kernels + RowKernels + StretchKernels + StateKernels>(
+        &mut self,
+        view: &PeriView,
+        period: [f64; 3],
+    ) {
         if self.armed {
-            self.break_bonds::<K>(view, period);
+            self.break_and_count::<K>(view, period);
         }
         self.armed = true;
         for body in &mut self.lattices {
@@ -283,7 +292,7 @@ impl Families {
         list::keep(&mut self.list);
     }
 
-    fn break_bonds<K: StretchKernels>(&mut self, view: &PeriView, period: [f64; 3]) {
+    pub(super) fn break_bonds<K: StretchKernels>(&mut self, view: &PeriView, period: [f64; 3]) {
         let mut found: Vec<Candidate> = std::mem::take(&mut self.scratch.candidates);
         let mut ends = std::mem::take(&mut self.scratch.ends);
         ends.clear();

@@ -20,6 +20,7 @@ mod list;
 mod list_kernel;
 pub mod moduli;
 mod pmb;
+mod released;
 mod rows;
 mod single;
 mod state;

@@ -1,11 +1,13 @@
 //! `group`: named sets of particles.
 
-use super::common::{self, atom_variable, bad_keyword, id, setting, unknown_style, whole};
+use super::common::{self, atom_variable, bad_keyword, id, in_group, setting, unknown_style, whole};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Param, ValueRef, Word};
+use crate::styles::surface::{check_volumes, choose};
 use crate::styles::{ActCx, BuildCx, Doc, Style, UseKind};
 use crate::world::region::Variable;
+use crate::world::surface::{Rule, Surface};
 use crate::world::{Dynamic, GroupId, Particles, Region};
 use std::collections::BTreeSet;
 
@@ -22,7 +24,8 @@ impl Style for Group {
             syntax: "group ID type|id|molecule A B:C D:E:F … | type|id|molecule < <= > >= == != N | type|id|molecule <> A B | \
                      include molecule | region ID | \
                      variable NAME | union ID … | intersect ID ID … | subtract ID ID … | empty | clear | delete | \
-                     dynamic PARENT [region ID] [var NAME] [every N] | static",
+                     dynamic PARENT [region ID] [var NAME] [every N] | \
+                     surface PARENT [nn K | mfrac F] [shells S] [every N] | static",
             summary: "Names a set of particles, or adds particles to it.",
             text: "Membership is decided now and stays, but for dynamic groups. A group that exists already gains the \
                    particles named. `A:B:C` counts from A to B by C; `<> A B` is between, both included. `variable` takes \
@@ -32,7 +35,16 @@ impl Style for Group {
                    `dynamic` chooses the members anew at the start of each run and at every step that is a multiple of N \
                    (default 1): those of PARENT that are inside the region and for which the atom-style variable is not \
                    zero. It does so when forces have been computed, before fixes act on them. `static` lets the group stay \
-                   as it is.",
+                   as it is.\n\n\
+                   `surface` takes the hybrid particles of the peridynamic solids in PARENT, which meet grains, other solids and \
+                   walls as spheres (`set … peri/radius`): those with fewer than K nearest neighbours (default 6), counted in \
+                   bonds that live, before the first run in places closer than 1.25 V^⅓; or with `mfrac` those whose Σ r² V is \
+                   below F times the largest. `shells` takes S layers in all. With `every` the choice is made anew in the setup \
+                   of each run and every N steps, so that cracks and craters get surfaces. As long as the group exists, other \
+                   particles of PARENT have no contacts, and two particles that were in one family have none with each other, \
+                   whether their bond lives or not: a solid meets itself only farther apart. The short-range force of \
+                   peridynamic styles acts besides, unless `peri_modify repulsion no`. Hybrid particles do not turn: move them by \
+                   `fix nve`.",
             example: "group bullet region ball",
         }
     }
@@ -99,6 +111,9 @@ impl CommandStyle for Group {
         if style.text == "dynamic" {
             return dynamic(a, cx, name);
         }
+        if style.text == "surface" {
+            return surface(a, cx, style, name);
+        }
         if cx.world.groups.find(&name).is_some_and(|g| cx.world.groups.dynamic(g).is_some()) {
             let text = format!("the dynamic group `{name}` chooses its particles itself");
             let d = Diagnostic::error(Code::CONFLICT, word.span, text);
@@ -150,6 +165,9 @@ fn make_static(cx: &BuildCx, word: &Word) -> Result<Box<dyn Act>> {
     let name = word.text.clone();
     Ok(setting(move |cx| {
         cx.world.groups.set_dynamic(group, None);
+        if let Some((_, s)) = cx.world.groups.surfaces().iter().find(|(g, _)| *g == group).copied() {
+            cx.world.groups.set_surface(group, Some(Surface { every: None, ..s }));
+        }
         say_count(cx, group, &name);
         Ok(())
     }))
@@ -196,6 +214,50 @@ fn dynamic(a: &mut Args, cx: &BuildCx, name: String) -> Result<Box<dyn Act>> {
     }))
 }
 
+fn surface(a: &mut Args, cx: &BuildCx, style: &Word, name: String) -> Result<Box<dyn Act>> {
+    if !cx.world.particles.style.peri || !cx.world.particles.style.sphere {
+        let text =
+            "hybrid particles have a volume and a radius, and particles of this atom_style have not both";
+        return Err(Diagnostic::error(Code::CONFLICT, style.span, text)
+            .help("put `atom_style hybrid sphere peri` at the top of the deck")
+            .into());
+    }
+    let word = a.expect("the group of the solids")?;
+    let parent = cx.group(word)?;
+    if word.text == name {
+        return fail(Code::CONFLICT, word.span, "a surface cannot be that of itself");
+    }
+    let mut found = Surface { parent, rule: Rule::Neighbours(6), shells: 1, every: None };
+    while let Some(word) = a.next() {
+        match word.text.as_str() {
+            "nn" => {
+                found.rule =
+                    Rule::Neighbours(a.integer_from(1, "the number of nearest neighbours inside")? as usize);
+            }
+            "mfrac" => found.rule = Rule::Weight(a.positive("the part of the largest weighted volume")?),
+            "shells" => found.shells = a.integer_from(1, "the number of layers")? as usize,
+            "every" => found.every = Some(a.integer_from(1, "the interval")?),
+            _ => return Err(a.unknown(word, &["nn", "mfrac", "shells", "every"])),
+        }
+    }
+    let span = word.span;
+    let made = Some(name.clone());
+    Ok(in_group(vec![], made, move |cx| {
+        let bit = found.parent.bit();
+        let mask = &cx.world.particles.mask;
+        let solid: Vec<usize> = (0..mask.len()).filter(|&i| mask[i] & bit != 0).collect();
+        check_volumes(cx.world, &solid, span)?;
+        let Some(group) = cx.world.groups.find_or_add(&name) else {
+            return fail(Code::TOO_LARGE, None, "there are 32 groups already; delete one first");
+        };
+        cx.world.groups.set_surface(group, Some(found));
+        choose(cx.world, group.bit(), &found);
+        cx.world.touch();
+        say_count(cx, group, &name);
+        Ok(())
+    }))
+}
+
 /// Says how many particles a group has now.
 fn say_count(cx: &mut ActCx, group: GroupId, name: &str) {
     let count = cx.world.particles.mask.iter().filter(|m| **m & group.bit() != 0).count();
@@ -203,7 +265,7 @@ fn say_count(cx: &mut ActCx, group: GroupId, name: &str) {
 }
 
 /// The ways to choose a group's particles.
-const KNOWN: [&str; 12] = [
+const KNOWN: [&str; 13] = [
     "empty",
     "type",
     "id",
@@ -215,6 +277,7 @@ const KNOWN: [&str; 12] = [
     "intersect",
     "subtract",
     "dynamic",
+    "surface",
     "static",
 ];
 

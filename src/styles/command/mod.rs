@@ -37,7 +37,7 @@ mod run_style;
 mod set;
 mod special_bonds;
 #[cfg(test)]
-mod testing;
+pub(super) mod testing;
 mod timestep;
 mod units;
 mod velocity;

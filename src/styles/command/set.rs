@@ -15,7 +15,7 @@ use change::{Change, Item, Limit};
 /// The command.
 pub struct Set;
 
-const KEYWORDS: [&str; 19] = [
+const KEYWORDS: [&str; 20] = [
     "mol",
     "bond",
     "type",
@@ -27,6 +27,7 @@ const KEYWORDS: [&str; 19] = [
     "mass",
     "density",
     "diameter",
+    "peri/radius",
     "volume",
     "omega",
     "x",
@@ -76,7 +77,9 @@ impl Style for Set {
                    without radius it sets the mass to ρ itself (LAMMPS' convention). `diameter` leaves the mass alone: \
                    say it before `density`. `type/fraction` decides for each particle by a random number that belongs \
                    to its place, `type/ratio` and `type/subset` change exactly the part or number of them that LAMMPS \
-                   changes. `density/disc` is the mass per area of a disc, in flat scenes.",
+                   changes. `peri/radius` gives peridynamic particles the sphere that meets others: `quasi` that of their \
+                   volume, (3V/4π)^⅓ = 0.62 spacings of a lattice (Hartmann et al. 2022), `half` V^⅓/2, or R; it leaves mass \
+                   and volume alone and comes after `volume`. `density/disc` is the mass per area of a disc, in flat scenes.",
             example: "set group plate density 2235.0 volume 1.25e-10",
         }
     }
@@ -162,6 +165,18 @@ fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
         "diameter" => {
             needs(sphere)?;
             value(a, cx, "the diameter", Some(Limit::NotNegative)).map(Change::Diameter)
+        }
+        "peri/radius" => {
+            needs(sphere && peri)?;
+            if a.eat("quasi") {
+                // The sphere of the same volume (Hartmann et al. 2022, section 3.1).
+                return Ok(Change::OfVolume(0.75 / std::f64::consts::PI));
+            }
+            if a.eat("half") {
+                return Ok(Change::OfVolume(0.125));
+            }
+            let radius = value(a, cx, "the radius (quasi, half or a number)", Some(Limit::Positive))?;
+            Ok(Change::Radius(radius))
         }
         "volume" => {
             needs(peri)?;

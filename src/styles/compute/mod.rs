@@ -10,6 +10,7 @@ mod damage_atom;
 mod dilatation_atom;
 mod displace_atom;
 mod dt_critical;
+mod energy_ledger;
 mod erotate_sphere;
 mod erotate_sphere_atom;
 mod fabric;
@@ -133,6 +134,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &dilatation_atom::DilatationAtom,
     &displace_atom::DisplaceAtom,
     &dt_critical::DtCritical,
+    &energy_ledger::EnergyLedger,
     &erotate_sphere::ErotateSphere,
     &erotate_sphere_atom::ErotateSphereAtom,
     &fabric::Fabric,

@@ -16,6 +16,7 @@ mod deform;
 mod deposit;
 mod drag;
 mod dt_critical;
+mod dt_guard;
 mod dt_reset;
 mod elapsed;
 mod enforce2d;
@@ -54,7 +55,7 @@ mod window;
 use super::{BuildCx, Motion, Pull, SealCx, Shape, Style};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::{Args, ValueRef};
-use crate::plan::Op;
+use crate::plan::{Op, Rule};
 use crate::world::World;
 
 /// A fix style: one file, one line in `FIXES`.
@@ -154,6 +155,11 @@ pub trait Fix: Send {
         None
     }
 
+    /// How it watches the energy of a run.
+    fn guard(&self) -> Option<Rule> {
+        None
+    }
+
     /// The acceleration it gives to everyone, in a flat scene or another.
     fn pull(&self, _flat: bool) -> Option<Pull> {
         None
@@ -188,6 +194,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &deposit::Deposit,
     &drag::Drag,
     &dt_critical::DtCritical,
+    &dt_guard::DtGuard,
     &dt_reset::DtReset,
     &enforce2d::Enforce2d,
     &evaporate::Evaporate,

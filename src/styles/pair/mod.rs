@@ -97,6 +97,11 @@ pub trait Pair: Send {
         self.true_forces().is_some() && self.covers(kind, kind)
     }
 
+    /// A type whose material says nothing of when its bonds break.
+    fn unbreakable(&self) -> Option<u16> {
+        None
+    }
+
     /// The sub-styles of a `hybrid`.
     fn parts(&self) -> Vec<&dyn Pair> {
         vec![]

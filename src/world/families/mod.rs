@@ -153,6 +153,9 @@ pub struct FamilyOptions {
     /// Use the portable kernels even where better ones would run.
     #[serde(skip)]
     pub portable: bool,
+    /// No short-range repulsion: other contact laws keep particles apart.
+    #[serde(default)]
+    pub no_repulsion: bool,
 }
 
 /// Bond length changes below this count as none under `compat lammps`: an absolute length.
@@ -185,6 +188,7 @@ impl FamilyOptions {
             layout: Layout::Auto,
             skip_rest: true,
             portable: false,
+            no_repulsion: false,
         }
     }
 }
@@ -291,9 +295,32 @@ pub struct Families {
     pub hurt: Vec<bool>,
     /// Pairs without a living bond that may come into short-range contact.
     pub near: NearPairs,
+    /// Energy of bonds where they broke, as far as it was counted [energy].
+    #[serde(default)]
+    pub released: f64,
+    /// Count it.
+    #[serde(skip)]
+    pub counts_released: bool,
     /// Scratch that is not state.
     #[serde(skip)]
     pub scratch: Scratch,
+}
+
+impl Families {
+    /// Whether two particles belonged to one family at the start, by their distance then; bonds that were cut or have
+    /// broken since count.
+    pub fn related(&self, x0: &[[f64; 3]], kind: &[u16], period: [f64; 3], i: usize, j: usize) -> bool {
+        let has = |i: usize| self.family_size.get(i).is_some_and(|n| *n > 0);
+        let Some(coeff) = self.table.get(kind[i], kind[j]).filter(|_| has(i) && has(j)) else { return false };
+        let start = self.reference.as_deref().unwrap_or(x0);
+        let reach = self.options.volume.reach(coeff.horizon, self.options.lattice_spacing);
+        let square = |d: usize| {
+            let apart = start[i][d] - start[j][d];
+            let turns = if period[d] > 0.0 { (apart / period[d]).round() } else { 0.0 };
+            (apart - turns * period[d]).powi(2)
+        };
+        square(0) + square(1) + square(2) <= reach * reach
+    }
 }
 
 /// Pairs without a living bond that may come into short-range contact before they are looked for again.

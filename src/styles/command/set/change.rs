@@ -42,6 +42,10 @@ pub enum Change {
     Disc(Param),
     /// Twice the radius.
     Diameter(Param),
+    /// The radius of a peridynamic particle.
+    Radius(Param),
+    /// The radius of a peridynamic particle as the cube root of this part of its volume.
+    OfVolume(f64),
     /// The volume of a peridynamic particle.
     Volume(Param),
     /// The angular velocity.
@@ -79,7 +83,7 @@ impl Item {
     fn has_variable(&self) -> bool {
         let is = |p: &Param| matches!(p, Param::Ref(_));
         match &self.change {
-            Change::Fraction { .. } | Change::Some { .. } | Change::Bond(_) => false,
+            Change::Fraction { .. } | Change::Some { .. } | Change::Bond(_) | Change::OfVolume(_) => false,
             Change::Image(p) => p.iter().flatten().any(is),
             Change::Omega(p) => p.iter().any(is),
             Change::Kind(p)
@@ -87,6 +91,7 @@ impl Item {
             | Change::Density(p)
             | Change::Disc(p)
             | Change::Diameter(p)
+            | Change::Radius(p)
             | Change::Volume(p)
             | Change::Molecule(p)
             | Change::Place(_, p)
@@ -102,7 +107,7 @@ impl Change {
         match self {
             Change::Mass(_) => Some("mass"),
             Change::Density(_) | Change::Disc(_) => Some("density"),
-            Change::Diameter(_) => Some("diameter"),
+            Change::Diameter(_) | Change::Radius(_) | Change::OfVolume(_) => Some("diameter"),
             Change::Volume(_) => Some("volume"),
             Change::Velocity(..) => Some("velocity"),
             _ => None,
@@ -229,6 +234,15 @@ fn change_particles(cx: &mut ActCx, item: &Item, chosen: &[usize]) -> Result<usi
         Change::Diameter(p) => {
             let v = checked(p, "the diameter", Some(Limit::NotNegative))?;
             chosen.iter().for_each(|&i| cx.world.particles.radius[i] = 0.5 * v[i]);
+        }
+        Change::Radius(p) => {
+            let v = checked(p, "the radius", Some(Limit::Positive))?;
+            chosen.iter().for_each(|&i| cx.world.particles.radius[i] = v[i]);
+        }
+        Change::OfVolume(part) => {
+            crate::styles::surface::check_volumes(cx.world, chosen, item.span)?;
+            let p = &mut cx.world.particles;
+            chosen.iter().for_each(|&i| p.radius[i] = (part * p.volume[i]).cbrt());
         }
         Change::Volume(p) => {
             let v = checked(p, "the volume", Some(Limit::Positive))?;

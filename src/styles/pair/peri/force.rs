@@ -90,7 +90,9 @@ impl Force {
             }
             None => {
                 let law = self.style.law.clone();
-                Families::build_of(&view(w)?, &self.style.table, self.options, law)?
+                let families = Families::build_of(&view(w)?, &self.style.table, self.options, law)?;
+                self.tell_lone(w, &families);
+                families
             }
         };
         w.families = Some(families);
@@ -113,6 +115,24 @@ impl Force {
         }
         w.families = Some(families);
         Ok(())
+    }
+
+    /// Warns of particles of solids that no bond reaches.
+    fn tell_lone(&self, w: &mut World, families: &Families) {
+        let p = &w.particles;
+        let lone = |i: &usize| self.style.covers(p.kind[*i], p.kind[*i]) && families.family_size[*i] == 0;
+        let mut all = (0..p.len()).filter(lone);
+        let Some(first) = all.next().filter(|_| !self.options.compat_lammps) else { return };
+        let (tag, kind, others) = (p.tag[first], p.kind[first], all.count());
+        let more = if others > 0 { format!(" and {others} more have") } else { " has".to_string() };
+        let text =
+            format!("particle {tag} (type {kind}){more} no partner within the horizon: no bond holds it");
+        let horizon = self.style.table.get(kind, kind).map_or(0.0, |c| c.horizon);
+        w.parts.notes.push(
+            Diagnostic::warning(Code::SUSPICIOUS, None, text)
+                .help(format!("the horizon is {horizon}: compare it with the distance of particles"))
+                .help("particles that shall only touch others need no peridynamic coefficients of their own"),
+        );
     }
 
     /// m = ρV for every particle of a peridynamic type.

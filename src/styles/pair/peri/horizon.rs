@@ -20,6 +20,30 @@ pub(super) fn warn(ratio: f64, unit: f64, span: Span, cx: &BuildCx) {
     cx.note(Diagnostic::warning(Code::HORIZON, span, text).help(format!("write {better} instead")));
 }
 
+/// Leaves a warning where a horizon is too short for bonds to make a solid, or so long that they cost more than they
+/// give: `ratio` in lattice spacings.
+pub(super) fn range(ratio: f64, span: Span, cx: &BuildCx) {
+    if (1.5..=8.0).contains(&ratio) {
+        return;
+    }
+    let text = match ratio {
+        r if r < 1.0 => format!("the horizon is {ratio:.3} lattice spacings: no bonds"),
+        r if r < 1.5 => {
+            format!(
+                "the horizon is {ratio:.3} lattice spacings: bonds to at most 18 neighbours make no isotropic solid"
+            )
+        }
+        _ => format!(
+            "the horizon is {ratio:.3} lattice spacings: each particle has some {:.0} bonds",
+            4.0 / 3.0 * std::f64::consts::PI * ratio.powi(3)
+        ),
+    };
+    cx.note(
+        Diagnostic::warning(Code::SUSPICIOUS, span, text)
+            .help("about 3 spacings is usual; 1.5 to 8 are sensible"),
+    );
+}
+
 /// How many sites of a simple cubic lattice lie at exactly this distance in spacings; `None` if none does.
 fn on_shell(ratio: f64) -> Option<usize> {
     let square = ratio * ratio;

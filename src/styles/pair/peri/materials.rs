@@ -199,6 +199,7 @@ fn stuff(law: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
             "horizon" => {
                 let span = args.here();
                 let ratio = args.positive("the horizon in lattice spacings")?;
+                super::horizon::range(ratio, span, cx);
                 super::horizon::warn(ratio, 1.0, span, cx);
                 horizon = Some(ratio);
             }

@@ -46,6 +46,8 @@ struct Solid {
     unloading: Option<LawKind>,
     /// Regions whose particles' bonds never break.
     lasting: Vec<Region>,
+    /// `peri_modify repulsion no`.
+    no_repulsion: bool,
 }
 
 /// Which constant of the lattice the micro-modulus makes right.
@@ -79,6 +81,7 @@ fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair
         calibrate: Calibrate::No,
         unloading: None,
         lasting: vec![],
+        no_repulsion: false,
     }))
 }
 
@@ -119,17 +122,8 @@ fn numbers(kind: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
         c = short_range(moduli.bulk, horizon);
     }
     let lc = cx.world.lattice.spacing[0];
-    if horizon < lc && lc > 0.0 {
-        cx.note(
-            Diagnostic::warning(
-                Code::SUSPICIOUS,
-                span,
-                format!("the horizon {horizon} is shorter than the lattice spacing {lc}: no bonds"),
-            )
-            .help("a horizon of about 3 spacings is usual"),
-        );
-    }
     if !cx.world.lattice.basis.is_empty() && lc > 0.0 {
+        horizon::range(horizon / lc, span, cx);
         horizon::warn(horizon / lc, lc, span, cx);
     }
     Ok((PmbCoeff { c, horizon, s00, alpha }, moduli))
@@ -225,6 +219,7 @@ impl Solid {
             layout: if s.force_list { Layout::List } else { Layout::Auto },
             skip_rest: !s.no_skipping,
             portable: s.portable,
+            no_repulsion: self.no_repulsion,
         }
     }
 
@@ -368,6 +363,11 @@ impl Pair for Solid {
             Some((rho / (ftm2v * stiffest(i)?)).sqrt())
         };
         (1..=types).filter_map(step).reduce(f64::min)
+    }
+
+    fn unbreakable(&self) -> Option<u16> {
+        let endless = |i: &u16| self.table.get(*i, *i).is_some_and(|c| c.s00.is_infinite());
+        (1..=self.table.types() as u16).find(endless).filter(|_| !self.materials.is_empty())
     }
 
     fn true_forces(&self) -> Option<bool> {

@@ -6,7 +6,7 @@ use crate::lang::Args;
 use crate::styles::BuildCx;
 use crate::world::families::{ForceUnit, Influence, VolumeRule};
 
-const KNOWN: [&str; 5] = ["force", "volume", "influence", "calibrate", "nofail"];
+const KNOWN: [&str; 6] = ["force", "volume", "influence", "calibrate", "nofail", "repulsion"];
 
 /// Reads the words of a `peri_modify`.
 ///
@@ -61,6 +61,7 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
                     _ => Calibrate::No,
                 };
             }
+            "repulsion" => style.no_repulsion = !args.flag("repulsion")?,
             "nofail" => {
                 args.choice("what lasts", &["region"])?;
                 style.lasting.push(cx.region(args.expect("a region")?)?.clone());

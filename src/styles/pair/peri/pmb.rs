@@ -21,7 +21,7 @@ impl Style for PeriPmb {
                      pair_coeff i j c horizon s00 alpha\n\
                      pair_coeff i j material ID horizon H [form bulk|shear|young] [s00 value] [alpha value]\n\
                      pair_coeff i j mix arithmetic|harmonic|geometric\n\
-                     peri_modify [force density|newton] [volume lammps|none|full] [calibrate no|bulk|young] [nofail region ID]…",
+                     peri_modify [force density|newton] [volume lammps|none|full] [calibrate no|bulk|young] [nofail region ID]… [repulsion yes|no]",
             summary: "Bond-based peridynamics: elastic bonds that break when stretched too far.",
             text: "Every particle has bonds to all others within the `horizon` δ at the first run. A bond of reference \
                 length |ξ| and stretch s = (r − |ξ|)/|ξ| pulls with the force density `c` s w V_j; w is the partial \
@@ -38,7 +38,8 @@ impl Style for PeriPmb {
                 material (no ranges), takes means of their data. Materials and plain numbers do not go together in one body.\n\n\
                 `peri_modify volume`: `lammps` weighs bonds within half a spacing of the horizon by \
                 (δ + dx/2 − |ξ|)/dx, `none` not at all, `full` extends the family to δ + dx/2, where that weight \
-                vanishes. On a lattice the sum over bonds is not the integral that c stands for: with LAMMPS' weights and a                 horizon of 3.015 spacings the bulk modulus comes out at 0.89 of K, Young's modulus along an axis at 0.82 of E.                 `calibrate` divides c by that ratio, reckoned for a simple cubic lattice of the present spacing: `bulk`                 makes K right, `young` E (for ν = 1/4); s00 stays. `nofail region` makes bonds last whose one end lies in the                 region at the start.",
+                vanishes. On a lattice the sum over bonds is not the integral that c stands for: with LAMMPS' weights and a                 horizon of 3.015 spacings the bulk modulus comes out at 0.89 of K, Young's modulus along an axis at 0.82 of E.                 `calibrate` divides c by that ratio, reckoned for a simple cubic lattice of the present spacing: `bulk`                 makes K right, `young` E (for ν = 1/4); s00 stays. `nofail region` makes bonds last whose one end lies in the                 region at the start. `repulsion no` leaves the short-range force out, where contact laws \
+                   keep particles apart (`group … surface`).",
             example: "pair_style peri/pmb\npair_coeff * * 1.6863e22 0.0015001 5.0e-4 0.25",
         }
     }

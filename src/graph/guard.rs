@@ -1,0 +1,40 @@
+//! The guard over a run's energy: put into the plan with the steps it must look at.
+
+use super::seal::Sealer;
+use crate::diag::{Code, Diagnostic, Result};
+use crate::plan::{Energy, Guard, Stage, When};
+use crate::styles::{SealCx, ledger};
+
+/// Puts the guard of `fix dt/guard` into the plan. It looks before anything is put out, so that nothing bad is.
+///
+/// # Errors
+/// Two guards.
+pub fn seal(s: &mut Sealer) -> Result<()> {
+    let mut all = s.graph().fixes.iter().filter_map(|f| Some((f, f.fix.guard()?)));
+    let Some((node, rule)) = all.next() else { return Ok(()) };
+    if let Some((other, _)) = all.next() {
+        return Err(Diagnostic::error(
+            Code::CONFLICT,
+            other.span,
+            "one fix dt/guard watches the whole scene",
+        )
+        .label(node.span, "the other one")
+        .help(format!("say `unfix {}` first", other.id))
+        .into());
+    }
+    let late = |stage: Stage| matches!(stage, Stage::EndOfStep | Stage::Output);
+    let outputs = s.plan.ops.iter().filter(|p| late(p.op.stage())).map(|p| p.when.clone());
+    let blocks = When::Every(rule.every).or(When::First).or(When::Last);
+    let when = outputs.fold(blocks, When::or);
+    s.ask_energy(&when);
+    s.ask_atom_energy(&when);
+    let mut probes = s.probes()?;
+    let log = s.log();
+    let name = format!("fix {} dt/guard", node.id);
+    let look = Box::new(move |w: &crate::world::World| {
+        let sheet = ledger::sheet(w, &mut probes)?;
+        Ok(Energy { residual: sheet.residual(), held: sheet.held(), turnover: sheet.turnover() })
+    });
+    s.plan.guard = Some(Guard { name, rule, when, look, say: Box::new(move |line| log.line(line)) });
+    Ok(())
+}

@@ -1,0 +1,69 @@
+//! The ledger's ops: forces of fixes are told apart as they act, and every step is entered.
+
+use super::node::FixNode;
+use super::seal::Sealer;
+use crate::diag::Result;
+use crate::plan::{Access, Op, Stage, When};
+use crate::styles::SealCx;
+use crate::styles::ledger::{self, Channel};
+use crate::styles::step_op::StepOp;
+
+/// Whether somebody keeps the ledger.
+pub fn wanted(s: &Sealer) -> bool {
+    let graph = s.graph();
+    graph.computes.iter().any(|c| c.style == "energy/ledger")
+        || graph.fixes.iter().any(|f| f.style == "dt/guard")
+}
+
+/// Before the fixes of a step.
+pub fn begin(s: &mut Sealer) {
+    let access = Access::new("f torque", "columns");
+    let op = StepOp::new("ledger begins", Stage::PostForce, access, |w, t| {
+        ledger::begin(w, t);
+        Ok(())
+    });
+    let span = s.span();
+    s.add(vec![op.boxed()], span);
+}
+
+/// After a fix, if it has changed forces.
+pub fn mark(s: &mut Sealer, f: &FixNode, ops: &[Stage]) {
+    if !ops.contains(&Stage::PostForce) {
+        return;
+    }
+    let channel = match f.style {
+        "gravity" => Channel::Gravity,
+        style if style.starts_with("wall/") => Channel::Walls,
+        _ => Channel::Imposed,
+    };
+    let access = Access::new("f torque", "columns");
+    let op = StepOp::new(format!("ledger of fix {}", f.id), Stage::PostForce, access, move |w, t| {
+        ledger::mark(w, t, channel);
+        Ok(())
+    });
+    s.add(vec![op.boxed()], f.span);
+}
+
+/// At the end of a step.
+///
+/// # Errors
+/// What is missing in the scene.
+pub fn end(s: &mut Sealer) -> Result<()> {
+    let equations = |f: &&FixNode| ["nve", "nve/sphere"].contains(&f.style);
+    let free = s.graph().fixes.iter().filter(equations).fold(0, |bits, f| bits | f.group.bit());
+    let mut probes = s.probes()?;
+    s.ask_energy(&When::First);
+    s.ask_atom_energy(&When::First);
+    let access = Access::new("x v omega radius mass type f torque contacts", "memory");
+    let op = StepOp::new("ledger", Stage::FinalIntegrate, access, move |w, t| {
+        ledger::account(w, t, &mut probes, free)
+    });
+    let span = s.span();
+    s.add(vec![op.in_setup(true).boxed()], span);
+    Ok(())
+}
+
+/// The stages of some ops.
+pub fn stages(ops: &[Box<dyn Op>]) -> Vec<Stage> {
+    ops.iter().map(|op| op.stage()).collect()
+}
