@@ -1,6 +1,7 @@
-//! Grains against closed forms and published test cases, as decks: impacts, restitution, rolling, cooling.
+//! Grains against closed forms and published test cases, as decks: impacts, restitution, rolling, cooling, budgets.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
+mod budgets;
 mod cooling;
 mod impacts;
 mod oblique;

@@ -32,6 +32,14 @@ impl Scene {
         self.say(&format!("run {steps} post no"));
     }
 
+    /// The value of one formula in `$(…)`.
+    pub fn number(&mut self, formula: &str) -> f64 {
+        self.say(&format!("print \"value {formula}\""));
+        let said = self.screen.text();
+        let line = said.lines().rev().find_map(|l| l.strip_prefix("value "));
+        line.and_then(|n| n.trim().parse().ok()).unwrap_or_else(|| panic!("{said}"))
+    }
+
     /// The particles.
     pub fn world(&self) -> &World {
         &self.session.world
