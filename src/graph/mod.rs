@@ -18,6 +18,7 @@ mod row;
 mod said;
 pub mod seal;
 pub mod show;
+pub mod spatial;
 pub mod thermo;
 mod values;
 pub mod virials;

@@ -1,5 +1,6 @@
 //! Ops every plan begins with: reneighbouring at LAMMPS' times, and clearing forces.
 
+use super::spatial;
 use crate::diag::{Code, Diagnostic, Result};
 use crate::par;
 use crate::plan::{Access, Op, Phase, Stage, Tick};
@@ -10,6 +11,8 @@ use crate::world::{Domain, Particles, World};
 pub struct Reneighbor {
     /// What happens to lost particles.
     pub lost: Lost,
+    /// Whether grains are put in the order of space.
+    pub sort: bool,
 }
 
 /// What happens to particles beyond a fixed face (`thermo_modify lost`).
@@ -39,11 +42,11 @@ impl Op for Reneighbor {
             w.rebuild.builds = 0;
             w.rebuild.dangerous = 0;
             w.rebuild.due = false;
-            return rebuild(w, t, self.lost);
+            return rebuild(w, t, self);
         }
         if std::mem::take(&mut w.rebuild.due) {
             w.rebuild.builds += 1;
-            return rebuild(w, t, self.lost);
+            return rebuild(w, t, self);
         }
         let s = &w.settings.neighbor;
         let ago = t.step - w.rebuild.step;
@@ -60,7 +63,7 @@ impl Op for Reneighbor {
             w.rebuild.dangerous += u64::from(first_chance && s.delay.max(s.every) > 1);
         }
         w.rebuild.builds += 1;
-        rebuild(w, t, self.lost)
+        rebuild(w, t, self)
     }
 }
 
@@ -116,7 +119,7 @@ fn not_finite(w: &World, i: usize, t: &Tick) -> crate::diag::Diagnostics {
     .into()
 }
 
-fn rebuild(w: &mut World, t: &Tick, policy: Lost) -> Result<()> {
+fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor) -> Result<()> {
     let n = w.n();
     let Some(domain) = &mut w.domain else { return Ok(()) };
     let p = &mut w.particles;
@@ -128,12 +131,15 @@ fn rebuild(w: &mut World, t: &Tick, policy: Lost) -> Result<()> {
     domain.shrink(&p.x);
     let domain = &*domain;
     let (kept, lost): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| domain.keeps(&p.x[i]));
-    if !lost.is_empty() && policy == Lost::Error {
+    if !lost.is_empty() && how.lost == Lost::Error {
         return Err(too_far(w, &lost, t));
     }
     if !lost.is_empty() {
         w.rebuild.lost += lost.len() as u64;
         w.gather(&kept);
+    }
+    if how.sort {
+        spatial::line_up(w);
     }
     w.rebuild.generation += 1;
     w.rebuild.step = t.step;

@@ -49,6 +49,7 @@ impl Session {
         });
         self.world.clock.running = false;
         let finished = plan.finish(&mut self.world);
+        self.world.fall_back();
         let outcome = outcome.map_err(|e| e.at(cmd.span))?;
         finished?;
         self.ran = true;

@@ -126,6 +126,7 @@ impl Session {
     /// Makes a stored scene the present one.
     fn enter(&mut self, saved: Saved, span: Span) -> Result<()> {
         let Saved { mut world, ran, standing, pair, declared } = saved;
+        world.fall_back();
         let resume = resume(&world, declared);
         let old = &mut self.world;
         let (settings, now) = (&mut world.settings, &old.settings);

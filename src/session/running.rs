@@ -6,6 +6,7 @@ use crate::graph::build::{Context, once_dump};
 use crate::graph::env::DeckEnv;
 use crate::graph::ledger;
 use crate::graph::ops::{ClearForces, Reneighbor};
+use crate::graph::spatial;
 use crate::graph::seal::Sealer;
 use crate::graph::{FixNode, Role};
 use crate::lang::{Args, Command, Script, Word};
@@ -141,7 +142,7 @@ impl Session {
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
         s.log = self.options.log.clone();
         s.at(span);
-        s.add(vec![Box::new(Reneighbor { lost: self.graph.thermo.lost }), Box::new(ClearForces)], span);
+        s.add(vec![Box::new(Reneighbor { lost: self.graph.thermo.lost, sort: !minimizing }), Box::new(ClearForces)], span);
         crate::graph::regions::seal(&mut s)?;
         if let Some(node) = &self.graph.pair {
             s.at(node.span);
@@ -238,6 +239,7 @@ impl Session {
         }
         self.world.clock.running = true;
         let two = self.staggered(span)?;
+        spatial::line_up_again(&mut self.world);
         let outcome = self.steps(&mut plan, unchanged, two.as_ref());
         self.world.clock.running = false;
         for (name, value) in std::mem::take(&mut self.world.controls) {
@@ -246,6 +248,7 @@ impl Session {
         // What is put back at the end of a run changes the scene again.
         self.world.parts.changed &= outcome.is_err();
         let finished = plan.finish(&mut self.world);
+        self.world.fall_back();
         self.notes.append(std::mem::take(&mut self.world.parts.notes));
         let outcome = outcome.map_err(|e| e.at(span))?;
         finished?;

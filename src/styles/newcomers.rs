@@ -27,6 +27,9 @@ pub fn admit(w: &mut World, group: GroupId, tag: u32, list: &[Newcomer]) -> Resu
     if u32::try_from(list.len()).ok().and_then(|n| tag.checked_add(n)).is_none() {
         return fail(Code::TOO_LARGE, None, "more particles than there are ids");
     }
+    if !list.is_empty() {
+        w.fall_back();
+    }
     for (tag, new) in (tag..).zip(list) {
         let p = &mut w.particles;
         p.push(tag, new.kind, new.x);

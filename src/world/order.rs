@@ -1,4 +1,4 @@
-//! Which particle stands where: deletion and renumbering.
+//! Which particle stands where: the order of space during runs, deletion and renumbering.
 
 use super::World;
 use std::collections::BTreeMap;
@@ -11,6 +11,39 @@ impl World {
         if renumber {
             self.renumber();
         }
+    }
+
+    /// Lets particle `old[k]` stand at each new index `k`, for as long as [`World::fall_back`] is not called: a run of
+    /// grains keeps neighbours near each other in memory. Nobody comes or goes.
+    pub fn line_up(&mut self, old: &[usize]) {
+        if old.iter().enumerate().all(|(new, k)| new == *k) {
+            return;
+        }
+        if self.particles.rank.is_empty() {
+            self.particles.rank = (0..self.n() as u32).collect();
+        }
+        self.particles.gather(old);
+        self.columns.gather(old);
+        self.slots.gather(old, old.len());
+        self.tally.gather(old);
+        let held = &mut self.rebuild.held;
+        if held.len() == old.len() {
+            *held = old.iter().map(|&k| held[k]).collect();
+        }
+        // Lists made of indices are void.
+        self.rebuild.generation += 1;
+    }
+
+    /// Puts the particles back into the order in which they were created.
+    pub fn fall_back(&mut self) {
+        let rank = &self.particles.rank;
+        if rank.is_empty() {
+            return;
+        }
+        let mut order: Vec<usize> = (0..rank.len()).collect();
+        order.sort_unstable_by_key(|&k| rank[k]);
+        self.line_up(&order);
+        self.particles.rank = Vec::new();
     }
 
     /// Gives every particle its place in storage + 1 as id; contacts and bonds follow.
@@ -62,5 +95,26 @@ mod tests {
         let marked = [false, true, false, true, false, true];
         // By hand: 5 goes (swapped into 1, itself marked), then 4 fills hole 1, then 3 goes.
         assert_eq!(left_after(&marked), [0, 4, 2]);
+    }
+
+    #[test]
+    fn who_lined_up_falls_back_with_all_that_is_his() {
+        let mut w = World::default();
+        (1..=4).for_each(|tag| w.particles.push(10 * tag, 1, [f64::from(tag); 3]));
+        w.rebuild.held = w.particles.x.clone();
+        *w.columns.scalar("own", 4) = vec![1.0, 2.0, 3.0, 4.0];
+        let before = format!("{:?} {:?} {:?}", w.particles, w.columns, w.rebuild.held);
+        w.line_up(&[2, 0, 3, 1]);
+        assert_eq!(w.particles.tag, [30, 10, 40, 20]);
+        w.line_up(&[1, 0, 2, 3]);
+        assert_eq!(w.particles.tag, [10, 30, 40, 20]);
+        assert_eq!(w.columns.get_scalar("own").unwrap(), [1.0, 3.0, 4.0, 2.0]);
+        // One is lost on the way: the others stand as they would without.
+        let mut less = w.clone();
+        less.gather(&[0, 2, 3]);
+        less.fall_back();
+        assert_eq!(less.particles.tag, [10, 20, 40]);
+        w.fall_back();
+        assert_eq!(format!("{:?} {:?} {:?}", w.particles, w.columns, w.rebuild.held), before);
     }
 }

@@ -127,6 +127,10 @@ pub struct Particles {
     pub density: Vec<f64>,
     /// Molecule ID, 0 for none (styles with bonds, `fix property/atom mol`).
     pub molecule: Vec<u32>,
+    /// The place in the order of creation, while particles stand in the order of space ([`World::line_up`]); else empty.
+    ///
+    /// [`World::line_up`]: super::World::line_up
+    pub rank: Vec<u32>,
 }
 
 impl Particles {
@@ -244,6 +248,7 @@ impl Particles {
         pick(&mut self.x0, old);
         pick(&mut self.density, old);
         pick(&mut self.molecule, old);
+        pick(&mut self.rank, old);
     }
 
     /// The index of the particle with this tag.

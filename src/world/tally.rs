@@ -73,9 +73,25 @@ impl Tally {
         }
     }
 
+    /// Keeps what belongs to particle `old[k]` at each new index `k`.
+    pub fn gather(&mut self, old: &[usize]) {
+        for list in [&mut self.atom, &mut self.bond_atom] {
+            pick(list, old);
+        }
+        for list in [&mut self.atom_virial, &mut self.atom_bonds, &mut self.atom_fixes] {
+            pick(list, old);
+        }
+    }
+
     /// Adds the energy of a pair style.
     pub fn add_pair(&mut self, style: &str, energy: f64) {
         self.pair += energy;
         *self.styles.entry(style.to_string()).or_default() += energy;
+    }
+}
+
+fn pick<T: Copy>(list: &mut Vec<T>, old: &[usize]) {
+    if list.len() == old.len() {
+        *list = old.iter().map(|&k| list[k]).collect();
     }
 }

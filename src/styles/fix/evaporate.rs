@@ -69,6 +69,8 @@ impl Declared {
 
     /// Deletes this step's share.
     fn act(&self, w: &mut World, chosen: &Chosen, account: &mut Account) {
+        // Who is drawn depends on the order of creation.
+        w.fall_back();
         let p = &w.particles;
         let here = chosen.now(w);
         let mut list: Vec<usize> = (0..p.len()).filter(|&i| here.has(p.mask[i], p.x[i])).collect();
