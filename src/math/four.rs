@@ -65,6 +65,49 @@ macro_rules! operators {
     )*};
 }
 
+pub(super) use operators;
+
+/// Values side by side, taken from rows of four numbers and given back as such rows.
+pub trait Lanes<const N: usize>: Real {
+    /// Four numbers of a row.
+    type Row: Four;
+    /// Element `l` of row `k` becomes element `k` of lanes `l`.
+    fn of_rows(rows: [Self::Row; N]) -> [Self; 4];
+    /// The way back.
+    fn to_rows(lanes: [Self; 4]) -> [Self::Row; N];
+    /// The same number in every lane.
+    ///
+    /// # Safety
+    /// The processor must have what the form needs.
+    unsafe fn all(a: f64) -> Self;
+    /// The numbers of the lanes.
+    fn numbers(self) -> [f64; N];
+}
+
+impl<F: Four> Lanes<4> for F {
+    type Row = F;
+    #[inline(always)]
+    fn of_rows(rows: [F; 4]) -> [F; 4] {
+        F::transpose(rows)
+    }
+    #[inline(always)]
+    fn to_rows(lanes: [F; 4]) -> [F; 4] {
+        F::transpose(lanes)
+    }
+    #[inline(always)]
+    unsafe fn all(a: f64) -> F {
+        // SAFETY: passed on.
+        unsafe { F::splat(a) }
+    }
+    #[inline(always)]
+    fn numbers(self) -> [f64; 4] {
+        let mut out = [0.0; 4];
+        // SAFETY: an array of four numbers.
+        unsafe { self.store(out.as_mut_ptr()) };
+        out
+    }
+}
+
 operators! { Plain, a b:
     Add add a.zip(b, |a, b| a + b);
     Sub sub a.zip(b, |a, b| a - b);
@@ -166,6 +209,8 @@ pub fn has_avx2() -> bool {
 }
 
 #[cfg(target_arch = "x86_64")]
+pub use super::eight::{Avx512, has_avx512};
+#[cfg(target_arch = "x86_64")]
 pub use x86::Avx2;
 
 #[cfg(target_arch = "x86_64")]
@@ -178,7 +223,7 @@ mod x86 {
     /// Four lanes in one AVX register. There is a value of this type only where the processor has AVX2: its
     /// constructors are unsafe and promise that.
     #[derive(Clone, Copy, Debug)]
-    pub struct Avx2(__m256d);
+    pub struct Avx2(pub(in crate::math) __m256d);
 
     // SAFETY (all blocks): a value exists, so the processor has AVX2; or the caller promises that.
 

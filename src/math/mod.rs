@@ -2,6 +2,8 @@
 
 pub mod body;
 pub mod cformat;
+#[cfg(target_arch = "x86_64")]
+mod eight;
 pub mod forest;
 pub mod four;
 pub mod real;

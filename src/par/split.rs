@@ -143,6 +143,7 @@ impl<'a, T> Shared<'a, T> {
     }
 
     /// The start of the column, for kernels that check bounds once for many accesses.
+    #[inline(always)]
     pub fn as_ptr(&self) -> *mut T {
         self.start
     }

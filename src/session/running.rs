@@ -6,8 +6,8 @@ use crate::graph::build::{Context, once_dump};
 use crate::graph::env::DeckEnv;
 use crate::graph::ledger;
 use crate::graph::ops::{ClearForces, Reneighbor};
-use crate::graph::spatial;
 use crate::graph::seal::Sealer;
+use crate::graph::spatial;
 use crate::graph::{FixNode, Role};
 use crate::lang::{Args, Command, Script, Word};
 use crate::out::thermo::{Finish, Section};
@@ -142,7 +142,13 @@ impl Session {
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
         s.log = self.options.log.clone();
         s.at(span);
-        s.add(vec![Box::new(Reneighbor { lost: self.graph.thermo.lost, sort: !minimizing }), Box::new(ClearForces)], span);
+        s.add(
+            vec![
+                Box::new(Reneighbor { lost: self.graph.thermo.lost, sort: !minimizing }),
+                Box::new(ClearForces),
+            ],
+            span,
+        );
         crate::graph::regions::seal(&mut s)?;
         if let Some(node) = &self.graph.pair {
             s.at(node.span);

@@ -10,7 +10,7 @@ impl<L: ContactLaw> Fast<L> {
     pub(super) fn find_deep(&self) -> Option<([u32; 2], f64)> {
         let of = |i: u32, w: u32| {
             let (i, j) = (i as usize, place(w) as usize);
-            let (a, b, s) = (self.position[i], self.position[j], self.shifts[(w >> HERE_BITS) as usize]);
+            let (a, b, s) = (self.position[i].0, self.position[j].0, self.shifts[(w >> HERE_BITS) as usize]);
             let d = [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])];
             let (sum, least) = (a[3] + b[3], a[3].min(b[3]));
             let deep = sum - DEEP * least;

@@ -47,6 +47,8 @@ pub struct Slab {
     pub short: Short,
     /// Σ d ⊗ F of the last evaluation, where it was asked for.
     pub virial: [f64; 6],
+    /// Whether some grains overlapped too far in the last evaluation.
+    pub deep: bool,
 }
 
 impl<L: ContactLaw> Fast<L> {

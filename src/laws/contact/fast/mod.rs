@@ -25,7 +25,7 @@ pub const MOST_MEMORY: usize = 7;
 /// How many grains at most: a place and an image share 32 bits.
 pub const MOST_GRAINS: usize = (1 << sweep::PLACE_BITS) - 1;
 /// The second skin in units of the first.
-const THIN: f64 = 0.1;
+const THIN: f64 = 0.2;
 /// No law.
 const NONE: u8 = u8::MAX;
 
@@ -75,6 +75,16 @@ impl<L: ContactLaw> Laws<L> {
     }
 }
 
+/// A record that lies within a line of memory.
+#[repr(C, align(32))]
+#[derive(Clone, Copy, Debug, Default)]
+struct Four([f64; 4]);
+
+/// A record that fills a line of memory.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug, Default)]
+struct Eight([f64; 8]);
+
 /// The box as lists see it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
@@ -97,11 +107,11 @@ pub struct Fast<L> {
     /// The place of each grain.
     place: Vec<u32>,
     /// By place: position and radius. One more, all zeros, fills lists up.
-    position: Vec<[f64; 4]>,
+    position: Vec<Four>,
     /// By place: velocity and mass (negative where frozen), angular velocity and radius.
-    motion: Vec<[f64; 8]>,
+    motion: Vec<Eight>,
     /// By place: force and 0, torque and 0.
-    force: Vec<[f64; 8]>,
+    force: Vec<Eight>,
     lists: Vec<Slab>,
     /// How far a place is shifted in each image, and 0.
     shifts: [[f64; 4]; 32],
@@ -115,7 +125,7 @@ pub struct Fast<L> {
     width: usize,
     /// What contacts remembered before the lists were made anew.
     book: Option<Book>,
-    /// The pair of smallest ids that overlapped too far when short lists were made anew, and by which part of its radius.
+    /// Of the pairs that were the first to overlap too far, the one of smallest ids, and by which part of its radius.
     pub deep: Option<([u32; 2], f64)>,
     /// Room for new short lists.
     spare: Vec<Short>,
@@ -185,11 +195,11 @@ impl<L: ContactLaw> Fast<L> {
             self.place[i as usize] = k as u32;
         }
         self.position.clear();
-        self.position.resize(n + 1, [0.0; 4]);
-        self.motion.resize(n + 1, [0.0; 8]);
-        self.motion[n] = [0.0; 8];
+        self.position.resize(n + 1, Four::default());
+        self.motion.resize(n + 1, Eight::default());
+        self.motion[n] = Eight::default();
         self.force.clear();
-        self.force.resize(n + 1, [0.0; 8]);
+        self.force.resize(n + 1, Eight::default());
         for (image, shift) in self.shifts.iter_mut().take(27).enumerate() {
             let s = shift_of(image as u32);
             (0..3).for_each(|d| shift[d] = s[d] * frame.period[d]);
@@ -212,19 +222,20 @@ impl<L: ContactLaw> Fast<L> {
         let motion = par::Shared::new(&mut self.motion);
         let copy = |range: std::ops::Range<usize>| {
             let (mut far, mut grown) = (0.0_f64, 0.0_f64);
-            for i in range {
-                let k = place[i] as usize;
-                // SAFETY: every grain has a place of its own.
-                let (p, m) = unsafe { (&mut position.get(k..k + 1)[0], &mut motion.get(k..k + 1)[0]) };
-                let new = record(grains, i);
-                let d = [new[0] - p[0], new[1] - p[1], new[2] - p[2]];
+            let of = grains.x[range.clone()].iter().zip(&grains.radius[range.clone()]);
+            let moving = grains.v[range.clone()].iter().zip(&grains.omega[range.clone()]);
+            let rest = grains.mass[range.clone()].iter().zip(&place[range.clone()]);
+            for (i, (((x, r), (v, w)), (m, k))) in range.zip(of.zip(moving).zip(rest)) {
+                let k = *k as usize;
+                // SAFETY: every grain has a place of its own, and records are as many as places.
+                let (p, motion) =
+                    unsafe { (&mut (*position.as_ptr().add(k)).0, &mut (*motion.as_ptr().add(k)).0) };
+                let d = [x[0] - p[0], x[1] - p[1], x[2] - p[2]];
                 far = far.max(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-                grown = grown.max((new[3] - p[3]).abs());
-                *p = new;
-                let (v, w) = (grains.v[i], grains.omega[i]);
-                let held = grains.frozen.get(i) == Some(&true);
-                let mass = if held { -grains.mass[i] } else { grains.mass[i] };
-                *m = [v[0], v[1], v[2], mass, w[0], w[1], w[2], new[3]];
+                grown = grown.max((r - p[3]).abs());
+                *p = [x[0], x[1], x[2], *r];
+                let m = if grains.frozen.get(i) == Some(&true) { -m } else { *m };
+                *motion = [v[0], v[1], v[2], m, w[0], w[1], w[2], *r];
             }
             [far, grown]
         };
@@ -241,9 +252,11 @@ impl<L: ContactLaw> Fast<L> {
         if 2.0 * self.moved >= self.thin {
             self.make_short();
             self.moved = 0.0;
-            self.deep = self.deep.or_else(|| self.find_deep());
         }
         self.sweep(step, store, virial, !grains.frozen.is_empty());
+        if self.deep.is_none() && self.lists.iter().any(|l| l.deep) {
+            self.deep = self.find_deep();
+        }
         self.now += if store { 1.0 } else { 0.0 };
         let mut total = [0.0; 6];
         for slab in self.lists.iter().filter(|_| virial) {
@@ -257,8 +270,8 @@ impl<L: ContactLaw> Fast<L> {
         let force = par::Shared::new(&mut self.force);
         par::each((f, torque, &self.place[..]), |_, (f, torque, place)| {
             for ((f, torque), &k) in f.iter_mut().zip(torque).zip(place) {
-                // SAFETY: every grain has a place of its own.
-                let own = unsafe { &mut force.get(k as usize..k as usize + 1)[0] };
+                // SAFETY: every grain has a place of its own, and records are as many as places.
+                let own = unsafe { &mut (*force.as_ptr().add(k as usize)).0 };
                 for d in 0..3 {
                     f[d] += own[d];
                     torque[d] += own[4 + d];

@@ -1,9 +1,10 @@
 //! The inner loops: distances four at a time, contacts four at a time, forces into the records.
 
 use super::lists::{Short, Slab};
-use super::{Fast, Laws, MOST_MEMORY, NONE, has_avx2};
+use super::{Eight, Fast, Four as Place, Laws, MOST_MEMORY, NONE, has_avx2};
+use crate::laws::contact::driver::DEEP;
 use crate::laws::contact::{Advance, ContactLaw, Geometry, Loop, Motion, Wrench};
-use crate::math::four::{Four, Plain};
+use crate::math::four::{Four, Lanes, Plain};
 use crate::math::real::Real;
 use crate::math::vec3::Vec3;
 use crate::par;
@@ -20,20 +21,67 @@ const ROOM: usize = 4 * BLOCK;
 /// How many hits ahead memory is asked for.
 const AHEAD: usize = 12;
 
+/// By bits of a mask: the lanes that are set, in order.
+const LANES: [[u32; 4]; 16] = lanes();
+
+/// By bits of a mask, four bits each: how many lanes are set.
+const COUNTS: u64 = 0x4332_3221_3221_2110;
+
+const fn lanes() -> [[u32; 4]; 16] {
+    let (mut table, mut bits) = ([[0; 4]; 16], 0);
+    while bits < 16 {
+        let (mut lane, mut count) = (0, 0);
+        while lane < 4 {
+            if bits >> lane & 1 == 1 {
+                table[bits][count] = lane as u32;
+                count += 1;
+            }
+            lane += 1;
+        }
+        bits += 1;
+    }
+    table
+}
+
+/// Most contacts evaluated at a time.
+const MOST: usize = 8;
+
 /// The place in a list entry.
 #[inline(always)]
 pub fn place(w: u32) -> u32 {
     w & ((1 << PLACE_BITS) - 1)
 }
 
+/// How many contacts are evaluated at a time; all have the same bits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Form {
+    /// Eight, with AVX-512.
+    Eight,
+    /// Four, with AVX2.
+    Four,
+    /// Four, on any processor.
+    Plain,
+}
+
+impl Form {
+    /// The widest one of this processor.
+    fn here() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if crate::math::four::has_avx512() {
+            return Self::Eight;
+        }
+        if has_avx2() { Self::Four } else { Self::Plain }
+    }
+}
+
 /// What the loops read and where they write.
 struct Cx<'a, L> {
     laws: &'a Laws<L>,
-    position: &'a [[f64; 4]],
-    motion: &'a [[f64; 8]],
+    position: &'a [Place],
+    motion: &'a [Eight],
     kind: &'a [u16],
     shifts: &'a [[f64; 4]; 32],
-    force: par::Shared<'a, [f64; 8]>,
+    force: par::Shared<'a, Eight>,
     step: Advance,
     now: f64,
     store: bool,
@@ -45,7 +93,7 @@ struct Cx<'a, L> {
 impl<L: ContactLaw> Fast<L> {
     /// Adds up the forces of all contacts.
     pub(super) fn sweep(&mut self, step: Advance, store: bool, virial: bool, frozen: bool) {
-        let (width, avx2) = (self.width, has_avx2());
+        let (width, form) = (self.width, Form::here());
         let mut lists = std::mem::take(&mut self.lists);
         let slabs = par::Shared::new(&mut lists);
         let cx = Cx {
@@ -66,13 +114,17 @@ impl<L: ContactLaw> Fast<L> {
             // keeps apart; list entries are places of records; AVX2 only where there is AVX2.
             unsafe {
                 let slab = &mut slabs.get(k..k + 1)[0];
-                match (width, avx2) {
+                match (width, form) {
                     #[cfg(target_arch = "x86_64")]
-                    (4, true) => contacts_avx2::<L, 4>(&cx, slab),
+                    (4, Form::Eight) => contacts_avx512::<L, 4>(&cx, slab),
                     #[cfg(target_arch = "x86_64")]
-                    (_, true) => contacts_avx2::<L, 8>(&cx, slab),
-                    (4, _) => contacts::<Plain, L, 4>(&cx, slab),
-                    _ => contacts::<Plain, L, 8>(&cx, slab),
+                    (_, Form::Eight) => contacts_avx512::<L, 8>(&cx, slab),
+                    #[cfg(target_arch = "x86_64")]
+                    (4, Form::Four) => contacts_avx2::<L, 4>(&cx, slab),
+                    #[cfg(target_arch = "x86_64")]
+                    (_, Form::Four) => contacts_avx2::<L, 8>(&cx, slab),
+                    (4, _) => contacts::<4, Plain, L, 4>(&cx, slab),
+                    _ => contacts::<4, Plain, L, 8>(&cx, slab),
                 }
             }
         });
@@ -97,14 +149,14 @@ pub unsafe fn near<L: ContactLaw>(fast: &Fast<L>, slab: &Slab, thin: f64, hit: i
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-unsafe fn near_avx2(at: &[[f64; 4]], shifts: &[[f64; 4]; 32], slab: &Slab, thin: f64, hit: impl FnMut(u32)) {
+unsafe fn near_avx2(at: &[Place], shifts: &[[f64; 4]; 32], slab: &Slab, thin: f64, hit: impl FnMut(u32)) {
     // SAFETY: passed on.
     unsafe { near_in::<crate::math::four::Avx2>(at, shifts, slab, thin, hit) }
 }
 
 #[inline(always)]
 unsafe fn near_in<F: Four>(
-    at: &[[f64; 4]],
+    at: &[Place],
     shifts: &[[f64; 4]; 32],
     slab: &Slab,
     thin: f64,
@@ -125,7 +177,7 @@ unsafe fn near_in<F: Four>(
 /// Which of four pairs have surfaces nearer than `extra`, as bits.
 #[inline(always)]
 unsafe fn closer<F: Four>(
-    at: &[[f64; 4]],
+    at: &[Place],
     shifts: &[[f64; 4]; 32],
     i: *const u32,
     w: *const u32,
@@ -148,7 +200,7 @@ unsafe fn closer<F: Four>(
 
 /// x_i − x_j and, by the sign of the last lane, R_i + R_j.
 #[inline(always)]
-unsafe fn apart<F: Four>(at: &[[f64; 4]], shifts: &[[f64; 4]; 32], i: u32, w: u32, sign: F) -> F {
+unsafe fn apart<F: Four>(at: &[Place], shifts: &[[f64; 4]; 32], i: u32, w: u32, sign: F) -> F {
     // SAFETY: passed on.
     unsafe {
         let a = F::load(at.as_ptr().add(i as usize).cast());
@@ -162,27 +214,40 @@ unsafe fn apart<F: Four>(at: &[[f64; 4]], shifts: &[[f64; 4]; 32], i: u32, w: u3
 #[target_feature(enable = "avx2")]
 unsafe fn contacts_avx2<L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut Slab) {
     // SAFETY: passed on.
-    unsafe { contacts::<crate::math::four::Avx2, L, W>(cx, slab) }
+    unsafe { contacts::<4, crate::math::four::Avx2, L, W>(cx, slab) }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
+unsafe fn contacts_avx512<L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut Slab) {
+    // SAFETY: passed on.
+    unsafe { contacts::<8, crate::math::four::Avx512, L, W>(cx, slab) }
 }
 
 /// All contacts of a slab.
 #[inline(always)]
-unsafe fn contacts<F: Four, L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut Slab) {
-    slab.virial = [0.0; 6];
-    let mut hits = [0; ROOM + AHEAD + 4];
+unsafe fn contacts<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut Slab) {
+    (slab.virial, slab.deep) = ([0.0; 6], false);
+    let mut hits = [0; ROOM + AHEAD + MOST];
     let (mut count, mut k, end) = (0, 0, slab.short.i.len());
     loop {
         while k < end && count + 4 <= ROOM {
             // SAFETY: lists are filled up to fours; entries are places of records.
             let bits = unsafe {
                 let short = &slab.short;
-                closer::<F>(cx.position, cx.shifts, short.i.as_ptr().add(k), short.w.as_ptr().add(k), 0.0)
+                closer::<V::Row>(
+                    cx.position,
+                    cx.shifts,
+                    short.i.as_ptr().add(k),
+                    short.w.as_ptr().add(k),
+                    0.0,
+                )
             };
             // Writes past `count` do no harm: the next ones overwrite them.
-            for lane in 0..4 {
-                hits[count] = (k + lane) as u32;
-                count += (bits >> lane & 1) as usize;
-            }
+            let [a, b, c, d] = LANES[bits as usize & 15];
+            let k32 = k as u32;
+            hits[count..count + 4].copy_from_slice(&[k32 + a, k32 + b, k32 + c, k32 + d]);
+            count += (COUNTS >> (4 * bits) & 15) as usize;
             k += 4;
         }
         let ready = if k == end { count } else { count - count % BLOCK };
@@ -190,7 +255,7 @@ unsafe fn contacts<F: Four, L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mu
         let mut rest = [0; BLOCK];
         rest[..count - ready].copy_from_slice(&hits[ready..count]);
         // SAFETY: passed on.
-        unsafe { evaluate::<F, L, W>(cx, slab, &mut hits, ready) };
+        unsafe { evaluate::<N, V, L, W>(cx, slab, &mut hits, ready) };
         if k == end {
             break;
         }
@@ -201,18 +266,18 @@ unsafe fn contacts<F: Four, L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mu
 
 /// The contacts of the first `ready` hits.
 #[inline(always)]
-unsafe fn evaluate<F: Four, L: ContactLaw, const W: usize>(
+unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     cx: &Cx<L>,
     slab: &mut Slab,
-    hits: &mut [u32; ROOM + AHEAD + 4],
+    hits: &mut [u32; ROOM + AHEAD + MOST],
     ready: usize,
 ) {
     // SAFETY: passed on.
     unsafe {
         if let [law] = &cx.laws.distinct[..] {
-            return of_law::<F, L, W>(cx, law, slab, hits, ready);
+            return of_law::<N, V, L, W>(cx, law, slab, hits, ready);
         }
-        let mut own = [0; BLOCK + AHEAD + 4];
+        let mut own = [0; BLOCK + AHEAD + MOST];
         for block in hits[..ready].chunks(BLOCK) {
             for (number, law) in cx.laws.distinct.iter().enumerate() {
                 let mut count = 0;
@@ -222,7 +287,7 @@ unsafe fn evaluate<F: Four, L: ContactLaw, const W: usize>(
                     own[count] = k;
                     count += usize::from(which != NONE && usize::from(which) == number);
                 }
-                of_law::<F, L, W>(cx, law, slab, &mut own, count);
+                of_law::<N, V, L, W>(cx, law, slab, &mut own, count);
             }
         }
     }
@@ -230,7 +295,7 @@ unsafe fn evaluate<F: Four, L: ContactLaw, const W: usize>(
 
 /// Contacts of one law: four at a time or, where the law wants that, one by one.
 #[inline(always)]
-unsafe fn of_law<F: Four, L: ContactLaw, const W: usize>(
+unsafe fn of_law<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     cx: &Cx<L>,
     law: &L,
     slab: &mut Slab,
@@ -242,7 +307,7 @@ unsafe fn of_law<F: Four, L: ContactLaw, const W: usize>(
     }
     // What stands behind the last hit is looked at and not used.
     let last = hits[count - 1];
-    hits[count..count + AHEAD + 4].fill(last);
+    hits[count..count + AHEAD + MOST].fill(last);
     // SAFETY: passed on.
     unsafe {
         if !law.in_lanes() {
@@ -251,78 +316,93 @@ unsafe fn of_law<F: Four, L: ContactLaw, const W: usize>(
             }
             return;
         }
-        let fours = Fours::<F, L, W> { cx, slab, hits, count, lanes: PhantomData };
-        if W == 4 && F::FAST { law.within(fours) } else { fours.run(law) }
+        let many = Many::<N, V, L, W> { cx, slab, hits, count, lanes: PhantomData };
+        if W == 4 && V::Row::FAST { law.within(many) } else { many.run(law) }
     }
 }
 
-/// The loop over contacts of one law, four at a time.
-struct Fours<'a, 'b, F, L, const W: usize> {
+/// The loop over contacts of one law, several at a time.
+struct Many<'a, 'b, const N: usize, V, L, const W: usize> {
     cx: &'a Cx<'b, L>,
     slab: &'a mut Slab,
     hits: &'a [u32],
     count: usize,
-    lanes: PhantomData<F>,
+    lanes: PhantomData<V>,
 }
 
-impl<F: Four, L: ContactLaw, const W: usize> Loop<L> for Fours<'_, '_, F, L, W> {
+impl<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize> Loop<L> for Many<'_, '_, N, V, L, W> {
     #[inline(always)]
     fn run(self, law: &L) {
         let (cx, hits, memory) = (self.cx, self.hits, law.memory());
-        for k in (0..self.count).step_by(4) {
+        for k in (0..self.count).step_by(N) {
             // SAFETY: hits are pairs of the list, and their entries places of records; `of_law` made it.
             unsafe {
-                for ahead in &hits[k + AHEAD..k + AHEAD + 4] {
+                for ahead in &hits[k + AHEAD..k + AHEAD + N] {
                     let j = place(*self.slab.short.w.as_ptr().add(*ahead as usize)) as usize;
-                    F::prefetch(cx.motion.as_ptr().add(j));
-                    F::prefetch(cx.force.as_ptr().add(j));
+                    V::Row::prefetch(cx.motion.as_ptr().add(j));
+                    V::Row::prefetch(cx.force.as_ptr().add(j));
+                    // Few of the near pairs touch: what contacts remember does not come by itself.
+                    V::Row::prefetch(self.slab.short.history.as_ptr().add(W * *ahead as usize));
                 }
-                let group = Group::<F>::load(&self.slab.short, hits.as_ptr().add(k));
-                group.act::<L, W>(cx, law, memory, self.slab, (self.count - k).min(4));
+                let group = Group::<N>::load(&self.slab.short, hits.as_ptr().add(k));
+                group.act::<V, L, W>(cx, law, memory, self.slab, (self.count - k).min(N));
             }
         }
     }
 }
 
-/// Four contacts: their pairs.
-struct Group<F> {
-    k: [usize; 4],
-    i: [usize; 4],
-    w: [u32; 4],
-    zero: F,
+/// Contacts that are evaluated together: their pairs. (Loops, no closures: those are not inlined into code for AVX.)
+struct Group<const N: usize> {
+    k: [usize; N],
+    i: [usize; N],
+    j: [usize; N],
+    w: [u32; N],
 }
 
-impl<F: Four> Group<F> {
+impl<const N: usize> Group<N> {
     #[inline(always)]
     unsafe fn load(short: &Short, hits: *const u32) -> Self {
+        let mut g = Self { k: [0; N], i: [0; N], j: [0; N], w: [0; N] };
+        for lane in 0..N {
+            // SAFETY: passed on.
+            unsafe {
+                let k = *hits.add(lane) as usize;
+                let w = *short.w.as_ptr().add(k);
+                (g.k[lane], g.w[lane], g.j[lane]) = (k, w, place(w) as usize);
+                g.i[lane] = *short.i.as_ptr().add(k) as usize;
+            }
+        }
+        g
+    }
+
+    /// Four numbers from `part` on of records of `width` numbers, turned into lanes.
+    #[inline(always)]
+    unsafe fn records<V: Lanes<N>>(p: *const f64, width: usize, part: usize, at: &[usize; N]) -> [V; 4] {
         // SAFETY: passed on.
         unsafe {
-            let k = [*hits, *hits.add(1), *hits.add(2), *hits.add(3)];
-            let k = [k[0] as usize, k[1] as usize, k[2] as usize, k[3] as usize];
-            let (pi, pw) = (short.i.as_ptr(), short.w.as_ptr());
-            let i = [*pi.add(k[0]), *pi.add(k[1]), *pi.add(k[2]), *pi.add(k[3])];
-            let w = [*pw.add(k[0]), *pw.add(k[1]), *pw.add(k[2]), *pw.add(k[3])];
-            let i = [i[0] as usize, i[1] as usize, i[2] as usize, i[3] as usize];
-            Self { k, i, w, zero: F::splat(0.0) }
+            let mut rows = [V::Row::splat(0.0); N];
+            for lane in 0..N {
+                rows[lane] = V::Row::load(p.add(width * at[lane] + part));
+            }
+            V::of_rows(rows)
         }
     }
 
-    /// Four rows of four numbers, turned into lanes.
     #[inline(always)]
-    unsafe fn rows(p: [*const f64; 4]) -> [F; 4] {
+    unsafe fn apart<V: Lanes<N>, L>(&self, cx: &Cx<L>) -> [V; 4] {
         // SAFETY: passed on.
-        unsafe { F::transpose([F::load(p[0]), F::load(p[1]), F::load(p[2]), F::load(p[3])]) }
+        unsafe {
+            let one = V::Row::splat(1.0);
+            let mut rows = [one; N];
+            for lane in 0..N {
+                rows[lane] = apart(cx.position, cx.shifts, self.i[lane] as u32, self.w[lane], one);
+            }
+            V::of_rows(rows)
+        }
     }
 
-    /// The first four numbers of four records of eight, turned into lanes.
     #[inline(always)]
-    unsafe fn records(p: *const f64, k: &[usize; 4]) -> [F; 4] {
-        // SAFETY: passed on.
-        unsafe { Self::rows([p.add(8 * k[0]), p.add(8 * k[1]), p.add(8 * k[2]), p.add(8 * k[3])]) }
-    }
-
-    #[inline(always)]
-    unsafe fn act<L: ContactLaw, const W: usize>(
+    unsafe fn act<V: Lanes<N>, L: ContactLaw, const W: usize>(
         &self,
         cx: &Cx<L>,
         law: &L,
@@ -332,98 +412,78 @@ impl<F: Four> Group<F> {
     ) {
         // SAFETY: passed on.
         unsafe {
-            let (i, w, k) = (self.i, self.w, self.k);
-            let j = [place(w[0]), place(w[1]), place(w[2]), place(w[3])];
-            let j = [j[0] as usize, j[1] as usize, j[2] as usize, j[3] as usize];
-            let one = F::splat(1.0);
-            let d = F::transpose([
-                apart(cx.position, cx.shifts, i[0] as u32, w[0], one),
-                apart(cx.position, cx.shifts, i[1] as u32, w[1], one),
-                apart(cx.position, cx.shifts, i[2] as u32, w[2], one),
-                apart(cx.position, cx.shifts, i[3] as u32, w[3], one),
-            ]);
+            let [dx, dy, dz, _] = self.apart::<V, L>(cx);
             let m: *const f64 = cx.motion.as_ptr().cast();
-            let ([a0, a1, a2, mi], [p0, p1, p2, ri]) = (Self::records(m, &i), Self::records(m.add(4), &i));
-            let ([b0, b1, b2, mj], [q0, q1, q2, rj]) = (Self::records(m, &j), Self::records(m.add(4), &j));
+            let [a0, a1, a2, mi] = Self::records::<V>(m, 8, 0, &self.i);
+            let [p0, p1, p2, ri] = Self::records::<V>(m, 8, 4, &self.i);
+            let [b0, b1, b2, mj] = Self::records::<V>(m, 8, 0, &self.j);
+            let [q0, q1, q2, rj] = Self::records::<V>(m, 8, 4, &self.j);
 
             let past = slab.short.history.as_mut_ptr();
-            let h = [past.add(W * k[0]), past.add(W * k[1]), past.add(W * k[2]), past.add(W * k[3])];
-            let mut history = [self.zero; MOST_MEMORY + 1];
-            for part in 0..W / 4 {
-                let p = [h[0].add(4 * part), h[1].add(4 * part), h[2].add(4 * part), h[3].add(4 * part)];
-                let lanes = Self::rows([p[0], p[1], p[2], p[3]]);
-                history[4 * part] = lanes[0];
-                history[4 * part + 1] = lanes[1];
-                history[4 * part + 2] = lanes[2];
-                history[4 * part + 3] = lanes[3];
+            let mut history = [V::all(0.0); MOST_MEMORY + 1];
+            for part in (0..W).step_by(4) {
+                let lanes = Self::records::<V>(past, W, part, &self.k);
+                [history[part], history[part + 1], history[part + 2], history[part + 3]] = lanes;
             }
-            let lasts = history[W - 1].above(F::splat(cx.now - 0.5));
+            let lasts = history[W - 1].above(V::all(cx.now - 0.5));
             for part in 0..W - 1 {
-                history[part] = F::choose(lasts, history[part], self.zero);
+                history[part] = V::choose(lasts, history[part], V::all(0.0));
             }
 
             let mass = if cx.frozen { beside_frozen(mi, mj) } else { reduced(mi, mj) };
-            let g = geometry([d[0], d[1], d[2]], [ri, rj], mass);
+            let g = geometry([dx, dy, dz], [ri, rj], mass);
             let own = Motion { velocity: [a0, a1, a2], spin: [p0, p1, p2] };
             let other = Motion { velocity: [b0, b1, b2], spin: [q0, q1, q2] };
             let wrench = law.contact(&g, &own, &other, &mut history[..memory], cx.step);
+            slab.deep |= V::any(too_deep(&g));
 
             if cx.store {
-                history[W - 1] = F::splat(cx.now + 1.0);
-                for part in 0..W / 4 {
-                    let rows = F::transpose([
-                        history[4 * part],
-                        history[4 * part + 1],
-                        history[4 * part + 2],
-                        history[4 * part + 3],
-                    ]);
+                history[W - 1] = V::all(cx.now + 1.0);
+                for part in (0..W).step_by(4) {
+                    let rows =
+                        V::to_rows([history[part], history[part + 1], history[part + 2], history[part + 3]]);
                     // Lanes without a contact repeat the last one, in whose place they would write the same.
-                    for lane in 0..4 {
-                        rows[lane].store(h[lane].add(4 * part));
+                    for lane in 0..N {
+                        rows[lane].store(past.add(W * self.k[lane] + part));
                     }
                 }
             }
-            self.add(cx, &j, &wrench, count);
+            self.add(cx, &wrench, count);
             if cx.virial {
-                self.add_virial(&[d[0], d[1], d[2]], &wrench.force, count, &mut slab.virial);
+                add_virial([dx, dy, dz], wrench.force, count, &mut slab.virial);
             }
         }
-    }
-
-    /// Lanes of vectors, turned into rows. (No closure: those are not inlined into code for AVX2.)
-    #[inline(always)]
-    fn of(&self, v: &Vec3<F>) -> [F; 4] {
-        F::transpose([v[0], v[1], v[2], self.zero])
     }
 
     /// Forces and torques into the records, contact by contact.
     #[inline(always)]
-    unsafe fn add<L>(&self, cx: &Cx<L>, j: &[usize; 4], w: &Wrench<F>, count: usize) {
+    unsafe fn add<V: Lanes<N>, L>(&self, cx: &Cx<L>, w: &Wrench<V>, count: usize) {
         // SAFETY: passed on.
         unsafe {
-            let (force, ti, tj) = (self.of(&w.force), self.of(&w.torque_i), self.of(&w.torque_j));
+            let zero = V::all(0.0);
+            let ([fx, fy, fz], [ax, ay, az], [bx, by, bz]) = (w.force, w.torque_i, w.torque_j);
+            let force = V::to_rows([fx, fy, fz, zero]);
+            let (ti, tj) = (V::to_rows([ax, ay, az, zero]), V::to_rows([bx, by, bz, zero]));
             let f: *mut f64 = cx.force.as_ptr().cast();
-            for lane in 0..4 {
+            for lane in 0..N {
                 if lane >= count {
                     break;
                 }
-                let (pi, pj) = (f.add(8 * self.i[lane]), f.add(8 * j[lane]));
-                (F::load(pi) + force[lane]).store(pi);
-                (F::load(pj) - force[lane]).store(pj);
-                (F::load(pi.add(4)) + ti[lane]).store(pi.add(4));
-                (F::load(pj.add(4)) + tj[lane]).store(pj.add(4));
+                let (pi, pj) = (f.add(8 * self.i[lane]), f.add(8 * self.j[lane]));
+                (V::Row::load(pi) + force[lane]).store(pi);
+                (V::Row::load(pj) - force[lane]).store(pj);
+                (V::Row::load(pi.add(4)) + ti[lane]).store(pi.add(4));
+                (V::Row::load(pj.add(4)) + tj[lane]).store(pj.add(4));
             }
         }
     }
+}
 
-    #[inline(always)]
-    unsafe fn add_virial(&self, d: &Vec3<F>, f: &Vec3<F>, count: usize, sum: &mut [f64; 6]) {
-        for (s, (a, b)) in sum.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {
-            let mut terms = [0.0; 4];
-            // SAFETY: an array of four numbers.
-            unsafe { (d[a] * f[b]).store(terms.as_mut_ptr()) };
-            terms[..count].iter().for_each(|t| *s += t);
-        }
+/// Adds Σ d ⊗ F of the first lanes.
+#[inline(always)]
+fn add_virial<const N: usize, V: Lanes<N>>(d: Vec3<V>, f: Vec3<V>, count: usize, sum: &mut [f64; 6]) {
+    for (s, (a, b)) in sum.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {
+        (d[a] * f[b]).numbers()[..count].iter().for_each(|t| *s += t);
     }
 }
 
@@ -439,6 +499,12 @@ fn geometry<R: Real>(d: Vec3<R>, radii: [R; 2], mass: R) -> Geometry<R> {
         curvature: radii[0] * radii[1] / sum,
         mass,
     }
+}
+
+/// Whether grains overlap by more than [`DEEP`] of the smaller radius.
+#[inline(always)]
+fn too_deep<R: Real>(g: &Geometry<R>) -> R::Mask {
+    g.overlap.above(g.radii[0].least(g.radii[1]) * DEEP)
 }
 
 /// The reduced mass.
@@ -458,9 +524,9 @@ fn beside_frozen<R: Real>(mi: R, mj: R) -> R {
 unsafe fn one<L: ContactLaw, const W: usize>(cx: &Cx<L>, law: &L, slab: &mut Slab, k: usize) {
     let (i, w) = (slab.short.i[k] as usize, slab.short.w[k]);
     let (j, s) = (place(w) as usize, cx.shifts[(w >> HERE_BITS) as usize]);
-    let (a, b) = (cx.position[i], cx.position[j]);
+    let (a, b) = (cx.position[i].0, cx.position[j].0);
     let d = [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])];
-    let (mi, mj) = (&cx.motion[i], &cx.motion[j]);
+    let (mi, mj) = (&cx.motion[i].0, &cx.motion[j].0);
     let mass = if cx.frozen { beside_frozen(mi[3], mj[3]) } else { reduced(mi[3], mj[3]) };
     let g = geometry(d, [a[3], b[3]], mass);
     let motion = |m: &[f64; 8]| Motion { velocity: [m[0], m[1], m[2]], spin: [m[4], m[5], m[6]] };
@@ -470,16 +536,17 @@ unsafe fn one<L: ContactLaw, const W: usize>(cx: &Cx<L>, law: &L, slab: &mut Sla
         row[..W].copy_from_slice(past);
     }
     let wrench = law.contact(&g, &motion(mi), &motion(mj), &mut row[..law.memory()], cx.step);
+    slab.deep |= too_deep(&g);
     if cx.store {
         past[..W - 1].copy_from_slice(&row[..W - 1]);
         past[W - 1] = cx.now + 1.0;
     }
     // SAFETY: places of records; the caller keeps other threads away.
     unsafe {
-        let own = &mut *cx.force.as_ptr().add(i);
+        let own = &mut (*cx.force.as_ptr().add(i)).0;
         (0..3).for_each(|d| own[d] += wrench.force[d]);
         (0..3).for_each(|d| own[4 + d] += wrench.torque_i[d]);
-        let other = &mut *cx.force.as_ptr().add(j);
+        let other = &mut (*cx.force.as_ptr().add(j)).0;
         (0..3).for_each(|d| other[d] -= wrench.force[d]);
         (0..3).for_each(|d| other[4 + d] += wrench.torque_j[d]);
     }
