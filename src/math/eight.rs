@@ -109,6 +109,10 @@ impl Lanes<8> for Avx512 {
         Self(unsafe { _mm512_set1_pd(a) })
     }
     #[inline(always)]
+    unsafe fn of(a: [f64; 8]) -> Self {
+        Self(unsafe { _mm512_loadu_pd(a.as_ptr()) })
+    }
+    #[inline(always)]
     fn numbers(self) -> [f64; 8] {
         let mut out = [0.0; 8];
         unsafe { _mm512_storeu_pd(out.as_mut_ptr(), self.0) };

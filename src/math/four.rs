@@ -19,6 +19,16 @@ pub trait Four: Real {
     /// # Safety
     /// `p` must be writable for four numbers.
     unsafe fn store(self, p: *mut f64);
+    /// Three consecutive numbers and a zero.
+    ///
+    /// # Safety
+    /// `p` must be readable for three numbers; the processor must have what the form needs.
+    unsafe fn load3(p: *const f64) -> Self;
+    /// Writes the first three numbers.
+    ///
+    /// # Safety
+    /// `p` must be writable for three numbers.
+    unsafe fn store3(self, p: *mut f64);
     /// The same number four times.
     ///
     /// # Safety
@@ -80,6 +90,11 @@ pub trait Lanes<const N: usize>: Real {
     /// # Safety
     /// The processor must have what the form needs.
     unsafe fn all(a: f64) -> Self;
+    /// Lanes of these numbers.
+    ///
+    /// # Safety
+    /// The processor must have what the form needs.
+    unsafe fn of(a: [f64; N]) -> Self;
     /// The numbers of the lanes.
     fn numbers(self) -> [f64; N];
 }
@@ -98,6 +113,11 @@ impl<F: Four> Lanes<4> for F {
     unsafe fn all(a: f64) -> F {
         // SAFETY: passed on.
         unsafe { F::splat(a) }
+    }
+    #[inline(always)]
+    unsafe fn of(a: [f64; 4]) -> F {
+        // SAFETY: an array of four numbers.
+        unsafe { F::load(a.as_ptr()) }
     }
     #[inline(always)]
     fn numbers(self) -> [f64; 4] {
@@ -179,6 +199,18 @@ impl Four for Plain {
     unsafe fn store(self, p: *mut f64) {
         // SAFETY: writable by the caller's promise.
         unsafe { p.cast::<[f64; 4]>().write(self.0) }
+    }
+    #[inline(always)]
+    unsafe fn load3(p: *const f64) -> Self {
+        // SAFETY: readable by the caller's promise.
+        let [a, b, c] = unsafe { p.cast::<[f64; 3]>().read() };
+        Self([a, b, c, 0.0])
+    }
+    #[inline(always)]
+    unsafe fn store3(self, p: *mut f64) {
+        let [a, b, c, _] = self.0;
+        // SAFETY: writable by the caller's promise.
+        unsafe { p.cast::<[f64; 3]>().write([a, b, c]) }
     }
     #[inline(always)]
     unsafe fn splat(a: f64) -> Self {
@@ -301,6 +333,18 @@ mod x86 {
             unsafe { _mm256_storeu_pd(p, self.0) }
         }
         #[inline(always)]
+        unsafe fn load3(p: *const f64) -> Self {
+            Self(unsafe { _mm256_maskload_pd(p, _mm256_setr_epi64x(-1, -1, -1, 0)) })
+        }
+        #[inline(always)]
+        unsafe fn store3(self, p: *mut f64) {
+            // Not a masked store: what follows reads these numbers soon, and such stores are slow to pass on.
+            unsafe {
+                _mm_storeu_pd(p, _mm256_castpd256_pd128(self.0));
+                _mm_store_sd(p.add(2), _mm256_extractf128_pd::<1>(self.0));
+            }
+        }
+        #[inline(always)]
         unsafe fn splat(a: f64) -> Self {
             Self(unsafe { _mm256_set1_pd(a) })
         }
@@ -357,6 +401,13 @@ mod tests {
         put(F::choose(mask, a, b));
         F::transpose([a, b, a + b, a - b]).into_iter().for_each(&mut put);
         let none = F::both(mask, b.above(a));
+        // SAFETY: arrays of four numbers.
+        unsafe {
+            let (three, mut four) = ([3.0, -4.0, 5.0, 6.0], [7.0; 4]);
+            put(F::load3(three.as_ptr()));
+            (F::load3(three.as_ptr()) + 1.0).store3(four.as_mut_ptr());
+            put(F::load(four.as_ptr()));
+        }
         out.extend([F::bits(mask), F::any(mask).into(), F::any(none).into()].map(u64::from));
         out
     }

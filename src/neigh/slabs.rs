@@ -151,11 +151,18 @@ impl Slabs {
             }
         };
         let (Some((y, sy)), Some((z, sz))) = (wrapped(1, dy.start), wrapped(2, dz.start)) else { return };
+        let row = (z * self.cells[1] + y) * self.cells[0];
+        // Within the row all cells are one run.
+        let (first, last) = (at[0] as i32 + dx.start, at[0] as i32 + dx.end - 1);
+        if (sy, sz) == (0, 0) && first >= 0 && (last as usize) < self.cells[0] {
+            let (from, to) = (self.start[row + first as usize], self.start[row + last as usize + 1]);
+            return out.push(Run { from, to, image: HERE });
+        }
         for (x, sx) in dx.filter_map(|dx| wrapped(0, dx)) {
             let mut shift = [0; 3];
             (shift[self.axes[0]], shift[self.axes[1]], shift[self.axes[2]]) = (sx, sy, sz);
             let image = (HERE as i32 + shift[0] + 3 * shift[1] + 9 * shift[2]) as u32;
-            let cell = (z * self.cells[1] + y) * self.cells[0] + x;
+            let cell = row + x;
             let run = Run { from: self.start[cell], to: self.start[cell + 1], image };
             match out.last_mut() {
                 Some(last) if last.to == run.from && last.image == image => last.to = run.to,

@@ -1,22 +1,22 @@
 //! Grains that overlap so far that contact laws mean little.
 
 use super::Fast;
-use super::sweep::{HERE_BITS, place};
+use super::sweep::{HERE_BITS, grain};
 use crate::laws::contact::ContactLaw;
-use crate::laws::contact::driver::DEEP;
+use crate::laws::contact::driver::{DEEP, Grains};
 
 impl<L: ContactLaw> Fast<L> {
     /// The pair of smallest ids that overlaps by more than [`DEEP`] of the smaller radius, and by which part.
-    pub(super) fn find_deep(&self) -> Option<([u32; 2], f64)> {
+    pub(super) fn find_deep(&self, grains: &Grains) -> Option<([u32; 2], f64)> {
         let of = |i: u32, w: u32| {
-            let (i, j) = (i as usize, place(w) as usize);
-            let (a, b, s) = (self.position[i].0, self.position[j].0, self.shifts[(w >> HERE_BITS) as usize]);
+            let (i, j) = (i as usize, grain(w));
+            let (a, b, s) = (grains.x[i], grains.x[j], self.shifts[(w >> HERE_BITS) as usize]);
             let d = [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])];
-            let (sum, least) = (a[3] + b[3], a[3].min(b[3]));
+            let (ri, rj) = (grains.radius[i], grains.radius[j]);
+            let (sum, least) = (ri + rj, ri.min(rj));
             let deep = sum - DEEP * least;
             let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-            // What fills lists up has no radius.
-            if least <= 0.0 || square >= deep * deep {
+            if square >= deep * deep {
                 return None;
             }
             let (p, q) = (self.tag[i], self.tag[j]);

@@ -1,18 +1,19 @@
 //! The two lists of each slab: pairs within the skin, and of those the pairs within the thin skin.
 
 use super::sweep::{self, HERE_BITS};
-use super::{Fast, NONE};
+use super::{Fast, NONE, NOWHERE};
 use crate::laws::contact::ContactLaw;
-use crate::neigh::slabs::{HERE, Run};
+use crate::laws::contact::driver::Grains;
+use crate::neigh::slabs::{HERE, Run, Slabs};
 use crate::par;
 use std::sync::{Mutex, PoisonError};
 
-/// Pairs: the place of one grain, place and image of the other. Filled up with pairs of nobody to a multiple of four.
+/// Pairs of grains and images. Filled up to a multiple of four with pairs that are nowhere near.
 #[derive(Clone, Debug, Default)]
 pub struct Pairs {
-    /// The place of the grain that lies in the slab.
+    /// The grain that lies in the slab.
     pub i: Vec<u32>,
-    /// The place of the other and the image it is seen in.
+    /// The other and the image it is seen in.
     pub w: Vec<u32>,
 }
 
@@ -52,43 +53,53 @@ pub struct Slab {
 }
 
 impl<L: ContactLaw> Fast<L> {
-    /// Long lists from these positions and radii by place.
+    /// Long lists from these positions and radii.
     pub(super) fn make_long(
         &mut self,
-        at: &[[f64; 4]],
+        grains: &Grains,
+        slabs: &Slabs,
         skin: f64,
         keep: &(impl Fn(usize, usize) -> bool + Sync),
     ) {
+        let record = |&i: &u32| {
+            let (x, r) = (grains.x[i as usize], grains.radius[i as usize]);
+            [x[0], x[1], x[2], r]
+        };
+        let at: Vec<[f64; 4]> = slabs.order.iter().map(record).collect();
         let mut lists = std::mem::take(&mut self.lists);
-        lists.resize(self.slabs.count(), Slab::default());
+        lists.resize(slabs.count(), Slab::default());
         let shared = par::Shared::new(&mut lists);
         let this = &*self;
-        par::for_rows(this.slabs.count(), |k| {
+        par::for_rows(slabs.count(), |k| {
             // SAFETY: each part writes its own slab.
             let slab = unsafe { &mut shared.get(k..k + 1)[0] };
-            this.search(k, at, skin, keep, &mut slab.long);
+            let keep = |i: u32, j: u32| {
+                let (i, j) = (i as usize, j as usize);
+                this.laws.which(grains.kind[i], grains.kind[j]) != NONE && keep(i, j)
+            };
+            this.search((slabs, k), &at, skin, &keep, &mut slab.long);
         });
         self.lists = lists;
     }
 
     fn search(
         &self,
-        k: usize,
+        (slabs, k): (&Slabs, usize),
         at: &[[f64; 4]],
         skin: f64,
-        keep: &(impl Fn(usize, usize) -> bool + Sync),
+        keep: &impl Fn(u32, u32) -> bool,
         out: &mut Pairs,
     ) {
         out.i.clear();
         out.w.clear();
-        let order = &self.slabs.order;
+        let order = &slabs.order;
         let mut runs = vec![];
-        for cell in self.slabs.slab(k) {
-            let own = self.slabs.places(cell);
+        for cell in slabs.slab(k) {
+            let own = slabs.places(cell);
             if own.is_empty() {
                 continue;
             }
-            self.slabs.runs(cell, &mut runs);
+            slabs.runs(cell, &mut runs);
             for i in own.clone() {
                 let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
                 let a = at[i];
@@ -99,26 +110,23 @@ impl<L: ContactLaw> Fast<L> {
                         let d =
                             [a[0] - (b[0] + shift[0]), a[1] - (b[1] + shift[1]), a[2] - (b[2] + shift[2])];
                         let reach = a[3] + b[3] + skin;
-                        if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach
-                            && self.laws.which(self.kind[i], self.kind[j as usize]) != NONE
-                            && keep(order[i] as usize, order[j as usize] as usize)
-                        {
-                            out.i.push(i as u32);
+                        let (i, j) = (order[i], order[j as usize]);
+                        if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach && keep(i, j) {
+                            out.i.push(i);
                             out.w.push(j | run.image << HERE_BITS);
                         }
                     }
                 }
             }
         }
-        let nobody = self.len() as u32;
         while !out.i.len().is_multiple_of(4) {
-            out.i.push(nobody);
-            out.w.push(nobody | HERE << HERE_BITS);
+            out.i.push(0);
+            out.w.push(NOWHERE << HERE_BITS);
         }
     }
 
     /// Short lists from the present positions; contacts keep what they remember.
-    pub(super) fn make_short(&mut self) {
+    pub(super) fn make_short(&mut self, grains: &Grains) {
         let book = self.book.take();
         let mut lists = std::mem::take(&mut self.lists);
         let spare = Mutex::new(std::mem::take(&mut self.spare));
@@ -130,12 +138,8 @@ impl<L: ContactLaw> Fast<L> {
             let slab = unsafe { &mut slabs.get(k..k + 1)[0] };
             let mut room = open().pop().unwrap_or_default();
             room.clear();
-            // SAFETY: `near` asks the processor; list entries are places of records.
-            unsafe { sweep::near(this, slab, this.thin, |t| room.t.push(t)) };
-            // Nobody is always near nobody.
-            while room.t.last().is_some_and(|t| slab.long.i[*t as usize] as usize == this.len()) {
-                room.t.pop();
-            }
+            // SAFETY: `near` asks the processor; list entries are grains.
+            unsafe { sweep::near(grains, &this.shifts, slab, this.thin, |t| room.t.push(t)) };
             this.fill_short(slab, book.as_ref(), &mut room);
             std::mem::swap(&mut slab.short, &mut room);
             open().push(room);
@@ -147,12 +151,11 @@ impl<L: ContactLaw> Fast<L> {
     /// Fills in pairs and memory of a new short list that knows its pairs of the long list.
     fn fill_short(&self, slab: &Slab, book: Option<&super::Book>, new: &mut Short) {
         let (old, width) = (&slab.short, self.width);
-        let nobody = self.len() as u32;
         new.i.extend(new.t.iter().map(|t| slab.long.i[*t as usize]));
         new.w.extend(new.t.iter().map(|t| slab.long.w[*t as usize]));
         while !new.i.len().is_multiple_of(4) {
-            new.i.push(nobody);
-            new.w.push(nobody | HERE << HERE_BITS);
+            new.i.push(0);
+            new.w.push(NOWHERE << HERE_BITS);
         }
         new.history.resize(new.i.len() * width, 0.0);
         let mut at = 0;

@@ -6,7 +6,7 @@ use crate::laws::contact::ContactLaw;
 use crate::world::contacts::{Contacts, mirror};
 use std::ops::Range;
 
-/// Contacts by the place of the grain with the smaller tag, seen from that grain.
+/// Contacts by the index of the grain with the smaller tag, seen from that grain.
 #[derive(Clone, Debug)]
 pub struct Book {
     start: Vec<u32>,
@@ -16,7 +16,7 @@ pub struct Book {
 }
 
 impl Book {
-    /// What the contact of two places remembers, the one of the smaller tag first.
+    /// What the contact of two grains remembers, the one of the smaller tag first.
     #[inline]
     pub fn get(&self, first: u32, second: u32) -> Option<&[f64]> {
         let of: Range<usize> = self.start[first as usize] as usize..self.start[first as usize + 1] as usize;
@@ -29,7 +29,7 @@ impl Book {
 enum Places {
     /// By tag; `u32::MAX` where there is none.
     Table(Vec<u32>),
-    /// Tag and place, sorted.
+    /// Tag and index, sorted.
     List(Vec<[u32; 2]>),
 }
 
@@ -103,7 +103,7 @@ impl<L: ContactLaw> Fast<L> {
         for list in &self.lists {
             let short = &list.short;
             for k in (0..short.i.len()).filter(|k| short.history[(k + 1) * self.width - 1] == self.now) {
-                let (i, j) = (short.i[k] as usize, super::sweep::place(short.w[k]) as usize);
+                let (i, j) = (short.i[k] as usize, super::sweep::grain(short.w[k]));
                 let h = &short.history[k * self.width..][..memory];
                 if self.tag[i] <= self.tag[j] {
                     f([self.tag[i], self.tag[j]], h);
@@ -116,9 +116,9 @@ impl<L: ContactLaw> Fast<L> {
         }
     }
 
-    /// Writes what the book holds of a pair of places into the row of a short list: what is remembered and the step.
+    /// Writes what the book holds of a pair of grains into the row of a short list: what is remembered and the step.
     pub(super) fn look_up(&self, book: &Book, i: u32, w: u32, row: &mut [f64]) {
-        let j = super::sweep::place(w);
+        let j = super::sweep::grain(w) as u32;
         let memory = self.width - 1;
         row.fill(0.0);
         row[memory] = -1.0;

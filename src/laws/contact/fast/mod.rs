@@ -1,7 +1,8 @@
 //! Contacts of many grains: spatial order, short lists, four contacts at a time; the same numbers as the plain driver.
 //!
-//! Grains are copied into records that stand in the order of cells ([`Slabs`]). Each slab of cells has a list of the pairs
-//! within the skin, and of those a shorter list of pairs within a thin second skin, which holds what contacts remember.
+//! Grains are sorted into slabs of cells ([`Slabs`]); the world does well to stand in that order. Each slab has a list of
+//! the pairs within the skin, and of those a shorter list of pairs within a thin second skin, which holds what contacts
+//! remember.
 //! A step tests the distances of the short list four at a time and evaluates the law for four contacts at a time; slabs
 //! in two colours keep the order of additions for any number of threads.
 
@@ -26,6 +27,9 @@ pub const MOST_MEMORY: usize = 7;
 pub const MOST_GRAINS: usize = (1 << sweep::PLACE_BITS) - 1;
 /// The second skin in units of the first.
 const THIN: f64 = 0.2;
+/// The image of what fills lists up, and how far it is away: so far that squares are infinite.
+const NOWHERE: u32 = 31;
+const FAR: f64 = 1e200;
 /// No law.
 const NONE: u8 = u8::MAX;
 
@@ -75,16 +79,6 @@ impl<L: ContactLaw> Laws<L> {
     }
 }
 
-/// A record that lies within a line of memory.
-#[repr(C, align(32))]
-#[derive(Clone, Copy, Debug, Default)]
-struct Four([f64; 4]);
-
-/// A record that fills a line of memory.
-#[repr(C, align(64))]
-#[derive(Clone, Copy, Debug, Default)]
-struct Eight([f64; 8]);
-
 /// The box as lists see it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
@@ -96,29 +90,23 @@ pub struct Frame {
     pub skin: f64,
 }
 
-/// Records, lists and contacts of all grains.
+/// Lists and contacts of all grains.
 #[derive(Clone, Debug)]
 pub struct Fast<L> {
     laws: Laws<L>,
-    slabs: Slabs,
-    /// By place: identity and type of the grain there.
+    /// Identities of the grains when the lists were made.
     tag: Vec<u32>,
-    kind: Vec<u16>,
-    /// The place of each grain.
-    place: Vec<u32>,
-    /// By place: position and radius. One more, all zeros, fills lists up.
-    position: Vec<Four>,
-    /// By place: velocity and mass (negative where frozen), angular velocity and radius.
-    motion: Vec<Eight>,
-    /// By place: force and 0, torque and 0.
-    force: Vec<Eight>,
+    /// Positions and radii when the short lists were made.
+    seen: Vec<[f64; 4]>,
+    /// Masses with a minus sign where frozen, if some are.
+    signed: Vec<f64>,
     lists: Vec<Slab>,
-    /// How far a place is shifted in each image, and 0.
+    /// How far a grain is shifted in each image, and 0; very far for what fills lists up.
     shifts: [[f64; 4]; 32],
     /// The second skin [length].
     thin: f64,
-    /// How far any grain may have moved since the short lists were made [length].
-    moved: f64,
+    /// Whether long lists are younger than short ones.
+    stale: bool,
     /// Number of the present step among those that remember; contacts of the last one carry it.
     now: f64,
     /// Numbers per pair in the short list: what is remembered and the step it was.
@@ -137,17 +125,13 @@ impl<L: ContactLaw> Fast<L> {
         let width = if laws.memory() <= 3 { 4 } else { 8 };
         Self {
             laws,
-            slabs: Slabs::default(),
             tag: vec![],
-            kind: vec![],
-            place: vec![],
-            position: vec![],
-            motion: vec![],
-            force: vec![],
+            seen: vec![],
+            signed: vec![],
             lists: vec![],
             shifts: [[0.0; 4]; 32],
             thin: 0.0,
-            moved: f64::INFINITY,
+            stale: true,
             now: 0.0,
             width,
             book: None,
@@ -180,82 +164,70 @@ impl<L: ContactLaw> Fast<L> {
         known: Option<&Contacts>,
         keep: &(impl Fn(usize, usize) -> bool + Sync),
     ) {
-        let n = grains.x.len();
         let largest = grains.radius.iter().copied().fold(0.0, f64::max);
-        let mut slabs = std::mem::take(&mut self.slabs);
+        let mut slabs = Slabs::default();
         slabs.sort(grains.x, grains.tag, 2.0 * largest + frame.skin, &frame.lo, &frame.period);
-        let tag: Vec<u32> = slabs.order.iter().map(|&i| grains.tag[i as usize]).collect();
-        let book = self.remember(&tag, known);
-        self.slabs = slabs;
-        self.tag = tag;
-        self.kind.clear();
-        self.kind.extend(self.slabs.order.iter().map(|&i| grains.kind[i as usize]));
-        self.place.resize(n, 0);
-        for (k, &i) in self.slabs.order.iter().enumerate() {
-            self.place[i as usize] = k as u32;
-        }
-        self.position.clear();
-        self.position.resize(n + 1, Four::default());
-        self.motion.resize(n + 1, Eight::default());
-        self.motion[n] = Eight::default();
-        self.force.clear();
-        self.force.resize(n + 1, Eight::default());
+        let book = self.remember(grains.tag, known);
+        self.tag.clear();
+        self.tag.extend_from_slice(grains.tag);
         for (image, shift) in self.shifts.iter_mut().take(27).enumerate() {
             let s = shift_of(image as u32);
             (0..3).for_each(|d| shift[d] = s[d] * frame.period[d]);
         }
+        self.shifts[NOWHERE as usize][0] = FAR;
         self.thin = THIN * frame.skin;
-        // Long lists from the positions of the rebuild, short ones from the present ones.
-        let held: Vec<[f64; 4]> = self.slabs.order.iter().map(|&i| record(grains, i as usize)).collect();
-        self.make_long(&held, frame.skin, keep);
-        drop(held);
+        self.make_long(grains, &slabs, frame.skin, keep);
         self.book = Some(book);
-        self.moved = f64::INFINITY;
+        self.stale = true;
     }
 
-    /// Takes the grains' present state into the records: in the order of the grains, as writing two records somewhere
-    /// costs less than reading five columns somewhere.
-    fn gather(&mut self, grains: &Grains) {
-        let n = self.len();
-        let place = &self.place[..n];
-        let position = par::Shared::new(&mut self.position);
-        let motion = par::Shared::new(&mut self.motion);
-        let copy = |range: std::ops::Range<usize>| {
+    /// How far any grain has moved, and by how much its radius has grown, since the short lists were made.
+    fn moved(&self, grains: &Grains) -> f64 {
+        let farthest = |range: std::ops::Range<usize>| {
             let (mut far, mut grown) = (0.0_f64, 0.0_f64);
-            let of = grains.x[range.clone()].iter().zip(&grains.radius[range.clone()]);
-            let moving = grains.v[range.clone()].iter().zip(&grains.omega[range.clone()]);
-            let rest = grains.mass[range.clone()].iter().zip(&place[range.clone()]);
-            for (i, (((x, r), (v, w)), (m, k))) in range.zip(of.zip(moving).zip(rest)) {
-                let k = *k as usize;
-                // SAFETY: every grain has a place of its own, and records are as many as places.
-                let (p, motion) =
-                    unsafe { (&mut (*position.as_ptr().add(k)).0, &mut (*motion.as_ptr().add(k)).0) };
-                let d = [x[0] - p[0], x[1] - p[1], x[2] - p[2]];
+            let now = grains.x[range.clone()].iter().zip(&grains.radius[range.clone()]);
+            for ((x, r), seen) in now.zip(&self.seen[range]) {
+                let d = [x[0] - seen[0], x[1] - seen[1], x[2] - seen[2]];
                 far = far.max(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-                grown = grown.max((r - p[3]).abs());
-                *p = [x[0], x[1], x[2], *r];
-                let m = if grains.frozen.get(i) == Some(&true) { -m } else { *m };
-                *motion = [v[0], v[1], v[2], m, w[0], w[1], w[2], *r];
+                grown = grown.max((r - seen[3]).abs());
             }
             [far, grown]
         };
         let join = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
-        let [far, grown] = par::reduce(n, copy, join).unwrap_or([0.0; 2]);
-        self.moved += far.sqrt() + grown;
+        let [far, grown] = par::reduce(self.len(), farthest, join).unwrap_or([0.0; 2]);
+        far.sqrt() + grown
     }
 
-    /// Evaluates all contacts for the grains' present state; [`Fast::scatter`] must follow. With `store` they remember, else nothing is changed but
-    /// forces. With `virial` returns Σ d ⊗ F: xx yy zz xy xz yz.
-    pub fn run(&mut self, grains: &Grains, step: Advance, store: bool, virial: bool) -> [f64; 6] {
-        self.gather(grains);
+    /// Keeps the present positions and radii.
+    fn see(&mut self, grains: &Grains) {
+        self.seen.resize(self.tag.len(), [0.0; 4]);
+        par::each((&mut self.seen[..], grains.x, grains.radius), |_, (seen, x, r)| {
+            for ((seen, x), r) in seen.iter_mut().zip(x).zip(r) {
+                *seen = [x[0], x[1], x[2], *r];
+            }
+        });
+    }
+
+    /// Evaluates all contacts for the grains' present state and adds forces and torques to `f` and `torque`. With `store`
+    /// contacts remember, else nothing is changed but forces. With `virial` returns Σ d ⊗ F: xx yy zz xy xz yz.
+    pub fn run(
+        &mut self,
+        grains: &Grains,
+        [f, torque]: [&mut [Vec3]; 2],
+        step: Advance,
+        store: bool,
+        virial: bool,
+    ) -> [f64; 6] {
         // Two grains came closer by twice what one moved at most.
-        if 2.0 * self.moved >= self.thin {
-            self.make_short();
-            self.moved = 0.0;
+        if self.stale || 2.0 * self.moved(grains) >= self.thin {
+            self.make_short(grains);
+            self.see(grains);
+            self.stale = false;
         }
-        self.sweep(step, store, virial, !grains.frozen.is_empty());
+        self.sign_masses(grains);
+        self.sweep(grains, [f, torque], step, store, virial);
         if self.deep.is_none() && self.lists.iter().any(|l| l.deep) {
-            self.deep = self.find_deep();
+            self.deep = self.find_deep(grains);
         }
         self.now += if store { 1.0 } else { 0.0 };
         let mut total = [0.0; 6];
@@ -265,21 +237,16 @@ impl<L: ContactLaw> Fast<L> {
         total
     }
 
-    /// Adds forces and torques to the grains' own. Once after each evaluation.
-    pub fn scatter(&mut self, f: &mut [Vec3], torque: &mut [Vec3]) {
-        let force = par::Shared::new(&mut self.force);
-        par::each((f, torque, &self.place[..]), |_, (f, torque, place)| {
-            for ((f, torque), &k) in f.iter_mut().zip(torque).zip(place) {
-                // SAFETY: every grain has a place of its own, and records are as many as places.
-                let own = unsafe { &mut (*force.as_ptr().add(k as usize)).0 };
-                for d in 0..3 {
-                    f[d] += own[d];
-                    torque[d] += own[4 + d];
+    fn sign_masses(&mut self, grains: &Grains) {
+        self.signed.clear();
+        if !grains.frozen.is_empty() {
+            self.signed.resize(self.tag.len(), 0.0);
+            par::each((&mut self.signed[..], grains.mass, grains.frozen), |_, (signed, mass, frozen)| {
+                for ((signed, m), frozen) in signed.iter_mut().zip(mass).zip(frozen) {
+                    *signed = if *frozen { -m } else { *m };
                 }
-                // The next evaluation starts from zero.
-                *own = [0.0; 8];
-            }
-        });
+            });
+        }
     }
 
     /// Pairs in long lists and in short ones.
@@ -287,13 +254,6 @@ impl<L: ContactLaw> Fast<L> {
         let sum = |f: fn(&Slab) -> usize| self.lists.iter().map(f).sum();
         [sum(|s| s.long.i.len()), sum(|s| s.short.i.len())]
     }
-}
-
-/// Position and radius of a grain.
-#[inline]
-fn record(g: &Grains, i: usize) -> [f64; 4] {
-    let x = g.x[i];
-    [x[0], x[1], x[2], g.radius[i]]
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The inner loops: distances four at a time, contacts four at a time, forces into the records.
 
 use super::lists::{Short, Slab};
-use super::{Eight, Fast, Four as Place, Laws, MOST_MEMORY, NONE, has_avx2};
-use crate::laws::contact::driver::DEEP;
+use super::{Fast, Laws, MOST_MEMORY, NONE, has_avx2};
+use crate::laws::contact::driver::{DEEP, Grains};
 use crate::laws::contact::{Advance, ContactLaw, Geometry, Loop, Motion, Wrench};
 use crate::math::four::{Four, Lanes, Plain};
 use crate::math::real::Real;
@@ -10,7 +10,7 @@ use crate::math::vec3::Vec3;
 use crate::par;
 use std::marker::PhantomData;
 
-/// Bits of a list entry that hold a place; the image stands above them.
+/// Bits of a list entry that hold a grain; the image stands above them.
 pub const PLACE_BITS: u32 = 27;
 /// How far the image is shifted.
 pub const HERE_BITS: u32 = PLACE_BITS;
@@ -46,10 +46,10 @@ const fn lanes() -> [[u32; 4]; 16] {
 /// Most contacts evaluated at a time.
 const MOST: usize = 8;
 
-/// The place in a list entry.
+/// The grain in a list entry.
 #[inline(always)]
-pub fn place(w: u32) -> u32 {
-    w & ((1 << PLACE_BITS) - 1)
+pub fn grain(w: u32) -> usize {
+    (w & ((1 << PLACE_BITS) - 1)) as usize
 }
 
 /// How many contacts are evaluated at a time; all have the same bits.
@@ -77,11 +77,15 @@ impl Form {
 /// What the loops read and where they write.
 struct Cx<'a, L> {
     laws: &'a Laws<L>,
-    position: &'a [Place],
-    motion: &'a [Eight],
+    x: &'a [Vec3],
+    v: &'a [Vec3],
+    omega: &'a [Vec3],
+    radius: &'a [f64],
+    mass: &'a [f64],
     kind: &'a [u16],
     shifts: &'a [[f64; 4]; 32],
-    force: par::Shared<'a, Eight>,
+    force: par::Shared<'a, Vec3>,
+    torque: par::Shared<'a, Vec3>,
     step: Advance,
     now: f64,
     store: bool,
@@ -90,28 +94,45 @@ struct Cx<'a, L> {
     frozen: bool,
 }
 
+impl<L> Cx<'_, L> {
+    fn places(&self) -> Places<'_> {
+        Places { x: self.x, radius: self.radius, shifts: self.shifts }
+    }
+}
+
 impl<L: ContactLaw> Fast<L> {
     /// Adds up the forces of all contacts.
-    pub(super) fn sweep(&mut self, step: Advance, store: bool, virial: bool, frozen: bool) {
+    pub(super) fn sweep(
+        &mut self,
+        grains: &Grains,
+        [f, torque]: [&mut [Vec3]; 2],
+        step: Advance,
+        store: bool,
+        virial: bool,
+    ) {
         let (width, form) = (self.width, Form::here());
         let mut lists = std::mem::take(&mut self.lists);
         let slabs = par::Shared::new(&mut lists);
         let cx = Cx {
             laws: &self.laws,
-            position: &self.position,
-            motion: &self.motion,
-            kind: &self.kind,
+            x: grains.x,
+            v: grains.v,
+            omega: grains.omega,
+            radius: grains.radius,
+            mass: if self.signed.is_empty() { grains.mass } else { &self.signed },
+            kind: grains.kind,
             shifts: &self.shifts,
-            force: par::Shared::new(&mut self.force),
+            force: par::Shared::new(f),
+            torque: par::Shared::new(torque),
             step,
             now: self.now,
             store,
             virial,
-            frozen,
+            frozen: !self.signed.is_empty(),
         };
         par::two_colours(slabs.len(), |k| {
-            // SAFETY: each part writes its own slab, and forces of places in it and the next one, which two_colours
-            // keeps apart; list entries are places of records; AVX2 only where there is AVX2.
+            // SAFETY: each part writes its own slab, and forces of grains in it and the next one, which two_colours keeps
+            // apart; list entries are grains; AVX only where there is AVX.
             unsafe {
                 let slab = &mut slabs.get(k..k + 1)[0];
                 match (width, form) {
@@ -135,38 +156,32 @@ impl<L: ContactLaw> Fast<L> {
 /// Calls `hit` with the numbers of all pairs of the long list whose surfaces are nearer than `thin`, in order.
 ///
 /// # Safety
-/// List entries must be places of records.
-pub unsafe fn near<L: ContactLaw>(fast: &Fast<L>, slab: &Slab, thin: f64, hit: impl FnMut(u32)) {
+/// List entries must be grains.
+pub unsafe fn near(grains: &Grains, shifts: &[[f64; 4]; 32], slab: &Slab, thin: f64, hit: impl FnMut(u32)) {
+    let at = Places { x: grains.x, radius: grains.radius, shifts };
     // SAFETY: passed on.
     unsafe {
         #[cfg(target_arch = "x86_64")]
         if has_avx2() {
-            return near_avx2(&fast.position, &fast.shifts, slab, thin, hit);
+            return near_avx2(at, slab, thin, hit);
         }
-        near_in::<Plain>(&fast.position, &fast.shifts, slab, thin, hit);
+        near_in::<Plain>(at, slab, thin, hit);
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-unsafe fn near_avx2(at: &[Place], shifts: &[[f64; 4]; 32], slab: &Slab, thin: f64, hit: impl FnMut(u32)) {
+unsafe fn near_avx2(at: Places, slab: &Slab, thin: f64, hit: impl FnMut(u32)) {
     // SAFETY: passed on.
-    unsafe { near_in::<crate::math::four::Avx2>(at, shifts, slab, thin, hit) }
+    unsafe { near_in::<crate::math::four::Avx2>(at, slab, thin, hit) }
 }
 
 #[inline(always)]
-unsafe fn near_in<F: Four>(
-    at: &[Place],
-    shifts: &[[f64; 4]; 32],
-    slab: &Slab,
-    thin: f64,
-    mut hit: impl FnMut(u32),
-) {
+unsafe fn near_in<F: Four>(at: Places, slab: &Slab, thin: f64, mut hit: impl FnMut(u32)) {
     let list = &slab.long;
     for k in (0..list.i.len()).step_by(4) {
-        // SAFETY: lists are filled up to fours; entries are places of records.
-        let mut bits =
-            unsafe { closer::<F>(at, shifts, list.i.as_ptr().add(k), list.w.as_ptr().add(k), thin) };
+        // SAFETY: lists are filled up to fours; entries are grains.
+        let mut bits = unsafe { at.closer::<F>(list.i.as_ptr().add(k), list.w.as_ptr().add(k), thin) };
         while bits != 0 {
             hit(k as u32 + bits.trailing_zeros());
             bits &= bits - 1;
@@ -174,39 +189,55 @@ unsafe fn near_in<F: Four>(
     }
 }
 
-/// Which of four pairs have surfaces nearer than `extra`, as bits.
-#[inline(always)]
-unsafe fn closer<F: Four>(
-    at: &[Place],
-    shifts: &[[f64; 4]; 32],
-    i: *const u32,
-    w: *const u32,
-    extra: f64,
-) -> u32 {
-    // SAFETY: passed on.
-    unsafe {
-        let sign = F::load([1.0, 1.0, 1.0, -1.0].as_ptr());
-        let rows = [
-            apart(at, shifts, *i, *w, sign),
-            apart(at, shifts, *i.add(1), *w.add(1), sign),
-            apart(at, shifts, *i.add(2), *w.add(2), sign),
-            apart(at, shifts, *i.add(3), *w.add(3), sign),
-        ];
-        let [x, y, z, sum] = F::transpose(rows);
-        let reach = sum + extra;
-        F::bits((reach * reach).above(x * x + y * y + z * z))
-    }
+/// Where grains are.
+#[derive(Clone, Copy)]
+struct Places<'a> {
+    x: &'a [Vec3],
+    radius: &'a [f64],
+    shifts: &'a [[f64; 4]; 32],
 }
 
-/// x_i − x_j and, by the sign of the last lane, R_i + R_j.
-#[inline(always)]
-unsafe fn apart<F: Four>(at: &[Place], shifts: &[[f64; 4]; 32], i: u32, w: u32, sign: F) -> F {
-    // SAFETY: passed on.
-    unsafe {
-        let a = F::load(at.as_ptr().add(i as usize).cast());
-        let b = F::load(at.as_ptr().add(place(w) as usize).cast());
-        let shift = F::load(shifts.as_ptr().add((w >> HERE_BITS) as usize).cast());
-        a - (b + shift) * sign
+impl Places<'_> {
+    /// Which of four pairs have surfaces nearer than `extra`, as bits.
+    #[inline(always)]
+    unsafe fn closer<F: Four>(&self, i: *const u32, w: *const u32, extra: f64) -> u32 {
+        // SAFETY: passed on.
+        unsafe {
+            let rows = [
+                self.apart(*i, *w),
+                self.apart(*i.add(1), *w.add(1)),
+                self.apart(*i.add(2), *w.add(2)),
+                self.apart(*i.add(3), *w.add(3)),
+            ];
+            let [x, y, z, _]: [F; 4] = F::transpose(rows);
+            let r = self.radius.as_ptr();
+            let own = [
+                *r.add(*i as usize),
+                *r.add(*i.add(1) as usize),
+                *r.add(*i.add(2) as usize),
+                *r.add(*i.add(3) as usize),
+            ];
+            let other = [
+                *r.add(grain(*w)),
+                *r.add(grain(*w.add(1))),
+                *r.add(grain(*w.add(2))),
+                *r.add(grain(*w.add(3))),
+            ];
+            let reach = F::load(own.as_ptr()) + F::load(other.as_ptr()) + extra;
+            F::bits((reach * reach).above(x * x + y * y + z * z))
+        }
+    }
+
+    /// x_i − x_j.
+    #[inline(always)]
+    unsafe fn apart<F: Four>(&self, i: u32, w: u32) -> F {
+        // SAFETY: passed on.
+        unsafe {
+            let a = F::load3(self.x.as_ptr().add(i as usize).cast());
+            let b = F::load3(self.x.as_ptr().add(grain(w)).cast());
+            let shift = F::load(self.shifts.as_ptr().add((w >> HERE_BITS) as usize).cast());
+            a - (b + shift)
+        }
     }
 }
 
@@ -228,20 +259,15 @@ unsafe fn contacts_avx512<L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut 
 #[inline(always)]
 unsafe fn contacts<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut Slab) {
     (slab.virial, slab.deep) = ([0.0; 6], false);
+    let at = cx.places();
     let mut hits = [0; ROOM + AHEAD + MOST];
     let (mut count, mut k, end) = (0, 0, slab.short.i.len());
     loop {
         while k < end && count + 4 <= ROOM {
-            // SAFETY: lists are filled up to fours; entries are places of records.
+            // SAFETY: lists are filled up to fours; entries are grains.
             let bits = unsafe {
                 let short = &slab.short;
-                closer::<V::Row>(
-                    cx.position,
-                    cx.shifts,
-                    short.i.as_ptr().add(k),
-                    short.w.as_ptr().add(k),
-                    0.0,
-                )
+                at.closer::<V::Row>(short.i.as_ptr().add(k), short.w.as_ptr().add(k), 0.0)
             };
             // Writes past `count` do no harm: the next ones overwrite them.
             let [a, b, c, d] = LANES[bits as usize & 15];
@@ -283,7 +309,7 @@ unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
                 let mut count = 0;
                 for &k in block {
                     let (i, w) = (slab.short.i[k as usize], slab.short.w[k as usize]);
-                    let which = cx.laws.which(cx.kind[i as usize], cx.kind[place(w) as usize]);
+                    let which = cx.laws.which(cx.kind[i as usize], cx.kind[grain(w)]);
                     own[count] = k;
                     count += usize::from(which != NONE && usize::from(which) == number);
                 }
@@ -335,12 +361,14 @@ impl<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize> Loop<L> for Man
     fn run(self, law: &L) {
         let (cx, hits, memory) = (self.cx, self.hits, law.memory());
         for k in (0..self.count).step_by(N) {
-            // SAFETY: hits are pairs of the list, and their entries places of records; `of_law` made it.
+            // SAFETY: hits are pairs of the list, and their entries grains; `of_law` made it.
             unsafe {
                 for ahead in &hits[k + AHEAD..k + AHEAD + N] {
-                    let j = place(*self.slab.short.w.as_ptr().add(*ahead as usize)) as usize;
-                    V::Row::prefetch(cx.motion.as_ptr().add(j));
+                    let j = grain(*self.slab.short.w.as_ptr().add(*ahead as usize));
+                    V::Row::prefetch(cx.v.as_ptr().add(j));
+                    V::Row::prefetch(cx.omega.as_ptr().add(j));
                     V::Row::prefetch(cx.force.as_ptr().add(j));
+                    V::Row::prefetch(cx.torque.as_ptr().add(j));
                     // Few of the near pairs touch: what contacts remember does not come by itself.
                     V::Row::prefetch(self.slab.short.history.as_ptr().add(W * *ahead as usize));
                 }
@@ -368,11 +396,38 @@ impl<const N: usize> Group<N> {
             unsafe {
                 let k = *hits.add(lane) as usize;
                 let w = *short.w.as_ptr().add(k);
-                (g.k[lane], g.w[lane], g.j[lane]) = (k, w, place(w) as usize);
+                (g.k[lane], g.w[lane], g.j[lane]) = (k, w, grain(w));
                 g.i[lane] = *short.i.as_ptr().add(k) as usize;
             }
         }
         g
+    }
+
+    /// Vectors of these grains, turned into lanes.
+    #[inline(always)]
+    unsafe fn vectors<V: Lanes<N>>(p: &[Vec3], at: &[usize; N]) -> Vec3<V> {
+        // SAFETY: passed on.
+        unsafe {
+            let mut rows = [V::Row::splat(0.0); N];
+            for lane in 0..N {
+                rows[lane] = V::Row::load3(p.as_ptr().add(at[lane]).cast());
+            }
+            let [x, y, z, _] = V::of_rows(rows);
+            [x, y, z]
+        }
+    }
+
+    /// Numbers of these grains in lanes.
+    #[inline(always)]
+    unsafe fn numbers<V: Lanes<N>>(p: &[f64], at: &[usize; N]) -> V {
+        // SAFETY: passed on.
+        unsafe {
+            let mut a = [0.0; N];
+            for lane in 0..N {
+                a[lane] = *p.as_ptr().add(at[lane]);
+            }
+            V::of(a)
+        }
     }
 
     /// Four numbers from `part` on of records of `width` numbers, turned into lanes.
@@ -392,10 +447,9 @@ impl<const N: usize> Group<N> {
     unsafe fn apart<V: Lanes<N>, L>(&self, cx: &Cx<L>) -> [V; 4] {
         // SAFETY: passed on.
         unsafe {
-            let one = V::Row::splat(1.0);
-            let mut rows = [one; N];
+            let mut rows = [V::Row::splat(0.0); N];
             for lane in 0..N {
-                rows[lane] = apart(cx.position, cx.shifts, self.i[lane] as u32, self.w[lane], one);
+                rows[lane] = cx.places().apart(self.i[lane] as u32, self.w[lane]);
             }
             V::of_rows(rows)
         }
@@ -413,11 +467,12 @@ impl<const N: usize> Group<N> {
         // SAFETY: passed on.
         unsafe {
             let [dx, dy, dz, _] = self.apart::<V, L>(cx);
-            let m: *const f64 = cx.motion.as_ptr().cast();
-            let [a0, a1, a2, mi] = Self::records::<V>(m, 8, 0, &self.i);
-            let [p0, p1, p2, ri] = Self::records::<V>(m, 8, 4, &self.i);
-            let [b0, b1, b2, mj] = Self::records::<V>(m, 8, 0, &self.j);
-            let [q0, q1, q2, rj] = Self::records::<V>(m, 8, 4, &self.j);
+            let own =
+                Motion { velocity: Self::vectors(cx.v, &self.i), spin: Self::vectors(cx.omega, &self.i) };
+            let other =
+                Motion { velocity: Self::vectors(cx.v, &self.j), spin: Self::vectors(cx.omega, &self.j) };
+            let radii = [Self::numbers(cx.radius, &self.i), Self::numbers(cx.radius, &self.j)];
+            let (mi, mj): (V, V) = (Self::numbers(cx.mass, &self.i), Self::numbers(cx.mass, &self.j));
 
             let past = slab.short.history.as_mut_ptr();
             let mut history = [V::all(0.0); MOST_MEMORY + 1];
@@ -431,9 +486,7 @@ impl<const N: usize> Group<N> {
             }
 
             let mass = if cx.frozen { beside_frozen(mi, mj) } else { reduced(mi, mj) };
-            let g = geometry([dx, dy, dz], [ri, rj], mass);
-            let own = Motion { velocity: [a0, a1, a2], spin: [p0, p1, p2] };
-            let other = Motion { velocity: [b0, b1, b2], spin: [q0, q1, q2] };
+            let g = geometry([dx, dy, dz], radii, mass);
             let wrench = law.contact(&g, &own, &other, &mut history[..memory], cx.step);
             slab.deep |= V::any(too_deep(&g));
 
@@ -455,7 +508,7 @@ impl<const N: usize> Group<N> {
         }
     }
 
-    /// Forces and torques into the records, contact by contact.
+    /// Adds forces and torques, contact by contact.
     #[inline(always)]
     unsafe fn add<V: Lanes<N>, L>(&self, cx: &Cx<L>, w: &Wrench<V>, count: usize) {
         // SAFETY: passed on.
@@ -464,16 +517,16 @@ impl<const N: usize> Group<N> {
             let ([fx, fy, fz], [ax, ay, az], [bx, by, bz]) = (w.force, w.torque_i, w.torque_j);
             let force = V::to_rows([fx, fy, fz, zero]);
             let (ti, tj) = (V::to_rows([ax, ay, az, zero]), V::to_rows([bx, by, bz, zero]));
-            let f: *mut f64 = cx.force.as_ptr().cast();
+            let (f, t): (*mut f64, *mut f64) = (cx.force.as_ptr().cast(), cx.torque.as_ptr().cast());
             for lane in 0..N {
                 if lane >= count {
                     break;
                 }
-                let (pi, pj) = (f.add(8 * self.i[lane]), f.add(8 * self.j[lane]));
-                (V::Row::load(pi) + force[lane]).store(pi);
-                (V::Row::load(pj) - force[lane]).store(pj);
-                (V::Row::load(pi.add(4)) + ti[lane]).store(pi.add(4));
-                (V::Row::load(pj.add(4)) + tj[lane]).store(pj.add(4));
+                let (i, j) = (3 * self.i[lane], 3 * self.j[lane]);
+                (V::Row::load3(f.add(i)) + force[lane]).store3(f.add(i));
+                (V::Row::load3(f.add(j)) - force[lane]).store3(f.add(j));
+                (V::Row::load3(t.add(i)) + ti[lane]).store3(t.add(i));
+                (V::Row::load3(t.add(j)) + tj[lane]).store3(t.add(j));
             }
         }
     }
@@ -523,32 +576,31 @@ fn beside_frozen<R: Real>(mi: R, mj: R) -> R {
 /// A single contact in plain numbers.
 unsafe fn one<L: ContactLaw, const W: usize>(cx: &Cx<L>, law: &L, slab: &mut Slab, k: usize) {
     let (i, w) = (slab.short.i[k] as usize, slab.short.w[k]);
-    let (j, s) = (place(w) as usize, cx.shifts[(w >> HERE_BITS) as usize]);
-    let (a, b) = (cx.position[i].0, cx.position[j].0);
+    let (j, s) = (grain(w), cx.shifts[(w >> HERE_BITS) as usize]);
+    let (a, b) = (cx.x[i], cx.x[j]);
     let d = [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])];
-    let (mi, mj) = (&cx.motion[i].0, &cx.motion[j].0);
-    let mass = if cx.frozen { beside_frozen(mi[3], mj[3]) } else { reduced(mi[3], mj[3]) };
-    let g = geometry(d, [a[3], b[3]], mass);
-    let motion = |m: &[f64; 8]| Motion { velocity: [m[0], m[1], m[2]], spin: [m[4], m[5], m[6]] };
+    let (mi, mj) = (cx.mass[i], cx.mass[j]);
+    let mass = if cx.frozen { beside_frozen(mi, mj) } else { reduced(mi, mj) };
+    let g = geometry(d, [cx.radius[i], cx.radius[j]], mass);
+    let motion = |i: usize| Motion { velocity: cx.v[i], spin: cx.omega[i] };
     let mut row = [0.0; MOST_MEMORY + 1];
     let past = &mut slab.short.history[k * W..][..W];
     if past[W - 1] == cx.now {
         row[..W].copy_from_slice(past);
     }
-    let wrench = law.contact(&g, &motion(mi), &motion(mj), &mut row[..law.memory()], cx.step);
+    let wrench = law.contact(&g, &motion(i), &motion(j), &mut row[..law.memory()], cx.step);
     slab.deep |= too_deep(&g);
     if cx.store {
         past[..W - 1].copy_from_slice(&row[..W - 1]);
         past[W - 1] = cx.now + 1.0;
     }
-    // SAFETY: places of records; the caller keeps other threads away.
+    // SAFETY: entries are grains; the caller keeps other threads away.
     unsafe {
-        let own = &mut (*cx.force.as_ptr().add(i)).0;
-        (0..3).for_each(|d| own[d] += wrench.force[d]);
-        (0..3).for_each(|d| own[4 + d] += wrench.torque_i[d]);
-        let other = &mut (*cx.force.as_ptr().add(j)).0;
-        (0..3).for_each(|d| other[d] -= wrench.force[d]);
-        (0..3).for_each(|d| other[4 + d] += wrench.torque_j[d]);
+        let (f, t) = (cx.force.as_ptr(), cx.torque.as_ptr());
+        (0..3).for_each(|d| (*f.add(i))[d] += wrench.force[d]);
+        (0..3).for_each(|d| (*f.add(j))[d] -= wrench.force[d]);
+        (0..3).for_each(|d| (*t.add(i))[d] += wrench.torque_i[d]);
+        (0..3).for_each(|d| (*t.add(j))[d] += wrench.torque_j[d]);
     }
     if cx.virial {
         for (s, (a, b)) in slab.virial.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {

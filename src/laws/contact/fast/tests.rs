@@ -159,11 +159,9 @@ impl Loop for FastLoop {
         }
         let step = Advance { dt: DT, history: true };
         // An evaluation that stores nothing changes nothing.
-        self.fast.run(&s.grains(), step, false, false);
-        self.fast.scatter(&mut s.zeros(), &mut s.zeros());
-        let virial = self.fast.run(&s.grains(), step, true, true);
+        self.fast.run(&s.grains(), [&mut s.zeros(), &mut s.zeros()], step, false, false);
         let (mut f, mut torque) = (s.zeros(), s.zeros());
-        self.fast.scatter(&mut f, &mut torque);
+        let virial = self.fast.run(&s.grains(), [&mut f, &mut torque], step, true, true);
         (f, torque, self.fast.contacts(), virial)
     }
 }

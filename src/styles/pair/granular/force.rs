@@ -105,11 +105,14 @@ impl Force {
         let Some(fast) = &mut self.fast else { return Ok(()) };
         w.contacts.remove(self.style);
         let step = Advance { dt: t.dt, history: !t.setup };
+        let p = &mut w.particles;
+        let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
         let masses = w.contact_masses();
         let grains = Grains { mass: &masses, ..grains(w, period, &[], &self.frozen)? };
-        let virial = fast.run(&grains, step, store, t.virial);
+        let virial = fast.run(&grains, [&mut f, &mut torque], step, store, t.virial);
         let deep = fast.deep;
-        fast.scatter(&mut w.particles.f, &mut w.particles.torque);
+        drop(masses);
+        (w.particles.f, w.particles.torque) = (f, torque);
         if t.virial {
             add(&mut w.tally.virial, virial);
         }
@@ -185,8 +188,8 @@ impl Op for Force {
 
     fn bytes(&self, w: &World) -> u64 {
         if let Some(fast) = self.fast.as_ref().filter(|_| self.is_fast) {
-            // Short lists with history, records of grains in and out.
-            return (fast.pairs()[1] * 44 + w.n() * 400) as u64;
+            // Short lists with history; per grain what contacts read and write, and positions once more.
+            return (fast.pairs()[1] * 44 + w.n() * 250) as u64;
         }
         // Pairs read with both ends (12 + 2 × 32 bytes); per contact both ends' state, wrench and history.
         (self.plain.list.len() * 76 + self.plain.sweep.len() * 400) as u64
