@@ -26,7 +26,7 @@ pub fn line_up_again(w: &mut World) {
 
 fn order(w: &World, x: &[[f64; 3]]) -> Option<Vec<usize>> {
     let p = &w.particles;
-    if !p.style.sphere || w.families.is_some() || p.len() < FEW {
+    if !p.style.sphere || p.style.peri || w.families.is_some() || p.len() < FEW {
         return None;
     }
     let (domain, period) = (w.domain.as_ref()?, w.periods());

@@ -3,9 +3,11 @@
 use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Param};
+use crate::math::vec3::Vec3;
+use crate::par;
 use crate::plan::{Access, Op, Stage, When};
 use crate::styles::command::common::{choice_or_refuse, variable_param};
-use crate::styles::matter::{Chosen, Masses, change_forces, check_masses, publish};
+use crate::styles::matter::{check_masses, publish};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, Pull, Reading, SealCx, Shape, Style};
 use crate::world::{GroupId, World};
@@ -115,7 +117,7 @@ impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let span = cx.span();
         check_masses(cx.world(), span)?;
-        let chosen = Chosen::new(cx.world(), self.group, None, span)?;
+        let bit = self.group.bit();
         let mut read = |p: &Param| cx.param(p, Stage::PostForce, &When::Always);
         let magnitude = read(&self.magnitude)?;
         let pointer = match &self.direction {
@@ -131,13 +133,21 @@ impl Fix for Declared {
             }
             let (g, unit) = (magnitude.get(w), pointer.unit(w, w.settings.two_dimensional));
             let [ax, ay, az] = unit.map(|e| g * e);
-            let [energy] = change_forces(w, &chosen, |w, i, f| {
-                let (m, [x, y, z]) = (Masses::of(w).get(i), w.particles.x[i]);
-                f[0] += m * ax;
-                f[1] += m * ay;
-                f[2] += m * az;
-                [-(m * (ax * x + ay * y + az * z))]
-            });
+            let p = &mut w.particles;
+            let columns = (&mut p.f[..], &p.x[..], &p.mass[..], &p.mask[..]);
+            let pull = |_, (f, x, mass, mask): (&mut [Vec3], &[Vec3], &[f64], &[u32])| {
+                let mut energy = 0.0;
+                for (((f, x), m), _) in
+                    f.iter_mut().zip(x).zip(mass).zip(mask).filter(|(_, m)| **m & bit != 0)
+                {
+                    f[0] += m * ax;
+                    f[1] += m * ay;
+                    f[2] += m * az;
+                    energy -= m * (ax * x[0] + ay * x[1] + az * x[2]);
+                }
+                energy
+            };
+            let energy = par::reduce_each(columns, pull, |a, b| a + b).unwrap_or(0.0);
             publish(w, slot, t, energy, &[]);
             Ok(())
         });

@@ -1,7 +1,7 @@
 //! Grains that overlap so far that contact laws mean little.
 
 use super::Fast;
-use super::sweep::{HERE_BITS, grain};
+use super::near::{HERE_BITS, grain};
 use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::{DEEP, Grains};
 

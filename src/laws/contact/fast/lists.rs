@@ -1,6 +1,6 @@
 //! The two lists of each slab: pairs within the skin, and of those the pairs within the thin skin.
 
-use super::sweep::{self, HERE_BITS};
+use super::near::{self, HERE_BITS};
 use super::{Fast, NONE, NOWHERE};
 use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::Grains;
@@ -123,6 +123,8 @@ impl<L: ContactLaw> Fast<L> {
             out.i.push(0);
             out.w.push(NOWHERE << HERE_BITS);
         }
+        out.i.shrink_to(out.i.len() / 8 * 9);
+        out.w.shrink_to(out.w.len() / 8 * 9);
     }
 
     /// Short lists from the present positions; contacts keep what they remember.
@@ -139,7 +141,7 @@ impl<L: ContactLaw> Fast<L> {
             let mut room = open().pop().unwrap_or_default();
             room.clear();
             // SAFETY: `near` asks the processor; list entries are grains.
-            unsafe { sweep::near(grains, &this.shifts, slab, this.thin, |t| room.t.push(t)) };
+            unsafe { near::near(grains, &this.shifts, slab, this.thin, |t| room.t.push(t)) };
             this.fill_short(slab, book.as_ref(), &mut room);
             std::mem::swap(&mut slab.short, &mut room);
             open().push(room);
@@ -157,6 +159,12 @@ impl<L: ContactLaw> Fast<L> {
             new.i.push(0);
             new.w.push(NOWHERE << HERE_BITS);
         }
+        let most = new.i.len() / 8 * 9;
+        for list in [&mut new.i, &mut new.w, &mut new.t] {
+            list.shrink_to(most);
+        }
+        new.history.shrink_to(most * width);
+        new.history.reserve_exact(new.i.len() * width);
         new.history.resize(new.i.len() * width, 0.0);
         let mut at = 0;
         for (k, t) in new.t.iter().enumerate() {

@@ -103,7 +103,7 @@ impl<L: ContactLaw> Fast<L> {
         for list in &self.lists {
             let short = &list.short;
             for k in (0..short.i.len()).filter(|k| short.history[(k + 1) * self.width - 1] == self.now) {
-                let (i, j) = (short.i[k] as usize, super::sweep::grain(short.w[k]));
+                let (i, j) = (short.i[k] as usize, super::near::grain(short.w[k]));
                 let h = &short.history[k * self.width..][..memory];
                 if self.tag[i] <= self.tag[j] {
                     f([self.tag[i], self.tag[j]], h);
@@ -118,7 +118,7 @@ impl<L: ContactLaw> Fast<L> {
 
     /// Writes what the book holds of a pair of grains into the row of a short list: what is remembered and the step.
     pub(super) fn look_up(&self, book: &Book, i: u32, w: u32, row: &mut [f64]) {
-        let j = super::sweep::grain(w) as u32;
+        let j = super::near::grain(w) as u32;
         let memory = self.width - 1;
         row.fill(0.0);
         row[memory] = -1.0;

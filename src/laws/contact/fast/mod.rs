@@ -7,8 +7,10 @@
 //! in two colours keep the order of additions for any number of threads.
 
 mod deep;
+mod group;
 mod lists;
 mod memory;
+mod near;
 mod sweep;
 
 use super::driver::Grains;
@@ -24,7 +26,7 @@ use memory::Book;
 /// How many numbers at most a contact of the fast loop remembers.
 pub const MOST_MEMORY: usize = 7;
 /// How many grains at most: a place and an image share 32 bits.
-pub const MOST_GRAINS: usize = (1 << sweep::PLACE_BITS) - 1;
+pub const MOST_GRAINS: usize = (1 << near::PLACE_BITS) - 1;
 /// The second skin in units of the first.
 const THIN: f64 = 0.2;
 /// The image of what fills lists up, and how far it is away: so far that squares are infinite.

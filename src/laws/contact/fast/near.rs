@@ -1,0 +1,130 @@
+//! Which pairs of a list are near each other, four at a time.
+
+use super::has_avx2;
+use super::lists::Slab;
+use crate::laws::contact::driver::Grains;
+use crate::math::four::{Four, Plain};
+use crate::math::vec3::Vec3;
+
+/// Bits of a list entry that hold a grain; the image stands above them.
+pub const PLACE_BITS: u32 = 27;
+/// How far the image is shifted.
+pub const HERE_BITS: u32 = PLACE_BITS;
+
+/// By bits of a mask: the lanes that are set, in order.
+pub const LANES: [[u32; 4]; 16] = lanes();
+
+/// By bits of a mask, four bits each: how many lanes are set.
+pub const COUNTS: u64 = 0x4332_3221_3221_2110;
+
+const fn lanes() -> [[u32; 4]; 16] {
+    let (mut table, mut bits) = ([[0; 4]; 16], 0);
+    while bits < 16 {
+        let (mut lane, mut count) = (0, 0);
+        while lane < 4 {
+            if bits >> lane & 1 == 1 {
+                table[bits][count] = lane as u32;
+                count += 1;
+            }
+            lane += 1;
+        }
+        bits += 1;
+    }
+    table
+}
+
+/// The grain in a list entry.
+#[inline(always)]
+pub fn grain(w: u32) -> usize {
+    (w & ((1 << PLACE_BITS) - 1)) as usize
+}
+/// Calls `hit` with the numbers of all pairs of the long list whose surfaces are nearer than `thin`, in order.
+///
+/// # Safety
+/// List entries must be grains.
+pub unsafe fn near(grains: &Grains, shifts: &[[f64; 4]; 32], slab: &Slab, thin: f64, hit: impl FnMut(u32)) {
+    let at = Places { x: grains.x, radius: grains.radius, shifts };
+    // SAFETY: passed on.
+    unsafe {
+        #[cfg(target_arch = "x86_64")]
+        if has_avx2() {
+            return near_avx2(at, slab, thin, hit);
+        }
+        near_in::<Plain>(at, slab, thin, hit);
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+unsafe fn near_avx2(at: Places, slab: &Slab, thin: f64, hit: impl FnMut(u32)) {
+    // SAFETY: passed on.
+    unsafe { near_in::<crate::math::four::Avx2>(at, slab, thin, hit) }
+}
+
+#[inline(always)]
+unsafe fn near_in<F: Four>(at: Places, slab: &Slab, thin: f64, mut hit: impl FnMut(u32)) {
+    let list = &slab.long;
+    for k in (0..list.i.len()).step_by(4) {
+        // SAFETY: lists are filled up to fours; entries are grains.
+        let mut bits = unsafe { at.closer::<F>(list.i.as_ptr().add(k), list.w.as_ptr().add(k), thin) };
+        while bits != 0 {
+            hit(k as u32 + bits.trailing_zeros());
+            bits &= bits - 1;
+        }
+    }
+}
+
+/// Where grains are.
+#[derive(Clone, Copy)]
+pub(super) struct Places<'a> {
+    /// Positions.
+    pub x: &'a [Vec3],
+    /// Radii.
+    pub radius: &'a [f64],
+    /// How far each image is shifted.
+    pub shifts: &'a [[f64; 4]; 32],
+}
+
+impl Places<'_> {
+    /// Which of four pairs have surfaces nearer than `extra`, as bits.
+    #[inline(always)]
+    pub unsafe fn closer<F: Four>(&self, i: *const u32, w: *const u32, extra: f64) -> u32 {
+        // SAFETY: passed on.
+        unsafe {
+            let rows = [
+                self.apart(*i, *w),
+                self.apart(*i.add(1), *w.add(1)),
+                self.apart(*i.add(2), *w.add(2)),
+                self.apart(*i.add(3), *w.add(3)),
+            ];
+            let [x, y, z, _]: [F; 4] = F::transpose(rows);
+            let r = self.radius.as_ptr();
+            let own = [
+                *r.add(*i as usize),
+                *r.add(*i.add(1) as usize),
+                *r.add(*i.add(2) as usize),
+                *r.add(*i.add(3) as usize),
+            ];
+            let other = [
+                *r.add(grain(*w)),
+                *r.add(grain(*w.add(1))),
+                *r.add(grain(*w.add(2))),
+                *r.add(grain(*w.add(3))),
+            ];
+            let reach = F::load(own.as_ptr()) + F::load(other.as_ptr()) + extra;
+            F::bits((reach * reach).above(x * x + y * y + z * z))
+        }
+    }
+
+    /// x_i − x_j.
+    #[inline(always)]
+    pub unsafe fn apart<F: Four>(&self, i: u32, w: u32) -> F {
+        // SAFETY: passed on.
+        unsafe {
+            let a = F::load3(self.x.as_ptr().add(i as usize).cast());
+            let b = F::load3(self.x.as_ptr().add(grain(w)).cast());
+            let shift = F::load(self.shifts.as_ptr().add((w >> HERE_BITS) as usize).cast());
+            a - (b + shift)
+        }
+    }
+}
