@@ -135,18 +135,41 @@ impl<L: ContactLaw> Fast<L> {
 
     /// The contacts of the last evaluation that remembered, as the world keeps them.
     pub fn contacts(&self) -> Contacts {
-        let memory = self.laws.memory();
-        let live =
-            |s: &Short| (0..s.i.len()).filter(|k| s.history[(k + 1) * self.width - 1] == self.now).count();
-        let count = self.lists.iter().map(|l| live(&l.short)).sum();
-        let (mut keys, mut history) = (Vec::with_capacity(count), Vec::with_capacity(count * memory));
-        self.each_live(|key, h| {
-            keys.push((key, keys.len() as u32));
-            history.extend_from_slice(&h[..memory]);
-        });
-        keys.sort_unstable();
-        let sorted =
-            keys.iter().flat_map(|(_, k)| &history[*k as usize * memory..][..memory]).copied().collect();
-        Contacts { keys: keys.iter().map(|(key, _)| *key).collect(), width: memory, history: sorted }
+        let (memory, width) = (self.laws.memory(), self.width);
+        let is_live = |s: &Short, k: usize| s.history[(k + 1) * width - 1] == self.now;
+        let mut live = vec![];
+        for (slab, list) in self.lists.iter().enumerate() {
+            let short = &list.short;
+            for k in (0..short.i.len()).filter(|&k| is_live(short, k)) {
+                let (p, q) = self.tags(short, k);
+                live.push(([p.min(q), p.max(q)], slab as u32, k as u32));
+            }
+        }
+        live.sort_unstable();
+        let mut out =
+            Contacts { keys: vec![], width: memory, history: Vec::with_capacity(live.len() * memory) };
+        for (_, slab, k) in &live {
+            let (short, k) = (&self.lists[*slab as usize].short, *k as usize);
+            let from = out.history.len();
+            out.history.extend_from_slice(&short.history[k * width..][..memory]);
+            let (p, q) = self.tags(short, k);
+            if p > q {
+                mirror(&mut out.history[from..]);
+            }
+        }
+        out.keys = live.into_iter().map(|(key, ..)| key).collect();
+        out.keys.shrink_to_fit();
+        out
+    }
+
+    /// The identities of a pair of a short list.
+    fn tags(&self, short: &Short, k: usize) -> (u32, u32) {
+        (self.tag[short.i[k] as usize], self.tag[super::near::grain(short.w[k])])
+    }
+
+    /// Gives everything back but what contacts remember, which [`Fast::contacts`] can still tell.
+    pub fn keep_contacts(&mut self) {
+        self.lists.iter_mut().for_each(|l| l.long = Default::default());
+        (self.spare, self.seen) = (vec![], vec![]);
     }
 }

@@ -170,6 +170,9 @@ impl<L: ContactLaw> Fast<L> {
         let mut slabs = Slabs::default();
         slabs.sort(grains.x, grains.tag, 2.0 * largest + frame.skin, &frame.lo, &frame.period);
         let book = self.remember(grains.tag, known);
+        // The book has what they knew: room for what is made now.
+        self.lists.iter_mut().for_each(|l| l.short = Short::default());
+        (self.spare, self.seen) = (vec![], vec![]);
         self.tag.clear();
         self.tag.extend_from_slice(grains.tag);
         for (image, shift) in self.shifts.iter_mut().take(27).enumerate() {

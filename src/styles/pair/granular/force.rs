@@ -96,6 +96,7 @@ impl Force {
     /// The fast loop gives its contacts back to the world.
     fn hand_over(&mut self, w: &mut World) {
         if let Some(fast) = self.fast.as_mut().filter(|_| std::mem::take(&mut self.is_fast)) {
+            fast.keep_contacts();
             w.contacts.insert(self.style.to_string(), fast.contacts());
             fast.clear();
         }
