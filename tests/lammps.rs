@@ -164,3 +164,36 @@ decks! {
     gran_settle
     gran_wall_region
 }
+
+/// A deck without dynamics that matter: its thermo table and the lines it prints.
+fn check_table(deck: &str) -> Vec<String> {
+    let rules: BTreeMap<String, Rule> = toml::from_str(&stored("tolerances.toml")).unwrap();
+    let golden = read(&stored(&format!("golden/{deck}.csv")));
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("in.deck"), stored(&format!("decks/{deck}.in"))).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_perigrain"));
+    command.current_dir(folder.path());
+    command.args(["-in", "in.deck", "-log", "log.deck", "-screen", "none", "-compat", "lammps"]);
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{deck}: {}", String::from_utf8_lossy(&output.stderr));
+    let log = fs::read_to_string(folder.path().join("log.deck")).unwrap();
+    let rows = read(&log);
+    assert_eq!(rows.len(), golden.len(), "{deck}: rows");
+    compare(&rows, &golden, &rules[deck]).unwrap_or_else(|report| panic!("{deck}:\n{report}"));
+    log.lines().map(String::from).collect()
+}
+
+#[test]
+fn misc_script() {
+    let log = check_table("misc_script");
+    // What LAMMPS 22Jul2025 prints for this deck.
+    let printed = ["pass 1 hello 5.000", "first", "pass 2 hello 5.000", "pass 3 hello 7.000"];
+    let own: Vec<&str> =
+        log.iter().map(String::as_str).filter(|l| l.starts_with("pass ") || *l == "first").collect();
+    assert_eq!(own, printed);
+}
+
+#[test]
+fn misc_lattice() {
+    check_table("misc_lattice");
+}

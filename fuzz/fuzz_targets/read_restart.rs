@@ -1,8 +1,4 @@
 //! Any bytes as a restart file.
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-
-fuzz_target!(|bytes: &[u8]| {
-    perigrain_fuzz::with_file(bytes, "read_restart FILE\nrun 0\n");
-});
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| perigrain_fuzz::read_restart(bytes));

@@ -19,3 +19,49 @@ pub fn with_file(bytes: &[u8], deck: &str) {
         work_off(&deck.replace("FILE", &path.display().to_string()), Mode::Run, folder.path());
     }
 }
+
+/// Any text as a deck that is only checked: words, quotes, substitution, flow, and every command's own reader.
+pub fn lexer(text: &str) {
+    let _ = perigrain::lang::is_unfinished(text);
+    work_off(text, Mode::Check, Path::new("/nonexistent"));
+}
+
+/// Any text as a formula: equal, vector and atom style, in a scene with particles.
+pub fn expression(text: &str) {
+    const SCENE: &str = "units si\natom_style sphere\nregion b block 0 2 0 2 0 2\ncreate_box 1 b\n\
+        create_atoms 1 single 0.5 0.5 0.5\ncreate_atoms 1 single 1.5 0.5 0.5\nvariable l vector [1,2,3]\n";
+    let Ok(_) = perigrain::lang::Expr::parse(text, perigrain::diag::Span::default()) else { return };
+    // Commands would be another matter: one formula, on one line.
+    if text.contains(['\n', '\r', '"', '\'', '$', '#', '&']) {
+        return;
+    }
+    let deck = format!(
+        "{SCENE}variable e equal \"{text}\"\nvariable p atom \"{text}\"\nvariable q equal v_p[1]\nprint \"${{e}}\"\nprint \"${{q}}\"\n"
+    );
+    work_off(&deck, Mode::Run, Path::new("."));
+}
+
+/// Any bytes as a data file. The first byte chooses the atom style.
+pub fn read_data(bytes: &[u8]) {
+    const STYLES: [&str; 4] = ["atomic", "sphere", "peri", "hybrid sphere peri"];
+    let Some((first, rest)) = bytes.split_first() else { return };
+    let style = STYLES[usize::from(*first) % STYLES.len()];
+    with_file(rest, &format!("atom_style {style}\nread_data FILE\n"));
+}
+
+/// Any bytes as a text dump. The first byte chooses between read_dump and rerun.
+pub fn read_dump(bytes: &[u8]) {
+    const SCENE: &str =
+        "region b block 0 2 0 2 0 2\ncreate_box 1 b\ncreate_atoms 1 single 0.5 0.5 0.5\nmass 1 1\n";
+    let Some((first, rest)) = bytes.split_first() else { return };
+    let line = match first % 2 {
+        0 => "read_dump FILE 5 x y z vx ix add yes",
+        _ => "rerun FILE dump x y z vx ix trim yes add keep",
+    };
+    with_file(rest, &format!("{SCENE}{line}\n"));
+}
+
+/// Any bytes as a restart file.
+pub fn read_restart(bytes: &[u8]) {
+    with_file(bytes, "read_restart FILE\nrun 0\n");
+}

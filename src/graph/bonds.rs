@@ -26,6 +26,7 @@ pub fn bond_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
     let force = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
     enter(graph, w, force, cx.span, false);
+    w.set_anew(true, None);
     Ok(Declared::default())
 }
 
@@ -48,6 +49,8 @@ pub fn bond_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
     args.finish()?;
     let span = node.span;
     enter(graph, w, force, span, true);
+    let own: Vec<(u16, u16)> = kinds.iter().map(|k| (*k, *k)).collect();
+    w.set_anew(true, Some(&own));
     Ok(Declared::default())
 }
 

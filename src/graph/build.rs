@@ -207,6 +207,7 @@ fn pair_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -
     let pair = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
     graph.pair = Some(PairNode { pair, span: cx.span, lines: vec![] });
+    w.set_anew(false, None);
     w.touch();
     Ok(Declared::default())
 }
@@ -236,6 +237,7 @@ fn pair_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -
     if let Some(node) = &mut graph.pair {
         node.pair = pair;
     }
+    w.set_anew(false, Some(&pairs));
     w.touch();
     Ok(Declared::default())
 }
@@ -265,7 +267,10 @@ fn id_of<'a>(args: &mut Args<'a>, what: &str) -> Result<(&'a str, Span)> {
 }
 
 fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
-    needs_box(w, args)?;
+    // As in LAMMPS: what particles have besides may be said before there is a box.
+    if args.peek_at(2).is_none_or(|style| style.text != "property/atom") {
+        needs_box(w, args)?;
+    }
     let (id, id_span) = id_of(args, "fix")?;
     let group_word = args.expect("the fix's group")?;
     let group = cx.build(graph, w, id, GroupId::ALL).group(group_word)?;

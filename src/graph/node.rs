@@ -6,6 +6,7 @@ use crate::diag::{FileId, Span};
 use crate::lang::{RefKind, ValueRef};
 use crate::styles::bond::BondForce;
 use crate::styles::{Compute, Dump, Fix, Names, Pair, Shape, Use, UseKind};
+use crate::world::adapted::Coefficient;
 use crate::world::{GroupId, Said};
 use std::collections::BTreeMap;
 
@@ -168,6 +169,20 @@ impl Clone for DumpNode {
 }
 
 impl Graph {
+    /// The pair style in force or its sub-style of this name, the first if there are several.
+    fn pair_part(&self, style: &str) -> Option<&dyn Pair> {
+        let pair = self.pair.as_ref()?.pair.as_ref();
+        std::iter::once(pair).chain(pair.parts()).find(|p| p.name() == style)
+    }
+
+    /// What the deck's lines said of a coefficient.
+    pub fn coefficient(&self, of: &Coefficient) -> Option<f64> {
+        match of.bond {
+            true => self.bond.as_ref()?.force.coefficient(&of.name, of.types.0),
+            false => self.pair_part(&of.style)?.coefficient(&of.name, of.types),
+        }
+    }
+
     /// The fix with this ID.
     pub fn find_fix(&self, id: &str) -> Option<&FixNode> {
         self.fixes.iter().find(|f| f.id == id)
@@ -249,6 +264,13 @@ impl Names for Graph {
         let Some(node) = &self.pair else { return vec![] };
         let parts = node.pair.parts();
         std::iter::once(node.pair.name()).chain(parts.iter().map(|p| p.name())).collect()
+    }
+
+    fn coefficients(&self, bond: bool, style: &str) -> Option<&'static [&'static str]> {
+        if bond {
+            return self.bond.as_ref().filter(|b| b.force.name() == style).map(|b| b.force.coefficients());
+        }
+        self.pair_part(style).map(|p| p.coefficients())
     }
 
     fn users(&self, name: &Use) -> Vec<String> {

@@ -1,6 +1,6 @@
 //! The op that prints a row of the step table.
 
-use crate::diag::Result;
+use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::math::cformat::Value;
 use crate::out;
 use crate::out::log::Log;
@@ -16,6 +16,8 @@ pub struct Row {
     pub layout: Layout,
     /// Its values.
     pub readings: Vec<Reading>,
+    /// Where the deck asks for them.
+    pub spans: Vec<Span>,
     /// At which steps.
     pub when: When,
     /// Where to.
@@ -32,6 +34,24 @@ impl Row {
         let values =
             self.readings.iter().zip(&self.layout.columns).map(|(r, c)| r.get(w) / share(c)).collect();
         (columns, out::rows::Row { step: t.step, time: w.clock.time(), values })
+    }
+
+    /// Refuses elements that vectors do not have as the run begins; where they go later, 0 is shown, as in LAMMPS.
+    fn all_there(&self, w: &World, t: &Tick) -> Result<()> {
+        for ((reading, column), span) in self.readings.iter().zip(&self.layout.columns).zip(&self.spans) {
+            if let Some(there) = reading.too_few(w) {
+                let what = column.name.split('[').next().unwrap_or_default();
+                let text = format!(
+                    "there is no `{}`: `{what}` has {there} elements at step {}",
+                    column.name, t.step
+                );
+                let d = Diagnostic::error(Code::WRONG_KIND, *span, text);
+                return Err(d
+                    .help("show an element that is there, or choose this thermo_style after a run")
+                    .into());
+            }
+        }
+        Ok(())
     }
 
     /// The row as dumps repeat it.
@@ -61,6 +81,9 @@ impl Op for Row {
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if t.setup {
             self.log.line(&memory_line(crate::world::memory::bytes(w)))?;
+        }
+        if t.setup {
+            self.all_there(w, t)?;
         }
         if t.setup && !self.layout.header().is_empty() {
             self.log.line(&self.layout.header())?;

@@ -12,6 +12,7 @@ use crate::plan::{LeftOut, Op, Placed, Stage, StepPlan, When};
 use crate::styles::bond::BondForce;
 use crate::styles::pair::probe::Probe;
 use crate::styles::{PlaceTest, Pull, Reading, SealCx, Shape, Text, Wants};
+use crate::world::adapted::Coefficient;
 use crate::world::{SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -371,6 +372,10 @@ impl SealCx for Sealer<'_> {
             Some(node) => node.compute.refresh(self, stage, when),
             None => fail(Code::UNKNOWN_NAME, self.span, format!("there is no compute `{id}`")),
         }
+    }
+
+    fn coefficient(&self, of: &Coefficient) -> Option<f64> {
+        self.graph.coefficient(of)
     }
 
     fn bonds(&self) -> Option<Box<dyn BondForce>> {

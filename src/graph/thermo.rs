@@ -50,6 +50,15 @@ pub enum Source {
     Ref(ValueRef),
 }
 
+impl Source {
+    fn span(&self) -> Span {
+        match self {
+            Self::Keyword(_, span) => *span,
+            Self::Ref(r) => r.span,
+        }
+    }
+}
+
 impl Default for Thermo {
     fn default() -> Self {
         let layout = Layout::one();
@@ -259,6 +268,7 @@ impl Thermo {
             sources.push(Source::Keyword("vol".into(), Span::default()));
         }
         let mut readings = vec![];
+        let spans = sources.iter().map(Source::span).collect();
         for source in &sources {
             readings.push(match source {
                 Source::Keyword(name, span) => s.keyword_total(name, *span, Stage::Output, &when)?,
@@ -268,7 +278,7 @@ impl Thermo {
                 }
             });
         }
-        Ok(Box::new(Row { layout, readings, when, log, warn: self.lost == Lost::Warn }))
+        Ok(Box::new(Row { layout, readings, spans, when, log, warn: self.lost == Lost::Warn }))
     }
 }
 

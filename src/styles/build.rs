@@ -130,6 +130,10 @@ pub trait Names {
     fn pair_styles(&self) -> Vec<&'static str> {
         vec![]
     }
+    /// The coefficients that `fix adapt` may change of a pair style (or bond style) in force; `None` where there is no such style.
+    fn coefficients(&self, _bond: bool, _style: &str) -> Option<&'static [&'static str]> {
+        None
+    }
     /// The fixes, computes and dumps in force that use a name, as `fix ball`.
     fn users(&self, _name: &Use) -> Vec<String> {
         vec![]

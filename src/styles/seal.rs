@@ -6,6 +6,7 @@ use crate::lang::{Param, ValueRef};
 use crate::out::log::Log;
 use crate::plan::{Op, Stage, When};
 use crate::styles::pair::probe::Probe;
+use crate::world::adapted::Coefficient;
 use crate::world::{SlotId, World};
 
 /// Where an op finds a value while it runs; the plan makes sure it is fresh.
@@ -43,6 +44,20 @@ impl Reading {
                 self.list(w).first().copied().unwrap_or(0.0)
             }
         }
+    }
+
+    /// How many elements (or rows) there are at present, where that is too few for the one this is to read.
+    pub fn too_few(&self, w: &World) -> Option<usize> {
+        let slot = match *self {
+            Reading::Element(s, _) | Reading::Cell(s, ..) => w.slots.get(s),
+            _ => return None,
+        };
+        let (wanted, there) = match *self {
+            Reading::Element(_, k) => (k, slot.vector.len()),
+            Reading::Cell(_, row, _) => (row, slot.array.len() / slot.array_cols.max(1)),
+            _ => return None,
+        };
+        (wanted >= there).then_some(there)
     }
 
     /// The number of particle `i`: its own, or the same for everyone.
@@ -184,6 +199,10 @@ pub trait SealCx {
     /// An unknown compute.
     fn refresh(&mut self, _id: &str, _stage: Stage, _when: &When) -> Result<Option<Box<dyn Op>>> {
         Ok(None)
+    }
+    /// What the deck's lines said of a coefficient of the pair or bond style in force.
+    fn coefficient(&self, _of: &Coefficient) -> Option<f64> {
+        None
     }
     /// The bond style in force.
     fn bonds(&self) -> Option<Box<dyn BondForce>> {

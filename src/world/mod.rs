@@ -1,5 +1,6 @@
 //! The state of a scene: everything that outlives a step, and nothing that decides.
 
+pub mod adapted;
 pub mod allowed;
 pub mod bonds;
 pub mod clock;

@@ -3,12 +3,14 @@
 //! `golden/NAME.txt` holds the thermo table that LAMMPS 22Jul2025 prints for `NAME.in`, 15 digits per number.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
+#[path = "../common/thermo.rs"]
+mod thermo;
+
+use perigrain::session::set_threads;
 use std::fs;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
-
-use perigrain::out::log::Log;
-use perigrain::session::{Options, Session, set_threads};
+use thermo::{run, run_in};
 
 /// Differences, as shares of the largest number of a column, that the order of additions explains: a few ulp, times the
 /// some tens of steps that carry them on.
@@ -17,64 +19,16 @@ const TOLERANCE: f64 = 1e-13;
 /// Decks write into the working folder, which belongs to the whole process: one at a time.
 static FOLDER: Mutex<()> = Mutex::new(());
 
-/// Runs a deck and returns the session and its thermo table, header first.
-fn run(name: &str, deck: &str, compat: bool) -> (Session, Vec<Vec<String>>) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("log");
-    let log = Log::silent();
-    log.open(&path, false).unwrap();
-    let options = Options { compat, log: log.clone(), ..Options::default() };
-    let mut session = Session::new(options).unwrap();
-    if let Err(e) = session.run_text(name, deck) {
-        panic!("{name}: {e}");
-    }
-    log.close().unwrap();
-    (session, table(&fs::read_to_string(path).unwrap()))
-}
-
-/// The rows of all thermo tables of a log, the header once.
-fn table(log: &str) -> Vec<Vec<String>> {
-    let (mut rows, mut inside): (Vec<Vec<String>>, bool) = (vec![], false);
-    for line in log.lines() {
-        let words: Vec<String> = line.split_whitespace().map(String::from).collect();
-        let numbers = words.iter().all(|w| w.parse::<f64>().is_ok()) && !words.is_empty();
-        match words.first().map(String::as_str) {
-            Some("Step") => {
-                inside = true;
-                if rows.is_empty() {
-                    rows.push(words);
-                }
-            }
-            _ if inside && numbers => rows.push(words),
-            _ => inside = false,
-        }
-    }
-    rows
-}
-
 /// Compares a deck's thermo table with LAMMPS'; the files that the deck writes are in the folder returned.
 fn agrees(name: &str) -> tempfile::TempDir {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixes");
-    let deck = fs::read_to_string(here.join(format!("{name}.in"))).unwrap();
-    let golden = table(&fs::read_to_string(here.join(format!("golden/{name}.txt"))).unwrap());
     let folder = tempfile::tempdir().unwrap();
-    let ours = {
+    thermo::agrees("fixes", name, TOLERANCE, |deck| {
         let _alone = FOLDER.lock().unwrap_or_else(PoisonError::into_inner);
         std::env::set_current_dir(&folder).unwrap();
-        let (_, ours) = run(name, &deck, true);
+        let (_, ours) = run_in(folder.path(), name, deck, true);
         std::env::set_current_dir("/").unwrap();
         ours
-    };
-    assert_eq!((ours.len(), &ours[0]), (golden.len(), &golden[0]), "{name}");
-    for (k, column) in golden[0].iter().enumerate() {
-        let numbers =
-            |t: &[Vec<String>]| -> Vec<f64> { t[1..].iter().map(|r| r[k].parse().unwrap()).collect() };
-        let (ours, golden) = (numbers(&ours), numbers(&golden));
-        let largest = golden.iter().fold(0.0, |m: f64, a| m.max(a.abs()));
-        for (row, (a, b)) in ours.iter().zip(&golden).enumerate() {
-            assert!((a - b).abs() <= TOLERANCE * largest, "{name}, {column}, row {row}: {a} is not {b}");
-        }
-    }
+    });
     folder
 }
 

@@ -1,12 +1,14 @@
 //! bond harmonic: springs along bonds.
 
-use super::pull::Along;
+use super::pull::{Along, Law};
 use super::{BondForce, BondStyle, Pull};
 use crate::diag::Result;
 use crate::lang::Args;
 use crate::math::cformat::general;
 use crate::plan::Op;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
+use crate::world::World;
+use crate::world::adapted::Coefficient;
 use std::collections::BTreeMap;
 
 /// The style.
@@ -47,6 +49,32 @@ fn pull([k, r0]: [f64; 2], r: f64) -> Pull {
     Pull { energy: k * stretch * stretch, force_per_length: if r > 0.0 { force / r } else { 0.0 } }
 }
 
+/// The springs of a run.
+struct Adapting {
+    /// As the deck's lines said.
+    said: Harmonic,
+    /// As fixes have changed them.
+    now: Harmonic,
+}
+
+impl Law for Adapting {
+    fn pull(&self, kind: u16, r: f64) -> Option<Pull> {
+        self.now.springs.get(&kind).map(|s| pull(*s, r))
+    }
+
+    fn adapt(&mut self, w: &World) {
+        self.now = self.said.clone();
+        for (kind, [k, r0]) in &mut self.now.springs {
+            let of = |name: &str| {
+                let (style, name, types) = ("harmonic".to_string(), name.to_string(), (*kind, *kind));
+                w.adapted(&Coefficient { bond: true, style, name, types })
+            };
+            *k = of("k").unwrap_or(*k);
+            *r0 = of("r0").unwrap_or(*r0);
+        }
+    }
+}
+
 impl BondForce for Harmonic {
     fn name(&self) -> &'static str {
         "harmonic"
@@ -67,9 +95,17 @@ impl BondForce for Harmonic {
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let springs = self.springs.clone();
-        let law = move |kind: u16, r: f64| springs.get(&kind).map(|s| pull(*s, r));
+        let law = Adapting { said: self.clone(), now: self.clone() };
         Ok(vec![Box::new(Along::new("bond harmonic", cx.span(), law))])
+    }
+
+    fn coefficients(&self) -> &'static [&'static str] {
+        &["k", "r0"]
+    }
+
+    fn coefficient(&self, name: &str, kind: u16) -> Option<f64> {
+        let [k, r0] = self.springs.get(&kind)?;
+        Some(if name == "k" { *k } else { *r0 })
     }
 
     fn single(&self, kind: u16, r: f64) -> Option<Pull> {

@@ -47,6 +47,16 @@ pub trait BondForce: Send + Sync {
     /// What a bond of this type does at length `r`, for `compute bond/local`; `None` where that takes more than a length.
     fn single(&self, kind: u16, r: f64) -> Option<Pull>;
 
+    /// The coefficients that `fix adapt` may change, by name.
+    fn coefficients(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// What the deck's lines said of one of them.
+    fn coefficient(&self, _name: &str, _kind: u16) -> Option<f64> {
+        None
+    }
+
     /// The coefficients of a type as a data file has them.
     fn written(&self, kind: u16) -> Option<String>;
 

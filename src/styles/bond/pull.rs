@@ -62,25 +62,36 @@ pub fn periods(w: &World) -> Result<Vec3> {
     Ok(std::array::from_fn(|d| if periodic[d] { lengths[d] } else { 0.0 }))
 }
 
+/// What a bond of some type does at some length.
+pub trait Law: Send + Sync {
+    /// `None` for types that are none of its business.
+    fn pull(&self, kind: u16, r: f64) -> Option<Pull>;
+
+    /// Takes the coefficients that fixes have changed.
+    fn adapt(&mut self, _w: &World) {}
+}
+
 /// Forces along the bonds of one style.
 pub struct Along<F> {
     name: String,
     span: Span,
     law: F,
+    /// Which changes of coefficients have been seen.
+    adapted: f64,
     /// Rebuild and change of bonds at which `list` was made.
     made: Option<(u64, u64)>,
     list: Vec<(usize, Found)>,
     pulls: Vec<(Vec3, Pull)>,
 }
 
-impl<F: Fn(u16, f64) -> Option<Pull> + Send + Sync> Along<F> {
+impl<F: Law> Along<F> {
     /// With a law of type and length; types without one are none of its business.
     pub fn new(name: impl Into<String>, span: Span, law: F) -> Self {
-        Self { name: name.into(), span, law, made: None, list: vec![], pulls: vec![] }
+        Self { name: name.into(), span, law, adapted: 0.0, made: None, list: vec![], pulls: vec![] }
     }
 }
 
-impl<F: Fn(u16, f64) -> Option<Pull> + Send + Sync> Op for Along<F> {
+impl<F: Law> Op for Along<F> {
     fn name(&self) -> &str {
         &self.name
     }
@@ -91,9 +102,13 @@ impl<F: Fn(u16, f64) -> Option<Pull> + Send + Sync> Op for Along<F> {
         Access::new("x bonds", "f tally")
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if self.adapted != w.adaptations() {
+            self.adapted = w.adaptations();
+            self.law.adapt(w);
+        }
         let now = (w.rebuild.generation, w.bonds.changes);
         if t.setup || self.made != Some(now) {
-            self.list = find(w, |b| (self.law)(b.kind as u16, 1.0).is_some(), self.span)?;
+            self.list = find(w, |b| self.law.pull(b.kind as u16, 1.0).is_some(), self.span)?;
             self.made = Some(now);
         }
         let lengths = periods(w)?;
@@ -104,7 +119,7 @@ impl<F: Fn(u16, f64) -> Option<Pull> + Send + Sync> Op for Along<F> {
             for (out, (_, found)) in pulls.iter_mut().zip(list) {
                 let d = apart(world, &lengths, found.ends);
                 let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-                *out = (d, law(found.kind, r).unwrap_or_default());
+                *out = (d, law.pull(found.kind, r).unwrap_or_default());
             }
         });
         for ((_, found), (d, pull)) in self.list.iter().zip(&self.pulls) {

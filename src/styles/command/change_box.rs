@@ -88,6 +88,17 @@ impl CommandStyle for ChangeBox {
         }
         let scale = scales(cx.world, lattice);
         let span = cx.span;
+        if let (true, [Step::Boundary(faces)]) = (cx.checking, steps.as_slice()) {
+            // A check has no particles for faces to follow, but later lines depend on what the faces are.
+            let faces = Boundary(*faces);
+            return Ok(common::setting(move |cx| {
+                if let Some(domain) = &mut cx.world.domain {
+                    common::check_flat(faces, (domain.lo[2], domain.hi[2]), domain.flat)?;
+                    domain.boundary = faces;
+                }
+                Ok(())
+            }));
+        }
         Ok(on_particles(vec![], move |cx| change(cx, group, &steps, scale, span)))
     }
 }

@@ -1,6 +1,6 @@
 //! `comm_modify`: what LAMMPS' processes tell each other; one process here.
 
-use super::common::{bad_keyword, choice_or_refuse, setting};
+use super::common::setting;
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
@@ -16,9 +16,9 @@ impl Style for CommModify {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "comm_modify [vel yes|no] [cutoff R] [mode single]",
+            syntax: "comm_modify [vel yes|no] [cutoff R] [mode single|multi|multi/old] [group ID] [cutoff/multi TYPE R] [reduce/multi]",
             summary: "Accepted for the sake of LAMMPS decks: one process has nothing to communicate.",
-            text: "All velocities are at hand, whatever `vel` says.",
+            text: "All velocities are at hand, whatever `vel` says, and all particles, whatever their cutoffs.",
             example: "comm_modify vel yes",
         }
     }
@@ -35,11 +35,27 @@ impl CommandStyle for CommModify {
                     a.non_negative("the cutoff")?;
                 }
                 "mode" => {
-                    choice_or_refuse(a, "mode", &["single"], &["multi", "multi/old"])?;
+                    a.choice("mode", &["single", "multi", "multi/old"])?;
                 }
+                "group" => {
+                    cx.group(a.expect("a group")?)?;
+                }
+                "cutoff/multi" | "cutoff/multi/old" => {
+                    a.expect("a collection or type, or a range of them")?;
+                    a.number("the cutoff")?;
+                }
+                "reduce/multi" => {}
                 _ => {
-                    let lammps = ["group", "cutoff/multi", "cutoff/multi/old", "reduce/multi"];
-                    return Err(bad_keyword(a, word, &["vel", "cutoff", "mode"], &lammps));
+                    const KNOWN: [&str; 7] = [
+                        "vel",
+                        "cutoff",
+                        "mode",
+                        "group",
+                        "cutoff/multi",
+                        "cutoff/multi/old",
+                        "reduce/multi",
+                    ];
+                    return Err(a.unknown(word, &KNOWN));
                 }
             }
         }
@@ -55,11 +71,13 @@ mod tests {
 
     #[test]
     fn is_validated() {
-        scene("comm_modify vel yes cutoff 0.5 mode single\nnewton on off\nprocessors * 1 1\ndimension 3");
+        scene(
+            "comm_modify vel yes cutoff 0.5 mode multi group all cutoff/multi 1*2 0.3\nnewton on off\nprocessors * 1 1\ndimension 3",
+        );
         let empty = Default::default();
         assert_eq!(refused(&empty, "comm_modify velo yes").0, "velo");
-        assert_eq!(refused(&empty, "comm_modify mode multi").0, "multi");
-        assert_eq!(refused(&empty, "comm_modify group all").0, "group");
+        assert_eq!(refused(&empty, "comm_modify mode many").0, "many");
+        assert_eq!(refused(&empty, "comm_modify group some").0, "some");
         assert_eq!(refused(&empty, "newton maybe").0, "maybe");
         assert_eq!(refused(&empty, "processors 2 0 1").0, "0");
         assert_eq!(refused(&empty, "dimension 4").0, "4");

@@ -105,6 +105,7 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &change_box::ChangeBox,
     &reset_atoms::ResetAtoms,
     &reset_atoms::ResetAtomIds,
+    &reset_atoms::ResetMolIds,
     &mass::Mass,
     &material::MaterialStyle,
     &peri_crack::PeriCrack,

@@ -1,6 +1,6 @@
 //! Computes cluster/atom, fragment/atom and aggregate/atom: which particles hang together.
 
-use super::near::{Clusters, bonds, within};
+use super::near::{Clusters, held_together, within};
 use super::{Compute, ComputeStyle};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
@@ -43,11 +43,11 @@ impl Style for FragmentAtom {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "compute ID group fragment/atom [single yes|no]",
-            summary: "Fragments: particles that unbroken peridynamic bonds hold together.",
+            summary: "Fragments: particles that bonds hold together.",
             text: "Per-atom vector: two particles of the group with an unbroken bond between them belong to one fragment; its \
                    number is the smallest id in it. A particle without any such bond has 0, or its own id with \
-                   `single yes`; 0 outside the group. Before the first run there are no bonds yet. LAMMPS has the same \
-                   compute for the bonds of molecules; that it follows peridynamic bonds is perigrain's addition. With \
+                   `single yes`; 0 outside the group. Bonds are those of molecules, turned off or not, as in LAMMPS, and in addition those of \
+                   peridynamic bodies, which are there from the first run on. With \
                    `compute chunk/atom c_ID compress yes` fragments can be counted, weighed and followed.",
             example: "compute f all fragment/atom single yes",
         }
@@ -63,7 +63,7 @@ impl Style for AggregateAtom {
             syntax: "compute ID group aggregate/atom cutoff",
             summary: "Clusters of particles that are close to each other or bonded.",
             text: "Per-atom vector as that of compute cluster/atom, but unbroken peridynamic bonds hold particles together, \
-                   too (in LAMMPS: the bonds of molecules).",
+                   too, and so do the bonds of molecules.",
             example: "compute a all aggregate/atom 1.5",
         }
     }
@@ -94,10 +94,11 @@ impl ComputeStyle for FragmentAtom {
             }
             single = args.flag("single")?;
         }
-        if !cx.world.particles.style.peri {
+        let style = cx.world.particles.style;
+        if !(style.peri || style.bonded) {
             let text = "fragment/atom needs particles with bonds";
             return Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, text)
-                .help("put `atom_style peri` at the top of the deck, or use `compute cluster/atom`")
+                .help("`atom_style peri` or `bond` have them; `compute cluster/atom` looks at distances")
                 .into());
         }
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, cutoff: None, bonds: true, single }))
@@ -123,7 +124,7 @@ impl Compute for Declared {
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let me = self.clone();
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x mask families", move |w, _, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x mask families bonds", move |w, _, out| {
             let p = &w.particles;
             let of = |i: usize| p.mask[i] & me.group.bit() != 0;
             let mut clusters = Clusters::new(&p.tag);
@@ -133,7 +134,7 @@ impl Compute for Declared {
                 near.iter().for_each(|pair| clusters.join(pair.i, pair.j));
             }
             if me.bonds {
-                bonds(w, |i, j| {
+                held_together(w, |i, j| {
                     if of(i as usize) && of(j as usize) {
                         clusters.join(i, j);
                         (bonded[i as usize], bonded[j as usize]) = (true, true);

@@ -85,6 +85,19 @@ pub fn bonds(w: &World, mut f: impl FnMut(u32, u32)) {
     }
 }
 
+/// Calls `f(i, j)` for everything that holds two particles together: unbroken peridynamic bonds, and listed bonds that are
+/// not broken.
+pub fn held_together(w: &World, mut f: impl FnMut(u32, u32)) {
+    bonds(w, &mut f);
+    let tags = &w.particles.tag;
+    let index = Index::new(tags);
+    for bond in w.bonds.list.iter().filter(|b| b.kind != 0) {
+        if let [Some(i), Some(j)] = bond.ends.map(|t| index.find(t, tags)) {
+            f(i as u32, j as u32);
+        }
+    }
+}
+
 /// Refuses to change lengths of the box that bonds cross: those would keep the length they had.
 ///
 /// # Errors

@@ -1,4 +1,6 @@
-//! fix adapt: sizes of spheres that follow a variable.
+//! fix adapt: sizes of spheres and coefficients of forces that follow variables.
+
+mod coefficients;
 
 use super::window::forget;
 use super::{Fix, FixStyle};
@@ -7,6 +9,7 @@ use crate::lang::{Args, RefKind, ValueRef};
 use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::{BuildCx, Doc, Reading, SealCx, Style};
 use crate::world::{GroupId, World};
+use coefficients::Follows;
 use std::f64::consts::PI;
 
 /// The style.
@@ -18,16 +21,22 @@ impl Style for Adapt {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group adapt N atom diameter|diameter/disc v_name [scale yes|no] [reset yes|no] [mass yes|no]",
-            summary: "Lets the diameter of spheres follow a variable during a run.",
-            text: "The equal-style variable is evaluated in the setup of a run and at multiples of N (N = 0: in the setup only); \
-                   its value becomes the diameter of every particle of the group, or with `scale yes` a factor on the \
+            syntax: "fix ID group adapt N atom diameter|diameter/disc v_name | pair STYLE COEFFICIENT I J v_name | \
+                     bond STYLE COEFFICIENT I v_name … [scale yes|no] [reset yes|no] [mass yes|no]",
+            summary: "Lets the diameter of spheres or coefficients of forces follow variables during a run.",
+            text: "The equal-style variables are evaluated in the setup of a run and at multiples of N (N = 0: in the setup only). \
+                   Several changes can be written one after another; of `atom`, one.\n\n\
+                   `atom`: the value becomes the diameter of every particle of the group, or with `scale yes` a factor on the \
                    diameter it had at first (each change multiplies the present one by the new factor over the last). `mass yes` (default, as LAMMPS 22Jul2025 does) keeps the density, \
-                   of a disc with `diameter/disc`; `mass no` keeps the mass. `reset yes`: diameters and masses are put back \
-                   at the end of each run. Neighbour lists are made for the sizes at that moment: let particles grow by \
-                   less than the skin between two, or say `neigh_modify check no`. LAMMPS' `pair`, `kspace`, `bond` and \
-                   `atom charge` are refused: no style here has such parameters. After `reset yes` LAMMPS' masses are wrong in the next run; \
-                   perigrain's are those of before.",
+                   of a disc with `diameter/disc`; `mass no` keeps the mass. Neighbour lists are made for the sizes at that moment: let particles grow by \
+                   less than the skin between two, or say `neigh_modify check no`. After `reset yes` LAMMPS' masses are wrong in the next run; \
+                   perigrain's are those of before.\n\n\
+                   `pair`, `bond`: the value becomes the coefficient of these types, or with `scale yes` a factor on what it was when the run \
+                   began. There are `k r0` of bond style harmonic (as in LAMMPS), and in addition `s00 alpha` of all peridynamic styles, `c` of \
+                   the bond-based ones, and `k gamma` of pair style bpm/spring; a sub-style of `hybrid` is named by its own name. A new \
+                   `pair_coeff` or `bond_coeff` ends what a fix has made of its coefficients.\n\n\
+                   `reset yes`: what was changed is put back at the end of each run. `kspace` and `atom charge` are refused: there is \
+                   nothing of the kind here.",
             example: "variable d equal ramp(0.001,0.0011)\nfix swell ball adapt 1 atom diameter v_d reset yes",
         }
     }
@@ -36,35 +45,20 @@ impl Style for Adapt {
 impl FixStyle for Adapt {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         let every = args.integer_from(0, "the number of steps N")?;
-        let word = args.peek();
-        let attribute =
-            args.choice("attribute", &["atom", "pair", "bond", "angle", "dihedral", "improper", "kspace"])?;
-        if attribute != "atom" {
-            let text = format!("no style in perigrain has a parameter that `{attribute}` could change");
-            let d = Diagnostic::error(Code::NOT_SUPPORTED, word.map(|w| w.span), text);
-            return Err(d.help("fix adapt changes `atom diameter`").into());
-        }
-        let word = args.peek();
-        let what = args.choice("property of particles", &["diameter", "diameter/disc", "charge"])?;
-        let span = word.map(|w| w.span);
-        if what == "charge" {
-            return fail(Code::NOT_SUPPORTED, span, "particles have no charge in perigrain");
-        }
-        if !cx.world.particles.style.sphere {
-            let d = Diagnostic::error(Code::CONFLICT, span, "the particles of this scene have no diameter");
-            return Err(d.help("`atom_style sphere`, alone or in a hybrid, has it").into());
-        }
-        let size = variable(args, cx)?;
         let mut fix = Declared {
             id: cx.id.to_string(),
             group: cx.group,
             every,
-            size,
-            disc: what == "diameter/disc",
+            size: None,
+            follows: vec![],
             scale: false,
             reset: false,
             mass: true,
         };
+        attribute(&mut fix, args, cx)?;
+        while ATTRIBUTES.contains(&args.peek_text()) {
+            attribute(&mut fix, args, cx)?;
+        }
         while let Some(word) = args.next() {
             match word.text.as_str() {
                 "scale" => fix.scale = args.flag("scale")?,
@@ -75,6 +69,55 @@ impl FixStyle for Adapt {
         }
         Ok(Box::new(fix))
     }
+}
+
+/// What LAMMPS' fix changes.
+const ATTRIBUTES: [&str; 7] = ["atom", "pair", "bond", "angle", "dihedral", "improper", "kspace"];
+
+/// Reads one change.
+fn attribute(fix: &mut Declared, args: &mut Args, cx: &BuildCx) -> Result<()> {
+    let span = args.here();
+    match args.choice("attribute", &ATTRIBUTES)? {
+        "atom" if fix.size.is_some() => {
+            fail(Code::CONFLICT, span, "this fix changes the diameter already: use another fix")
+        }
+        "atom" => {
+            fix.size = Some(size(args, cx)?);
+            Ok(())
+        }
+        kind @ ("pair" | "bond") => {
+            fix.follows.push(coefficients::read(kind == "bond", args, cx)?);
+            Ok(())
+        }
+        other => {
+            let text = format!("no style in perigrain has a parameter that `{other}` could change");
+            let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
+            Err(d
+                .help("fix adapt changes `atom diameter`, and coefficients of `pair` and `bond` styles")
+                .into())
+        }
+    }
+}
+
+fn size(args: &mut Args, cx: &BuildCx) -> Result<Size> {
+    let span = args.here();
+    let what = args.choice("property of particles", &["diameter", "diameter/disc", "charge"])?;
+    if what == "charge" {
+        return fail(Code::NOT_SUPPORTED, span, "particles have no charge in perigrain");
+    }
+    if !cx.world.particles.style.sphere {
+        let d = Diagnostic::error(Code::CONFLICT, span, "the particles of this scene have no diameter");
+        return Err(d.help("`atom_style sphere`, alone or in a hybrid, has it").into());
+    }
+    Ok(Size { variable: variable(args, cx)?, disc: what == "diameter/disc" })
+}
+
+/// The diameter of particles.
+#[derive(Clone)]
+struct Size {
+    variable: ValueRef,
+    /// Particles are discs.
+    disc: bool,
 }
 
 fn variable(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
@@ -93,8 +136,8 @@ struct Declared {
     id: String,
     group: GroupId,
     every: i64,
-    size: ValueRef,
-    disc: bool,
+    size: Option<Size>,
+    follows: Vec<Follows>,
     scale: bool,
     reset: bool,
     mass: bool,
@@ -110,7 +153,9 @@ impl Declared {
     fn columns(&self) -> [String; 2] {
         ["radius", "mass"].map(|what| format!("adapt/{}/{what}", self.id))
     }
+}
 
+impl Size {
     /// Space that a particle of this radius fills: an area for discs.
     fn space(&self, r: f64) -> f64 {
         if self.disc { PI * r * r } else { 4.0 * PI / 3.0 * r * r * r }
@@ -147,8 +192,16 @@ impl Fix for Declared {
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let when = if self.every == 0 { When::First } else { When::First.or(When::Every(self.every)) };
-        let size = cx.value(&self.size, Stage::PreForce, &when)?;
-        Ok(vec![Box::new(Change { name: format!("fix {} adapt", self.id), fix: self.clone(), when, size })])
+        let mut ops: Vec<Box<dyn Op>> = vec![];
+        if let Some(size) = &self.size {
+            let value = cx.value(&size.variable, Stage::PreForce, &when)?;
+            let (name, when, size) = (format!("fix {} adapt", self.id), when.clone(), size.clone());
+            ops.push(Box::new(Change { name, fix: self.clone(), when, size, value }));
+        }
+        for follows in &self.follows {
+            ops.push(follows.op(&self.id, &when, self.scale, self.reset, cx)?);
+        }
+        Ok(ops)
     }
 
     fn boxed(&self) -> Box<dyn Fix> {
@@ -161,7 +214,8 @@ struct Change {
     name: String,
     fix: Declared,
     when: When,
-    size: Reading,
+    size: Size,
+    value: Reading,
 }
 
 impl Op for Change {
@@ -178,10 +232,11 @@ impl Op for Change {
         self.when.clone()
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let (value, fix, n) = (self.size.get(w), &self.fix, w.n());
+        let (value, fix, n) = (self.value.get(w), &self.fix, w.n());
         if !(value > 0.0 && value.is_finite()) {
-            let text = format!("`{}` is {value} at step {}: no size of particles", fix.size, t.step);
-            return fail(Code::BAD_VALUE, fix.size.span, text);
+            let variable = &self.size.variable;
+            let text = format!("`{variable}` is {value} at step {}: no size of particles", t.step);
+            return fail(Code::BAD_VALUE, variable.span, text);
         }
         let [radius, mass] = fix.columns();
         if t.setup && fix.reset && !w.memo.contains_key(&radius) {
@@ -195,8 +250,8 @@ impl Op for Change {
         for i in (0..n).filter(|&i| p.mask[i] & fix.group.bit() != 0) {
             let new = if fix.scale { p.radius[i] * (value / before) } else { 0.5 * value };
             if fix.mass && p.radius[i] > 0.0 {
-                let density = p.mass[i] / fix.space(p.radius[i]);
-                p.mass[i] = density * fix.space(new);
+                let density = p.mass[i] / self.size.space(p.radius[i]);
+                p.mass[i] = density * self.size.space(new);
             }
             p.radius[i] = new;
         }

@@ -8,6 +8,7 @@ mod ave_chunk;
 mod ave_histo;
 mod ave_time;
 mod aveforce;
+mod balance;
 mod bins;
 mod components;
 mod controller;
@@ -189,6 +190,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &ave_histo::AveHistoWeight,
     &ave_time::AveTime,
     &aveforce::AveForce,
+    &balance::Balance,
     &controller::Controller,
     &deform::Deform,
     &deposit::Deposit,

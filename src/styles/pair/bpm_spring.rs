@@ -7,6 +7,7 @@ use crate::math::vec3::{add, dot, sub};
 use crate::neigh::list::{Pair as Near, Reach, View, Wanted, difference, pairs};
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::styles::{BuildCx, Doc, SealCx, Style};
+use crate::world::adapted::Coefficient;
 use crate::world::{Allowed, World};
 use std::collections::BTreeMap;
 
@@ -40,6 +41,22 @@ struct Springs {
     table: BTreeMap<(u16, u16), [f64; 3]>,
 }
 
+impl Springs {
+    /// With what fixes have made of it.
+    fn adapted(&self, w: &World) -> Self {
+        let mut new = self.clone();
+        for (&types, [k, _, gamma]) in &mut new.table {
+            let of = |name: &str| {
+                let (style, name) = (self.name().to_string(), name.to_string());
+                w.adapted(&Coefficient { bond: false, style, name, types })
+            };
+            *k = of("k").unwrap_or(*k);
+            *gamma = of("gamma").unwrap_or(*gamma);
+        }
+        new
+    }
+}
+
 impl Pair for Springs {
     fn name(&self) -> &'static str {
         "bpm/spring"
@@ -60,10 +77,26 @@ impl Pair for Springs {
         self.table.retain(|p, _| pairs.contains(p));
     }
 
+    fn coefficients(&self) -> &'static [&'static str] {
+        &["k", "gamma"]
+    }
+
+    fn coefficient(&self, name: &str, types: (u16, u16)) -> Option<f64> {
+        let [k, _, gamma] = self.table.get(&types)?;
+        Some(if name == "k" { *k } else { *gamma })
+    }
+
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let mut wanted = Wanted::new(cx.world().types);
         self.table.iter().for_each(|((a, b), s)| wanted.set(*a, *b, Reach::Fixed(s[1])));
-        Ok(vec![Box::new(Repulsion { law: self.clone(), wanted, made: None, list: vec![] })])
+        Ok(vec![Box::new(Repulsion {
+            said: self.clone(),
+            law: self.clone(),
+            adapted: 0.0,
+            wanted,
+            made: None,
+            list: vec![],
+        })])
     }
 
     fn boxed(&self) -> Box<dyn Pair> {
@@ -73,7 +106,12 @@ impl Pair for Springs {
 
 /// The op.
 struct Repulsion {
+    /// As the deck's lines said.
+    said: Springs,
+    /// As fixes have changed it.
     law: Springs,
+    /// Which of their changes have been seen.
+    adapted: f64,
     wanted: Wanted,
     /// Rebuild and change of bonds at which the list was made.
     made: Option<(u64, u64)>,
@@ -100,6 +138,10 @@ impl Op for Repulsion {
             let view = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period };
             self.list = pairs(&view, &self.wanted, w.settings.neighbor.skin, &|i, j| allowed.pair(i, j));
             self.made = Some(now);
+        }
+        if self.adapted != w.adaptations() {
+            self.adapted = w.adaptations();
+            self.law = self.said.adapted(w);
         }
         for pair in &self.list {
             let (i, j) = (pair.i as usize, pair.j as usize);

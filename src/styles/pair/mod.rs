@@ -102,6 +102,16 @@ pub trait Pair: Send {
         None
     }
 
+    /// The coefficients that `fix adapt` may change, by name.
+    fn coefficients(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// What the deck's lines said of one of them.
+    fn coefficient(&self, _name: &str, _types: (u16, u16)) -> Option<f64> {
+        None
+    }
+
     /// The sub-styles of a `hybrid`.
     fn parts(&self) -> Vec<&dyn Pair> {
         vec![]

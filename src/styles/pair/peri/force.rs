@@ -4,7 +4,10 @@ use super::{Pair, Solid};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::plan::{Access, Beat, Op, Stage, Tick};
 use crate::styles::command::peri_crack::missed;
-use crate::world::families::{Bounds, Families, FamilyOptions, ForceUnit, PeriTally, PeriView};
+use crate::world::adapted::Coefficient;
+use crate::world::families::{
+    Bounds, Families, FamilyOptions, ForceUnit, PeriTally, PeriView, PmbCoeff, PmbTable,
+};
 use crate::world::{Domain, World};
 
 /// Bond and short-range forces of all peridynamic bodies.
@@ -12,13 +15,17 @@ pub struct Force {
     style: Solid,
     options: FamilyOptions,
     name: String,
+    /// The coefficients as the deck's lines said them, before micro-moduli were calibrated.
+    said: PmbTable,
+    /// Which changes by fixes have been seen.
+    adapted: f64,
 }
 
 impl Force {
     /// The op of a style.
-    pub fn new(style: Solid, options: FamilyOptions) -> Self {
+    pub fn new(style: Solid, said: PmbTable, options: FamilyOptions) -> Self {
         let name = format!("pair {}", style.name);
-        Self { style, options, name }
+        Self { style, options, name, said, adapted: 0.0 }
     }
 }
 
@@ -42,6 +49,8 @@ impl Op for Force {
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if t.setup {
             self.prepare(w)?;
+        } else if self.adapted != w.adaptations() {
+            self.adapt(w)?;
         }
         let Some(mut families) = w.families.take() else { return Ok(()) };
         let first = !families.armed;
@@ -76,8 +85,46 @@ impl Op for Force {
 }
 
 impl Force {
+    /// Takes the coefficients that a fix has changed.
+    fn adapt(&mut self, w: &mut World) -> Result<()> {
+        self.adapted = w.adaptations();
+        let Some(mut families) = w.families.take() else { return Ok(()) };
+        let table = self.table(w)?;
+        families.refresh(&view(w)?, &table);
+        w.families = Some(families);
+        Ok(())
+    }
+
+    /// The coefficients in force.
+    fn table(&self, w: &World) -> Result<PmbTable> {
+        let mut table = self.style.table.clone();
+        if w.adaptations() == 0.0 {
+            return Ok(table);
+        }
+        let types = table.types() as u16;
+        for (i, j) in (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j))) {
+            let (Some(own), Some(said)) = (self.style.table.get(i, j), self.said.get(i, j)) else { continue };
+            let of = |name: &str| {
+                let style = self.style.name.to_string();
+                w.adapted(&Coefficient { bond: false, style, name: name.to_string(), types: (i, j) })
+            };
+            // A calibrated micro-modulus keeps its ratio to what the line says.
+            let ratio = if said.c > 0.0 { own.c / said.c } else { 1.0 };
+            let new = PmbCoeff {
+                c: of("c").map_or(own.c, |c| c * ratio),
+                s00: of("s00").unwrap_or(own.s00),
+                alpha: of("alpha").unwrap_or(own.alpha),
+                ..*own
+            };
+            table.set(i, j, new)?;
+        }
+        Ok(table)
+    }
+
     /// Families at the first run, masses of true-force bodies at every run.
-    fn prepare(&self, w: &mut World) -> Result<()> {
+    fn prepare(&mut self, w: &mut World) -> Result<()> {
+        self.adapted = w.adaptations();
+        let table = self.table(w)?;
         if self.options.unit == ForceUnit::Newton {
             self.true_masses(w)?;
         }
@@ -85,12 +132,12 @@ impl Force {
             Some(mut families) => {
                 families.options = self.options;
                 families.law = self.style.law.clone();
-                families.refresh(&view(w)?, &self.style.table);
+                families.refresh(&view(w)?, &table);
                 families
             }
             None => {
                 let law = self.style.law.clone();
-                let families = Families::build_of(&view(w)?, &self.style.table, self.options, law)?;
+                let families = Families::build_of(&view(w)?, &table, self.options, law)?;
                 self.tell_lone(w, &families);
                 families
             }

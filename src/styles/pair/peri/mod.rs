@@ -331,11 +331,25 @@ impl Pair for Solid {
         );
         let mut style = self.clone();
         style.table = self.calibrated(a, span)?;
-        Ok(vec![Box::new(Force::new(style, options))])
+        Ok(vec![Box::new(Force::new(style, self.table.clone(), options))])
     }
 
     fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
         options::read(self, command, args, cx)
+    }
+
+    fn coefficients(&self) -> &'static [&'static str] {
+        if self.law.kind.bond_based() { &["c", "s00", "alpha"] } else { &["s00", "alpha"] }
+    }
+
+    fn coefficient(&self, name: &str, (i, j): (u16, u16)) -> Option<f64> {
+        let own = self.table.get(i, j)?;
+        match name {
+            "c" => Some(own.c),
+            "s00" => Some(own.s00),
+            "alpha" => Some(own.alpha),
+            _ => None,
+        }
     }
 
     fn needs(&self) -> &'static [&'static str] {

@@ -1,15 +1,16 @@
-//! LAMMPS' own peridynamics decks, from where Debian's package `lammps-examples` puts them; skipped where it is not installed.
+//! LAMMPS' own decks of peridynamics and of grains, from where Debian's package `lammps-examples` puts them; skipped where it is not installed.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
-#[path = "common/compare.rs"]
+#[path = "../common/compare.rs"]
 mod compare;
+mod grains;
 
 use compare::{Rule, compare, read};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-const FOLDER: &str = "/usr/share/lammps/examples/peri";
+const FOLDER: &str = "/usr/share/lammps/examples";
 
 /// The first rows of `in.peri.pmb` as LAMMPS 22Jul2025 (update 4) prints them.
 const ROWS: &str = "\
@@ -27,7 +28,7 @@ Step,Temp,E_pair,E_mol,TotEng,Press,Volume
 /// The first rows of `in.peri.lps`, `ves` and `eps`, likewise.
 const STATE_BASED: [(&str, &str); 3] = [
     (
-        "in.peri.lps",
+        "peri/in.peri.lps",
         "\
 Step,Temp,E_pair,E_mol,TotEng,Press,Volume
 0,0,0,0,0,0,5.0030006e-07
@@ -39,7 +40,7 @@ Step,Temp,E_pair,E_mol,TotEng,Press,Volume
 ",
     ),
     (
-        "in.peri.ves",
+        "peri/in.peri.ves",
         "\
 Step,Temp,E_pair,E_mol,TotEng,Press,Volume
 0,0,0,0,0,0,5.0030006e-07
@@ -51,7 +52,7 @@ Step,Temp,E_pair,E_mol,TotEng,Press,Volume
 ",
     ),
     (
-        "in.peri.eps",
+        "peri/in.peri.eps",
         "\
 Step,Temp,E_pair,E_mol,TotEng,Press,Volume
 0,0,0,0,0,0,5.0030006e-07
@@ -98,7 +99,7 @@ fn first_rows(deck: &str, golden: &str) {
 #[test]
 fn pmb_decks_give_lammps_first_rows() {
     // The cylinder flies apart; from row 800 on LAMMPS' own sums depend on their order.
-    ["in.peri.pmb", "in.peri-pmb"].into_iter().for_each(|deck| first_rows(deck, ROWS));
+    ["peri/in.peri.pmb", "peri/in.peri-pmb"].into_iter().for_each(|deck| first_rows(deck, ROWS));
 }
 
 #[test]

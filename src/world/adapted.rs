@@ -1,0 +1,85 @@
+//! Coefficients of pair and bond styles that `fix adapt` has changed: they differ from what the deck's lines said.
+
+use super::World;
+
+/// Grows with every change, so that ops notice.
+const CHANGES: &str = "adapted";
+
+/// A coefficient of a pair of particle types, or of a bond type (twice the same).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Coefficient {
+    /// Of a bond style, not of a pair style.
+    pub bond: bool,
+    /// The style's name.
+    pub style: String,
+    /// The coefficient's name.
+    pub name: String,
+    /// The types, the smaller first.
+    pub types: (u16, u16),
+}
+
+impl Coefficient {
+    fn key(&self) -> String {
+        let (a, b) = self.types;
+        format!("{}{}/{a}/{b}", prefix(self.bond, &self.style), self.name)
+    }
+}
+
+fn prefix(bond: bool, style: &str) -> String {
+    format!("{CHANGES}/{}/{style}/", if bond { "bond" } else { "pair" })
+}
+
+impl World {
+    /// The value a fix has given to a coefficient.
+    pub fn adapted(&self, of: &Coefficient) -> Option<f64> {
+        self.memo.get(&of.key()).and_then(|m| m.first().copied())
+    }
+
+    /// Gives a coefficient a value, or takes it away again: the deck's then holds.
+    pub fn adapt(&mut self, of: &Coefficient, value: Option<f64>) {
+        match value {
+            Some(value) => drop(self.memo.insert(of.key(), vec![value])),
+            None => drop(self.memo.remove(&of.key())),
+        }
+        let next = self.adaptations() + 1.0;
+        self.memo.insert(CHANGES.to_string(), vec![next]);
+    }
+
+    /// A number that grows with every change; 0 as long as there was none.
+    pub fn adaptations(&self) -> f64 {
+        self.memo.get(CHANGES).and_then(|m| m.first().copied()).unwrap_or(0.0)
+    }
+
+    /// A line of the deck has set coefficients: what fixes have made of those of these types (of all: `None`) is past.
+    pub fn set_anew(&mut self, bond: bool, types: Option<&[(u16, u16)]>) {
+        if self.adaptations() == 0.0 {
+            return;
+        }
+        let begin = format!("{CHANGES}/{}/", if bond { "bond" } else { "pair" });
+        let past = |key: &str| {
+            key.starts_with(&begin)
+                && types.is_none_or(|list| list.iter().any(|(a, b)| key.ends_with(&format!("/{a}/{b}"))))
+        };
+        self.memo.retain(|key, _| !past(key));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_fix_has_changed_and_a_line_sets_anew() {
+        let mut w = World::default();
+        let of = |types| Coefficient { bond: false, style: "peri/pmb".into(), name: "s00".into(), types };
+        assert_eq!((w.adapted(&of((1, 2))), w.adaptations()), (None, 0.0));
+        w.adapt(&of((1, 2)), Some(3.0));
+        w.adapt(&of((1, 1)), Some(4.0));
+        assert_eq!((w.adapted(&of((1, 2))), w.adaptations()), (Some(3.0), 2.0));
+        w.set_anew(true, None);
+        w.set_anew(false, Some(&[(1, 2)]));
+        assert_eq!((w.adapted(&of((1, 2))), w.adapted(&of((1, 1)))), (None, Some(4.0)));
+        w.adapt(&of((1, 1)), None);
+        assert_eq!((w.adapted(&of((1, 1))), w.adaptations()), (None, 3.0));
+    }
+}
