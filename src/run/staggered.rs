@@ -96,7 +96,7 @@ fn step(plan: &mut StepPlan, w: &mut World, t: &Tick, s: &Staggered) -> Result<(
         Ratio::Short(_) | Ratio::Within(_) => {}
     }
     let m = s.count(t.dt);
-    if m == 1 {
+    if m == 1 && s.solids.twice == 0 {
         w.columns.remove(BOND_FORCES);
         w.columns.remove(SLOW_FORCES);
         return plan.run(w, t, &MOTION);
