@@ -1,13 +1,11 @@
-//! Lines that declare become nodes: pair styles, fixes, computes, dumps, thermo.
+//! Lines that declare become nodes: fixes, computes, thermo, and what stands in files of its own.
 
-use super::node::{ComputeNode, DumpNode, FixNode, Graph, PairNode};
-use super::{bonds, elsewhere};
+use super::node::{ComputeNode, FixNode, Graph};
+use super::{bonds, dumps, elsewhere, pairs};
 use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use crate::lang::{Args, Command};
 use crate::styles::compute::COMPUTES;
-use crate::styles::dump::DUMPS;
 use crate::styles::fix::FIXES;
-use crate::styles::pair::PAIRS;
 use crate::styles::{BuildCx, Style, Use, UseKind};
 use crate::world::{GroupId, Said, World};
 
@@ -74,23 +72,23 @@ pub fn declare(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) ->
     let declared = match cmd.name.text.as_str() {
         "bond_style" => bonds::bond_style(graph, w, &mut args, cx),
         "bond_coeff" => bonds::bond_coeff(graph, w, &mut args, cx),
-        "pair_style" => pair_style(graph, w, &mut args, cx),
-        "pair_coeff" => pair_coeff(graph, w, &mut args, cx),
+        "pair_style" => pairs::pair_style(graph, w, &mut args, cx),
+        "pair_coeff" => pairs::pair_coeff(graph, w, &mut args, cx),
         "pair_modify" => fail(
             Code::NOT_SUPPORTED,
             cmd.name.span,
             "pair_modify: none of the pair styles here uses its options",
         ),
-        "peri_modify" => pair_modify(graph, w, &mut args, cx),
+        "peri_modify" => pairs::pair_modify(graph, w, &mut args, cx),
         "fix" => fix(graph, w, &mut args, cx),
         "unfix" => unfix(graph, w, &mut args),
         "fix_modify" => fix_modify(graph, w, &mut args, cx),
         "compute" => compute(graph, w, &mut args, cx),
         "uncompute" => uncompute(graph, w, &mut args),
         "compute_modify" => compute_modify(graph, w, &mut args, cx),
-        "dump" => dump(graph, w, &mut args, cx),
-        "undump" => undump(graph, &mut args),
-        "dump_modify" => dump_modify(graph, w, &mut args, cx),
+        "dump" => dumps::dump(graph, w, &mut args, cx),
+        "undump" => dumps::undump(graph, &mut args),
+        "dump_modify" => dumps::dump_modify(graph, w, &mut args, cx),
         "thermo" | "thermo_style" | "thermo_modify" => {
             let mut thermo = graph.thermo.clone();
             let build = cx.build(graph, w, "", GroupId::ALL);
@@ -196,68 +194,8 @@ pub fn needs_box(w: &World, args: &Args) -> Result<()> {
     .into())
 }
 
-fn pair_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
-    if args.eat("none") {
-        args.finish()?;
-        graph.pair = None;
-        w.touch();
-        return Ok(Declared::default());
-    }
-    let style = style(PAIRS, "pair", args)?;
-    let pair = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
-    args.finish()?;
-    graph.pair = Some(PairNode { pair, span: cx.span, lines: vec![] });
-    w.set_anew(false, None);
-    w.touch();
-    Ok(Declared::default())
-}
-
-fn pair_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
-    needs_box(w, args)?;
-    let Some(node) = &graph.pair else {
-        return Err(Diagnostic::error(
-            Code::WRONG_ORDER,
-            args.name_span(),
-            "pair_coeff comes before any pair_style",
-        )
-        .help("put a `pair_style` line first")
-        .into());
-    };
-    let (i0, i1) = args.type_range(w.types)?;
-    let (j0, j1) = args.type_range(w.types)?;
-    let pairs: Vec<(u16, u16)> = (i0..=i1).flat_map(|i| (j0.max(i)..=j1).map(move |j| (i, j))).collect();
-    if pairs.is_empty() {
-        return Err(Diagnostic::error(Code::BAD_VALUE, cx.span, "these types name no pair i ≤ j")
-            .help("write the smaller type first, as `pair_coeff 1 2 …`")
-            .into());
-    }
-    let mut pair = node.pair.boxed();
-    pair.coeff(&pairs, args, &cx.build(graph, w, "", GroupId::ALL))?;
-    args.finish()?;
-    if let Some(node) = &mut graph.pair {
-        node.pair = pair;
-    }
-    w.set_anew(false, Some(&pairs));
-    w.touch();
-    Ok(Declared::default())
-}
-
-fn pair_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
-    let Some(node) = &graph.pair else {
-        let text = format!("`{}` comes before any pair_style", args.command());
-        return fail(Code::WRONG_ORDER, args.name_span(), text);
-    };
-    let mut pair = node.pair.boxed();
-    pair.modify(args.command(), args, &cx.build(graph, w, "", GroupId::ALL))?;
-    args.finish()?;
-    if let Some(node) = &mut graph.pair {
-        node.pair = pair;
-    }
-    w.touch();
-    Ok(Declared::default())
-}
-
-fn id_of<'a>(args: &mut Args<'a>, what: &str) -> Result<(&'a str, Span)> {
+/// The ID that a line gives to what it declares.
+pub(super) fn id_of<'a>(args: &mut Args<'a>, what: &str) -> Result<(&'a str, Span)> {
     let word = args.expect(&format!("the {what}'s ID"))?;
     if word.unknown || word.text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
         return Ok((&word.text, word.span));
@@ -312,7 +250,7 @@ fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Resul
     Ok(provides(UseKind::Fix, id))
 }
 
-fn find(list: Option<usize>, known: Vec<&str>, what: &str, id: &str, span: Span) -> Result<usize> {
+pub(super) fn find(list: Option<usize>, known: Vec<&str>, what: &str, id: &str, span: Span) -> Result<usize> {
     if let Some(k) = list {
         return Ok(k);
     }
@@ -332,11 +270,6 @@ fn find_fix(graph: &Graph, id: &str, span: Span) -> Result<usize> {
 fn find_compute(graph: &Graph, id: &str, span: Span) -> Result<usize> {
     let known = graph.computes.iter().map(|f| f.id.as_str()).collect();
     find(graph.computes.iter().position(|f| f.id == id), known, "compute", id, span)
-}
-
-fn find_dump(graph: &Graph, id: &str, span: Span) -> Result<usize> {
-    let known = graph.dumps.iter().map(|f| f.id.as_str()).collect();
-    find(graph.dumps.iter().position(|f| f.id == id), known, "dump", id, span)
 }
 
 fn unfix(graph: &mut Graph, w: &mut World, args: &mut Args) -> Result<Declared> {
@@ -425,70 +358,4 @@ fn compute_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
     graph.computes[k].compute = compute;
     forget_values(w, &format!("c_{id}"));
     Ok(Declared::default())
-}
-
-fn dump(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
-    needs_box(w, args)?;
-    let (id, id_span) = id_of(args, "dump")?;
-    if let Some(old) = graph.dumps.iter().find(|d| d.id == id) {
-        return Err(Diagnostic::error(Code::DUPLICATE_NAME, id_span, format!("dump `{id}` exists already"))
-            .label(old.span, "defined here")
-            .help(format!("put `undump {id}` before this line, or choose another ID"))
-            .into());
-    }
-    let group_word = args.expect("the dump's group")?;
-    let group = cx.build(graph, w, id, GroupId::ALL).group(group_word)?;
-    let style = style(DUMPS, "dump", args)?;
-    let every = args.integer_from(1, "the dump's interval")?;
-    let dump = style.build(args, &cx.build(graph, w, id, group))?;
-    args.finish()?;
-    graph.dumps.push(DumpNode { id: id.to_string(), style: style.name(), every, dump, span: cx.span });
-    Ok(Declared::default())
-}
-
-fn undump(graph: &mut Graph, args: &mut Args) -> Result<Declared> {
-    let (id, span) = id_of(args, "dump")?;
-    let k = find_dump(graph, id, span)?;
-    args.finish()?;
-    graph.dumps.remove(k);
-    Ok(Declared::default())
-}
-
-fn dump_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
-    let (id, span) = id_of(args, "dump")?;
-    let k = find_dump(graph, id, span)?;
-    if args.is_empty() {
-        return fail(Code::MISSING_ARGUMENT, args.here(), "dump_modify needs an option");
-    }
-    let mut dump = graph.dumps[k].dump.boxed();
-    dump.modify(args, &cx.build(graph, w, id, GroupId::ALL))?;
-    args.finish()?;
-    if let Some(every) = dump.every() {
-        graph.dumps[k].every = every;
-    }
-    graph.dumps[k].dump = dump;
-    Ok(Declared::default())
-}
-
-/// A dump built for `write_dump group style file … [modify …]`, not kept.
-///
-/// # Errors
-/// As `dump` and `dump_modify`.
-pub fn once_dump(
-    graph: &Graph,
-    w: &World,
-    args: &mut Args,
-    cx: &Context,
-) -> Result<Box<dyn crate::styles::Dump>> {
-    needs_box(w, args)?;
-    let group_word = args.expect("the group to write")?;
-    let group = cx.build(graph, w, "WRITE_DUMP", GroupId::ALL).group(group_word)?;
-    let style = style(DUMPS, "dump", args)?;
-    let build = cx.build(graph, w, "WRITE_DUMP", group);
-    let mut dump = style.build(args, &build)?;
-    if args.eat("modify") {
-        dump.modify(args, &build)?;
-    }
-    args.finish()?;
-    Ok(dump)
 }

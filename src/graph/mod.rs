@@ -3,6 +3,7 @@
 pub mod answers;
 pub mod bonds;
 pub mod build;
+pub mod dumps;
 pub mod dynamic;
 mod elsewhere;
 pub mod env;
@@ -12,6 +13,7 @@ pub mod ledger;
 pub mod measure;
 pub mod node;
 pub mod ops;
+pub mod pairs;
 pub mod regions;
 pub mod restarts;
 mod row;

@@ -2,7 +2,8 @@
 
 use super::{Mode, Session, refuse};
 use crate::diag::{Code, Diagnostic, Result, Span};
-use crate::graph::build::{Context, once_dump};
+use crate::graph::build::Context;
+use crate::graph::dumps::once_dump;
 use crate::graph::env::DeckEnv;
 use crate::graph::ledger;
 use crate::graph::ops::{ClearForces, Reneighbor};

@@ -1,0 +1,72 @@
+//! `pair_style`, `pair_coeff`, `peri_modify`: lines that declare forces between pairs of particles.
+
+use super::build::{Context, Declared, needs_box, style};
+use super::node::{Graph, PairNode};
+use crate::diag::{Code, Diagnostic, Result, fail};
+use crate::lang::Args;
+use crate::styles::pair::PAIRS;
+use crate::world::{GroupId, World};
+
+/// `pair_style STYLE …`, `pair_style none`.
+pub fn pair_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    if args.eat("none") {
+        args.finish()?;
+        graph.pair = None;
+        w.touch();
+        return Ok(Declared::default());
+    }
+    let style = style(PAIRS, "pair", args)?;
+    let pair = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    args.finish()?;
+    graph.pair = Some(PairNode { pair, span: cx.span, lines: vec![] });
+    w.set_anew(false, None);
+    w.touch();
+    Ok(Declared::default())
+}
+
+/// `pair_coeff I J …`.
+pub fn pair_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    needs_box(w, args)?;
+    let Some(node) = &graph.pair else {
+        return Err(Diagnostic::error(
+            Code::WRONG_ORDER,
+            args.name_span(),
+            "pair_coeff comes before any pair_style",
+        )
+        .help("put a `pair_style` line first")
+        .into());
+    };
+    let (i0, i1) = args.type_range(w.types)?;
+    let (j0, j1) = args.type_range(w.types)?;
+    let pairs: Vec<(u16, u16)> = (i0..=i1).flat_map(|i| (j0.max(i)..=j1).map(move |j| (i, j))).collect();
+    if pairs.is_empty() {
+        return Err(Diagnostic::error(Code::BAD_VALUE, cx.span, "these types name no pair i ≤ j")
+            .help("write the smaller type first, as `pair_coeff 1 2 …`")
+            .into());
+    }
+    let mut pair = node.pair.boxed();
+    pair.coeff(&pairs, args, &cx.build(graph, w, "", GroupId::ALL))?;
+    args.finish()?;
+    if let Some(node) = &mut graph.pair {
+        node.pair = pair;
+    }
+    w.set_anew(false, Some(&pairs));
+    w.touch();
+    Ok(Declared::default())
+}
+
+/// `pair_modify` and `peri_modify`.
+pub fn pair_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    let Some(node) = &graph.pair else {
+        let text = format!("`{}` comes before any pair_style", args.command());
+        return fail(Code::WRONG_ORDER, args.name_span(), text);
+    };
+    let mut pair = node.pair.boxed();
+    pair.modify(args.command(), args, &cx.build(graph, w, "", GroupId::ALL))?;
+    args.finish()?;
+    if let Some(node) = &mut graph.pair {
+        node.pair = pair;
+    }
+    w.touch();
+    Ok(Declared::default())
+}
