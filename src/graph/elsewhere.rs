@@ -3,11 +3,9 @@
 /// LAMMPS styles of our field that perigrain does not have yet, by kind; named so that nobody searches for a typo.
 pub const STYLES: &[(&str, &str)] = &[
     ("pair", "lj/cut"),
-    ("fix", "rigid/nve"),
     ("fix", "rigid/nvt"),
     ("fix", "rigid/npt"),
     ("fix", "rigid/nph"),
-    ("fix", "rigid/nve/small"),
     ("fix", "rigid/nvt/small"),
     ("fix", "rigid/npt/small"),
     ("fix", "rigid/nph/small"),

@@ -362,6 +362,10 @@ impl SealCx for Sealer<'_> {
         self.graph.fixes.iter().filter_map(|f| f.fix.pull(flat)).collect()
     }
 
+    fn adopts(&self, id: &str) -> Option<Option<String>> {
+        self.graph.find_fix(id).map(|f| f.fix.adopts().map(str::to_string))
+    }
+
     fn log(&self) -> Log {
         self.log.clone()
     }

@@ -110,6 +110,39 @@ pub fn richardson(q: Quat, momentum: Vec3, omega: Vec3, moments: Vec3, half: f64
     (normalized([0, 1, 2, 3].map(|k| 2.0 * two[k] - full[k])), omega)
 }
 
+/// A free step of `dt` about the principal axes one after another, each an exact rotation (NO_SQUISH: Miller et al., J. Chem.
+/// Phys. 116, 2002, 8649): orientation and angular momentum after it. It is symplectic and keeps lengths.
+pub fn no_squish(q: Quat, momentum: Vec3, moments: Vec3, dt: f64) -> (Quat, Vec3) {
+    let inner = apply_transposed(&matrix(q), momentum);
+    let sides = |q: Quat| [permuted(q, 0), permuted(q, 1), permuted(q, 2)];
+    let [a, b, c] = sides(q);
+    // The momentum conjugate to q: 2 q (0, L).
+    let p: Quat = std::array::from_fn(|k| 2.0 * (a[k] * inner[0] + b[k] * inner[1] + c[k] * inner[2]));
+    let mut state = (q, p);
+    // LAMMPS' moments ascend, and it begins with the third axis.
+    for (axis, time) in [(0, 0.5 * dt), (1, 0.5 * dt), (2, dt), (1, 0.5 * dt), (0, 0.5 * dt)] {
+        let (q, p) = state;
+        let (side, lean) = (permuted(q, axis), permuted(p, axis));
+        let along: f64 = (0..4).map(|k| p[k] * side[k]).sum();
+        let rate = if moments[axis] == 0.0 { 0.0 } else { along / (4.0 * moments[axis]) };
+        let (sin, cos) = (time * rate).sin_cos();
+        let mix = |u: Quat, v: Quat| -> Quat { std::array::from_fn(|k| cos * u[k] + sin * v[k]) };
+        state = (mix(q, side), mix(p, lean));
+    }
+    let (q, p) = state;
+    let inner = sides(q).map(|side| 0.5 * (0..4).map(|k| side[k] * p[k]).sum::<f64>());
+    (q, apply(&matrix(q), inner))
+}
+
+/// q times the unit of one axis: S(q)'s column of it.
+fn permuted(q: Quat, axis: usize) -> Quat {
+    match axis {
+        0 => [-q[1], q[0], q[3], -q[2]],
+        1 => [-q[2], -q[3], q[0], q[1]],
+        _ => [-q[3], q[2], -q[1], q[0]],
+    }
+}
+
 /// Principal moments and axes of a symmetric tensor xx yy zz xy xz yz, by Jacobi's rotations: the largest first, a right-handed frame. Moments
 /// below 1e-7 of the largest are zero.
 pub fn principal([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> (Vec3, Matrix) {

@@ -14,6 +14,7 @@ pub mod dump;
 pub mod fix;
 pub mod ledger;
 pub mod matter;
+pub mod molecules;
 pub mod newcomers;
 pub mod pair;
 pub mod seal;

@@ -43,12 +43,17 @@ pub fn admit(w: &mut World, group: GroupId, tag: u32, list: &[Newcomer]) -> Resu
         }
     }
     if !list.is_empty() {
-        w.columns.resize(w.particles.len());
-        w.spread_type_masses();
-        w.slots.invalidate();
-        w.rebuild.roster += 1;
+        settle(w);
     }
     Ok(())
+}
+
+/// Whatever belongs to particles has them all, after some have joined.
+pub fn settle(w: &mut World) {
+    w.columns.resize(w.particles.len());
+    w.spread_type_masses();
+    w.slots.invalidate();
+    w.rebuild.roster += 1;
 }
 
 /// Which ids newcomers get.
@@ -69,11 +74,11 @@ impl Ids {
         Ok(if args.choice("value of id", &["max", "next"])? == "max" { Self::Max } else { Self::Next })
     }
 
-    /// The first id for the next newcomer.
-    pub fn first(self, w: &World, account: &Account) -> u32 {
-        1 + match self {
-            Self::Max => w.particles.last_tag(),
-            Self::Next => account.last_tag,
+    /// The particle and the molecule ID before those of the next newcomer.
+    pub fn before(self, w: &World, account: &Account) -> [u32; 2] {
+        match self {
+            Self::Max => [w.particles.last_tag(), w.particles.last_molecule()],
+            Self::Next => account.last,
         }
     }
 }
@@ -87,8 +92,8 @@ pub struct Account {
     pub next: Option<i64>,
     /// The step at which its region began to move.
     pub start: i64,
-    /// The largest id when it was declared, then the last one it gave away.
-    pub last_tag: u32,
+    /// The largest particle and molecule IDs when it was declared, then the last ones it gave away.
+    pub last: [u32; 2],
     /// Its random stream.
     pub stream: ParkMiller,
 }
@@ -106,17 +111,20 @@ impl Account {
 
     /// A new one.
     pub fn new(w: &World, stream: ParkMiller) -> Self {
-        Self { done: 0, next: None, start: w.clock.step + 1, last_tag: w.particles.last_tag(), stream }
+        let last = [w.particles.last_tag(), w.particles.last_molecule()];
+        Self { done: 0, next: None, start: w.clock.step + 1, last, stream }
     }
 
     /// Reads it from the world.
     pub fn load(w: &World, key: &str) -> Option<Self> {
-        let &[done, next, start, last_tag, state, spare] = w.memo.get(key)?.as_slice() else { return None };
+        let &[done, next, start, tag, molecule, state, spare] = w.memo.get(key)?.as_slice() else {
+            return None;
+        };
         Some(Self {
             done: done as u64,
             next: (!next.is_nan()).then_some(next as i64),
             start: start as i64,
-            last_tag: last_tag as u32,
+            last: [tag as u32, molecule as u32],
             stream: ParkMiller::resumed([state, spare]),
         })
     }
@@ -125,7 +133,8 @@ impl Account {
     pub fn store(&self, w: &mut World, key: &str) {
         let [state, spare] = self.stream.stand();
         let next = self.next.map_or(f64::NAN, |n| n as f64);
-        let list = vec![self.done as f64, next, self.start as f64, f64::from(self.last_tag), state, spare];
+        let [tag, molecule] = self.last.map(f64::from);
+        let list = vec![self.done as f64, next, self.start as f64, tag, molecule, state, spare];
         w.memo.insert(key.to_string(), list);
     }
 }
@@ -140,7 +149,7 @@ mod tests {
         let mut w = World::default();
         let mut account = Account::new(&w, ParkMiller::new(4711));
         account.stream.gaussian();
-        (account.done, account.last_tag) = (3, 17);
+        (account.done, account.last) = (3, [17, 2]);
         account.store(&mut w, "pour/ins");
         assert_eq!(Account::load(&w, "pour/ins"), Some(account.clone()));
         account.next = Some(12);

@@ -191,6 +191,10 @@ pub trait SealCx {
     ) -> Result<PlaceTest>;
     /// The accelerations of the fixes gravity in force.
     fn pulls(&self) -> Vec<Pull>;
+    /// Of a fix of this ID, of which molecule template new copies become its rigid bodies; `None` without such a fix.
+    fn adopts(&self, _id: &str) -> Option<Option<String>> {
+        None
+    }
     /// Where a run speaks.
     fn log(&self) -> Log;
     /// The op that gives a compute a new beginning after a snapshot (`dump_modify refresh`); `None` if it has none.

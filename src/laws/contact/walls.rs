@@ -60,6 +60,8 @@ pub struct WallSweep {
     touching: Vec<Touch>,
     keys: Vec<[u32; 2]>,
     wrenches: Vec<Wrench>,
+    /// Heat into the particles, contact by contact.
+    heat: Vec<f64>,
     spare: Vec<f64>,
 }
 
@@ -180,6 +182,31 @@ impl WallSweep {
             moment = sub(moment, add(w.torque_i, cross(sub(x[i], center), w.force)));
         }
         [force[0], force[1], force[2], moment[0], moment[1], moment[2]]
+    }
+
+    /// Adds the heat that a wall of this temperature gives to the particles to `flow`: what it loses in all.
+    pub fn conduct<L: ContactLaw>(
+        &mut self,
+        grains: &Spheres,
+        law: &L,
+        wall: f64,
+        temperature: &[f64],
+        flow: &mut [f64],
+    ) -> f64 {
+        self.heat.clear();
+        for t in &self.touching {
+            let i = t.grain as usize;
+            let conductance = law.conductance(&geometry(&t.near, grains.radius[i], grains.mass[i]));
+            let into = conductance.unwrap_or(0.0) * (wall - temperature[i]);
+            flow[i] += into;
+            self.heat.push(into);
+        }
+        self.heat.iter().sum()
+    }
+
+    /// The heat that contact `k` of the last evaluation gave to its particle.
+    pub fn heat(&self, k: usize) -> f64 {
+        self.heat.get(k).copied().unwrap_or(0.0)
     }
 
     /// The contacts of the last evaluation and what they do.

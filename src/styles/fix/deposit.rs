@@ -8,6 +8,7 @@ use crate::lang::{Args, ValueRef};
 use crate::math::rng::ParkMiller;
 use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::matter::publish;
+use crate::styles::molecules::{Copy, Molecules};
 use crate::styles::newcomers::{Account, Ids, Newcomer, admit};
 use crate::styles::{BuildCx, Doc, PlaceTest, SealCx, Shape, Style};
 use crate::world::{GroupId, Region, SlotId, World};
@@ -23,8 +24,9 @@ impl Style for Deposit {
         Doc {
             syntax: "fix ID group deposit N type M seed region ID [near R] [attempt Q] [global lo hi | local lo hi delta] \
                      [gaussian x y z sigma] [rate V] [vx lo hi] [vy lo hi] [vz lo hi] [target x y z] \
-                     [var NAME set x|y|z NAME …] [id max|next] [units lattice|box]",
-            summary: "Puts a new particle into the scene every M steps, N in all.",
+                     [var NAME set x|y|z NAME …] [mol TEMPLATE [molfrac f1 f2 …] [rigid fixID] [orient x y z]] [id max|next] \
+                     [units lattice|box]",
+            summary: "Puts a new particle or molecule into the scene every M steps, N in all.",
             text: "At the next step and every M steps a place is drawn in the region, uniform or with `gaussian` around a point; `global` puts it lo to hi above the highest \
                    particle, `local` above the highest one within delta of it sideways (in flat scenes above means along y). It \
                    is taken if no particle is nearer than R (`near`, default 0) and, with `var` and `set` as in `create_atoms`, if \
@@ -34,7 +36,11 @@ impl Style for Deposit {
                    last one given. Distances and velocities are in lattice spacings unless `units box`.\n\n\
                    Random numbers and their order are LAMMPS'. A second run goes on where the first one ended, also after a restart. \
                    Steps whose particle found no place are made up for by later ones and warned about at the end of the run. \
-                   Molecules (`mol molfrac rigid shake orient`) are refused. Scalar (intensive): how many there are so far.",
+                   \n\n\
+                   `mol` puts in copies of a molecule template with their bonds, about their geometric centre and turned at random, \
+                   about the axis `orient` if given; `type` is added to their types (so 0 is one). `molfrac`: the shares of the several \
+                   molecules of a template, equal without. `rigid` names the fix rigid/small with the same `mol` that moves them as \
+                   bodies. `near` is the distance of each of their particles. `shake` is refused. Scalar (intensive): how many there are so far.",
             example: "region high block -0.002 0.002 -0.002 0.002 0.005 0.008 units box\n\
                       fix dep grains deposit 3 2 5 4711 region high vz -1 -1 near 0.0015 units box",
         }
@@ -78,6 +84,8 @@ struct Depositing {
     rate: f64,
     velocity: [[f64; 2]; 3],
     target: Option<[f64; 3]>,
+    /// Molecules in the place of particles.
+    molecules: Option<Molecules>,
     /// The deciding variable and those that take the coordinates.
     test: Option<(ValueRef, [Option<ValueRef>; 3])>,
 }
@@ -128,14 +136,14 @@ impl Depositing {
         }))
     }
 
-    /// A place for a new particle, if one is found.
+    /// A place for a new particle or molecule, if one is found.
     fn find(
         &self,
         w: &World,
         offset: f64,
         account: &mut Account,
         test: &mut Option<PlaceTest>,
-    ) -> Result<Option<[f64; 3]>> {
+    ) -> Result<Option<([f64; 3], Option<Copy>)>> {
         let up = if w.settings.two_dimensional { 1 } else { 2 };
         for _ in 0..self.tries {
             let mut x = self.draw(&mut account.stream);
@@ -148,8 +156,15 @@ impl Depositing {
             if let Some(height) = self.above(w, x, &mut account.stream)? {
                 x[up] = height;
             }
-            if self.free(w, x)? {
-                return Ok(Some(x));
+            let flat = w.settings.two_dimensional;
+            let copy = self.molecules.as_ref().map(|m| m.draw(x, flat, &mut account.stream));
+            let places = copy.as_ref().map_or(std::slice::from_ref(&x), |c| &c.places);
+            let mut free = true;
+            for x in places {
+                free = free && self.free(w, *x)?;
+            }
+            if free {
+                return Ok(Some((x, copy)));
             }
         }
         Ok(None)
@@ -170,7 +185,7 @@ impl Depositing {
             return;
         }
         // The radius of LAMMPS' default sphere.
-        let own = 0.5;
+        let own = self.molecules.as_ref().map_or(0.5, Molecules::widest);
         let widest = w.particles.radius.iter().fold(own, |a, r| r.max(a));
         if self.near >= own + widest {
             return;
@@ -198,6 +213,9 @@ impl Fix for Depositing {
             Some((r, sets)) => Some(cx.test(r, sets, Stage::Exchange, &When::Always)?),
             None => None,
         };
+        if let Some(molecules) = &self.molecules {
+            molecules.check_rigid(cx)?;
+        }
         let slot = cx.slot(&format!("f_{}", self.id));
         let w = cx.world();
         let Some(mut account) = Account::load(w, &self.key()) else { return Ok(vec![]) };
@@ -254,11 +272,18 @@ impl Op for Drop {
         // LAMMPS counts the steps to the next insertion.
         let offset = (t.step + fix.every - account.start) as f64 * t.dt * fix.rate;
         match fix.find(w, offset, &mut account, &mut self.test)? {
-            Some(x) => {
+            Some((x, copy)) => {
                 let v = fix.velocity(x, &mut account.stream);
-                let tag = fix.ids.first(w, &account);
-                admit(w, fix.group, tag, &[Newcomer { kind: fix.kind, x, v, size: None }])?;
-                (account.done, account.last_tag) = (account.done + 1, tag);
+                let before = fix.ids.before(w, &account);
+                account.last = match (&fix.molecules, copy) {
+                    (Some(m), Some(copy)) => m.admit(w, fix.group, before, &[Copy { v, ..copy }])?,
+                    _ => {
+                        let tag = before[0] + 1;
+                        admit(w, fix.group, tag, &[Newcomer { kind: fix.kind, x, v, size: None }])?;
+                        [tag, before[1]]
+                    }
+                };
+                account.done += 1;
             }
             None => self.failed += 1,
         }

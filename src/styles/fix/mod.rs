@@ -41,6 +41,7 @@ mod pour;
 mod print;
 mod property_atom;
 mod recenter;
+mod resistance;
 mod rigid;
 mod setforce;
 mod spring;
@@ -147,6 +148,11 @@ pub trait Fix: Send {
         fail(Code::WRONG_KIND, span, "this fix has no rigid bodies")
     }
 
+    /// The molecule template of which new copies become rigid bodies of this fix.
+    fn adopts(&self) -> Option<&str> {
+        None
+    }
+
     /// Takes note of particles that another fix has made during a run.
     fn welcome(&self, _w: &mut World) {}
 
@@ -219,6 +225,8 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &property_atom::PropertyAtomFix,
     &recenter::Recenter,
     &rigid::Rigid,
+    &rigid::RigidNve,
+    &rigid::RigidNveSmall,
     &rigid::RigidSmall,
     &setforce::SetForce,
     &spring::Spring,

@@ -3,6 +3,9 @@
 mod bodies;
 mod infile;
 mod motion;
+mod nve;
+
+pub use nve::{RigidNve, RigidNveSmall};
 
 use super::{Fix, FixStyle, no_option};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
@@ -10,6 +13,7 @@ use crate::lang::{Args, Word};
 use crate::plan::{Access, Op, Stage};
 use crate::styles::command::common::range_from;
 use crate::styles::matter::check_masses;
+use crate::styles::molecules::named;
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
 use crate::world::{GroupId, World};
@@ -74,24 +78,34 @@ impl Style for RigidSmall {
 
 impl FixStyle for Rigid {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let split = match args.choice("kind of bodies", &["single", "molecule", "group", "custom"])? {
-            "single" => Split::Single,
-            "group" => groups(args, cx)?,
-            "custom" => custom(args, cx)?,
-            _ => molecules(cx)?,
-        };
-        build("rigid", split, args, cx)
+        large(self.name(), args, cx)
     }
 }
 
 impl FixStyle for RigidSmall {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let split = match args.choice("kind of bodies", &["molecule", "custom"])? {
-            "custom" => custom(args, cx)?,
-            _ => molecules(cx)?,
-        };
-        build("rigid/small", split, args, cx)
+        small(self.name(), args, cx)
     }
+}
+
+/// Few bodies of any kind.
+fn large(style: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+    let split = match args.choice("kind of bodies", &["single", "molecule", "group", "custom"])? {
+        "single" => Split::Single,
+        "group" => groups(args, cx)?,
+        "custom" => custom(args, cx)?,
+        _ => molecules(cx)?,
+    };
+    build(style, true, split, args, cx)
+}
+
+/// Molecules, as many as there are.
+fn small(style: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+    let split = match args.choice("kind of bodies", &["molecule", "custom"])? {
+        "custom" => custom(args, cx)?,
+        _ => molecules(cx)?,
+    };
+    build(style, false, split, args, cx)
 }
 
 fn molecules(cx: &BuildCx) -> Result<Split> {
@@ -127,24 +141,31 @@ struct Switch {
     span: Span,
 }
 
-fn build(style: &'static str, split: Split, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+fn build(
+    style: &'static str,
+    whole: bool,
+    split: Split,
+    args: &mut Args,
+    cx: &BuildCx,
+) -> Result<Box<dyn Fix>> {
     let mut me = Declared {
         style,
+        whole,
         id: cx.id.to_string(),
         group: cx.group,
         split,
         switches: vec![],
         reinit: true,
         infile: None,
+        template: None,
         virial: true,
     };
-    let whole = style == "rigid";
     while let Some(word) = args.next() {
         match word.text.as_str() {
             "force" | "torque" if whole => me.switches.push(switch(word, args)?),
             "reinit" => me.reinit = args.flag("reinit")?,
             "infile" => me.infile = Some(args.expect("a file name")?.clone()),
-            "mol" if !whole => template(args, cx)?,
+            "mol" if !whole => me.template = Some(template(args, cx)?),
             "langevin" | "gravity" | "temp" | "iso" | "aniso" | "x" | "y" | "z" | "couple" | "tparam"
             | "pchain" | "dilate" => {
                 let text = format!("fix {style}: `{}` is not in perigrain", word.text);
@@ -166,32 +187,38 @@ fn switch(word: &Word, args: &mut Args) -> Result<Switch> {
 }
 
 /// The template that inserted bodies come from: here bodies are found by themselves.
-fn template(args: &mut Args, cx: &BuildCx) -> Result<()> {
+fn template(args: &mut Args, cx: &BuildCx) -> Result<String> {
     let word = args.expect("a molecule template")?;
-    let Some(set) = cx.world.templates.get(&word.text) else {
-        let text = format!("there is no molecule template `{}`", word.text);
-        return fail(Code::UNKNOWN_NAME, word.span, text);
-    };
+    let set = named(word, cx)?;
     if set.iter().any(|t| t.mass.is_some() || t.com.is_some() || t.inertia.is_some()) {
         let text = "templates that give mass, com or inertia of the whole are not in perigrain: bodies have those of their particles";
         return fail(Code::NOT_SUPPORTED, word.span, text);
     }
-    Ok(())
+    Ok(word.text.clone())
 }
 
 #[derive(Clone)]
 struct Declared {
     style: &'static str,
+    /// `rigid` and `rigid/nve`: with an array, and components that can be turned off.
+    whole: bool,
     id: String,
     group: GroupId,
     split: Split,
     switches: Vec<Switch>,
     reinit: bool,
     infile: Option<Word>,
+    /// The template of inserted bodies.
+    template: Option<String>,
     virial: bool,
 }
 
 impl Declared {
+    /// Whether orientations move by NO_SQUISH.
+    fn exact(&self) -> bool {
+        self.style.starts_with("rigid/nve")
+    }
+
     /// Where the world keeps its state.
     fn key(&self, what: &str) -> String {
         format!("{}/{}/{what}", self.style, self.id)
@@ -254,7 +281,7 @@ impl Fix for Declared {
             _ => Shape::OPEN,
         };
         let shape = Shape { scalar: true, ..Shape::default() };
-        if self.style == "rigid" { Shape { array: COLUMNS, array_rows: rows, ..shape } } else { shape }
+        if self.whole { Shape { array: COLUMNS, array_rows: rows, ..shape } } else { shape }
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -323,6 +350,10 @@ impl Fix for Declared {
 
     fn integrates(&self) -> bool {
         true
+    }
+
+    fn adopts(&self) -> Option<&str> {
+        self.template.as_deref()
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

@@ -1,13 +1,11 @@
 //! fix viscous: a drag proportional to velocity.
 
+use super::resistance::Resistance;
 use super::{Fix, FixStyle, Minimizing};
 use crate::diag::Result;
 use crate::lang::Args;
-use crate::plan::{Access, Op, Stage};
-use crate::styles::matter::{Chosen, change_forces};
-use crate::styles::step_op::StepOp;
+use crate::plan::{Access, Op};
 use crate::styles::{BuildCx, Doc, SealCx, Style};
-use crate::world::GroupId;
 
 /// The style.
 pub struct Viscous;
@@ -30,46 +28,17 @@ impl Style for Viscous {
 
 impl FixStyle for Viscous {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let types = cx.world.types;
-        let one = args.number("the drag coefficient gamma")?;
-        let mut gamma = vec![one; types];
-        while let Some(word) = args.next() {
-            if word.text != "scale" {
-                return Err(args.unknown(word, &["scale"]));
-            }
-            let (lo, hi) = args.type_range(types)?;
-            let ratio = args.number("the ratio of drag coefficients")?;
-            (lo..=hi).for_each(|k| gamma[usize::from(k) - 1] = one * ratio);
-        }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, gamma }))
+        Ok(Box::new(Declared(Resistance::read(self.name(), false, args, cx)?)))
     }
 }
 
 #[derive(Clone)]
-struct Declared {
-    id: String,
-    group: GroupId,
-    /// Drag coefficient by type − 1.
-    gamma: Vec<f64>,
-}
+struct Declared(Resistance);
 
 impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let (gamma, span) = (self.gamma.clone(), cx.span());
-        let chosen = Chosen::new(cx.world(), self.group, None, span)?;
         let access = Access::new("f v type mask", "f");
-        let op = StepOp::new(format!("fix {} viscous", self.id), Stage::PostForce, access, move |w, t| {
-            if t.unchanged {
-                return Ok(());
-            }
-            change_forces::<0>(w, &chosen, |w, i, f| {
-                let (v, drag) = (w.particles.v[i], gamma[usize::from(w.particles.kind[i]) - 1]);
-                (0..3).for_each(|d| f[d] -= drag * v[d]);
-                []
-            });
-            Ok(())
-        });
-        Ok(vec![op.boxed()])
+        Ok(vec![self.0.op(access, |p| (&mut p.f, &mut p.v), cx)?])
     }
 
     fn minimizing(&self) -> Minimizing {
@@ -84,6 +53,7 @@ impl Fix for Declared {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::Stage;
     use crate::styles::testing::Bench;
     use crate::world::AtomStyle;
 

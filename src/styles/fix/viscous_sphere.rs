@@ -1,14 +1,11 @@
 //! fix viscous/sphere: a torque against the spin of spheres.
 
+use super::resistance::Resistance;
 use super::{Fix, FixStyle, Minimizing};
-use crate::diag::{Code, Diagnostic, Result, fail};
-use crate::lang::{Args, Param};
-use crate::par;
-use crate::plan::{Access, Op, Stage, When};
-use crate::styles::command::common::variable_param;
-use crate::styles::step_op::StepOp;
-use crate::styles::{BuildCx, Doc, Reading, SealCx, Style};
-use crate::world::GroupId;
+use crate::diag::{Code, Diagnostic, Result};
+use crate::lang::Args;
+use crate::plan::{Access, Op};
+use crate::styles::{BuildCx, Doc, SealCx, Style};
 
 /// The style.
 pub struct ViscousSphere;
@@ -29,91 +26,24 @@ impl Style for ViscousSphere {
     }
 }
 
-/// What γ is multiplied by.
-#[derive(Clone)]
-enum Scale {
-    /// By type − 1.
-    Kinds(Vec<f64>),
-    /// By particle.
-    Each(Param),
-}
-
 impl FixStyle for ViscousSphere {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let types = cx.world.types;
-        let gamma = args.number("the drag coefficient gamma")?;
         if !cx.world.particles.style.sphere {
             return Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, "fix viscous/sphere needs spheres")
                 .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
                 .into());
         }
-        let (mut scale, mut given) = (Scale::Kinds(vec![1.0; types]), false);
-        while let Some(word) = args.next() {
-            if word.text != "scale" {
-                return Err(args.unknown(word, &["scale"]));
-            }
-            if args.peek_text().starts_with("v_") {
-                if given {
-                    let text = "scale either by type or by a variable";
-                    return fail(Code::CONFLICT, word.span.to(args.here()), text);
-                }
-                let by = variable_param(args, "the factor")?;
-                cx.param(&by, true)?;
-                scale = Scale::Each(by);
-            } else {
-                let Scale::Kinds(ratio) = &mut scale else {
-                    return fail(Code::CONFLICT, word.span, "scale either by type or by a variable");
-                };
-                let (lo, hi) = args.type_range(types)?;
-                let by = args.number("the ratio of drag coefficients")?;
-                (lo..=hi).for_each(|k| ratio[usize::from(k) - 1] = by);
-            }
-            given = true;
-        }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, gamma, scale }))
+        Ok(Box::new(Declared(Resistance::read(self.name(), true, args, cx)?)))
     }
 }
 
 #[derive(Clone)]
-struct Declared {
-    id: String,
-    group: GroupId,
-    gamma: f64,
-    scale: Scale,
-}
+struct Declared(Resistance);
 
 impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let (gamma, bit) = (self.gamma, self.group.bit());
-        let (kinds, each) = match &self.scale {
-            Scale::Kinds(ratio) => (ratio.clone(), None),
-            Scale::Each(by) => (vec![], Some(cx.param(by, Stage::PostForce, &When::Always)?)),
-        };
         let access = Access::new("omega torque type mask", "torque");
-        let name = format!("fix {} viscous/sphere", self.id);
-        let op = StepOp::new(name, Stage::PostForce, access, move |w, t| {
-            if t.unchanged {
-                return Ok(());
-            }
-            let mut torques = std::mem::take(&mut w.particles.torque);
-            let world = &*w;
-            let p = &world.particles;
-            let factor = |i: usize| match each {
-                Some(reading) => Reading::atom(&reading, world, i),
-                None => kinds[usize::from(p.kind[i]) - 1],
-            };
-            par::each((&mut torques[..], &p.omega[..], &p.mask[..]), |start, (torque, omega, mask)| {
-                for (k, ((torque, omega), mask)) in torque.iter_mut().zip(omega).zip(mask).enumerate() {
-                    if mask & bit != 0 {
-                        let drag = gamma * factor(start + k);
-                        (0..3).for_each(|d| torque[d] -= drag * omega[d]);
-                    }
-                }
-            });
-            w.particles.torque = torques;
-            Ok(())
-        });
-        Ok(vec![op.boxed()])
+        Ok(vec![self.0.op(access, |p| (&mut p.torque, &mut p.omega), cx)?])
     }
 
     fn minimizing(&self) -> Minimizing {
@@ -128,6 +58,7 @@ impl Fix for Declared {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::Stage;
     use crate::styles::testing::Bench;
     use crate::world::AtomStyle;
 

@@ -1,16 +1,17 @@
 //! The words of fix deposit.
 
 use super::{Depositing, Height};
-use crate::diag::{Code, Diagnostic, Result, fail};
+use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::{Args, RefKind, ValueRef, Word};
 use crate::styles::BuildCx;
-use crate::styles::command::common::{axis, bad_keyword, domain, not_here, scales, seed, units_lattice};
+use crate::styles::command::common::{axis, bad_keyword, domain, scales, seed, units_lattice};
+use crate::styles::molecules;
 use crate::styles::newcomers::Ids;
 use crate::world::Region;
 
-const KEYWORDS: [&str; 19] = [
+const KEYWORDS: [&str; 20] = [
     "region", "var", "set", "id", "global", "local", "near", "gaussian", "attempt", "rate", "vx", "vy", "vz",
-    "target", "units", "mol", "molfrac", "rigid", "orient",
+    "target", "units", "mol", "molfrac", "rigid", "shake", "orient",
 ];
 
 /// A region and the corners of the box around it.
@@ -22,12 +23,13 @@ struct Said {
     variable: Option<ValueRef>,
     sets: [Option<ValueRef>; 3],
     lattice: bool,
+    molecules: molecules::Words,
 }
 
 /// Reads the words after `deposit`.
 pub fn read(args: &mut Args, cx: &BuildCx) -> Result<Depositing> {
     let count = args.integer_from(0, "the number of particles N")? as u64;
-    let kind = one_type(args, cx)?;
+    let (kind, at) = one_type(args, cx)?;
     let every = args.integer_from(1, "the number of steps M")?;
     let mut fix = Depositing {
         id: cx.id.to_string(),
@@ -46,13 +48,16 @@ pub fn read(args: &mut Args, cx: &BuildCx) -> Result<Depositing> {
         rate: 0.0,
         velocity: [[0.0; 2]; 3],
         target: None,
+        molecules: None,
         test: None,
     };
-    let mut said = Said { region: None, variable: None, sets: [None, None, None], lattice: true };
+    let (sets, molecules) = ([None, None, None], molecules::Words::default());
+    let mut said = Said { region: None, variable: None, sets, lattice: true, molecules };
     let start = args.here();
     while let Some(word) = args.next() {
         keyword(word, args, cx, &mut fix, &mut said)?;
     }
+    fix.molecules = said.molecules.finish(kind, at, cx)?;
     let Some((region, corners)) = said.region else {
         let d = Diagnostic::error(Code::MISSING_ARGUMENT, args.here(), "fix deposit needs `region ID`");
         return Err(d.help("it says where particles may appear").into());
@@ -96,19 +101,18 @@ fn keyword(word: &Word, args: &mut Args, cx: &BuildCx, fix: &mut Depositing, sai
         "vz" => fix.velocity[2] = pair(args, "velocity")?,
         "target" => fix.target = Some([args.number("x")?, args.number("y")?, args.number("z")?]),
         "units" => said.lattice = units_lattice(args)?,
-        "mol" | "molfrac" | "rigid" | "shake" | "orient" => {
-            return Err(not_here(word, "keyword of fix deposit"));
-        }
+        "mol" | "molfrac" | "rigid" | "shake" | "orient" => said.molecules.take(word, args, cx)?,
         _ => return Err(bad_keyword(args, word, &KEYWORDS, &[])),
     }
     Ok(())
 }
 
-fn one_type(args: &mut Args, cx: &BuildCx) -> Result<u16> {
+/// The type, 0 too as an offset for molecules, and where it stands.
+fn one_type(args: &mut Args, cx: &BuildCx) -> Result<(u16, Span)> {
     let span = args.here();
     let kind = args.integer("the type")?;
-    match u16::try_from(kind).ok().filter(|k| (1..=cx.world.types).contains(&usize::from(*k))) {
-        Some(kind) => Ok(kind),
+    match u16::try_from(kind).ok().filter(|k| usize::from(*k) <= cx.world.types) {
+        Some(kind) => Ok((kind, span)),
         None => fail(Code::BAD_VALUE, span, format!("there are types 1 to {}, not {kind}", cx.world.types)),
     }
 }

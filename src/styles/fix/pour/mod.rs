@@ -8,7 +8,8 @@ use super::{Fix, FixStyle};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::Args;
 use crate::plan::Op;
-use crate::styles::command::common::{bad_keyword, not_here, seed};
+use crate::styles::command::common::{bad_keyword, seed};
+use crate::styles::molecules::{self, Molecules};
 use crate::styles::newcomers::{Account, Ids};
 use crate::styles::{BuildCx, Doc, Pull, SealCx, Shape, Style};
 use crate::world::{GroupId, World};
@@ -29,7 +30,7 @@ impl Style for Pour {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "fix ID group pour N type seed region ID [diam one D | range Dlo Dhi | poly n D1 P1 …] [vol fraction tries] \
-                     [dens lo hi] [vel vxlo vxhi vylo vyhi vz] [rate V] [id max|next] [ignore]",
+                     [dens lo hi] [vel vxlo vxhi vylo vyhi vz] [rate V] [id max|next] [ignore] [mol TEMPLATE [molfrac f1 f2 …] [rigid fixID]]",
             summary: "Pours N spheres into the scene, batch by batch, under gravity.",
             text: "The region is a block or a cylinder along z, in flat scenes a block; it is filled to the volume fraction \
                    `vol` (0.25) with spheres that touch nobody, and again when these have fallen out of it, until there \
@@ -39,10 +40,14 @@ impl Style for Pour {
                    the number that sum to 1 (default `one 1.0`). A batch makes at most its number times `tries` (50) attempts; spheres that find \
                    no place are made up for later and warned about at the end of the run. `rate` lets the region rise. `id max` continues from the largest id in use, `next` \
                    from the last one given. Distances are in box units.\n\n\
+                   `mol` pours copies of a molecule template with their bonds in the place of spheres, turned at random; `type` is added to \
+                   their types (so 0 is one), each counts with the sphere that holds it towards the volume fraction, and `diam` and \
+                   `dens` concern it not. `molfrac`: the shares of the several molecules of a template, equal without. `rigid` names \
+                   the fix rigid/small with the same `mol` that moves them as bodies. `shake` is refused.\n\n\
                    Random numbers and their order are LAMMPS', so that places agree. There must be exactly one `fix gravity`, \
                    constant and along −z (flat: −y). A second run goes on where the first one ended, also after a \
                    restart; LAMMPS pours a batch at the first step of every run, and so does perigrain under `-compat lammps`. \
-                   Molecules (`mol molfrac rigid shake`) are refused; `ignore` concerns particles of other shapes and \
+                   `ignore` concerns particles of other shapes and \
                    has no effect. Scalar (intensive): how many there are so far.",
             example: "region slot block -0.002 0.002 -0.002 0.002 0.005 0.008 units box\nfix g all gravity 9.81 vector 0 0 -1\n\
                       fix rain grains pour 20 2 4711 region slot diam range 0.0004 0.0006 dens 2500 2500 vol 0.2 50",
@@ -59,7 +64,7 @@ impl FixStyle for Pour {
         }
         let count = args.integer_from(0, "the number of spheres")? as u64;
         let span = args.here();
-        let kind = args.integer_from(1, "the type")?;
+        let kind = args.integer_from(0, "the type")?;
         let Some(kind) = u16::try_from(kind).ok().filter(|k| usize::from(*k) <= cx.world.types) else {
             let text = format!("there are types 1 to {}, not {kind}", cx.world.types);
             return fail(Code::BAD_VALUE, span, text);
@@ -80,8 +85,9 @@ impl FixStyle for Pour {
             fall: 0.0,
             rate: 0.0,
             ids: Ids::Max,
+            molecules: None,
         };
-        if !keywords(&mut pouring, args, cx)? {
+        if !keywords(&mut pouring, args, cx, span)? {
             let d = Diagnostic::error(Code::MISSING_ARGUMENT, args.here(), "fix pour needs `region ID`");
             return Err(d.help("it says where spheres appear: a block or a cylinder along z").into());
         }
@@ -90,8 +96,8 @@ impl FixStyle for Pour {
 }
 
 /// Reads the keywords; whether there was a region.
-fn keywords(p: &mut Pouring, args: &mut Args, cx: &BuildCx) -> Result<bool> {
-    let mut region = false;
+fn keywords(p: &mut Pouring, args: &mut Args, cx: &BuildCx, kind: Span) -> Result<bool> {
+    let (mut region, mut molecules) = (false, molecules::Words::default());
     while let Some(word) = args.next() {
         match word.text.as_str() {
             "region" => {
@@ -124,10 +130,11 @@ fn keywords(p: &mut Pouring, args: &mut Args, cx: &BuildCx) -> Result<bool> {
                 word.span,
                 "without effect: all particles are spheres or points",
             )),
-            "mol" | "molfrac" | "rigid" | "shake" => return Err(not_here(word, "keyword of fix pour")),
+            key if molecules::KEYWORDS.contains(&key) => molecules.take(word, args, cx)?,
             _ => return Err(bad_keyword(args, word, &KEYWORDS, &[])),
         }
     }
+    p.molecules = molecules.finish(p.kind, kind, cx)?;
     Ok(region)
 }
 
@@ -184,6 +191,8 @@ struct Pouring {
     /// Vertical velocity of the region.
     rate: f64,
     ids: Ids,
+    /// Molecules in the place of spheres.
+    molecules: Option<Molecules>,
 }
 
 impl Pouring {
@@ -242,6 +251,9 @@ impl Fix for Pouring {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let span = cx.span();
         let gravity = self.gravity(cx, span)?;
+        if let Some(molecules) = &self.molecules {
+            molecules.check_rigid(cx)?;
+        }
         let log = cx.log();
         let slot = cx.slot(&format!("f_{}", self.id));
         Ok(vec![Box::new(Rain::new(self, cx.world(), gravity, span, slot, &log)?)])

@@ -1,11 +1,12 @@
 //! The op of fix pour: batches of spheres in a falling stream.
 
-use super::Pouring;
+use super::{Pouring, Sizes};
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::out::log::Log;
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::styles::fix::crowd::Crowd;
 use crate::styles::matter::publish;
+use crate::styles::molecules::{Copy, Molecules};
 use crate::styles::newcomers::{Account, Newcomer, admit};
 use crate::world::{SlotId, World};
 
@@ -25,6 +26,19 @@ pub struct Rain {
     failed: Option<(u64, i64)>,
 }
 
+/// Newcomers of one step: spheres or molecules.
+#[derive(Default)]
+struct Batch {
+    spheres: Vec<Newcomer>,
+    molecules: Vec<Copy>,
+}
+
+impl Batch {
+    fn len(&self) -> u64 {
+        (self.spheres.len() + self.molecules.len()) as u64
+    }
+}
+
 impl Rain {
     /// Reckons batches and says so.
     pub fn new(
@@ -36,7 +50,9 @@ impl Rain {
         log: &Log,
     ) -> Result<Self> {
         let flat = w.settings.two_dimensional;
-        let (space, one) = (fix.volume.space(flat), fix.sizes.space(flat));
+        let held = |m: &Molecules| Sizes::One(m.extent()).space(flat);
+        let one = fix.molecules.as_ref().map_or_else(|| fix.sizes.space(flat), held);
+        let space = fix.volume.space(flat);
         let batch = (fix.fraction * space / one) as u64;
         if batch == 0 {
             let text = format!(
@@ -68,8 +84,8 @@ impl Rain {
         Ok(Self { name, fix: fix.clone(), span, slot, gravity, batch, every, failed: None })
     }
 
-    /// The spheres of one batch.
-    fn batch(&self, w: &World, t: &Tick, account: &mut Account) -> Result<Vec<Newcomer>> {
+    /// What one batch consists of.
+    fn batch(&self, w: &World, t: &Tick, account: &mut Account) -> Result<Batch> {
         let (fix, domain) = (&self.fix, w.domain()?);
         let flat = w.settings.two_dimensional;
         let down = if flat { 1 } else { 2 };
@@ -78,29 +94,40 @@ impl Rain {
         let risen = (t.step - account.start) as f64 * t.dt * fix.rate;
         (lo[down], hi[down]) = (lo[down] + risen, hi[down] + risen);
         let mut crowd = self.crowd(w, domain, lo, hi);
-        let (mut made, mut left) = (vec![], wanted.saturating_mul(fix.tries));
+        let (mut made, mut left) = (Batch::default(), wanted.saturating_mul(fix.tries));
         let stream = &mut account.stream;
         let between = |[a, b]: [f64; 2], u: f64| a + u * (b - a);
-        while (made.len() as u64) < wanted {
+        while made.len() < wanted {
             let deep = stream.uniform();
             let height = hi[down] - deep * deep * (hi[down] - lo[down]);
-            let radius = fix.sizes.sample(stream);
+            let radius = if fix.molecules.is_none() { fix.sizes.sample(stream) } else { 0.0 };
             let mut place = None;
             while left > 0 && place.is_none() {
                 left -= 1;
                 let x = fix.volume.place(height, flat, stream);
-                place = crowd.fits(x, radius).then_some(x);
+                let copy = fix.molecules.as_ref().map(|m| m.draw(x, flat, stream));
+                let spheres: Vec<([f64; 3], f64)> = match (&fix.molecules, &copy) {
+                    (Some(m), Some(copy)) => copy.places.iter().copied().zip(m.radii(copy)).collect(),
+                    _ => vec![(x, radius)],
+                };
+                if spheres.iter().all(|(x, r)| crowd.fits(*x, *r)) {
+                    spheres.iter().for_each(|(x, r)| crowd.add(*x, *r));
+                    place = Some((x, copy));
+                }
             }
-            let Some(x) = place else { break };
-            crowd.add(x, radius);
+            let Some((x, copy)) = place else { break };
             // v = vz + g t and z = top + vz t + g t²/2 without t.
             let fallen = -(fix.fall * fix.fall - 2.0 * self.gravity * (x[down] - hi[down])).sqrt();
             let mut v = [between(fix.drift[0], stream.uniform()), fallen, 0.0];
             if !flat {
                 v = [v[0], between(fix.drift[1], stream.uniform()), fallen];
             }
+            if let Some(copy) = copy {
+                made.molecules.push(Copy { v, ..copy });
+                continue;
+            }
             let density = between(fix.density, stream.uniform());
-            made.push(Newcomer { kind: fix.kind, x, v, size: Some([radius, density]) });
+            made.spheres.push(Newcomer { kind: fix.kind, x, v, size: Some([radius, density]) });
         }
         Ok(made)
     }
@@ -113,7 +140,11 @@ impl Rain {
         lo: [f64; 3],
         hi: [f64; 3],
     ) -> Crowd<'a> {
-        let own = self.fix.sizes.largest();
+        let own = match &self.fix.molecules {
+            // Where the file gives no radii, extents are those of the centres.
+            Some(m) => m.extent() + m.widest(),
+            None => self.fix.sizes.largest(),
+        };
         let p = &w.particles;
         let widest = p.radius.iter().fold(own, |a, r| r.max(a));
         let mut crowd = Crowd::new(domain, lo, hi, own + widest);
@@ -145,13 +176,18 @@ impl Op for Rain {
         };
         let wanted = self.batch.min(self.fix.count - account.done);
         let made = self.batch(w, t, &mut account)?;
-        let first = self.fix.ids.first(w, &account);
-        admit(w, self.fix.group, first, &made)?;
-        account.done += made.len() as u64;
-        account.last_tag = first + made.len() as u32 - 1;
+        let before = self.fix.ids.before(w, &account);
+        account.last = match &self.fix.molecules {
+            Some(m) => m.admit(w, self.fix.group, before, &made.molecules)?,
+            None => {
+                admit(w, self.fix.group, before[0] + 1, &made.spheres)?;
+                [before[0] + made.len() as u32, before[1]]
+            }
+        };
+        account.done += made.len();
         account.next = (account.done < self.fix.count).then_some(t.step + self.every);
         account.store(w, &key);
-        let missing = wanted - made.len() as u64;
+        let missing = wanted - made.len();
         if missing > 0 {
             let (before, step) = self.failed.unwrap_or((0, t.step));
             self.failed = Some((before + missing, step));

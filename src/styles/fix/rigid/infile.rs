@@ -41,7 +41,7 @@ fn read(fix: &Declared, w: &mut World, text: &str) -> Result<()> {
         let row = row(&line)?;
         let name = row[0];
         let found = match fix.style {
-            "rigid" => (name >= 1.0).then_some(name as usize - 1).filter(|k| *k < bodies.len()),
+            "rigid" | "rigid/nve" => (name >= 1.0).then_some(name as usize - 1).filter(|k| *k < bodies.len()),
             _ => bodies.iter().position(|b| b.name == name),
         };
         let Some(k) = found else {

@@ -2,7 +2,7 @@
 
 use super::bodies::Body;
 use super::{COLUMNS, Declared};
-use crate::math::body::{apply, apply_transposed, matrix, richardson, spin};
+use crate::math::body::{apply, apply_transposed, matrix, no_squish, richardson, spin};
 use crate::math::vec3::{Vec3, add, cross, dot, scale, sub};
 use crate::par;
 use crate::plan::Tick;
@@ -18,6 +18,11 @@ impl Declared {
         for (k, b) in bodies.iter_mut().enumerate() {
             self.kick(k, b, half, flat);
             b.x = add(b.x, scale(t.dt, b.v));
+            if self.exact() {
+                (b.q, b.momentum) = no_squish(b.q, b.momentum, b.moments, t.dt);
+                b.omega = spin(b.momentum, b.q, b.moments);
+                continue;
+            }
             let omega = spin(b.momentum, b.q, b.moments);
             (b.q, b.omega) = richardson(b.q, b.momentum, omega, b.moments, 0.5 * t.dt);
         }
@@ -151,7 +156,7 @@ impl Declared {
         let out = w.slots.get_mut(slot);
         out.step = Some(t.step);
         out.scalar = if freedom > 0.0 { sum * units.mvv2e / (freedom * units.boltz) } else { 0.0 };
-        if self.style != "rigid" {
+        if !self.whole {
             return;
         }
         out.array.clear();

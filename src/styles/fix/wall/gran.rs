@@ -27,7 +27,7 @@ impl Style for WallGran {
         Doc {
             syntax: "fix ID group wall/gran granular MODELS … | hooke Kn Kt gamma_n gamma_t xmu dampflag [limit_damping] | \
                      hooke/history … | hertz/history …  xplane lo hi | yplane lo hi | zplane lo hi | zcylinder R \
-                     [wiggle x|y|z A period | shear x|y|z V] [contacts] [material E nu] [about x y z]",
+                     [wiggle x|y|z A period | shear x|y|z V] [contacts] [temperature T|v_name] [material E nu] [about x y z]",
             summary: "Flat walls across an axis, or a cylinder about z, on which grains lean.",
             text: "Grains feel a wall as a grain of infinite mass, with the force style's law: overlap δ = R − r with r the \
                 distance of the centre, m̄ = m, R̄ = R on a plane, 1/R̄ = 1/R − 1/(2 R_c) inside a cylinder and + outside. \
@@ -38,15 +38,16 @@ impl Style for WallGran {
                 `wiggle`: the wall is at its place + A − A cos ω t, ω = 2π/period, t since the fix was declared. `shear`: it \
                 moves in its own plane at V; a cylinder along z, or about z for x and y, clockwise seen from above.\n\n\
                 `contacts` offers 8 columns per particle: 1 where it touches, the force on it, the wall's nearest point, \
-                its radius.\n\n\
+                its radius, and with a model of heat the heat that flows into the particle as a ninth. `temperature` is that of the wall, a number or an \
+                equal-style variable, and belongs to a model of heat: h π a² (T_wall − T) flows into a grain (`heat area h`), or 2 k a (T_wall − T).\n\n\
                 LAMMPS 22Jul2025 has faults that perigrain has under `-compat lammps` alone: springs of `hooke/history`, \
                 `hertz/history` and the `…_classic` models on walls hang on the contact radius and lose it when they slide; \
                 a cylinder with `shear x` or `y` also flies along that axis; sticky grains hold on to hollow walls and regions \
                 no longer than they touch.\n\n\
                 Not in LAMMPS: `material E nu` gives the wall elastic constants of its own, for 1/E* and 1/G* of two \
-                unlike bodies; the global vector is the force on the wall (1–3) and the torque on it (4–6) about the \
-                origin or the point `about`. Only grains near the wall are looked at, so that a wall far from most costs \
-                nothing. A particle deeper in the wall than a tenth of its radius is told of once per run.\n\n\
+                unlike bodies; the global vector is the force on the wall (1–3), the torque on it (4–6) about the \
+                origin or the point `about`, and the heat that flows into it (7). Only grains near the wall are looked at, so that a wall far from most costs \
+                nothing. The particle deepest in the wall when one is first pressed in by more than a tenth of its radius is told of after the run.\n\n\
                 Springs of sliding contacts are kept in restart files; a run cut in two has the bits of one.",
             example: "fix floor grains wall/gran granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin \
                       NULL 1.0 0.5 zplane -0.002 NULL",
@@ -83,10 +84,11 @@ impl FixStyle for WallGran {
                     }
                     form.motion = Some(Motion::Shear(axis, args.number("the velocity")?));
                 }
-                _ if words::keyword(word, args, &mut common)? => {}
+                _ if words::keyword(word, args, cx, &mut common)? => {}
                 _ => return Err(args.unknown(word, &[&["wiggle", "shear"], &KEYWORDS[..]].concat())),
             }
         }
+        words::check_heat(&common)?;
         form.warn(cx, span);
         Ok(Box::new(Declared { common, form }))
     }

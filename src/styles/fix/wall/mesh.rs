@@ -81,13 +81,14 @@ impl FixStyle for WallMesh {
                     motion = Motion::read(args, cx)?;
                     about = motion.point();
                 }
-                _ if words::keyword(word, args, &mut common)? => {}
+                _ if words::keyword(word, args, cx, &mut common)? => {}
                 _ => return Err(args.unknown(word, &[&OWN[..], &KEYWORDS[..]].concat())),
             }
         }
         if let (Some(point), true) = (about, common.center == own_center) {
             common.center = point;
         }
+        words::check_heat(&common)?;
         let mesh = surface(file, factor, shift, cx)?;
         Ok(Box::new(Declared { common, form: Triangles { mesh: Arc::new(mesh), motion } }))
     }

@@ -8,6 +8,7 @@ mod words;
 
 use super::Fix;
 use crate::diag::{Code, Diagnostic, Result, Span};
+use crate::lang::Param;
 use crate::laws::contact::walls::{Wall, WallSweep};
 use crate::plan::{Op, Tick};
 use crate::styles::contact::durations;
@@ -54,11 +55,18 @@ struct Common {
     material: Material,
     /// Whether each particle's contact is told.
     contacts: bool,
+    /// How warm the wall is.
+    temperature: Option<(Param, Span)>,
     /// About which point the wall's torque is meant.
     center: [f64; 3],
 }
 
 impl Common {
+    /// Columns of the values by particle.
+    fn columns(&self) -> usize {
+        op::COLUMNS + usize::from(self.temperature.is_some())
+    }
+
     /// Where small state of the fix is kept in the world.
     fn key(&self, style: &str) -> String {
         format!("{style}/{}", self.id)
@@ -74,7 +82,7 @@ struct Declared<F> {
 impl<F: Form> Fix for Declared<F> {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let surface = self.form.surface(&self.common, cx)?;
-        Ok(vec![Box::new(op::WallOp::new(F::STYLE, F::LOCAL, &self.common, surface, cx))])
+        Ok(vec![Box::new(op::WallOp::new(F::STYLE, F::LOCAL, &self.common, surface, cx)?)])
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
@@ -90,8 +98,8 @@ impl<F: Form> Fix for Declared<F> {
     }
 
     fn shape(&self) -> Shape {
-        let atom = self.common.contacts.then_some(op::COLUMNS);
-        Shape { vector: 6, vector_extensive: true, atom, local: F::LOCAL, ..Shape::default() }
+        let atom = self.common.contacts.then(|| self.common.columns());
+        Shape { vector: op::FELT, vector_extensive: true, atom, local: F::LOCAL, ..Shape::default() }
     }
 
     fn contact_time(&self, w: &World, said: Option<(f64, f64)>) -> Option<f64> {

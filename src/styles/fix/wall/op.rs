@@ -1,21 +1,22 @@
 //! The op of a wall: who may touch it, contacts, forces, and what it feels.
 
 use super::{Common, Surface};
-use crate::diag::Result;
+use crate::diag::{Code, Diagnostic, Result, Span};
+use crate::laws::contact::driver::DEEP;
 use crate::laws::contact::walls::{Spheres, WallSweep};
 use crate::laws::contact::{Advance, Granular};
 use crate::math::vec3::{scale, sub};
-use crate::out::log::Log;
-use crate::plan::{Access, Op, Stage, Tick};
-use crate::styles::SealCx;
+use crate::plan::{Access, Op, Stage, Tick, When};
+use crate::styles::{Reading, SealCx};
+use crate::world::columns::{HEATFLOW, TEMPERATURE};
 use crate::world::contacts::Contacts;
 use crate::world::{SlotId, World};
 
 /// Columns of `contacts`: in contact or not, force, the wall's nearest point, radius.
 pub const COLUMNS: usize = 8;
 
-/// An overlap that contact laws are no longer meant for, as a part of the radius.
-const DEEP: f64 = 0.1;
+/// Length of the global vector: force, torque, heat.
+pub const FELT: usize = 7;
 
 /// Forces of one wall.
 pub struct WallOp {
@@ -34,22 +35,52 @@ pub struct WallOp {
     /// Columns of local values.
     local: usize,
     center: [f64; 3],
-    log: Log,
-    /// A deep overlap has been told of.
-    told: bool,
+    span: Span,
+    /// Which particle was too deep in the wall, by which part of its radius and when.
+    deep: Option<(u32, f64, i64)>,
+    warmth: Option<Warmth>,
+}
+
+/// What a wall that conducts heat needs.
+struct Warmth {
+    /// Its temperature.
+    wall: Reading,
+    /// Columns of temperatures and heat flows of the particles.
+    temperature: String,
+    flow: String,
+}
+
+impl Warmth {
+    /// Where the wall has a temperature.
+    fn new(common: &Common, cx: &mut dyn SealCx) -> Result<Option<Self>> {
+        let Some((wall, _)) = &common.temperature else { return Ok(None) };
+        let wall = cx.param(wall, Stage::PostForce, &When::Always)?;
+        let columns = &cx.world().columns;
+        let (Some(temperature), Some(flow)) = (columns.custom(TEMPERATURE), columns.custom(HEATFLOW)) else {
+            let text = "walls that conduct heat need particles with a temperature";
+            return Err(Diagnostic::error(Code::INCOMPLETE, cx.span(), text)
+                .help("add `fix ID all property/atom temperature heatflow` and `set group all temperature …`")
+                .into());
+        };
+        Ok(Some(Self { wall, temperature, flow }))
+    }
 }
 
 impl WallOp {
     /// With nothing computed yet.
+    ///
+    /// # Errors
+    /// What a wall with a temperature lacks.
     pub fn new(
         style: &str,
         local: usize,
         common: &Common,
         surface: Box<dyn Surface>,
         cx: &mut dyn SealCx,
-    ) -> Self {
+    ) -> Result<Self> {
+        let warmth = Warmth::new(common, cx)?;
         let compat = cx.world().settings.compat;
-        Self {
+        Ok(Self {
             name: format!("fix {} {style}", common.id),
             id: common.id.clone(),
             bit: common.group.bit(),
@@ -62,9 +93,10 @@ impl WallOp {
             contacts: common.contacts,
             local,
             center: common.center,
-            log: cx.log(),
-            told: false,
-        }
+            span: cx.span(),
+            deep: None,
+            warmth,
+        })
     }
 
     /// Finds out anew who may touch the wall, where particles or wall have moved too far since.
@@ -84,37 +116,35 @@ impl WallOp {
         self.travelled = 0.0;
     }
 
-    /// Tells once of particles pressed so deep that the law no longer holds.
-    fn tell_deep(&mut self, w: &World, t: &Tick) -> Result<()> {
-        if self.told {
-            return Ok(());
+    /// Remembers the deepest particle when the law first holds no longer.
+    fn find_deep(&mut self, w: &World, t: &Tick) {
+        if self.deep.is_some() {
+            return;
         }
         let p = &w.particles;
-        let depth = |i: usize, distance: f64| 1.0 - distance / p.radius[i];
-        let (mut many, mut worst) = (0, (DEEP, None));
-        for (touch, _) in self.sweep.contacts() {
+        let deep = self.sweep.contacts().map(|(touch, _)| {
             let i = touch.grain as usize;
-            let depth = depth(i, touch.near.distance);
-            many += usize::from(depth > DEEP);
-            if depth > worst.0 {
-                worst = (depth, Some(i));
-            }
-        }
-        let (depth, Some(i)) = worst else { return Ok(()) };
-        self.told = true;
-        let percent = (100.0 * depth).round();
-        let what = if t.setup { "begins inside it" } else { "is pressed into it" };
-        self.log.line(&format!(
-            "WARNING: {}: {many} particle(s) deeper in the wall than {:.0} % of the radius at step {}; particle {} {what} \
-             by {percent} %",
-            self.name,
-            100.0 * DEEP,
-            t.step,
-            p.tag[i]
-        ))
+            (p.tag[i], 1.0 - touch.near.distance / p.radius[i])
+        });
+        let deeper = |a: (u32, f64), b: (u32, f64)| if b.1 > a.1 { b } else { a };
+        self.deep = deep.filter(|d| d.1 > DEEP).reduce(deeper).map(|(tag, part)| (tag, part, t.step));
     }
 
-    fn publish(&mut self, w: &mut World, t: &Tick, felt: [f64; 6]) {
+    /// Adds the heat that flows between the wall and the particles; what the wall takes up.
+    fn conduct(&mut self, w: &mut World) -> f64 {
+        let (Some(warmth), n) = (&self.warmth, w.n()) else { return 0.0 };
+        let wall = warmth.wall.get(w);
+        let mut flow = std::mem::take(w.columns.scalar(&warmth.flow, n));
+        let temperature = w.columns.scalar(&warmth.temperature, n).clone();
+        let p = &w.particles;
+        let grains =
+            Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
+        let lost = self.sweep.conduct(&grains, &self.law, wall, &temperature, &mut flow);
+        *w.columns.scalar(&warmth.flow, n) = flow;
+        -lost
+    }
+
+    fn publish(&mut self, w: &mut World, t: &Tick, felt: [f64; FELT]) {
         let n = w.n();
         let local = self.surface.local(w, &self.sweep, t);
         let mut out = w.slots.take(self.slot);
@@ -122,17 +152,21 @@ impl WallOp {
         out.vector.extend(felt);
         (out.local, out.local_cols) = (local, self.local);
         if self.contacts {
-            out.cols = COLUMNS;
+            let cols = COLUMNS + usize::from(self.warmth.is_some());
+            out.cols = cols;
             out.atom.clear();
-            out.atom.resize(COLUMNS * n, 0.0);
-            for (touch, wrench) in self.sweep.contacts() {
+            out.atom.resize(cols * n, 0.0);
+            for (k, (touch, wrench)) in self.sweep.contacts().enumerate() {
                 let i = touch.grain as usize;
                 let point = sub(w.particles.x[i], scale(touch.near.distance, touch.near.normal));
-                let row = &mut out.atom[COLUMNS * i..][..COLUMNS];
+                let row = &mut out.atom[cols * i..][..cols];
                 row[0] = 1.0;
                 row[1..4].copy_from_slice(&wrench.force);
                 row[4..7].copy_from_slice(&point);
                 row[7] = w.particles.radius[i];
+                if let Some(heat) = row.get_mut(COLUMNS) {
+                    *heat = self.sweep.heat(k);
+                }
             }
         }
         w.slots.put(self.slot, out, t.step);
@@ -170,9 +204,27 @@ impl Op for WallOp {
         drop(wall);
         w.wall_contacts.insert(self.id.clone(), kept.unwrap_or(memory));
         let p = &mut w.particles;
-        let felt = self.sweep.scatter(&mut p.f, &mut p.torque, &p.x, self.center);
-        self.tell_deep(w, t)?;
-        self.publish(w, t, felt);
+        let [fx, fy, fz, tx, ty, tz] = self.sweep.scatter(&mut p.f, &mut p.torque, &p.x, self.center);
+        let heat = self.conduct(w);
+        self.find_deep(w, t);
+        self.publish(w, t, [fx, fy, fz, tx, ty, tz, heat]);
+        Ok(())
+    }
+
+    fn finish(&mut self, w: &mut World) -> Result<()> {
+        if let Some((tag, part, step)) = self.deep.take() {
+            let percent = 100.0 * part;
+            let text = format!(
+                "{}: particle {tag} is {percent:.0} % of its radius deep in the wall at step {step}: contact laws hold below \
+                 10 %",
+                self.name
+            );
+            w.parts.notes.push(
+                Diagnostic::warning(Code::SUSPICIOUS, self.span, text)
+                    .help("take a stiffer wall, or look for particles that were created inside it")
+                    .help("only the first step at which it is so is reported"),
+            );
+        }
         Ok(())
     }
 

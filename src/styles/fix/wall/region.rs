@@ -22,7 +22,7 @@ impl Style for WallGranRegion {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "fix ID group wall/gran/region granular MODELS … | hooke … | hooke/history … | hertz/history …  \
-                     region regionID [contacts] [material E nu] [about x y z]",
+                     region regionID [contacts] [temperature T|v_name] [material E nu] [about x y z]",
             summary: "The surface of a region as a wall on which grains lean, at rest or moving.",
             text: "As `fix wall/gran`, with the surface of a region of any shape. Grains inside feel every face they touch, \
                 grains outside (`side out`) the nearest point; a region with `open` faces is a shell that is felt from \
@@ -62,10 +62,11 @@ impl FixStyle for WallGranRegion {
             common.center = turn.point;
         }
         while let Some(word) = args.next() {
-            if !words::keyword(word, args, &mut common)? {
+            if !words::keyword(word, args, cx, &mut common)? {
                 return Err(args.unknown(word, &KEYWORDS));
             }
         }
+        words::check_heat(&common)?;
         Ok(Box::new(Declared { common, form: Shaped { region: word.text.clone(), span } }))
     }
 }

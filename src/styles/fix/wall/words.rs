@@ -4,8 +4,9 @@ use super::Common;
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use crate::lang::{Args, Word};
 use crate::laws::contact::driver::{Average, Curvature};
-use crate::laws::contact::{Arm, Damping, Drag, Friction, Granular, Model, Normal};
+use crate::laws::contact::{Arm, Damping, Drag, Friction, Granular, Heat, Model, Normal};
 use crate::styles::BuildCx;
+use crate::styles::command::common::variable_param;
 use crate::styles::contact::{classic, words};
 use crate::world::Compat;
 
@@ -90,7 +91,7 @@ fn granular(args: &mut Args, ends: &[&str]) -> Result<Model> {
 ///
 /// # Errors
 /// Mistakes in its numbers.
-pub fn keyword(word: &Word, args: &mut Args, common: &mut Common) -> Result<bool> {
+pub fn keyword(word: &Word, args: &mut Args, cx: &BuildCx, common: &mut Common) -> Result<bool> {
     match word.text.as_str() {
         "contacts" => common.contacts = true,
         "material" => common.material.own = Some(own_material(word, args, &common.material.model)?),
@@ -98,12 +99,30 @@ pub fn keyword(word: &Word, args: &mut Args, common: &mut Common) -> Result<bool
             common.center = [args.number("x")?, args.number("y")?, args.number("z")?];
         }
         "temperature" => {
-            let text = "walls that conduct heat are not in perigrain yet";
-            return fail(Code::NOT_SUPPORTED, word.span, text);
+            let warmth = variable_param(args, "the temperature of the wall")?;
+            cx.param(&warmth, false)?;
+            common.temperature = Some((warmth, word.span));
         }
         _ => return Ok(false),
     }
     Ok(true)
+}
+
+/// Refuses heat without a temperature of the wall, and the reverse.
+pub fn check_heat(common: &Common) -> Result<()> {
+    let conducts = common.material.model.heat != Heat::None;
+    let (span, text, help) = match &common.temperature {
+        Some((_, span)) if !conducts => {
+            let text = "a wall has a temperature, but its contacts conduct no heat";
+            (*span, text, "add `heat area H` or `heat radius K` to the model of the wall")
+        }
+        None if conducts => {
+            let text = "contacts conduct heat, but the wall has no temperature";
+            (common.material.span, text, "add `temperature T` behind the place of the wall")
+        }
+        _ => return Ok(()),
+    };
+    Err(Diagnostic::error(Code::CONFLICT, span, text).help(help).into())
 }
 
 /// `material E nu`: the wall's own elastic constants; the others are those of the model.
@@ -143,5 +162,12 @@ pub fn common(cx: &BuildCx, material: Material) -> Common {
             cx.note(Diagnostic::note(Code::COMPAT, material.span, text));
         }
     }
-    Common { id: cx.id.to_string(), group: cx.group, material, contacts: false, center: [0.0; 3] }
+    Common {
+        id: cx.id.to_string(),
+        group: cx.group,
+        material,
+        contacts: false,
+        temperature: None,
+        center: [0.0; 3],
+    }
 }

@@ -40,6 +40,8 @@ pub struct Force {
 struct Plain {
     list: Vec<Pair>,
     body: Vec<u32>,
+    /// Who was there when the bodies were found.
+    roster: Option<u64>,
     sweep: Sweep,
 }
 
@@ -166,8 +168,9 @@ impl Op for Force {
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        // A run that continues an unchanged scene has no setup.
-        if t.setup || self.generation.is_none() {
+        // A run that continues an unchanged scene has no setup; who comes or goes shifts the others.
+        if t.setup || self.generation.is_none() || self.plain.roster != Some(w.rebuild.roster) {
+            self.plain.roster = Some(w.rebuild.roster);
             self.find_bodies(w);
         }
         let stale = self.is_fast && self.fast.as_ref().is_some_and(|f| f.len() != w.n());
