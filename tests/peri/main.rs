@@ -8,3 +8,4 @@ mod patch;
 mod scene;
 mod states;
 mod textbook;
+mod waves;

@@ -1,6 +1,6 @@
 //! Elastic constants of a simple cubic lattice of bonds, and micro-moduli that make one of them right.
 
-use crate::world::families::VolumeRule;
+use crate::world::families::{Influence, VolumeRule};
 
 /// What a lattice of microelastic bonds is, relative to the solid whose bulk modulus c = 18K/(πδ⁴) stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,8 +17,8 @@ pub struct LatticeConstants {
     pub zener: f64,
 }
 
-/// The constants for a horizon in lattice spacings: C_ijkl = ½ Σ c w |xi| n_i n_j n_k n_l V over the family.
-pub fn constants(horizon: f64, rule: VolumeRule) -> LatticeConstants {
+/// The constants for a horizon in lattice spacings and micro-moduli of a shape: C_ijkl = ½ Σ c w |xi| n_i n_j n_k n_l V over the family.
+pub fn constants(horizon: f64, rule: VolumeRule, shape: Influence) -> LatticeConstants {
     let reach = rule.reach(horizon, 1.0) * (1.0 + 1e-9);
     let edge = reach.floor() as i32;
     let (mut neighbours, mut c11, mut c12) = (0, 0.0, 0.0);
@@ -29,7 +29,8 @@ pub fn constants(horizon: f64, rule: VolumeRule) -> LatticeConstants {
             continue;
         }
         neighbours += 1;
-        let half = 0.5 * rule.weight(length, horizon, 1.0) * length / length.powi(4);
+        let c = shape.shape(length, horizon) * rule.weight(length, horizon, 1.0);
+        let half = 0.5 * c * length / length.powi(4);
         c11 += half * x.powi(4);
         c12 += half * x * x * y * y;
     }
@@ -103,7 +104,7 @@ mod tests {
         for (m, rows) in table {
             for (rule, row) in [VolumeRule::None, VolumeRule::Lammps, VolumeRule::Full].into_iter().zip(rows)
             {
-                let c = constants(m, rule);
+                let c = constants(m, rule, Influence::One);
                 assert_eq!(c.neighbours, row.0, "{m} {rule:?}");
                 // The digits printed there.
                 assert!((c.bulk - row.1).abs() < 6e-5, "{m} {rule:?} {c:?}");

@@ -82,6 +82,108 @@ pub const SUMS: usize = 7;
 /// Degree that stands for the closed form.
 pub const CLOSED: usize = 8;
 
+/// Displacements of some neighbouring cells, from the chunk's cell `here` on.
+///
+/// # Safety
+/// See [`force`]; so for all helpers below.
+#[inline(always)]
+pub unsafe fn place<L: Lanes>(u: &[*const f64; 3], here: isize) -> [L; 3] {
+    // SAFETY: the caller's promise.
+    unsafe { xyz!(|k| L::load(u[k].offset(here))) }
+}
+
+/// One bond of each of some neighbouring cells.
+#[derive(Clone, Copy)]
+pub struct Bonds<L> {
+    /// xi + eta.
+    pub y: [L; 3],
+    /// |y|² − |xi|².
+    pub q: L,
+    /// Mask of those stretched beyond the dead band, and living.
+    pub live: L,
+}
+
+/// The bonds from cells displaced by `own` along the stencil vector with constants at `c`.
+#[inline(always)]
+pub unsafe fn bonds<L: Lanes, const MASKED: bool>(
+    u: &[*const f64; 3],
+    own: &[L; 3],
+    other: isize,
+    c: *const f64,
+    bits: u8,
+) -> Bonds<L> {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let xi = xyz!(|k| L::splat(*c.add(constant::XI + k)));
+        let far = place::<L>(u, other);
+        let eta = xyz!(|k| far[k].sub(own[k]));
+        let y = xyz!(|k| eta[k].add(xi[k]));
+        let twice = xyz!(|k| y[k].add(xi[k]));
+        let q = eta[0].fma(twice[0], eta[1].fma(twice[1], eta[2].mul(twice[2])));
+        let mut live = q.abs().ge(L::splat(*c.add(constant::DEAD)));
+        if MASKED {
+            live = live.keep(L::mask(bits));
+        }
+        Bonds { y, q, live }
+    }
+}
+
+/// q times the series of a row of constants.
+#[inline(always)]
+pub unsafe fn series<L: Lanes, const DEGREE: usize>(q: L, c: *const f64) -> L {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let mut h = L::splat(*c.add(constant::SERIES + DEGREE));
+        let mut k = DEGREE;
+        while k > 0 {
+            k -= 1;
+            h = h.fma(q, L::splat(*c.add(constant::SERIES + k)));
+        }
+        h.mul(q)
+    }
+}
+
+/// Takes pulls along bonds from the forces at their far ends.
+#[inline(always)]
+pub unsafe fn take<L: Lanes>(f: &[*mut f64; 3], other: isize, pull: L, y: &[L; 3]) {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let target = xyz!(|k| f[k].offset(other));
+        let left = xyz!(|k| pull.fnma(y[k], L::load(target[k])));
+        left[0].store(target[0]);
+        left[1].store(target[1]);
+        left[2].store(target[2]);
+    }
+}
+
+/// Adds sums to the forces of a chunk's own cells.
+#[inline(always)]
+pub unsafe fn give<L: Lanes>(f: &[*mut f64; 3], sum: &[[L; 3]; 2]) {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let mut v = 0;
+        while v < CELLS / L::WIDTH {
+            let total = xyz!(|k| L::load(f[k].add(L::WIDTH * v)).add(sum[v][k]));
+            total[0].store(f[0].add(L::WIDTH * v));
+            total[1].store(f[1].add(L::WIDTH * v));
+            total[2].store(f[2].add(L::WIDTH * v));
+            v += 1;
+        }
+    }
+}
+
+/// The largest of all lanes of `high`, and of −`low`.
+#[inline(always)]
+pub unsafe fn extremes<L: Lanes>(high: L, low: L) -> (f64, f64) {
+    let mut most = [[0.0f64; CELLS]; 2];
+    // SAFETY: eight numbers, as many as the widest lanes.
+    unsafe {
+        high.store(most[0].as_mut_ptr());
+        low.store(most[1].as_mut_ptr());
+    }
+    (most[0].iter().copied().fold(0.0, f64::max), -most[1].iter().copied().fold(0.0, f64::min))
+}
+
 /// Adds the forces of a chunk's bonds to both ends. Returns the largest z and the largest −z if `TRACK`.
 /// Without `MASKED` all bonds of all eight cells must live.
 ///
@@ -102,77 +204,45 @@ pub unsafe fn force<
     unsafe {
         let zero = L::splat(0.0);
         // Two vectors of four cells, or one of eight (the second then stays unused).
-        let vectors = CELLS / L::WIDTH;
         let half = CELLS - L::WIDTH;
-        let u = [xyz!(|k| L::load(a.u[k])), xyz!(|k| L::load(a.u[k].add(half)))];
+        let u = [place::<L>(&a.u, 0), place::<L>(&a.u, half as isize)];
         let mut sum = [[zero; 3]; 2];
         let (mut high, mut low) = (zero, zero);
         let mut e = 0;
         while e < a.to.len() {
-            let (to, place) = *a.to.get_unchecked(e);
+            let (to, constants) = *a.to.get_unchecked(e);
             let bits = *a.alive.get_unchecked(e);
             e += 1;
             if MASKED && bits == 0 {
                 continue;
             }
             let to = to as isize;
-            let c = a.tables.as_ptr().add(place as usize);
-            let xi = xyz!(|k| L::splat(*c.add(constant::XI + k)));
-            let dead = L::splat(*c.add(constant::DEAD));
+            let c = a.tables.as_ptr().add(constants as usize);
             let mut v = 0;
-            while v < vectors {
-                let other = to + (L::WIDTH * v) as isize;
-                let eta = xyz!(|k| L::load(a.u[k].offset(other)).sub(u[v][k]));
-                let bond = xyz!(|k| eta[k].add(xi[k]));
-                let twice = xyz!(|k| bond[k].add(xi[k]));
-                let q = eta[0].fma(twice[0], eta[1].fma(twice[1], eta[2].mul(twice[2])));
+            while v < CELLS / L::WIDTH {
+                let here = L::WIDTH * v;
+                let other = to + here as isize;
+                let b = bonds::<L, MASKED>(&a.u, &u[v], other, c, bits >> here);
                 let factor = if DEGREE == CLOSED {
-                    let z = q.mul(L::splat(*c.add(constant::INVERSE)));
+                    let z = b.q.mul(L::splat(*c.add(constant::INVERSE)));
                     z.mul(closed(z)).mul(L::splat(*c.add(constant::FACTOR)))
                 } else {
-                    let mut h = L::splat(*c.add(constant::SERIES + DEGREE));
-                    let mut k = DEGREE;
-                    while k > 0 {
-                        k -= 1;
-                        h = h.fma(q, L::splat(*c.add(constant::SERIES + k)));
-                    }
-                    h.mul(q)
+                    series::<L, DEGREE>(b.q, c)
                 };
-                let mut live = q.abs().ge(dead);
-                if MASKED {
-                    live = live.keep(L::mask(bits >> (L::WIDTH * v)));
-                }
-                let factor = factor.keep(live);
+                let factor = factor.keep(b.live);
                 if TRACK {
-                    let z = q.mul(L::splat(*c.add(constant::INVERSE))).keep(live);
+                    let z = b.q.mul(L::splat(*c.add(constant::INVERSE))).keep(b.live);
                     high = z.max(high);
                     low = z.min(low);
                 }
                 let (own, back) = if VARIOUS { various::<L>(a, factor, to, v) } else { (factor, factor) };
-                sum[v] = xyz!(|k| own.fma(bond[k], sum[v][k]));
-                let target = xyz!(|k| a.f[k].offset(other));
-                let left = xyz!(|k| back.fnma(bond[k], L::load(target[k])));
-                left[0].store(target[0]);
-                left[1].store(target[1]);
-                left[2].store(target[2]);
+                sum[v] = xyz!(|k| own.fma(b.y[k], sum[v][k]));
+                take::<L>(&a.f, other, back, &b.y);
                 v += 1;
             }
         }
-        let mut v = 0;
-        while v < vectors {
-            let total = xyz!(|k| L::load(a.f[k].add(L::WIDTH * v)).add(sum[v][k]));
-            total[0].store(a.f[0].add(L::WIDTH * v));
-            total[1].store(a.f[1].add(L::WIDTH * v));
-            total[2].store(a.f[2].add(L::WIDTH * v));
-            v += 1;
-        }
-        if !TRACK {
-            return (0.0, 0.0);
-        }
-        let mut most = [[0.0f64; CELLS]; 2];
-        high.store(most[0].as_mut_ptr());
-        low.store(most[1].as_mut_ptr());
-        (most[0].iter().copied().fold(0.0, f64::max), -most[1].iter().copied().fold(0.0, f64::min))
+        give::<L>(&a.f, &sum);
+        if TRACK { extremes::<L>(high, low) } else { (0.0, 0.0) }
     }
 }
 
@@ -190,40 +260,27 @@ pub unsafe fn sums<L: Lanes>(a: &Chunk) -> [[f64; CELLS]; SUMS] {
         let mut v = 0;
         while v < CELLS / L::WIDTH {
             let here = L::WIDTH * v;
-            let u = xyz!(|k| L::load(a.u[k].add(here)));
+            let u = place::<L>(&a.u, here as isize);
             let mut sum = [L::splat(0.0); SUMS];
             let mut e = 0;
             while e < a.to.len() {
-                let (to, place) = *a.to.get_unchecked(e);
+                let (to, constants) = *a.to.get_unchecked(e);
                 let bits = *a.alive.get_unchecked(e);
                 e += 1;
                 if bits == 0 {
                     continue;
                 }
-                let other = here as isize + to as isize;
-                let c = a.tables.as_ptr().add(place as usize);
-                let xi = xyz!(|k| L::splat(*c.add(constant::XI + k)));
-                let eta = xyz!(|k| L::load(a.u[k].offset(other)).sub(u[k]));
-                let y = xyz!(|k| eta[k].add(xi[k]));
-                let twice = xyz!(|k| y[k].add(xi[k]));
-                let q = eta[0].fma(twice[0], eta[1].fma(twice[1], eta[2].mul(twice[2])));
-                let z = q.mul(L::splat(*c.add(constant::INVERSE)));
-                let live = q.abs().ge(L::splat(*c.add(constant::DEAD))).keep(L::mask(bits >> here));
+                let c = a.tables.as_ptr().add(constants as usize);
+                let b = bonds::<L, true>(&a.u, &u, here as isize + to as isize, c, bits >> here);
+                let z = b.q.mul(L::splat(*c.add(constant::INVERSE)));
                 let one = L::splat(1.0);
                 let root = one.add(z).sqrt();
                 // z h(z) = s/(1 + s), and s times that root is s: one division.
-                let share = z.div(root.fma(root, root)).keep(live);
+                let share = z.div(root.fma(root, root)).keep(b.live);
                 let stretch = share.mul(root);
                 let energy = stretch.mul(stretch).mul(L::splat(0.5 * *c.add(constant::ENERGY)));
                 let pull = share.mul(L::splat(-*c.add(constant::FACTOR)));
-                sum[0] = sum[0].add(energy);
-                let p = xyz!(|k| pull.mul(y[k]));
-                sum[1] = p[0].fma(y[0], sum[1]);
-                sum[2] = p[1].fma(y[1], sum[2]);
-                sum[3] = p[2].fma(y[2], sum[3]);
-                sum[4] = p[0].fma(y[1], sum[4]);
-                sum[5] = p[0].fma(y[2], sum[5]);
-                sum[6] = p[1].fma(y[2], sum[6]);
+                sum = with_virial(sum, energy, pull, &b.y);
             }
             let mut k = 0;
             while k < SUMS {
@@ -233,6 +290,24 @@ pub unsafe fn sums<L: Lanes>(a: &Chunk) -> [[f64; CELLS]; SUMS] {
             v += 1;
         }
         out
+    }
+}
+
+/// Sums with a bond's energy and the virial of a pull along y.
+#[inline(always)]
+pub unsafe fn with_virial<L: Lanes>(sum: [L; SUMS], energy: L, pull: L, y: &[L; 3]) -> [L; SUMS] {
+    // SAFETY: plain arithmetic; the processor has it by the caller's promise.
+    unsafe {
+        let p = xyz!(|k| pull.mul(y[k]));
+        [
+            sum[0].add(energy),
+            p[0].fma(y[0], sum[1]),
+            p[1].fma(y[1], sum[2]),
+            p[2].fma(y[2], sum[3]),
+            p[0].fma(y[1], sum[4]),
+            p[0].fma(y[2], sum[5]),
+            p[1].fma(y[2], sum[6]),
+        ]
     }
 }
 

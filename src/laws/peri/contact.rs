@@ -2,7 +2,7 @@
 
 use super::lattice::SQUEEZED;
 use crate::world::families::lattice::LANES;
-use crate::world::families::{Families, FamilyOptions, ForceUnit, PeriTally, PeriView, PmbTable};
+use crate::world::families::{Families, FamilyOptions, ForceUnit, Influence, PeriTally, PeriView, PmbTable};
 
 /// Everything a pair's repulsion depends on, and where it goes.
 pub struct Repulsion<'a, 'b, 't> {
@@ -58,6 +58,56 @@ impl Repulsion<'_, '_, '_> {
             ForceUnit::Density if self.options.compat_lammps => (vj, vj),
             ForceUnit::Density => (vi, vj),
         }
+    }
+}
+
+impl Repulsion<'_, '_, '_> {
+    /// The push of a broken bond of this shape that is shorter than at the start: c w s as before it broke.
+    fn broken(&mut self, i: usize, j: usize, length: f64, shape: Influence) {
+        let view = self.view;
+        let Some(coeff) = self.table.get(view.kind[i], view.kind[j]) else { return };
+        let d = view.bounds.nearest([0, 1, 2].map(|k| view.x[i][k] - view.x[j][k]));
+        let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+        let s = r / length - 1.0;
+        if s >= 0.0 || r == 0.0 {
+            return;
+        }
+        let weight = self.options.volume.weight(length, coeff.horizon, self.options.lattice_spacing);
+        let c = coeff.c * shape.shape(length, coeff.horizon) * weight;
+        let pull = -c * s / r;
+        let ((vi, vj), newton) = ((view.volume[i], view.volume[j]), self.options.unit == ForceUnit::Newton);
+        let (own, far) = if newton { (vi * vj, vi * vj) } else { (vj, vi) };
+        for k in 0..3 {
+            self.f[i][k] += d[k] * pull * own;
+            self.f[j][k] -= d[k] * pull * far;
+        }
+        if let Some(t) = self.tally.as_deref_mut() {
+            let e = 0.25 * c * s * s * length;
+            add(t, (i, e * own), (j, e * far), pull * vi * vj, d);
+        }
+    }
+}
+
+/// The pushes of all broken bonds under `peri_modify broken compress yes`, in the order of particles.
+pub fn push_apart(families: &Families, repulsion: &mut Repulsion) {
+    if !families.options.compress {
+        return;
+    }
+    let view = repulsion.view;
+    let reference = families.reference.as_deref().unwrap_or(view.x0);
+    // State-based solids push with their short-range modulus, which has no shape.
+    let states = !families.law.kind.bond_based();
+    let shape = if states { Influence::One } else { families.law.influence };
+    for i in (0..families.hurt.len()).filter(|&i| families.hurt[i]) {
+        families.each(i, |n| {
+            let j = n.partner as usize;
+            if n.alive || j < i {
+                return;
+            }
+            let xi = view.bounds.nearest([0, 1, 2].map(|k| reference[j][k] - reference[i][k]));
+            let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+            repulsion.broken(i, j, length, shape);
+        });
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use super::chunk::{CELLS, Chunk, Kernels};
+use super::chunk::{CELLS, Chunk, Kernels, SUMS};
 use super::contact::add;
 use super::lattice::partners;
 use super::list_kernel::{RowKernels, RowTask, dead};
@@ -16,7 +16,7 @@ use crate::world::families::{Families, FamilyOptions, ForceUnit, PeriTally, Peri
 type Add<'a> = dyn FnMut((usize, f64), (usize, f64), f64, [f64; 3]) + 'a;
 
 /// Energy and virial of one row of cells or one record.
-type Sums = [f64; 7];
+pub(super) type Sums = [f64; SUMS];
 
 /// Rows per part when rows are summed.
 const ROWS: usize = 16;
@@ -33,7 +33,10 @@ pub fn tally<K: Kernels + RowKernels>(
     let options = families.options;
     for body in &families.lattices {
         if !t.per_atom() && body.cell_kind.is_empty() {
-            whole_rows::<K>(body, view, &options, &families.scratch.windows, &mut rows);
+            let newton = options.unit == ForceUnit::Newton;
+            // SAFETY: live bonds lead to cells of the body; forces are not touched.
+            let of_chunk = |_: usize, data: &Chunk| unsafe { K::sums(data) };
+            whole_rows(body, view, &families.scratch.windows, &mut rows, (false, newton), of_chunk);
             collect(&rows, t);
             continue;
         }
@@ -73,7 +76,7 @@ fn sum(n: usize, rows: &mut Vec<Sums>, t: &mut PeriTally, row: impl Fn(usize, &m
 }
 
 /// Adds up rows in their order.
-fn collect(rows: &[Sums], t: &mut PeriTally) {
+pub(super) fn collect(rows: &[Sums], t: &mut PeriTally) {
     for row in rows {
         t.energy += row[0];
         for k in 0..6 {
@@ -82,18 +85,22 @@ fn collect(rows: &[Sums], t: &mut PeriTally) {
     }
 }
 
-/// Energy and virial of each row of a body whose constants are per row, several cells at a time.
-fn whole_rows<K: Kernels>(
+/// Energy and virial of each row of a body whose constants are per row, several cells at a time. Constants hold the
+/// volumes of forces; `lacks` says that energies lack the second volume of
+/// true ones, `newton` that forces are true.
+pub(super) fn whole_rows(
     body: &LatticeBody,
     view: &PeriView,
-    options: &FamilyOptions,
     windows: &[Mutex<Window>],
     rows: &mut Vec<Sums>,
+    (lacks, newton): (bool, bool),
+    of_chunk: impl Fn(usize, &Chunk) -> [[f64; CELLS]; SUMS] + Sync,
 ) {
-    let Some(&first) = body.particle.iter().find(|&&p| p != u32::MAX) else { return };
-    let volume = if options.unit == ForceUnit::Density { view.volume[first as usize] } else { 1.0 };
-    let n = body.rows.len();
     rows.clear();
+    let Some(&first) = body.particle.iter().find(|&&p| p != u32::MAX) else { return };
+    let volume = view.volume[first as usize];
+    let scale = [if lacks { volume } else { 1.0 }, if newton { 1.0 } else { volume }];
+    let n = body.rows.len();
     rows.resize(n, [0.0; 7]);
     let shared = Shared::new(rows);
     par::for_rows(n.div_ceil(ROWS), |part| {
@@ -104,18 +111,24 @@ fn whole_rows<K: Kernels>(
                 continue;
             }
             partners(body, slot, meets, to);
-            let mut row = whole_row::<K>(body, slot, to);
-            row[1..].iter_mut().for_each(|v| *v *= volume);
+            let mut row = whole_row(body, slot, to, &of_chunk);
+            row[0] *= scale[0];
+            row[1..].iter_mut().for_each(|v| *v *= scale[1]);
             // SAFETY: each row belongs to one part.
             unsafe { shared.get(slot..slot + 1)[0] = row };
         }
     });
 }
 
-fn whole_row<K: Kernels>(body: &LatticeBody, slot: usize, to: &[(i32, u32)]) -> Sums {
+fn whole_row(
+    body: &LatticeBody,
+    slot: usize,
+    to: &[(i32, u32)],
+    of_chunk: impl Fn(usize, &Chunk) -> [[f64; CELLS]; SUMS],
+) -> Sums {
     let (row, entries) = (&body.rows[slot], body.stencil.len());
     let u = body.u[1].as_ptr();
-    let mut lanes = [[0.0; CELLS]; 7];
+    let mut lanes = [[0.0; CELLS]; SUMS];
     for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
         let data = Chunk {
             // SAFETY: `u` has a place for each cell and PAD more around.
@@ -126,8 +139,7 @@ fn whole_row<K: Kernels>(body: &LatticeBody, slot: usize, to: &[(i32, u32)]) -> 
             tables: &body.tables,
             various: None,
         };
-        // SAFETY: live bonds lead to cells of the body; forces are not touched.
-        let part = unsafe { K::sums(&data) };
+        let part = of_chunk(chunk, &data);
         for (sum, part) in lanes.iter_mut().flatten().zip(part.iter().flatten()) {
             *sum += part;
         }

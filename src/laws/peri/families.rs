@@ -6,7 +6,7 @@ use super::breaking::{Periodic, break_bonds};
 use super::chunk::{Kernels, Plain};
 #[cfg(target_arch = "x86_64")]
 use super::chunk::{Wide, Widest};
-use super::contact::{Repulsion, repel};
+use super::contact::{Repulsion, push_apart, repel};
 use super::energy::tally;
 use super::gather::{GatherKernels, gather};
 use super::lanes::has_avx2;
@@ -201,13 +201,13 @@ impl Families {
         let moved = list::gather(&mut self.list, view);
         let states = self.law.kind.has_states();
         match states {
-            true => self.sweep_states::<K>(view, f, advance, period),
+            true => self.sweep_states::<K>(view, f, (advance, tallied.is_some()), period),
             false => self.sweep::<K>(f, advance, period),
         }
         self.contact(view, f, &moved, advance, tallied.as_deref_mut());
         if let Some(t) = tallied {
             match states {
-                true => state::tally(self, view, t, period),
+                true => state::tally::<K>(self, view, t, (advance, period)),
                 false => tally::<K>(self, view, t, period),
             }
         }
@@ -274,6 +274,7 @@ impl Families {
         let closer = self.update_near(view, within, all, advance);
         let mut repulsion = Repulsion { view, table: &self.table, options: &self.options, f, tally };
         repel(self, closer, &mut repulsion);
+        push_apart(self, &mut repulsion);
     }
 
     /// Breaks bonds and makes this step the previous one.

@@ -6,6 +6,7 @@ mod cluster_atom;
 mod com;
 mod contact_atom;
 mod coord_atom;
+mod crack;
 mod damage_atom;
 mod dilatation_atom;
 mod displace_atom;
@@ -14,6 +15,7 @@ mod energy_ledger;
 mod erotate_sphere;
 mod erotate_sphere_atom;
 mod fabric;
+mod fragments;
 mod global_atom;
 mod gyration;
 mod ke;
@@ -130,6 +132,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &com::Com,
     &contact_atom::ContactAtom,
     &coord_atom::CoordAtom,
+    &crack::CrackTip,
     &damage_atom::DamageAtom,
     &dilatation_atom::DilatationAtom,
     &displace_atom::DisplaceAtom,
@@ -138,6 +141,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &erotate_sphere::ErotateSphere,
     &erotate_sphere_atom::ErotateSphereAtom,
     &fabric::Fabric,
+    &fragments::Fragments,
     &global_atom::GlobalAtom,
     &gyration::Gyration,
     &ke::Ke,

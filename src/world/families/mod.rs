@@ -145,6 +145,8 @@ pub struct FamilyOptions {
     pub lattice_spacing: f64,
     /// One critical stretch per particle, and LAMMPS' absolute threshold for stretch.
     pub compat_lammps: bool,
+    /// Broken bonds still push when they are shorter than at the start (`peri_modify broken compress`).
+    pub compress: bool,
     /// Lattice or list.
     pub layout: Layout,
     /// Leave out what is exactly at rest; same bits either way.
@@ -185,6 +187,7 @@ impl FamilyOptions {
             unit: ForceUnit::Density,
             lattice_spacing,
             compat_lammps: false,
+            compress: false,
             layout: Layout::Auto,
             skip_rest: true,
             portable: false,

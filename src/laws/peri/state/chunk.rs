@@ -1,16 +1,22 @@
 //! The innermost loops of state-based laws on the lattice: all bonds of eight neighbouring cells.
 
-use super::super::chunk::{CELLS, CLOSED, Chunk, Plain, constant};
+use super::super::chunk::{
+    Bonds, CELLS, CLOSED, Chunk, Plain, SUMS, bonds, constant, extremes, give, place, series, take,
+    with_virial,
+};
 #[cfg(target_arch = "x86_64")]
 use super::super::chunk::{Wide, Widest};
 use super::super::lanes::{Lanes, Portable};
-use super::law::{BondLaw, Ends, Moment, Stretch, Term, closed};
+use super::law::{Angles, BondLaw, Ends, Moment, Stretch, closed};
+use super::terms::Term;
 use crate::world::families::law::COLUMNS;
 
 /// Places in the tables of state-based laws, beside those of [`constant`]: there [`constant::SERIES`] is scaled so that
 /// it gives s/(1 + s) in the table of forces, and the whole term in that of dilatations; [`constant::FACTOR`] is ω w V
 /// in the former, ω w |xi|² V in the latter.
 pub const OMEGA: usize = constant::ENERGY;
+/// In the table of dilatations: one over [`constant::FACTOR`].
+pub const FROM_TERM: usize = constant::ENERGY + 1;
 
 /// What a chunk's loop needs besides; pointers at the chunk's first cell.
 #[derive(Clone, Copy)]
@@ -19,69 +25,57 @@ pub struct Cells<'a> {
     pub columns: *const f64,
     /// See `columns`.
     pub stride: usize,
+    /// Displacements at the last step that advanced.
+    pub last: [*const f64; 3],
     /// What the chunk's bonds remember, [`CELLS`] of each number for each stencil vector.
     pub memory: *mut f64,
+    /// Whether that is anything but zeros.
+    pub touched: *mut u8,
     /// What is the same for all bonds.
     pub moment: &'a Moment,
     /// Keep what bonds remember from this evaluation.
     pub keep: bool,
 }
 
-/// One bond of each of some neighbouring cells.
-struct Bonds<L> {
-    /// xi + eta.
-    y: [L; 3],
-    /// z.
-    z: L,
-    /// Stretched beyond the dead band, and living.
-    live: L,
-    stretch: Stretch<L>,
+/// What energies need besides.
+#[derive(Clone, Copy)]
+pub struct Looking<'a> {
+    /// Dilatations of the chunk's cells.
+    pub theta: *const f64,
+    /// What of them is not yet relaxed.
+    pub unrelaxed: *const f64,
+    /// Constants of dilatations.
+    pub terms: &'a [f64],
+    /// Share of the squares that counts for each end.
+    pub half: f64,
+    /// Both ends have 15G/m as column 1; else that is part of the constants.
+    pub states: bool,
+    /// The step has advanced: what bonds remember is of now.
+    pub advanced: bool,
 }
 
-/// The bonds from the cells from `here` on, along the stencil vector with constants at `c`.
+/// Stretches of bonds, their `before` the same.
 #[inline(always)]
-unsafe fn bonds<L: Lanes, const DEGREE: usize, const MASKED: bool>(
-    u: &[*const f64; 3],
-    own: &[L; 3],
-    other: isize,
-    c: *const f64,
-    bits: u8,
-) -> Bonds<L> {
+unsafe fn stretch<L: Lanes, const DEGREE: usize>(b: &Bonds<L>, c: *const f64) -> Stretch<L> {
     // SAFETY: the caller's promise.
     unsafe {
-        let (x, y, z) = (L::splat(*c), L::splat(*c.add(1)), L::splat(*c.add(2)));
-        let ex = L::load(u[0].offset(other)).sub(own[0]);
-        let ey = L::load(u[1].offset(other)).sub(own[1]);
-        let ez = L::load(u[2].offset(other)).sub(own[2]);
-        let (bx, by, bz) = (ex.add(x), ey.add(y), ez.add(z));
-        let q = ex.fma(bx.add(x), ey.fma(by.add(y), ez.mul(bz.add(z))));
-        let mut live = q.abs().ge(L::splat(*c.add(constant::DEAD)));
-        if MASKED {
-            live = live.keep(L::mask(bits));
+        if DEGREE == CLOSED {
+            let s = closed(b.q.mul(L::splat(*c.add(constant::INVERSE))));
+            let stretch = s.s.keep(b.live);
+            return Stretch { s: stretch, share: s.share.keep(b.live), inverse: s.inverse, before: stretch };
         }
-        let z = q.mul(L::splat(*c.add(constant::INVERSE)));
-        let stretch = if DEGREE == CLOSED {
-            let s = closed(z);
-            Stretch { s: s.s.keep(live), share: s.share.keep(live), inverse: s.inverse }
-        } else {
-            let mut h = L::splat(*c.add(constant::SERIES + DEGREE));
-            let mut k = DEGREE;
-            while k > 0 {
-                k -= 1;
-                h = h.fma(q, L::splat(*c.add(constant::SERIES + k)));
-            }
-            let share = h.mul(q).keep(live);
-            Stretch { s: share, share, inverse: share }
-        };
-        Bonds { y: [bx, by, bz], z, live, stretch }
+        let share = series::<L, DEGREE>(b.q, c).keep(b.live);
+        // s = p/(1 − p) for p = s/(1 + s): below the first term left out, p^(DEGREE + 2), is 1e-16 of p.
+        let one = L::splat(1.0);
+        let mut s = one;
+        let mut k = 0;
+        while k < DEGREE {
+            s = s.fma(share, one);
+            k += 1;
+        }
+        let s = s.mul(share);
+        Stretch { s, share, inverse: one.sub(share), before: s }
     }
-}
-
-/// The displacements of some neighbouring cells.
-#[inline(always)]
-unsafe fn place<L: Lanes>(u: &[*const f64; 3], here: usize) -> [L; 3] {
-    // SAFETY: the caller's promise.
-    unsafe { [L::load(u[0].add(here)), L::load(u[1].add(here)), L::load(u[2].add(here))] }
 }
 
 /// The columns of some neighbouring cells.
@@ -142,9 +136,12 @@ unsafe fn pull<
         let zero = L::splat(0.0);
         let (mut high, mut low) = (zero, zero);
         // Two vectors of four cells, or one of eight (the second then stays unused).
-        let half = CELLS - L::WIDTH;
-        let u = [place(&a.u, 0), place(&a.u, half)];
-        let own = [read::<L>(s, W::COLUMNS, 0), read::<L>(s, W::COLUMNS, half as isize)];
+        let half = (CELLS - L::WIDTH) as isize;
+        let u = [place::<L>(&a.u, 0), place::<L>(&a.u, half)];
+        let back = if W::BACK { [place::<L>(&s.last, 0), place::<L>(&s.last, half)] } else { u };
+        let own = [read::<L>(s, W::COLUMNS, 0), read::<L>(s, W::COLUMNS, half)];
+        let known = W::MEMORY > 0 && (!W::LAZY || *s.touched != 0);
+        let mut woken = false;
         let mut sum = [[zero; 3]; 2];
         let mut e = 0;
         while e < a.to.len() {
@@ -160,12 +157,18 @@ unsafe fn pull<
             while v < CELLS / L::WIDTH {
                 let here = L::WIDTH * v;
                 let (other, bits) = (here as isize + to as isize, bits >> here);
-                let b = bonds::<L, DEGREE, MASKED>(&a.u, &u[v], other, c, bits);
+                let b = bonds::<L, MASKED>(&a.u, &u[v], other, c, bits);
+                let mut now = stretch::<L, DEGREE>(&b, c);
+                if W::BACK {
+                    let last = bonds::<L, MASKED>(&s.last, &back[v], other, c, bits);
+                    now.before = stretch::<L, DEGREE>(&last, c).s;
+                }
                 let ends: Ends<L> = [own[v], read::<L>(s, W::COLUMNS, other)];
-                let mut memory = recall::<L>(s, W::MEMORY, vector, here);
+                let mut memory = if known { recall::<L>(s, W::MEMORY, vector, here) } else { [zero; 2] };
                 let omega = L::splat(*c.add(OMEGA));
-                let (mut near, mut far) = W::pull(&b.stretch, omega, &ends, &mut memory, s.moment);
-                if s.keep {
+                let (mut near, mut far) = W::pull(&now, omega, &ends, &mut memory, s.moment);
+                if W::MEMORY > 0 && s.keep && (known || W::flows(&ends).bits() != 0) {
+                    woken = true;
                     let mut k = 0;
                     while k < W::MEMORY {
                         memory[k].store(remembered(s, W::MEMORY, vector, k, here));
@@ -181,37 +184,24 @@ unsafe fn pull<
                     (near, far) = volumes(a, near, far, here, other);
                 }
                 if TRACK {
-                    let z = b.z.keep(b.live);
+                    let z = b.q.mul(L::splat(*c.add(constant::INVERSE))).keep(b.live);
                     high = z.max(high);
                     low = z.min(low);
                 }
                 let mut k = 0;
                 while k < 3 {
                     sum[v][k] = near.fma(b.y[k], sum[v][k]);
-                    let target = a.f[k].offset(other);
-                    far.fnma(b.y[k], L::load(target)).store(target);
                     k += 1;
                 }
+                take::<L>(&a.f, other, far, &b.y);
                 v += 1;
             }
         }
-        let mut v = 0;
-        while v < CELLS / L::WIDTH {
-            let mut k = 0;
-            while k < 3 {
-                let target = a.f[k].add(L::WIDTH * v);
-                L::load(target).add(sum[v][k]).store(target);
-                k += 1;
-            }
-            v += 1;
+        if W::LAZY && woken {
+            *s.touched = 1;
         }
-        if !TRACK {
-            return (0.0, 0.0);
-        }
-        let mut most = [[0.0f64; CELLS]; 2];
-        high.store(most[0].as_mut_ptr());
-        low.store(most[1].as_mut_ptr());
-        (most[0].iter().copied().fold(0.0, f64::max), -most[1].iter().copied().fold(0.0, f64::min))
+        give::<L>(&a.f, &sum);
+        if TRACK { extremes::<L>(high, low) } else { (0.0, 0.0) }
     }
 }
 
@@ -226,9 +216,10 @@ unsafe fn add_up<L: Lanes, T: Term, const DEGREE: usize, const MASKED: bool, con
 ) {
     // SAFETY: the caller's promise covers every address formed below.
     unsafe {
-        let half = CELLS - L::WIDTH;
-        let u = [place(&a.u, 0), place(&a.u, half)];
-        let own = [read::<L>(s, T::COLUMNS, 0), read::<L>(s, T::COLUMNS, half as isize)];
+        let half = (CELLS - L::WIDTH) as isize;
+        let u = [place::<L>(&a.u, 0), place::<L>(&a.u, half)];
+        let own = [read::<L>(s, T::COLUMNS, 0), read::<L>(s, T::COLUMNS, half)];
+        let known = T::MEMORY > 0 && *s.touched != 0;
         let mut sum = [L::splat(0.0); 2];
         let mut e = 0;
         while e < a.to.len() {
@@ -244,19 +235,13 @@ unsafe fn add_up<L: Lanes, T: Term, const DEGREE: usize, const MASKED: bool, con
             while v < CELLS / L::WIDTH {
                 let here = L::WIDTH * v;
                 let (other, bits) = (here as isize + to as isize, bits >> here);
-                let b = bonds::<L, DEGREE, MASKED>(&a.u, &u[v], other, c, bits);
-                let (mut near, mut far) = if DEGREE != CLOSED {
+                let b = bonds::<L, MASKED>(&a.u, &u[v], other, c, bits);
+                let (mut near, mut far) = if DEGREE != CLOSED && T::STRETCH {
                     // The series is the term itself.
-                    (b.stretch.s, b.stretch.s)
+                    let term = series::<L, DEGREE>(b.q, c).keep(b.live);
+                    (term, term)
                 } else {
-                    let ends: Ends<L> = [own[v], read::<L>(s, T::COLUMNS, other)];
-                    let memory = recall::<L>(s, T::MEMORY, vector, here);
-                    let (near, far) = T::terms(&b.stretch, L::splat(*c.add(OMEGA)), &ends, &memory);
-                    let mut factor = L::splat(*c.add(constant::FACTOR));
-                    if MASKED {
-                        factor = factor.keep(L::mask(bits));
-                    }
-                    (near.mul(factor), far.mul(factor))
+                    term_of::<L, T, DEGREE, MASKED>(s, &b, c, (&own[v], other, bits), (vector, here, known))
                 };
                 if VARIOUS && let Some(cells) = a.various {
                     near = near.mul(L::load(cells.volume.offset(other)));
@@ -274,6 +259,101 @@ unsafe fn add_up<L: Lanes, T: Term, const DEGREE: usize, const MASKED: bool, con
             L::load(target).add(sum[v]).store(target);
             v += 1;
         }
+    }
+}
+
+/// The terms of some bonds at both ends.
+#[inline(always)]
+unsafe fn term_of<L: Lanes, T: Term, const DEGREE: usize, const MASKED: bool>(
+    s: &Cells,
+    b: &Bonds<L>,
+    c: *const f64,
+    (own, other, bits): (&[L; COLUMNS], isize, u8),
+    (vector, here, known): (usize, usize, bool),
+) -> (L, L) {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let s_of = if DEGREE == CLOSED {
+            stretch::<L, CLOSED>(b, c)
+        } else {
+            let s = series::<L, DEGREE>(b.q, c).keep(b.live).mul(L::splat(*c.add(FROM_TERM)));
+            Stretch { s, share: s, inverse: s, before: s }
+        };
+        let ends: Ends<L> = [*own, read::<L>(s, T::COLUMNS, other)];
+        let memory = if known { recall::<L>(s, T::MEMORY, vector, here) } else { [L::splat(0.0); 2] };
+        let (near, far) = T::terms(&s_of, L::splat(*c.add(OMEGA)), &ends, &memory);
+        let mut factor = L::splat(*c.add(constant::FACTOR));
+        if MASKED {
+            factor = factor.keep(L::mask(bits));
+        }
+        (near.mul(factor), far.mul(factor))
+    }
+}
+
+/// The dilatations of some neighbouring cells.
+#[inline(always)]
+unsafe fn angles<L: Lanes>(look: &Looking, at: isize) -> Angles<L> {
+    // SAFETY: the caller's promise.
+    unsafe { Angles { now: L::load(look.theta.offset(at)), unrelaxed: L::load(look.unrelaxed.offset(at)) } }
+}
+
+/// Energy and virial of a chunk's bonds, cell by cell, as [`super::super::chunk::sums`].
+///
+/// # Safety
+/// As for [`pull`], without `f`; `look` must be readable where columns are.
+#[inline(always)]
+unsafe fn sums<L: Lanes, W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -> [[f64; CELLS]; SUMS] {
+    // SAFETY: the caller's promise covers every address formed below.
+    unsafe {
+        let mut out = [[0.0; CELLS]; SUMS];
+        let known = W::MEMORY > 0 && (!W::LAZY || *s.touched != 0);
+        let mut v = 0;
+        while v < CELLS / L::WIDTH {
+            let here = L::WIDTH * v;
+            let u = place::<L>(&a.u, here as isize);
+            let last = place::<L>(&s.last, here as isize);
+            let own = read::<L>(s, W::COLUMNS, here as isize);
+            let mut sum = [L::splat(0.0); SUMS];
+            let mut e = 0;
+            while e < a.to.len() {
+                let (to, constants) = *a.to.get_unchecked(e);
+                let bits = *a.alive.get_unchecked(e) >> here;
+                let vector = e;
+                e += 1;
+                if bits == 0 {
+                    continue;
+                }
+                let c = a.tables.as_ptr().add(constants as usize);
+                let other = here as isize + to as isize;
+                let b = bonds::<L, true>(&a.u, &u, other, c, bits);
+                let mut now = stretch::<L, CLOSED>(&b, c);
+                if W::BACK && !look.advanced {
+                    now.before = stretch::<L, CLOSED>(&bonds::<L, true>(&s.last, &last, other, c, bits), c).s;
+                }
+                let ends: Ends<L> = [own, read::<L>(s, W::COLUMNS, other)];
+                let mut memory =
+                    if known { recall::<L>(s, W::MEMORY, vector, here) } else { [L::splat(0.0); 2] };
+                let omega = L::splat(*c.add(OMEGA));
+                let at = [angles::<L>(look, here as isize), angles::<L>(look, other)];
+                let (mut near, mut far) = W::squares(&now, omega, &at, &memory, s.moment.lambda);
+                if look.states {
+                    (near, far) = (near.mul(ends[0][1]), far.mul(ends[1][1]));
+                }
+                let lives = L::mask(bits);
+                let term = L::splat(look.half * look.terms[constants as usize + constant::FACTOR]);
+                let energy = near.add(far).mul(term).keep(lives);
+                let (near, far) = W::pull(&now, omega, &ends, &mut memory, s.moment);
+                let pull = near.add(far).mul(L::splat(-0.5 * *c.add(constant::FACTOR))).keep(lives);
+                sum = with_virial(sum, energy, pull, &b.y);
+            }
+            let mut k = 0;
+            while k < SUMS {
+                sum[k].store(out[k].as_mut_ptr().add(here));
+                k += 1;
+            }
+            v += 1;
+        }
+        out
     }
 }
 
@@ -316,6 +396,11 @@ pub trait StateKernels: Sync {
         a: &Chunk,
         s: &Cells,
     );
+    /// Energies and virials; see `sums` above.
+    ///
+    /// # Safety
+    /// As for `sums`.
+    unsafe fn state_sums<W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -> [[f64; CELLS]; SUMS];
 }
 
 /// Kernels of one instruction set from those for its lanes.
@@ -364,6 +449,15 @@ macro_rules! compiled_for {
                 // SAFETY: the caller's promise includes the instruction set.
                 unsafe { inner::<T, DEGREE, MASKED, VARIOUS>(a, s) }
             }
+            unsafe fn state_sums<W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -> [[f64; CELLS]; SUMS] {
+                $(#[target_feature(enable = $features)])?
+                unsafe fn inner<W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -> [[f64; CELLS]; SUMS] {
+                    // SAFETY: the caller's promise.
+                    unsafe { sums::<$lanes, W>(a, s, look) }
+                }
+                // SAFETY: the caller's promise includes the instruction set.
+                unsafe { inner::<W>(a, s, look) }
+            }
         }
     };
 }
@@ -391,9 +485,6 @@ pub unsafe fn run<K: StateKernels, W: BondLaw>(
         if a.various.is_some() {
             return K::pull::<W, CLOSED, true, true, true>(a, s);
         }
-        if !W::SERIES {
-            return K::pull::<W, CLOSED, true, true, false>(a, s);
-        }
         match (degree, masked, track) {
             (3, false, false) => K::pull::<W, 3, false, false, false>(a, s),
             (3, false, true) => K::pull::<W, 3, false, true, false>(a, s),
@@ -416,9 +507,6 @@ pub unsafe fn run_term<K: StateKernels, T: Term>(a: &Chunk, s: &Cells, degree: u
     unsafe {
         if a.various.is_some() {
             return K::add_up::<T, CLOSED, true, true>(a, s);
-        }
-        if !T::STRETCH {
-            return K::add_up::<T, CLOSED, true, false>(a, s);
         }
         match (degree, masked) {
             (3, false) => K::add_up::<T, 3, false, false>(a, s),

@@ -1,16 +1,19 @@
 //! Energy and virial under state-based laws.
 
+use std::sync::Mutex;
+
+use super::super::energy::{Sums, collect, whole_rows};
 use super::super::single::Single;
-use super::law::{
-    BondLaw, Elastic, Ends, Flattened, Plastic, PlasticLammps, Stretch, Viscous, ViscousLammps, Yielding,
-    closed,
-};
-use super::list::{Weighing, bond};
+use super::chunk::StateKernels;
+use super::lattice::States;
+use super::law::{Angles, BondLaw, Ends, Moment, Stretch, of_law};
+use super::list::{Weighing, banded, bond};
 use super::settle::{columns_of, moment};
+use crate::par::Shared;
 use crate::world::families::lattice::{LANES, LatticeBody, PAD};
 use crate::world::families::law::{COLUMNS, SiteState};
 use crate::world::families::list::ListBody;
-use crate::world::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
+use crate::world::families::{Families, ForceUnit, LawKind, PeriTally, PeriView, Window};
 
 /// One bond with all that its energy depends on.
 struct Bond<'a> {
@@ -25,28 +28,81 @@ struct Bond<'a> {
     /// ω w.
     share: f64,
     stretch: Stretch<Single>,
-    memory: [f64; 2],
+    memory: [Single; 2],
     state: &'a SiteState,
     stride: usize,
 }
 
-/// Adds energy and virial of all bonds as they were during the force evaluation. The energy density of a particle is
-/// ½Kθ² + ½ 15G/m Σ ω w |xi|² ε² V; LAMMPS counts half of the second term.
-pub fn tally(families: &Families, view: &PeriView, t: &mut PeriTally, period: [f64; 3]) {
+/// Adds energy and virial of all bonds as they were during the force evaluation, which has `advanced` bonds or not. The
+/// energy density of a particle is ½Kθ² + ½ 15G/m Σ ω w |xi|² ε² V; LAMMPS counts half of the second term.
+pub fn tally<K: StateKernels>(
+    families: &mut Families,
+    view: &PeriView,
+    t: &mut PeriTally,
+    (advanced, period): (bool, [f64; 3]),
+) {
     let newton = families.options.unit == ForceUnit::Newton;
     let scale = |p: usize| if newton { view.volume[p] } else { 1.0 };
-    for body in &families.lattices {
+    let mut rows = std::mem::take(&mut families.scratch.rows);
+    for k in 0..families.lattices.len() {
+        let body = &families.lattices[k];
         for (cell, &p) in body.particle.iter().enumerate().filter(|(_, p)| **p != u32::MAX) {
             let p = p as usize;
             own(families, view, p, body.state.theta[PAD + cell], scale(p), t);
         }
-        lattice(families, view, body, t);
+        if t.per_atom() || !body.cell_kind.is_empty() {
+            lattice(families, view, body, (advanced, t));
+        } else {
+            lattice_rows::<K>(families, k, view, advanced, &mut rows);
+            collect(&rows, t);
+        }
     }
+    families.scratch.rows = rows;
     let list = &families.list;
     for (record, &p) in list.particle.iter().enumerate().filter(|(_, p)| **p != u32::MAX) {
         own(families, view, p as usize, list.state.theta[record], scale(p as usize), t);
     }
-    listed(families, view, list, period, t);
+    listed(families, list, (advanced, period), t);
+}
+
+/// Energy and virial of each row of a body of one volume, several cells at a time.
+fn lattice_rows<K: StateKernels>(
+    families: &mut Families,
+    body: usize,
+    view: &PeriView,
+    advanced: bool,
+    rows: &mut Vec<Sums>,
+) {
+    let state = &mut families.lattices[body].state;
+    let mut memory = if state.earlier.is_empty() { std::mem::take(&mut state.memory) } else { vec![] };
+    let mut earlier = std::mem::take(&mut state.earlier);
+    let mut touched = std::mem::take(&mut state.touched);
+    {
+        let told = if earlier.is_empty() { &mut memory } else { &mut earlier };
+        let (memory, touched) = (Shared::new(told), Shared::new(&mut touched));
+        let states = States {
+            kind: families.law.kind,
+            compat: families.options.compat_lammps,
+            moment: moment(&families.law, false),
+            keep: false,
+            memory: &memory,
+            touched: &touched,
+            spread: false,
+        };
+        let (body, windows): (&LatticeBody, &[Mutex<Window>]) =
+            (&families.lattices[body], &families.scratch.windows);
+        let of_chunk = |chunk: usize, data: &super::super::chunk::Chunk| {
+            // SAFETY: live bonds lead to cells of the body, whose columns have PAD cells around.
+            unsafe { states.sums::<K>(body, chunk, data, advanced) }
+        };
+        let newton = families.options.unit == ForceUnit::Newton;
+        whole_rows(body, view, windows, rows, (newton, newton), of_chunk);
+    }
+    let state = &mut families.lattices[body].state;
+    if earlier.is_empty() {
+        state.memory = memory;
+    }
+    (state.earlier, state.touched) = (earlier, touched);
 }
 
 /// The energy of a particle's dilatation.
@@ -58,7 +114,7 @@ fn own(families: &Families, view: &PeriView, p: usize, theta: f64, scale: f64, t
     }
 }
 
-fn lattice(families: &Families, view: &PeriView, body: &LatticeBody, t: &mut PeriTally) {
+fn lattice(families: &Families, view: &PeriView, body: &LatticeBody, (advanced, t): (bool, &mut PeriTally)) {
     let (entries, options, law) = (body.stencil.len(), &families.options, &families.law);
     let numbers = law.kind.memory();
     for slot in (0..body.rows.len()).filter(|&slot| body.rows[slot].len > 0) {
@@ -73,7 +129,10 @@ fn lattice(families: &Families, view: &PeriView, body: &LatticeBody, t: &mut Per
                 }
                 let Some(to) = body.ahead(slot, cell, e) else { continue };
                 let u = |k: usize, c: usize| body.u[1][k * body.stride + PAD + c];
-                let z = body.z(1, cell, to, e);
+                let mut stretch = banded(body.z(1, cell, to, e), length, options);
+                if !advanced {
+                    stretch.before = banded(body.z(0, cell, to, e), length, options).s;
+                }
                 let first = (cell / LANES * entries + e) * numbers * LANES + cell % LANES;
                 let ends = [body.particle[cell] as usize, body.particle[to] as usize];
                 let (a, b) = (view.kind[ends[0]], view.kind[ends[1]]);
@@ -82,7 +141,6 @@ fn lattice(families: &Families, view: &PeriView, body: &LatticeBody, t: &mut Per
                     Weighing::of(law).weigh(length, weight, (c, body.horizon, law.yields(a, b)));
                 add(
                     families,
-                    view,
                     &Bond {
                         ends,
                         at: [PAD + cell, PAD + to],
@@ -91,14 +149,9 @@ fn lattice(families: &Families, view: &PeriView, body: &LatticeBody, t: &mut Per
                         length,
                         omega,
                         share,
-                        stretch: if z.abs() < options.dead_band(length) {
-                            unstretched()
-                        } else {
-                            // SAFETY: plain arithmetic.
-                            unsafe { closed(Single(z)) }
-                        },
+                        stretch,
                         memory: std::array::from_fn(|k| {
-                            if k < numbers { body.state.remembered()[first + k * LANES] } else { 0.0 }
+                            Single(if k < numbers { body.state.remembered()[first + k * LANES] } else { 0.0 })
                         }),
                         state: &body.state,
                         stride: body.stride,
@@ -110,21 +163,19 @@ fn lattice(families: &Families, view: &PeriView, body: &LatticeBody, t: &mut Per
     }
 }
 
-fn unstretched() -> Stretch<Single> {
-    Stretch { s: Single(0.0), share: Single(0.0), inverse: Single(1.0) }
-}
-
-fn listed(families: &Families, view: &PeriView, list: &ListBody, period: [f64; 3], t: &mut PeriTally) {
+fn listed(families: &Families, list: &ListBody, (advanced, period): (bool, [f64; 3]), t: &mut PeriTally) {
     let (options, law) = (&families.options, &families.law);
     let numbers = law.kind.memory();
     for i in 0..list.record.len() {
         for k in list.own(i).filter(|&k| list.lives(k)) {
             let j = list.partner[k] as usize;
-            let b = bond(list, (i, j), period, Weighing::of(law), options);
+            let mut b = bond(list, (i, j), period, Weighing::of(law), options);
+            if !advanced {
+                b.stretch.before = banded(list.z(true, i, j, period).0, b.length, options).s;
+            }
             let ends = [i, j].map(|r| list.particle[r] as usize);
             add(
                 families,
-                view,
                 &Bond {
                     ends,
                     at: [i, j],
@@ -135,7 +186,7 @@ fn listed(families: &Families, view: &PeriView, list: &ListBody, period: [f64; 3
                     share: b.share,
                     stretch: b.stretch,
                     memory: std::array::from_fn(|n| {
-                        if n < numbers { list.state.remembered()[k * numbers + n] } else { 0.0 }
+                        Single(if n < numbers { list.state.remembered()[k * numbers + n] } else { 0.0 })
                     }),
                     state: &list.state,
                     stride: list.record.len(),
@@ -155,67 +206,46 @@ fn share_out(t: &mut PeriTally, p: usize, density: f64, volume: Option<f64>) {
     }
 }
 
-/// Adds one bond's energies and virial.
-fn add(families: &Families, view: &PeriView, b: &Bond, t: &mut PeriTally) {
-    let (law, options) = (&families.law, &families.options);
-    let compat = options.compat_lammps;
-    let newton = options.unit == ForceUnit::Newton;
-    let now = moment(law, false);
-    let s = b.stretch.s.0;
-    for end in 0..2 {
-        let (p, at) = (b.ends[end], b.at[end]);
-        let m = b.state.weighted[at];
-        if law.kind.bond_based() {
-            // Each end has half of the bond's energy.
-            let square = match law.kind {
-                LawKind::Flat if s < b.omega => b.omega * (2.0 * s - b.omega),
-                _ => (s - b.memory[0]).powi(2),
-            };
-            share_out(
-                t,
-                p,
-                0.25 * b.share * b.length * b.length * square * b.volume[1 - end],
-                newton.then_some(b.volume[end]),
-            );
-            continue;
-        }
-        if m <= 0.0 {
-            continue;
-        }
-        let third = b.state.theta[at] / 3.0;
-        let square = match law.kind {
-            LawKind::Ves => {
-                let element = b.memory[1] - b.state.unrelaxed[at] / 3.0;
-                (1.0 - now.lambda) * (s - third).powi(2) + now.lambda * element * element
-            }
-            LawKind::Eps => (s - third - b.memory[end]).powi(2),
-            _ => (s - third).powi(2),
-        };
-        let partner = b.volume[1 - end];
-        let shear = 15.0 * law.of(view.kind[p]).shear / m;
-        let half = if compat { 0.25 } else { 0.5 };
-        let energy = half * shear * b.share * b.length * b.length * square * partner;
-        share_out(t, p, energy, newton.then_some(b.volume[end]));
+/// Whether the ends of a law's bonds have a stiffness of their own, column 1; and the share of the squares that counts
+/// for each end. LAMMPS counts half of the shear energies.
+pub fn shares(kind: LawKind, compat: bool) -> (bool, f64) {
+    match kind {
+        LawKind::Shaped => (true, 0.5),
+        _ if kind.bond_based() => (false, 0.25),
+        _ => (true, if compat { 0.25 } else { 0.5 }),
     }
+}
+
+/// Adds one bond's energies and virial.
+fn add(families: &Families, b: &Bond, t: &mut PeriTally) {
+    let kind = families.law.kind;
+    of_law!(kind, families.options.compat_lammps, W => add_of::<W>(families, b, t));
+}
+
+fn add_of<W: BondLaw>(families: &Families, b: &Bond, t: &mut PeriTally) {
+    let (law, options) = (&families.law, &families.options);
+    let newton = options.unit == ForceUnit::Newton;
+    let now: Moment = moment(law, false);
+    let (own, half) = shares(law.kind, options.compat_lammps);
     let columns = |at: usize| -> [Single; COLUMNS] {
-        let count = columns_of(law.kind, compat);
+        let count = columns_of(law.kind, options.compat_lammps);
         std::array::from_fn(|k| Single(if k < count { b.state.columns[k * b.stride + at] } else { 0.0 }))
     };
     let ends: Ends<Single> = b.at.map(columns);
-    let mut memory = b.memory.map(Single);
+    let angles =
+        b.at.map(|at| Angles { now: Single(b.state.theta[at]), unrelaxed: Single(b.state.unrelaxed[at]) });
     let omega = Single(b.omega);
     // SAFETY: plain arithmetic.
-    let (near, far) = unsafe {
-        match (law.kind, compat) {
-            (LawKind::Pmb | LawKind::Lps, _) => Elastic::pull(&b.stretch, omega, &ends, &mut memory, &now),
-            (LawKind::Yield, _) => Yielding::pull(&b.stretch, omega, &ends, &mut memory, &now),
-            (LawKind::Flat, _) => Flattened::pull(&b.stretch, omega, &ends, &mut memory, &now),
-            (LawKind::Ves, false) => Viscous::pull(&b.stretch, omega, &ends, &mut memory, &now),
-            (LawKind::Ves, true) => ViscousLammps::pull(&b.stretch, omega, &ends, &mut memory, &now),
-            (LawKind::Eps, false) => Plastic::pull(&b.stretch, omega, &ends, &mut memory, &now),
-            (LawKind::Eps, true) => PlasticLammps::pull(&b.stretch, omega, &ends, &mut memory, &now),
-        }
-    };
+    let squares = unsafe { W::squares(&b.stretch, omega, &angles, &b.memory, now.lambda) };
+    for (end, square) in [squares.0, squares.1].into_iter().enumerate() {
+        let p = b.ends[end];
+        let shear = if own { ends[end][1].0 } else { 1.0 };
+        let energy = half * shear * b.share * b.length * b.length * square.0 * b.volume[1 - end];
+        share_out(t, p, energy, newton.then_some(b.volume[end]));
+    }
+    let mut memory = b.memory;
+    // SAFETY: plain arithmetic.
+    let (near, far) = unsafe { W::pull(&b.stretch, omega, &ends, &mut memory, &now) };
     // Force density times the one volume of the virial, or the force itself: V_i V_j either way.
     let pull = -0.5 * (near.0 + far.0) * b.share * b.volume[0] * b.volume[1];
     t.add_virial(b.ends[0], b.ends[1], pull, b.y);

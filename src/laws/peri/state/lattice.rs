@@ -1,12 +1,11 @@
 //! Sweeps of state-based laws over a body on a lattice.
 
-use super::super::chunk::Chunk;
+use super::super::chunk::{CELLS, Chunk, SUMS};
 use super::super::lattice::{Sweep, extent, open};
-use super::chunk::{Cells, StateKernels, run, run_term};
-use super::law::{
-    Dilatation, Elastic, Flattened, Moment, Norm, NormLammps, Plastic, PlasticLammps, Term, Viscous,
-    ViscousLammps, Yielding,
-};
+use super::chunk::{Cells, Looking, StateKernels, run, run_term};
+use super::energy::shares;
+use super::law::{Moment, of_law};
+use super::terms::{Dilatation, Norm, NormLammps, Term};
 use crate::par::Shared;
 use crate::world::families::lattice::{LANES, LatticeBody, PAD};
 use crate::world::families::{LawKind, Window};
@@ -24,6 +23,8 @@ pub struct States<'a> {
     pub keep: bool,
     /// What bonds remember.
     pub memory: &'a Shared<'a, f64>,
+    /// Whether a chunk's bonds remember anything.
+    pub touched: &'a Shared<'a, u8>,
     /// Sites have dilatations already: they reach farther than displacements.
     pub spread: bool,
 }
@@ -37,6 +38,10 @@ impl States<'_> {
             stride: body.stride,
             // SAFETY: as above; without memory nothing is read.
             memory: unsafe { self.memory.as_ptr().add(place.min(self.memory.len())) },
+            // SAFETY: one for each chunk.
+            touched: unsafe { self.touched.as_ptr().add(chunk) },
+            // SAFETY: a place for each cell and PAD more around.
+            last: [0, 1, 2].map(|k| unsafe { body.u[0].as_ptr().add(k * body.stride + PAD + chunk * LANES) }),
             moment: &self.moment,
             keep: self.keep,
         }
@@ -57,17 +62,34 @@ impl States<'_> {
         let cells = self.cells(body, chunk);
         let masked = !body.intact[chunk];
         // SAFETY: the caller's promise.
-        unsafe {
-            match (self.kind, self.compat) {
-                (LawKind::Lps | LawKind::Pmb, _) => run::<K, Elastic>(data, &cells, degree, masked, track),
-                (LawKind::Yield, _) => run::<K, Yielding>(data, &cells, degree, masked, track),
-                (LawKind::Flat, _) => run::<K, Flattened>(data, &cells, degree, masked, track),
-                (LawKind::Ves, false) => run::<K, Viscous>(data, &cells, degree, masked, track),
-                (LawKind::Ves, true) => run::<K, ViscousLammps>(data, &cells, degree, masked, track),
-                (LawKind::Eps, false) => run::<K, Plastic>(data, &cells, degree, masked, track),
-                (LawKind::Eps, true) => run::<K, PlasticLammps>(data, &cells, degree, masked, track),
-            }
-        }
+        unsafe { of_law!(self.kind, self.compat, W => run::<K, W>(data, &cells, degree, masked, track)) }
+    }
+
+    /// Energy and virial of a chunk's bonds, cell by cell; in densities but for volumes.
+    ///
+    /// # Safety
+    /// As for `chunk::run`, forces are not touched.
+    pub unsafe fn sums<K: StateKernels>(
+        &self,
+        body: &LatticeBody,
+        chunk: usize,
+        data: &Chunk,
+        advanced: bool,
+    ) -> [[f64; CELLS]; SUMS] {
+        let cells = self.cells(body, chunk);
+        let ((states, half), first) = (shares(self.kind, self.compat), PAD + chunk * LANES);
+        let look = Looking {
+            // SAFETY: columns have a place for each cell and PAD more around.
+            theta: unsafe { body.state.theta.as_ptr().add(first) },
+            // SAFETY: as above.
+            unrelaxed: unsafe { body.state.unrelaxed.as_ptr().add(first) },
+            terms: &body.state.tables,
+            half,
+            states,
+            advanced,
+        };
+        // SAFETY: the caller's promise.
+        unsafe { of_law!(self.kind, self.compat, W => K::state_sums::<W>(data, &cells, &look)) }
     }
 }
 

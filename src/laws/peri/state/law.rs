@@ -11,12 +11,14 @@ use crate::world::families::law::COLUMNS;
 /// A bond's stretch s in the forms that laws need.
 #[derive(Clone, Copy)]
 pub struct Stretch<L> {
-    /// s; not there where series are used.
+    /// s.
     pub s: L,
     /// s/(1 + s).
     pub share: L,
     /// 1/(1 + s).
     pub inverse: L,
+    /// s at the last step that advanced; only for laws that look [`BondLaw::BACK`].
+    pub before: L,
 }
 
 /// What is the same for all bonds during one evaluation.
@@ -32,6 +34,30 @@ pub struct Moment {
     pub flow: f64,
 }
 
+/// Puts the law of a kind, with LAMMPS' numbers or without, in the place of a type.
+macro_rules! of_law {
+    ($kind:expr, $compat:expr, $W:ident => $e:expr) => {{
+        use crate::laws::peri::state::law;
+        use crate::world::families::LawKind;
+        macro_rules! with {
+            ($law:ident) => {{
+                type $W = law::$law;
+                $e
+            }};
+        }
+        match ($kind, $compat) {
+            (LawKind::Pmb | LawKind::Lps | LawKind::Shaped, _) => with!(Elastic),
+            (LawKind::Yield, _) => with!(Yielding),
+            (LawKind::Flat, _) => with!(Flattened),
+            (LawKind::Ves, false) => with!(Viscous),
+            (LawKind::Ves, true) => with!(ViscousLammps),
+            (LawKind::Eps, false) => with!(Plastic),
+            (LawKind::Eps, true) => with!(PlasticLammps),
+        }
+    }};
+}
+pub(super) use of_law;
+
 /// What both ends of a bond have in columns.
 pub type Ends<L> = [[L; COLUMNS]; 2];
 
@@ -41,8 +67,10 @@ pub trait BondLaw: Sync {
     const COLUMNS: usize;
     /// Numbers that a bond remembers, at most two.
     const MEMORY: usize;
-    /// Whether s/(1 + s) is all it needs of the stretch: there are series for that.
-    const SERIES: bool = false;
+    /// Whether it needs the stretch of the step before.
+    const BACK: bool = false;
+    /// Whether what a bond remembers stays zero until one of its ends [`BondLaw::flows`].
+    const LAZY: bool = false;
     /// The pull on the first end and on the second, over ω w V; `memory` is brought up to date.
     ///
     /// # Safety
@@ -54,30 +82,56 @@ pub trait BondLaw: Sync {
         memory: &mut [L; 2],
         moment: &Moment,
     ) -> (L, L);
-}
-
-/// What a sweep adds up at both ends before there are forces.
-pub trait Term: Sync {
-    /// Columns that it reads.
-    const COLUMNS: usize;
-    /// Numbers that a bond remembers.
-    const MEMORY: usize;
-    /// Whether it is the stretch itself, for which there are series.
-    const STRETCH: bool;
-    /// The terms at both ends, over ω w |xi|² V.
+    /// The squares of both ends' elastic deviatoric stretch that the energy has, over ½ 15G/m ω w |xi|² V of each end;
+    /// of bond-based laws over ½ c w |xi| V. `memory` is what the bond remembers already.
     ///
     /// # Safety
     /// See [`Lanes`].
-    unsafe fn terms<L: Lanes>(bond: &Stretch<L>, omega: L, ends: &Ends<L>, memory: &[L; 2]) -> (L, L);
+    unsafe fn squares<L: Lanes>(
+        bond: &Stretch<L>,
+        limit: L,
+        ends: &[Angles<L>; 2],
+        memory: &[L; 2],
+        lambda: f64,
+    ) -> (L, L);
+    /// Where an end flows in this evaluation, a mask.
+    ///
+    /// # Safety
+    /// See [`Lanes`].
+    #[inline(always)]
+    unsafe fn flows<L: Lanes>(_: &Ends<L>) -> L {
+        // SAFETY: passed on to the caller.
+        unsafe { L::splat(0.0).ge(L::splat(0.0)) }
+    }
 }
 
-/// Linear elastic. Columns: A = (3K − 5G)θ/m, B = 15G/m.
+/// The dilatation of a bond's end, and what of it is not yet relaxed.
+#[derive(Clone, Copy)]
+pub struct Angles<L> {
+    /// θ.
+    pub now: L,
+    /// Its unrelaxed part.
+    pub unrelaxed: L,
+}
+
+/// (s − θ/3)² of both ends.
+#[inline(always)]
+unsafe fn deviatoric<L: Lanes>(s: L, ends: &[Angles<L>; 2], without: &[L; 2]) -> (L, L) {
+    // SAFETY: passed on to the caller.
+    unsafe {
+        let third = L::splat(1.0 / 3.0);
+        let (a, b) = (ends[0].now.fnma(third, s), ends[1].now.fnma(third, s));
+        let (a, b) = (a.sub(without[0]), b.sub(without[1]));
+        (a.mul(a), b.mul(b))
+    }
+}
+
+/// Linear elastic. Columns: A = (3K − 5G)θ/m, B = 15G/m; of microelastic bonds A = 0 and B = ½ or more near a surface.
 pub struct Elastic;
 
 impl BondLaw for Elastic {
     const COLUMNS: usize = 2;
     const MEMORY: usize = 0;
-    const SERIES: bool = true;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(
         bond: &Stretch<L>,
@@ -93,27 +147,52 @@ impl BondLaw for Elastic {
             (pull, pull)
         }
     }
+    #[inline(always)]
+    unsafe fn squares<L: Lanes>(
+        bond: &Stretch<L>,
+        _: L,
+        ends: &[Angles<L>; 2],
+        _: &[L; 2],
+        _: f64,
+    ) -> (L, L) {
+        // SAFETY: passed on to the caller.
+        unsafe { deviatoric(bond.s, ends, &[L::splat(0.0); 2]) }
+    }
 }
 
-/// A Maxwell element beside a spring: the stretch and the element's part of it are remembered. Columns: A = (3Kθ − 5GY)/m
+/// A Maxwell element beside a spring: the element's stretch D is remembered. Columns: A = (3Kθ − 5GY)/m
 /// with Y = (1 − λ)θ + λ times the unrelaxed dilatation, B = 15G/m.
 pub struct Viscous;
 
-/// The effective stretch (1 − λ)s + λD; brings (s, D) up to date.
+/// The effective stretch (1 − λ)s + λD; brings D up to date.
 #[inline(always)]
-unsafe fn relaxed<L: Lanes>(s: L, memory: &mut [L; 2], moment: &Moment) -> L {
+unsafe fn relaxed<L: Lanes>(bond: &Stretch<L>, memory: &mut [L; 2], moment: &Moment) -> L {
     // SAFETY: passed on to the caller.
     unsafe {
-        let change = s.sub(memory[0]).mul(L::splat(moment.fresh));
-        let element = memory[1].fma(L::splat(moment.decay), change);
-        *memory = [s, element];
-        s.mul(L::splat(1.0 - moment.lambda)).add(element.mul(L::splat(moment.lambda)))
+        let change = bond.s.sub(bond.before).mul(L::splat(moment.fresh));
+        memory[0] = memory[0].fma(L::splat(moment.decay), change);
+        bond.s.mul(L::splat(1.0 - moment.lambda)).add(memory[0].mul(L::splat(moment.lambda)))
+    }
+}
+
+/// (1 − λ)(s − θ/3)² + λ(D − unrelaxed/3)² of both ends.
+#[inline(always)]
+unsafe fn relaxed_squares<L: Lanes>(s: L, ends: &[Angles<L>; 2], element: L, lambda: f64) -> (L, L) {
+    // SAFETY: passed on to the caller.
+    unsafe {
+        let none = [L::splat(0.0); 2];
+        let left =
+            [Angles { now: ends[0].unrelaxed, ..ends[0] }, Angles { now: ends[1].unrelaxed, ..ends[1] }];
+        let (whole, part) = (deviatoric(s, ends, &none), deviatoric(element, &left, &none));
+        let (kept, relaxing) = (L::splat(1.0 - lambda), L::splat(lambda));
+        (whole.0.mul(kept).add(part.0.mul(relaxing)), whole.1.mul(kept).add(part.1.mul(relaxing)))
     }
 }
 
 impl BondLaw for Viscous {
     const COLUMNS: usize = 2;
-    const MEMORY: usize = 2;
+    const MEMORY: usize = 1;
+    const BACK: bool = true;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(
         bond: &Stretch<L>,
@@ -125,9 +204,20 @@ impl BondLaw for Viscous {
         // SAFETY: passed on to the caller.
         unsafe {
             let (a, b) = (own[0].add(far[0]), own[1].add(far[1]));
-            let pull = b.mul(relaxed(bond.s, memory, moment)).add(a).mul(bond.inverse);
+            let pull = b.mul(relaxed(bond, memory, moment)).add(a).mul(bond.inverse);
             (pull, pull)
         }
+    }
+    #[inline(always)]
+    unsafe fn squares<L: Lanes>(
+        bond: &Stretch<L>,
+        _: L,
+        ends: &[Angles<L>; 2],
+        memory: &[L; 2],
+        lambda: f64,
+    ) -> (L, L) {
+        // SAFETY: passed on to the caller.
+        unsafe { relaxed_squares(bond.s, ends, memory[0], lambda) }
     }
 }
 
@@ -137,7 +227,8 @@ pub struct ViscousLammps;
 
 impl BondLaw for ViscousLammps {
     const COLUMNS: usize = 3;
-    const MEMORY: usize = 2;
+    const MEMORY: usize = 1;
+    const BACK: bool = true;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(
         bond: &Stretch<L>,
@@ -149,10 +240,21 @@ impl BondLaw for ViscousLammps {
         // SAFETY: passed on to the caller.
         unsafe {
             let (a, b) = (own[0].add(far[0]), own[1].add(far[1]));
-            let s = relaxed(bond.s, memory, moment);
-            let pull = |third: L| b.mul(s.sub(third)).add(a).mul(bond.inverse);
-            (pull(own[2]), pull(far[2]))
+            let s = relaxed(bond, memory, moment);
+            let near = b.mul(s.sub(own[2])).add(a).mul(bond.inverse);
+            (near, b.mul(s.sub(far[2])).add(a).mul(bond.inverse))
         }
+    }
+    #[inline(always)]
+    unsafe fn squares<L: Lanes>(
+        bond: &Stretch<L>,
+        _: L,
+        ends: &[Angles<L>; 2],
+        memory: &[L; 2],
+        lambda: f64,
+    ) -> (L, L) {
+        // SAFETY: passed on to the caller.
+        unsafe { relaxed_squares(bond.s, ends, memory[0], lambda) }
     }
 }
 
@@ -163,6 +265,7 @@ pub struct Plastic;
 impl BondLaw for Plastic {
     const COLUMNS: usize = 4;
     const MEMORY: usize = 2;
+    const LAZY: bool = true;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(
         bond: &Stretch<L>,
@@ -187,6 +290,22 @@ impl BondLaw for Plastic {
             (pull, pull)
         }
     }
+    #[inline(always)]
+    unsafe fn squares<L: Lanes>(
+        bond: &Stretch<L>,
+        _: L,
+        ends: &[Angles<L>; 2],
+        memory: &[L; 2],
+        _: f64,
+    ) -> (L, L) {
+        // SAFETY: passed on to the caller.
+        unsafe { deviatoric(bond.s, ends, memory) }
+    }
+    #[inline(always)]
+    unsafe fn flows<L: Lanes>([own, far]: &Ends<L>) -> L {
+        // SAFETY: passed on to the caller.
+        unsafe { own[3].max(far[3]).ge(L::splat(f64::MIN_POSITIVE)) }
+    }
 }
 
 /// LAMMPS' forces and its flow, which forgets the plastic stretch of what is elastic again. Columns: 3Kθ/m, B, θ/3, the
@@ -196,6 +315,7 @@ pub struct PlasticLammps;
 impl BondLaw for PlasticLammps {
     const COLUMNS: usize = 5;
     const MEMORY: usize = 2;
+    const LAZY: bool = true;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(
         bond: &Stretch<L>,
@@ -223,6 +343,22 @@ impl BondLaw for PlasticLammps {
             (pulls[0], pulls[1])
         }
     }
+    #[inline(always)]
+    unsafe fn squares<L: Lanes>(
+        bond: &Stretch<L>,
+        _: L,
+        ends: &[Angles<L>; 2],
+        memory: &[L; 2],
+        _: f64,
+    ) -> (L, L) {
+        // SAFETY: passed on to the caller.
+        unsafe { deviatoric(bond.s, ends, memory) }
+    }
+    #[inline(always)]
+    unsafe fn flows<L: Lanes>([own, far]: &Ends<L>) -> L {
+        // SAFETY: passed on to the caller.
+        unsafe { own[4].max(far[4]).ge(L::splat(f64::MIN_POSITIVE)) }
+    }
 }
 
 /// A microelastic bond that flows where its elastic stretch is below a limit, which stands in the place of ω; what has
@@ -248,6 +384,20 @@ impl BondLaw for Yielding {
             (pull, pull)
         }
     }
+    #[inline(always)]
+    unsafe fn squares<L: Lanes>(
+        bond: &Stretch<L>,
+        _: L,
+        _: &[Angles<L>; 2],
+        memory: &[L; 2],
+        _: f64,
+    ) -> (L, L) {
+        // SAFETY: passed on to the caller.
+        unsafe {
+            let elastic = bond.s.sub(memory[0]);
+            (elastic.mul(elastic), elastic.mul(elastic))
+        }
+    }
 }
 
 /// The same equation taken literally, as a function of the stretch.
@@ -264,58 +414,25 @@ impl BondLaw for Flattened {
             (pull, pull)
         }
     }
-}
-
-/// The dilatation: Σ ω w |xi|² s V = mθ/3.
-pub struct Dilatation;
-
-impl Term for Dilatation {
-    const COLUMNS: usize = 0;
-    const MEMORY: usize = 0;
-    const STRETCH: bool = true;
     #[inline(always)]
-    unsafe fn terms<L: Lanes>(bond: &Stretch<L>, _: L, _: &Ends<L>, _: &[L; 2]) -> (L, L) {
-        (bond.s, bond.s)
-    }
-}
-
-/// The squared norm of the trial state over (15G/m)²: Σ ω² w |xi|² (s − θ/3 − e_p)² V. Columns as [`Plastic`].
-pub struct Norm;
-
-impl Term for Norm {
-    const COLUMNS: usize = 3;
-    const MEMORY: usize = 2;
-    const STRETCH: bool = false;
-    #[inline(always)]
-    unsafe fn terms<L: Lanes>(bond: &Stretch<L>, omega: L, [own, far]: &Ends<L>, memory: &[L; 2]) -> (L, L) {
+    unsafe fn squares<L: Lanes>(
+        bond: &Stretch<L>,
+        limit: L,
+        _: &[Angles<L>; 2],
+        _: &[L; 2],
+        _: f64,
+    ) -> (L, L) {
         // SAFETY: passed on to the caller.
         unsafe {
-            let (a, b) = (bond.s.sub(own[2]).sub(memory[0]), bond.s.sub(far[2]).sub(memory[1]));
-            (a.mul(a).mul(omega), b.mul(b).mul(omega))
+            // s² down to the limit l, then the tangent there: l (2s − l).
+            let held = bond.s.max(limit);
+            let square = held.mul(bond.s.add(bond.s).sub(held));
+            (square, square)
         }
     }
 }
 
-/// What LAMMPS takes for the norm, over (15G)²: with (θ_i/m_i + θ_j/m_j) in place of 1/m. Column 0 is θ/m here.
-pub struct NormLammps;
-
-impl Term for NormLammps {
-    const COLUMNS: usize = 3;
-    const MEMORY: usize = 2;
-    const STRETCH: bool = false;
-    #[inline(always)]
-    unsafe fn terms<L: Lanes>(bond: &Stretch<L>, omega: L, [own, far]: &Ends<L>, memory: &[L; 2]) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let both = own[0].add(far[0]);
-            let (a, b) = (bond.s.sub(own[2]).sub(memory[0]), bond.s.sub(far[2]).sub(memory[1]));
-            let (a, b) = (a.mul(both), b.mul(both));
-            (a.mul(a).mul(omega), b.mul(b).mul(omega))
-        }
-    }
-}
-
-/// The stretch from z = |y|²/|xi|² − 1, its closed form.
+/// The stretch from z = |y|²/|xi|² − 1, its closed form, `before` as now.
 ///
 /// # Safety
 /// See [`Lanes`].
@@ -327,111 +444,10 @@ pub unsafe fn closed<L: Lanes>(z: L) -> Stretch<L> {
         let root = one.add(z).sqrt();
         let more = one.add(root);
         let inverse = one.div(root.mul(more));
-        Stretch { s: z.mul(root).mul(inverse), share: z.mul(inverse), inverse: more.mul(inverse) }
+        let s = z.mul(root).mul(inverse);
+        Stretch { s, share: z.mul(inverse), inverse: more.mul(inverse), before: s }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::super::single::Single;
-    use super::*;
-
-    fn bond(s: f64) -> Stretch<Single> {
-        // SAFETY: plain arithmetic.
-        unsafe { closed(Single(s * (2.0 + s))) }
-    }
-
-    fn end(values: [f64; COLUMNS]) -> [Single; COLUMNS] {
-        values.map(Single)
-    }
-
-    const NOW: Moment = Moment { decay: 0.8, fresh: 0.9, lambda: 0.4, flow: 1.0 };
-
-    #[test]
-    fn forms_of_the_stretch() {
-        for s in [-0.4, -1e-9, 0.0, 1e-5, 0.3, 2.0] {
-            let b = bond(s);
-            let near = |a: f64, b: f64| (a - b).abs() <= 4e-16 * (1.0 + b.abs());
-            assert!(near(b.s.0, s) && near(b.share.0, s / (1.0 + s)) && near(b.inverse.0, 1.0 / (1.0 + s)));
-        }
-    }
-
-    #[test]
-    fn laws_agree_where_nothing_relaxes_or_flows() {
-        // 3K = 7, 15G/m = 3 and 2, theta/3 = 0.01 and -0.02 with m = 1: A = 3K theta/m - B theta/3.
-        let (k, g, third) = (7.0, [3.0, 2.0], [0.01, -0.02]);
-        let a = [0, 1].map(|i| k * 3.0 * third[i]);
-        let b = bond(0.05);
-        let lps = [0, 1].map(|i| end([a[i] - g[i] * third[i], g[i], 0.0, 0.0, 0.0]));
-        let eps = [0, 1].map(|i| end([a[i], g[i], third[i], 0.0, 0.0]));
-        let mut none = [Single(0.0); 2];
-        // SAFETY: plain arithmetic.
-        unsafe {
-            let one = Single(1.0);
-            let (x, y) = Elastic::pull(&b, one, &lps, &mut none, &NOW);
-            let (p, _) = Plastic::pull(&b, one, &eps, &mut none, &NOW);
-            let mut memory = [Single(0.0); 2];
-            let still = Moment { lambda: 0.0, ..NOW };
-            let (v, _) = Viscous::pull(&b, one, &lps, &mut memory, &still);
-            assert!(x.0 == y.0 && (x.0 - p.0).abs() < 1e-15 && (x.0 - v.0).abs() < 1e-15);
-        }
-    }
-
-    #[test]
-    fn a_maxwell_element_relaxes_to_the_spring() {
-        let ends = [end([0.0, 1.0, 0.0, 0.0, 0.0]); 2];
-        let mut memory = [Single(0.0); 2];
-        let b = bond(0.1);
-        let mut pulls = vec![];
-        for _ in 0..200 {
-            // SAFETY: plain arithmetic.
-            pulls.push(unsafe { Viscous::pull(&b, Single(1.0), &ends, &mut memory, &NOW) }.0.0 * 1.1 / 2.0);
-        }
-        // First 0.6 s + 0.4 * 0.9 s, at last 0.6 s.
-        assert!((pulls[0] - 0.096).abs() < 1e-15 && (pulls[199] - 0.06).abs() < 1e-15);
-        let kept = memory;
-        let look = Moment { decay: 1.0, fresh: 1.0, ..NOW };
-        // SAFETY: plain arithmetic.
-        unsafe { Viscous::pull(&b, Single(1.0), &ends, &mut memory, &look) };
-        assert_eq!(kept.map(|m| m.0), memory.map(|m| m.0));
-    }
-
-    #[test]
-    fn a_cycle_of_a_bond_that_yields() {
-        // Walayat et al. 2023, Eq. 6: a plateau in compression; after unloading the bond is left shorter.
-        let (limit, ends) = (Single(-0.02), [end([0.0; COLUMNS]); 2]);
-        let mut memory = [Single(0.0); 2];
-        for (s, plastic, flat) in [
-            (0.01, 0.01, 0.01),
-            (-0.01, -0.01, -0.01),
-            (-0.05, -0.02, -0.02),
-            (-0.03, 0.0, -0.02),
-            (0.0, 0.03, 0.0),
-        ] {
-            // SAFETY: plain arithmetic.
-            unsafe {
-                let (p, _) = Yielding::pull(&bond(s), limit, &ends, &mut memory, &NOW);
-                let (f, _) = Flattened::pull(&bond(s), limit, &ends, &mut [Single(0.0); 2], &NOW);
-                assert!(
-                    (p.0 * (1.0 + s) - plastic).abs() < 1e-16 && (f.0 * (1.0 + s) - flat).abs() < 1e-16,
-                    "{s}"
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn flow_returns_to_the_limit_and_stays() {
-        // Trial 0.1, limit 0.04: 60 % flow.
-        let ends = [end([0.0, 1.0, 0.0, 0.6, 0.0]); 2];
-        let mut memory = [Single(0.0); 2];
-        // SAFETY: plain arithmetic.
-        unsafe {
-            let (p, _) = Plastic::pull(&bond(0.1), Single(1.0), &ends, &mut memory, &NOW);
-            assert!((p.0 * 1.1 - 0.08).abs() < 1e-15 && (memory[0].0 - 0.06).abs() < 1e-15);
-            let look = Moment { flow: 0.0, ..NOW };
-            let (q, _) = Plastic::pull(&bond(0.1), Single(1.0), &ends, &mut memory, &look);
-            assert_eq!(p.0, q.0);
-        }
-    }
-}
+mod tests;

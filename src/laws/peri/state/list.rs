@@ -5,11 +5,9 @@ use std::sync::Mutex;
 use super::super::lattice::Mode;
 use super::super::list::{Watch, clear, hand_back, reach_of};
 use super::super::single::Single;
-use super::law::{
-    BondLaw, Dilatation, Elastic, Ends, Flattened, Moment, Norm, NormLammps, Plastic, PlasticLammps, Stretch,
-    Term, Viscous, ViscousLammps, Yielding, closed,
-};
+use super::law::{BondLaw, Ends, Moment, Stretch, closed, of_law};
 use super::settle::{Settling, Sites};
+use super::terms::{Dilatation, Norm, NormLammps, Term};
 use super::window;
 use crate::par::{self, Shared};
 use crate::world::families::law::COLUMNS;
@@ -75,6 +73,9 @@ pub fn body(
         });
         settling.dilatations(&mut list.state, &sites);
     }
+    if kind == LawKind::Shaped {
+        settling.stiffen(&mut list.state, &sites);
+    }
     if kind == LawKind::Eps {
         add_up(list, &|s, slab, sums| match settling.compat {
             true => s.add_up::<NormLammps>(slab, &active, &mut window(windows), sums),
@@ -85,15 +86,7 @@ pub fn body(
     list.particle = particle;
     sweep(list, &|s, slab| {
         let w = &mut window(windows);
-        match (kind, settling.compat) {
-            (LawKind::Pmb | LawKind::Lps, _) => s.pull::<Elastic>(slab, &active, w, f),
-            (LawKind::Yield, _) => s.pull::<Yielding>(slab, &active, w, f),
-            (LawKind::Flat, _) => s.pull::<Flattened>(slab, &active, w, f),
-            (LawKind::Ves, false) => s.pull::<Viscous>(slab, &active, w, f),
-            (LawKind::Ves, true) => s.pull::<ViscousLammps>(slab, &active, w, f),
-            (LawKind::Eps, false) => s.pull::<Plastic>(slab, &active, w, f),
-            (LawKind::Eps, true) => s.pull::<PlasticLammps>(slab, &active, w, f),
-        }
+        of_law!(kind, settling.compat, W => s.pull::<W>(slab, &active, w, f));
     });
     (list.tension, list.flagged) = (tension, flagged);
     list.state.memory = memory;
@@ -139,20 +132,23 @@ struct Sweep<'a> {
 pub enum Weighing {
     /// ω w.
     Influence(Influence),
-    /// c w/|xi|, with the stretch at which it flows in the place of ω.
-    Bond,
+    /// c w/|xi| of this shape, with the stretch at which it flows in the place of ω.
+    Bond(Influence),
 }
 
 impl Weighing {
     /// That of a law.
     pub fn of(law: &Law) -> Self {
-        if law.kind.bond_based() { Self::Bond } else { Self::Influence(law.influence) }
+        match law.kind.bond_based() {
+            true => Self::Bond(law.influence),
+            false => Self::Influence(law.influence),
+        }
     }
 
     /// ω and ω w, or what stands for them.
     pub fn weigh(self, length: f64, weight: f64, (c, horizon, yields): (f64, f64, f64)) -> (f64, f64) {
         match self {
-            Self::Bond => (yields, c * weight / length),
+            Self::Bond(influence) => (yields, c * influence.shape(length, horizon) * weight / length),
             Self::Influence(influence) => {
                 let omega = influence.of(length, horizon);
                 (omega, omega * weight)
@@ -202,14 +198,20 @@ pub fn bond(
     let length = square.sqrt();
     let z = q / square;
     let live = z.abs() >= options.dead_band(length);
-    // SAFETY: plain arithmetic.
-    let mut stretch = unsafe { closed(Single(z)) };
-    if !live {
-        (stretch.s, stretch.share) = (Single(0.0), Single(0.0));
-    }
+    let stretch = banded(z, length, options);
     let weight = (pair.weight[0] - pair.weight[1] * length).min(1.0);
     let (omega, share) = weighing.weigh(length, weight, (pair.c, pair.horizon, pair.yields));
     Bond { y, z: if live { z } else { 0.0 }, length, omega, share, stretch }
+}
+
+/// A stretch, none inside the dead band; `before` as now.
+pub fn banded(z: f64, length: f64, options: &FamilyOptions) -> Stretch<Single> {
+    // SAFETY: plain arithmetic.
+    let mut stretch = unsafe { closed(Single(z)) };
+    if z.abs() < options.dead_band(length) {
+        (stretch.s, stretch.share, stretch.before) = (Single(0.0), Single(0.0), Single(0.0));
+    }
+    stretch
 }
 
 impl Sweep<'_> {
@@ -303,7 +305,10 @@ impl Sweep<'_> {
         let (mut high, mut low, mut sum) = (0.0f64, 0.0f64, [0.0; 3]);
         for k in body.own(i).filter(|&k| body.lives(k)) {
             let j = body.partner[k] as usize;
-            let b = bond(body, (i, j), self.period, self.weighing, self.options);
+            let mut b = bond(body, (i, j), self.period, self.weighing, self.options);
+            if W::BACK {
+                b.stretch.before = banded(body.z(true, i, j, self.period).0, b.length, self.options).s;
+            }
             let ends: Ends<Single> = [near, self.columns(j, W::COLUMNS)];
             let mut memory = self.recall(k);
             // SAFETY: plain arithmetic.

@@ -7,6 +7,7 @@ mod law;
 mod list;
 mod settle;
 pub mod tables;
+mod terms;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -35,7 +36,7 @@ impl Families {
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
-        advance: bool,
+        (advance, tallied): (bool, bool),
         period: [f64; 3],
     ) {
         let Self { lattices, list, scratch, options, law, table, armed, .. } = self;
@@ -44,7 +45,7 @@ impl Families {
         let windows: &[Mutex<Window>] = &scratch.windows;
         let now = moment(law, advance);
         let compat = options.compat_lammps;
-        let settling = Settling { law, table, moment: now, compat, advance };
+        let settling = Settling { law, table, moment: now, compat, advance, tallied };
         let f = Shared::new(f);
         for body in lattices {
             lattice_body::<K>(body, view, &f, (mode, options), &settling, windows);
@@ -82,8 +83,9 @@ impl Families {
 
 /// LAMMPS takes the energy of plastic bonds from what they remembered before they flowed.
 fn keep_earlier(state: &mut crate::world::families::law::SiteState, settling: &Settling) {
-    if settling.compat && settling.law.kind == LawKind::Eps {
-        state.earlier.clone_from(&state.memory);
+    match settling.tallied && settling.compat && settling.law.kind == LawKind::Eps {
+        true => state.earlier.clone_from(&state.memory),
+        false => state.earlier.clear(),
     }
 }
 
@@ -107,15 +109,17 @@ fn lattice_body<K: Kernels + chunk::StateKernels>(
     let mut columns = ChunkColumns::take(body);
     keep_earlier(&mut body.state, settling);
     let mut memory = std::mem::take(&mut body.state.memory);
+    let mut touched = std::mem::take(&mut body.state.touched);
     let newton = options.unit == ForceUnit::Newton;
     let particle = std::mem::take(&mut body.particle);
-    let memory_of = Shared::new(&mut memory);
+    let (memory_of, touched_of) = (Shared::new(&mut memory), Shared::new(&mut touched));
     let states = States {
         kind,
         compat: settling.compat,
         moment: settling.moment,
         keep: mode.advance,
         memory: &memory_of,
+        touched: &touched_of,
         spread: false,
     };
     let spread = States { spread: true, ..states };
@@ -136,6 +140,9 @@ fn lattice_body<K: Kernels + chunk::StateKernels>(
         add_up(body, Sum::Dilatation, states);
         settling.dilatations(&mut body.state, &sites);
     }
+    if kind == LawKind::Shaped {
+        settling.stiffen(&mut body.state, &sites);
+    }
     if kind == LawKind::Eps {
         add_up(body, if settling.compat { Sum::NormLammps } else { Sum::Norm }, spread);
         settling.flow(&mut body.state, &sites);
@@ -144,5 +151,5 @@ fn lattice_body<K: Kernels + chunk::StateKernels>(
     let sweep = Sweep::new(body, &mut columns, mode, newton, Some(spread));
     par::two_colours(body.slabs(), |slab| sweep.slab::<K>(slab, &mut window(windows), f));
     columns.give(body);
-    body.state.memory = memory;
+    (body.state.memory, body.state.touched) = (memory, touched);
 }

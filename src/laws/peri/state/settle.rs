@@ -17,6 +17,8 @@ pub struct Settling<'a> {
     pub compat: bool,
     /// Keep what sites remember.
     pub advance: bool,
+    /// Energies are wanted of this evaluation.
+    pub tallied: bool,
 }
 
 /// Moduli of a type as laws need them.
@@ -105,6 +107,26 @@ impl Settling<'_> {
         });
     }
 
+    /// How stiff each site's half of its microelastic bonds is: ½, or with surfaces corrected ½ πδ⁴/Σ c w |xi| V/c.
+    pub fn stiffen(&self, state: &mut SiteState, sites: &Sites) {
+        let SiteState { weighted, columns, .. } = state;
+        let columns = Shared::new(columns);
+        par::for_chunks(sites.count, |range| {
+            for site in range {
+                let (at, p) = (sites.pad + site, sites.particle[site]);
+                let mut share = 0.5;
+                if p == u32::MAX {
+                    share = 0.0;
+                } else if self.law.surface && weighted[at] > 0.0 {
+                    let kind = sites.kind[p as usize];
+                    let horizon = self.table.get(kind, kind).map_or(0.0, |c| c.horizon);
+                    share *= std::f64::consts::PI * horizon.powi(4) / weighted[at];
+                }
+                put(&columns, sites, at, &[0.0, share, 0.0, 0.0, 0.0], 2);
+            }
+        });
+    }
+
     /// From the sums of norms to how much of each site's trial state flows.
     pub fn flow(&self, state: &mut SiteState, sites: &Sites) {
         let stiffness = self.stiffness();
@@ -147,7 +169,7 @@ impl Settling<'_> {
 pub fn columns_of(kind: LawKind, compat: bool) -> usize {
     match (kind, compat) {
         (LawKind::Yield | LawKind::Flat, _) => 0,
-        (LawKind::Pmb | LawKind::Lps, _) | (LawKind::Ves, false) => 2,
+        (LawKind::Pmb | LawKind::Lps | LawKind::Shaped, _) | (LawKind::Ves, false) => 2,
         (LawKind::Ves, true) => 3,
         (LawKind::Eps, false) => 4,
         (LawKind::Eps, true) => 5,

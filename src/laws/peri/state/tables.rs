@@ -2,7 +2,8 @@
 
 use super::super::chunk::constant;
 use super::super::pmb::SERIES;
-use super::chunk::OMEGA;
+use super::chunk::{FROM_TERM, OMEGA};
+use super::list::Weighing;
 use crate::world::families::lattice::{CONSTANTS, LANES, LatticeBody, PAD};
 use crate::world::families::law::SiteState;
 use crate::world::families::list::ListBody;
@@ -36,13 +37,7 @@ pub fn fill(body: &mut LatticeBody, table: &PmbTable, options: &FamilyOptions, l
             let square = xi.iter().map(|x| x * x).sum::<f64>();
             let length = square.sqrt();
             let weight = options.volume.weight(length, body.horizon, options.lattice_spacing);
-            let (omega, share) = match law.kind.bond_based() {
-                true => (law.yields(a, b), c * weight / length),
-                false => {
-                    let omega = law.influence.of(length, body.horizon);
-                    (omega, omega * weight)
-                }
-            };
+            let (omega, share) = Weighing::of(law).weigh(length, weight, (c, body.horizon, law.yields(a, b)));
             let mut row = [0.0; CONSTANTS];
             row[constant::XI..constant::XI + 3].copy_from_slice(&xi);
             row[constant::DEAD] = options.dead_band(length) * square;
@@ -60,6 +55,7 @@ pub fn fill(body: &mut LatticeBody, table: &PmbTable, options: &FamilyOptions, l
             body.tables.extend_from_slice(&row);
             let term = share * square * volume;
             series(&mut row, &STRETCH, term, term);
+            row[FROM_TERM] = if term == 0.0 { 0.0 } else { 1.0 / term };
             body.state.tables.extend_from_slice(&row);
         }
     }
@@ -85,14 +81,15 @@ pub fn weigh_lattice(body: &mut LatticeBody, view: &PeriView, options: &FamilyOp
     let entries = body.stencil.len();
     let mut state = columns(body.particle.len() + 2 * PAD, body.alive.len() * law.kind.memory() * LANES);
     state.tables = std::mem::take(&mut body.state.tables);
+    state.touched = vec![0; body.intact.len()];
     let volume = |cell: usize| view.volume[body.particle[cell] as usize];
     for slot in (0..body.rows.len()).filter(|&slot| body.rows[slot].len > 0) {
         let row = body.rows[slot];
         for e in 0..entries {
             let length = body.xi(e).iter().map(|x| x * x).sum::<f64>().sqrt();
             let omega = law.influence.of(length, body.horizon);
-            let share = omega * options.volume.weight(length, body.horizon, options.lattice_spacing);
-            let one = share * length * length;
+            let volumes = options.volume.weight(length, body.horizon, options.lattice_spacing);
+            let one = law.weight(length, body.horizon, volumes);
             for cell in row.start as usize..(row.start + row.len) as usize {
                 if !body.lives(cell, e) {
                     continue;
@@ -117,7 +114,7 @@ pub fn weigh_list(body: &mut ListBody, period: [f64; 3], law: &Law) {
             let pair = &body.pairs[usize::from(body.kind[i]) * body.kinds.len() + usize::from(body.kind[j])];
             let length = body.z(false, i, j, period).1;
             let omega = law.influence.of(length, pair.horizon);
-            let one = omega * (pair.weight[0] - pair.weight[1] * length).min(1.0) * length * length;
+            let one = law.weight(length, pair.horizon, (pair.weight[0] - pair.weight[1] * length).min(1.0));
             for (a, b) in [(i, j), (j, i)] {
                 state.weighted[a] += one * body.record[b].volume;
                 state.spread[a] += omega * one * body.record[b].volume;

@@ -166,7 +166,7 @@ impl Stuff {
 /// Keywords after a material's ID that a law has besides `horizon`, `s00` and `alpha`; state-based ones must all be said.
 fn keywords(law: LawKind) -> &'static [&'static str] {
     match law {
-        LawKind::Pmb => &["form"],
+        LawKind::Pmb | LawKind::Shaped => &["form"],
         LawKind::Lps => &[],
         LawKind::Ves => &["lambda", "tau"],
         LawKind::Eps => &["yield"],

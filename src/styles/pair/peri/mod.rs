@@ -17,7 +17,7 @@ use crate::laws::peri::calibration::constants;
 use crate::plan::Op;
 use crate::styles::{BuildCx, SealCx};
 use crate::world::families::{
-    FamilyOptions, ForceUnit, Law, LawKind, Layout, Moduli, PmbCoeff, PmbTable, VolumeRule,
+    FamilyOptions, ForceUnit, Influence, Law, LawKind, Layout, Moduli, PmbCoeff, PmbTable, VolumeRule,
 };
 use crate::world::{Region, World};
 pub use eps::PeriEps;
@@ -42,6 +42,8 @@ struct Solid {
     unit: Option<ForceUnit>,
     volume: VolumeRule,
     calibrate: Calibrate,
+    /// Broken bonds still push.
+    compress: bool,
     /// The rule of unloading that a line has said.
     unloading: Option<LawKind>,
     /// Regions whose particles' bonds never break.
@@ -69,7 +71,8 @@ fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair
         .help("put `atom_style peri` (or `hybrid sphere peri`) at the top of the deck")
         .into());
     }
-    let law = Law { kind, moduli: vec![Moduli::default(); cx.world.types], ..Law::default() };
+    let influence = if kind.bond_based() { Influence::One } else { Influence::default() };
+    let law = Law { kind, influence, moduli: vec![Moduli::default(); cx.world.types], ..Law::default() };
     Ok(Box::new(Solid {
         name,
         table: PmbTable::new(cx.world.types),
@@ -79,6 +82,7 @@ fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair
         unit: None,
         volume: VolumeRule::Lammps,
         calibrate: Calibrate::No,
+        compress: false,
         unloading: None,
         lasting: vec![],
         no_repulsion: false,
@@ -216,6 +220,7 @@ impl Solid {
             unit: self.unit(),
             lattice_spacing: w.lattice.spacing[0],
             compat_lammps: s.lammps(),
+            compress: self.compress,
             layout: if s.force_list { Layout::List } else { Layout::Auto },
             skip_rest: !s.no_skipping,
             portable: s.portable,
@@ -229,10 +234,16 @@ impl Solid {
         if self.calibrate == Calibrate::No || !self.law.kind.bond_based() {
             return Ok(table);
         }
+        if self.law.surface {
+            self.cannot(
+                span,
+                "cannot be calibrated and have its surfaces corrected: that makes K right by itself",
+            )?;
+        }
         let types = table.types() as u16;
         for (i, j) in (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j))) {
             let Some(own) = self.table.get(i, j).copied() else { continue };
-            let lattice = constants(own.horizon / spacing, self.volume);
+            let lattice = constants(own.horizon / spacing, self.volume, self.law.influence);
             let ratio = if self.calibrate == Calibrate::Bulk { lattice.bulk } else { lattice.young };
             if lattice.neighbours == 0 {
                 self.cannot(span, "cannot be calibrated: its horizon reaches no neighbour")?;
@@ -331,6 +342,9 @@ impl Pair for Solid {
         );
         let mut style = self.clone();
         style.table = self.calibrated(a, span)?;
+        if self.law.kind == LawKind::Pmb && (self.law.surface || self.law.influence != Influence::One) {
+            style.law.kind = LawKind::Shaped;
+        }
         Ok(vec![Box::new(Force::new(style, self.table.clone(), options))])
     }
 

@@ -1,12 +1,13 @@
 //! `peri_modify`: options of peridynamic styles.
 
 use super::{Calibrate, Solid};
-use crate::diag::{Code, Result, fail};
+use crate::diag::{Code, Result, Span, fail};
 use crate::lang::Args;
 use crate::styles::BuildCx;
-use crate::world::families::{ForceUnit, Influence, VolumeRule};
+use crate::world::families::{ForceUnit, Influence, LawKind, VolumeRule};
 
-const KNOWN: [&str; 6] = ["force", "volume", "influence", "calibrate", "nofail", "repulsion"];
+const KNOWN: [&str; 8] =
+    ["force", "volume", "influence", "surface", "calibrate", "nofail", "broken", "repulsion"];
 
 /// Reads the words of a `peri_modify`.
 ///
@@ -40,14 +41,24 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
                 };
             }
             "influence" => {
-                if style.law.kind.bond_based() {
-                    let text =
-                        "peri_modify influence concerns state-based styles: peri/lps, peri/ves, peri/eps";
-                    return fail(Code::CONFLICT, word.span, text);
-                }
+                settled(style, &word.text, word.span, cx)?;
                 let name = args.choice("influence function", &Influence::NAMES.map(|n| n.0))?;
                 let found = Influence::NAMES.iter().find(|n| n.0 == name);
                 style.law.influence = found.map_or_else(Influence::default, |n| n.1);
+            }
+            "surface" => {
+                settled(style, &word.text, word.span, cx)?;
+                let how = args.choice("correction of surfaces", &["no", "energy"])?;
+                if !style.law.kind.bond_based() && how != "no" {
+                    let text =
+                        "peri_modify surface concerns peri/pmb: a state-based particle weighs its own family";
+                    return fail(Code::CONFLICT, word.span, text);
+                }
+                style.law.surface = how == "energy";
+            }
+            "broken" => {
+                args.choice("what broken bonds do", &["compress"])?;
+                style.compress = args.flag("broken compress")?;
             }
             "calibrate" => {
                 let how = args.choice("what to calibrate", &["no", "bulk", "young"])?;
@@ -66,7 +77,7 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
                 args.choice("what lasts", &["region"])?;
                 style.lasting.push(cx.region(args.expect("a region")?)?.clone());
             }
-            "broken" | "family" => {
+            "family" => {
                 return fail(
                     Code::NOT_SUPPORTED,
                     word.span,
@@ -75,6 +86,19 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
             }
             _ => return Err(args.unknown(word, &KNOWN)),
         }
+    }
+    Ok(())
+}
+
+/// Refuses options that shape bonds where they cannot: under plastic bonds, or once bonds have been weighed.
+fn settled(style: &Solid, option: &str, at: Span, cx: &BuildCx) -> Result<()> {
+    if matches!(style.law.kind, LawKind::Yield | LawKind::Flat) {
+        let text = format!("peri_modify {option} does not concern pair_style {}", style.name);
+        return fail(Code::CONFLICT, at, text);
+    }
+    if cx.world.families.is_some() {
+        let text = format!("peri_modify {option} comes too late: bonds were weighed at the first run");
+        return fail(Code::WRONG_ORDER, at, text);
     }
     Ok(())
 }

@@ -21,7 +21,7 @@ impl Style for PeriPmb {
                      pair_coeff i j c horizon s00 alpha\n\
                      pair_coeff i j material ID horizon H [form bulk|shear|young] [s00 value] [alpha value]\n\
                      pair_coeff i j mix arithmetic|harmonic|geometric\n\
-                     peri_modify [force density|newton] [volume lammps|none|full] [calibrate no|bulk|young] [nofail region ID]… [repulsion yes|no]",
+                     peri_modify [force density|newton] [volume lammps|none|full] [calibrate no|bulk|young] [influence one|inverse|gaussian] [surface no|energy] [broken compress no|yes] [nofail region ID]… [repulsion yes|no]",
             summary: "Bond-based peridynamics: elastic bonds that break when stretched too far.",
             text: "Every particle has bonds to all others within the `horizon` δ at the first run. A bond of reference \
                 length |ξ| and stretch s = (r − |ξ|)/|ξ| pulls with the force density `c` s w V_j; w is the partial \
@@ -38,8 +38,19 @@ impl Style for PeriPmb {
                 material (no ranges), takes means of their data. Materials and plain numbers do not go together in one body.\n\n\
                 `peri_modify volume`: `lammps` weighs bonds within half a spacing of the horizon by \
                 (δ + dx/2 − |ξ|)/dx, `none` not at all, `full` extends the family to δ + dx/2, where that weight \
-                vanishes. On a lattice the sum over bonds is not the integral that c stands for: with LAMMPS' weights and a                 horizon of 3.015 spacings the bulk modulus comes out at 0.89 of K, Young's modulus along an axis at 0.82 of E.                 `calibrate` divides c by that ratio, reckoned for a simple cubic lattice of the present spacing: `bulk`                 makes K right, `young` E (for ν = 1/4); s00 stays. `nofail region` makes bonds last whose one end lies in the                 region at the start. `repulsion no` leaves the short-range force out, where contact laws \
-                   keep particles apart (`group … surface`).",
+                vanishes. On a lattice the sum over bonds is not the integral that c stands for: with LAMMPS' weights and a \
+                horizon of 3.015 spacings the bulk modulus comes out at 0.89 of K, Young's modulus along an axis at 0.82 of \
+                E. `calibrate` divides c by that ratio, reckoned for a simple cubic lattice of the present spacing: `bulk` \
+                makes K right, `young` E (for ν = 1/4); s00 stays. `influence` makes the micro-modulus depend on a bond's \
+                length: c g(|ξ|) with g proportional to 1, δ/|ξ| or exp(−|ξ|²/δ²), all with the same K; a crack then costs \
+                0.94 and 0.95 of the G_c that s00 stands for. `surface energy` makes the bonds of each particle as much \
+                stiffer as its family is poorer than a whole one (by the energy of an even growth, λ = πδ⁴/Σ g w |ξ| V, a \
+                bond taking the mean of both ends): surfaces are no longer soft, and K is right inside. Both are said before \
+                the first run; bodies of several types or volumes then run as lists. `broken compress yes`: a broken bond \
+                still pushes with c s w V_j while it is shorter than at the start, so that crushed parts do not pass through \
+                each other; bonds of `peri_crack` too, and under state-based laws with c = 18K/(πδ⁴). `nofail region` makes \
+                bonds last whose one end lies in the region at the start. `repulsion no` leaves the short-range force out, \
+                where contact laws keep particles apart (`group … surface`).",
             example: "pair_style peri/pmb\npair_coeff * * 1.6863e22 0.0015001 5.0e-4 0.25",
         }
     }
