@@ -267,13 +267,14 @@ impl Families {
         advance: bool,
         tally: Option<&mut PeriTally>,
     ) {
-        if self.options.no_repulsion {
-            return;
-        }
-        let (within, all) = self.ranges(view, moved, advance);
-        let closer = self.update_near(view, within, all, advance);
+        let closer = (!self.options.no_repulsion).then(|| {
+            let (within, all) = self.ranges(view, moved, advance);
+            self.update_near(view, within, all, advance)
+        });
         let mut repulsion = Repulsion { view, table: &self.table, options: &self.options, f, tally };
-        repel(self, closer, &mut repulsion);
+        if let Some(closer) = closer {
+            repel(self, closer, &mut repulsion);
+        }
         push_apart(self, &mut repulsion);
     }
 

@@ -46,13 +46,13 @@ impl Families {
         if self.law.kind == LawKind::Lps {
             // Dilatations are those of the bonds that live.
             let mut aside = vec![[0.0; 3]; view.x.len()];
-            self.sweep_states::<K>(view, &mut aside, false, period);
+            self.sweep_states::<K>(view, &mut aside, (false, true), period);
         }
         let mut atoms = vec![0.0; view.x.len()];
         let dense = self.options.unit == ForceUnit::Density;
         let mut sum = PeriTally { per_atom_energy: dense.then_some(&mut atoms), ..PeriTally::default() };
         match self.law.kind.has_states() {
-            true => state::tally(self, view, &mut sum, period),
+            true => state::tally::<K>(self, view, &mut sum, (false, period)),
             false => tally::<K>(self, view, &mut sum, period),
         }
         let total = sum.energy;
