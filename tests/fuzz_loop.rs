@@ -194,7 +194,7 @@ fn read_restart() {
     let mut corpus = vec![];
     for (k, scene) in [
         "atom_style sphere\nregion b block 0 2 0 2 0 2\ncreate_box 1 b\ncreate_atoms 1 single 0.5 0.5 0.5\nset group all diameter 0.5 density 1",
-        "units si\natom_style peri\nlattice sc 0.001\nregion b block 0 3 0 3 0 3\ncreate_box 1 b\ncreate_atoms 1 box\n\
+        "units si\nboundary f f f\natom_style peri\nlattice sc 0.001\nregion b block 0 3 0 3 0 3\ncreate_box 1 b\ncreate_atoms 1 box\n\
          set group all density 2500 volume 1e-9\npair_style peri/pmb\npair_coeff * * 2e21 0.0015001 0.004 0\nfix 1 all nve\nrun 1",
     ]
     .iter()

@@ -16,8 +16,8 @@ pub struct Row {
     pub layout: Layout,
     /// Its values.
     pub readings: Vec<Reading>,
-    /// Where the deck asks for them.
-    pub spans: Vec<Span>,
+    /// Where the deck asks for those of which only a run can tell whether they are there.
+    pub spans: Vec<Option<Span>>,
     /// At which steps.
     pub when: When,
     /// Where to.
@@ -39,17 +39,14 @@ impl Row {
     /// Refuses elements that vectors do not have as the run begins; where they go later, 0 is shown, as in LAMMPS.
     fn all_there(&self, w: &World, t: &Tick) -> Result<()> {
         for ((reading, column), span) in self.readings.iter().zip(&self.layout.columns).zip(&self.spans) {
-            if let Some(there) = reading.too_few(w) {
-                let what = column.name.split('[').next().unwrap_or_default();
-                let text = format!(
-                    "there is no `{}`: `{what}` has {there} elements at step {}",
-                    column.name, t.step
-                );
-                let d = Diagnostic::error(Code::WRONG_KIND, *span, text);
-                return Err(d
-                    .help("show an element that is there, or choose this thermo_style after a run")
-                    .into());
-            }
+            let (Some(span), Some(there)) = (span, reading.too_few(w)) else { continue };
+            let what = column.name.split('[').next().unwrap_or_default();
+            let text =
+                format!("there is no `{}`: `{what}` has {there} elements at step {}", column.name, t.step);
+            let d = Diagnostic::error(Code::WRONG_KIND, *span, text);
+            return Err(d
+                .help("show an element that is there, or choose this thermo_style after a run")
+                .into());
         }
         Ok(())
     }

@@ -50,15 +50,6 @@ pub enum Source {
     Ref(ValueRef),
 }
 
-impl Source {
-    fn span(&self) -> Span {
-        match self {
-            Self::Keyword(_, span) => *span,
-            Self::Ref(r) => r.span,
-        }
-    }
-}
-
 impl Default for Thermo {
     fn default() -> Self {
         let layout = Layout::one();
@@ -268,7 +259,11 @@ impl Thermo {
             sources.push(Source::Keyword("vol".into(), Span::default()));
         }
         let mut readings = vec![];
-        let spans = sources.iter().map(Source::span).collect();
+        let judged = |source: &Source| match source {
+            Source::Ref(r) if s.is_open(r) => Some(r.span),
+            _ => None,
+        };
+        let spans = sources.iter().map(judged).collect();
         for source in &sources {
             readings.push(match source {
                 Source::Keyword(name, span) => s.keyword_total(name, *span, Stage::Output, &when)?,

@@ -13,7 +13,11 @@ const STACK: usize = 16 << 20;
 /// one thread if the system grants no more.
 pub fn set_threads(n: usize) -> usize {
     let n = if n == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { n };
-    let pool = if n > 1 { rayon::ThreadPoolBuilder::new().num_threads(n).stack_size(STACK).build().ok() } else { None };
+    let pool = if n > 1 {
+        rayon::ThreadPoolBuilder::new().num_threads(n).stack_size(STACK).build().ok()
+    } else {
+        None
+    };
     *POOL.write().unwrap_or_else(PoisonError::into_inner) = pool.map(Arc::new);
     threads()
 }
