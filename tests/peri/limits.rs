@@ -62,7 +62,7 @@ fn growth(law: LawKind, layout: Layout, part: f64, steps: usize) -> f64 {
     for _ in 0..steps {
         s.step();
         let energy = (s.energy + s.kinetic()) / first;
-        if !(energy < 1e6) {
+        if energy.is_nan() || energy >= 1e6 {
             return f64::INFINITY;
         }
         most = most.max(energy);
