@@ -23,8 +23,8 @@ pub(super) fn unused(sources: &Sources, given: &[String]) -> Diagnostics {
         let (mut fresh, mut last) = (false, 0);
         for t in tokens(text) {
             let defines = kind.take();
-            if std::mem::take(&mut fresh) && t.text == "delete" {
-                // `variable x delete` defines nothing.
+            if std::mem::take(&mut fresh) && matches!(t.text, "delete" | "surface") {
+                // `variable x delete` defines nothing, and `group s surface` acts by being there.
                 defined.retain(|_, span: &mut Span| span.file != file || span.start as usize != last);
             }
             if t.opens && (t.text == "variable" || t.text == "group") {
@@ -122,6 +122,7 @@ mod tests {
     fn names_that_are_only_defined() {
         check("variable a equal 1\nprint a # ${b}\nvariable b equal 2\n", &["43 variable `b` is never used"]);
         check("group g type 1\ngroup g region r\n", &["6 group `g` is never used"]);
+        check("group s surface all\n", &[]);
         check("variable given index 1\n", &[]);
         check("variable gone delete\n", &[]);
     }
