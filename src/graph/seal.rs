@@ -89,9 +89,8 @@ impl<'a> Sealer<'a> {
     /// Whether only a run can tell how many elements a value has; a fixed number was judged when its line was read, and
     /// some fixes fill theirs only when they act.
     pub fn is_open(&self, r: &ValueRef) -> bool {
-        let open = |s: Shape| s.vector == Shape::OPEN || s.array_rows == Shape::OPEN;
         match r.kind {
-            RefKind::Fix => self.graph.find_fix(&r.name).is_none_or(|f| open(f.fix.shape())),
+            RefKind::Fix => self.graph.find_fix(&r.name).is_none_or(|f| f.fix.shape().vector == Shape::OPEN),
             _ => true,
         }
     }
