@@ -15,7 +15,7 @@ use super::lanes512::has_avx512;
 use super::lattice::{self, ChunkColumns, Mode};
 use super::list;
 use super::list_kernel::RowKernels;
-use super::state::{self, chunk::StateKernels};
+use super::state::{self, kernels::StateKernels};
 use super::stretching::StretchKernels;
 use super::tables;
 use crate::diag::{Code, Diagnostic, Result};

@@ -2,7 +2,7 @@
 
 use super::chunk::{self, Chunk, Kernels, Various};
 use super::pmb::{UP_TO_3, UP_TO_5, UP_TO_7};
-use super::state::chunk::StateKernels;
+use super::state::kernels::StateKernels;
 use super::state::lattice::States;
 use crate::par::Shared;
 use crate::world::families::Window;

@@ -3,7 +3,7 @@
 use super::chunk::Kernels;
 use super::energy::tally;
 use super::list_kernel::RowKernels;
-use super::state::{self, chunk::StateKernels};
+use super::state::{self, kernels::StateKernels};
 use super::stretching::StretchKernels;
 use crate::world::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
 

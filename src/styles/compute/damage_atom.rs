@@ -1,12 +1,12 @@
 //! compute damage/atom: the share of each particle's family that it has lost.
 
+use super::family_values::of_families;
 use super::{Compute, ComputeStyle};
 use crate::diag::Result;
 use crate::lang::Args;
-use crate::plan::{Op, Stage, When};
-use crate::styles::step_op::{Wanted, fill, per_particle};
-use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
-use crate::world::{GroupId, SlotId};
+use crate::styles::{BuildCx, Doc, Style};
+use crate::world::World;
+use crate::world::families::Families;
 
 /// The style.
 pub struct DamageAtom;
@@ -29,34 +29,8 @@ impl Style for DamageAtom {
 
 impl ComputeStyle for DamageAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        args.finish()?;
-        super::need_bonds("damage/atom", cx)?;
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group }))
-    }
-}
-
-#[derive(Clone)]
-struct Declared {
-    id: String,
-    group: GroupId,
-}
-
-impl Compute for Declared {
-    fn shape(&self) -> Shape {
-        Shape { atom: Some(1), ..Shape::default() }
-    }
-
-    fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let group = self.group;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "families volume mask", move |w, _, out| {
-            let volume = &w.particles.volume;
-            per_particle(w, group, out, |i| w.families.as_ref().map_or(0.0, |f| f.damage(i, volume)));
-            Ok(())
-        }))
-    }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
+        let damage = |w: &World, f: &Families, i: usize| f.damage(i, &w.particles.volume);
+        of_families("damage/atom", "families volume mask", damage, args, cx)
     }
 }
 
@@ -65,7 +39,7 @@ mod tests {
     use super::*;
     use crate::styles::testing::Bench;
     use crate::world::AtomStyle;
-    use crate::world::families::{Bounds, Families, FamilyOptions, PeriView, PmbCoeff, PmbTable};
+    use crate::world::families::{Bounds, FamilyOptions, PeriView, PmbCoeff, PmbTable};
 
     #[test]
     fn lost_volume_over_all_volume() {

@@ -1,13 +1,10 @@
 //! compute dilatation/atom: the relative change of volume of each peridynamic particle.
 
+use super::family_values::of_families;
 use super::{Compute, ComputeStyle};
 use crate::diag::Result;
 use crate::lang::Args;
-use crate::plan::{Op, Stage, When};
-use crate::styles::step_op::{Wanted, fill, per_particle};
-use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
-use crate::world::families::Families;
-use crate::world::{GroupId, SlotId};
+use crate::styles::{BuildCx, Doc, Style};
 
 /// The style.
 pub struct DilatationAtom;
@@ -29,44 +26,7 @@ impl Style for DilatationAtom {
 
 impl ComputeStyle for DilatationAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        state_of_particles("dilatation/atom", Families::dilatation, args, cx)
-    }
-}
-
-/// A compute of what state-based families know of each particle.
-pub(super) fn state_of_particles(
-    name: &str,
-    value: fn(&Families, usize) -> f64,
-    args: &mut Args,
-    cx: &BuildCx,
-) -> Result<Box<dyn Compute>> {
-    args.finish()?;
-    super::need_bonds(name, cx)?;
-    Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, value }))
-}
-
-#[derive(Clone)]
-struct Declared {
-    id: String,
-    group: GroupId,
-    value: fn(&Families, usize) -> f64,
-}
-
-impl Compute for Declared {
-    fn shape(&self) -> Shape {
-        Shape { atom: Some(1), ..Shape::default() }
-    }
-
-    fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let (group, value) = (self.group, self.value);
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "families mask", move |w, _, out| {
-            per_particle(w, group, out, |i| w.families.as_ref().map_or(0.0, |f| value(f, i)));
-            Ok(())
-        }))
-    }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
+        of_families("dilatation/atom", "families mask", |_, f, i| f.dilatation(i), args, cx)
     }
 }
 

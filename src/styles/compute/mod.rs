@@ -15,6 +15,7 @@ mod energy_ledger;
 mod erotate_sphere;
 mod erotate_sphere_atom;
 mod fabric;
+mod family_values;
 mod fragments;
 mod global_atom;
 mod gyration;

@@ -1,11 +1,10 @@
 //! compute plasticity/atom: how much each particle of an elastic, perfectly plastic body has flowed.
 
-use super::dilatation_atom::state_of_particles;
+use super::family_values::of_families;
 use super::{Compute, ComputeStyle};
 use crate::diag::Result;
 use crate::lang::Args;
 use crate::styles::{BuildCx, Doc, Style};
-use crate::world::families::Families;
 
 /// The style.
 pub struct PlasticityAtom;
@@ -28,7 +27,7 @@ impl Style for PlasticityAtom {
 
 impl ComputeStyle for PlasticityAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        state_of_particles("plasticity/atom", Families::plastic_strain, args, cx)
+        of_families("plasticity/atom", "families mask", |_, f, i| f.plastic_strain(i), args, cx)
     }
 }
 

@@ -1,12 +1,11 @@
 //! fix dt/critical: a time step that follows the stability limits of the scene.
 
+use super::time_step::Follower;
 use super::{Fix, FixStyle};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
-use crate::plan::{Access, Op, Stage, When};
+use crate::plan::Op;
 use crate::styles::critical::{self, Estimate};
-use crate::styles::matter::publish;
-use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 use crate::world::{GroupId, RunStyle, World};
 
@@ -57,7 +56,7 @@ impl FixStyle for DtCritical {
                 _ => return Err(args.unknown(word, &["pd", "max"])),
             }
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), every, rule }))
+        Ok(Box::new(Declared { follower: Follower::new("dt/critical", cx.id, every), rule }))
     }
 }
 
@@ -84,51 +83,28 @@ impl Rule {
 
 #[derive(Clone)]
 struct Declared {
-    id: String,
-    every: i64,
+    follower: Follower,
     rule: Rule,
-}
-
-impl Declared {
-    fn memo(&self) -> String {
-        format!("dt/critical/{}", self.id)
-    }
 }
 
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
-        w.memo.insert(self.memo(), vec![w.clock.step as f64]);
+        self.follower.declare(w);
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.memo());
+        self.follower.remove(w);
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let (rule, memo) = (self.rule, self.memo());
-        let slot = cx.slot(&format!("f_{}", self.id));
+        let rule = self.rule;
         let mut probes = cx.probes()?;
-        let access = Access::new("x v radius mass type volume families contacts", "dt");
-        let op =
-            StepOp::new(format!("fix {} dt/critical", self.id), Stage::EndOfStep, access, move |w, t| {
-                let mut last = w.memo.get(&memo).and_then(|m| m.first().copied()).unwrap_or(0.0);
-                // As one long run would: a run that continues another one does not look.
-                if !t.unchanged {
-                    let (solids, grains) =
-                        (critical::solids(w, rule.how)?, critical::grains(w, &mut probes)?);
-                    let dt = rule.step(w, solids, grains);
-                    if dt != w.clock.dt {
-                        w.clock.set_dt(dt);
-                        last = t.step as f64;
-                        w.memo.insert(memo.clone(), vec![last]);
-                    }
-                }
-                publish(w, slot, t, last, &[]);
-                Ok(())
-            });
-        let when = When::Every(self.every).or(When::First);
-        Ok(vec![op.when(when).in_setup(true).boxed()])
+        let reads = "x v radius mass type volume families contacts";
+        Ok(self.follower.ops(cx, reads, move |w| {
+            let (solids, grains) = (critical::solids(w, rule.how)?, critical::grains(w, &mut probes)?);
+            Ok(rule.step(w, solids, grains))
+        }))
     }
 
     fn shape(&self) -> Shape {

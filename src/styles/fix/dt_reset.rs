@@ -1,13 +1,13 @@
 //! fix dt/reset: a time step that follows the fastest particle.
 
+use super::time_step::Follower;
 use super::{Fix, FixStyle};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
 use crate::par;
-use crate::plan::{Access, Op, Stage, When};
+use crate::plan::Op;
 use crate::styles::command::common::{scales, units_lattice};
-use crate::styles::matter::{Masses, check_masses, publish};
-use crate::styles::step_op::StepOp;
+use crate::styles::matter::{Masses, check_masses};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 use crate::world::{GroupId, World};
 
@@ -55,7 +55,7 @@ impl FixStyle for DtReset {
         }
         let reach = reach * scales(cx.world, lattice)[0];
         let rule = Rule { group: cx.group, shortest, longest, reach, energy };
-        Ok(Box::new(Declared { id: cx.id.to_string(), every, rule }))
+        Ok(Box::new(Declared { follower: Follower::new("dt/reset", cx.id, every), rule }))
     }
 }
 
@@ -123,48 +123,24 @@ impl Rule {
 
 #[derive(Clone)]
 struct Declared {
-    id: String,
-    every: i64,
+    follower: Follower,
     rule: Rule,
-}
-
-impl Declared {
-    fn memo(&self) -> String {
-        format!("dt/reset/{}", self.id)
-    }
 }
 
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
-        w.memo.insert(self.memo(), vec![w.clock.step as f64]);
+        self.follower.declare(w);
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.memo());
+        self.follower.remove(w);
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let (rule, memo, span) = (self.rule, self.memo(), cx.span());
+        let (rule, span) = (self.rule, cx.span());
         check_masses(cx.world(), span)?;
-        let slot = cx.slot(&format!("f_{}", self.id));
-        let access = Access::new("v f mass mask", "dt");
-        let op = StepOp::new(format!("fix {} dt/reset", self.id), Stage::EndOfStep, access, move |w, t| {
-            let mut last = w.memo.get(&memo).and_then(|m| m.first().copied()).unwrap_or(0.0);
-            // A run that merely continues another one must not look at other steps than one long run would.
-            if !t.unchanged {
-                let dt = rule.step(w);
-                if dt != w.clock.dt {
-                    w.clock.set_dt(dt);
-                    last = t.step as f64;
-                    w.memo.insert(memo.clone(), vec![last]);
-                }
-            }
-            publish(w, slot, t, last, &[]);
-            Ok(())
-        });
-        let when = When::Every(self.every).or(When::First);
-        Ok(vec![op.when(when).in_setup(true).boxed()])
+        Ok(self.follower.ops(cx, "v f mass mask", move |w| Ok(rule.step(w))))
     }
 
     fn shape(&self) -> Shape {
@@ -179,6 +155,7 @@ impl Fix for Declared {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::Stage;
     use crate::styles::testing::Bench;
     use crate::world::AtomStyle;
 

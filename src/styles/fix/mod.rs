@@ -48,6 +48,7 @@ mod spring;
 mod spring_self;
 mod store_force;
 mod store_state;
+mod time_step;
 mod vector;
 mod viscous;
 mod viscous_sphere;

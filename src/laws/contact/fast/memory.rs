@@ -137,29 +137,34 @@ impl<L: ContactLaw> Fast<L> {
     pub fn contacts(&self) -> Contacts {
         let (memory, width) = (self.laws.memory(), self.width);
         let is_live = |s: &Short, k: usize| s.history[(k + 1) * width - 1] == self.now;
-        let mut live = vec![];
-        for (slab, list) in self.lists.iter().enumerate() {
-            let short = &list.short;
+        let live = |s: &Short| (0..s.i.len()).filter(|&k| is_live(s, k)).count();
+        let count = self.lists.iter().map(|l| live(&l.short)).sum();
+        // Keys with the number of the pair, counted through all lists.
+        let mut entries = Vec::with_capacity(count);
+        let mut first = vec![0];
+        for short in self.lists.iter().map(|l| &l.short) {
+            let before = first[first.len() - 1];
             for k in (0..short.i.len()).filter(|&k| is_live(short, k)) {
                 let (p, q) = self.tags(short, k);
-                live.push(([p.min(q), p.max(q)], slab as u32, k as u32));
+                entries.push(([p.min(q), p.max(q)], before + k as u32));
             }
+            first.push(before + short.i.len() as u32);
         }
-        live.sort_unstable();
-        let mut out =
-            Contacts { keys: vec![], width: memory, history: Vec::with_capacity(live.len() * memory) };
-        for (_, slab, k) in &live {
-            let (short, k) = (&self.lists[*slab as usize].short, *k as usize);
-            let from = out.history.len();
-            out.history.extend_from_slice(&short.history[k * width..][..memory]);
+        entries.sort_unstable();
+        let mut history = Vec::with_capacity(count * memory);
+        for (_, number) in &entries {
+            let slab = first.partition_point(|f| f <= number) - 1;
+            let (short, k) = (&self.lists[slab].short, (number - first[slab]) as usize);
+            let from = history.len();
+            history.extend_from_slice(&short.history[k * width..][..memory]);
             let (p, q) = self.tags(short, k);
             if p > q {
-                mirror(&mut out.history[from..]);
+                mirror(&mut history[from..]);
             }
         }
-        out.keys = live.into_iter().map(|(key, ..)| key).collect();
-        out.keys.shrink_to_fit();
-        out
+        let mut keys: Vec<[u32; 2]> = entries.into_iter().map(|(key, _)| key).collect();
+        keys.shrink_to_fit();
+        Contacts { keys, width: memory, history }
     }
 
     /// The identities of a pair of a short list.

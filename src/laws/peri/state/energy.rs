@@ -4,7 +4,7 @@ use std::sync::Mutex;
 
 use super::super::energy::{Sums, collect, whole_rows};
 use super::super::single::Single;
-use super::chunk::StateKernels;
+use super::kernels::StateKernels;
 use super::lattice::States;
 use super::law::{Angles, BondLaw, Ends, Moment, Stretch, of_law};
 use super::list::{Weighing, banded, bond};

@@ -2,8 +2,9 @@
 
 use super::super::chunk::{CELLS, Chunk, SUMS};
 use super::super::lattice::{Sweep, extent, open};
-use super::chunk::{Cells, Looking, StateKernels, run, run_term};
+use super::chunk::{Cells, Looking};
 use super::energy::shares;
+use super::kernels::{StateKernels, run, run_term};
 use super::law::{Moment, of_law};
 use super::terms::{Dilatation, Norm, NormLammps, Term};
 use crate::par::Shared;

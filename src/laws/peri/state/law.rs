@@ -83,17 +83,22 @@ pub trait BondLaw: Sync {
         moment: &Moment,
     ) -> (L, L);
     /// The squares of both ends' elastic deviatoric stretch that the energy has, over ½ 15G/m ω w |xi|² V of each end;
-    /// of bond-based laws over ½ c w |xi| V. `memory` is what the bond remembers already.
+    /// of bond-based laws over ½ c w |xi| V. `memory` is what the bond remembers already: what has flowed, unless a law says
+    /// otherwise.
     ///
     /// # Safety
     /// See [`Lanes`].
+    #[inline(always)]
     unsafe fn squares<L: Lanes>(
         bond: &Stretch<L>,
-        limit: L,
+        _limit: L,
         ends: &[Angles<L>; 2],
         memory: &[L; 2],
-        lambda: f64,
-    ) -> (L, L);
+        _lambda: f64,
+    ) -> (L, L) {
+        // SAFETY: passed on to the caller.
+        unsafe { deviatoric(bond.s, ends, memory) }
+    }
     /// Where an end flows in this evaluation, a mask.
     ///
     /// # Safety
@@ -146,17 +151,6 @@ impl BondLaw for Elastic {
             let pull = b.sub(a).fma(bond.share, a);
             (pull, pull)
         }
-    }
-    #[inline(always)]
-    unsafe fn squares<L: Lanes>(
-        bond: &Stretch<L>,
-        _: L,
-        ends: &[Angles<L>; 2],
-        _: &[L; 2],
-        _: f64,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe { deviatoric(bond.s, ends, &[L::splat(0.0); 2]) }
     }
 }
 
@@ -248,13 +242,13 @@ impl BondLaw for ViscousLammps {
     #[inline(always)]
     unsafe fn squares<L: Lanes>(
         bond: &Stretch<L>,
-        _: L,
+        limit: L,
         ends: &[Angles<L>; 2],
         memory: &[L; 2],
         lambda: f64,
     ) -> (L, L) {
         // SAFETY: passed on to the caller.
-        unsafe { relaxed_squares(bond.s, ends, memory[0], lambda) }
+        unsafe { Viscous::squares(bond, limit, ends, memory, lambda) }
     }
 }
 
@@ -289,17 +283,6 @@ impl BondLaw for Plastic {
             let pull = pull.mul(bond.inverse);
             (pull, pull)
         }
-    }
-    #[inline(always)]
-    unsafe fn squares<L: Lanes>(
-        bond: &Stretch<L>,
-        _: L,
-        ends: &[Angles<L>; 2],
-        memory: &[L; 2],
-        _: f64,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe { deviatoric(bond.s, ends, memory) }
     }
     #[inline(always)]
     unsafe fn flows<L: Lanes>([own, far]: &Ends<L>) -> L {
@@ -342,17 +325,6 @@ impl BondLaw for PlasticLammps {
             }
             (pulls[0], pulls[1])
         }
-    }
-    #[inline(always)]
-    unsafe fn squares<L: Lanes>(
-        bond: &Stretch<L>,
-        _: L,
-        ends: &[Angles<L>; 2],
-        memory: &[L; 2],
-        _: f64,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe { deviatoric(bond.s, ends, memory) }
     }
     #[inline(always)]
     unsafe fn flows<L: Lanes>([own, far]: &Ends<L>) -> L {

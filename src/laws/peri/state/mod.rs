@@ -2,6 +2,7 @@
 
 pub mod chunk;
 mod energy;
+pub mod kernels;
 pub mod lattice;
 mod law;
 mod list;
@@ -32,7 +33,7 @@ impl Families {
     }
 
     /// Adds the forces of all bonds under a state-based law.
-    pub(super) fn sweep_states<K: Kernels + RowKernels + chunk::StateKernels>(
+    pub(super) fn sweep_states<K: Kernels + RowKernels + kernels::StateKernels>(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
@@ -95,7 +96,7 @@ fn window(windows: &[Mutex<Window>]) -> MutexGuard<'_, Window> {
 }
 
 /// The sweeps over one body on a lattice.
-fn lattice_body<K: Kernels + chunk::StateKernels>(
+fn lattice_body<K: Kernels + kernels::StateKernels>(
     body: &mut LatticeBody,
     view: &PeriView,
     f: &Shared<[f64; 3]>,

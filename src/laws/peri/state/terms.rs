@@ -31,6 +31,13 @@ impl Term for Dilatation {
     }
 }
 
+/// The trial state s − θ/3 − e_p of both ends; θ/3 is column 2.
+#[inline(always)]
+unsafe fn trial<L: Lanes>(bond: &Stretch<L>, [own, far]: &Ends<L>, memory: &[L; 2]) -> (L, L) {
+    // SAFETY: passed on to the caller.
+    unsafe { (bond.s.sub(own[2]).sub(memory[0]), bond.s.sub(far[2]).sub(memory[1])) }
+}
+
 /// The squared norm of the trial state over (15G/m)²: Σ ω² w |xi|² (s − θ/3 − e_p)² V. Columns as [`super::law::Plastic`].
 pub struct Norm;
 
@@ -39,10 +46,10 @@ impl Term for Norm {
     const MEMORY: usize = 2;
     const STRETCH: bool = false;
     #[inline(always)]
-    unsafe fn terms<L: Lanes>(bond: &Stretch<L>, omega: L, [own, far]: &Ends<L>, memory: &[L; 2]) -> (L, L) {
+    unsafe fn terms<L: Lanes>(bond: &Stretch<L>, omega: L, ends: &Ends<L>, memory: &[L; 2]) -> (L, L) {
         // SAFETY: passed on to the caller.
         unsafe {
-            let (a, b) = (bond.s.sub(own[2]).sub(memory[0]), bond.s.sub(far[2]).sub(memory[1]));
+            let (a, b) = trial(bond, ends, memory);
             (a.mul(a).mul(omega), b.mul(b).mul(omega))
         }
     }
@@ -56,11 +63,11 @@ impl Term for NormLammps {
     const MEMORY: usize = 2;
     const STRETCH: bool = false;
     #[inline(always)]
-    unsafe fn terms<L: Lanes>(bond: &Stretch<L>, omega: L, [own, far]: &Ends<L>, memory: &[L; 2]) -> (L, L) {
+    unsafe fn terms<L: Lanes>(bond: &Stretch<L>, omega: L, ends: &Ends<L>, memory: &[L; 2]) -> (L, L) {
         // SAFETY: passed on to the caller.
         unsafe {
-            let both = own[0].add(far[0]);
-            let (a, b) = (bond.s.sub(own[2]).sub(memory[0]), bond.s.sub(far[2]).sub(memory[1]));
+            let both = ends[0][0].add(ends[1][0]);
+            let (a, b) = trial(bond, ends, memory);
             let (a, b) = (a.mul(both), b.mul(both));
             (a.mul(a).mul(omega), b.mul(b).mul(omega))
         }
