@@ -40,6 +40,8 @@ impl Session {
         self.world.clock.running = true;
         self.world.clock.began = Some(Instant::now());
         let outcome = verlet::look(&mut plan, &mut self.world, |w| {
+            // Snapshots meet particles in the order of their creation.
+            w.fall_back();
             let more = reel.next(w)?;
             // Reading has set the counter; the run as a whole goes from `first` to `last`.
             let c = &mut w.clock;

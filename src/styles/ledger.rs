@@ -2,6 +2,7 @@
 
 use super::pair::probe::{Balance, Probe};
 use crate::diag::{Code, Result, fail};
+use crate::math::vec3::dot;
 use crate::par;
 use crate::plan::Tick;
 use crate::world::World;
@@ -111,10 +112,6 @@ fn scale(w: &World, i: usize) -> f64 {
     if dense { w.particles.volume[i] } else { 1.0 }
 }
 
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 /// The kinetic energies of a scene [energy].
 fn kinetic(w: &World, who: impl Fn(usize) -> bool + Sync) -> [f64; 2] {
     let (p, masses) = (&w.particles, super::matter::Masses::of(w));
@@ -123,10 +120,10 @@ fn kinetic(w: &World, who: impl Fn(usize) -> bool + Sync) -> [f64; 2] {
         range.filter(|&i| who(i)).fold([0.0; 2], |[straight, turning], i| {
             let m = scale(w, i) * masses.get(i);
             let inertia = match p.omega.get(i) {
-                Some(o) => 0.4 * m * p.radius[i] * p.radius[i] * dot(o, o),
+                Some(o) => 0.4 * m * p.radius[i] * p.radius[i] * dot(*o, *o),
                 None => 0.0,
             };
-            [straight + m * dot(&p.v[i], &p.v[i]), turning + inertia]
+            [straight + m * dot(p.v[i], p.v[i]), turning + inertia]
         })
     };
     par::reduce(p.len(), chunk, |a, b| [a[0] + b[0], a[1] + b[1]]).unwrap_or_default().map(|e| half * e)
@@ -156,12 +153,12 @@ pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32
     let power = |k: usize| {
         let force = w.columns.get_vector(FORCES[k]).unwrap_or(&[]);
         let torque = w.columns.get_vector(TORQUES[k]).unwrap_or(&[]);
-        let turns = |i: usize| torque.get(i).zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(q, o));
-        par::sum(p.len().min(force.len()), |i| scale(w, i) * dot(&force[i], &p.v[i]) + turns(i))
+        let turns = |i: usize| torque.get(i).zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(*q, *o));
+        par::sum(p.len().min(force.len()), |i| scale(w, i) * dot(force[i], p.v[i]) + turns(i))
     };
     let held = |i: usize| p.mask[i] & free == 0;
-    let turns = |i: usize| p.torque.get(i).zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(q, o));
-    let forces = |i: usize| if held(i) { scale(w, i) * dot(&p.f[i], &p.v[i]) + turns(i) } else { 0.0 };
+    let turns = |i: usize| p.torque.get(i).zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(*q, *o));
+    let forces = |i: usize| if held(i) { scale(w, i) * dot(p.f[i], p.v[i]) + turns(i) } else { 0.0 };
     let driven = par::sum(p.len(), forces);
     let now = [power(0), power(1), power(2), contacts.damping, contacts.across, driven];
     let moving: f64 = kinetic(w, held).iter().sum();

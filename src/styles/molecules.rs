@@ -251,6 +251,9 @@ impl Molecules {
     /// More particles than there are ids.
     pub fn admit(&self, w: &mut World, group: GroupId, from: [u32; 2], list: &[Copy]) -> Result<[u32; 2]> {
         let mut numbers = Numbering { tag: from[0], molecule: from[1], kind: self.kind };
+        if !list.is_empty() {
+            w.fall_back();
+        }
         for copy in list {
             let (t, start) = (&self.set[copy.which], w.n());
             if u32::try_from(t.count).ok().and_then(|n| numbers.tag.checked_add(n)).is_none() {

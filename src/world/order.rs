@@ -114,6 +114,12 @@ mod tests {
         less.gather(&[0, 2, 3]);
         less.fall_back();
         assert_eq!(less.particles.tag, [10, 20, 40]);
+        // Who joins meanwhile comes last.
+        let mut more = w.clone();
+        more.particles.push(50, 1, [5.0; 3]);
+        more.columns.resize(5);
+        more.fall_back();
+        assert_eq!(more.particles.tag, [10, 20, 30, 40, 50]);
         w.fall_back();
         assert_eq!(format!("{:?} {:?} {:?}", w.particles, w.columns, w.rebuild.held), before);
     }

@@ -197,6 +197,10 @@ impl Particles {
         if self.style.molecules {
             self.molecule.push(0);
         }
+        // Whoever comes while the others are lined up was created last.
+        if let Some(last) = self.rank.iter().max() {
+            self.rank.push(last + 1);
+        }
     }
 
     /// Puts particles with the same columns behind the present ones.

@@ -123,8 +123,9 @@ impl<L: ContactLaw> Fast<L> {
             out.i.push(0);
             out.w.push(NOWHERE << HERE_BITS);
         }
-        out.i.shrink_to(out.i.len() / 8 * 9);
-        out.w.shrink_to(out.w.len() / 8 * 9);
+        let long = out.i.len();
+        fit(&mut out.i, long);
+        fit(&mut out.w, long);
     }
 
     /// Short lists from the present positions; contacts keep what they remember.
@@ -153,18 +154,17 @@ impl<L: ContactLaw> Fast<L> {
     /// Fills in pairs and memory of a new short list that knows its pairs of the long list.
     fn fill_short(&self, slab: &Slab, book: Option<&super::Book>, new: &mut Short) {
         let (old, width) = (&slab.short, self.width);
+        let near = new.t.len().next_multiple_of(4);
+        fit(&mut new.t, near);
+        fit(&mut new.i, near);
+        fit(&mut new.w, near);
         new.i.extend(new.t.iter().map(|t| slab.long.i[*t as usize]));
         new.w.extend(new.t.iter().map(|t| slab.long.w[*t as usize]));
         while !new.i.len().is_multiple_of(4) {
             new.i.push(0);
             new.w.push(NOWHERE << HERE_BITS);
         }
-        let most = new.i.len() / 8 * 9;
-        for list in [&mut new.i, &mut new.w, &mut new.t] {
-            list.shrink_to(most);
-        }
-        new.history.shrink_to(most * width);
-        new.history.reserve_exact(new.i.len() * width);
+        fit(&mut new.history, new.i.len() * width);
         new.history.resize(new.i.len() * width, 0.0);
         let mut at = 0;
         for (k, t) in new.t.iter().enumerate() {
@@ -183,5 +183,16 @@ impl<L: ContactLaw> Fast<L> {
             }
         }
         new.history[new.t.len() * width..].fill(-1.0);
+    }
+}
+
+/// Room for `len` entries and some more; far too much is given back. What is in between stays: lists come and go in every
+/// few steps, and memory that is cut to size each time falls to pieces.
+fn fit<T>(list: &mut Vec<T>, len: usize) {
+    let ample = len + len / 8;
+    if list.capacity() < len {
+        list.reserve_exact(ample - list.len());
+    } else if list.capacity() > 2 * ample {
+        list.shrink_to(ample);
     }
 }
