@@ -54,7 +54,7 @@ impl Op for Reneighbor {
             return Ok(());
         }
         if s.check {
-            let half = 0.5 * (s.skin - corners_moved(w)).max(0.0);
+            let half = 0.5 * (w.rebuild.room(s.skin) - corners_moved(w)).max(0.0);
             let moved = farthest(w, t)?;
             if moved <= half * half {
                 return Ok(());
@@ -143,6 +143,7 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor) -> Result<()> {
     }
     w.rebuild.generation += 1;
     w.rebuild.step = t.step;
+    w.rebuild.grown = w.rebuild.grown.map(|_| 0.0).filter(|_| !t.setup);
     hold(w);
     Ok(())
 }

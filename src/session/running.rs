@@ -63,7 +63,8 @@ impl Session {
                 while left > 0 {
                     let n = left.min(every);
                     left -= n;
-                    self.leg(n, args.pre && first, args.post && left == 0, cmd.span)?;
+                    // Runs of their own: `pre no` and `post no` leave out the setups and summaries in between.
+                    self.leg(n, args.pre || first, args.post || left == 0, cmd.span)?;
                     first = false;
                     if self.interrupted || self.world.clock.halt == Halt::All {
                         break;

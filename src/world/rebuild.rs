@@ -18,6 +18,9 @@ pub struct Rebuild {
     pub builds: u64,
     /// Rebuilds in the present run that came at the first step allowed, so perhaps too late.
     pub dangerous: u64,
+    /// By how much radii have grown at most since lists were made for them, where something makes them grow [length].
+    #[serde(default)]
+    pub grown: Option<f64>,
     /// Particles deleted beyond fixed faces that thermo output has not told of.
     #[serde(default)]
     pub lost: u64,
@@ -25,4 +28,24 @@ pub struct Rebuild {
     pub due: bool,
     /// Counts how often particles have come or gone since the program began.
     pub roster: u64,
+}
+
+/// The part of the skin that growing particles may use up before lists are made anew for their size.
+const GROWTH: f64 = 0.25;
+
+impl Rebuild {
+    /// Some radius has grown by this much: lists are made anew, from the positions that are held, before growth has used up
+    /// its part of the skin.
+    pub fn grow(&mut self, by: f64, skin: f64) {
+        let grown = self.grown.unwrap_or(0.0) + by;
+        // Both grains of a pair have grown.
+        let spent = 2.0 * grown > GROWTH * skin;
+        self.generation += u64::from(spent);
+        self.grown = Some(if spent { 0.0 } else { grown });
+    }
+
+    /// What is left of the skin for displacements.
+    pub fn room(&self, skin: f64) -> f64 {
+        if self.grown.is_some() { (1.0 - GROWTH) * skin } else { skin }
+    }
 }

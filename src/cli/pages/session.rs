@@ -14,7 +14,8 @@ pub(super) const RUN: Entry = (
             - `start` and `stop` are the steps over which ramps go (`ramp()`, `fix setforce` with variables …) when \
             several runs share one; they must enclose the run's steps.\n\
             - `every M` stops every `M` steps and carries out the commands, each in quotes; `NULL` stands for none. \
-            `quit` among them ends run and deck; `jump` is refused there.\n\
+            The stretches are runs of their own; with `pre no post no` only the first has a setup and only the last \
+            tables. `quit` among them ends run and deck; `jump` is refused there.\n\
             - `post no` leaves out the tables of time and neighbours behind the run.\n\
             - `pre` is read for LAMMPS' decks. A second run of an unchanged scene reuses forces anyway and equals one \
             longer run bit by bit; a changed scene always computes forces anew. Under `compat lammps`, `pre yes` (the \

@@ -28,8 +28,8 @@ impl Style for Adapt {
                    Several changes can be written one after another; of `atom`, one.\n\n\
                    `atom`: the value becomes the diameter of every particle of the group, or with `scale yes` a factor on the \
                    diameter it had at first (each change multiplies the present one by the new factor over the last). `mass yes` (default, as LAMMPS 22Jul2025 does) keeps the density, \
-                   of a disc with `diameter/disc`; `mass no` keeps the mass. Neighbour lists are made for the sizes at that moment: let particles grow by \
-                   less than the skin between two, or say `neigh_modify check no`. After `reset yes` LAMMPS' masses are wrong in the next run; \
+                   of a disc with `diameter/disc`; `mass no` keeps the mass. Neighbour lists are made anew before particles have grown by a quarter of the skin \
+                   (LAMMPS' are not, nor under `compat lammps`: there the skin must be as wide as what they grow by). After `reset yes` LAMMPS' masses are wrong in the next run; \
                    perigrain's are those of before.\n\n\
                    `pair`, `bond`: the value becomes the coefficient of these types, or with `scale yes` a factor on what it was when the run \
                    began. There are `k r0` of bond style harmonic (as in LAMMPS), and in addition `s00 alpha` of all peridynamic styles, `c` of \
@@ -246,14 +246,18 @@ impl Op for Change {
             w.memo.insert(radius, vec![]);
         }
         let before = w.memo.insert(fix.factor(), vec![value]).and_then(|m| m.first().copied()).unwrap_or(1.0);
-        let p = &mut w.particles;
+        let (p, mut most) = (&mut w.particles, 0.0_f64);
         for i in (0..n).filter(|&i| p.mask[i] & fix.group.bit() != 0) {
             let new = if fix.scale { p.radius[i] * (value / before) } else { 0.5 * value };
             if fix.mass && p.radius[i] > 0.0 {
                 let density = p.mass[i] / self.size.space(p.radius[i]);
                 p.mass[i] = density * self.size.space(new);
             }
+            most = most.max(new - p.radius[i]);
             p.radius[i] = new;
+        }
+        if fix.every > 0 && !w.settings.lammps() {
+            w.rebuild.grow(most, w.settings.neighbor.skin);
         }
         Ok(())
     }
