@@ -220,6 +220,19 @@ impl Graph {
     }
 }
 
+impl Graph {
+    /// The temperature that knows the flow which a compute takes away: itself, or that of its `bias`.
+    pub fn knows_flow(&self, id: &str) -> Option<&dyn Compute> {
+        let mut compute = &*self.find_compute(id)?.compute;
+        // At most as many as there are computes: nobody is its own bias.
+        for _ in 0..self.computes.len() {
+            let Some(r) = compute.bias() else { return Some(compute) };
+            compute = &*self.find_compute(&r.name)?.compute;
+        }
+        None
+    }
+}
+
 impl Names for Graph {
     fn compute_style(&self, id: &str) -> Option<&'static str> {
         self.find_compute(id).map(|c| c.style)

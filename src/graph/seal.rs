@@ -387,6 +387,10 @@ impl SealCx for Sealer<'_> {
         }
     }
 
+    fn bias(&self, r: &ValueRef) -> Option<Box<dyn crate::styles::Compute>> {
+        self.graph.knows_flow(&r.name).map(|c| c.boxed())
+    }
+
     fn coefficient(&self, of: &Coefficient) -> Option<f64> {
         self.graph.coefficient(of)
     }

@@ -212,6 +212,8 @@ pub trait SealCx {
     fn bonds(&self) -> Option<Box<dyn BondForce>> {
         None
     }
+    /// The temperature that knows the flow which compute `r` takes away: itself, or that of its `bias`.
+    fn bias(&self, r: &ValueRef) -> Option<Box<dyn crate::styles::Compute>>;
     /// Energies must be tallied whenever `when` fires.
     fn ask_energy(&mut self, when: &When);
     /// The virial must be tallied whenever `when` fires.

@@ -226,6 +226,9 @@ impl SealCx for Bench {
     fn log(&self) -> Log {
         Log::silent()
     }
+    fn bias(&self, _r: &ValueRef) -> Option<Box<dyn Compute>> {
+        None
+    }
     fn ask_energy(&mut self, _when: &When) {}
     fn ask_virial(&mut self, _when: &When) {}
     fn ask_atom_energy(&mut self, _when: &When) {}

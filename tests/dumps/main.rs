@@ -1,7 +1,7 @@
 //! Text dumps against LAMMPS' own files, byte for byte.
 //!
 //! `golden/` holds what LAMMPS 22Jul2025 writes for `in.dumps` (`lmp -in in.dumps -var dir golden`), where `g.dump`
-//! began with the line `before`; `golden_forms/` the same for `in.forms`. Formats show at most eight digits: the last ones of a double depend on the order of
+//! began with the line `before`; `golden_forms/` and `golden_times/` the same for `in.forms` and `in.times`. Formats show at most eight digits: the last ones of a double depend on the order of
 //! additions into forces.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
@@ -56,11 +56,25 @@ fn other_forms_are_the_same_bytes_too() {
     let options = Options { compat: true, vars: vec![("dir".into(), vec![dir])], ..Options::default() };
     let deck = fs::read_to_string(here.join("in.forms")).unwrap();
     Session::new(options).unwrap().run_text("in.forms", &deck).unwrap();
-    let (ours, theirs) = (files(folder.path()), files(&here.join("golden_forms")));
+    same(&files(folder.path()), &files(&here.join("golden_forms")));
+}
+
+fn same(ours: &BTreeMap<String, String>, theirs: &BTreeMap<String, String>) {
     assert_eq!(ours.keys().collect::<Vec<_>>(), theirs.keys().collect::<Vec<_>>());
-    for (name, text) in &ours {
+    for (name, text) in ours {
         assert_eq!(text, &theirs[name], "{name}");
     }
+}
+
+#[test]
+fn times_columns_and_rows_are_the_same_bytes() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/dumps");
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().to_str().unwrap().to_string();
+    let options = Options { compat: true, vars: vec![("dir".into(), vec![dir])], ..Options::default() };
+    let deck = fs::read_to_string(here.join("in.times")).unwrap();
+    Session::new(options).unwrap().run_text("in.times", &deck).unwrap();
+    same(&files(folder.path()), &files(&here.join("golden_times")));
 }
 
 /// A growing file is packed snapshot by snapshot, a file of one snapshot as a whole: both unpack to what is written

@@ -112,7 +112,7 @@ pub fn search(s: &mut Search, line: &mut Line) -> Result<Option<Stop>> {
             let along = product(&s.w.particles.f, &line.direction) / s.per;
             let change = along - before.1;
             if along.abs() < NOTHING || change.abs() < NOTHING {
-                return give_up(s, line, from, Stop::ZeroCurvature);
+                return give_up(s, line, (alpha, from), Stop::ZeroCurvature);
             }
             let expected = 0.5 * (alpha - before.0) * (along + before.1) + s.energy;
             let zero = alpha - (alpha - before.0) * along / change;
@@ -135,7 +135,7 @@ pub fn search(s: &mut Search, line: &mut Line) -> Result<Option<Stop>> {
         }
         alpha *= SHORTER;
         if alpha <= 0.0 || ideal >= -SAME {
-            return give_up(s, line, from, Stop::ZeroStep);
+            return give_up(s, line, (alpha, from), Stop::ZeroStep);
         }
     }
 }
@@ -145,10 +145,17 @@ fn go(s: &mut Search, line: &mut Line, alpha: f64) -> Result<()> {
     s.evaluate()
 }
 
-/// Back to the start of the line.
-fn give_up(s: &mut Search, line: &mut Line, energy: f64, why: Stop) -> Result<Option<Stop>> {
+/// Back to the start of the line, whose forces the last output finds; LAMMPS counts that evaluation, and reports the
+/// step it has come down to.
+fn give_up(
+    s: &mut Search,
+    line: &mut Line,
+    (shortest, energy): (f64, f64),
+    why: Stop,
+) -> Result<Option<Stop>> {
     line.put(s.w, 0.0)?;
     s.energy = energy;
-    s.alpha = 0.0;
+    s.evaluations += 1;
+    s.alpha = shortest;
     Ok(Some(why))
 }

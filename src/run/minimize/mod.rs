@@ -111,6 +111,8 @@ struct Search<'a> {
     evaluations: i64,
     alpha: f64,
     first: i64,
+    /// The time step before FIRE changed it.
+    dt: f64,
     interrupted: bool,
 }
 
@@ -140,6 +142,7 @@ pub fn minimize(
         evaluations: 0,
         alpha: 0.0,
         first,
+        dt,
         interrupted: false,
     };
     s.begin()?;
@@ -194,6 +197,10 @@ impl Search<'_> {
         // Values belong to a scene, not to a step: several scenes share one here.
         self.w.slots.invalidate();
         let mut t = Tick { ending, ..tick(self.w, false) };
+        if self.w.settings.lammps() {
+            // Springs of contacts grow there by the time step that the deck named, whatever FIRE makes of it.
+            t.dt = self.dt;
+        }
         self.plan.ask(&mut t);
         let forces = [Stage::Neighbor, Stage::PreForce, Stage::Force, Stage::PostForce, Stage::EndOfStep];
         let (plan, w) = (&mut *self.plan, &mut *self.w);

@@ -204,7 +204,8 @@ fn turn(a: &mut Args, cx: &BuildCx, spacing: [f64; 3]) -> Result<Turn> {
     if length(along) == 0.0 {
         return fail(Code::BAD_VALUE, span, "the axis of rotation has no direction");
     }
-    Ok(Turn { variable, point, axis: along.map(|x| x / length(along)), angle: 0.0 })
+    let given = length(along);
+    Ok(Turn { variable, point, axis: along.map(|x| x / given), given, angle: 0.0 })
 }
 
 /// Takes `v_name` of an equal-style variable.

@@ -39,7 +39,7 @@ mod reduce;
 mod slice;
 mod stress_atom;
 mod temp;
-mod temp_flow;
+pub(super) mod temp_flow;
 mod temp_sphere;
 
 use super::{BuildCx, Flow, SealCx, Shape, Style};
@@ -108,6 +108,11 @@ pub trait Compute: Send {
 
     /// What a temperature takes away from velocities before it looks at them, if it does (`Shape::flow`).
     fn flow(&self, _w: &World) -> Option<Flow> {
+        None
+    }
+
+    /// The temperature whose flow it takes away, where that is not its own.
+    fn bias(&self) -> Option<&crate::lang::ValueRef> {
         None
     }
 

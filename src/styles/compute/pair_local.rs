@@ -57,8 +57,9 @@ impl Value {
             Value::Distance => p.distance(),
             Value::Along(k) => p.d[k],
             Value::Energy => p.energy,
-            Value::Force => p.central(),
-            Value::ForceAlong(k) => p.central() * p.d[k] / p.distance(),
+            // What does not touch has the force 0, not −0.
+            Value::Force => p.central() + 0.0,
+            Value::ForceAlong(k) => p.central() * p.d[k] / p.distance() + 0.0,
             Value::Own(k) => p.own[k],
         }
     }

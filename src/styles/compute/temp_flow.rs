@@ -2,8 +2,8 @@
 
 use super::temp::{Rules, offer};
 use super::{Compute, ComputeStyle};
-use crate::diag::{Code, Result, fail};
-use crate::lang::Args;
+use crate::diag::{Code, Diagnostic, Result, fail};
+use crate::lang::{Args, RefKind, ValueRef};
 use crate::math::vec3::{Vec3, sub};
 use crate::plan::{Op, Stage, When};
 use crate::styles::command::common::{axis, ramp, scales, units_lattice, velocity_axis};
@@ -119,6 +119,48 @@ impl ComputeStyle for TempRamp {
 fn declared(flow: Stream, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
     args.finish()?;
     Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, flow, rules: Rules::default() }))
+}
+
+/// The temperature with a flow that the next word names (`bias ID`).
+///
+/// # Errors
+/// Unknown computes and those that take no flow away.
+pub fn named(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
+    let word = args.expect("the ID of a temperature that takes a flow away")?;
+    let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
+    cx.value(&r, false)?;
+    if cx.names.compute(&r.name).is_some_and(|s| s.flow) {
+        return Ok(r);
+    }
+    let text = format!("compute `{}` takes no flow velocity away", r.name);
+    let d = Diagnostic::error(Code::WRONG_KIND, r.span, text);
+    Err(d.help("computes temp/com, temp/partial and temp/ramp take one away").into())
+}
+
+/// The same at the beginning of a run.
+///
+/// # Errors
+/// A compute that is gone.
+pub fn known(r: &ValueRef, cx: &dyn SealCx) -> Result<Box<dyn Compute>> {
+    match cx.bias(r) {
+        Some(compute) => Ok(compute),
+        None => fail(Code::UNKNOWN_NAME, r.span, format!("there is no compute `{}` any more", r.name)),
+    }
+}
+
+/// As `known`, for a user of this group.
+///
+/// # Errors
+/// A compute that is gone, and one of another group, which LAMMPS refuses too.
+pub fn of_group(r: &ValueRef, group: GroupId, cx: &mut dyn SealCx) -> Result<Box<dyn Compute>> {
+    let compute = known(r, cx)?;
+    if compute.flow(cx.world()).is_some_and(|f| f.group != group) {
+        let text = format!("compute `{}` is of another group than what it is to serve", r.name);
+        return Err(Diagnostic::error(Code::CONFLICT, r.span, text)
+            .help("define a temperature of the same group for this")
+            .into());
+    }
+    Ok(compute)
 }
 
 #[derive(Clone)]

@@ -2,9 +2,10 @@
 
 use super::erotate_sphere::{INERTIA, needs_spheres};
 use super::temp::{Rules, offer};
-use super::{Compute, ComputeStyle};
-use crate::diag::{Code, Diagnostic, Result};
-use crate::lang::Args;
+use super::{Compute, ComputeStyle, temp_flow};
+use crate::diag::Result;
+use crate::lang::{Args, ValueRef};
+use crate::math::vec3::sub;
 use crate::plan::{Op, Stage, When};
 use crate::styles::matter::sum;
 use crate::styles::step_op::{Wanted, fill};
@@ -20,16 +21,18 @@ impl Style for TempSphere {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group temp/sphere [dof all|rotate]",
+            syntax: "compute ID group temp/sphere [dof all|rotate] [bias ID]",
             summary: "Temperature of the group's translation and rotation, or of rotation alone.",
             text: "Scalar (intensive): T = Σ (m v² + I ω²)/(dof k_B) with I = 2/5 m R². Each sphere has 6 degrees of \
                    freedom (in two dimensions 3), of rotation alone 3 (1); a particle without a radius only those of its \
                    translation. `extra/dof` of compute_modify is taken off, with `dof all` 3 (2) unless it is said, with \
                    `dof rotate` nothing. 0 where no freedom is left. Vector of 6 \
                    (extensive): Σ (m v_a v_b + I ω_a ω_b) for xx yy zz xy xz yz, in energy units. Spheres are counted anew at \
-                   each use (see `compute temp`). `bias` is refused: \
-                   temp/com, temp/partial and temp/ramp say the temperature without a flow.",
-            example: "compute t all temp/sphere",
+                   each use (see `compute temp`).\n\n\
+                   `bias ID`: the flow that compute temp/com, temp/partial or temp/ramp ID of the same group takes away from \
+                   velocities does not count here either; a component that is taken away whole counts for no degree of freedom. `velocity … \
+                   temp ID bias yes` then leaves this flow as it is, and compute pressure has the rest as its kinetic part.",
+            example: "compute drift all temp/com\ncompute t all temp/sphere bias drift",
         }
     }
 }
@@ -37,23 +40,16 @@ impl Style for TempSphere {
 impl ComputeStyle for TempSphere {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         needs_spheres(self.name(), cx)?;
-        let mut rotate = false;
+        let (mut rotate, mut bias) = (false, None);
         while let Some(word) = args.next() {
             match word.text.as_str() {
                 "dof" => rotate = args.choice("value of dof", &["all", "rotate"])? == "rotate",
-                "bias" => {
-                    let text = "compute temp/sphere takes no flow away in perigrain";
-                    let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
-                    return Err(d
-                        .help(
-                            "compute temp/com, temp/partial or temp/ramp, and temp/sphere with `dof rotate`",
-                        )
-                        .into());
-                }
-                _ => return Err(args.unknown(word, &["dof"])),
+                "bias" => bias = Some(temp_flow::named(args, cx)?),
+                _ => return Err(args.unknown(word, &["dof", "bias"])),
             }
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, rotate, rules: Rules::default() }))
+        let (id, rules) = (cx.id.to_string(), Rules::default());
+        Ok(Box::new(Declared { id, group: cx.group, rotate, bias, rules }))
     }
 }
 
@@ -63,13 +59,16 @@ struct Declared {
     group: GroupId,
     /// Rotation alone.
     rotate: bool,
+    /// The temperature whose flow does not count.
+    bias: Option<ValueRef>,
     rules: Rules,
 }
 
 impl Declared {
-    fn freedom(&self, w: &World) -> f64 {
+    /// `taken`: components of velocity that the flow takes away whole.
+    fn freedom(&self, w: &World, taken: f64) -> f64 {
         let flat = w.settings.two_dimensional;
-        let (fly, spin) = if flat { (2.0, 1.0) } else { (3.0, 3.0) };
+        let (fly, spin) = if flat { (2.0 - taken, 1.0) } else { (3.0 - taken, 3.0) };
         let fly = if self.rotate { 0.0 } else { fly };
         let p = &w.particles;
         let [count] = sum(&p.mask, self.group, |i| [if p.radius[i] > 0.0 { fly + spin } else { fly }]);
@@ -81,26 +80,38 @@ impl Declared {
 
 impl Compute for Declared {
     fn shape(&self) -> Shape {
-        Shape { scalar: true, vector: 6, vector_extensive: true, ..Shape::default() }
+        let flow = self.bias.is_some();
+        Shape { scalar: true, vector: 6, vector_extensive: true, flow, ..Shape::default() }
     }
 
-    fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let me = self.clone();
+        let bias = match &self.bias {
+            Some(r) => Some(temp_flow::of_group(r, self.group, cx)?),
+            None => None,
+        };
         let mut freedom = self.rules.freedom();
-        let reads = "v omega radius mass mask";
+        let reads = "x v omega radius mass mask";
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, t, out| {
             let p = &w.particles;
+            let flow = bias.as_ref().and_then(|b| b.flow(w));
             let tensor: [f64; 6] = sum(&p.mask, me.group, |i| {
-                let (v, o, m) = (p.v[i], p.omega[i], p.mass[i]);
+                let v = flow.as_ref().map_or(p.v[i], |f| sub(p.v[i], f.taken[i]));
+                let (o, m) = (p.omega[i], p.mass[i]);
                 let fly = if me.rotate { 0.0 } else { m };
                 let spin = INERTIA * m * p.radius[i] * p.radius[i];
                 let pair = |a: usize, b: usize| fly * v[a] * v[b] + spin * o[a] * o[b];
                 [pair(0, 0), pair(1, 1), pair(2, 2), pair(0, 1), pair(0, 2), pair(1, 2)]
             });
-            let (twice, dof) = (tensor[0] + tensor[1] + tensor[2], freedom.now(w, t, me.freedom(w)));
+            let taken = flow.map_or(0.0, |f| f.whole.iter().filter(|d| **d).count() as f64);
+            let (twice, dof) = (tensor[0] + tensor[1] + tensor[2], freedom.now(w, t, me.freedom(w, taken)));
             offer(w, out, twice, tensor, dof);
             Ok(())
         }))
+    }
+
+    fn bias(&self) -> Option<&ValueRef> {
+        self.bias.as_ref()
     }
 
     fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
@@ -132,7 +143,7 @@ mod tests {
         assert!((b.evaluate(&*spin).unwrap().scalar - 7.2 / 6.0).abs() < 1e-14);
         b.modify("extra/dof 3", |a, cx| spin.modify(a, cx)).unwrap();
         assert!((b.evaluate(&*spin).unwrap().scalar - 7.2 / 3.0).abs() < 1e-14);
-        for words in ["dof", "dof some", "bias q", "mass 3"] {
+        for words in ["dof", "dof some", "bias", "bias q", "mass 3"] {
             assert!(b.compute(&TempSphere, words).is_err(), "{words}");
         }
     }

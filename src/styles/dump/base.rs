@@ -1,5 +1,6 @@
 //! What all dumps share: which particles, in which order, when, and into which file.
 
+mod clock;
 mod keywords;
 
 use std::collections::VecDeque;
@@ -17,6 +18,7 @@ use crate::out::vtu::Series;
 use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, SealCx, Wants};
+use clock::Clock;
 
 use crate::world::{Domain, GroupId, World};
 pub use keywords::unknown;
@@ -70,6 +72,8 @@ enum Rhythm {
     Named(ValueRef),
     /// At multiples of a time.
     Time(f64),
+    /// At times that a variable names.
+    NamedTime(ValueRef),
 }
 
 /// What all dumps share.
@@ -182,6 +186,7 @@ impl Base {
         mut write: impl FnMut(Shot<'_>) -> Result<()> + Send + 'static,
     ) -> Result<Box<dyn Op>> {
         let when = self.when(cx, every)?;
+        let mut clock = self.clock(cx)?;
         let bind = |a: &Attribute, cx: &mut dyn SealCx| a.bind(cx, &when);
         let shown = attributes.iter().map(|a| bind(a, cx)).collect::<Result<Vec<_>>>()?;
         let tested = self
@@ -200,7 +205,7 @@ impl Base {
         };
         let base = self.clone();
         let act = move |w: &mut World, t: &Tick| {
-            if !base.due(w, t, every) || skip.is_some_and(|s| s.get(w) != 0.0) {
+            if !base.due(w, t, every, &mut clock)? || skip.is_some_and(|s| s.get(w) != 0.0) {
                 return Ok(());
             }
             let world = &*w;
@@ -228,57 +233,48 @@ impl Base {
     /// When snapshots may be due; whether they are is decided then.
     pub fn when(&self, cx: &mut dyn SealCx, every: i64) -> Result<When> {
         let when = match (&self.rhythm, every) {
-            (_, 0) | (Rhythm::Time(_), _) => return Ok(When::Always),
+            (_, 0) | (Rhythm::Time(_) | Rhythm::NamedTime(_), _) => return Ok(When::Always),
             (Rhythm::Named(r), _) => cx.steps(r)?,
             (Rhythm::Steps, n) => When::Every(n),
         };
         Ok(if self.first { when.or(When::First) } else { when })
     }
 
+    /// What gives the next time from the present one, for `every/time`.
+    fn clock(&self, cx: &mut dyn SealCx) -> Result<Option<Clock>> {
+        Ok(match &self.rhythm {
+            Rhythm::Steps | Rhythm::Named(_) => None,
+            Rhythm::Time(every) => Some(Clock::Multiples(*every)),
+            Rhythm::NamedTime(r) => {
+                let text = format!("$({r}:%.17g)");
+                Some(Clock::Asked(cx.text(&text, r.span, Stage::Output, &When::Always)?, r.clone()))
+            }
+        })
+    }
+
     /// Whether this step is to be written: not twice, and the first step only if asked or a multiple.
-    fn due(&self, w: &World, t: &Tick, every: i64) -> bool {
+    fn due(&self, w: &mut World, t: &Tick, every: i64, clock: &mut Option<Clock>) -> Result<bool> {
         if every == 0 {
-            return true;
+            return Ok(true);
         }
         let mut state = self.state();
         if t.ending {
-            return t.step >= self.delay && state.last != Some(t.step);
+            return Ok(t.step >= self.delay && state.last != Some(t.step));
         }
-        if let Rhythm::Time(time) = self.rhythm {
-            return self.due_in_time(&mut state, w, t, time);
+        if let Some(clock) = clock {
+            return Ok(clock.strikes(&mut state, w, t, self.first)? && t.step >= self.delay);
         }
         let regular = match self.rhythm {
             Rhythm::Steps => t.step % every == 0,
             _ => !t.setup,
         };
         if t.step < self.delay {
-            return false;
+            return Ok(false);
         }
         if t.setup && !regular {
-            return self.first && state.last.is_none();
+            return Ok(self.first && state.last.is_none());
         }
-        regular && state.last != Some(t.step)
-    }
-
-    /// The same for multiples of a time: the first step that reaches one, to a millionth of a step.
-    fn due_in_time(&self, state: &mut State, w: &World, t: &Tick, every: f64) -> bool {
-        let now = w.clock.time();
-        let late_enough = t.step >= self.delay;
-        if t.setup {
-            state.next_time = Some(((now / every).floor() + 1.0) * every);
-            return late_enough && self.first && state.last.is_none();
-        }
-        let next = state.next_time.unwrap_or(0.0);
-        if now < next - 1e-6 * t.dt {
-            return false;
-        }
-        let mut next = next + every;
-        // Times closer than steps are passed over, where LAMMPS passes over them.
-        if (next - now - 1e-6 * t.dt) / t.dt <= -1.0 {
-            next += (((now + t.dt - next) / every).trunc() + 1.0) * every;
-        }
-        state.next_time = Some(next);
-        late_enough
+        Ok(regular && state.last != Some(t.step))
     }
 
     /// Deletes the oldest files beyond `maxfiles`.

@@ -23,7 +23,7 @@ impl Style for Local {
             summary: "Writes local values (of pairs, bonds …) every N steps as text.",
             text: "One row per local value, in the order of the compute or fix that makes them; all columns must have the same \
                    number of rows. `index` counts rows from 1. The group decides nothing: the compute does. `dump_modify` \
-                   understands what all dumps do (see `dump custom`) but what concerns particles, and `format`, `header \
+                   understands what all dumps do (see `dump custom`) but what concerns particles, and `colname N name`, `format`, `header \
                    yes|no`, `label NAME` (for `ENTRIES` in the header), `time yes` and `units yes`; `sort N` sorts by a \
                    column.",
             example: "compute b all property/local batom1 batom2\ndump 1 all local 100 bonds.*.txt index c_b[1] c_b[2]",
@@ -43,6 +43,8 @@ struct Declared {
     base: Base,
     columns: Vec<Column>,
     names: Vec<String>,
+    /// Column names that `colname` has set.
+    renamed: Vec<(usize, String)>,
     formats: Formats,
     header: bool,
     label: String,
@@ -79,6 +81,7 @@ impl DumpStyle for Local {
             base,
             columns,
             names,
+            renamed: vec![],
             formats: Formats::default(),
             header: true,
             label: "ENTRIES".into(),
@@ -105,7 +108,7 @@ fn reference(word: &Word, cx: &BuildCx) -> Result<ValueRef> {
 /// Keywords of all dumps that concern particles only.
 const OF_PARTICLES: &[&str] = &["element", "pbc", "refresh", "region", "thresh"];
 
-const OWN: &[&str] = &["format", "header", "label", "time", "units"];
+const OWN: &[&str] = &["colname", "format", "header", "label", "time", "units"];
 
 impl Dump for Declared {
     fn op(&self, cx: &mut dyn SealCx, every: i64) -> Result<Box<dyn Op>> {
@@ -144,7 +147,7 @@ impl Dump for Declared {
                         None => Data::int(|i| i as i64 + 1),
                         Some(list) => Data::slice(list),
                     };
-                    Field { name: &dump.names[k], format: dump.formats.of(k, dump.kind(k)), data }
+                    Field { name: dump.title(k), format: dump.formats.of(k, dump.kind(k)), data }
                 })
                 .collect();
             let mut rows: Vec<u32> = (0..n as u32).collect();
@@ -181,6 +184,7 @@ impl Dump for Declared {
                 "time" => self.time = args.flag("time")?,
                 "units" => self.units = args.flag("units")?,
                 "format" => self.format(args)?,
+                "colname" => self.rename(args)?,
                 "sort" if args.peek_text() == "id" => {
                     return fail(Code::CONFLICT, args.here(), "local values have no id: sort by a column");
                 }
@@ -203,6 +207,31 @@ impl Dump for Declared {
 impl Declared {
     fn kind(&self, column: usize) -> Kind {
         if matches!(self.columns[column], Column::Index) { Kind::Int } else { Kind::Float }
+    }
+
+    /// What stands above a column.
+    fn title(&self, column: usize) -> &str {
+        let new = self.renamed.iter().rev().find(|(k, _)| *k == column);
+        new.map_or(&self.names[column], |(_, name)| name)
+    }
+
+    fn rename(&mut self, args: &mut Args) -> Result<()> {
+        let which = args.expect("a column or default")?;
+        if which.text == "default" {
+            self.renamed.clear();
+            return Ok(());
+        }
+        let count = self.names.len();
+        let number = || {
+            let k = which.text.parse::<i64>().ok()?;
+            usize::try_from(if k < 0 { count as i64 + k } else { k - 1 }).ok()
+        };
+        let column = self.names.iter().position(|n| *n == which.text).or_else(number);
+        let Some(column) = column.filter(|k| *k < count) else {
+            return fail(Code::BAD_VALUE, which.span, format!("this dump has columns 1 to {count}"));
+        };
+        self.renamed.push((column, args.expect("the column's new name")?.text.clone()));
+        Ok(())
     }
 
     fn format(&mut self, args: &mut Args) -> Result<()> {

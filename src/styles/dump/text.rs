@@ -24,7 +24,7 @@ const PAGE: &str = "Attributes: `id type mass proc procp1`, positions `x y z`, a
     per-atom values `c_ID c_ID[k] c_ID[*] f_ID f_ID[k] v_name`.\n\n\
     `dump_modify ID keyword value …` understands, for every text dump: `append yes|no` (go on behind an existing file), \
     `delay N` (nothing before step N), `element A B …` (one name per type, for the attribute `element`), `every N` or \
-    `every v_name` (a variable that names the next step), `every/time T` (multiples of a time), `first yes|no` (also the \
+    `every v_name` (a variable that names the next step), `every/time T|v_name` (multiples of a time, or a variable that names the next time when a run begins and after each snapshot), `first yes|no` (also the \
     first step of the first run), `maxfiles N` (keep the last N of the files of single snapshots), `pad N` (digits of the \
     step in file names), `pbc yes|no` (wrap positions into the box first), `refresh c_ID` (see compute displace/atom), \
     `region ID|none`, `skip v_name` (no snapshot while the variable is not zero), `sort id|off|N|-N`, \

@@ -7,11 +7,13 @@ use super::{Fix, FixStyle};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::{Args, RefKind, ValueRef, Word};
 use crate::math::cformat::{Format, Value, general, shortest};
+use crate::math::vec3::sub;
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::styles::compute::chunk::{ChunkRef, Chunks, lock_key};
+use crate::styles::compute::temp_flow;
 use crate::styles::matter::{Masses, check_masses};
 use crate::styles::step_op::StepOp;
-use crate::styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
+use crate::styles::{BuildCx, Doc, Flow, SealCx, Shape, Style, Wants};
 use crate::world::{GroupId, SlotId, World};
 use std::fmt::Write;
 
@@ -34,7 +36,7 @@ impl Style for AveChunk {
                    samples' own means, or of their sums. `ave one|running|window M`: each average for itself, the mean of all \
                    so far, or of the last M. `adof` (3, or 2 in flat scenes) and `cdof` (0): degrees of freedom per particle \
                    and per chunk for `temp`. `file name`, `append name`, `overwrite` (needs `ave running`), `format %g`, \
-                   `title1 title2 title3`. `bias` is refused: chunks have no flow of their own to take away.\n\n\
+                   `title1 title2 title3`. `bias ID`: the flow that a temperature takes away (compute temp/com, temp/partial, temp/ramp) does not count in `temp`.\n\n\
                    During the samples of an average the number of chunks stays as it is; with `ave running` and `window` for \
                    good. Global array (intensive): a row per chunk with its original number where the compute compresses, \
                    the coordinates of its bin, the number of particles and the values; 0 before the first average.",
@@ -73,6 +75,8 @@ struct Declared {
     ave: Ave,
     adof: Option<f64>,
     cdof: f64,
+    /// The temperature whose flow does not count.
+    bias: Option<ValueRef>,
     output: Output,
     format: Format,
     checking: bool,
@@ -109,6 +113,7 @@ impl FixStyle for AveChunk {
             ave: Ave::One,
             adof: None,
             cdof: 0.0,
+            bias: None,
             output: Output::default(),
             format: Format::parse(" %g").unwrap_or_default(),
             checking: cx.checking,
@@ -134,10 +139,7 @@ impl FixStyle for AveChunk {
                 "adof" => fix.adof = Some(args.number("degrees of freedom per particle")?),
                 "cdof" => fix.cdof = args.number("degrees of freedom per chunk")?,
                 "format" => fix.format = number_format(args)?,
-                "bias" => {
-                    let text = "fix ave/chunk takes no flow away in perigrain";
-                    return fail(Code::NOT_SUPPORTED, word.span, text);
-                }
+                "bias" => fix.bias = Some(temp_flow::named(args, cx)?),
                 other if fix.output.read(other, args)? => {}
                 _ => return Err(args.unknown(word, KEYWORDS)),
             }
@@ -211,7 +213,7 @@ impl Declared {
     }
 
     /// Sums over the particles of each chunk now, in storage order.
-    fn sample(&self, w: &World, sources: &[Option<Source>], chunks: &Chunks) -> Sample {
+    fn sample(&self, w: &World, sources: &[Option<Source>], flow: Option<&Flow>, chunks: &Chunks) -> Sample {
         let width = 1 + self.values.len();
         let mut rows = vec![0.0; width * chunks.count()];
         let (masses, p) = (Masses::of(w), &w.particles);
@@ -225,7 +227,7 @@ impl Declared {
                     What::Density(false) => 1.0,
                     What::Density(true) => masses.get(i),
                     What::Temperature => {
-                        let [x, y, z] = p.v[i];
+                        let [x, y, z] = flow.map_or(p.v[i], |f| sub(p.v[i], f.taken[i]));
                         (x * x + y * y + z * z) * masses.get(i)
                     }
                 };
@@ -381,12 +383,13 @@ impl Fix for Declared {
                 _ => None,
             });
         }
+        let bias = self.bias.as_ref().map(|r| temp_flow::known(r, cx)).transpose()?;
         let chunk_slot = self.chunks.seal(cx, Stage::EndOfStep, &when)?;
         let (me, key, slot) = (self.clone(), self.key(), cx.slot(&format!("f_{}", self.id)));
         let mut sheet = self.output.sheet(cx.world(), &key);
         // Averages come here whole: each is joined with those before it.
         let averager = Averager { key: key.clone(), repeat: 1, ave: self.ave, off: vec![] };
-        let access = Access::new("v f mass mask slots", "slots memo");
+        let access = Access::new("x v f mass mask slots", "slots memo");
         let op = StepOp::new(
             format!("fix {} ave/chunk", self.id),
             Stage::EndOfStep,
@@ -394,7 +397,8 @@ impl Fix for Declared {
             move |w: &mut World, t| {
                 let Some(due) = me.schedule.due(w, &key, t.step) else { return Ok(()) };
                 let chunks = Chunks::of(w, chunk_slot, me.chunks.kind);
-                let sample = me.sample(w, &sources, &chunks);
+                let flow = bias.as_ref().and_then(|b| b.flow(w));
+                let sample = me.sample(w, &sources, flow.as_ref(), &chunks);
                 if due.first {
                     me.hold(w, t.step, span)?;
                 }

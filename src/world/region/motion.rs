@@ -23,6 +23,8 @@ pub struct Turn {
     pub point: [f64; 3],
     /// The axis' direction, of length 1.
     pub axis: [f64; 3],
+    /// The length of the axis as the deck has it, by which LAMMPS' walls are too fast.
+    pub given: f64,
     /// The present angle.
     pub angle: f64,
 }
@@ -95,6 +97,7 @@ mod tests {
             variable: variable.clone(),
             point: [1.0, 0.0, 0.0],
             axis: [0.0, 0.0, 1.0],
+            given: 1.0,
             angle: std::f64::consts::FRAC_PI_2,
         };
         let motion = Motion { shift: [None, None, None], turn: Some(turn), now: [0.0, 0.0, 5.0] };

@@ -119,7 +119,9 @@ impl Region {
         let (Some(now), Some(was)) = (&self.motion, &before.motion) else { return [0.0; 3] };
         let mut velocity = scale(1.0 / s.dt, sub(now.now, was.now));
         if let (Some(turn), Some(old)) = (&now.turn, &was.turn) {
-            let spin = scale((turn.angle - old.angle) / s.dt, turn.axis);
+            // LAMMPS takes the axis of the deck for one of length 1 here, and here alone.
+            let length = if s.lammps { turn.given } else { 1.0 };
+            let spin = scale((turn.angle - old.angle) / s.dt * length, turn.axis);
             let place = sub(s.x, scale(near.distance, near.normal));
             velocity = add(velocity, cross(spin, sub(place, add(turn.point, now.now))));
         }

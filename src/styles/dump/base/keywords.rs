@@ -50,10 +50,21 @@ impl Base {
         match word.text.as_str() {
             "append" => self.append = args.flag("append")?,
             "every" => self.read_every(args, cx)?,
+            "every/time" if args.peek_text().starts_with("v_") => {
+                self.rhythm = Rhythm::NamedTime(number_variable(args, cx)?);
+            }
             "every/time" => self.rhythm = Rhythm::Time(args.positive("the time between snapshots")?),
             "delay" => self.delay = args.integer("the first step to write")?,
             "element" => self.elements = names(args, cx)?,
-            "maxfiles" => self.maxfiles = maxfiles(args)?,
+            "maxfiles" => {
+                self.maxfiles = maxfiles(args)?;
+                if self.maxfiles.is_some() && !self.state().target.pattern.many() {
+                    let text = "maxfiles counts files of single snapshots, and this dump writes all into one";
+                    let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+                    return Err(d.help("put a `*` into the dump's file name: it becomes the step").into());
+                }
+            }
+            "triclinic/general" if args.peek_text() == "no" => drop(args.next()),
             "refresh" => self.refresh = Some(refresh(args, cx)?),
             "skip" => self.skip = Some(number_variable(args, cx)?),
             "balance" => {

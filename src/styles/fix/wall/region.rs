@@ -37,7 +37,8 @@ impl Style for WallGranRegion {
                 name between runs change the wall.\n\n\
                 LAMMPS takes cones for hollow from outside, open cylinders for flat from outside, feels nothing of a \
                 union's outside, misses contacts beside the ends of an ellipsoid's axes, takes moving parts of unions and \
-                intersections for resting ones, and lets only cylinders and spheres push while they change their size; \
+                intersections for resting ones, gives a turning wall a speed in proportion to the length of the axis that the \
+                deck names, and lets only cylinders and spheres push while they change their size; \
                 perigrain does the same under `-compat lammps` alone. Keywords and values as those of `fix wall/gran`.",
             example: "region funnel cone z 0.0 0.0 0.001 0.005 -0.001 0.006 units box open 1 open 2\n\
                       fix funnel grains wall/gran/region granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential \
