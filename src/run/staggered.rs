@@ -149,7 +149,9 @@ fn bonds(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
 fn rare(plan: &mut StepPlan, w: &mut World, t: &Tick, m: i64) -> Result<()> {
     let due = t.step.rem_euclid(m) == 0;
     if due || t.energy || t.virial {
-        let look = Tick { setup: t.setup || !due, unchanged: t.unchanged || !due, ..t.clone() };
+        // Bonds that relax have done so since they were looked at last.
+        let dt = m as f64 * t.dt;
+        let look = Tick { dt, setup: t.setup || !due, unchanged: t.unchanged || !due, ..t.clone() };
         plan.run_beats(w, &look, &[Stage::Force], &[Beat::Short])?;
         let times = if due { m as f64 } else { 0.0 };
         w.particles.f.iter_mut().flatten().for_each(|a| *a *= times);

@@ -6,7 +6,9 @@ use crate::diag::Result;
 use crate::lang::Args;
 use crate::math::vec3::Vec3;
 use crate::world::World;
+use crate::world::contacts::WallSpring;
 use crate::world::families::ForceUnit;
+use std::collections::BTreeMap;
 
 /// How the step of peridynamic solids is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,7 +58,30 @@ pub fn solids(w: &World, how: Estimate) -> Result<f64> {
     Ok(step.unwrap_or(f64::INFINITY))
 }
 
-/// The longest step of what touches [time]: the least √(m/k) and √(I/k_r), k being the largest entry on the diagonal of
+/// Asks walls for the springs of their contacts, from the next step on.
+pub fn ask_walls(w: &mut World) {
+    if w.parts.wall_springs.is_none() {
+        w.parts.wall_springs = Some(BTreeMap::new());
+        w.touch();
+    }
+}
+
+/// Goes through the contacts with walls at the last step.
+fn add_walls(w: &World, mut each: impl FnMut(usize, &WallSpring)) {
+    let springs = || w.parts.wall_springs.iter().flat_map(BTreeMap::values).flatten();
+    if springs().next().is_none() {
+        return;
+    }
+    let mut places: Vec<(u32, usize)> = w.particles.tag.iter().copied().zip(0..).collect();
+    places.sort_unstable();
+    for spring in springs() {
+        if let Ok(at) = places.binary_search_by_key(&spring.tag, |p| p.0) {
+            each(places[at].1, spring);
+        }
+    }
+}
+
+/// The longest step of what touches, walls too [time]: the least √(m/k) and √(I/k_r), k being the largest entry on the diagonal of
 /// Σ k_n n⊗n + k_t (1 − n⊗n) and k_r of Σ R² k_t (1 − n⊗n) (Chareyre & Villard 2005; Hartmann et al. 2022, equation 43).
 /// Infinite while nothing touches.
 ///
@@ -77,6 +102,10 @@ pub fn grains(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<f64> {
             }
         }
     }
+    add_walls(w, |i, spring| {
+        add(&mut straight[i], spring.normal, spring.stiffness);
+        add(&mut turning[i], spring.normal, [0.0, spring.arm * spring.arm * spring.stiffness[1]]);
+    });
     let (p, masses, ftm2v) = (&w.particles, w.contact_masses(), w.settings.units.constants().ftm2v);
     let solid = |i: usize| w.families.as_ref().filter(|f| f.place.get(i).is_some_and(|p| *p != u32::MAX));
     let most = |k: Vec3| k.into_iter().fold(0.0, f64::max);

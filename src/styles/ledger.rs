@@ -69,7 +69,7 @@ pub fn begin(w: &mut World, t: &Tick) {
         return;
     }
     if let Some(families) = &mut w.families {
-        families.counts_released = true;
+        families.counts_losses = true;
     }
     let n = w.n();
     for name in FORCES.iter().chain(&TORQUES) {
@@ -189,6 +189,8 @@ pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32
 pub struct Sheet {
     /// Kinetic, rotational, strain, contact; damping, friction, fracture; walls, gravity, imposed.
     pub channels: [f64; 10],
+    /// Heat of bonds that relax or flow.
+    pub heat: f64,
     /// Strain energy by type.
     pub strain: Vec<f64>,
     base: f64,
@@ -203,12 +205,12 @@ impl Sheet {
     /// Held, plus what was turned into heat and cracks, less what came in, since the ledger was opened.
     pub fn residual(&self) -> f64 {
         let sum = |range: std::ops::Range<usize>| self.channels[range].iter().sum::<f64>();
-        self.held() + sum(4..7) - sum(7..10) + self.base
+        self.held() + sum(4..7) + self.heat - sum(7..10) + self.base
     }
 
     /// What has gone in and out: the measure of errors where nothing is held.
     pub fn turnover(&self) -> f64 {
-        self.channels[4..10].iter().map(|e| e.abs()).sum()
+        self.channels[4..10].iter().map(|e| e.abs()).sum::<f64>() + self.heat.abs()
     }
 }
 
@@ -244,5 +246,6 @@ pub fn sheet(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Sheet> {
         gravity,
         imposed + book.driven[1],
     ];
-    Ok(Sheet { channels, strain, base: book.base })
+    let heat = w.families.as_ref().map_or(0.0, |f| f.heat);
+    Ok(Sheet { channels, heat, strain, base: book.base })
 }

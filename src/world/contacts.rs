@@ -94,6 +94,19 @@ impl Contacts {
     }
 }
 
+/// The springs of a particle's contact with a wall, as compute dt/critical asks for them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WallSpring {
+    /// The particle's tag.
+    pub tag: u32,
+    /// Unit vector from the wall to its centre.
+    pub normal: [f64; 3],
+    /// Stiffness along it and across it [force/length].
+    pub stiffness: [f64; 2],
+    /// How far from its centre they touch [length].
+    pub arm: f64,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

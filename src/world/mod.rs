@@ -118,6 +118,8 @@ pub struct Parts {
     pub facts: BTreeMap<String, Arc<str>>,
     /// The first grains seen to overlap by more than a tenth of a radius during a run.
     pub deep: Option<contacts::Deep>,
+    /// Springs of the contacts with each wall, by the fix's ID, at the last step; nothing where nobody has asked.
+    pub wall_springs: Option<BTreeMap<String, Vec<contacts::WallSpring>>>,
     /// The fix freeze in force and its group: contact laws take these grains for infinitely heavy.
     pub frozen: Option<(String, GroupId)>,
     /// What ops have to say about the deck; told when the run is over.

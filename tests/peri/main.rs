@@ -5,6 +5,7 @@ mod golden;
 mod layouts;
 mod limits;
 mod patch;
+mod plastic;
 mod scene;
 mod states;
 mod textbook;

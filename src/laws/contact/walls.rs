@@ -3,7 +3,7 @@
 use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
 use crate::math::vec3::{Vec3, add, cross, scale, sub};
 use crate::par;
-use crate::world::contacts::Contacts;
+use crate::world::contacts::{Contacts, WallSpring};
 pub use crate::world::region::Near;
 
 /// Something spheres lean on.
@@ -212,6 +212,17 @@ impl WallSweep {
     /// The contacts of the last evaluation and what they do.
     pub fn contacts(&self) -> impl Iterator<Item = (&Touch, &Wrench)> {
         self.touching.iter().zip(&self.wrenches)
+    }
+
+    /// The springs of the contacts of the last evaluation.
+    pub fn springs<L: ContactLaw>(&self, grains: &Spheres, law: &L) -> Vec<WallSpring> {
+        let spring = |t: &Touch| {
+            let i = t.grain as usize;
+            let g = geometry(&t.near, grains.radius[i], grains.mass[i]);
+            let (tag, arm) = (grains.tag[i], t.near.distance);
+            WallSpring { tag, normal: g.normal, stiffness: law.springs(&g), arm }
+        };
+        self.touching.iter().map(spring).collect()
     }
 
     /// How many particles are looked at in each step.

@@ -59,7 +59,9 @@ impl Families {
             hurt: vec![false; n],
             near: NearPairs::default(),
             released: 0.0,
-            counts_released: false,
+            heat: 0.0,
+            relaxing: None,
+            counts_losses: false,
             scratch: Scratch::default(),
         };
         families.lay_out(view);
@@ -203,6 +205,9 @@ impl Families {
         match states {
             true => self.sweep_states::<K>(view, f, (advance, tallied.is_some()), period),
             false => self.sweep::<K>(f, advance, period),
+        }
+        if advance && self.counts_losses {
+            self.count_heat::<K>(view, period);
         }
         self.contact(view, f, &moved, advance, tallied.as_deref_mut());
         if let Some(t) = tallied {

@@ -1,10 +1,11 @@
-//! The energy that bonds set free where they break.
+//! The energy that bonds set free where they break, and what they turn into heat where they relax or flow.
 
 use super::chunk::Kernels;
 use super::energy::tally;
 use super::list_kernel::RowKernels;
 use super::state::{self, kernels::StateKernels};
 use super::stretching::StretchKernels;
+use crate::world::families::law::SiteState;
 use crate::world::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
 
 impl Families {
@@ -14,7 +15,7 @@ impl Families {
         view: &PeriView,
         period: [f64; 3],
     ) {
-        if !self.counts_released {
+        if !self.counts_losses {
             return self.break_bonds::<K>(view, period);
         }
         let mut alive: Vec<Vec<u8>> = self.lattices.iter().map(|b| b.alive.clone()).collect();
@@ -28,6 +29,53 @@ impl Families {
         let before = self.bond_energy::<K>(view, period);
         self.exchange(&mut alive, &mut listed);
         self.released += before - after;
+    }
+
+    /// Adds what has become heat since the last step: at the present places plastic bonds have lost the difference of the
+    /// energies before and after they flowed; the dashpots of viscous ones take up 2/τ times the energy of their springs, by
+    /// the trapezoidal rule. Nothing under LAMMPS' laws, whose forces have no energy.
+    pub(super) fn count_heat<K: Kernels + RowKernels + StateKernels>(
+        &mut self,
+        view: &PeriView,
+        period: [f64; 3],
+    ) {
+        match self.law.kind {
+            _ if self.options.compat_lammps => {}
+            LawKind::Eps | LawKind::Yield => {
+                if !self.flowed() {
+                    return self.forget_earlier();
+                }
+                let before = self.bond_energy::<K>(view, period);
+                self.forget_earlier();
+                self.heat += before - self.bond_energy::<K>(view, period);
+            }
+            LawKind::Ves => {
+                let own = self.law.moduli.iter().find(|m| m.tau > 0.0).copied().unwrap_or_default();
+                if own.tau <= 0.0 {
+                    return;
+                }
+                // What is left without the dilatation and the springs that do not relax.
+                let mut springs = self.law.clone();
+                springs.moduli.iter_mut().for_each(|m| (m.bulk, m.lambda) = (0.0, 1.0));
+                let law = std::mem::replace(&mut self.law, springs);
+                let power = 2.0 / own.tau * own.lambda * self.bond_energy::<K>(view, period);
+                self.law = law;
+                self.heat += 0.5 * self.law.dt * (self.relaxing.unwrap_or(power) + power);
+                self.relaxing = Some(power);
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether what bonds remember has changed in this step.
+    fn flowed(&self) -> bool {
+        let changed = |s: &SiteState| !s.earlier.is_empty() && s.earlier != s.memory;
+        self.lattices.iter().any(|b| changed(&b.state)) || changed(&self.list.state)
+    }
+
+    fn forget_earlier(&mut self) {
+        self.lattices.iter_mut().for_each(|b| b.state.earlier.clear());
+        self.list.state.earlier.clear();
     }
 
     fn exchange(&mut self, alive: &mut [Vec<u8>], listed: &mut Vec<u8>) {

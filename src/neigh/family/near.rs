@@ -48,15 +48,6 @@ impl Families {
         closer
     }
 
-    /// Which body a particle belongs to: lattices from 0, then the list; every loose particle is its own.
-    fn body_of(&self, p: u32) -> u32 {
-        let place = self.place.get(p as usize).copied().unwrap_or(u32::MAX);
-        if place == u32::MAX {
-            return u32::MAX;
-        }
-        self.lattices.partition_point(|b| b.first_place + b.particle.len() as u32 <= place) as u32
-    }
-
     fn search(&mut self, view: &PeriView, part: usize) {
         let lc = self.options.lattice_spacing;
         let range = (CONTACT + SKIN) * lc;
@@ -125,26 +116,6 @@ impl Families {
                     || self.near.loose.iter().any(|l| near(x, &(view.x[l.0 as usize], view.x[l.0 as usize]))))
         });
         (bonded.chain(loose).collect(), 0.0)
-    }
-
-    /// Whether a living bond joins two particles of one body.
-    pub fn bonded(&self, i: u32, j: u32) -> bool {
-        let (a, b) = (self.place[i as usize], self.place[j as usize]);
-        let body = self.body_of(i) as usize;
-        let Some(lattice) = self.lattices.get(body) else {
-            let (a, b) = (a - self.list.first_place, b - self.list.first_place);
-            let joins = |i: u32, j: u32| {
-                self.list.own(i as usize).any(|k| self.list.partner[k] == j && self.list.lives(k))
-            };
-            return joins(a, b) || joins(b, a);
-        };
-        let (a, b) = ((a - lattice.first_place) as usize, (b - lattice.first_place) as usize);
-        let step = lattice.step(a, b);
-        let after = (step[2], step[1], step[0]) > (0, 0, 0);
-        let (from, step) = if after { (a, step) } else { (b, step.map(|s| -s)) };
-        let found =
-            lattice.stencil.binary_search_by_key(&(step[0], step[2], step[1]), |s| (s[0], s[2], s[1]));
-        found.is_ok_and(|e| lattice.lives(from, e))
     }
 
     /// Keeps a pair whose bond has just broken in view.

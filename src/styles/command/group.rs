@@ -42,7 +42,7 @@ impl Style for Group {
                    below F times the largest. `shells` takes S layers in all. With `every` the choice is made anew in the setup \
                    of each run and every N steps, so that cracks and craters get surfaces. As long as the group exists, other \
                    particles of PARENT have no contacts, and two particles that were in one family have none with each other, \
-                   whether their bond lives or not: a solid meets itself only farther apart. The short-range force of \
+                   whether their bond lives or not (`peri_modify family broken`: as long as it lives): a solid meets itself only farther apart. The short-range force of \
                    peridynamic styles acts besides, unless `peri_modify repulsion no`. Hybrid particles do not turn: move them by \
                    `fix nve`.",
             example: "group bullet region ball",

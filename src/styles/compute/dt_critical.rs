@@ -7,7 +7,7 @@ use crate::plan::{Op, Stage, When};
 use crate::styles::critical::{self, Estimate};
 use crate::styles::step_op::{Wanted, fill};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
-use crate::world::{GroupId, SlotId};
+use crate::world::{GroupId, SlotId, World};
 
 /// The style.
 pub struct DtCritical;
@@ -32,7 +32,7 @@ impl Style for DtCritical {
                    holds particles fast makes the true limit longer still; dashpots make it shorter.\n\n\
                    `dem particle`: the least √(m/k) and √(I/k_r) over all that touch, k from the normal and tangential \
                    stiffness of its contacts with others as they are now (Hartmann et al., equation 43). Two free grains \
-                   would stand 1.4 times, a held one 2 times that. Contacts with walls are not looked at; those of hybrid \
+                   would stand 1.4 times, a held one 2 times that. Contacts with walls count too; those of hybrid \
                    particles count here, with their mass.",
             example: "compute dtc all dt/critical pd silling safety 1.0",
         }
@@ -75,17 +75,24 @@ impl Compute for Declared {
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let mut probes = if self.grains { cx.probes()? } else { vec![] };
-        let (how, safety) = (self.how, self.safety);
+        let (how, safety, counts) = (self.how, self.safety, self.grains);
         let reads = "x v radius mass type volume families contacts";
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let solids = safety * critical::solids(w, how)?;
-            let grains = safety * critical::grains(w, &mut probes)?;
+            let grains = if counts { safety * critical::grains(w, &mut probes)? } else { f64::INFINITY };
             let (short, long) = (solids.min(grains), solids.max(grains));
             let fits = if long.is_finite() { (long / short).floor().max(1.0) } else { 1.0 };
             out.scalar = short;
             out.vector = vec![solids, grains, fits];
             Ok(())
         }))
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        if self.grains {
+            critical::ask_walls(w);
+        }
+        Ok(())
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

@@ -24,15 +24,19 @@ impl Style for EnergyLedger {
                    rotational, 3 strain of all bonds, 4 elastic energy of contacts between particles (normal and tangential \
                    springs), 5 taken up by dashpots along the normal, 6 by friction and everything else across it, 7 set free \
                    by peridynamic bonds where they broke, 8 work of walls on particles, 9 of gravity, 10 of all else that a \
-                   deck imposes (other fixes, driven particles), 11 the residual, 12 … the strain of the bonds of each type. \
+                   deck imposes (other fixes, driven particles), 11 the residual, 12 … the strain of the bonds of each type, and last \
+                   the heat of bonds that relax or flow (peri/ves, peri/eps, peri/pmb/plastic). \
                    Scalar: the residual.\n\n\
-                   residual = 1 + 2 + 3 + 4 + 5 + 6 + 7 − 8 − 9 − 10 less its value when the run began: 0 if energy is kept. \
+                   residual = 1 + 2 + 3 + 4 + 5 + 6 + 7 + last − 8 − 9 − 10 less its value when the run began: 0 if energy is kept. \
                    In an elastic scene it falls with the square of the time step; dashpots, friction and bonds that break leave \
                    errors of first order. 5 to 10 are sums since the first run with a ledger, by the trapezoidal rule over the \
                    powers at every step; 3 and 12 … are tallied at the steps at which somebody reads them. What a deck changes \
                    between runs does not count. Walls give back in 8 what they store; springs of rolling and twisting count \
-                   as friction; viscous and plastic work of bonds (peri/ves, peri/eps) is in the residual.\n\n\
-                   Contacts are evaluated a second time in each step, so that a bed of grains takes up to twice as long.",
+                   as friction. The heat of bonds is 2/τ times the energy of relaxing springs, and for plastic bonds what they lose when they \
+                   flow, of first order in the step; under `compat lammps`, whose forces of such bonds have no energy, it is in \
+                   the residual.\n\n\
+                   Contacts are evaluated a second time in each step, so that a bed of grains takes up to twice as long, and so do \
+                   solids that relax or flow.",
             example: "compute e all energy/ledger",
         }
     }
@@ -59,7 +63,7 @@ impl Compute for Declared {
         Shape {
             scalar: true,
             scalar_extensive: true,
-            vector: 11 + self.types,
+            vector: 12 + self.types,
             vector_extensive: true,
             ..Shape::default()
         }
@@ -77,6 +81,7 @@ impl Compute for Declared {
             out.vector.extend(sheet.channels);
             out.vector.push(out.scalar);
             out.vector.extend(&sheet.strain);
+            out.vector.push(sheet.heat);
             Ok(())
         }))
     }

@@ -90,6 +90,7 @@ struct Declared {
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         self.follower.declare(w);
+        critical::ask_walls(w);
         Ok(())
     }
 

@@ -9,7 +9,7 @@ use crate::plan::Op;
 use crate::styles::command::common::{scales, units_lattice};
 use crate::styles::matter::{Masses, check_masses};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
-use crate::world::{GroupId, World};
+use crate::world::{GroupId, RunStyle, World};
 
 /// The style.
 pub struct DtReset;
@@ -27,7 +27,10 @@ impl Style for DtReset {
                    Δt ≤ E/(|f| |v|). The smallest over the group, bounded by Tmin and Tmax (a number or `NULL`), is the \
                    new step. Elapsed time is the sum of the steps as they were. Xmax in lattice spacings (of x) \
                    unless `units box`. Scalar (intensive): the last step at which Δt changed. Where nothing moves and \
-                   Tmax is `NULL`, Δt stays as it is (LAMMPS makes it 1e20).",
+                   Tmax is `NULL`, Δt stays as it is (LAMMPS makes it 1e20).\n\n\
+                   Under `run_style staggered m N` the step is the long one. Particles of solids make N short ones in it, and \
+                   their limit is meant for these: it counts N times. `m auto` chooses the short step by what bonds stand, \
+                   so that there it counts once.",
             example: "fix step all dt/reset 10 1.0e-10 1.0e-8 1.0e-6 units box",
         }
     }
@@ -81,9 +84,17 @@ impl Rule {
         let (p, masses, bit) = (&w.particles, Masses::of(w), self.group.bit());
         let units = w.settings.units.constants();
         let root = (units.ftm2v * units.mvv2e).sqrt();
+        let short = match w.settings.run_style {
+            RunStyle::Staggered { ratio: Some(m), rare: false, .. } => m as f64,
+            _ => 1.0,
+        };
+        let solid = |i: usize| {
+            w.families.as_ref().is_some_and(|f| f.place.get(i).is_some_and(|place| *place != u32::MAX))
+        };
         let chunk = |range: std::ops::Range<usize>| {
             range.filter(|&i| p.mask[i] & bit != 0).fold(f64::INFINITY, |dt: f64, i| {
-                dt.min(self.limit(p.v[i], p.f[i], units.ftm2v * (1.0 / masses.get(i)), root))
+                let own = self.limit(p.v[i], p.f[i], units.ftm2v * (1.0 / masses.get(i)), root);
+                dt.min(if short > 1.0 && solid(i) { short * own } else { own })
             })
         };
         let limit = par::reduce(p.len(), chunk, f64::min).unwrap_or(f64::INFINITY);

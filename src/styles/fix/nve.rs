@@ -3,12 +3,14 @@
 use super::{Fix, FixStyle};
 use crate::diag::Result;
 use crate::lang::Args;
+use crate::math::vec3::Vec3;
 use crate::par;
 use crate::plan::{Access, Op, Phase, Stage, Tick};
 use crate::styles::matter::{Masses, check_masses};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
 use crate::world::{GroupId, World};
+use std::iter::repeat;
 
 /// The style.
 pub struct Nve;
@@ -130,6 +132,7 @@ fn some(w: &mut World, group: GroupId, phase: &Phase, half: f64, dt: f64) {
     let p = &mut w.particles;
     let bit = group.bit();
     let acts = |kind: u16, mask: u32| match phase {
+        _ if mask & bit == 0 => (false, false),
         Phase::Whole => (true, true),
         Phase::Long(solids) => (true, !solids.has(kind) || mask & solids.twice != 0),
         Phase::Short(solids) => (solids.has(kind), true),
@@ -137,17 +140,41 @@ fn some(w: &mut World, group: GroupId, phase: &Phase, half: f64, dt: f64) {
     let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
     let columns = (&mut p.x[..], &mut p.v[..], &p.f[..], &p.mask[..], &p.kind[..]);
     par::each(columns, |start, (x, v, f, mask, kind)| {
-        for (k, ((((x, v), f), mask), kind)) in x.iter_mut().zip(v).zip(f).zip(mask).zip(kind).enumerate() {
-            let (kicks, drifts) = acts(*kind, *mask);
-            if mask & bit == 0 || !kicks {
-                continue;
+        let mut from = 0;
+        // Solids are created one after the other: what a particle does is decided once for all like it that follow.
+        while from < kind.len() {
+            let like = |k: &usize| kind[*k] == kind[from] && mask[*k] == mask[from];
+            let to = (from + 1..kind.len()).take_while(like).last().map_or(from + 1, |k| k + 1);
+            let (kicks, drifts) = acts(kind[from], mask[from]);
+            if kicks {
+                let own = from..to;
+                let (x, v, f) = (&mut x[own.clone()], &mut v[own.clone()], &f[own]);
+                let drift = drifts.then_some(dt);
+                match masses {
+                    Masses::Own(m) => {
+                        run(x, v, f, m[start + from..start + to].iter().map(|m| half / m), drift)
+                    }
+                    Masses::ByType(..) => run(x, v, f, repeat(half / masses.get(start + from)), drift),
+                }
             }
-            let v = kicked(v, f, half / masses.get(start + k));
-            if drifts {
-                drifted(x, v, dt);
-            }
+            from = to;
         }
     });
+}
+
+/// Kicks particles, and lets them drift where a step is given.
+fn run(
+    x: &mut [Vec3],
+    v: &mut [Vec3],
+    f: &[Vec3],
+    half_dt_by_m: impl Iterator<Item = f64>,
+    drift: Option<f64>,
+) {
+    let each = v.iter_mut().zip(f).zip(half_dt_by_m);
+    match drift {
+        None => each.for_each(|((v, f), h)| _ = kicked(v, f, h)),
+        Some(dt) => x.iter_mut().zip(each).for_each(|(x, ((v, f), h))| drifted(x, kicked(v, f, h), dt)),
+    }
 }
 
 #[inline]

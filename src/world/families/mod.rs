@@ -6,6 +6,7 @@ use crate::diag::{Code, Diagnostic, Result};
 
 mod cells;
 mod crack;
+mod kin;
 pub mod lattice;
 pub mod law;
 pub mod list;
@@ -158,6 +159,9 @@ pub struct FamilyOptions {
     /// No short-range repulsion: other contact laws keep particles apart.
     #[serde(default)]
     pub no_repulsion: bool,
+    /// Members of one family whose bond is broken meet again as others do (`peri_modify family broken`).
+    #[serde(default)]
+    pub reunite: bool,
 }
 
 /// Bond length changes below this count as none under `compat lammps`: an absolute length.
@@ -192,6 +196,7 @@ impl FamilyOptions {
             skip_rest: true,
             portable: false,
             no_repulsion: false,
+            reunite: false,
         }
     }
 }
@@ -301,29 +306,18 @@ pub struct Families {
     /// Energy of bonds where they broke, as far as it was counted [energy].
     #[serde(default)]
     pub released: f64,
-    /// Count it.
+    /// What relaxing and flowing bonds have turned into heat, as far as it was counted [energy].
+    #[serde(default)]
+    pub heat: f64,
+    /// The power at which bonds relaxed at the last step that was counted.
+    #[serde(default)]
+    pub relaxing: Option<f64>,
+    /// Count both.
     #[serde(skip)]
-    pub counts_released: bool,
+    pub counts_losses: bool,
     /// Scratch that is not state.
     #[serde(skip)]
     pub scratch: Scratch,
-}
-
-impl Families {
-    /// Whether two particles belonged to one family at the start, by their distance then; bonds that were cut or have
-    /// broken since count.
-    pub fn related(&self, x0: &[[f64; 3]], kind: &[u16], period: [f64; 3], i: usize, j: usize) -> bool {
-        let has = |i: usize| self.family_size.get(i).is_some_and(|n| *n > 0);
-        let Some(coeff) = self.table.get(kind[i], kind[j]).filter(|_| has(i) && has(j)) else { return false };
-        let start = self.reference.as_deref().unwrap_or(x0);
-        let reach = self.options.volume.reach(coeff.horizon, self.options.lattice_spacing);
-        let square = |d: usize| {
-            let apart = start[i][d] - start[j][d];
-            let turns = if period[d] > 0.0 { (apart / period[d]).round() } else { 0.0 };
-            (apart - turns * period[d]).powi(2)
-        };
-        square(0) + square(1) + square(2) <= reach * reach
-    }
 }
 
 /// Pairs without a living bond that may come into short-range contact before they are looked for again.

@@ -40,13 +40,14 @@ impl Families {
         (advance, tallied): (bool, bool),
         period: [f64; 3],
     ) {
-        let Self { lattices, list, scratch, options, law, table, armed, .. } = self;
+        let Self { lattices, list, scratch, options, law, table, armed, counts_losses, .. } = self;
         let mode = Mode { advance, armed: *armed, skip: options.skip_rest };
         scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
         let windows: &[Mutex<Window>] = &scratch.windows;
         let now = moment(law, advance);
         let compat = options.compat_lammps;
-        let settling = Settling { law, table, moment: now, compat, advance, tallied };
+        let counted = *counts_losses && advance;
+        let settling = Settling { law, table, moment: now, compat, advance, tallied, counted };
         let f = Shared::new(f);
         for body in lattices {
             lattice_body::<K>(body, view, &f, (mode, options), &settling, windows);
@@ -82,9 +83,12 @@ impl Families {
     }
 }
 
-/// LAMMPS takes the energy of plastic bonds from what they remembered before they flowed.
+/// LAMMPS takes the energy of plastic bonds from what they remembered before they flowed; ours is compared with that one
+/// where heat is counted.
 fn keep_earlier(state: &mut crate::world::families::law::SiteState, settling: &Settling) {
-    match settling.tallied && settling.compat && settling.law.kind == LawKind::Eps {
+    let flows = matches!(settling.law.kind, LawKind::Eps | LawKind::Yield);
+    let asked = if settling.compat { settling.tallied } else { settling.counted };
+    match flows && asked {
         true => state.earlier.clone_from(&state.memory),
         false => state.earlier.clear(),
     }

@@ -19,6 +19,8 @@ pub struct Settling<'a> {
     pub advance: bool,
     /// Energies are wanted of this evaluation.
     pub tallied: bool,
+    /// The heat of flowing is counted.
+    pub counted: bool,
 }
 
 /// Moduli of a type as laws need them.

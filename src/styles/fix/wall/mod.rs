@@ -95,6 +95,9 @@ impl<F: Form> Fix for Declared<F> {
         let inner = format!("{key}/");
         w.memo.retain(|name, _| *name != key && !name.starts_with(&inner));
         w.wall_contacts.remove(&self.common.id);
+        if let Some(all) = &mut w.parts.wall_springs {
+            all.remove(&self.common.id);
+        }
     }
 
     fn shape(&self) -> Shape {

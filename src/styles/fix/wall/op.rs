@@ -202,6 +202,10 @@ impl Op for WallOp {
         let step = Advance { dt: t.dt, history: !t.setup };
         self.sweep.run(&*wall, &grains, &self.law, &mut memory, step);
         drop(wall);
+        let springs = w.parts.wall_springs.is_some().then(|| self.sweep.springs(&grains, &self.law));
+        if let (Some(all), Some(own)) = (&mut w.parts.wall_springs, springs) {
+            all.insert(self.id.clone(), own);
+        }
         w.wall_contacts.insert(self.id.clone(), kept.unwrap_or(memory));
         let p = &mut w.particles;
         let [fx, fy, fz, tx, ty, tz] = self.sweep.scatter(&mut p.f, &mut p.torque, &p.x, self.center);

@@ -1,6 +1,6 @@
 //! The op behind all peridynamic styles: families at the first run, forces at every step.
 
-use super::{Pair, Solid};
+use super::{Pair, Solid, reunion};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::plan::{Access, Beat, Op, Stage, Tick};
 use crate::styles::command::peri_crack::missed;
@@ -54,7 +54,7 @@ impl Op for Force {
         }
         let Some(mut families) = w.families.take() else { return Ok(()) };
         let first = !families.armed;
-        families.law.dt = w.clock.dt;
+        families.law.dt = t.dt;
         let mut sums = PeriTally::default();
         let mut atoms = std::mem::take(&mut w.tally.atom);
         if t.atom_energy {
@@ -72,6 +72,10 @@ impl Op for Force {
         let mut f = std::mem::take(&mut w.particles.f);
         let tally = (t.energy || t.virial || t.atom_energy).then_some(&mut sums);
         families.force(&view(w)?, &mut f, advance, tally);
+        if advance && families.options.reunite && families.parted(|i| reunion::outside(w, i)) {
+            // Contacts are looked for anew in the next step.
+            w.rebuild.due = true;
+        }
         w.particles.f = f;
         let (energy, virial) = (sums.energy, sums.virial);
         (w.tally.atom, w.tally.atom_virial) = (atoms, virials);
@@ -143,7 +147,8 @@ impl Force {
             }
         };
         w.families = Some(families);
-        self.mark(w)
+        self.mark(w)?;
+        reunion::check_spheres(&self.style, w)
     }
 
     /// Cracks that have waited for families, and particles whose bonds never break.

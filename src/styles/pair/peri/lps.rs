@@ -21,7 +21,7 @@ impl Style for PeriLps {
                      pair_coeff i j K G horizon s00 alpha\n\
                      pair_coeff i j material ID horizon H [s00 value] [alpha value]\n\
                      pair_coeff i j mix arithmetic|harmonic|geometric\n\
-                     peri_modify [force density|newton] [volume lammps|none|full] [influence inverse|one|gaussian]",
+                     peri_modify [force density|newton] [volume lammps|none|full] [influence inverse|one|gaussian] [broken compress no|yes] [nofail region ID]… [repulsion yes|no] [family exclude|broken]",
             summary: "State-based peridynamics: linear elastic solids of any Poisson's ratio, with bonds that break.",
             text: "With e the change of length of a bond of reference length |ξ|, ω its influence and w the partial volume \
                 weight, a particle has the weighted volume m = Σ ω w |ξ|² V_j of its family at the first run and the \

@@ -8,6 +8,7 @@ pub mod materials;
 mod options;
 mod plastic;
 mod pmb;
+mod reunion;
 mod ves;
 
 use super::{Pair, TypePairs};
@@ -50,6 +51,8 @@ struct Solid {
     lasting: Vec<Region>,
     /// `peri_modify repulsion no`.
     no_repulsion: bool,
+    /// `peri_modify family`, and where that was said: broken bonds let their ends touch.
+    reunite: Option<(bool, Span)>,
 }
 
 /// Which constant of the lattice the micro-modulus makes right.
@@ -86,6 +89,7 @@ fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair
         unloading: None,
         lasting: vec![],
         no_repulsion: false,
+        reunite: None,
     }))
 }
 
@@ -225,6 +229,7 @@ impl Solid {
             skip_rest: !s.no_skipping,
             portable: s.portable,
             no_repulsion: self.no_repulsion,
+            reunite: self.reunite.is_some_and(|r| r.0),
         }
     }
 
@@ -404,6 +409,7 @@ impl Pair for Solid {
 
     fn check(&self, cx: &BuildCx) {
         let w = cx.world;
+        reunion::check(self, cx);
         if w.families.is_some() || !w.settings.lammps() {
             return;
         }

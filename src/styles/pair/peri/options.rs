@@ -6,8 +6,8 @@ use crate::lang::Args;
 use crate::styles::BuildCx;
 use crate::world::families::{ForceUnit, Influence, LawKind, VolumeRule};
 
-const KNOWN: [&str; 8] =
-    ["force", "volume", "influence", "surface", "calibrate", "nofail", "broken", "repulsion"];
+const KNOWN: [&str; 9] =
+    ["force", "volume", "influence", "surface", "calibrate", "nofail", "broken", "repulsion", "family"];
 
 /// Reads the words of a `peri_modify`.
 ///
@@ -78,11 +78,8 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
                 style.lasting.push(cx.region(args.expect("a region")?)?.clone());
             }
             "family" => {
-                return fail(
-                    Code::NOT_SUPPORTED,
-                    word.span,
-                    format!("peri_modify {} is not there yet", word.text),
-                );
+                let how = args.choice("when members of one family touch", &["exclude", "broken"])?;
+                style.reunite = Some((how == "broken", word.span));
             }
             _ => return Err(args.unknown(word, &KNOWN)),
         }

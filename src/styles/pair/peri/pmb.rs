@@ -21,7 +21,7 @@ impl Style for PeriPmb {
                      pair_coeff i j c horizon s00 alpha\n\
                      pair_coeff i j material ID horizon H [form bulk|shear|young] [s00 value] [alpha value]\n\
                      pair_coeff i j mix arithmetic|harmonic|geometric\n\
-                     peri_modify [force density|newton] [volume lammps|none|full] [calibrate no|bulk|young] [influence one|inverse|gaussian] [surface no|energy] [broken compress no|yes] [nofail region ID]… [repulsion yes|no]",
+                     peri_modify [force density|newton] [volume lammps|none|full] [calibrate no|bulk|young] [influence one|inverse|gaussian] [surface no|energy] [broken compress no|yes] [nofail region ID]… [repulsion yes|no] [family exclude|broken]",
             summary: "Bond-based peridynamics: elastic bonds that break when stretched too far.",
             text: "Every particle has bonds to all others within the `horizon` δ at the first run. A bond of reference \
                 length |ξ| and stretch s = (r − |ξ|)/|ξ| pulls with the force density `c` s w V_j; w is the partial \
@@ -50,7 +50,10 @@ impl Style for PeriPmb {
                 still pushes with c s w V_j while it is shorter than at the start, so that crushed parts do not pass through \
                 each other; bonds of `peri_crack` too, and under state-based laws with c = 18K/(πδ⁴). `nofail region` makes \
                 bonds last whose one end lies in the region at the start. `repulsion no` leaves the short-range force out, \
-                where contact laws keep particles apart (`group … surface`).",
+                where contact laws keep particles apart (`group … surface`). Of those laws `family exclude` keeps members of one \
+                family out for good, whether their bond lives or not; `family broken` as long as it lives: surfaces that were \
+                torn apart meet again from the step after. Spheres of bonded neighbours must then not overlap \
+                (`set … peri/radius half`).",
             example: "pair_style peri/pmb\npair_coeff * * 1.6863e22 0.0015001 5.0e-4 0.25",
         }
     }
