@@ -78,7 +78,7 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
                 style.lasting.push(cx.region(args.expect("a region")?)?.clone());
             }
             "family" => {
-                let how = args.choice("when members of one family touch", &["exclude", "broken"])?;
+                let how = args.choice("rule of contacts in a family", &["exclude", "broken"])?;
                 style.reunite = Some((how == "broken", word.span));
             }
             _ => return Err(args.unknown(word, &KNOWN)),
