@@ -27,7 +27,7 @@ impl Session {
         self.record(cmd, Role::Run, None, vec![], vec![]);
         self.ready(cmd.span)?;
         self.check_run(cmd.span, false)?;
-        if self.world.settings.minimizer.style == MinStyle::Fire {
+        if matches!(self.world.settings.minimizer.style, MinStyle::Fire | MinStyle::Quickmin) {
             check_masses(&self.world, cmd.span)?;
         }
         self.note_absent();

@@ -10,12 +10,18 @@ pub enum MinStyle {
     Sd,
     /// Damped motion that steers towards the force (fast inertial relaxation engine).
     Fire,
+    /// Damped motion along the forces alone.
+    Quickmin,
 }
 
 impl MinStyle {
     /// Every style with its name in a deck.
-    pub const ALL: [(&'static str, MinStyle); 3] =
-        [("cg", MinStyle::Cg), ("sd", MinStyle::Sd), ("fire", MinStyle::Fire)];
+    pub const ALL: [(&'static str, MinStyle); 4] = [
+        ("cg", MinStyle::Cg),
+        ("sd", MinStyle::Sd),
+        ("fire", MinStyle::Fire),
+        ("quickmin", MinStyle::Quickmin),
+    ];
 
     /// The name in a deck.
     pub fn name(self) -> &'static str {
@@ -84,6 +90,8 @@ pub struct Fire {
     pub initial_delay: bool,
     /// Uphill iterations in a row after which to give up; 0: never.
     pub uphill_most: i64,
+    /// Mixing corrected for its bias towards the velocities at a start, speeds limited by component.
+    pub unbiased: bool,
 }
 
 impl Default for Fire {
@@ -100,6 +108,7 @@ impl Default for Fire {
             half_step_back: true,
             initial_delay: true,
             uphill_most: 2000,
+            unbiased: false,
         }
     }
 }

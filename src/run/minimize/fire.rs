@@ -1,11 +1,13 @@
 //! FIRE: damped motion that speeds up downhill and stops uphill (Bitzek et al., PRL 97, 170201; Guénolé et al., Comput.
 //! Mater. Sci. 175, 109584).
 
-use super::{Search, Stop, product};
+use super::{Search, Stop, drift, kick, product};
 use crate::diag::Result;
-use crate::par;
 use crate::world::World;
 use crate::world::minimizer::{Fire, FireIntegrator};
+
+/// The least mixing whose bias is corrected.
+const LEAST_MIXING: f64 = 1e-10;
 
 /// Squared forces below this have no direction.
 const NO_FORCE: f64 = 1e-20;
@@ -25,6 +27,8 @@ struct Damping {
     uphill: i64,
     /// Uphill iterations in a row.
     uphills: i64,
+    /// Downhill iterations since the last start.
+    downhills: i32,
     /// Factors of velocity and force in this iteration; `None` uphill.
     mix: Option<(f64, f64)>,
 }
@@ -44,6 +48,7 @@ pub fn relax(s: &mut Search) -> Result<Stop> {
         alpha: set.alpha0,
         uphill: s.w.clock.step,
         uphills: 0,
+        downhills: 0,
         mix: None,
     };
     iterate(s, &mut d)
@@ -87,6 +92,12 @@ fn speed_up(w: &mut World, d: &mut Damping) {
     let (vv, ff) = (product(&p.v, &p.v), product(&p.f, &p.f));
     let along = if ff <= NO_FORCE { 0.0 } else { d.alpha * (vv / ff).sqrt() };
     d.mix = Some((1.0 - d.alpha, along));
+    if d.set.unbiased {
+        d.downhills += 1;
+        d.alpha = d.alpha.max(LEAST_MIXING);
+        let bias = 1.0 / (1.0 - (1.0 - d.alpha).powi(d.downhills));
+        d.mix = Some(((1.0 - d.alpha) * bias, along * bias));
+    }
     d.uphills = 0;
     if w.clock.step - d.uphill > d.set.delay {
         d.dt = (d.dt * d.set.grow).min(d.longest);
@@ -96,10 +107,10 @@ fn speed_up(w: &mut World, d: &mut Damping) {
 }
 
 /// Uphill: a shorter time step, half a step back, and a fresh start along the forces, whose speed after one step is left
-/// in the velocities for `limit`. `false` if this has happened too often.
+/// in the velocities for `limit`; the unbiased way goes on with the forces it has. `false` if this has happened too often.
 fn slow_down(s: &mut Search, d: &mut Damping) -> Result<bool> {
     let step = s.w.clock.step;
-    (d.mix, d.uphill) = (None, step);
+    (d.mix, d.uphill, d.downhills) = (None, step, 0);
     let starting = d.set.initial_delay && step - s.first < d.set.delay;
     if !starting {
         d.alpha = d.set.alpha0;
@@ -116,13 +127,19 @@ fn slow_down(s: &mut Search, d: &mut Damping) -> Result<bool> {
         drift(s.w, -0.5 * d.dt);
     }
     s.w.particles.v.fill([0.0; 3]);
-    s.evaluate()?;
-    kick(s.w, d.dt, None);
+    if !d.set.unbiased {
+        s.evaluate()?;
+        kick(s.w, d.dt, None);
+    }
     Ok(true)
 }
 
 /// Shortens this step so that nobody goes further than `dmax`.
 fn limit(w: &World, d: &mut Damping) {
+    if d.set.unbiased {
+        d.limited = d.dt;
+        return;
+    }
     let fastest = super::largest(&w.particles.v);
     let dmax = w.settings.minimizer.dmax;
     d.limited = if d.dt * fastest > dmax { dmax / fastest } else { d.dt };
@@ -131,6 +148,14 @@ fn limit(w: &World, d: &mut Damping) {
 /// One step of motion with its evaluation.
 fn step(s: &mut Search, d: &Damping) -> Result<()> {
     let dt = d.limited;
+    let dmax = s.w.settings.minimizer.dmax;
+    let drift = |w: &mut World, dt: f64| {
+        if d.set.unbiased {
+            let most = dmax / dt;
+            w.particles.v.iter_mut().flatten().for_each(|v| *v = v.clamp(-most, most));
+        }
+        drift(w, dt);
+    };
     match d.set.integrator {
         FireIntegrator::EulerImplicit | FireIntegrator::Leapfrog => {
             kick(s.w, dt, d.mix);
@@ -151,29 +176,4 @@ fn step(s: &mut Search, d: &Damping) -> Result<()> {
             s.evaluate()
         }
     }
-}
-
-/// v ← v + f/m · dt, then v ← a v + b f.
-fn kick(w: &mut World, dt: f64, mix: Option<(f64, f64)>) {
-    let factor = dt * w.settings.units.constants().ftm2v;
-    let p = &mut w.particles;
-    par::each((&mut p.v[..], &p.f[..], &p.mass[..]), |_, (v, f, mass)| {
-        for ((v, f), mass) in v.iter_mut().zip(f).zip(mass) {
-            let k = factor / mass;
-            (0..3).for_each(|d| v[d] += k * f[d]);
-            if let Some((a, b)) = mix {
-                (0..3).for_each(|d| v[d] = a * v[d] + b * f[d]);
-            }
-        }
-    });
-}
-
-/// x ← x + v · dt.
-fn drift(w: &mut World, dt: f64) {
-    let p = &mut w.particles;
-    par::each((&mut p.x[..], &p.v[..]), |_, (x, v)| {
-        for (x, v) in x.iter_mut().zip(v) {
-            (0..3).for_each(|d| x[d] += dt * v[d]);
-        }
-    });
 }

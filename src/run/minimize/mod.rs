@@ -3,6 +3,7 @@
 mod descent;
 mod fire;
 mod line;
+mod quickmin;
 
 use super::verlet::{cpu_seconds, tick};
 use super::{Made, Outcome, Watch};
@@ -152,6 +153,7 @@ pub fn minimize(
     let stop = match s.w.settings.minimizer.style {
         MinStyle::Cg | MinStyle::Sd => descent::descend(&mut s)?,
         MinStyle::Fire => fire::relax(&mut s)?,
+        MinStyle::Quickmin => quickmin::relax(&mut s)?,
     };
     if stop != Stop::Iterations {
         s.last_output()?;
@@ -180,7 +182,7 @@ pub fn minimize(
 impl Search<'_> {
     /// Forces of the first scene and its output.
     fn begin(&mut self) -> Result<()> {
-        if self.w.settings.minimizer.style == MinStyle::Fire {
+        if matches!(self.w.settings.minimizer.style, MinStyle::Fire | MinStyle::Quickmin) {
             self.w.particles.v.fill([0.0; 3]);
         }
         let mut t = tick(self.w, true);
@@ -279,6 +281,31 @@ impl Search<'_> {
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// v ← v + f/m · dt, then v ← a v + b f.
+fn kick(w: &mut World, dt: f64, mix: Option<(f64, f64)>) {
+    let factor = dt * w.settings.units.constants().ftm2v;
+    let p = &mut w.particles;
+    par::each((&mut p.v[..], &p.f[..], &p.mass[..]), |_, (v, f, mass)| {
+        for ((v, f), mass) in v.iter_mut().zip(f).zip(mass) {
+            let k = factor / mass;
+            (0..3).for_each(|d| v[d] += k * f[d]);
+            if let Some((a, b)) = mix {
+                (0..3).for_each(|d| v[d] = a * v[d] + b * f[d]);
+            }
+        }
+    });
+}
+
+/// x ← x + v · dt.
+fn drift(w: &mut World, dt: f64) {
+    let p = &mut w.particles;
+    par::each((&mut p.x[..], &p.v[..]), |_, (x, v)| {
+        for (x, v) in x.iter_mut().zip(v) {
+            (0..3).for_each(|d| x[d] += dt * v[d]);
+        }
+    });
 }
 
 /// The scalar product of two long vectors.

@@ -53,8 +53,11 @@ impl Style for MinModify {
                    - `dtgrow`, `dtshrink`: factors of the time step (1.1, 0.5); `alpha0`, `alphashrink`: first mixing of \
                    velocity and force, and its factor (0.25, 0.99).\n\
                    - `halfstepback yes|no`: go back half a step where the motion turns uphill (yes).\n\
-                   - `vdfmax N`: uphill iterations in a row after which it gives up (2000; 0 for never).\n\n\
-                   `abcfire yes`, the `forcezero` line search and what belongs to LAMMPS' spins are refused.",
+                   - `vdfmax N`: uphill iterations in a row after which it gives up (2000; 0 for never).\n\
+                   - `abcfire yes|no`: the mixing is corrected for its bias towards small velocities after a start, and speeds are \
+                   limited component by component to dmax/dt (Echeverri Restrepo & Andric, Comput. Mater. Sci. 218, 111978) \
+                   (no).\n\n\
+                   The `forcezero` line search and what belongs to LAMMPS' spins are refused.",
             example: "min_modify dmax 1.0e-7 norm max integrator verlet tmax 6.0",
         }
     }
@@ -116,12 +119,7 @@ fn option(set: &mut Minimizer, keyword: &Word, a: &mut Args) -> Result<()> {
         "halfstepback" => fire.half_step_back = a.flag("halfstepback")?,
         "initialdelay" => fire.initial_delay = a.flag("initialdelay")?,
         "vdfmax" => fire.uphill_most = a.integer_from(0, "the most uphill iterations")?,
-        "abcfire" => {
-            if a.flag("abcfire")? {
-                let text = "min_modify abcfire yes is LAMMPS', but perigrain does not have it";
-                return fail(Code::NOT_SUPPORTED, keyword.span, text);
-            }
-        }
+        "abcfire" => fire.unbiased = a.flag("abcfire")?,
         _ => return Err(bad_keyword(a, keyword, &KEYWORDS, &["alpha_damp", "discrete_factor"])),
     }
     Ok(())
