@@ -47,8 +47,9 @@ pub(super) const MINIMIZE: Entry = (
             and the like counts after `fix_modify ID energy yes`. `gravity` and `drag` do not act, as in LAMMPS, which a \
             warning says. Integrators, averages and `print` wait for runs. Particles do not rotate.\n\n\
             Peridynamic bonds break as in steps: each evaluation looks at them. Laws of contact count no energy, so for \
-            grains `fire` with a force tolerance is the way. `fire` sets all velocities to zero first and leaves those of its \
-            last iteration.",
+            grains `fire` or `quickmin` with a force tolerance is the way. Both set all velocities to zero first and leave those of \
+            their last iteration. Springs of contacts grow by the steps `fire` takes; LAMMPS lets them grow by the deck's \
+            `timestep`, and so does perigrain under `-compat lammps`.",
         example: "fix hold plate setforce 0.0 0.0 0.0\nmin_style fire\nmin_modify dmax 1.0e-6\nminimize 0.0 1.0e3 20 100",
     },
 );

@@ -40,7 +40,7 @@ impl Style for GranularStyle {
                 Normal: `hooke` F_n = kn δ; `hertz` kn a δ; `hertz/material` 4/3 E* a δ with \
                 1/E* = (1−ν_i²)/E_i + (1−ν_j²)/E_j; `dmt` 4/3 E* a δ − 4π γ R̄; `jkr` 4/3 E* a³/R̄ − 4 a √(π γ E* a) \
                 with δ = a²/R̄ − 2 √(π γ a/E*): a contact that has been made lasts until it is torn off at −3π γ R̄, \
-                beyond touch. `eta` is a damping coefficient or a coefficient of restitution e, as `damping` says.\n\n\
+                beyond touch. LAMMPS' `mdr` (plastic grains that grow as they are pressed) is refused. `eta` is a damping coefficient or a coefficient of restitution e, as `damping` says.\n\n\
                 `damping`: η = eta (`velocity`), eta m̄ (`mass_velocity`), eta a m̄ (`viscoelastic`, the default), \
                 √2 α_T(e) √(m̄ k) (`tsuji`; for hooke 2/√5 of it), 2β √(m̄ k) for hooke and √5 β √(m̄ k) for the others \
                 (`coeff_restitution`, β = −ln e/√(π²+ln²e)); k = F_n/δ. For the last two 0 < e ≤ 1; they do not go \
