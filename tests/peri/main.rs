@@ -5,7 +5,6 @@ mod golden;
 mod layouts;
 mod limits;
 mod patch;
-mod plastic;
 mod scene;
 mod states;
 mod textbook;
