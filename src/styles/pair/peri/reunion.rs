@@ -12,7 +12,9 @@ pub(super) fn outside(w: &World, i: usize) -> bool {
 
 /// Warns where nobody asks whether two particles are of one family.
 pub(super) fn check(style: &Solid, cx: &BuildCx) {
-    let Some((_, span)) = style.reunite.filter(|_| cx.world.groups.surfaces().is_empty()) else { return };
+    // A deck that is only checked has no particles to find surfaces among.
+    let none = cx.world.groups.surfaces().is_empty() && !cx.checking;
+    let Some((_, span)) = style.reunite.filter(|_| none) else { return };
     cx.note(
         Diagnostic::warning(
             Code::SUSPICIOUS,
