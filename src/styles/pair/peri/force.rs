@@ -47,13 +47,13 @@ impl Op for Force {
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let first = w.families.is_none();
         if t.setup {
             self.prepare(w)?;
         } else if self.adapted != w.adaptations() {
             self.adapt(w)?;
         }
         let Some(mut families) = w.families.take() else { return Ok(()) };
-        let first = !families.armed;
         families.law.dt = t.dt;
         let mut sums = PeriTally::default();
         let mut atoms = std::mem::take(&mut w.tally.atom);
@@ -65,7 +65,7 @@ impl Op for Force {
             sums.per_atom_virial = Some(&mut virials);
         }
         let advance = match t.setup {
-            // LAMMPS advances bonds in the setup of every run but the first.
+            // LAMMPS advances bonds in the setup of every run but the first, be that one of no steps.
             true => w.settings.lammps() && !first && !t.unchanged,
             false => true,
         };
