@@ -104,10 +104,14 @@ def grains(r):
     # One order of the grains of a pair in all of LAMMPS' lists.
     deck += ["neighbor 5.0 nsq", "neigh_modify every 1 delay 0 check yes", f"timestep {r.choice([0.0005, 0.001])}",
              "group odd id 1:60:2", "group few id 3 5 8", "group mob subtract all few"]
-    frozen = r.random() < 0.3
-    deck += ["fix fz few freeze", "fix 1 mob nve/sphere"] if frozen else ["fix 1 all nve/sphere"]
+    kind = r.choice(["single", "single force 1 on off on torque 1 off off on", "single reinit no"])
+    deck += r.choice([
+        ["fix 1 all nve/sphere"],
+        ["fix fz few freeze", "fix 1 mob nve/sphere"],
+        [f"fix r few rigid {kind}", "fix 1 mob nve/sphere", "neigh_modify exclude group few few"],
+    ])
     maybe = ["fix g all gravity 9.81 vector 0 0 -1", "fix c all gravity 1 chute 25", "fix v odd viscous 0.3", "fix vs all viscous/sphere 0.1",
-             "fix a odd addforce 0.1 -0.2 0.05", "fix sf few setforce 0 NULL 0.1", "fix at odd addtorque 0.01 0.02 -0.01",
+             "fix a odd addforce 0.1 -0.2 0.05", "fix sf mob setforce 0 NULL 0.1", "fix at odd addtorque 0.01 0.02 -0.01",
              "fix m all momentum 20 linear 1 1 0", "fix d odd drag 3 3 3 0.05 0.2", "fix s odd spring/self 0.5", "neigh_modify exclude type 1 2"]
     deck += [line for line in maybe if r.random() < 0.25]
     deck += walls(r, sides, law)

@@ -10,7 +10,7 @@ pub use nve::{RigidNve, RigidNveSmall};
 use super::{Fix, FixStyle, no_option};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::{Args, Word};
-use crate::plan::{Access, Op, Stage};
+use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::command::common::range_from;
 use crate::styles::matter::check_masses;
 use crate::styles::molecules::named;
@@ -49,7 +49,8 @@ impl Style for Rigid {
                    counts of some bodies, one line each behind the number of lines, and means `reinit no`.\n\n\
                    Scalar: temperature of the bodies, Σ (m v² + ω·I·ω) over 6 degrees of freedom each (LAMMPS counts less where components are turned off). Array, a row for each body: centre, \
                    velocity, force, torque, image counts (3 columns each). The forces that hold bodies together count in \
-                   pressures, unless `fix_modify ID virial no`. Temperatures count the freedom of single particles; LAMMPS \
+                   pressures, unless `fix_modify ID virial no`. In the setup of a run LAMMPS leaves out the forces of fixes that stand below this \
+                   one, so that its first half kick lacks them; perigrain does so under `compat lammps` only. Temperatures count the freedom of single particles; LAMMPS \
                    takes away what bodies have lost. `langevin`, `gravity` (fix gravity acts on the particles), thermostats and \
                    barostats are refused.",
             example: "unfix motion\nset group plate diameter 0.0\nfix body plate rigid single torque * off off on",
@@ -121,7 +122,11 @@ fn custom(args: &mut Args, cx: &BuildCx) -> Result<Split> {
     match cx.world.columns.custom(&word.text) {
         Some(column) if word.text.starts_with("i_") => Ok(Split::Custom(column)),
         _ => {
-            fail(Code::UNKNOWN_NAME, word.span, format!("`{}` is no whole-number property i_NAME", word.text))
+            let text = format!("`{}` is no whole-number property i_NAME", word.text);
+            let d = Diagnostic::error(Code::UNKNOWN_NAME, word.span, text);
+            Err(d
+                .help("values of a variable become one by `fix p all property/atom i_body` and `set group all i_body v_NAME`")
+                .into())
         }
     }
 }
@@ -313,16 +318,26 @@ impl Fix for Declared {
             me.advance(w, t);
             Ok(())
         });
-        let me = self.clone();
-        let second = StepOp::new(name, Stage::FinalIntegrate, access(), move |w, t| {
-            if t.unchanged {
-                return Ok(());
+        let second = |me: Declared| {
+            move |w: &mut World, t: &Tick| {
+                if t.unchanged {
+                    return Ok(());
+                }
+                me.finish_step(w, t);
+                me.publish(w, t, slot);
+                Ok(())
             }
-            me.finish_step(w, t);
-            me.publish(w, t, slot);
-            Ok(())
-        });
-        Ok(vec![bodies.boxed(), first.boxed(), second.in_setup(true).boxed()])
+        };
+        let last = StepOp::new(name.clone(), Stage::FinalIntegrate, access(), second(self.clone()));
+        let mut ops = vec![bodies.boxed(), first.boxed()];
+        if cx.world().settings.lammps() {
+            // Its setup sums up forces when it comes to this fix: those of fixes that stand below are missing.
+            let setup = StepOp::new(name, Stage::PostForce, access(), second(self.clone()));
+            ops.extend([setup.when(When::First).boxed(), last.in_setup(false).boxed()]);
+        } else {
+            ops.push(last.in_setup(true).boxed());
+        }
+        Ok(ops)
     }
 
     fn stop(&self, w: &mut World, what: Motion, span: Span) -> Result<()> {
