@@ -143,6 +143,7 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor) -> Result<()> {
     }
     w.rebuild.generation += 1;
     w.rebuild.step = t.step;
+    // Whoever makes radii grow says so anew in each run.
     w.rebuild.grown = w.rebuild.grown.map(|_| 0.0).filter(|_| !t.setup);
     hold(w);
     Ok(())

@@ -49,3 +49,21 @@ impl Rebuild {
         if self.grown.is_some() { (1.0 - GROWTH) * skin } else { skin }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // A skin of 0.4: lists are made anew when two grains have grown by more than 0.1 together.
+    #[test]
+    fn growth_uses_up_its_part_of_the_skin() {
+        let mut r = Rebuild::default();
+        assert_eq!(r.room(0.4), 0.4);
+        r.grow(0.0, 0.4);
+        assert!((r.room(0.4) - 0.3).abs() < 1e-15);
+        r.grow(0.03, 0.4);
+        assert_eq!((r.generation, r.grown), (0, Some(0.03)));
+        r.grow(0.03, 0.4);
+        assert_eq!((r.generation, r.grown), (1, Some(0.0)));
+    }
+}

@@ -50,13 +50,19 @@ fn the_same_bytes_as_lammps() {
 
 #[test]
 fn other_forms_are_the_same_bytes_too() {
+    writes_the_same("forms");
+}
+
+/// Runs `in.NAME`, whose files are those of `golden_NAME`.
+fn writes_the_same(name: &str) {
     let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/dumps");
     let folder = tempfile::tempdir().unwrap();
     let dir = folder.path().to_str().unwrap().to_string();
     let options = Options { compat: true, vars: vec![("dir".into(), vec![dir])], ..Options::default() };
-    let deck = fs::read_to_string(here.join("in.forms")).unwrap();
-    Session::new(options).unwrap().run_text("in.forms", &deck).unwrap();
-    same(&files(folder.path()), &files(&here.join("golden_forms")));
+    let file = format!("in.{name}");
+    let deck = fs::read_to_string(here.join(&file)).unwrap();
+    Session::new(options).unwrap().run_text(&file, &deck).unwrap();
+    same(&files(folder.path()), &files(&here.join(format!("golden_{name}"))));
 }
 
 fn same(ours: &BTreeMap<String, String>, theirs: &BTreeMap<String, String>) {
@@ -68,13 +74,7 @@ fn same(ours: &BTreeMap<String, String>, theirs: &BTreeMap<String, String>) {
 
 #[test]
 fn times_columns_and_rows_are_the_same_bytes() {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/dumps");
-    let folder = tempfile::tempdir().unwrap();
-    let dir = folder.path().to_str().unwrap().to_string();
-    let options = Options { compat: true, vars: vec![("dir".into(), vec![dir])], ..Options::default() };
-    let deck = fs::read_to_string(here.join("in.times")).unwrap();
-    Session::new(options).unwrap().run_text("in.times", &deck).unwrap();
-    same(&files(folder.path()), &files(&here.join("golden_times")));
+    writes_the_same("times");
 }
 
 /// A growing file is packed snapshot by snapshot, a file of one snapshot as a whole: both unpack to what is written

@@ -1,7 +1,7 @@
 //! FIRE: damped motion that speeds up downhill and stops uphill (Bitzek et al., PRL 97, 170201; Guénolé et al., Comput.
 //! Mater. Sci. 175, 109584).
 
-use super::{Search, Stop, drift, kick, product};
+use super::{Search, Stop, drift, kick, product, shortened};
 use crate::diag::Result;
 use crate::world::World;
 use crate::world::minimizer::{Fire, FireIntegrator};
@@ -136,13 +136,8 @@ fn slow_down(s: &mut Search, d: &mut Damping) -> Result<bool> {
 
 /// Shortens this step so that nobody goes further than `dmax`.
 fn limit(w: &World, d: &mut Damping) {
-    if d.set.unbiased {
-        d.limited = d.dt;
-        return;
-    }
-    let fastest = super::largest(&w.particles.v);
-    let dmax = w.settings.minimizer.dmax;
-    d.limited = if d.dt * fastest > dmax { dmax / fastest } else { d.dt };
+    // The unbiased way limits speeds instead.
+    d.limited = if d.set.unbiased { d.dt } else { shortened(w, d.dt) };
 }
 
 /// One step of motion with its evaluation.

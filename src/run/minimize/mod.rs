@@ -298,6 +298,12 @@ fn kick(w: &mut World, dt: f64, mix: Option<(f64, f64)>) {
     });
 }
 
+/// This time step, or the one in which nobody goes further than `dmax`.
+fn shortened(w: &World, dt: f64) -> f64 {
+    let (fastest, dmax) = (largest(&w.particles.v), w.settings.minimizer.dmax);
+    if dt * fastest > dmax { dmax / fastest } else { dt }
+}
+
 /// x ← x + v · dt.
 fn drift(w: &mut World, dt: f64) {
     let p = &mut w.particles;

@@ -1,7 +1,7 @@
 //! Quick-min: damped motion that keeps of its velocity only what points along the forces (Sheppard, Terrell & Henkelman,
 //! J. Chem. Phys. 128, 134106).
 
-use super::{Search, Stop, drift, kick, largest, product};
+use super::{Search, Stop, drift, kick, product, shortened};
 use crate::diag::Result;
 
 /// Downhill iterations before the energy tolerance counts, as in LAMMPS.
@@ -29,8 +29,7 @@ pub fn relax(s: &mut Search) -> Result<Stop> {
                 *v = f.map(|f| scale * f);
             }
         }
-        let (dt, fastest, dmax) = (s.w.clock.dt, largest(&p.v), s.w.settings.minimizer.dmax);
-        let step = if dt * fastest > dmax { dmax / fastest } else { dt };
+        let step = shortened(s.w, s.w.clock.dt);
         s.previous = s.energy;
         drift(s.w, step);
         kick(s.w, step, None);

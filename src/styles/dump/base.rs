@@ -21,7 +21,7 @@ use crate::styles::{BuildCx, SealCx, Wants};
 use clock::Clock;
 
 use crate::world::{Domain, GroupId, World};
-pub use keywords::unknown;
+pub use keywords::{column, unknown};
 
 /// What outlives a run: open files and what belongs to them.
 #[derive(Debug)]

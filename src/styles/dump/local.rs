@@ -1,6 +1,6 @@
 //! Dump `local`: values of pairs, bonds and the like as text.
 
-use super::base::{Base, Sort, unknown};
+use super::base::{Base, Sort, column, unknown};
 use super::{Dump, DumpStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::args::blame;
@@ -221,15 +221,7 @@ impl Declared {
             self.renamed.clear();
             return Ok(());
         }
-        let count = self.names.len();
-        let number = || {
-            let k = which.text.parse::<i64>().ok()?;
-            usize::try_from(if k < 0 { count as i64 + k } else { k - 1 }).ok()
-        };
-        let column = self.names.iter().position(|n| *n == which.text).or_else(number);
-        let Some(column) = column.filter(|k| *k < count) else {
-            return fail(Code::BAD_VALUE, which.span, format!("this dump has columns 1 to {count}"));
-        };
+        let column = column(which, self.names.iter().map(String::as_str))?;
         self.renamed.push((column, args.expect("the column's new name")?.text.clone()));
         Ok(())
     }

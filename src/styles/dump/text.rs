@@ -1,7 +1,7 @@
 //! Dumps `atom` and `custom`: LAMMPS' text format.
 
 use super::attribute::{Attribute, Core, expand};
-use super::base::{Base, Sort, unknown};
+use super::base::{Base, Sort, column, unknown};
 use super::{Dump, DumpStyle};
 use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Word};
@@ -304,7 +304,7 @@ impl Text {
         }
         let column = match which.text.as_str() {
             "line" | "int" | "float" => None,
-            _ => Some(self.column(which, kinds.len())?),
+            _ => Some(self.column(which)?),
         };
         let word = args.expect("a format such as %g")?;
         let outcome = match column {
@@ -322,24 +322,14 @@ impl Text {
             self.names.clear();
             return Ok(());
         }
-        let column = self.column(which, self.layout.attributes().len())?;
+        let column = self.column(which)?;
         let name = args.expect("the column's new name")?;
         self.names.push((column, name.text.clone()));
         Ok(())
     }
 
-    /// A column by number from 1, from -1 backwards, or by name; counted from 0.
-    fn column(&self, word: &Word, n: usize) -> Result<usize> {
-        if let Some(k) = self.layout.attributes().iter().position(|a| a.word == word.text) {
-            return Ok(k);
-        }
-        let Ok(k) = word.text.parse::<i64>() else {
-            return fail(Code::UNKNOWN_NAME, word.span, format!("this dump has no column `{}`", word.text));
-        };
-        let index = if k < 0 { n as i64 + k } else { k - 1 };
-        match usize::try_from(index) {
-            Ok(index) if index < n => Ok(index),
-            _ => fail(Code::BAD_VALUE, word.span, format!("this dump has columns 1 to {n}")),
-        }
+    /// A column, counted from 0.
+    fn column(&self, word: &Word) -> Result<usize> {
+        column(word, self.layout.attributes().iter().map(|a| a.word.as_str()))
     }
 }

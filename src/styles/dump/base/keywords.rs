@@ -132,6 +132,24 @@ impl Base {
     }
 }
 
+/// A column of these names by number from 1, from -1 backwards, or by name; counted from 0.
+///
+/// # Errors
+/// Names and numbers of no column.
+pub fn column<'a>(word: &Word, mut names: impl ExactSizeIterator<Item = &'a str>) -> Result<usize> {
+    let n = names.len();
+    if let Some(k) = names.position(|name| name == word.text) {
+        return Ok(k);
+    }
+    let Ok(k) = word.text.parse::<i64>() else {
+        return fail(Code::UNKNOWN_NAME, word.span, format!("this dump has no column `{}`", word.text));
+    };
+    match usize::try_from(if k < 0 { n as i64 + k } else { k - 1 }) {
+        Ok(index) if index < n => Ok(index),
+        _ => fail(Code::BAD_VALUE, word.span, format!("this dump has columns 1 to {n}")),
+    }
+}
+
 /// Refuses a keyword that neither the style nor all dumps know.
 pub fn unknown(word: &Word, args: &Args, own: &[&'static str]) -> crate::diag::Diagnostics {
     if let Some((name, why)) = ELSEWHERE.iter().find(|(name, _)| *name == word.text) {
