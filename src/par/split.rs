@@ -31,6 +31,16 @@ impl<T: Send> Split for &mut [T] {
     }
 }
 
+/// Columns that may be missing.
+impl<S: Split> Split for Option<S> {
+    fn rows(&self) -> usize {
+        self.as_ref().map_or(0, S::rows)
+    }
+    fn cut(self, mid: usize) -> (Self, Self) {
+        self.map(|s| s.cut(mid)).unzip()
+    }
+}
+
 /// A column with several numbers per row.
 pub struct Rows<'a, T> {
     /// All rows, one after the other.

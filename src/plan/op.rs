@@ -270,6 +270,11 @@ impl Access {
         }
     }
 
+    /// Whether this is written.
+    pub fn writes(&self, what: &str) -> bool {
+        self.writes.iter().any(|w| *w == what || *w == "everything")
+    }
+
     /// Whether this is read.
     pub fn reads(&self, what: &str) -> bool {
         self.reads.iter().any(|r| *r == what || *r == "everything")
@@ -310,6 +315,18 @@ pub trait Op: Send {
     /// In which steps of two lengths it acts.
     fn beat(&self) -> Beat {
         Beat::Long
+    }
+    /// Whether it tells the world's account ([`Travel`](crate::world::Travel)) how far it moves particles in whole steps.
+    fn reports_travel(&self) -> bool {
+        false
+    }
+    /// Acts at the end of this step and, in the same pass, as its fix does at the beginning of the next one, which nobody
+    /// looks in between of; `false` if it cannot, and has then done nothing.
+    ///
+    /// # Errors
+    /// As `run`.
+    fn run_on(&mut self, _w: &mut World, _t: &Tick) -> Result<bool> {
+        Ok(false)
     }
     /// The row of the timing table.
     fn class(&self) -> OpClass {

@@ -27,6 +27,21 @@ impl Placed {
         let (when, reads_contacts) = (op.when(), op.access().reads("contacts"));
         Self { op, when, from, provides: String::new(), reads_contacts, meter: Meter::default() }
     }
+
+    /// Lets the op act, and adds up what that costs.
+    fn timed<T>(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        act: impl FnOnce(&mut dyn Op, &mut World) -> Result<T>,
+    ) -> Result<T> {
+        let begin = Instant::now();
+        let outcome = act(&mut *self.op, w);
+        self.meter.time += begin.elapsed();
+        self.meter.calls += 1;
+        self.meter.bytes += self.op.bytes(w);
+        outcome.map_err(|e| placed_error(e, self, t))
+    }
 }
 
 /// Something the plan does without, and why.
@@ -55,6 +70,8 @@ pub struct StepPlan {
     pub atom_virial: Vec<When>,
     /// Who watches the energy.
     pub guard: Option<Guard>,
+    /// The end of the last step has begun the present one.
+    begun: bool,
 }
 
 impl StepPlan {
@@ -101,14 +118,54 @@ impl StepPlan {
             {
                 continue;
             }
-            let begin = Instant::now();
-            let outcome = p.op.run(w, t);
-            p.meter.time += begin.elapsed();
-            p.meter.calls += 1;
-            p.meter.bytes += p.op.bytes(w);
-            outcome.map_err(|e| placed_error(e, p, t))?;
+            p.timed(w, t, |op, w| op.run(w, t))?;
         }
         Ok(())
+    }
+
+    /// Whether all that move particles report how far, and none grows; who adds or wraps particles has lists made anew.
+    pub fn reports_travel(&self) -> bool {
+        let moves = |p: &&Placed| ["x", "radius"].iter().any(|what| p.op.access().writes(what));
+        let anew = |p: &Placed| matches!(p.op.stage(), Stage::Exchange | Stage::Neighbor);
+        self.ops.iter().filter(moves).all(|p| anew(p) || p.op.reports_travel())
+    }
+
+    /// Whether the last step has made the beginning of the next one, which has to be made then.
+    pub fn begun(&self) -> bool {
+        self.begun
+    }
+
+    /// Makes one step up to its outputs. Where `more` steps are sure to follow and nobody looks in between, its last kick
+    /// is made with the first one of the next step, in one pass.
+    ///
+    /// # Errors
+    /// The first op's that fails.
+    pub fn step(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
+        use Stage::{FinalIntegrate, InitialIntegrate, PostIntegrate};
+        if !std::mem::take(&mut self.begun) {
+            self.run(w, t, &[InitialIntegrate])?;
+        }
+        self.run(w, t, &[PostIntegrate, Stage::Exchange, Stage::Neighbor, Stage::PreForce])?;
+        self.run(w, t, &[Stage::Force, Stage::PostForce])?;
+        if let Some(last) = self.last_kick(t).filter(|_| more(w)) {
+            self.begun = self.ops[last].timed(w, t, |op, w| op.run_on(w, t))?;
+        }
+        if self.begun { Ok(()) } else { self.run(w, t, &[FinalIntegrate]) }
+    }
+
+    /// The op that ends the motion of this step if its fix alone moves particles and nobody looks before the next step.
+    fn last_kick(&self, t: &Tick) -> Option<usize> {
+        let fires = |p: &Placed| p.when.fires(t);
+        let at = |stage| self.ops.iter().enumerate().filter(move |(_, p)| p.op.stage() == stage);
+        let looks = |stage| at(stage).any(|(_, p)| fires(p));
+        let (mut first, mut second) = (at(Stage::InitialIntegrate), at(Stage::FinalIntegrate));
+        let (Some((_, a)), None, Some((k, b)), None) =
+            (first.next(), first.next(), second.next(), second.next())
+        else {
+            return None;
+        };
+        let one = a.from == b.from && a.when == When::Always && b.when == When::Always;
+        (one && !looks(Stage::EndOfStep) && !looks(Stage::Output)).then_some(k)
     }
 
     /// Makes ops of forces give what they hold of the scene back to the world; they take it up anew at their next step.

@@ -87,7 +87,21 @@ fn tally_anew(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
 /// # Errors
 /// The first op's that fails; the world is then as that op left it.
 pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Result<Outcome> {
-    steps(plan, w, watch, |plan, w, t| plan.run(w, t, &MOTION))
+    w.rebuild.travel.begin(plan.guard.is_none() && plan.reports_travel());
+    // A guard may take steps back.
+    let sure = plan.guard.is_none();
+    let outcome = steps(plan, w, watch, |plan, w, t| plan.step(w, t, |w| sure && !over(w)));
+    w.rebuild.travel.begin(false);
+    outcome
+}
+
+/// Whether the present step is the last one, or somebody wants it to be.
+fn over(w: &World) -> bool {
+    let c = &w.clock;
+    c.step >= c.last
+        || c.halt != Halt::No
+        || w.settings.stop.load(Ordering::Relaxed)
+        || w.settings.ends_at(c.step)
 }
 
 /// The stages of a step before anything is put out.
@@ -123,11 +137,12 @@ pub(super) fn steps(
         None => None,
     };
     while w.clock.step < w.clock.last && w.clock.halt == Halt::No {
-        if w.settings.stop.load(Ordering::Relaxed) {
+        if plan.begun() {
+            // Half of this step is made.
+        } else if w.settings.stop.load(Ordering::Relaxed) {
             interrupted = true;
             break;
-        }
-        if w.settings.ends_at(w.clock.step) {
+        } else if w.settings.ends_at(w.clock.step) {
             w.clock.halt = Halt::All;
             break;
         }

@@ -13,8 +13,13 @@ pub struct StepOp<F> {
     when: When,
     in_setup: bool,
     beat: Beat,
+    reports: bool,
+    on: Option<On>,
     act: F,
 }
+
+/// What ends a step and begins the next one.
+type On = Box<dyn FnMut(&mut World, &Tick) + Send>;
 
 impl<F> StepOp<F>
 where
@@ -29,6 +34,8 @@ where
             when: When::Always,
             in_setup: stage.in_setup(),
             beat: Beat::Long,
+            reports: false,
+            on: None,
             act,
         }
     }
@@ -51,6 +58,20 @@ where
     #[must_use]
     pub fn in_short_steps(mut self) -> Self {
         self.beat = Beat::Both;
+        self
+    }
+
+    /// Reports to the account of ways how far it moves particles.
+    #[must_use]
+    pub fn reporting(mut self) -> Self {
+        self.reports = true;
+        self
+    }
+
+    /// Can end a step and begin the next one at once.
+    #[must_use]
+    pub fn and_on(mut self, on: impl FnMut(&mut World, &Tick) + Send + 'static) -> Self {
+        self.on = Some(Box::new(on));
         self
     }
 
@@ -82,8 +103,14 @@ where
     fn beat(&self) -> Beat {
         self.beat
     }
+    fn reports_travel(&self) -> bool {
+        self.reports
+    }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         (self.act)(w, t)
+    }
+    fn run_on(&mut self, w: &mut World, t: &Tick) -> Result<bool> {
+        Ok(self.on.as_mut().map(|on| on(w, t)).is_some())
     }
 }
 

@@ -26,6 +26,7 @@ pub mod slots;
 pub mod surface;
 pub mod tally;
 pub mod template;
+pub mod travel;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -48,6 +49,7 @@ pub use settings::{Compat, NeighborSettings, Newton, RunStyle, Settings};
 pub use slots::{Offers, Slot, SlotId, Slots};
 pub use tally::Tally;
 pub use template::Template;
+pub use travel::{Seen, Travel};
 
 /// How names of columns end that hold the mass of the rigid body a particle belongs to, 0 for none.
 pub const CONTACT_MASS: &str = "/contact mass";

@@ -1,5 +1,7 @@
 //! When neighbour lists were last rebuilt, and where everybody was then.
 
+use super::travel::{Seen, Travel};
+
 /// The state behind LAMMPS' reneighbouring rule.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Rebuild {
@@ -28,6 +30,12 @@ pub struct Rebuild {
     pub due: bool,
     /// Counts how often particles have come or gone since the program began.
     pub roster: u64,
+    /// How far particles may have gone in this run.
+    #[serde(skip)]
+    pub travel: Travel,
+    /// How far they were from where they were at the last rebuild.
+    #[serde(skip)]
+    pub seen: Seen,
 }
 
 /// The part of the skin that growing particles may use up before lists are made anew for their size.

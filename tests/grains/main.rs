@@ -4,6 +4,7 @@
 mod budgets;
 mod cooling;
 mod impacts;
+mod looking;
 mod oblique;
 mod restitution;
 mod rolling;

@@ -4,6 +4,7 @@ use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
 use crate::math::vec3::{Vec3, add, sub};
 use crate::neigh::list::{Pair, difference};
 use crate::par;
+use crate::world::Travel;
 use crate::world::contacts::Contacts;
 use crate::world::domain::Flow;
 
@@ -106,6 +107,8 @@ pub struct Grains<'a> {
     pub body: &'a [u32],
     /// Particles that nothing moves, of infinite mass to others; may be empty.
     pub frozen: &'a [bool],
+    /// How far they may have gone.
+    pub travel: Travel,
 }
 
 /// The body of a particle that belongs to no solid.

@@ -28,6 +28,7 @@ mod gravity;
 mod halt;
 mod heat_flow;
 mod indent;
+mod kick;
 mod lineforce;
 mod momentum;
 mod move_fix;

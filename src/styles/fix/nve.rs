@@ -1,5 +1,6 @@
 //! fix nve: velocity Verlet at constant energy.
 
+use super::kick::{Part, pass};
 use super::{Fix, FixStyle};
 use crate::diag::Result;
 use crate::lang::Args;
@@ -64,7 +65,10 @@ impl Fix for Declared {
                 kick(w, group, t);
                 Ok(())
             });
-        Ok(vec![first.in_short_steps().boxed(), second.in_short_steps().boxed()])
+        let first = first.in_short_steps().reporting();
+        let second =
+            second.in_short_steps().reporting().and_on(move |w, t| pass(w, group, None, t, Part::Both));
+        Ok(vec![first.boxed(), second.boxed()])
     }
 
     fn integrates(&self) -> bool {
@@ -83,48 +87,18 @@ pub fn half_step(w: &World, dt: f64) -> f64 {
 
 /// First half of a step: v += Δt/2 · f/m, x += Δt · v. In steps of two lengths solids drift in the short ones.
 pub fn kick_and_drift(w: &mut World, group: GroupId, t: &Tick) {
-    let (half, dt) = (half_step(w, t.dt), t.dt);
     if t.phase != Phase::Whole {
-        return some(w, group, &t.phase, half, dt);
+        return some(w, group, &t.phase, half_step(w, t.dt), t.dt);
     }
-    let p = &mut w.particles;
-    let bit = group.bit();
-    if p.style.own_mass() {
-        let columns = (&mut p.x[..], &mut p.v[..], &p.f[..], &p.mass[..], &p.mask[..]);
-        return par::each(columns, |_, (x, v, f, mass, mask)| {
-            for ((((x, v), f), m), mask) in x.iter_mut().zip(v).zip(f).zip(mass).zip(mask) {
-                if mask & bit != 0 {
-                    drifted(x, kicked(v, f, half / m), dt);
-                }
-            }
-        });
-    }
-    let masses = Masses::ByType(&p.kind, &w.type_mass);
-    par::each((&mut p.x[..], &mut p.v[..], &p.f[..], &p.mask[..]), |start, (x, v, f, mask)| {
-        for (k, (((x, v), f), mask)) in x.iter_mut().zip(v).zip(f).zip(mask).enumerate() {
-            if mask & bit != 0 {
-                drifted(x, kicked(v, f, half / masses.get(start + k)), dt);
-            }
-        }
-    });
+    pass(w, group, None, t, Part::First);
 }
 
 /// Second half of a step: v += Δt/2 · f/m.
 pub fn kick(w: &mut World, group: GroupId, t: &Tick) {
-    let half = half_step(w, t.dt);
     if t.phase != Phase::Whole {
-        return some(w, group, &t.phase, half, 0.0);
+        return some(w, group, &t.phase, half_step(w, t.dt), 0.0);
     }
-    let p = &mut w.particles;
-    let bit = group.bit();
-    let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
-    par::each((&mut p.v[..], &p.f[..], &p.mask[..]), |start, (v, f, mask)| {
-        for (k, ((v, f), mask)) in v.iter_mut().zip(f).zip(mask).enumerate() {
-            if mask & bit != 0 {
-                kicked(v, f, half / masses.get(start + k));
-            }
-        }
-    });
+    pass(w, group, None, t, Part::Second);
 }
 
 /// Half a step of two lengths: in the long one all are kicked and all but solids drift, in the short ones solids do both.

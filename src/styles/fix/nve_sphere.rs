@@ -1,6 +1,7 @@
 //! fix nve/sphere: velocity Verlet of spheres, translation and rotation.
 
-use super::nve::{half_step, kick, kick_and_drift};
+use super::kick::{Part, pass};
+use super::nve::{kick, kick_and_drift};
 use super::{Fix, FixStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
@@ -88,7 +89,7 @@ impl Fix for Declared {
         let access = || Access::new("f torque mass radius mask", "x v omega");
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
             if t.phase == Phase::Whole {
-                whole::<true>(w, group, inertia, t);
+                pass(w, group, Some(inertia), t, Part::First);
                 return Ok(());
             }
             kick_and_drift(w, group, t);
@@ -97,14 +98,17 @@ impl Fix for Declared {
         });
         let second = StepOp::new(name, Stage::FinalIntegrate, access(), move |w, t| {
             if t.phase == Phase::Whole {
-                whole::<false>(w, group, inertia, t);
+                pass(w, group, Some(inertia), t, Part::Second);
                 return Ok(());
             }
             kick(w, group, t);
             turn(w, group, inertia, t);
             Ok(())
         });
-        Ok(vec![first.in_short_steps().boxed(), second.in_short_steps().boxed()])
+        let first = first.in_short_steps().reporting();
+        let second = second.in_short_steps().reporting();
+        let second = second.and_on(move |w, t| pass(w, group, Some(inertia), t, Part::Both));
+        Ok(vec![first.boxed(), second.boxed()])
     }
 
     fn integrates(&self) -> bool {
@@ -114,33 +118,6 @@ impl Fix for Declared {
     fn boxed(&self) -> Box<dyn Fix> {
         Box::new(self.clone())
     }
-}
-
-/// Half a step of velocities and spins, and with `DRIFT` a step of positions, in one pass over memory.
-fn whole<const DRIFT: bool>(w: &mut World, group: GroupId, inertia: f64, t: &Tick) {
-    let half = half_step(w, t.dt);
-    let half_turn = half / inertia;
-    let p = &mut w.particles;
-    let bit = group.bit();
-    let moved = (&mut p.x[..], &mut p.v[..], &mut p.omega[..]);
-    let columns = (moved, &p.f[..], &p.torque[..], &p.radius[..], &p.mass[..], &p.mask[..]);
-    par::each(columns, |_, ((x, v, omega), f, torque, radius, mass, mask)| {
-        let moved = x.iter_mut().zip(v).zip(omega);
-        let given = f.iter().zip(torque).zip(radius).zip(mass).zip(mask);
-        for (((x, v), omega), ((((f, torque), r), m), mask)) in moved.zip(given) {
-            if mask & bit == 0 {
-                continue;
-            }
-            let (by_m, by_i) = (half / m, half_turn / (r * r * m));
-            for d in 0..3 {
-                v[d] += by_m * f[d];
-                omega[d] += by_i * torque[d];
-                if DRIFT {
-                    x[d] += t.dt * v[d];
-                }
-            }
-        }
-    });
 }
 
 /// Half a step of rotation: ω += Δt/2 · torque/I; bonds of solids turn nothing, so that short steps have none of it.

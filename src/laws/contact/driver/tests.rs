@@ -68,6 +68,7 @@ fn evaluate(s: &Scene, average: Average, curvature: Curvature) -> (Vec<Vec3>, Ve
         period,
         body: &s.body,
         frozen: &[],
+        travel: Travel::default(),
     };
     let mut sweep = Sweep::default();
     let mut memory = Contacts::default();

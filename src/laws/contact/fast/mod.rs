@@ -19,6 +19,7 @@ use crate::math::four::has_avx2;
 use crate::math::vec3::Vec3;
 use crate::neigh::slabs::{Slabs, shift_of};
 use crate::par;
+use crate::world::Seen;
 use crate::world::contacts::Contacts;
 use lists::{Short, Slab};
 use memory::Book;
@@ -100,6 +101,8 @@ pub struct Fast<L> {
     tag: Vec<u32>,
     /// Positions and radii when the short lists were made.
     seen: Vec<[f64; 4]>,
+    /// How far grains were from there.
+    since: Seen,
     /// Masses with a minus sign where frozen, if some are.
     signed: Vec<f64>,
     lists: Vec<Slab>,
@@ -129,6 +132,7 @@ impl<L: ContactLaw> Fast<L> {
             laws,
             tag: vec![],
             seen: vec![],
+            since: Seen::default(),
             signed: vec![],
             lists: vec![],
             shifts: [[0.0; 4]; 32],
@@ -203,8 +207,22 @@ impl<L: ContactLaw> Fast<L> {
         far.sqrt() + grown
     }
 
+    /// Whether grains may have come closer than the short lists reach.
+    fn strayed(&mut self, grains: &Grains) -> bool {
+        // Two grains came closer by twice what one moved at most.
+        let reach = 0.5 * self.thin;
+        if self.since.within(grains.travel, reach) {
+            debug_assert!(self.moved(grains) < reach, "somebody moves grains without a word");
+            return false;
+        }
+        let moved = self.moved(grains);
+        self.since = Seen::now(grains.travel, moved);
+        moved >= reach
+    }
+
     /// Keeps the present positions and radii.
     fn see(&mut self, grains: &Grains) {
+        self.since = Seen::now(grains.travel, 0.0);
         self.seen.resize(self.tag.len(), [0.0; 4]);
         par::each((&mut self.seen[..], grains.x, grains.radius), |_, (seen, x, r)| {
             for ((seen, x), r) in seen.iter_mut().zip(x).zip(r) {
@@ -223,8 +241,7 @@ impl<L: ContactLaw> Fast<L> {
         store: bool,
         virial: bool,
     ) -> [f64; 6] {
-        // Two grains came closer by twice what one moved at most.
-        if self.stale || 2.0 * self.moved(grains) >= self.thin {
+        if self.stale || self.strayed(grains) {
             self.make_short(grains);
             self.see(grains);
             self.stale = false;
@@ -243,9 +260,9 @@ impl<L: ContactLaw> Fast<L> {
     }
 
     fn sign_masses(&mut self, grains: &Grains) {
-        self.signed.clear();
-        if !grains.frozen.is_empty() {
-            self.signed.resize(self.tag.len(), 0.0);
+        let known = if grains.frozen.is_empty() { 0 } else { self.tag.len() };
+        self.signed.resize(known, 0.0);
+        if known > 0 {
             par::each((&mut self.signed[..], grains.mass, grains.frozen), |_, (signed, mass, frozen)| {
                 for ((signed, m), frozen) in signed.iter_mut().zip(mass).zip(frozen) {
                     *signed = if *frozen { -m } else { *m };

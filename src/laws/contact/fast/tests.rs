@@ -7,7 +7,7 @@ use crate::laws::contact::{
 };
 use crate::math::rng::ParkMiller;
 use crate::neigh::list::{Reach, View, Wanted, pairs};
-use crate::world::Compat;
+use crate::world::{Compat, Travel};
 
 #[derive(Clone)]
 struct Scene {
@@ -73,7 +73,21 @@ fn between(a: u16, b: u16) -> Granular {
 impl Scene {
     fn grains(&self) -> Grains<'_> {
         let Self { x, v, omega, radius, mass, kind, tag, frozen, period } = self;
-        Grains { x, v, omega, radius, mass, kind, tag, period: *period, flow: None, body: &[], frozen }
+        let travel = Travel::default();
+        Grains {
+            x,
+            v,
+            omega,
+            radius,
+            mass,
+            kind,
+            tag,
+            period: *period,
+            flow: None,
+            body: &[],
+            frozen,
+            travel,
+        }
     }
 
     /// Half of the pairs of type 2 are excluded, and pairs of two frozen grains, between which nobody defines a mass.

@@ -250,6 +250,7 @@ pub fn grains<'a>(w: &'a World, period: Vec3, body: &'a [u32], frozen: &'a [bool
         flow: w.domain()?.flow.map(|flow| (flow, &p.mask[..])),
         body,
         frozen,
+        travel: w.rebuild.travel,
     })
 }
 
