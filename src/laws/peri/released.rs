@@ -100,7 +100,7 @@ impl Families {
         let dense = self.options.unit == ForceUnit::Density;
         let mut sum = PeriTally { per_atom_energy: dense.then_some(&mut atoms), ..PeriTally::default() };
         match self.law.kind.has_states() {
-            true => state::tally::<K>(self, view, &mut sum, (false, period)),
+            true => state::tally::<K>(self, view, &mut sum, (true, period)),
             false => tally::<K>(self, view, &mut sum, period),
         }
         let total = sum.energy;

@@ -140,6 +140,32 @@ impl Law {
 /// Columns that force kernels read, at most.
 pub const COLUMNS: usize = 5;
 
+/// In which form viscous bonds remember the stretch D of their Maxwell element: as decay D − fresh s, s being the bond's
+/// stretch at the last step that advanced. With the shares of the next step that needs only its own stretch, since
+/// D' = decay D + fresh (s' − s).
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Held {
+    /// Factor of D.
+    pub decay: f64,
+    /// Factor of −s.
+    pub fresh: f64,
+}
+
+impl Default for Held {
+    /// D itself.
+    fn default() -> Self {
+        Self { decay: 1.0, fresh: 0.0 }
+    }
+}
+
+impl Held {
+    /// The form for steps in which `decay` of a stretch is left and `fresh` of the step's own. Where hardly anything is left,
+    /// D itself: it could not be had back.
+    pub fn for_steps(decay: f64, fresh: f64) -> Self {
+        if decay > 0.5 { Self { decay, fresh } } else { Self::default() }
+    }
+}
+
 /// What the sites (cells or records) of a body carry under a state-based law, and what its bonds remember.
 /// Columns start with as many unused entries as their owner says.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -158,6 +184,8 @@ pub struct SiteState {
     pub plastic: Vec<f64>,
     /// Numbers that each bond remembers; the layout knows the order.
     pub memory: Vec<f64>,
+    /// The form of that under the viscous law.
+    pub held: Held,
     /// Whether the bonds of a chunk of lattice cells remember anything, 0 or 1; not kept for lists.
     pub touched: Vec<u8>,
     /// Whether a lattice row has ever had a bond with something to remember: first and last coordinate.

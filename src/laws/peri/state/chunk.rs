@@ -342,7 +342,7 @@ pub(super) unsafe fn sums<L: Lanes, W: BondLaw>(
                     if known { recall::<L>(s, W::MEMORY, vector, here) } else { [L::splat(0.0); 2] };
                 let omega = L::splat(*c.add(OMEGA));
                 let at = [angles::<L>(look, here as isize), angles::<L>(look, other)];
-                let (mut near, mut far) = W::squares(&now, omega, &at, &memory, s.moment.lambda);
+                let (mut near, mut far) = W::squares(&now, omega, &at, &memory, s.moment);
                 if look.states {
                     (near, far) = (near.mul(ends[0][1]), far.mul(ends[1][1]));
                 }

@@ -83,7 +83,7 @@ fn lattice_rows<K: StateKernels>(
         let states = States {
             kind: families.law.kind,
             compat: families.options.compat_lammps,
-            moment: moment(&families.law, false),
+            moment: Moment { held: state.held, ..moment(&families.law, false) },
             keep: false,
             memory: &memory,
             touched: &touched,
@@ -225,7 +225,7 @@ fn add(families: &Families, b: &Bond, t: &mut PeriTally) {
 fn add_of<W: BondLaw>(families: &Families, b: &Bond, t: &mut PeriTally) {
     let (law, options) = (&families.law, &families.options);
     let newton = options.unit == ForceUnit::Newton;
-    let now: Moment = moment(law, false);
+    let now = Moment { held: b.state.held, ..moment(law, false) };
     let (own, half) = shares(law.kind, options.compat_lammps);
     let columns = |at: usize| -> [Single; COLUMNS] {
         let count = columns_of(law.kind, options.compat_lammps);
@@ -236,7 +236,7 @@ fn add_of<W: BondLaw>(families: &Families, b: &Bond, t: &mut PeriTally) {
         b.at.map(|at| Angles { now: Single(b.state.theta[at]), unrelaxed: Single(b.state.unrelaxed[at]) });
     let omega = Single(b.omega);
     // SAFETY: plain arithmetic.
-    let squares = unsafe { W::squares(&b.stretch, omega, &angles, &b.memory, now.lambda) };
+    let squares = unsafe { W::squares(&b.stretch, omega, &angles, &b.memory, &now) };
     for (end, square) in [squares.0, squares.1].into_iter().enumerate() {
         let p = b.ends[end];
         let shear = if own { ends[end][1].0 } else { 1.0 };

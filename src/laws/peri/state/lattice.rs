@@ -63,7 +63,9 @@ impl States<'_> {
         let cells = self.cells(body, chunk);
         let masked = !body.intact[chunk];
         // SAFETY: the caller's promise.
-        unsafe { of_law!(self.kind, self.compat, W => run::<K, W>(data, &cells, degree, masked, track)) }
+        unsafe {
+            of_law!(self.kind, self.compat, self.moment, W => run::<K, W>(data, &cells, degree, masked, track))
+        }
     }
 
     /// Energy and virial of a chunk's bonds, cell by cell; in densities but for volumes.

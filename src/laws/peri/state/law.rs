@@ -6,7 +6,7 @@
 //! (t_i + t_j)/(ω |y|).
 
 use super::super::lanes::Lanes;
-use crate::world::families::law::COLUMNS;
+use crate::world::families::law::{COLUMNS, Held};
 
 /// A bond's stretch s in the forms that laws need.
 #[derive(Clone, Copy)]
@@ -32,10 +32,37 @@ pub struct Moment {
     pub lambda: f64,
     /// 1 if plastic flow happens, 0 if the state only is looked at.
     pub flow: f64,
+    /// The form in which viscous bonds have remembered.
+    pub held: Held,
+    /// The form in which they shall.
+    pub hold: Held,
 }
 
-/// Puts the law of a kind, with LAMMPS' numbers or without, in the place of a type.
+impl Moment {
+    /// Whether viscous bonds remember what this step needs and need not look back.
+    pub fn steady(&self) -> bool {
+        self.held == Held { decay: self.decay, fresh: self.fresh }
+    }
+}
+
+/// Puts the law of a kind, with LAMMPS' numbers or without, in the place of a type; with a moment the form of the law that
+/// is enough for it.
 macro_rules! of_law {
+    ($kind:expr, $compat:expr, $moment:expr, $W:ident => $e:expr) => {{
+        use crate::laws::peri::state::law::{Viscous, ViscousLammps, of_law};
+        use crate::world::families::LawKind;
+        match ($kind, $compat) {
+            (LawKind::Ves, false) if $moment.steady() => {
+                type $W = Viscous<false>;
+                $e
+            }
+            (LawKind::Ves, true) if $moment.steady() => {
+                type $W = ViscousLammps<false>;
+                $e
+            }
+            (kind, compat) => of_law!(kind, compat, $W => $e),
+        }
+    }};
     ($kind:expr, $compat:expr, $W:ident => $e:expr) => {{
         use crate::laws::peri::state::law;
         use crate::world::families::LawKind;
@@ -67,7 +94,7 @@ pub trait BondLaw: Sync {
     const COLUMNS: usize;
     /// Numbers that a bond remembers, at most two.
     const MEMORY: usize;
-    /// Whether it needs the stretch of the step before.
+    /// Whether it needs the stretch at the last step that advanced.
     const BACK: bool = false;
     /// Whether what a bond remembers stays zero until one of its ends [`BondLaw::flows`].
     const LAZY: bool = false;
@@ -83,8 +110,7 @@ pub trait BondLaw: Sync {
         moment: &Moment,
     ) -> (L, L);
     /// The squares of both ends' elastic deviatoric stretch that the energy has, over ½ 15G/m ω w |xi|² V of each end;
-    /// of bond-based laws over ½ c w |xi| V. `memory` is what the bond remembers already: what has flowed, unless a law says
-    /// otherwise.
+    /// of bond-based laws over ½ c w |xi| V. `memory` is what the bond remembers: what has flowed, unless a law says otherwise.
     ///
     /// # Safety
     /// See [`Lanes`].
@@ -94,7 +120,7 @@ pub trait BondLaw: Sync {
         _limit: L,
         ends: &[Angles<L>; 2],
         memory: &[L; 2],
-        _lambda: f64,
+        _moment: &Moment,
     ) -> (L, L) {
         // SAFETY: passed on to the caller.
         unsafe { deviatoric(bond.s, ends, memory) }
@@ -154,39 +180,64 @@ impl BondLaw for Elastic {
     }
 }
 
-/// A Maxwell element beside a spring: the element's stretch D is remembered. Columns: A = (3Kθ − 5GY)/m
-/// with Y = (1 − λ)θ + λ times the unrelaxed dilatation, B = 15G/m.
-pub struct Viscous;
+/// A Maxwell element beside a spring: the element's stretch D is remembered, in the form that [`Held`] tells. Columns:
+/// A = (3Kθ − 5GY)/m with Y = (1 − λ)θ + λ times the unrelaxed dilatation, B = 15G/m. The form that looks `BACK` serves for
+/// any moment, the other for one that is [`Moment::steady`].
+pub struct Viscous<const BACK: bool = true>;
 
-/// The effective stretch (1 − λ)s + λD; brings D up to date.
+/// The pull of the effective stretch (1 − λ)s + λD over B, without A; brings what is remembered up to date.
 #[inline(always)]
-unsafe fn relaxed<L: Lanes>(bond: &Stretch<L>, memory: &mut [L; 2], moment: &Moment) -> L {
+unsafe fn relaxed<L: Lanes, const BACK: bool>(bond: &Stretch<L>, memory: &mut [L; 2], moment: &Moment) -> L {
     // SAFETY: passed on to the caller.
     unsafe {
-        let change = bond.s.sub(bond.before).mul(L::splat(moment.fresh));
-        memory[0] = memory[0].fma(L::splat(moment.decay), change);
-        bond.s.mul(L::splat(1.0 - moment.lambda)).add(memory[0].mul(L::splat(moment.lambda)))
+        let (decay, fresh) = (moment.decay, moment.fresh);
+        // What of D does not come from this step's stretch.
+        let mut left = memory[0];
+        if BACK {
+            left = element(bond.before, left, &moment.held).mul(L::splat(decay));
+            left = bond.before.fnma(L::splat(fresh), left);
+            let hold = moment.hold;
+            let new = left.mul(L::splat(hold.decay));
+            memory[0] = bond.s.fma(L::splat(hold.decay * fresh - hold.fresh), new);
+        } else {
+            memory[0] = bond.s.fma(L::splat(fresh * (decay - 1.0)), left.mul(L::splat(decay)));
+        }
+        let own = bond.share.mul(L::splat(moment.lambda.mul_add(fresh - 1.0, 1.0)));
+        left.mul(L::splat(moment.lambda)).fma(bond.inverse, own)
     }
+}
+
+/// D from what is remembered and the stretch at that time.
+#[inline(always)]
+unsafe fn element<L: Lanes>(s: L, remembered: L, held: &Held) -> L {
+    // SAFETY: passed on to the caller.
+    unsafe { s.fma(L::splat(held.fresh), remembered).mul(L::splat(1.0 / held.decay)) }
 }
 
 /// (1 − λ)(s − θ/3)² + λ(D − unrelaxed/3)² of both ends.
 #[inline(always)]
-unsafe fn relaxed_squares<L: Lanes>(s: L, ends: &[Angles<L>; 2], element: L, lambda: f64) -> (L, L) {
+unsafe fn relaxed_squares<L: Lanes>(
+    bond: &Stretch<L>,
+    ends: &[Angles<L>; 2],
+    memory: &[L; 2],
+    moment: &Moment,
+) -> (L, L) {
     // SAFETY: passed on to the caller.
     unsafe {
         let none = [L::splat(0.0); 2];
         let left =
             [Angles { now: ends[0].unrelaxed, ..ends[0] }, Angles { now: ends[1].unrelaxed, ..ends[1] }];
-        let (whole, part) = (deviatoric(s, ends, &none), deviatoric(element, &left, &none));
-        let (kept, relaxing) = (L::splat(1.0 - lambda), L::splat(lambda));
+        let element = element(bond.before, memory[0], &moment.held);
+        let (whole, part) = (deviatoric(bond.s, ends, &none), deviatoric(element, &left, &none));
+        let (kept, relaxing) = (L::splat(1.0 - moment.lambda), L::splat(moment.lambda));
         (whole.0.mul(kept).add(part.0.mul(relaxing)), whole.1.mul(kept).add(part.1.mul(relaxing)))
     }
 }
 
-impl BondLaw for Viscous {
+impl<const BACK: bool> BondLaw for Viscous<BACK> {
     const COLUMNS: usize = 2;
     const MEMORY: usize = 1;
-    const BACK: bool = true;
+    const BACK: bool = BACK;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(
         bond: &Stretch<L>,
@@ -198,7 +249,7 @@ impl BondLaw for Viscous {
         // SAFETY: passed on to the caller.
         unsafe {
             let (a, b) = (own[0].add(far[0]), own[1].add(far[1]));
-            let pull = b.mul(relaxed(bond, memory, moment)).add(a).mul(bond.inverse);
+            let pull = a.fma(bond.inverse, b.mul(relaxed::<L, BACK>(bond, memory, moment)));
             (pull, pull)
         }
     }
@@ -208,21 +259,21 @@ impl BondLaw for Viscous {
         _: L,
         ends: &[Angles<L>; 2],
         memory: &[L; 2],
-        lambda: f64,
+        moment: &Moment,
     ) -> (L, L) {
         // SAFETY: passed on to the caller.
-        unsafe { relaxed_squares(bond.s, ends, memory[0], lambda) }
+        unsafe { relaxed_squares(bond, ends, memory, moment) }
     }
 }
 
 /// The same with LAMMPS' forces: each end takes its own dilatation for that of both, so that ends pull unequally.
 /// Columns: 3Kθ/m, B, Y/3.
-pub struct ViscousLammps;
+pub struct ViscousLammps<const BACK: bool = true>;
 
-impl BondLaw for ViscousLammps {
+impl<const BACK: bool> BondLaw for ViscousLammps<BACK> {
     const COLUMNS: usize = 3;
     const MEMORY: usize = 1;
-    const BACK: bool = true;
+    const BACK: bool = BACK;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(
         bond: &Stretch<L>,
@@ -234,21 +285,21 @@ impl BondLaw for ViscousLammps {
         // SAFETY: passed on to the caller.
         unsafe {
             let (a, b) = (own[0].add(far[0]), own[1].add(far[1]));
-            let s = relaxed(bond, memory, moment);
-            let near = b.mul(s.sub(own[2])).add(a).mul(bond.inverse);
-            (near, b.mul(s.sub(far[2])).add(a).mul(bond.inverse))
+            let pull = b.mul(relaxed::<L, BACK>(bond, memory, moment));
+            let (near, far) = (b.fnma(own[2], a), b.fnma(far[2], a));
+            (near.fma(bond.inverse, pull), far.fma(bond.inverse, pull))
         }
     }
     #[inline(always)]
     unsafe fn squares<L: Lanes>(
         bond: &Stretch<L>,
-        limit: L,
+        _: L,
         ends: &[Angles<L>; 2],
         memory: &[L; 2],
-        lambda: f64,
+        moment: &Moment,
     ) -> (L, L) {
         // SAFETY: passed on to the caller.
-        unsafe { Viscous::squares(bond, limit, ends, memory, lambda) }
+        unsafe { relaxed_squares(bond, ends, memory, moment) }
     }
 }
 
@@ -362,7 +413,7 @@ impl BondLaw for Yielding {
         _: L,
         _: &[Angles<L>; 2],
         memory: &[L; 2],
-        _: f64,
+        _: &Moment,
     ) -> (L, L) {
         // SAFETY: passed on to the caller.
         unsafe {
@@ -392,7 +443,7 @@ impl BondLaw for Flattened {
         limit: L,
         _: &[Angles<L>; 2],
         _: &[L; 2],
-        _: f64,
+        _: &Moment,
     ) -> (L, L) {
         // SAFETY: passed on to the caller.
         unsafe {

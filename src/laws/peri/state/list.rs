@@ -37,6 +37,7 @@ pub fn body(
     let memory_of = Shared::new(&mut memory);
     let particle = std::mem::take(&mut list.particle);
     let sites = Sites { count: n, pad: 0, stride: n, particle: &particle, kind: view.kind };
+    let now = Moment { held: list.state.held, ..settling.moment };
     let sweep = |list: &ListBody, task: &(dyn Fn(&Sweep, usize) + Sync)| {
         let sweep = Sweep {
             body: list,
@@ -46,7 +47,7 @@ pub fn body(
             mode,
             options,
             period,
-            moment: settling.moment,
+            moment: now,
             weighing: Weighing::of(settling.law),
             numbers: kind.memory(),
         };
@@ -86,10 +87,11 @@ pub fn body(
     list.particle = particle;
     sweep(list, &|s, slab| {
         let w = &mut window(windows);
-        of_law!(kind, settling.compat, W => s.pull::<W>(slab, &active, w, f));
+        of_law!(kind, settling.compat, now, W => s.pull::<W>(slab, &active, w, f));
     });
     (list.tension, list.flagged) = (tension, flagged);
     list.state.memory = memory;
+    settling.held(&mut list.state);
 }
 
 /// Which slabs have sites with dilatations, or under a law with memory ever had.

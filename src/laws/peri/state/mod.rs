@@ -21,6 +21,7 @@ use crate::world::families::law::COLUMNS;
 use crate::world::families::{Families, FamilyOptions, ForceUnit, LawKind, PeriView, Window};
 pub use energy::tally;
 use lattice::{States, Sum, find_active};
+use law::Moment;
 use settle::{Settling, Sites, moment};
 
 impl Families {
@@ -121,7 +122,7 @@ fn lattice_body<K: Kernels + kernels::StateKernels>(
     let states = States {
         kind,
         compat: settling.compat,
-        moment: settling.moment,
+        moment: Moment { held: body.state.held, ..settling.moment },
         keep: mode.advance,
         memory: &memory_of,
         touched: &touched_of,
@@ -157,4 +158,5 @@ fn lattice_body<K: Kernels + kernels::StateKernels>(
     par::two_colours(body.slabs(), |slab| sweep.slab::<K>(slab, &mut window(windows), f));
     columns.give(body);
     (body.state.memory, body.state.touched) = (memory, touched);
+    settling.held(&mut body.state);
 }

@@ -2,7 +2,7 @@
 
 use super::law::Moment;
 use crate::par::{self, Shared};
-use crate::world::families::law::{COLUMNS, SiteState};
+use crate::world::families::law::{COLUMNS, Held, SiteState};
 use crate::world::families::{Law, LawKind, PmbTable};
 
 /// What turns sums into columns.
@@ -62,6 +62,13 @@ impl Settling<'_> {
             Stiffness { bulk: 3.0 * m.bulk, shear: 15.0 * m.shear, yield_stress: m.yield_stress, limit }
         };
         types.map(of).collect()
+    }
+
+    /// Notes the form in which bonds remember from now on.
+    pub fn held(&self, state: &mut SiteState) {
+        if self.advance && self.law.kind == LawKind::Ves {
+            state.held = self.moment.hold;
+        }
     }
 
     /// From the sums of dilatations to columns.
@@ -186,7 +193,8 @@ fn put(columns: &Shared<f64>, sites: &Sites, at: usize, row: &[f64; COLUMNS], co
     }
 }
 
-/// The moment of an evaluation: a step of `dt` if it advances, else a look at what is.
+/// The moment of an evaluation: a step of `dt` if it advances, else a look at what is. The form in which a body's bonds have
+/// remembered is the body's own.
 pub fn moment(law: &Law, advance: bool) -> Moment {
     // One law has one relaxation: bonds between types that relax differently are refused.
     let own = law.moduli.iter().find(|m| m.tau > 0.0).copied().unwrap_or_default();
@@ -198,5 +206,13 @@ pub fn moment(law: &Law, advance: bool) -> Moment {
         }
         false => (1.0, 1.0),
     };
-    Moment { decay, fresh, lambda: own.lambda, flow: if advance { 1.0 } else { 0.0 } }
+    let flow = if advance { 1.0 } else { 0.0 };
+    Moment {
+        decay,
+        fresh,
+        lambda: own.lambda,
+        flow,
+        held: Held::default(),
+        hold: Held::for_steps(decay, fresh),
+    }
 }
