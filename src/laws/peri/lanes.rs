@@ -16,6 +16,12 @@ pub trait Lanes: Copy {
     /// # Safety
     /// `p` must be readable for that many.
     unsafe fn load(p: *const f64) -> Self;
+    /// Says that what lies at `p` will be wanted soon, if there is anything.
+    ///
+    /// # Safety
+    /// See [`Lanes::splat`].
+    #[inline(always)]
+    unsafe fn fetch(_p: *const f64) {}
     /// Writes as many consecutive numbers as there are lanes.
     ///
     /// # Safety
@@ -230,6 +236,10 @@ mod x86 {
         #[inline(always)]
         unsafe fn load(p: *const f64) -> Self {
             Self(unsafe { _mm256_loadu_pd(p) })
+        }
+        #[inline(always)]
+        unsafe fn fetch(p: *const f64) {
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(p.cast()) }
         }
         #[inline(always)]
         unsafe fn store(self, p: *mut f64) {

@@ -27,6 +27,10 @@ impl Lanes for Avx512 {
         Self(unsafe { _mm512_loadu_pd(p) })
     }
     #[inline(always)]
+    unsafe fn fetch(p: *const f64) {
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(p.cast()) }
+    }
+    #[inline(always)]
     unsafe fn store(self, p: *mut f64) {
         unsafe { _mm512_storeu_pd(p, self.0) }
     }

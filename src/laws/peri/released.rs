@@ -24,9 +24,9 @@ impl Families {
         if self.scratch.ends.is_empty() {
             return;
         }
-        let after = self.bond_energy::<K>(view, period);
+        let after = self.living_energy::<K>(view, period);
         self.exchange(&mut alive, &mut listed);
-        let before = self.bond_energy::<K>(view, period);
+        let before = self.living_energy::<K>(view, period);
         self.exchange(&mut alive, &mut listed);
         self.released += before - after;
     }
@@ -85,17 +85,25 @@ impl Families {
         std::mem::swap(&mut self.list.alive, listed);
     }
 
-    /// The energy of all bonds that live at the places of the last force evaluation.
+    /// The energy of all bonds that live at the places of the last force evaluation, dilatations being theirs too.
+    fn living_energy<K: Kernels + RowKernels + StateKernels>(
+        &mut self,
+        view: &PeriView,
+        period: [f64; 3],
+    ) -> f64 {
+        if !self.law.kind.bond_based() {
+            let mut aside = vec![[0.0; 3]; view.x.len()];
+            self.sweep_states::<K>(view, &mut aside, (false, true), period);
+        }
+        self.bond_energy::<K>(view, period)
+    }
+
+    /// The energy of all bonds that live at the places of the last force evaluation, with the dilatations of that.
     fn bond_energy<K: Kernels + RowKernels + StateKernels>(
         &mut self,
         view: &PeriView,
         period: [f64; 3],
     ) -> f64 {
-        if self.law.kind == LawKind::Lps {
-            // Dilatations are those of the bonds that live.
-            let mut aside = vec![[0.0; 3]; view.x.len()];
-            self.sweep_states::<K>(view, &mut aside, (false, true), period);
-        }
         let mut atoms = vec![0.0; view.x.len()];
         let dense = self.options.unit == ForceUnit::Density;
         let mut sum = PeriTally { per_atom_energy: dense.then_some(&mut atoms), ..PeriTally::default() };

@@ -39,7 +39,9 @@ pub struct Cells<'a> {
 pub struct Looking<'a> {
     /// Dilatations of the chunk's cells.
     pub theta: *const f64,
-    /// What of them is not yet relaxed.
+    /// Dilatations at the last step that advanced.
+    pub before: *const f64,
+    /// What of those is not yet relaxed.
     pub unrelaxed: *const f64,
     /// Constants of dilatations.
     pub terms: &'a [f64],
@@ -50,6 +52,10 @@ pub struct Looking<'a> {
     /// The step has advanced: what bonds remember is of now.
     pub advanced: bool,
 }
+
+/// How many numbers ahead memory of bonds is fetched: it is read but once in a sweep, and processors do not follow it from
+/// page to page by themselves.
+const AHEAD: usize = 16 * CELLS;
 
 /// Stretches of bonds, their `before` the same.
 #[inline(always)]
@@ -139,6 +145,8 @@ pub(super) unsafe fn pull<
         let own = [read::<L>(s, W::COLUMNS, 0), read::<L>(s, W::COLUMNS, half)];
         let known = W::MEMORY > 0 && (!W::LAZY || *s.touched != 0);
         let mut woken = false;
+        // A copy of its own: nothing that is stored can change it.
+        let moment = *s.moment;
         let mut sum = [[zero; 3]; 2];
         let mut e = 0;
         while e < a.to.len() {
@@ -162,8 +170,11 @@ pub(super) unsafe fn pull<
                 }
                 let ends: Ends<L> = [own[v], read::<L>(s, W::COLUMNS, other)];
                 let mut memory = if known { recall::<L>(s, W::MEMORY, vector, here) } else { [zero; 2] };
+                if known {
+                    L::fetch(remembered(s, W::MEMORY, vector, 0, here).wrapping_add(AHEAD));
+                }
                 let omega = L::splat(*c.add(OMEGA));
-                let (mut near, mut far) = W::pull(&now, omega, &ends, &mut memory, s.moment);
+                let (mut near, mut far) = W::pull(&now, omega, &ends, &mut memory, &moment);
                 if W::MEMORY > 0 && s.keep && (known || W::flows(&ends).bits() != 0) {
                     woken = true;
                     let mut k = 0;
@@ -297,7 +308,11 @@ unsafe fn term_of<L: Lanes, T: Term, const DEGREE: usize, const MASKED: bool>(
 #[inline(always)]
 unsafe fn angles<L: Lanes>(look: &Looking, at: isize) -> Angles<L> {
     // SAFETY: the caller's promise.
-    unsafe { Angles { now: L::load(look.theta.offset(at)), unrelaxed: L::load(look.unrelaxed.offset(at)) } }
+    unsafe {
+        let now = L::load(look.theta.offset(at));
+        let more = now.sub(L::load(look.before.offset(at)));
+        Angles { now, unrelaxed: L::load(look.unrelaxed.offset(at)).add(more) }
+    }
 }
 
 /// Energy and virial of a chunk's bonds, cell by cell, as [`super::super::chunk::sums`].

@@ -232,8 +232,10 @@ fn add_of<W: BondLaw>(families: &Families, b: &Bond, t: &mut PeriTally) {
         std::array::from_fn(|k| Single(if k < count { b.state.columns[k * b.stride + at] } else { 0.0 }))
     };
     let ends: Ends<Single> = b.at.map(columns);
-    let angles =
-        b.at.map(|at| Angles { now: Single(b.state.theta[at]), unrelaxed: Single(b.state.unrelaxed[at]) });
+    let angles = b.at.map(|at| {
+        let now = b.state.theta[at];
+        Angles { now: Single(now), unrelaxed: Single(b.state.unrelaxed[at] + (now - b.state.before[at])) }
+    });
     let omega = Single(b.omega);
     // SAFETY: plain arithmetic.
     let squares = unsafe { W::squares(&b.stretch, omega, &angles, &b.memory, &now) };

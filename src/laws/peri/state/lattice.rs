@@ -85,6 +85,8 @@ impl States<'_> {
             // SAFETY: columns have a place for each cell and PAD more around.
             theta: unsafe { body.state.theta.as_ptr().add(first) },
             // SAFETY: as above.
+            before: unsafe { body.state.before.as_ptr().add(first) },
+            // SAFETY: as above.
             unrelaxed: unsafe { body.state.unrelaxed.as_ptr().add(first) },
             terms: &body.state.tables,
             half,

@@ -141,7 +141,7 @@ pub trait BondLaw: Sync {
 pub struct Angles<L> {
     /// θ.
     pub now: L,
-    /// Its unrelaxed part.
+    /// Its unrelaxed part; what has come since the last step that advanced is not relaxed at all.
     pub unrelaxed: L,
 }
 
@@ -227,7 +227,9 @@ unsafe fn relaxed_squares<L: Lanes>(
         let none = [L::splat(0.0); 2];
         let left =
             [Angles { now: ends[0].unrelaxed, ..ends[0] }, Angles { now: ends[1].unrelaxed, ..ends[1] }];
-        let element = element(bond.before, memory[0], &moment.held);
+        // What has come since is not relaxed at all.
+        let since = bond.s.sub(bond.before);
+        let element = element(bond.before, memory[0], &moment.held).add(since);
         let (whole, part) = (deviatoric(bond.s, ends, &none), deviatoric(element, &left, &none));
         let (kept, relaxing) = (L::splat(1.0 - moment.lambda), L::splat(moment.lambda));
         (whole.0.mul(kept).add(part.0.mul(relaxing)), whole.1.mul(kept).add(part.1.mul(relaxing)))
