@@ -106,7 +106,7 @@ impl<'a> Sweep<'a> {
     pub fn slab<K: Kernels + StateKernels>(&self, slab: usize, window: &mut Window, f: &Shared<[f64; 3]>) {
         let body = self.body;
         let (own, first, last) = extent(body, slab);
-        let (base, stride) = open(window, body, first, last - first);
+        let (base, stride) = open(window, body, first, (last - first, 3));
         let mut touched = false;
         for slot in body.slot(own.start, 0)..body.slot(own.end, 0) {
             if body.rows[slot].len > 0 {
@@ -155,9 +155,9 @@ impl<'a> Sweep<'a> {
     pub(super) fn plan(&self, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) -> RowPlan {
         let body = self.body;
         let mut motion = body.motion[slot];
-        partners(body, slot, meets, to);
+        partners_beside(body, slot, meets, to);
         for &step in &body.steps {
-            motion = motion.with(&body.motion[meet(body, slot, step).0]);
+            motion = motion.with(&body.motion[ahead(body, slot, step)]);
         }
         let limit = row_limit(body, slot);
         let range = [0, 1, 2].map(|k| (motion.most[k] - motion.least[k]).max(0.0) / body.spacing);
@@ -168,7 +168,7 @@ impl<'a> Sweep<'a> {
         if self.states.as_ref().is_some_and(|s| s.spread) {
             at = body.state.active[slot];
             for &step in &body.steps {
-                let other = body.state.active[meet(body, slot, step).0];
+                let other = body.state.active[ahead(body, slot, step)];
                 at = (at.0.min(other.0), at.1.max(other.1));
             }
         }
@@ -287,9 +287,14 @@ pub(super) fn extent(body: &LatticeBody, slab: usize) -> (std::ops::Range<usize>
     (own, first, last)
 }
 
+/// The row slot that bonds with a row step lead to.
+fn ahead(body: &LatticeBody, slot: usize, (across, up): (i32, usize)) -> usize {
+    (slot + up * body.width).wrapping_add_signed(across as isize)
+}
+
 /// The row slot that bonds with a row step lead to, and the pair of local types if both rows have one each.
-fn meet(body: &LatticeBody, slot: usize, (across, up): (i32, usize)) -> (usize, Option<usize>) {
-    let other = (slot + up * body.width).wrapping_add_signed(across as isize);
+fn meet(body: &LatticeBody, slot: usize, step: (i32, usize)) -> (usize, Option<usize>) {
+    let other = ahead(body, slot, step);
     let (a, b) = (body.rows[slot].kind, body.rows[other].kind);
     let uniform = a != MIXED && b != MIXED;
     (other, uniform.then(|| usize::from(a) * body.kinds.len() + usize::from(b)))
@@ -297,6 +302,9 @@ fn meet(body: &LatticeBody, slot: usize, (across, up): (i32, usize)) -> (usize, 
 
 /// The smallest s00 and the largest alpha of a row's bonds.
 pub fn row_limit(body: &LatticeBody, slot: usize) -> (f64, f64) {
+    if let [[_, s00, alpha]] = body.pairs[..] {
+        return (s00, alpha.max(0.0));
+    }
     let mut limit = (f64::INFINITY, 0.0f64);
     for &step in &body.steps {
         let pair = meet(body, slot, step).1;
@@ -311,16 +319,30 @@ pub fn row_limit(body: &LatticeBody, slot: usize) -> (f64, f64) {
 /// Finds for each stencil vector how many cells further it leads from a row's cells, and the place of its
 /// constants; `meets` is scratch.
 pub fn partners(body: &LatticeBody, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) {
+    meets.clear();
+    partners_beside(body, slot, meets, to);
+}
+
+/// The same after another row of this body, or with no `meets`: where rows beside each other meet theirs alike, nothing
+/// has to be found anew.
+fn partners_beside(body: &LatticeBody, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) {
+    let known = meets.len() == body.steps.len();
+    meets.resize(body.steps.len(), (0, 0));
     let row = &body.rows[slot];
     let various = !body.cell_kind.is_empty();
-    meets.clear();
-    for &step in &body.steps {
+    let mut same = known;
+    for (meets, &step) in meets.iter_mut().zip(&body.steps) {
         let (other, uniform) = meet(body, slot, step);
         let other = &body.rows[other];
         let offset =
             if other.len == 0 { 0 } else { other.start as i32 - row.start as i32 + row.lo - other.lo };
         let table = if various { 0 } else { uniform.unwrap_or(0) * body.stencil.len() };
-        meets.push((offset, (table * CONSTANTS) as u32));
+        let new = (offset, (table * CONSTANTS) as u32);
+        same &= *meets == new;
+        *meets = new;
+    }
+    if same {
+        return;
     }
     to.clear();
     for (e, (vector, &step)) in body.stencil.iter().zip(&body.step_of).enumerate() {
@@ -329,9 +351,17 @@ pub fn partners(body: &LatticeBody, slot: usize, meets: &mut Vec<(i32, u32)>, to
     }
 }
 
-/// Makes room for the forces of `cells` cells from `first` on, all zero. Returns where the first one lies and
+/// Makes room for so many components (at most 3) of forces of `cells` cells from `first` on, all zero, and forgets other rows'
+/// partners. Returns where the first one lies and
 /// how far components are apart: not at the page offsets of the displacements of the same cells.
-pub(super) fn open(window: &mut Window, body: &LatticeBody, first: usize, cells: usize) -> (usize, usize) {
+pub(super) fn open(
+    window: &mut Window,
+    body: &LatticeBody,
+    first: usize,
+    (cells, components): (usize, usize),
+) -> (usize, usize) {
+    // What another body has left there.
+    window.meets.clear();
     let stride = staggered(cells);
     let length = 3 * stride + PAGE + PAD;
     if window.force.len() < length {
@@ -340,7 +370,7 @@ pub(super) fn open(window: &mut Window, body: &LatticeBody, first: usize, cells:
     let page = |p: *const f64| p.addr() / size_of::<f64>() % PAGE;
     let want = (page(body.u[1].as_ptr()) + PAD + first + 3 * STAGGER) % PAGE;
     let base = PAD + (want + 2 * PAGE - page(window.force.as_ptr()) - PAD) % PAGE;
-    window.force[base - PAD..base + 3 * stride - PAD].fill(0.0);
+    window.force[base - PAD..base + components * stride - PAD].fill(0.0);
     (base, stride)
 }
 

@@ -2,7 +2,7 @@
 
 use super::near::{Clusters, bonds};
 use super::{Compute, ComputeStyle};
-use crate::diag::Result;
+use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
 use crate::plan::{Op, Stage, When};
 use crate::styles::matter::{Masses, check_masses, unwrapped};
@@ -21,7 +21,7 @@ impl Style for Fragments {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group fragments [least n]",
+            syntax: "compute ID group fragments [least n] [damage phi]",
             summary: "Spectrum of the fragments that unbroken bonds hold together: masses, velocities, eroded mass and volume.",
             text: "Fragments are those of compute fragment/atom within the group; a particle without any unbroken bond is one by itself. \
                    The heaviest is the body, the rest is eroded. Global vector of 8: 1 the number of fragments of at \
@@ -31,8 +31,13 @@ impl Style for Fragments {
                    fragment. Global array, a row for each fragment of at least n particles, the heaviest first (equal \
                    ones by id): the smallest id in it, the number of particles, mass, volume, centre of mass x y z, its velocity x y z, \
                    kinetic energy of its particles. Masses are true masses also where LAMMPS' convention has densities in \
-                   their place; volumes are the peridynamic ones.",
-            example: "compute pieces plate fragments least 5",
+                   their place; volumes are the peridynamic ones.\n\n\
+                   A crack leaves crushed particles behind it, and single bonds across such dust are enough to make one fragment \
+                   of its two sides. With `damage phi` a particle that has lost the share `phi` of its family or more (compute \
+                   damage/atom) holds nothing together: it counts as one by itself, with the dust. Particles at a clean crack through \
+                   planes of bonds have lost up to a half, less farther from it; values of 0.5 to 0.8 part what is crushed from what \
+                   is not.",
+            example: "compute pieces plate fragments least 5 damage 0.6",
         }
     }
 }
@@ -40,14 +45,22 @@ impl Style for Fragments {
 impl ComputeStyle for Fragments {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         super::need_bonds("fragments", cx)?;
-        let mut least = 2;
+        let (mut least, mut damage) = (2, None);
         while let Some(word) = args.next() {
-            if word.text != "least" {
-                return Err(args.unknown(word, &["least"]));
+            match word.text.as_str() {
+                "least" => least = args.integer_from(1, "the least number of particles")? as usize,
+                "damage" => {
+                    let at = args.here();
+                    let share = args.positive("the damage of what holds nothing together")?;
+                    if share > 1.0 {
+                        return fail(Code::BAD_VALUE, at, "damage is a share: above 0, at most 1");
+                    }
+                    damage = Some(share);
+                }
+                _ => return Err(args.unknown(word, &["least", "damage"])),
             }
-            least = args.integer_from(1, "the least number of particles")? as usize;
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, least }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, least, damage }))
     }
 }
 
@@ -56,6 +69,8 @@ struct Declared {
     id: String,
     group: GroupId,
     least: usize,
+    /// From which damage on a particle holds nothing together.
+    damage: Option<f64>,
 }
 
 /// One piece.
@@ -84,12 +99,18 @@ impl Piece {
 }
 
 /// The pieces of a group, the heaviest first.
-fn pieces(w: &World, group: GroupId) -> Vec<Piece> {
+fn pieces(w: &World, group: GroupId, damage: Option<f64>) -> Vec<Piece> {
     let p = &w.particles;
     let of = |i: usize| p.mask[i] & group.bit() != 0;
+    let mut lost = vec![];
+    if let (Some(_), Some(families)) = (damage, &w.families) {
+        lost.resize(w.n(), 0.0);
+        families.damage_all(&p.volume, &mut lost);
+    }
+    let holds = |i: usize| of(i) && damage.is_none_or(|d| lost.get(i).is_none_or(|lost| *lost < d));
     let mut clusters = Clusters::new(&p.tag);
     bonds(w, |i, j| {
-        if of(i as usize) && of(j as usize) {
+        if holds(i as usize) && holds(j as usize) {
             clusters.join(i, j);
         }
     });
@@ -145,11 +166,11 @@ impl Compute for Declared {
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let (group, least, span) = (self.group, self.least, cx.span());
+        let (group, least, damage, span) = (self.group, self.least, self.damage, cx.span());
         check_masses(cx.world(), span)?;
         let reads = "x v image mass volume mask families";
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
-            let list = pieces(w, group);
+            let list = pieces(w, group, damage);
             out.vector = spectrum(&list, least);
             out.array_cols = COLUMNS;
             out.array.clear();
@@ -205,12 +226,18 @@ mod tests {
         assert_eq!(slot.array[11..], [4.0, 2.0, 4.0, 6.0, 3.5, 0.0, 0.0, 0.0, 1.0, 0.0, 4.0]);
         let c = b.compute(&Fragments, "least 1").unwrap();
         assert_eq!(b.evaluate(&*c).unwrap().vector[..4], [3.0, 6.0, 6.0, 0.0]);
+        // Those beside the cuts have lost a half, and the last one all.
+        let c = b.compute(&Fragments, "damage 0.5").unwrap();
+        assert_eq!(b.evaluate(&*c).unwrap().vector[..4], [1.0, 4.0, 0.0, 8.0]);
+        let c = b.compute(&Fragments, "damage 0.6").unwrap();
+        assert_eq!(b.evaluate(&*c).unwrap().vector[..4], [2.0, 6.0, 4.0, 2.0]);
+        let c = b.compute(&Fragments, "least 1").unwrap();
         // Densities in the place of masses: volume makes masses of them.
         b.world.families.as_mut().unwrap().options.unit = ForceUnit::Density;
         assert_eq!(b.evaluate(&*c).unwrap().vector[1], 18.0);
         b.world.particles.mask.fill(0);
         assert_eq!(b.evaluate(&*c).unwrap().vector, [0.0; 8]);
-        for words in ["least 0", "most 3", "least"] {
+        for words in ["least 0", "most 3", "least", "damage 0", "damage 1.5", "damage"] {
             assert!(b.compute(&Fragments, words).is_err(), "{words}");
         }
     }

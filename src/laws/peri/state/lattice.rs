@@ -121,7 +121,7 @@ pub fn slab<K: StateKernels>(sweep: &Sweep, sum: Sum, slab: usize, window: &mut 
 fn add_up<K: StateKernels, T: Term>(sweep: &Sweep, slab: usize, window: &mut Window, sums: &Shared<f64>) {
     let body = sweep.body();
     let (own, first, last) = extent(body, slab);
-    let (base, stride) = open(window, body, first, last - first);
+    let (base, stride) = open(window, body, first, (last - first, 1));
     let mut touched = false;
     for slot in body.slot(own.start, 0)..body.slot(own.end, 0) {
         let row = &body.rows[slot];
