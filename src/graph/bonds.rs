@@ -75,6 +75,7 @@ pub fn check(graph: &Graph, w: &World, span: Span, found: &mut Diagnostics) {
         }
         return;
     };
+    companion(graph, node, span, found);
     let missing: Vec<String> =
         (1..=w.bonds.types).filter(|&k| !node.force.covers(k as u16)).map(|k| k.to_string()).collect();
     if !missing.is_empty() {
@@ -86,4 +87,16 @@ pub fn check(graph: &Graph, w: &World, span: Span, found: &mut Diagnostics) {
         let d = Diagnostic::error(Code::INCOMPLETE, span, text).label(node.span, "bond_style given here");
         found.push(d.help(format!("add `bond_coeff {} …`", missing[0])));
     }
+}
+
+/// A bond style that leaves some forces to a pair style needs that one.
+fn companion(graph: &Graph, node: &BondNode, span: Span, found: &mut Diagnostics) {
+    let wanted = node.force.companions();
+    let pair = graph.pair.iter().flat_map(|p| std::iter::once(p.pair.as_ref()).chain(p.pair.parts()));
+    if wanted.is_empty() || pair.into_iter().any(|p| wanted.contains(&p.name())) {
+        return;
+    }
+    let text = format!("bond_style {} needs pair_style {}", node.force.name(), wanted.join(" or "));
+    let d = Diagnostic::error(Code::INCOMPLETE, span, text).label(node.span, "bond_style given here");
+    found.push(d.help(format!("put `pair_style {}` before the run", wanted[0])));
 }

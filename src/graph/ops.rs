@@ -4,7 +4,9 @@ use super::spatial;
 use crate::diag::{Code, Diagnostic, Result};
 use crate::par;
 use crate::plan::{Access, Op, Phase, Stage, Tick};
+use crate::world::bonds::LostBond;
 use crate::world::columns::HEATFLOW;
+use crate::world::index::Index;
 use crate::world::{Domain, Particles, Seen, World};
 
 /// Wraps, shrinks, checks for lost particles and tells lists to rebuild, at LAMMPS' reneighbour times.
@@ -142,6 +144,7 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor) -> Result<()> {
     if !lost.is_empty() {
         w.rebuild.lost += lost.len() as u64;
         w.gather(&kept);
+        warn_of_bonds(w, t);
     }
     if how.sort {
         spatial::line_up(w);
@@ -152,6 +155,20 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor) -> Result<()> {
     w.rebuild.grown = w.rebuild.grown.map(|_| 0.0).filter(|_| !t.setup);
     hold(w);
     Ok(())
+}
+
+/// `thermo_modify lost/bond warn`: tells of bonds that have lost one of their ends.
+fn warn_of_bonds(w: &mut World, t: &Tick) {
+    if w.bonds.lost != LostBond::Warn || w.bonds.is_empty() {
+        return;
+    }
+    let (index, tags) = (Index::new(&w.particles.tag), &w.particles.tag);
+    let torn = w.bonds.list.iter().filter(|b| b.ends.iter().any(|t| index.find(*t, tags).is_none())).count();
+    if torn > 0 {
+        let text =
+            format!("{torn} bonds have lost one of their ends, at step {}: they exert no force", t.step);
+        w.parts.notes.push(Diagnostic::warning(Code::LOST, None, text));
+    }
 }
 
 fn too_far(w: &World, lost: &[usize], t: &Tick) -> crate::diag::Diagnostics {

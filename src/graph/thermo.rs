@@ -10,6 +10,7 @@ use crate::out::log::Log;
 use crate::out::thermo::{Column, Layout, Line};
 use crate::plan::{Op, Stage, When};
 use crate::styles::{BuildCx, SealCx, Wants};
+use crate::world::bonds::LostBond;
 use crate::world::{Face, World};
 
 /// What the step table shows and when.
@@ -21,6 +22,8 @@ pub struct Thermo {
     pub named: Option<ValueRef>,
     /// What happens to particles beyond a fixed face.
     pub lost: Lost,
+    /// `thermo_modify lost/bond`.
+    pub lost_bond: LostBond,
     /// `thermo_modify temp` names another temperature, which the pressure is still to take.
     pub new_temperature: Option<ValueRef>,
     /// Something was set by `thermo_modify`, which a new style forgets.
@@ -59,6 +62,7 @@ impl Default for Thermo {
             every: 0,
             named: None,
             lost: Lost::Error,
+            lost_bond: LostBond::Error,
             new_temperature: None,
             modified: false,
             layout,
@@ -164,8 +168,11 @@ impl Thermo {
                     }
                 }
                 "lost/bond" => {
-                    args.choice("value of lost/bond", &["error", "warn", "ignore"])?;
-                    no_effect(cx, word, "without effect: bonds are never lost here");
+                    self.lost_bond = match args.choice("value of lost/bond", &["error", "warn", "ignore"])? {
+                        "error" => LostBond::Error,
+                        "warn" => LostBond::Warn,
+                        _ => LostBond::Ignore,
+                    }
                 }
                 "warn" => {
                     if !["ignore", "reset", "default", "always"].contains(&args.peek_text()) {

@@ -141,6 +141,7 @@ impl Session {
     pub(super) fn sealed(&mut self, span: Span, minimizing: bool) -> Result<(StepPlan, Option<Reading>)> {
         let vars = Arc::new(self.vars.clone());
         self.graph.computes.iter().for_each(|c| c.compute.welcome(&mut self.world));
+        self.world.bonds.lost = self.graph.thermo.lost_bond;
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
         s.log = self.options.log.clone();
         s.at(span);

@@ -48,7 +48,7 @@ pub fn solids(w: &World, how: Estimate) -> Result<f64> {
     }
     let density = || match families.options.unit {
         ForceUnit::Density => p.mass.clone(),
-        ForceUnit::Newton => p.mass.iter().zip(&p.volume).map(|(m, v)| m / v).collect(),
+        ForceUnit::Newton => p.mass.iter().zip(view.volume).map(|(m, v)| m / v).collect(),
     };
     let step = match how {
         Estimate::Cfl => families.sound_step(&view, &density(), ftm2v),
@@ -112,7 +112,7 @@ pub fn grains(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<f64> {
     let mut least = f64::INFINITY;
     for i in 0..n {
         let mass = match solid(i) {
-            Some(f) if f.options.unit == ForceUnit::Density => masses[i] * p.volume[i],
+            Some(f) if f.options.unit == ForceUnit::Density => masses[i] * w.volumes()[i],
             _ => masses[i],
         };
         let k = ftm2v * most(straight[i]);

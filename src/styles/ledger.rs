@@ -109,7 +109,7 @@ fn scale(w: &World, i: usize) -> f64 {
     let dense = w.families.as_ref().is_some_and(|f| {
         f.options.unit == ForceUnit::Density && f.place.get(i).is_some_and(|p| *p != u32::MAX)
     });
-    if dense { w.particles.volume[i] } else { 1.0 }
+    if dense { w.volumes()[i] } else { 1.0 }
 }
 
 /// The kinetic energies of a scene [energy].

@@ -35,6 +35,18 @@ pub struct Weights {
     pub coul: [f64; 3],
 }
 
+/// What becomes of a run in which a bond has lost one of its ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum LostBond {
+    /// It ends.
+    #[default]
+    Error,
+    /// The bond exerts no force, which is told once.
+    Warn,
+    /// The bond exerts no force.
+    Ignore,
+}
+
 /// All bonds of a scene.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Bonds {
@@ -48,6 +60,12 @@ pub struct Bonds {
     pub special: Vec<[u32; 2]>,
     /// The bond style in force and its coefficients by type, as a data file has them.
     pub coeffs: Option<(String, BTreeMap<usize, String>)>,
+    /// What becomes of a run in which a bond has lost one of its ends (`thermo_modify lost/bond`).
+    #[serde(default)]
+    pub lost: LostBond,
+    /// The forces of peridynamic bonds are true ones, not such per volume (`bond_style bpm/peri force newton`).
+    #[serde(default)]
+    pub newton: bool,
     /// Grows with every change of the list or of what is special, so that others notice.
     pub changes: u64,
 }
@@ -72,6 +90,15 @@ impl Bonds {
     /// Keeps the bonds that `keep` lets pass.
     pub fn retain(&mut self, keep: impl FnMut(&Bond) -> bool) {
         self.list.retain(keep);
+        self.changes += 1;
+    }
+
+    /// Takes away the bonds between some pairs of ids, and lets pair forces act between them; `pairs` ascend, the lower id
+    /// of each first.
+    pub fn part(&mut self, pairs: &[[u32; 2]]) {
+        let parted = |a: u32, b: u32| pairs.binary_search(&[a.min(b), a.max(b)]).is_ok();
+        self.list.retain(|b| !parted(b.ends[0], b.ends[1]));
+        self.special.retain(|p| !parted(p[0], p[1]));
         self.changes += 1;
     }
 

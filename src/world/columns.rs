@@ -6,6 +6,8 @@ use std::collections::BTreeMap;
 pub const TEMPERATURE: &str = "temperature";
 /// The property of fix property/atom that holds the heat flowing into particles, summed anew in each step.
 pub const HEATFLOW: &str = "heatflow";
+/// The property that holds the volumes of particles joined by `bond_style bpm/peri`.
+pub const VOLUME_PROPERTY: &str = "d_vfrac";
 
 /// The vector column that keeps the slow part of the forces between steps of two lengths.
 pub const SLOW_FORCES: &str = "staggered/slow";

@@ -196,6 +196,15 @@ impl World {
         self.particles.len()
     }
 
+    /// Volumes of the particles of peridynamic solids: their own, or the property `d_vfrac`; empty where there are none.
+    pub fn volumes(&self) -> &[f64] {
+        if self.particles.style.peri {
+            return &self.particles.volume;
+        }
+        let column = self.columns.custom(columns::VOLUME_PROPERTY);
+        column.and_then(|name| self.columns.get_scalar(&name)).unwrap_or(&[])
+    }
+
     /// Positions at the last rebuild of neighbour lists; none before the first.
     pub fn held(&self) -> &[[f64; 3]] {
         if self.rebuild.unmoved { &self.particles.x0 } else { &self.rebuild.held }

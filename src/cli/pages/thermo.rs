@@ -65,7 +65,9 @@ pub(super) const THERMO_MODIFY: Entry = (
             pressure, unless `press` follows;\n\
             - `lost error` (default): a particle beyond a fixed face ends the run; `warn` and `ignore` delete it, with its \
             bonds and contacts, when neighbour lists are built, and `warn` says so once;\n\
-            - `lost/bond` and `warn` are read for LAMMPS' decks, and a note says that they have no effect.\n\n\
+            - `lost/bond error` (default): a bond of which one end is lost ends the run; `ignore` and `warn` go on without its \
+            force;\n\
+            - `warn` is read for LAMMPS' decks, and a note says that it has no effect.\n\n\
             Formats and names belong to the present columns: put the line behind `thermo_style`.",
         example: "thermo_style custom step pe ke\nthermo_modify norm no flush yes format float %20.12g format step %8d colname pe energy",
     },

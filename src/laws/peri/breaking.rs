@@ -115,8 +115,7 @@ impl Bonds for Periodic<'_> {
         for i in (0..body.record.len()).filter(|&i| body.flagged[i] & MAY_BREAK != 0) {
             for b in body.own(i).filter(|&b| body.lives(b)) {
                 let j = body.partner[b] as usize;
-                let pair =
-                    &body.pairs[usize::from(body.kind[i]) * body.kinds.len() + usize::from(body.kind[j])];
+                let pair = body.constants(b);
                 let now = stretch(body.z(false, i, j, self.1).0);
                 if now > pair.s00 - pair.alpha * stretch(body.z(true, i, j, self.1).0).max(0.0) {
                     let ends = [i as u32, j as u32];
@@ -131,8 +130,7 @@ impl Bonds for Periodic<'_> {
         let body = &*self.0;
         body.around(site as usize, |other, b| {
             if body.lives(b) {
-                let kinds = [other, site as usize].map(|r| usize::from(body.kind[r]));
-                let pair = &body.pairs[kinds[0] * body.kinds.len() + kinds[1]];
+                let pair = body.constants(b);
                 let (z, length) = body.z(true, site as usize, other, self.1);
                 f(banded(z, length, options), pair.s00, pair.alpha);
             }

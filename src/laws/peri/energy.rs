@@ -229,7 +229,7 @@ fn lattice_row(
 fn list_row(list: &ListBody, i: usize, period: [f64; 3], options: &FamilyOptions, f: &mut Add) {
     for b in list.own(i).filter(|&b| list.lives(b)) {
         let j = list.partner[b] as usize;
-        let pair = &list.pairs[usize::from(list.kind[i]) * list.kinds.len() + usize::from(list.kind[j])];
+        let pair = list.constants(b);
         let (z, length) = list.z(false, i, j, period);
         let weight = (pair.weight[0] - pair.weight[1] * length).min(1.0);
         let (own, other) = (&list.record[i], &list.record[j]);

@@ -24,7 +24,7 @@ use crate::par::{self, Shared};
 use crate::world::families::lattice::RowMotion;
 use crate::world::families::{
     Bounds, Candidate, Families, FamilyOptions, ForceUnit, Law, LawKind, Layout, NearPairs, PeriTally,
-    PeriView, PmbTable, Scratch,
+    PeriView, PmbCoeff, PmbTable, Scratch,
 };
 
 impl Families {
@@ -43,11 +43,55 @@ impl Families {
     /// As for [`Families::build`].
     pub fn build_of(view: &PeriView, table: &PmbTable, options: FamilyOptions, law: Law) -> Result<Self> {
         check_box(view, detect::reach(table, &options))?;
+        let mut families = Self::empty(view, table, options, law);
+        families.lay_out(view);
+        families.number_places();
+        families.refresh(view, table);
+        if families.law.kind.has_states() {
+            families.weigh(view, periods(&view.bounds));
+        }
+        let reaches = table.iter().map(|c| options.volume.reach(c.horizon, options.lattice_spacing));
+        families.start_near(reaches.fold(f64::INFINITY, f64::min));
+        families.find_loose(view);
+        Ok(families)
+    }
+
+    /// The same of bonds that are known: ends and type − 1 of each, with coefficients by type. There is no short-range
+    /// contact; `table` has what is said of pairs of types of particles.
+    ///
+    /// # Errors
+    /// As for [`Families::build`].
+    pub fn build_from(
+        view: &PeriView,
+        links: &[([u32; 2], u8)],
+        (table, of_bonds): (&PmbTable, Vec<PmbCoeff>),
+        options: FamilyOptions,
+        law: Law,
+    ) -> Result<Self> {
+        let far = records::longest(view, links);
+        check_box(view, far)?;
+        let mut families = Self::empty(view, table, FamilyOptions { no_repulsion: true, ..options }, law);
+        families.of_bonds = of_bonds;
+        families.reference = Some(view.x.to_vec());
+        let (volume, size) = (&mut families.family_volume, &mut families.family_size);
+        families.list = records::lay_out_links(view, links, far, volume, size);
+        families.number_places();
+        families.refresh(view, table);
+        if families.law.kind.has_states() {
+            families.weigh(view, periods(&view.bounds));
+        }
+        families.start_near(far);
+        Ok(families)
+    }
+
+    fn empty(view: &PeriView, table: &PmbTable, options: FamilyOptions, law: Law) -> Self {
         let n = view.x.len();
-        let mut families = Self {
+        Self {
             table: table.clone(),
             options,
             law,
+            of_bonds: vec![],
+            seen: 0,
             armed: false,
             lattices: vec![],
             list: Default::default(),
@@ -63,17 +107,7 @@ impl Families {
             relaxing: None,
             counts_losses: false,
             scratch: Scratch::default(),
-        };
-        families.lay_out(view);
-        families.number_places();
-        families.refresh(view, table);
-        if families.law.kind.has_states() {
-            families.weigh(view, periods(&view.bounds));
         }
-        let reaches = table.iter().map(|c| options.volume.reach(c.horizon, options.lattice_spacing));
-        families.start_near(reaches.fold(f64::INFINITY, f64::min));
-        families.find_loose(view);
-        Ok(families)
     }
 
     /// Gives each body its layout.
@@ -146,7 +180,7 @@ impl Families {
         for body in &mut self.lattices {
             tables::refresh(body, view, table, &self.options, &self.law);
         }
-        list::refresh(&mut self.list, view, table, &self.options, &self.law);
+        list::refresh(&mut self.list, view, table, &self.options, (&self.law, &self.of_bonds));
     }
 
     /// Takes in particles created since: they have no family, but short-range contact.

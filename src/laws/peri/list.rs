@@ -5,25 +5,26 @@ use super::list_kernel::{RowKernels, RowTask, dead};
 use crate::par::{self, Shared};
 use crate::world::families::lattice::RowMotion;
 use crate::world::families::list::{ListBody, PairConstants, Record};
-use crate::world::families::{FamilyOptions, ForceUnit, Law, PeriView, PmbTable, VolumeRule, Window};
+use crate::world::families::{
+    FamilyOptions, ForceUnit, Law, PeriView, PmbCoeff, PmbTable, VolumeRule, Window,
+};
 use std::ops::Range;
 
-/// Fills constants, types and volumes.
-pub fn refresh(body: &mut ListBody, view: &PeriView, table: &PmbTable, options: &FamilyOptions, law: &Law) {
+/// Fills constants, types and volumes; bonds with types of their own have the coefficients of those.
+pub fn refresh(
+    body: &mut ListBody,
+    view: &PeriView,
+    table: &PmbTable,
+    options: &FamilyOptions,
+    (law, of_bonds): (&Law, &[PmbCoeff]),
+) {
     let n = body.kinds.len();
     body.pairs.clear();
-    for pair in 0..n * n {
+    body.pairs.extend(of_bonds.iter().map(|k| constants(k, f64::NEG_INFINITY, options)));
+    for pair in 0..if of_bonds.is_empty() { n * n } else { 0 } {
         let (a, b) = (body.kinds[pair / n], body.kinds[pair % n]);
-        let yields = law.yields(a, b);
-        let constants = table.get(a, b).map(|k| {
-            let half = 0.5 * options.lattice_spacing;
-            let weight = match options.volume {
-                VolumeRule::None => [1.0, 0.0],
-                _ => [1.0 + (k.horizon - half) / (2.0 * half), 1.0 / (2.0 * half)],
-            };
-            PairConstants { c: k.c, s00: k.s00, alpha: k.alpha, horizon: k.horizon, yields, weight }
-        });
-        body.pairs.push(constants.unwrap_or(PairConstants { s00: f64::INFINITY, ..Default::default() }));
+        let own = table.get(a, b).map(|k| constants(k, law.yields(a, b), options));
+        body.pairs.push(own.unwrap_or(PairConstants { s00: f64::INFINITY, ..Default::default() }));
     }
     for (r, &p) in body.particle.iter().enumerate() {
         if p != u32::MAX {
@@ -32,6 +33,16 @@ pub fn refresh(body: &mut ListBody, view: &PeriView, table: &PmbTable, options: 
             body.record[r].share = if options.unit == ForceUnit::Density { 1.0 / volume } else { 1.0 };
         }
     }
+}
+
+/// What bonds of these coefficients need.
+fn constants(k: &PmbCoeff, yields: f64, options: &FamilyOptions) -> PairConstants {
+    let half = 0.5 * options.lattice_spacing;
+    let weight = match options.volume {
+        VolumeRule::None => [1.0, 0.0],
+        _ => [1.0 + (k.horizon - half) / (2.0 * half), 1.0 / (2.0 * half)],
+    };
+    PairConstants { c: k.c, s00: k.s00, alpha: k.alpha, horizon: k.horizon, yields, weight }
 }
 
 /// Gathers displacements from positions; returns their change since the last step that advanced.

@@ -16,6 +16,7 @@ mod lanes;
 mod lanes512;
 mod lattice;
 mod limit;
+pub mod linked;
 mod list;
 mod list_kernel;
 pub mod moduli;

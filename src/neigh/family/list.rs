@@ -1,6 +1,6 @@
 //! Laying out bonds as a list: records by slabs, half of the bonds with each.
 
-use super::detect::{bonds, reach};
+use super::detect::{bonds, distance, reach};
 use crate::world::families::list::{GROUP, ListBody, Record};
 use crate::world::families::{FamilyOptions, PeriView, PmbTable};
 
@@ -17,39 +17,93 @@ pub fn lay_out(
     if members.is_empty() {
         return ListBody { start: vec![0], back_start: vec![0], slab: vec![0], ..Default::default() };
     }
-    let mut body = order(view, members, wraps, reach(table, options));
+    let mut contact = f64::NEG_INFINITY;
+    let found = |each: &mut dyn FnMut(u32, u32, Option<u8>)| {
+        bonds(view, members.iter().copied(), table, options, |p, q, rsq, _| {
+            let range = options.contact_range(view, p, q);
+            contact = contact.max(range * range / rsq - 1.0);
+            each(p, q, None);
+        });
+    };
+    let mut body =
+        gathered(view, members, (wraps, reach(table, options)), (family_volume, family_size), found);
+    body.contact = contact;
+    body
+}
+
+/// The same of bonds that are known, by their ends and their type from 0, of which the longest is `far`.
+pub fn lay_out_links(
+    view: &PeriView,
+    links: &[([u32; 2], u8)],
+    far: f64,
+    family_volume: &mut [f64],
+    family_size: &mut [u16],
+) -> ListBody {
+    if links.is_empty() {
+        return ListBody { start: vec![0], back_start: vec![0], slab: vec![0], ..Default::default() };
+    }
+    let mut members: Vec<u32> = links.iter().flat_map(|l| l.0).collect();
+    members.sort_unstable();
+    members.dedup();
+    let wraps = links.iter().any(|(ends, _)| distance(view, ends[0], ends[1]).1);
+    let found = |each: &mut dyn FnMut(u32, u32, Option<u8>)| {
+        links.iter().for_each(|&([p, q], kind)| each(p, q, Some(kind)));
+    };
+    let mut body = gathered(view, &members, (wraps, far), (family_volume, family_size), found);
+    body.contact = f64::NEG_INFINITY;
+    body
+}
+
+/// The length of the longest of some bonds.
+pub fn longest(view: &PeriView, links: &[([u32; 2], u8)]) -> f64 {
+    links.iter().map(|(ends, _)| distance(view, ends[0], ends[1]).0).fold(0.0, f64::max).sqrt()
+}
+
+/// The list of the bonds that `found` goes through, with a type of their own or that of their ends.
+fn gathered(
+    view: &PeriView,
+    members: &[u32],
+    (wraps, far): (bool, f64),
+    (family_volume, family_size): (&mut [f64], &mut [u16]),
+    found: impl FnOnce(&mut dyn FnMut(u32, u32, Option<u8>)),
+) -> ListBody {
+    let mut body = order(view, members, wraps, far);
     let n = body.particle.len();
     let mut record_of = vec![u32::MAX; view.x.len()];
     for (r, &p) in body.particle.iter().enumerate() {
         record_of[p as usize] = r as u32;
     }
-    body.kinds = members.iter().map(|&p| view.kind[p as usize]).collect();
-    body.kinds.sort_unstable();
-    body.kinds.dedup();
-    let local = |p: u32| body.kinds.iter().position(|&k| k == view.kind[p as usize]).unwrap_or(0) as u8;
+    let mut kinds: Vec<u16> = members.iter().map(|&p| view.kind[p as usize]).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    let local = |p: u32| kinds.iter().position(|&k| k == view.kind[p as usize]).unwrap_or(0) as u8;
     body.kind = body.particle.iter().map(|&p| local(p)).collect();
     let mut slab_of = vec![0u32; n];
     for s in 0..body.slabs() {
         slab_of[body.slab[s] as usize..body.slab[s + 1] as usize].fill(s as u32);
     }
     let last = body.slabs() as u32 - 1;
-    body.contact = f64::NEG_INFINITY;
-    let mut pairs: Vec<(u32, u8, u32)> = Vec::new();
-    bonds(view, members.iter().copied(), table, options, |p, q, rsq, _| {
+    let (mut pairs, mut typed): (Vec<(u32, u8, u32)>, bool) = (vec![], false);
+    found(&mut |p, q, own| {
         family_volume[p as usize] += view.volume[q as usize];
         family_volume[q as usize] += view.volume[p as usize];
         family_size[p as usize] += 1;
         family_size[q as usize] += 1;
-        let contact = options.contact_range(view, p, q);
-        body.contact = body.contact.max(contact * contact / rsq - 1.0);
         let (a, b) = (record_of[p as usize], record_of[q as usize]);
         let (low, high) = (a.min(b), a.max(b));
         let across = body.ring && slab_of[low as usize] == 0 && slab_of[high as usize] == last;
         let (i, j) = if across { (high, low) } else { (low, high) };
-        pairs.push((i, body.kind[j as usize], j));
+        typed |= own.is_some();
+        pairs.push((i, own.unwrap_or(body.kind[j as usize]), j));
     });
     pairs.sort_unstable();
     fill(&mut body, &pairs);
+    body.kinds = kinds;
+    if typed {
+        // Constants go by the bonds' types alone.
+        body.kind.fill(0);
+        body.kinds.truncate(1);
+    }
     body.record = body
         .particle
         .iter()

@@ -1,7 +1,7 @@
 //! bond bpm/spring: damped springs that break, at rest as they are when a run first meets them.
 
 use super::pull::{Found, apart, find, periods, tally};
-use super::{BondForce, BondStyle, Pull};
+use super::{BondForce, BondStyle, Pull, breaking_weights};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::Args;
 use crate::math::cformat::general;
@@ -99,16 +99,8 @@ impl BondForce for Declared {
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let span = cx.span();
-        let weights = cx.world().bonds.weights;
-        let lj = if self.options.overlay { [1.0; 3] } else { [0.0, 1.0, 1.0] };
-        if self.options.breaks && (weights.lj != lj || weights.coul != [1.0; 3]) {
-            let wanted = if self.options.overlay { "lj/coul 1 1 1" } else { "lj 0 1 1 coul 1 1 1" };
-            let d = Diagnostic::error(
-                Code::CONFLICT,
-                span,
-                "bonds that break need other weights of bonded pairs",
-            );
-            return Err(d.help(format!("put `special_bonds {wanted}` before the run")).into());
+        if self.options.breaks {
+            breaking_weights(cx.world(), self.options.overlay, span)?;
         }
         Ok(vec![Box::new(Springs { law: self.clone(), span, made: None, list: vec![] })])
     }

@@ -1,5 +1,6 @@
 //! Bond styles: forces along bonds between particles.
 
+pub mod bpm_peri;
 mod bpm_spring;
 mod harmonic;
 mod hybrid;
@@ -7,9 +8,10 @@ mod pull;
 mod zero;
 
 use super::{BuildCx, SealCx, Style};
-use crate::diag::Result;
+use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::lang::Args;
 use crate::plan::Op;
+use crate::world::World;
 pub use pull::{Pull, apart};
 
 /// A bond style: one file, one line in `BONDS`.
@@ -47,6 +49,11 @@ pub trait BondForce: Send + Sync {
     /// What a bond of this type does at length `r`, for `compute bond/local`; `None` where that takes more than a length.
     fn single(&self, kind: u16, r: f64) -> Option<Pull>;
 
+    /// The pair styles of which one has to be in force besides; any will do by default.
+    fn companions(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// The coefficients that `fix adapt` may change, by name.
     fn coefficients(&self) -> &'static [&'static str] {
         &[]
@@ -67,8 +74,24 @@ pub trait BondForce: Send + Sync {
 /// Every bond style.
 #[rustfmt::skip]
 pub const BONDS: &[&dyn BondStyle] = &[
+    &bpm_peri::BpmPeri,
     &bpm_spring::BpmSpring,
     &harmonic::HarmonicStyle,
     &hybrid::Hybrid,
     &zero::ZeroStyle,
 ];
+
+/// Bonds that break need weights of bonded pairs that can be taken back: no pair forces between those joined, or with
+/// `overlay` all of them.
+///
+/// # Errors
+/// Other weights.
+fn breaking_weights(w: &World, overlay: bool, span: Span) -> Result<()> {
+    let lj = if overlay { [1.0; 3] } else { [0.0, 1.0, 1.0] };
+    if w.bonds.weights.lj == lj && w.bonds.weights.coul == [1.0; 3] {
+        return Ok(());
+    }
+    let wanted = if overlay { "lj/coul 1 1 1" } else { "lj 0 1 1 coul 1 1 1" };
+    let d = Diagnostic::error(Code::CONFLICT, span, "bonds that break need other weights of bonded pairs");
+    Err(d.help(format!("put `special_bonds {wanted}` before the run")).into())
+}

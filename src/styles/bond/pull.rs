@@ -4,6 +4,7 @@ use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::math::vec3::{Vec3, add, sub};
 use crate::par;
 use crate::plan::{Access, Op, Stage, Tick};
+use crate::world::bonds::LostBond;
 use crate::world::index::Index;
 use crate::world::{Bond, World};
 
@@ -25,7 +26,8 @@ pub struct Found {
     pub ends: [usize; 2],
 }
 
-/// All bonds that act and that `wants` wants, with the places of their ends.
+/// All bonds that act and that `wants` wants, with the places of their ends; without those that have lost one where the
+/// deck allows it.
 ///
 /// # Errors
 /// An end that is gone.
@@ -35,10 +37,13 @@ pub fn find(w: &World, wants: impl Fn(&Bond) -> bool, span: Span) -> Result<Vec<
     let mut list = vec![];
     for (k, bond) in w.bonds.list.iter().enumerate().filter(|(_, b)| b.is_on() && wants(b)) {
         let [Some(a), Some(b)] = bond.ends.map(|t| index.find(t, tags)) else {
+            if w.bonds.lost != LostBond::Error {
+                continue;
+            }
             let text =
                 format!("an end of the bond between particles {} and {} is gone", bond.ends[0], bond.ends[1]);
             return Err(Diagnostic::error(Code::LOST, span, text)
-                .help("`delete_atoms … bond yes` takes bonds of deleted particles along")
+                .help("`delete_atoms … bond yes` takes bonds of deleted particles along; `thermo_modify lost/bond ignore` goes on without their forces")
                 .into());
         };
         list.push((k, Found { kind: bond.kind as u16, ends: [a, b] }));

@@ -102,7 +102,7 @@ impl Declared {
     fn cracked(&self, w: &World, families: &Families) -> Vec<u32> {
         let p = &w.particles;
         let mut damage = vec![0.0; w.n()];
-        families.damage_all(&p.volume, &mut damage);
+        families.damage_all(w.volumes(), &mut damage);
         let is = |i: &usize| damage[*i] >= self.damage && p.mask[*i] & self.group.bit() != 0;
         (0..w.n()).filter(is).map(|i| i as u32).collect()
     }

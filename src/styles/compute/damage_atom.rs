@@ -29,7 +29,7 @@ impl Style for DamageAtom {
 
 impl ComputeStyle for DamageAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let damage = |w: &World, f: &Families, i: usize| f.damage(i, &w.particles.volume);
+        let damage = |w: &World, f: &Families, i: usize| f.damage(i, w.volumes());
         of_families("damage/atom", "families volume mask", damage, args, cx)
     }
 }

@@ -115,10 +115,11 @@ fn pieces(w: &World, group: GroupId, damage: Option<f64>) -> Vec<Piece> {
         }
     });
     let (masses, energy) = (Masses::of(w), w.settings.units.constants().mvv2e);
+    let volumes = w.volumes();
     let densities = w.families.as_ref().is_some_and(|f| f.options.unit == ForceUnit::Density);
     let mut found: BTreeMap<u32, Piece> = BTreeMap::new();
     for i in (0..w.n()).filter(|&i| of(i)) {
-        let volume = p.volume.get(i).copied().unwrap_or(0.0);
+        let volume = volumes.get(i).copied().unwrap_or(0.0);
         let m = if densities && volume > 0.0 { masses.get(i) * volume } else { masses.get(i) };
         let name = clusters.name(i) as u32;
         let piece = found.entry(name).or_insert(Piece { name, ..Piece::default() });

@@ -46,6 +46,7 @@ use super::{BuildCx, Flow, SealCx, Shape, Style};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
 use crate::plan::{Op, Stage, When};
+use crate::world::columns::VOLUME_PROPERTY;
 use crate::world::{SlotId, World};
 
 /// A compute style: one file, one line in `COMPUTES`.
@@ -197,12 +198,17 @@ fn need_spheres(what: &str, cx: &BuildCx) -> Result<()> {
 
 /// Refuses what needs families where particles cannot have any.
 fn need_bonds(what: &str, cx: &BuildCx) -> Result<()> {
-    if cx.world.particles.style.peri {
+    let w = cx.world;
+    if w.particles.style.peri || (w.particles.style.bonded && w.columns.custom(VOLUME_PROPERTY).is_some()) {
         return Ok(());
     }
-    Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, format!("{what} needs particles with bonds"))
-        .help("put `atom_style peri` (or `hybrid sphere peri`) at the top of the deck")
-        .into())
+    Err(Diagnostic::error(
+        Code::WRONG_ORDER,
+        cx.span,
+        format!("{what} needs particles with peridynamic bonds"),
+    )
+    .help("put `atom_style peri` (or `hybrid sphere peri`) at the top of the deck")
+    .into())
 }
 
 /// Keywords of `pe` and `pe/atom`. Terms of styles that perigrain does not have are known and contribute nothing.

@@ -62,7 +62,8 @@ impl Compute for Declared {
                 return Ok(());
             };
             let densities = families.options.unit == ForceUnit::Density;
-            let volume = |i: usize| if densities { w.particles.volume[i] } else { 1.0 };
+            let volumes = w.volumes();
+            let volume = |i: usize| if densities { volumes[i] } else { 1.0 };
             per_particle(w, group, out, |i| tally.atom.get(i).map_or(0.0, |e| e * volume(i)));
             Ok(())
         }))

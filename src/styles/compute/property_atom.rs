@@ -3,9 +3,11 @@
 use super::{Compute, ComputeStyle};
 use crate::diag::{Code, Diagnostic, Result, fail, nearest};
 use crate::lang::{Args, Word};
+use crate::laws::peri::linked::Strain;
 use crate::par;
 use crate::plan::{Op, Stage, When};
 use crate::styles::matter::{Masses, unwrapped};
+use crate::styles::pair::peri::view;
 use crate::styles::step_op::{Wanted, fill};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 use crate::world::columns::{HEATFLOW, TEMPERATURE};
@@ -25,8 +27,8 @@ impl Style for PropertyAtom {
             text: "Per-atom vector for one attribute, array for several; 0 outside the group. Attributes: `id type proc \
                    mass x y z`; `xs ys zs` as fractions of the box; `xu yu zu` unwrapped across periodic faces; `ix iy iz` \
                    image counts; `vx vy vz fx fy fz`; with atom_style sphere `radius diameter omegax omegay omegaz tqx \
-                   tqy tqz`; with atom_style peri `vfrac`, the volume; with molecules `mol`. All in the deck's units. LAMMPS' other attributes \
-                   belong to atom styles that perigrain does not have and are refused, as is `s0`. `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`, `temperature`, `heatflow`: those of `fix property/atom`.",
+                   tqy tqz`; with atom_style peri `vfrac`, the volume; with molecules `mol`; with `bond_style bpm/peri` `s0`, the least critical stretch s00 − α smin of a particle's bonds, `smin`, their smallest stretch, and `lambda`, its plastic multiplier (0 without bonds). All in the deck's units. LAMMPS' other attributes \
+                   belong to atom styles that perigrain does not have and are refused, as is `s0` of other solids. `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`, `temperature`, `heatflow`: those of `fix property/atom`.",
             example: "compute r all property/atom radius",
         }
     }
@@ -39,6 +41,7 @@ enum Needs {
     Sphere,
     Peri,
     Molecules,
+    Linked,
 }
 
 impl Needs {
@@ -48,6 +51,7 @@ impl Needs {
             Needs::Sphere => style.sphere,
             Needs::Peri => style.peri,
             Needs::Molecules => style.molecules,
+            Needs::Linked => style.bonded,
         }
     }
 }
@@ -106,6 +110,9 @@ const ATTRIBUTES: &[(&str, Needs, Read)] = &[
     ("tqy", Needs::Sphere, |w, i| w.particles.torque[i][1]),
     ("tqz", Needs::Sphere, |w, i| w.particles.torque[i][2]),
     ("vfrac", Needs::Peri, |w, i| w.particles.volume[i]),
+    ("s0", Needs::Linked, |w, i| strain(w, i).map_or(0.0, |s| s.critical)),
+    ("smin", Needs::Linked, |w, i| strain(w, i).map_or(0.0, |s| s.smallest)),
+    ("lambda", Needs::Linked, |w, i| w.families.as_ref().map_or(0.0, |f| f.plastic_strain(i))),
     ("mol", Needs::Molecules, |w, i| f64::from(w.particles.molecule[i])),
 ];
 
@@ -114,9 +121,15 @@ const ELSEWHERE: &[&str] = &[
     "q", "mux", "muy", "muz", "mu", "spx", "spy", "spz", "sp", "fmx", "fmy", "fmz", "nbonds", "angmomx",
     "angmomy", "angmomz", "shapex", "shapey", "shapez", "quatw", "quati", "quatj", "quatk", "end1x", "end1y",
     "end1z", "end2x", "end2y", "end2z", "corner1x", "corner1y", "corner1z", "corner2x", "corner2y",
-    "corner2z", "corner3x", "corner3y", "corner3z", "s0", "espin", "eradius", "ervel", "erforce", "rho",
-    "drho", "e", "de", "cv", "buckling",
+    "corner2z", "corner3x", "corner3y", "corner3z", "espin", "eradius", "ervel", "erforce", "rho", "drho",
+    "e", "de", "cv", "buckling",
 ];
+
+/// How strained the bonds of a particle are under `bond_style bpm/peri`.
+fn strain(w: &World, i: usize) -> Option<Strain> {
+    let families = w.families.as_ref().filter(|f| !f.of_bonds.is_empty())?;
+    families.strain(&view(w).ok()?, i)
+}
 
 fn scaled(w: &World, i: usize, d: usize) -> f64 {
     w.domain.as_ref().map_or(0.0, |b| (w.particles.x[i][d] - b.lo[d]) / (b.hi[d] - b.lo[d]))
@@ -149,7 +162,7 @@ pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
         }
         let style = match needs {
             Needs::Sphere => "sphere",
-            Needs::Molecules => "bond",
+            Needs::Molecules | Needs::Linked => "bond",
             _ => "peri",
         };
         return Err(Diagnostic::error(

@@ -1,5 +1,6 @@
 //! Pair styles: forces between particles.
 
+mod bpm_peri;
 mod bpm_spring;
 pub mod contact_probe;
 mod gran_hertz_history;
@@ -127,6 +128,7 @@ pub trait Pair: Send {
 /// Every pair style.
 #[rustfmt::skip]
 pub const PAIRS: &[&dyn PairStyle] = &[
+    &bpm_peri::BpmPeriStyle,
     &bpm_spring::BpmSpringStyle,
     &gran_hertz_history::GranHertzHistory,
     &gran_hooke::GranHooke,

@@ -4,8 +4,12 @@ use super::Families;
 
 impl Families {
     /// Whether two particles are kept from touching by their family: they belonged to one at the start, by their distance
-    /// then, and, where those whose bond is broken meet again, their bond lives.
+    /// then, and, where those whose bond is broken meet again, their bond lives. Families from a table of bonds leave this
+    /// to `special_bonds`.
     pub fn related(&self, x0: &[[f64; 3]], kind: &[u16], period: [f64; 3], i: usize, j: usize) -> bool {
+        if !self.of_bonds.is_empty() {
+            return false;
+        }
         let has = |i: usize| self.family_size.get(i).is_some_and(|n| *n > 0);
         let Some(coeff) = self.table.get(kind[i], kind[j]).filter(|_| has(i) && has(j)) else { return false };
         let start = self.reference.as_deref().unwrap_or(x0);

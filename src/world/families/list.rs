@@ -57,7 +57,7 @@ pub struct ListBody {
     pub kind: Vec<u8>,
     /// Type of each local type.
     pub kinds: Vec<u16>,
-    /// Constants by pairs of local types.
+    /// Constants by pairs of local types; where bonds have types of their own there is one local type, and they go by those.
     pub pairs: Vec<PairConstants>,
     /// First group of each record, and the end.
     pub start: Vec<u32>,
@@ -65,7 +65,7 @@ pub struct ListBody {
     pub partner: Vec<u32>,
     /// Which bonds of a group live: bit k for the k-th; never for fillers.
     pub alive: Vec<u8>,
-    /// Local type of a group's partners.
+    /// Local type of a group's partners, or the bonds' own type.
     pub group_kind: Vec<u8>,
     /// The record whose group it is.
     pub owner: Vec<u32>,
@@ -114,6 +114,14 @@ impl ListBody {
         } else {
             self.alive[b / GROUP] &= !(1 << (b % GROUP));
         }
+    }
+
+    /// The constants of the bond at a place in `partner`.
+    #[inline]
+    pub fn constants(&self, b: usize) -> &PairConstants {
+        let group = b / GROUP;
+        let own = usize::from(self.kind[self.owner[group] as usize]);
+        &self.pairs[own * self.kinds.len() + usize::from(self.group_kind[group])]
     }
 
     /// Calls `f(other record, place in partner)` for every bond of a record, living or not.

@@ -282,6 +282,12 @@ pub struct Families {
     pub options: FamilyOptions,
     /// What bonds do.
     pub law: Law,
+    /// Coefficients by type of bond − 1, where families are what a table of bonds says (`bond_style bpm/peri`).
+    #[serde(default)]
+    pub of_bonds: Vec<PmbCoeff>,
+    /// The change of that table that families have taken in last.
+    #[serde(default)]
+    pub seen: u64,
     /// Whether a step has been advanced: nothing breaks before.
     pub armed: bool,
     /// Bodies on a lattice.

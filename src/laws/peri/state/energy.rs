@@ -169,7 +169,7 @@ fn listed(families: &Families, list: &ListBody, (advanced, period): (bool, [f64;
     for i in 0..list.record.len() {
         for k in list.own(i).filter(|&k| list.lives(k)) {
             let j = list.partner[k] as usize;
-            let mut b = bond(list, (i, j), period, Weighing::of(law), options);
+            let mut b = bond(list, (i, j, k), period, Weighing::of(law), options);
             if !advanced {
                 b.stretch.before = banded(list.z(true, i, j, period).0, b.length, options).s;
             }

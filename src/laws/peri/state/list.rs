@@ -11,7 +11,7 @@ use super::terms::{Dilatation, Norm, NormLammps, Term};
 use super::window;
 use crate::par::{self, Shared};
 use crate::world::families::law::COLUMNS;
-use crate::world::families::list::{ListBody, PairConstants};
+use crate::world::families::list::ListBody;
 use crate::world::families::{FamilyOptions, Influence, Law, LawKind, PeriView, Window};
 
 /// The sweeps over the list.
@@ -175,28 +175,27 @@ pub struct Bond {
     pub stretch: Stretch<Single>,
 }
 
-/// The bond between two records.
+/// The bond between two records, at place `k` in the list of partners.
 pub fn bond(
     body: &ListBody,
-    (i, j): (usize, usize),
+    (i, j, k): (usize, usize, usize),
     period: [f64; 3],
     weighing: Weighing,
     options: &FamilyOptions,
 ) -> Bond {
     let (a, b) = (&body.record[i], &body.record[j]);
     let (mut q, mut square, mut y) = (0.0, 0.0, [0.0; 3]);
-    for k in 0..3 {
-        let mut xi = b.reference[k] - a.reference[k];
-        if xi.abs() > 0.5 * period[k] {
-            xi -= period[k] * (xi / period[k]).round();
+    for d in 0..3 {
+        let mut xi = b.reference[d] - a.reference[d];
+        if xi.abs() > 0.5 * period[d] {
+            xi -= period[d] * (xi / period[d]).round();
         }
-        let eta = b.u[k] - a.u[k];
+        let eta = b.u[d] - a.u[d];
         q += eta * (2.0 * xi + eta);
         square += xi * xi;
-        y[k] = xi + eta;
+        y[d] = xi + eta;
     }
-    let pair: &PairConstants =
-        &body.pairs[usize::from(body.kind[i]) * body.kinds.len() + usize::from(body.kind[j])];
+    let pair = body.constants(k);
     let length = square.sqrt();
     let z = q / square;
     let live = z.abs() >= options.dead_band(length);
@@ -256,7 +255,7 @@ impl Sweep<'_> {
             let mut sum = 0.0;
             for k in body.own(i).filter(|&k| body.lives(k)) {
                 let j = body.partner[k] as usize;
-                let b = bond(body, (i, j), self.period, self.weighing, self.options);
+                let b = bond(body, (i, j, k), self.period, self.weighing, self.options);
                 let ends: Ends<Single> = [near, self.columns(j, T::COLUMNS)];
                 // SAFETY: plain arithmetic.
                 let (a, c) = unsafe { T::terms(&b.stretch, Single(b.omega), &ends, &self.recall(k)) };
@@ -307,7 +306,7 @@ impl Sweep<'_> {
         let (mut high, mut low, mut sum) = (0.0f64, 0.0f64, [0.0; 3]);
         for k in body.own(i).filter(|&k| body.lives(k)) {
             let j = body.partner[k] as usize;
-            let mut b = bond(body, (i, j), self.period, self.weighing, self.options);
+            let mut b = bond(body, (i, j, k), self.period, self.weighing, self.options);
             if W::BACK {
                 b.stretch.before = banded(body.z(true, i, j, self.period).0, b.length, self.options).s;
             }

@@ -111,7 +111,7 @@ pub fn weigh_list(body: &mut ListBody, period: [f64; 3], law: &Law) {
     for i in 0..body.record.len() {
         for b in body.own(i).filter(|&b| body.lives(b)) {
             let j = body.partner[b] as usize;
-            let pair = &body.pairs[usize::from(body.kind[i]) * body.kinds.len() + usize::from(body.kind[j])];
+            let pair = body.constants(b);
             let length = body.z(false, i, j, period).1;
             let omega = law.influence.of(length, pair.horizon);
             let one = law.weight(length, pair.horizon, (pair.weight[0] - pair.weight[1] * length).min(1.0));

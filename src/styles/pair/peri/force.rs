@@ -222,5 +222,6 @@ pub fn view(w: &World) -> Result<PeriView<'_>> {
     let Domain { lo, hi, .. } = *w.domain()?;
     let p = &w.particles;
     let bounds = Bounds { lo, hi, periodic: w.domain()?.periodic() };
-    Ok(PeriView { x: &p.x, x0: &p.x0, kind: &p.kind, volume: &p.volume, bounds })
+    let x0 = if p.x0.is_empty() { &p.x } else { &p.x0 };
+    Ok(PeriView { x: &p.x, x0, kind: &p.kind, volume: w.volumes(), bounds })
 }
