@@ -334,8 +334,11 @@ fn partners_beside(body: &LatticeBody, slot: usize, meets: &mut Vec<(i32, u32)>,
     for (meets, &step) in meets.iter_mut().zip(&body.steps) {
         let (other, uniform) = meet(body, slot, step);
         let other = &body.rows[other];
-        let offset =
-            if other.len == 0 { 0 } else { other.start as i32 - row.start as i32 + row.lo - other.lo };
+        if other.len == 0 {
+            // No bond leads there.
+            continue;
+        }
+        let offset = other.start as i32 - row.start as i32 + row.lo - other.lo;
         let table = if various { 0 } else { uniform.unwrap_or(0) * body.stencil.len() };
         let new = (offset, (table * CONSTANTS) as u32);
         same &= *meets == new;

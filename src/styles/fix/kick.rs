@@ -30,24 +30,44 @@ pub fn pass(w: &mut World, group: GroupId, inertia: Option<f64>, t: &Tick, part:
     let turned = inertia.map(|_| (&mut p.omega[..], &p.torque[..], &p.radius[..]));
     let columns = (&mut p.x[..], &mut p.v[..], &p.f[..], &p.mask[..], turned);
     let all = |start: usize, (x, v, f, mask, turned): Columns<'_>| {
-        let c = Chunk { x, v, f, mask, turned: turned.unwrap_or_default() };
-        let end = start + c.x.len();
-        match &masses {
-            Masses::Own(mass) => {
-                let (fours, rest) = mass[start..end].as_chunks::<4>();
-                let rest: [f64; 4] = std::array::from_fn(|l| rest.get(l).copied().unwrap_or(1.0));
-                k.chunk(c, part, inertia.is_some(), |at| fours.get(at).copied().unwrap_or(rest))
-            }
-            by_type => k.chunk(c, part, inertia.is_some(), |at| {
-                let mass = |i| if i < end { by_type.get(i) } else { 1.0 };
-                std::array::from_fn(|l| mass(start + 4 * at + l))
-            }),
-        }
+        k.stretch(Chunk { x, v, f, mask, turned: turned.unwrap_or_default() }, part, &masses, start)
     };
     let fastest = par::reduce_each(columns, all, f64::max).unwrap_or(0.0);
     if part != Part::Second {
         w.rebuild.travel.went(t.dt.abs() * fastest.sqrt());
     }
+}
+
+/// Makes half a step, with a drift of `dt` if there is one, for those of a group in a step of two lengths; `acts` tells from
+/// type and mask whether particles are kicked, and whether they drift then. Solids are created one after the other: what a
+/// particle does is decided once for all like it that follow.
+pub fn pass_some(
+    w: &mut World,
+    group: GroupId,
+    dt: Option<f64>,
+    half: f64,
+    acts: impl Fn(u16, u32) -> [bool; 2] + Sync,
+) {
+    let k = Kick { half, spin: 0.0, dt: dt.unwrap_or(0.0), bit: group.bit() };
+    let p = &mut w.particles;
+    let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
+    let columns = (&mut p.x[..], &mut p.v[..], &p.f[..], &p.mask[..], &p.kind[..]);
+    par::each(columns, |start, (x, v, f, mask, kind)| {
+        let mut from = 0;
+        while from < kind.len() {
+            let like = |k: &usize| kind[*k] == kind[from] && mask[*k] == mask[from];
+            let to = (from + 1..kind.len()).take_while(like).last().map_or(from + 1, |k| k + 1);
+            let [kicks, drifts] = acts(kind[from], mask[from]);
+            if kicks {
+                let own = from..to;
+                let (x, v) = (&mut x[own.clone()], &mut v[own.clone()]);
+                let c = Chunk { x, v, f: &f[own.clone()], mask: &mask[own], turned: Turned::default() };
+                let part = if drifts && dt.is_some() { Part::First } else { Part::Second };
+                k.stretch(c, part, &masses, start + from);
+            }
+            from = to;
+        }
+    });
 }
 
 /// Spins, torques, radii.
@@ -75,6 +95,22 @@ struct Kick {
 }
 
 impl Kick {
+    /// The particles from `start` on, and the largest v² among them after a drift.
+    fn stretch(&self, c: Chunk, part: Part, masses: &Masses, start: usize) -> f64 {
+        let (end, spins) = (start + c.x.len(), !c.turned.0.is_empty());
+        match masses {
+            Masses::Own(mass) => {
+                let (fours, rest) = mass[start..end].as_chunks::<4>();
+                let rest: [f64; 4] = std::array::from_fn(|l| rest.get(l).copied().unwrap_or(1.0));
+                self.chunk(c, part, spins, |at| fours.get(at).copied().unwrap_or(rest))
+            }
+            by_type => self.chunk(c, part, spins, |at| {
+                let mass = |i| if i < end { by_type.get(i) } else { 1.0 };
+                std::array::from_fn(|l| mass(start + 4 * at + l))
+            }),
+        }
+    }
+
     /// A chunk, and the largest v² in it after a drift; `masses(k)` are those of four particles from `4 k` on, whatever
     /// they are beyond the end.
     fn chunk(&self, c: Chunk, part: Part, spins: bool, masses: impl Fn(usize) -> [f64; 4]) -> f64 {

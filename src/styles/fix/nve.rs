@@ -1,17 +1,14 @@
 //! fix nve: velocity Verlet at constant energy.
 
-use super::kick::{Part, pass};
+use super::kick::{Part, pass, pass_some};
 use super::{Fix, FixStyle};
 use crate::diag::Result;
 use crate::lang::Args;
-use crate::math::vec3::Vec3;
-use crate::par;
 use crate::plan::{Access, Op, Phase, Stage, Tick};
-use crate::styles::matter::{Masses, check_masses};
+use crate::styles::matter::check_masses;
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
 use crate::world::{GroupId, World};
-use std::iter::repeat;
 
 /// The style.
 pub struct Nve;
@@ -88,7 +85,7 @@ pub fn half_step(w: &World, dt: f64) -> f64 {
 /// First half of a step: v += Δt/2 · f/m, x += Δt · v. In steps of two lengths solids drift in the short ones.
 pub fn kick_and_drift(w: &mut World, group: GroupId, t: &Tick) {
     if t.phase != Phase::Whole {
-        return some(w, group, &t.phase, half_step(w, t.dt), t.dt);
+        return some(w, group, &t.phase, half_step(w, t.dt), Some(t.dt));
     }
     pass(w, group, None, t, Part::First);
 }
@@ -96,74 +93,20 @@ pub fn kick_and_drift(w: &mut World, group: GroupId, t: &Tick) {
 /// Second half of a step: v += Δt/2 · f/m.
 pub fn kick(w: &mut World, group: GroupId, t: &Tick) {
     if t.phase != Phase::Whole {
-        return some(w, group, &t.phase, half_step(w, t.dt), 0.0);
+        return some(w, group, &t.phase, half_step(w, t.dt), None);
     }
     pass(w, group, None, t, Part::Second);
 }
 
 /// Half a step of two lengths: in the long one all are kicked and all but solids drift, in the short ones solids do both.
-fn some(w: &mut World, group: GroupId, phase: &Phase, half: f64, dt: f64) {
-    let p = &mut w.particles;
+fn some(w: &mut World, group: GroupId, phase: &Phase, half: f64, dt: Option<f64>) {
     let bit = group.bit();
-    let acts = |kind: u16, mask: u32| match phase {
-        _ if mask & bit == 0 => (false, false),
-        Phase::Whole => (true, true),
-        Phase::Long(solids) => (true, !solids.has(kind) || mask & solids.twice != 0),
-        Phase::Short(solids) => (solids.has(kind), true),
-    };
-    let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
-    let columns = (&mut p.x[..], &mut p.v[..], &p.f[..], &p.mask[..], &p.kind[..]);
-    par::each(columns, |start, (x, v, f, mask, kind)| {
-        let mut from = 0;
-        // Solids are created one after the other: what a particle does is decided once for all like it that follow.
-        while from < kind.len() {
-            let like = |k: &usize| kind[*k] == kind[from] && mask[*k] == mask[from];
-            let to = (from + 1..kind.len()).take_while(like).last().map_or(from + 1, |k| k + 1);
-            let (kicks, drifts) = acts(kind[from], mask[from]);
-            if kicks {
-                let own = from..to;
-                let (x, v, f) = (&mut x[own.clone()], &mut v[own.clone()], &f[own]);
-                let drift = drifts.then_some(dt);
-                match masses {
-                    Masses::Own(m) => {
-                        run(x, v, f, m[start + from..start + to].iter().map(|m| half / m), drift)
-                    }
-                    Masses::ByType(..) => run(x, v, f, repeat(half / masses.get(start + from)), drift),
-                }
-            }
-            from = to;
-        }
+    pass_some(w, group, dt, half, |kind, mask| match phase {
+        _ if mask & bit == 0 => [false, false],
+        Phase::Whole => [true, true],
+        Phase::Long(solids) => [true, !solids.has(kind) || mask & solids.twice != 0],
+        Phase::Short(solids) => [solids.has(kind), true],
     });
-}
-
-/// Kicks particles, and lets them drift where a step is given.
-fn run(
-    x: &mut [Vec3],
-    v: &mut [Vec3],
-    f: &[Vec3],
-    half_dt_by_m: impl Iterator<Item = f64>,
-    drift: Option<f64>,
-) {
-    let each = v.iter_mut().zip(f).zip(half_dt_by_m);
-    match drift {
-        None => each.for_each(|((v, f), h)| _ = kicked(v, f, h)),
-        Some(dt) => x.iter_mut().zip(each).for_each(|(x, ((v, f), h))| drifted(x, kicked(v, f, h), dt)),
-    }
-}
-
-#[inline]
-fn kicked<'a>(v: &'a mut [f64; 3], f: &[f64; 3], half_dt_by_m: f64) -> &'a [f64; 3] {
-    for d in 0..3 {
-        v[d] += half_dt_by_m * f[d];
-    }
-    v
-}
-
-#[inline]
-fn drifted(x: &mut [f64; 3], v: &[f64; 3], dt: f64) {
-    for d in 0..3 {
-        x[d] += dt * v[d];
-    }
 }
 
 #[cfg(test)]

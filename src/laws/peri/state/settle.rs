@@ -89,8 +89,9 @@ impl Settling<'_> {
                     unsafe { (&mut before.get(at..at + 1)[0], &mut unrelaxed.get(at..at + 1)[0]) };
                 if p != u32::MAX && m > 0.0 {
                     let own = stiffness[usize::from(sites.kind[p as usize]) - 1];
-                    angle = 3.0 / m * sums[at];
-                    let shear = own.shear / m;
+                    let by_m = 1.0 / m;
+                    angle = 3.0 * by_m * sums[at];
+                    let shear = own.shear * by_m;
                     row = match kind {
                         LawKind::Ves => {
                             let left = decay * *unrelaxed + fresh * (angle - *before);
@@ -98,15 +99,15 @@ impl Settling<'_> {
                             if self.advance {
                                 (*before, *unrelaxed) = (angle, left);
                             }
-                            let pressure = own.bulk * angle / m;
+                            let pressure = own.bulk * angle * by_m;
                             match self.compat {
                                 true => [pressure, shear, third, 0.0, 0.0],
                                 false => [pressure - shear * third, shear, 0.0, 0.0, 0.0],
                             }
                         }
-                        LawKind::Eps if self.compat => [angle / m, shear, angle / 3.0, 1.0, 0.0],
-                        LawKind::Eps => [own.bulk * angle / m, shear, angle / 3.0, 0.0, 0.0],
-                        _ => [(own.bulk * angle - own.shear * angle / 3.0) / m, shear, 0.0, 0.0, 0.0],
+                        LawKind::Eps if self.compat => [angle * by_m, shear, angle / 3.0, 1.0, 0.0],
+                        LawKind::Eps => [own.bulk * angle * by_m, shear, angle / 3.0, 0.0, 0.0],
+                        _ => [(own.bulk - own.shear / 3.0) * angle * by_m, shear, 0.0, 0.0, 0.0],
                     };
                 }
                 // SAFETY: as above.
