@@ -105,7 +105,7 @@ fn pieces(w: &World, group: GroupId, damage: Option<f64>) -> Vec<Piece> {
     let mut lost = vec![];
     if let (Some(_), Some(families)) = (damage, &w.families) {
         lost.resize(w.n(), 0.0);
-        families.damage_all(&p.volume, &mut lost);
+        families.damage_all(w.volumes(), &mut lost);
     }
     let holds = |i: usize| of(i) && damage.is_none_or(|d| lost.get(i).is_none_or(|lost| *lost < d));
     let mut clusters = Clusters::new(&p.tag);

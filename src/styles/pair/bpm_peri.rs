@@ -29,7 +29,8 @@ impl Style for BpmPeriStyle {
             text: "F = 15 k V̄ (d − r)/δ pushes particles apart while r < d = 1.35 lattice spacings (`lattice`), V̄ being the mean of \
                    both volumes `d_vfrac`, δ the horizon, and the energy ½ F (d − r). With `bond_style bpm/peri force newton` it is \
                    15 k V_i V_j (d − r)/δ. Joined particles are left out: `special_bonds lj 0 1 1 coul 1 1 1`. Every pair of types \
-                   needs coefficients of its own; k is usually the micro-modulus 18K/(πδ⁴). As LAMMPS' development version 2Sep2026 states it.",
+                   needs coefficients of its own; k is usually the micro-modulus 18K/(πδ⁴). Whose bond breaks at less than 1.35 spacings pushes at once: the energy \
+                   of the contact comes with the break, as the law has it. As LAMMPS' development version 2Sep2026 states it.",
             example: "units si\natom_style bond\nlattice sc 5.0e-4\nregion b block -0.004 0.004 -0.002 0.002 -0.002 0.002 units box\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 2\ncreate_atoms 1 single 0.0 0.0 0.0 units box\n\
                       create_atoms 1 single 6.0e-4 0.0 0.0 units box\nfix vol all property/atom d_vfrac ghost yes\n\
