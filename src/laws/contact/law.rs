@@ -182,7 +182,7 @@ impl ContactLaw for Granular {
     }
 
     fn in_lanes(&self) -> bool {
-        self.elastic.form != Form::Jkr && self.heat == Heat::None
+        self.heat == Heat::None
     }
 
     fn gap(&self, curvature: f64) -> f64 {

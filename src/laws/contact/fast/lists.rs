@@ -142,7 +142,7 @@ impl<L: ContactLaw> Fast<L> {
             let mut room = open().pop().unwrap_or_default();
             room.clear();
             // SAFETY: `near` asks the processor; list entries are grains.
-            unsafe { near::near(grains, &this.shifts, slab, this.thin, |t| room.t.push(t)) };
+            unsafe { near::near(grains, &this.shifts, slab, this.thin + this.span, |t| room.t.push(t)) };
             this.fill_short(slab, book.as_ref(), &mut room);
             std::mem::swap(&mut slab.short, &mut room);
             open().push(room);

@@ -70,7 +70,17 @@ impl<L: ContactLaw + PartialEq> Laws<L> {
     }
 }
 
+/// Room that radii growing under a list leave for what contacts of them span.
+const AMPLE: f64 = 1.25;
+
 impl<L: ContactLaw> Laws<L> {
+    /// How far apart the surfaces of grains of up to this radius can be and still hold together [length].
+    pub fn span(&self, largest: f64) -> f64 {
+        // Spans grow with the effective radius, which is at most half of the larger one.
+        let gaps = self.distinct.iter().map(|law| law.gap(0.5 * largest));
+        AMPLE * gaps.fold(0.0, f64::max)
+    }
+
     #[inline]
     fn which(&self, a: u16, b: u16) -> u8 {
         self.which[(usize::from(a) - 1) * self.types + usize::from(b) - 1]
@@ -110,6 +120,8 @@ pub struct Fast<L> {
     shifts: [[f64; 4]; 32],
     /// The second skin [length].
     thin: f64,
+    /// How far apart surfaces of grains that stick together can be [length].
+    span: f64,
     /// Whether long lists are younger than short ones.
     stale: bool,
     /// Number of the present step among those that remember; contacts of the last one carry it.
@@ -137,6 +149,7 @@ impl<L: ContactLaw> Fast<L> {
             lists: vec![],
             shifts: [[0.0; 4]; 32],
             thin: 0.0,
+            span: 0.0,
             stale: true,
             now: 0.0,
             width,
@@ -149,6 +162,11 @@ impl<L: ContactLaw> Fast<L> {
     /// Forgets grains and contacts.
     pub fn clear(&mut self) {
         *self = Self::new(self.laws.clone());
+    }
+
+    /// How far apart the surfaces of grains of up to this radius can be and still hold together [length].
+    pub fn span(&self, largest: f64) -> f64 {
+        self.laws.span(largest)
     }
 
     /// Number of grains the lists were made for.
@@ -171,8 +189,10 @@ impl<L: ContactLaw> Fast<L> {
         keep: &(impl Fn(usize, usize) -> bool + Sync),
     ) {
         let largest = grains.radius.iter().copied().fold(0.0, f64::max);
+        self.span = self.laws.span(largest);
+        let reach = frame.skin + self.span;
         let mut slabs = Slabs::default();
-        slabs.sort(grains.x, grains.tag, 2.0 * largest + frame.skin, &frame.lo, &frame.period);
+        slabs.sort(grains.x, grains.tag, 2.0 * largest + reach, &frame.lo, &frame.period);
         let book = self.remember(grains.tag, known);
         // The book has what they knew: room for what is made now.
         self.lists.iter_mut().for_each(|l| l.short = Short::default());
@@ -185,7 +205,7 @@ impl<L: ContactLaw> Fast<L> {
         }
         self.shifts[NOWHERE as usize][0] = FAR;
         self.thin = THIN * frame.skin;
-        self.make_long(grains, &slabs, frame.skin, keep);
+        self.make_long(grains, &slabs, reach, keep);
         self.book = Some(book);
         self.stale = true;
     }

@@ -1,8 +1,8 @@
 //! The inner loops: distances four at a time, contacts four at a time, forces into the records.
 
 use super::group::{Group, one};
-use super::lists::Slab;
-use super::near::{COUNTS, LANES, Places, grain};
+use super::lists::{Short, Slab};
+use super::near::{COUNTS, HERE_BITS, LANES, Places, grain};
 use super::{Fast, Laws, NONE, has_avx2};
 use crate::laws::contact::driver::Grains;
 use crate::laws::contact::{Advance, ContactLaw, Loop};
@@ -61,12 +61,46 @@ pub(super) struct Cx<'a, L> {
     pub virial: bool,
     /// Whether some grains are frozen.
     pub frozen: bool,
+    /// How far apart surfaces of grains that stick together can be [length].
+    pub span: f64,
 }
 
 impl<L> Cx<'_, L> {
     /// Where grains are.
     pub fn places(&self) -> Places<'_> {
         Places { x: self.x, radius: self.radius, shifts: self.shifts }
+    }
+}
+
+impl<L: ContactLaw> Cx<'_, L> {
+    /// Puts those hits first that touch, or have touched in the last step and still hold together; how many they are.
+    fn holding<const W: usize>(&self, short: &Short, hits: &mut [u32]) -> usize {
+        let mut count = 0;
+        for at in 0..hits.len() {
+            let k = hits[at];
+            hits[count] = k;
+            count += usize::from(self.holds::<W>(short, k as usize));
+        }
+        count
+    }
+
+    fn holds<const W: usize>(&self, short: &Short, k: usize) -> bool {
+        let (i, w) = (short.i[k] as usize, short.w[k]);
+        let (j, s) = (grain(w), self.shifts[(w >> HERE_BITS) as usize]);
+        let (a, b) = (self.x[i], self.x[j]);
+        let d = [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])];
+        let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        let (ri, rj) = (self.radius[i], self.radius[j]);
+        let sum = ri + rj;
+        if square < sum * sum {
+            return true;
+        }
+        if short.history[(k + 1) * W - 1] != self.now {
+            return false;
+        }
+        let law = self.laws.distinct.get(usize::from(self.laws.which(self.kind[i], self.kind[j])));
+        let far = sum + law.map_or(0.0, |law| law.gap(ri * rj / sum));
+        square < far * far
     }
 }
 
@@ -99,6 +133,7 @@ impl<L: ContactLaw> Fast<L> {
             store,
             virial,
             frozen: !self.signed.is_empty(),
+            span: self.span,
         };
         par::two_colours(slabs.len(), |k| {
             // SAFETY: each part writes its own slab, and forces of grains in it and the next one, which two_colours keeps
@@ -149,7 +184,7 @@ unsafe fn contacts<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(c
             // SAFETY: lists are filled up to fours; entries are grains.
             let bits = unsafe {
                 let short = &slab.short;
-                at.closer::<V::Row>(short.i.as_ptr().add(k), short.w.as_ptr().add(k), 0.0)
+                at.closer::<V::Row>(short.i.as_ptr().add(k), short.w.as_ptr().add(k), cx.span)
             };
             // Writes past `count` do no harm: the next ones overwrite them.
             let [a, b, c, d] = LANES[bits as usize & 15];
@@ -162,8 +197,9 @@ unsafe fn contacts<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(c
         // The evaluation writes behind the hits it is given.
         let mut rest = [0; BLOCK];
         rest[..count - ready].copy_from_slice(&hits[ready..count]);
+        let holding = if cx.span > 0.0 { cx.holding::<W>(&slab.short, &mut hits[..ready]) } else { ready };
         // SAFETY: passed on.
-        unsafe { evaluate::<N, V, L, W>(cx, slab, &mut hits, ready) };
+        unsafe { evaluate::<N, V, L, W>(cx, slab, &mut hits, holding) };
         if k == end {
             break;
         }

@@ -70,6 +70,20 @@ fn between(a: u16, b: u16) -> Granular {
     model.law(Compat::Perigrain)
 }
 
+/// The same where grains of type 1 stick to each other and to those of type 2.
+fn sticky(a: u16, b: u16) -> Granular {
+    if a + b == 4 {
+        return between(a, b);
+    }
+    // Grains of radius 0.5 hold across 0.026 with these, an eighth of the skin.
+    let normal = Normal::Jkr { young: 150.0 * f64::from(a + b), poisson: 0.3, cohesion: 1.0, eta: 0.5 };
+    let friction = Tangential::new(Friction::Mindlin, Some(300.0), 0.4, 0.2);
+    Model::new(normal, Damping::Viscoelastic, friction).law(Compat::Perigrain)
+}
+
+/// A table of laws by types.
+type Table = fn(u16, u16) -> Granular;
+
 impl Scene {
     fn grains(&self) -> Grains<'_> {
         let Self { x, v, omega, radius, mass, kind, tag, frozen, period } = self;
@@ -108,6 +122,12 @@ impl Scene {
         }
     }
 
+    /// Whether two do not touch.
+    fn apart(&self, p: &crate::neigh::list::Pair) -> bool {
+        let d = crate::neigh::list::difference(&self.x, &self.period, p);
+        crate::math::vec3::length(d) >= self.radius[p.i as usize] + self.radius[p.j as usize]
+    }
+
     fn wrap(&mut self) {
         for x in &mut self.x {
             (0..3).filter(|d| self.period[*d] > 0.0).for_each(|d| x[d] = x[d].rem_euclid(self.period[d]));
@@ -125,6 +145,7 @@ trait Loop {
 }
 
 struct PlainLoop {
+    law: Table,
     list: Vec<crate::neigh::list::Pair>,
     sweep: Sweep,
     memory: Contacts,
@@ -134,9 +155,9 @@ impl Loop for PlainLoop {
     fn step(&mut self, s: &Scene, k: usize) -> (Vec<Vec3>, Vec<Vec3>, Contacts, [f64; 6]) {
         let (mut wanted, mut rules) = (Wanted::new(2), Rules::new(2));
         for (a, b) in [(1, 1), (1, 2), (2, 2)] {
-            wanted.set(a, b, Reach::Touch);
+            wanted.set(a, b, Reach::Beyond((self.law)(a, b).gap(0.3)));
             let (average, curvature) = (Average::None, Curvature::Both);
-            rules.set(a, b, Rule { law: between(a, b), average, curvature });
+            rules.set(a, b, Rule { law: (self.law)(a, b), average, curvature });
         }
         if k.is_multiple_of(7) {
             let view = View { x: &s.x, tag: &s.tag, kind: &s.kind, radius: &s.radius, period: s.period };
@@ -156,8 +177,8 @@ struct FastLoop {
 }
 
 impl FastLoop {
-    fn new(through_world: bool) -> Self {
-        Self { fast: Fast::new(Laws::new(2, |a, b| Some(between(a, b))).unwrap()), through_world }
+    fn new(through_world: bool, law: Table) -> Self {
+        Self { fast: Fast::new(Laws::new(2, |a, b| Some(law(a, b))).unwrap()), through_world }
     }
 }
 
@@ -184,10 +205,11 @@ const PERIODS: [[f64; 3]; 3] = [[0.0; 3], [10.45, 9.5, 0.0], [10.45, 9.5, 11.4]]
 
 #[test]
 fn the_numbers_of_the_plain_driver() {
-    for period in PERIODS {
+    for (period, law) in PERIODS.into_iter().flat_map(|p| [(p, between as Table), (p, sticky)]) {
         let mut s = scene(period);
-        let mut plain = PlainLoop { list: vec![], sweep: Sweep::default(), memory: Contacts::default() };
-        let mut fast = FastLoop::new(false);
+        let mut plain = PlainLoop { law, list: vec![], sweep: Sweep::default(), memory: Contacts::default() };
+        let mut fast = FastLoop::new(false, law);
+        let mut beyond = 0;
         let mut ended = 0;
         for k in 0..40 {
             if k % 7 == 0 {
@@ -206,9 +228,11 @@ fn the_numbers_of_the_plain_driver() {
             assert!(contacts.history.iter().zip(&contacts2.history).all(|(a, b)| near(*a, *b)));
             assert!(virial.iter().zip(&virial2).all(|(a, b)| (a - b).abs() < 1e-8 * (1.0 + virial[0].abs())));
             ended += usize::from(k > 0 && !contacts.is_empty());
+            beyond += plain.sweep.contacts().filter(|(p, _)| s.apart(p)).count();
             s.advance(&f, &torque);
         }
         assert_eq!(ended, 39);
+        assert_eq!(beyond > 1000, law(1, 1).gap(0.25) > 0.0, "{beyond} contacts beyond touch");
     }
 }
 
@@ -216,7 +240,7 @@ fn the_numbers_of_the_plain_driver() {
 fn the_same_bits_for_threads_and_across_the_world() {
     let run = |through_world: bool, threads: usize| {
         par::set_threads(threads);
-        let (mut s, mut fast) = (scene(PERIODS[2]), FastLoop::new(through_world));
+        let (mut s, mut fast) = (scene(PERIODS[2]), FastLoop::new(through_world, sticky));
         for k in 0..30 {
             if k % 7 == 0 {
                 s.wrap();

@@ -76,8 +76,7 @@ impl Force {
         self.generation = Some(w.rebuild.generation);
         let period = period(w)?;
         let skin = w.settings.neighbor.skin;
-        let suits = suits(w, period);
-        if let Some(fast) = self.fast.as_mut().filter(|_| suits) {
+        if let Some(fast) = self.fast.as_mut().filter(|fast| suits(w, period, fast)) {
             let known = if self.is_fast { None } else { w.contacts.remove(self.style) };
             let frame = Frame { lo: w.domain()?.lo, period, skin };
             let allowed = Allowed::new(w);
@@ -205,7 +204,6 @@ fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<G
     let plain = rules.any(|r| {
         r.average != Average::None
             || r.curvature != Curvature::Both
-            || r.law.gap(1.0) != 0.0
             || r.law.heat != Heat::None
             || r.law.memory() > MOST_MEMORY
     });
@@ -218,11 +216,11 @@ fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<G
 }
 
 /// Whether the fast loop can take these particles.
-fn suits(w: &World, period: Vec3) -> bool {
+fn suits(w: &World, period: Vec3, fast: &Fast<Granular>) -> bool {
     let p = &w.particles;
     let bounds = |(lo, hi): (f64, f64), r: &f64| (lo.min(*r), hi.max(*r));
     let (least, most) = p.radius.iter().fold((f64::INFINITY, 0.0), bounds);
-    let reach = 2.0 * most + w.settings.neighbor.skin;
+    let reach = 2.0 * most + w.settings.neighbor.skin + fast.span(most);
     // Two grains must not meet in two images at once.
     let wide = period.iter().all(|l| *l == 0.0 || *l >= 2.0 * reach);
     let still = w.domain.as_ref().is_none_or(|d| d.flow.is_none());
