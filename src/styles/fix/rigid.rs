@@ -323,8 +323,7 @@ impl Fix for Declared {
                 if t.unchanged {
                     return Ok(());
                 }
-                me.finish_step(w, t);
-                me.publish(w, t, slot);
+                me.finish_step(w, t, slot);
                 Ok(())
             }
         };

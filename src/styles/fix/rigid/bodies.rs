@@ -55,23 +55,12 @@ pub struct Body {
 const WIDTH: usize = 30;
 
 impl Body {
-    fn row(&self) -> [f64; WIDTH] {
-        let mut row = [0.0; WIDTH];
-        let parts: [&[f64]; 11] = [
-            &[self.name],
-            &[self.mass],
-            &self.x,
-            &self.v,
-            &self.momentum,
-            &self.q,
-            &self.moments,
-            &self.force,
-            &self.torque,
-            &self.omega,
-            &self.image,
-        ];
-        row.iter_mut().zip(parts.into_iter().flatten()).for_each(|(a, b)| *a = *b);
-        row
+    fn write(&self, row: &mut [f64]) {
+        row[..2].copy_from_slice(&[self.name, self.mass]);
+        row[11..15].copy_from_slice(&self.q);
+        let vectors = [(2, self.x), (5, self.v), (8, self.momentum), (15, self.moments), (18, self.force)];
+        let last = [(21, self.torque), (24, self.omega), (27, self.image)];
+        vectors.into_iter().chain(last).for_each(|(k, a)| row[k..k + 3].copy_from_slice(&a));
     }
 
     fn of(row: &[f64]) -> Self {
@@ -100,8 +89,9 @@ impl Declared {
 
     /// Puts the bodies back.
     pub fn store(&self, w: &mut World, bodies: &[Body]) {
-        let rows = bodies.iter().flat_map(Body::row).collect();
-        w.memo.insert(self.key("bodies"), rows);
+        let rows = w.memo.entry(self.key("bodies")).or_default();
+        rows.resize(WIDTH * bodies.len(), 0.0);
+        rows.chunks_exact_mut(WIDTH).zip(bodies).for_each(|(row, body)| body.write(row));
     }
 
     /// What particle `i` has in common with its body; nothing for one that belongs to none.

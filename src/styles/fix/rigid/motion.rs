@@ -26,7 +26,7 @@ impl Declared {
             let omega = spin(b.momentum, b.q, b.moments);
             (b.q, b.omega) = richardson(b.q, b.momentum, omega, b.moments, 0.5 * t.dt);
         }
-        let virial = self.follow(w, &bodies, half, true);
+        let virial = self.follow(w, &bodies, half, true, t.virial && self.virial);
         if t.virial && self.virial {
             w.memo.insert(self.key("virial"), virial.to_vec());
         }
@@ -41,8 +41,9 @@ impl Declared {
         }
     }
 
-    /// New forces on the bodies and the second half kick; in the setup of a run the forces alone. Particles follow.
-    pub fn finish_step(&self, w: &mut World, t: &Tick) {
+    /// New forces on the bodies and the second half kick; in the setup of a run the forces alone. Particles follow. What decks
+    /// can read goes to the slot.
+    pub fn finish_step(&self, w: &mut World, t: &Tick, slot: SlotId) {
         let mut bodies = self.load(w);
         let half = 0.5 * t.dt * w.settings.units.constants().ftm2v;
         let flat = w.settings.two_dimensional;
@@ -53,7 +54,7 @@ impl Declared {
             }
             b.omega = spin(b.momentum, b.q, b.moments);
         }
-        let virial = self.follow(w, &bodies, half, false);
+        let virial = self.follow(w, &bodies, half, false, t.virial && self.virial);
         if t.virial && self.virial {
             let before = w.memo.remove(&self.key("virial")).filter(|_| !t.setup);
             for (k, total) in w.tally.fixes.iter_mut().enumerate() {
@@ -62,6 +63,7 @@ impl Declared {
             }
         }
         self.store(w, &bodies);
+        self.publish(w, t, slot, &bodies);
     }
 
     /// Sums of forces and torques, in the order of storage.
@@ -81,9 +83,9 @@ impl Declared {
         }
     }
 
-    /// Velocities and spins of the particles from those of their bodies, places too where they `move`; half the virial of the
-    /// forces that hold the bodies together.
-    fn follow(&self, w: &mut World, bodies: &[Body], half: f64, moving: bool) -> [f64; 6] {
+    /// Velocities and spins of the particles from those of their bodies, places too where they `move`; where it is
+    /// asked for, half the virial of the forces that hold the bodies together.
+    fn follow(&self, w: &mut World, bodies: &[Body], half: f64, moving: bool, tally: bool) -> [f64; 6] {
         let turned: Vec<_> = bodies.iter().map(|b| matrix(b.q)).collect();
         let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
         let mut x = std::mem::take(&mut w.particles.x);
@@ -112,6 +114,9 @@ impl Declared {
                 if moving {
                     *x = sub(add(away, body.x), shift);
                 }
+                if !tally {
+                    continue;
+                }
                 let m = masses.get(i);
                 let hold: Vec3 = std::array::from_fn(|d| m * (v[d] - old.1[d]) / half - p.f[i][d]);
                 for (s, (a, c)) in total.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {
@@ -135,18 +140,16 @@ impl Declared {
 
     /// Velocities and spins of the particles as their bodies have them now, outside of a run.
     pub fn carry(&self, w: &mut World, bodies: &[Body]) {
-        // No time passes: the virial means nothing.
-        self.follow(w, bodies, 1.0, false);
+        self.follow(w, bodies, 1.0, false, false);
     }
 
     /// The values that decks can read.
-    pub fn publish(&self, w: &mut World, t: &Tick, slot: SlotId) {
-        let bodies = self.load(w);
+    fn publish(&self, w: &mut World, t: &Tick, slot: SlotId, bodies: &[Body]) {
         let flat = w.settings.two_dimensional;
         let units = w.settings.units.constants();
         let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
         let (mut sum, mut freedom) = (0.0, 0.0);
-        for b in &bodies {
+        for b in bodies {
             let inner = apply_transposed(&matrix(b.q), b.omega);
             sum += b.mass * dot(b.v, b.v);
             sum += (0..3).map(|d| b.moments[d] * inner[d] * inner[d]).sum::<f64>();
@@ -161,7 +164,7 @@ impl Declared {
         }
         out.array.clear();
         out.array_cols = COLUMNS;
-        for b in &bodies {
+        for b in bodies {
             let x: Vec3 = std::array::from_fn(|d| b.x[d] - b.image[d] * lengths[d]);
             for part in [x, b.v, b.force, b.torque, b.image] {
                 out.array.extend(part);
