@@ -35,6 +35,9 @@ impl Contacts {
     /// Replaces the contacts by those of `keys` (sorted), `width` numbers each: those that were there keep their
     /// history, new ones start with zeros, others are forgotten. `spare` is room that is used again.
     pub fn carry(&mut self, keys: &[[u32; 2]], width: usize, spare: &mut Vec<f64>) {
+        if self.width == width && self.keys == keys {
+            return;
+        }
         spare.clear();
         spare.resize(keys.len() * width, 0.0);
         let kept = width.min(self.width);

@@ -126,28 +126,30 @@ impl Elastic {
     }
 
     /// E* [pressure], of models that have one.
+    #[inline(always)]
     fn young(&self) -> f64 {
         0.75 * self.stiffness
     }
 
     /// a(δ), the largest root of δ = a²/R̄ − 2 √(π γ a/E*), in the closed form of Parteli et al. (2014),
     /// doi 10.1038/srep06227, eq. 7.
+    #[inline(always)]
     fn jkr_radius<R: Real>(&self, curvature: R, overlap: R) -> R {
+        // No closures: they are not inlined into code for wide registers.
         let (e, gamma) = (self.young(), self.cohesion);
         let zero = overlap.like(0.0);
         let depth = curvature * overlap;
-        let root = |r: R| r.most(zero).sqrt();
         let square = curvature * curvature;
         let attraction = square * square * (gamma * gamma * e);
         let own = attraction * (27.0 * PI * PI);
         let elastic = depth * depth * depth * (8.0 * e * e * e);
-        let inner = root(attraction * (own + elastic * 2.0));
+        let inner = (attraction * (own + elastic * 2.0)).most(zero).sqrt();
         let cube = (own + elastic + inner * (3.0 * 3.0_f64.sqrt() * PI)).each(f64::cbrt);
         let part = depth * depth * (4.0 * e) / cube + cube / e;
-        let first = root(depth * 2.0 + part);
+        let first = (depth * 2.0 + part).most(zero).sqrt();
         let last = square * (6.0 * 6.0_f64.sqrt() * gamma * PI / e) / first;
-        let a = (first + root(depth * 4.0 - part + last)) / 6.0_f64.sqrt();
+        let a = (first + (depth * 4.0 - part + last).most(zero).sqrt()) / 6.0_f64.sqrt();
         // Without attraction the quotients are 0/0 at first touch.
-        R::choose(cube.above(zero), a, root(depth))
+        R::choose(cube.above(zero), a, depth.most(zero).sqrt())
     }
 }

@@ -148,6 +148,9 @@ impl WallSweep {
 
     /// Gives contacts that begin the springs of contacts of the same particle that end, where the wall lets them pass.
     fn hand_over(&self, wall: &dyn Wall, memory: &mut Contacts) {
+        if memory.keys == self.keys {
+            return;
+        }
         for key in &self.keys {
             let [tag, part] = *key;
             if memory.keys.binary_search(key).is_ok() {
