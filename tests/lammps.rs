@@ -163,6 +163,8 @@ decks! {
     hyb_lps_multi
     gran_settle
     gran_wall_region
+    mdr_pair
+    mdr_box
 }
 
 /// A deck without dynamics that matter: its thermo table and the lines it prints.

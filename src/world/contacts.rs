@@ -31,6 +31,16 @@ pub fn mirror(history: &mut [f64]) {
     history.iter_mut().take(3).for_each(|a| *a = -*a);
 }
 
+/// Under this name contacts of plastic grains are kept (normal model `mdr`), besides those of their pair style.
+pub const PLASTIC: &str = "mdr";
+
+/// What one grain remembers of a contact of plastic grains, from what the other remembers: first its own side, then the
+/// other's, then what they have in common.
+pub fn turn_plastic(history: &mut [f64]) {
+    let half = history.len() / 2;
+    (0..half).for_each(|k| history.swap(k, half + k));
+}
+
 impl Contacts {
     /// Replaces the contacts by those of `keys` (sorted), `width` numbers each: those that were there keep their
     /// history, new ones start with zeros, others are forgotten. `spare` is room that is used again.
@@ -80,14 +90,14 @@ impl Contacts {
     }
 
     /// Renames grains (LAMMPS gives new ids when some are deleted); `new(key)` is the new key, `None` for those gone,
-    /// and whether it is seen from the other side now.
-    pub fn rename(&mut self, new: impl Fn([u32; 2]) -> Option<([u32; 2], bool)>) {
+    /// and whether it is seen from the other side now, which `turn` makes of what it remembers.
+    pub fn rename(&mut self, new: impl Fn([u32; 2]) -> Option<([u32; 2], bool)>, turn: impl Fn(&mut [f64])) {
         let mut list: Vec<([u32; 2], Vec<f64>)> = vec![];
         for (k, key) in self.keys.iter().enumerate() {
             let Some((key, turned)) = new(*key) else { continue };
             let mut history = self.history[k * self.width..][..self.width].to_vec();
             if turned {
-                mirror(&mut history);
+                turn(&mut history);
             }
             list.push((key, history));
         }
@@ -142,7 +152,7 @@ mod tests {
             let (a, b) = (tag(a), tag(b));
             Some(([a.min(b), a.max(b)], a > b))
         };
-        c.rename(new);
+        c.rename(new, mirror);
         let expected =
             Contacts { keys: vec![[1, 2], [1, 3], [2, 3]], width: 1, history: vec![13.0, 12.0, -23.0] };
         assert_eq!(c, expected);

@@ -1,6 +1,7 @@
 //! Which particle stands where: the order of space during runs, deletion and renumbering.
 
 use super::World;
+use super::contacts::{PLASTIC, mirror, turn_plastic};
 use std::collections::BTreeMap;
 
 impl World {
@@ -63,11 +64,11 @@ impl World {
             let (a, b) = (*new.get(&a)?, *new.get(&b)?);
             Some(([a.min(b), a.max(b)], a > b))
         };
-        for c in self.contacts.values_mut() {
-            c.rename(pair);
+        for (name, c) in &mut self.contacts {
+            c.rename(pair, if name == PLASTIC { turn_plastic } else { mirror });
         }
         for c in self.wall_contacts.values_mut() {
-            c.rename(|[a, part]| Some(([*new.get(&a)?, part], false)));
+            c.rename(|[a, part]| Some(([*new.get(&a)?, part], false)), mirror);
         }
     }
 }

@@ -21,10 +21,14 @@ pub enum Damping {
     /// `coeff_restitution`: η = α √(m̄ k) with β = −ln e/√(π² + ln² e): α = √5 β for forces ∝ δ^(3/2), 2 β for
     /// `hooke`; exact for both.
     CoeffRestitution,
+    /// `mdr 1`: η = η₀ √(m̄ k) with the k of plastic grains.
+    Mdr,
+    /// `mdr 2`: η = η₀.
+    MdrConstant,
 }
 
 impl Damping {
-    /// All of them.
+    /// Those that go with every normal model but `mdr`.
     pub const ALL: [Damping; 6] = [
         Damping::None,
         Damping::Velocity,
@@ -43,6 +47,8 @@ impl Damping {
             Damping::Viscoelastic => "viscoelastic",
             Damping::Tsuji => "tsuji",
             Damping::CoeffRestitution => "coeff_restitution",
+            Damping::Mdr => "mdr 1",
+            Damping::MdrConstant => "mdr 2",
         }
     }
 
@@ -57,7 +63,11 @@ impl Damping {
     pub fn constant(self, eta: f64, linear: bool, compat: Compat) -> f64 {
         match self {
             Damping::None => 0.0,
-            Damping::Velocity | Damping::MassVelocity | Damping::Viscoelastic => eta,
+            Damping::Velocity
+            | Damping::MassVelocity
+            | Damping::Viscoelastic
+            | Damping::Mdr
+            | Damping::MdrConstant => eta,
             Damping::Tsuji if compat == Compat::Lammps => tsuji(eta),
             // Tsuji's curve is that of forces ∝ δ^(3/2), where √5 β makes e; for linear ones 2 β does.
             Damping::Tsuji if linear => 2.0 * (2.0_f64 / 5.0).sqrt() * tsuji(eta),
@@ -74,10 +84,10 @@ impl Damping {
     #[inline(always)]
     pub fn form<R: Real>(self, a: R, secant: R, mass: R) -> R {
         match self {
-            Damping::None | Damping::Velocity => mass.like(1.0),
+            Damping::None | Damping::Velocity | Damping::MdrConstant => mass.like(1.0),
             Damping::MassVelocity => mass,
             Damping::Viscoelastic => mass * a,
-            Damping::Tsuji | Damping::CoeffRestitution => (mass * secant).sqrt(),
+            Damping::Tsuji | Damping::CoeffRestitution | Damping::Mdr => (mass * secant).sqrt(),
         }
     }
 }

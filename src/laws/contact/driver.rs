@@ -235,9 +235,31 @@ impl Sweep {
         memory: &mut Contacts,
         step: Advance,
     ) {
-        let width = rules.memory();
+        self.meet(list, grains, rules, memory);
+        self.act(grains, rules, memory, step);
+    }
+
+    /// Finds the contacts among the pairs of `list`, the first half of [`Sweep::run`].
+    pub fn meet<L: ContactLaw>(
+        &mut self,
+        list: &[Pair],
+        grains: &Grains,
+        rules: &Rules<L>,
+        memory: &mut Contacts,
+    ) {
         self.find(list, grains, rules, memory);
-        memory.carry(&self.keys, width, &mut self.spare);
+        memory.carry(&self.keys, rules.memory(), &mut self.spare);
+    }
+
+    /// Evaluates the contacts that were found, the second half.
+    pub fn act<L: ContactLaw>(
+        &mut self,
+        grains: &Grains,
+        rules: &Rules<L>,
+        memory: &mut Contacts,
+        step: Advance,
+    ) {
+        let width = rules.memory();
         self.share(grains, rules);
         self.wrenches.clear();
         self.wrenches.resize(self.touching.len(), Wrench::default());
@@ -275,6 +297,11 @@ impl Sweep {
     /// Whether nothing touched.
     pub fn is_empty(&self) -> bool {
         self.touching.is_empty()
+    }
+
+    /// The pairs that touch, and the tags of each.
+    pub fn touching(&self) -> (&[Pair], &[[u32; 2]]) {
+        (&self.touching, &self.keys)
     }
 
     /// The contacts of the last evaluation and what each does.

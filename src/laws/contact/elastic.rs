@@ -17,6 +17,8 @@ pub enum Form {
     Dmt,
     /// F = k a³/R̄ − 4 a √(π γ E* a), δ = a²/R̄ − 2 √(π γ a/E*), k = (4/3) E*.
     Jkr,
+    /// Plastic grains: the contact remembers what [`super::powder`] has found for it.
+    Mdr,
 }
 
 /// A normal force, ready for contacts of one pair of types.
@@ -56,13 +58,13 @@ impl Elastic {
     pub fn push<R: Real>(&self, g: &Geometry<R>, a: R) -> Push<R> {
         let zero = g.overlap.like(0.0);
         let secant = match self.form {
-            Form::None => zero,
+            Form::None | Form::Mdr => zero,
             Form::Hooke => zero.like(self.stiffness),
             Form::Hertz | Form::Dmt | Form::Jkr => a * self.stiffness,
         };
         let plain = Push { force: secant * g.overlap, secant, pull_off: zero };
         match self.form {
-            Form::None | Form::Hooke | Form::Hertz => plain,
+            Form::None | Form::Hooke | Form::Hertz | Form::Mdr => plain,
             Form::Dmt => {
                 let pull_off = g.curvature * (4.0 * PI * self.cohesion);
                 Push { force: plain.force - pull_off, pull_off, ..plain }
@@ -79,7 +81,8 @@ impl Elastic {
     pub fn energy(&self, g: &Geometry) -> f64 {
         let (k, depth) = (self.stiffness, g.overlap.max(0.0));
         match self.form {
-            Form::None => 0.0,
+            // What plastic grains give back depends on all that has happened to them.
+            Form::None | Form::Mdr => 0.0,
             Form::Hooke => 0.5 * k * depth * depth,
             Form::Hertz => 0.4 * k * (g.curvature * depth).sqrt() * depth * depth,
             Form::Dmt => {
@@ -107,9 +110,12 @@ impl Elastic {
         if small == 0.0 {
             return if self.form == Form::Hooke { self.stiffness } else { 0.0 };
         }
+        // Plastic grains: as stiff as elastic ones of this overlap.
+        let form = if self.form == Form::Mdr { Form::Hertz } else { self.form };
+        let elastic = Self { form, ..*self };
         let at = |overlap: f64| {
             let g = Geometry { overlap, ..*g };
-            self.push(&g, self.radius(&g)).force
+            elastic.push(&g, elastic.radius(&g)).force
         };
         (at(g.overlap + small) - at(g.overlap - small)) / (2.0 * small)
     }

@@ -1,6 +1,7 @@
 //! The granular law: normal, damping, tangential, rolling and twisting models, mixed for a pair of types.
 
-use super::elastic::{Elastic, Form};
+use super::elastic::{Elastic, Form, Push};
+use super::powder;
 use super::tangential::{Drag, Friction, Spring};
 use super::turning::{Rolling, Twisting};
 use super::{
@@ -178,11 +179,11 @@ pub struct Granular {
 impl ContactLaw for Granular {
     /// The tangential spring of i against j, then the rolling displacement, then the angle of twisting.
     fn memory(&self) -> usize {
-        self.before_turning() + self.rolling.memory() + self.twisting.memory()
+        self.before_told() + self.told()
     }
 
     fn in_lanes(&self) -> bool {
-        self.heat == Heat::None
+        self.elastic.form != Form::Mdr && self.heat == Heat::None
     }
 
     fn gap(&self, curvature: f64) -> f64 {
@@ -198,6 +199,11 @@ impl ContactLaw for Granular {
     }
 
     fn stored(&self, g: &Geometry, history: &[f64]) -> Stored {
+        if self.elastic.form == Form::Mdr {
+            let push = history.get(self.before_told()).copied().unwrap_or(0.0);
+            let a = self.elastic.radius(g);
+            return Stored { push, normal: 0.0, across: self.spring.energy(a, history) };
+        }
         let a = self.elastic.radius(g);
         let push = self.elastic.push(g, a).force;
         Stored { push, normal: self.elastic.energy(g), across: self.spring.energy(a, history) }
@@ -214,7 +220,11 @@ impl ContactLaw for Granular {
     ) -> Wrench<R> {
         let zero = g.overlap.like(0.0);
         let a = if self.by_radius { self.elastic.radius(g) } else { zero };
-        let push = self.elastic.push(g, a);
+        let mut push = self.elastic.push(g, a);
+        if self.elastic.form == Form::Mdr {
+            let told = &history[self.before_told()..];
+            push = Push { force: told[0], secant: told[1], pull_off: zero };
+        }
         let form = self.damping.form(a, push.secant, g.mass);
 
         let (v_n, v_across) = split_velocity(g, i, j);
@@ -288,6 +298,20 @@ impl Granular {
             Arm::Middle => g.radii[k] - g.overlap * 0.5,
             Arm::Radius => g.radii[k],
         }
+    }
+
+    /// How many numbers stand before those that plastic grains are told.
+    #[inline(always)]
+    fn before_told(&self) -> usize {
+        let own = self.before_turning() + self.rolling.memory() + self.twisting.memory();
+        // The first three are mirrored.
+        if self.elastic.form == Form::Mdr { own.max(3) } else { own }
+    }
+
+    /// How many numbers plastic grains are told.
+    #[inline(always)]
+    fn told(&self) -> usize {
+        if self.elastic.form == Form::Mdr { powder::TOLD } else { 0 }
     }
 
     /// How many numbers stand before those of rolling and twisting, which are the same seen from j: at least the

@@ -12,6 +12,7 @@ pub mod heat;
 pub mod law;
 pub mod mesh;
 pub mod normal;
+pub mod powder;
 pub mod slider;
 pub mod tangential;
 pub mod turning;

@@ -1,6 +1,7 @@
 //! Elastic and cohesive forces along the normal, as decks name them: by stiffness or by material.
 
 use super::elastic::{Elastic, Form};
+use super::powder::Material;
 
 /// A normal model with the coefficients a deck gives it. `eta` is the damping coefficient or, for damping
 /// models that ask for it, the coefficient of restitution.
@@ -53,11 +54,18 @@ pub enum Normal {
         /// Surface energy γ [energy/area].
         cohesion: f64,
     },
+    /// `mdr E nu Y gamma psi_b eta` (Zunker & Kamrin 2024): plastic, adhesive grains, see [`super::powder`].
+    Mdr {
+        /// What the grains are made of.
+        material: Material,
+        /// Coefficient of `damping mdr`.
+        eta: f64,
+    },
 }
 
 impl Normal {
     /// The words decks use.
-    pub const NAMES: [&'static str; 6] = ["none", "hooke", "hertz", "hertz/material", "dmt", "jkr"];
+    pub const NAMES: [&'static str; 7] = ["none", "hooke", "hertz", "hertz/material", "dmt", "jkr", "mdr"];
 
     /// The word decks use.
     pub fn name(&self) -> &'static str {
@@ -68,6 +76,7 @@ impl Normal {
             Normal::HertzMaterial { .. } => "hertz/material",
             Normal::Dmt { .. } => "dmt",
             Normal::Jkr { .. } => "jkr",
+            Normal::Mdr { .. } => "mdr",
         }
     }
 
@@ -79,7 +88,8 @@ impl Normal {
             | Normal::Hertz { eta, .. }
             | Normal::HertzMaterial { eta, .. }
             | Normal::Dmt { eta, .. }
-            | Normal::Jkr { eta, .. } => eta,
+            | Normal::Jkr { eta, .. }
+            | Normal::Mdr { eta, .. } => eta,
         }
     }
 
@@ -89,6 +99,7 @@ impl Normal {
             Normal::HertzMaterial { young, poisson, .. }
             | Normal::Dmt { young, poisson, .. }
             | Normal::Jkr { young, poisson, .. } => Some((young, poisson)),
+            Normal::Mdr { material, .. } => Some((material.young, material.poisson)),
             _ => None,
         }
     }
@@ -116,6 +127,7 @@ impl Normal {
             Normal::Hertz { .. } | Normal::HertzMaterial { .. } => Form::Hertz,
             Normal::Dmt { .. } => Form::Dmt,
             Normal::Jkr { .. } => Form::Jkr,
+            Normal::Mdr { .. } => Form::Mdr,
         };
         Elastic { form, stiffness: self.stiffness(other), cohesion }
     }

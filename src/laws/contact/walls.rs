@@ -98,12 +98,23 @@ impl WallSweep {
         memory: &mut Contacts,
         step: Advance,
     ) {
+        self.meet(wall, grains, law, memory);
+        self.act(grains, law, memory, step);
+    }
+
+    /// Finds the contacts among the listed particles, the first half of [`WallSweep::run`].
+    pub fn meet<L: ContactLaw>(&mut self, wall: &dyn Wall, grains: &Spheres, law: &L, memory: &mut Contacts) {
         self.find(wall, grains, law, memory);
         let width = law.memory();
         self.keys.clear();
         self.keys.extend(self.touching.iter().map(|t| [grains.tag[t.grain as usize], t.near.part]));
         self.hand_over(wall, memory);
         memory.carry(&self.keys, width, &mut self.spare);
+    }
+
+    /// Evaluates the contacts that were found, the second half.
+    pub fn act<L: ContactLaw>(&mut self, grains: &Spheres, law: &L, memory: &mut Contacts, step: Advance) {
+        let width = law.memory();
         self.wrenches.clear();
         self.wrenches.resize(self.touching.len(), Wrench::default());
         let history = par::Rows { data: &mut memory.history[..], width };
@@ -226,6 +237,11 @@ impl WallSweep {
             WallSpring { tag, normal: g.normal, stiffness: law.springs(&g), arm }
         };
         self.touching.iter().map(spring).collect()
+    }
+
+    /// The contacts that were found, and their keys.
+    pub fn touching(&self) -> (&[Touch], &[[u32; 2]]) {
+        (&self.touching, &self.keys)
     }
 
     /// How many particles are looked at in each step.

@@ -4,6 +4,7 @@ use super::Coeff;
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use crate::lang::{Args, Word};
 use crate::laws::contact::driver::{Average, Curvature};
+use crate::laws::contact::powder::Material;
 use crate::laws::contact::{Damping, Friction, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting};
 
 /// Keywords after the normal model.
@@ -73,6 +74,7 @@ pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
     };
     c.model.tangential = tangential;
     c.model.limit_damping = limit.is_some();
+    check_powder(first, &c)?;
     check_restitution(first, &c.model)?;
     check_cohesion(first, &c.model, limit)?;
     Ok(c)
@@ -97,9 +99,33 @@ fn normal(word: &Word, args: &mut Args) -> Result<Normal> {
                 _ => Normal::Jkr { young, eta, poisson, cohesion },
             })
         }
-        "mdr" => Err(not_yet("normal model", word, &Normal::NAMES.join(", "))),
+        "mdr" => powder(args),
         _ => Err(unknown(word, "normal model of granular contacts", &Normal::NAMES)),
     }
+}
+
+/// The numbers of plastic grains.
+fn powder(args: &mut Args) -> Result<Normal> {
+    let young = args.positive("Young's modulus E")?;
+    let at = args.here();
+    let poisson = args.number("Poisson's ratio nu")?;
+    if !(0.0..0.5).contains(&poisson) {
+        let text = format!("Poisson's ratio of `mdr` is at least 0 and below 0.5, {poisson} is not");
+        return Err(Diagnostic::error(Code::BAD_VALUE, at, text)
+            .help("at 0.5 the bulk modulus E/(3 (1 - 2 nu)) is infinite")
+            .into());
+    }
+    let yield_stress = args.positive("the yield stress Y")?;
+    let cohesion = args.non_negative("the surface energy gamma")?;
+    let at = args.here();
+    let confinement = args.number("psi_b")?;
+    if !(0.0..=1.0).contains(&confinement) {
+        let text = format!("psi_b is a part of the surface, between 0 and 1: {confinement} is not");
+        return Err(Diagnostic::error(Code::BAD_VALUE, at, text).into());
+    }
+    let eta = args.non_negative("the damping coefficient")?;
+    let material = Material { young, poisson, yield_stress, cohesion, confinement };
+    Ok(Normal::Mdr { material, eta })
 }
 
 fn poisson(args: &mut Args) -> Result<f64> {
@@ -152,10 +178,13 @@ fn damping(args: &mut Args) -> Result<Damping> {
     if let Some(d) = Damping::ALL.into_iter().find(|d| d.name() == word.text) {
         return Ok(d);
     }
-    let names = Damping::ALL.map(Damping::name);
     if word.text == "mdr" {
-        return Err(not_yet("damping model", word, &names.join(", ")));
+        return Ok(match args.choice("kind of damping mdr", &["1", "2"])? {
+            "1" => Damping::Mdr,
+            _ => Damping::MdrConstant,
+        });
     }
+    let names = [&Damping::ALL.map(Damping::name)[..], &["mdr"]].concat();
     Err(unknown(word, "damping model", &names))
 }
 
@@ -196,6 +225,25 @@ fn heat(args: &mut Args) -> Result<Heat> {
     }
 }
 
+/// `mdr` goes with its own damping, that damping with nothing else.
+fn check_powder(normal: &Word, c: &Coeff) -> Result<()> {
+    let own = matches!(c.model.damping, Damping::Mdr | Damping::MdrConstant);
+    let text = match (&c.model.normal, own) {
+        (Normal::Mdr { .. }, false) => "the normal model mdr goes with `damping mdr` alone",
+        (Normal::Mdr { .. }, true) if c.average != Average::None || c.curvature != Curvature::Both => {
+            "the normal model mdr knows no `average` and no `curvature`"
+        }
+        (Normal::Mdr { .. }, true) if c.model.heat != Heat::None => {
+            "the normal model mdr conducts no heat in perigrain"
+        }
+        (Normal::Mdr { .. }, true) | (_, false) => return Ok(()),
+        (_, true) => "damping mdr goes with the normal model mdr alone",
+    };
+    Err(Diagnostic::error(Code::CONFLICT, normal.span, text)
+        .help("write `mdr E nu Y gamma psi_b e … damping mdr 1`")
+        .into())
+}
+
 /// Where the damping model reads `eta` as a coefficient of restitution, it must be one.
 fn check_restitution(normal: &Word, model: &Model) -> Result<()> {
     let e = model.normal.eta();
@@ -229,16 +277,6 @@ fn check_cohesion(normal: &Word, model: &Model, limit: Option<Span>) -> Result<(
         return Err(Diagnostic::error(Code::CONFLICT, span, text).help("leave the word out").into());
     }
     Ok(())
-}
-
-fn not_yet(what: &str, word: &Word, have: &str) -> Diagnostics {
-    Diagnostic::error(
-        Code::NOT_SUPPORTED,
-        word.span,
-        format!("{what} `{}` is not in perigrain yet", word.text),
-    )
-    .help(format!("there is: {have}"))
-    .into()
 }
 
 fn unknown(word: &Word, what: &str, known: &[&str]) -> Diagnostics {

@@ -2,6 +2,7 @@
 
 mod declared;
 pub mod force;
+pub mod powder;
 pub mod reach;
 
 pub use declared::{Declared, classic};
@@ -25,8 +26,8 @@ impl Style for GranularStyle {
                      pair_coeff i j normal … tangential … [damping …] [rolling …] [twisting …] [heat …] [limit_damping] \
                      [cutoff C] [average none|particle|body] [curvature both|impactor]\n\
                      normal: none | hooke kn eta | hertz kn eta | hertz/material E eta nu | dmt E eta nu gamma | \
-                     jkr E eta nu gamma\n\
-                     damping: none | velocity | mass_velocity | viscoelastic | tsuji | coeff_restitution\n\
+                     jkr E eta nu gamma | mdr E nu Y gamma psi_b e\n\
+                     damping: none | velocity | mass_velocity | viscoelastic | tsuji | coeff_restitution | mdr 1|2\n\
                      tangential: none | linear_nohistory x_gamma mu | linear_history kt x_gamma mu | \
                      linear_history_classic kt x_gamma mu | mindlin_classic kt x_gamma mu | \
                      mindlin[/force] kt|NULL x_gamma mu | mindlin_rescale[/force] kt|NULL x_gamma mu\n\
@@ -40,11 +41,26 @@ impl Style for GranularStyle {
                 Normal: `hooke` F_n = kn δ; `hertz` kn a δ; `hertz/material` 4/3 E* a δ with \
                 1/E* = (1−ν_i²)/E_i + (1−ν_j²)/E_j; `dmt` 4/3 E* a δ − 4π γ R̄; `jkr` 4/3 E* a³/R̄ − 4 a √(π γ E* a) \
                 with δ = a²/R̄ − 2 √(π γ a/E*): a contact that has been made lasts until it is torn off at −3π γ R̄, \
-                beyond touch. LAMMPS' `mdr` (plastic grains that grow as they are pressed) is refused. `eta` is a damping coefficient or a coefficient of restitution e, as `damping` says.\n\n\
+                beyond touch. `eta` is a damping coefficient or a coefficient of restitution e, as `damping` says.\n\n\
                 `damping`: η = eta (`velocity`), eta m̄ (`mass_velocity`), eta a m̄ (`viscoelastic`, the default), \
                 √2 α_T(e) √(m̄ k) (`tsuji`; for hooke 2/√5 of it), 2β √(m̄ k) for hooke and √5 β √(m̄ k) for the others \
                 (`coeff_restitution`, β = −ln e/√(π²+ln²e)); k = F_n/δ. For the last two 0 < e ≤ 1; they do not go \
                 with dmt and jkr.\n\n\
+                `mdr` (Zunker & Kamrin 2024, doi 10.1016/j.jmps.2023.105492 and .105493; 2025, doi 10.31224/4289) is for powders \
+                under pressure: grains that yield, flow and grow. Each grain is pressed by a rigid plane through the circle \
+                in which the spheres cut each other; the force is the mean of both sides. Elastic, it is Hertz' with \
+                E_c = E/(1−ν²). Where Hertz' mean pressure reaches the hardness p_Y = Y (1.75 exp(−4.4 δ/R) + 1) the grain \
+                yields, and from then on F = p_Y π a², a² = 2δR − δ² + δ_Y² − δ_Y R, while the contact gets deeper. Unloading is \
+                that of a plane on springs under an ellipse of height 2 p_Y a/E_c; with `gamma` the surfaces stick as \
+                those of Johnson, Kendall & Roberts, but no contact reaches beyond δ = 0. What flow displaces raises the \
+                whole free surface: the radius of a grain grows (its mass stays). Where the free part of its surface falls below \
+                `psi_b` (0 … 1; 0: never) the grain grows no more, and the mean approach of all its planes \
+                squeezes it with the bulk modulus E/(3 (1−2ν)). A contact that reaches through a third grain pushes less. All \
+                grains have the same numbers; walls too, but for `gamma`, and LAMMPS wants those of fix wall/gran/region. \
+                `damping mdr` alone goes with it: η = e √(m̄ k) with k = 2 E_c (a_i + a_j), on walls E_c a/2 (`1`), or η = e \
+                (`2`). Friction takes a = √(R̄ δ) as everywhere. After `run 0` decks can read `d_Ro` (first radius), `d_Velas`, \
+                `d_Acon1` (area of contact), `d_psi`, `d_eps_bar`, `d_sigmaxx` `…yy` `…zz` (mean stress, also `…xy` `…xz` `…yz`) and others of LAMMPS' \
+                names by compute property/atom, dump or formula. Heat, `average` and `curvature` do not go with it. Large overlaps are what it is made for.\n\n\
                 Which damping makes a wanted e: `coeff_restitution` does, exactly and at any velocity, `tsuji` as \
                 well as its polynomial (0.2 %, 0.5 % at e = 0.1). \
                 A constant `eta` does so only for hooke: 2β √(m̄ kn) as `velocity`, 2β √(kn/m̄) as `mass_velocity` \
@@ -80,7 +96,8 @@ impl Style for GranularStyle {
                 peridynamic solid, whose surface counts as flat (Walayat et al., table 1).\n\n\
                 `-compat lammps` has LAMMPS' faults: tsuji without its √2 (and its 2/√5 for hooke); the shear stiffness of mixed types from E* \
                 in the place of both moduli; a sliding twist that takes the direction of the spin even where its \
-                spring pushes the other way.",
+                spring pushes the other way; for mdr a contact that sticks only where a step takes more than a hundredth of its radius, and \
+                no yielding in the setup of a run.",
             example: "pair_style granular\n\
                       pair_coeff * * hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4",
         }

@@ -3,6 +3,7 @@
 pub mod gran;
 pub mod mesh;
 mod op;
+mod plastic;
 pub mod region;
 mod words;
 
@@ -82,7 +83,11 @@ struct Declared<F> {
 impl<F: Form> Fix for Declared<F> {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let surface = self.form.surface(&self.common, cx)?;
-        Ok(vec![Box::new(op::WallOp::new(F::STYLE, F::LOCAL, &self.common, surface, cx)?)])
+        let op = op::WallOp::new(F::STYLE, F::LOCAL, &self.common, surface, cx)?;
+        Ok(match plastic::Plastic::of(&self.common.material.model) {
+            Some(_) => op::halves(op),
+            None => vec![Box::new(op)],
+        })
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
@@ -95,6 +100,7 @@ impl<F: Form> Fix for Declared<F> {
         let inner = format!("{key}/");
         w.memo.retain(|name, _| *name != key && !name.starts_with(&inner));
         w.wall_contacts.remove(&self.common.id);
+        w.wall_contacts.remove(&plastic::Plastic::key(&self.common.id));
         if let Some(all) = &mut w.parts.wall_springs {
             all.remove(&self.common.id);
         }

@@ -1,5 +1,6 @@
 //! The op of a wall: who may touch it, contacts, forces, and what it feels.
 
+use super::plastic::Plastic;
 use super::{Common, Surface};
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::laws::contact::driver::DEEP;
@@ -11,6 +12,7 @@ use crate::styles::{Reading, SealCx};
 use crate::world::columns::{HEATFLOW, TEMPERATURE};
 use crate::world::contacts::Contacts;
 use crate::world::{SlotId, World};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Columns of `contacts`: in contact or not, force, the wall's nearest point, radius.
 pub const COLUMNS: usize = 8;
@@ -39,6 +41,10 @@ pub struct WallOp {
     /// Which particle was too deep in the wall, by which part of its radius and when.
     deep: Option<(u32, f64, i64)>,
     warmth: Option<Warmth>,
+    /// The memory of contacts before a setup that only evaluates.
+    kept: Option<Contacts>,
+    /// What plastic grains need.
+    plastic: Option<Plastic>,
 }
 
 /// What a wall that conducts heat needs.
@@ -96,6 +102,8 @@ impl WallOp {
             span: cx.span(),
             deep: None,
             warmth,
+            kept: None,
+            plastic: Plastic::of(&common.material.model),
         })
     }
 
@@ -114,6 +122,35 @@ impl WallOp {
         self.sweep.list(&*wall, grains, &w.particles.mask, self.bit, &self.law, far);
         self.generation = Some(w.rebuild.generation);
         self.travelled = 0.0;
+    }
+
+    /// Puts the wall where it is and finds who touches it.
+    fn meet(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        self.travelled += self.surface.place(w, t)?;
+        let mut memory = w.wall_contacts.remove(&self.id).unwrap_or_default();
+        // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
+        self.kept = (t.setup && !w.settings.lammps()).then(|| memory.clone());
+        let (p, masses) = (&w.particles, w.contact_masses());
+        let grains =
+            Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &masses, tag: &p.tag };
+        self.list(w, &grains);
+        let wall = self.surface.wall(w);
+        self.sweep.meet(&*wall, &grains, &self.law, &mut memory);
+        drop(wall);
+        w.wall_contacts.insert(self.id.clone(), memory);
+        Ok(())
+    }
+
+    /// Before any forces: what plastic grains must know of this wall.
+    fn approach(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let Some(plastic) = &self.plastic else { return Ok(()) };
+        // Grains grow before they meet the wall.
+        plastic.begin(w, t);
+        self.meet(w, t)?;
+        if let Some(plastic) = &mut self.plastic {
+            plastic.gather(w, t, &self.id, &self.sweep);
+        }
+        Ok(())
     }
 
     /// Remembers the deepest particle when the law first holds no longer.
@@ -173,6 +210,60 @@ impl WallOp {
     }
 }
 
+/// One wall as two ops, for plastic grains: who meets it before all forces, and what it does after those of pairs.
+pub fn halves(wall: WallOp) -> Vec<Box<dyn Op>> {
+    let name = wall.name.clone();
+    let both = Arc::new(Mutex::new(wall));
+    let half = |early| Box::new(Half { name: name.clone(), early, wall: both.clone() }) as Box<dyn Op>;
+    vec![half(true), half(false)]
+}
+
+struct Half {
+    name: String,
+    early: bool,
+    wall: Arc<Mutex<WallOp>>,
+}
+
+impl Half {
+    fn wall(&self) -> MutexGuard<'_, WallOp> {
+        self.wall.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Op for Half {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn stage(&self) -> Stage {
+        if self.early { Stage::PreForce } else { Stage::PostForce }
+    }
+
+    fn access(&self) -> Access {
+        Access::new(
+            "x v omega radius mass mask wall_contacts columns",
+            "f torque wall_contacts radius columns",
+        )
+    }
+
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let mut wall = self.wall();
+        match (self.early, t.unchanged) {
+            (_, true) => Ok(()),
+            (true, _) => wall.approach(w, t),
+            (false, _) => wall.run(w, t),
+        }
+    }
+
+    fn finish(&mut self, w: &mut World) -> Result<()> {
+        if self.early { Ok(()) } else { self.wall().finish(w) }
+    }
+
+    fn bytes(&self, w: &World) -> u64 {
+        self.wall().bytes(w) / 2
+    }
+}
+
 impl Op for WallOp {
     fn name(&self) -> &str {
         &self.name
@@ -190,23 +281,23 @@ impl Op for WallOp {
         if t.unchanged {
             return Ok(());
         }
-        self.travelled += self.surface.place(w, t)?;
+        if self.plastic.is_none() {
+            self.meet(w, t)?;
+        }
         let mut memory = w.wall_contacts.remove(&self.id).unwrap_or_default();
-        // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
-        let kept: Option<Contacts> = (t.setup && !w.settings.lammps()).then(|| memory.clone());
+        if let Some(plastic) = &mut self.plastic {
+            plastic.press(w, t, &self.id, &self.sweep, &mut memory);
+        }
         let (p, masses) = (&w.particles, w.contact_masses());
         let grains =
             Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &masses, tag: &p.tag };
-        self.list(w, &grains);
-        let wall = self.surface.wall(w);
         let step = Advance { dt: t.dt, history: !t.setup };
-        self.sweep.run(&*wall, &grains, &self.law, &mut memory, step);
-        drop(wall);
+        self.sweep.act(&grains, &self.law, &mut memory, step);
         let springs = w.parts.wall_springs.is_some().then(|| self.sweep.springs(&grains, &self.law));
         if let (Some(all), Some(own)) = (&mut w.parts.wall_springs, springs) {
             all.insert(self.id.clone(), own);
         }
-        w.wall_contacts.insert(self.id.clone(), kept.unwrap_or(memory));
+        w.wall_contacts.insert(self.id.clone(), self.kept.take().unwrap_or(memory));
         let p = &mut w.particles;
         let [fx, fy, fz, tx, ty, tz] = self.sweep.scatter(&mut p.f, &mut p.torque, &p.x, self.center);
         let heat = self.conduct(w);

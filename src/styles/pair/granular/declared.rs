@@ -1,10 +1,12 @@
 //! Granular pair styles with their coefficients: rules by pair of types, given or mixed.
 
 use super::force::{Force, conducts};
-use crate::diag::{Code, Diagnostic, Result};
+use super::powder::Powder;
+use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::lang::Args;
 use crate::laws::contact::driver::{Average, Curvature, Rule, Rules};
-use crate::laws::contact::{Damping, Granular, Model, Twisting};
+use crate::laws::contact::powder::Material;
+use crate::laws::contact::{Damping, Granular, Model, Normal, Twisting};
 use crate::neigh::list::{Reach, Wanted};
 use crate::plan::Op;
 use crate::styles::contact::{Coeff, durations, words};
@@ -99,6 +101,26 @@ impl Declared {
         pairs.into_iter().find(|(a, b)| meets(a.0.0, b.0.0) && unlike(a.1, b.1)).map(|(a, _)| a.1)
     }
 
+    /// What plastic grains are made of: all of one kind, and nothing else in the style.
+    fn powder(&self) -> Result<Option<(Material, Span)>> {
+        let normal = |c: &Coeff| c.model.normal;
+        let Some(first) = self.given.values().find(|c| matches!(normal(c), Normal::Mdr { .. })) else {
+            return Ok(None);
+        };
+        let Normal::Mdr { material, .. } = normal(first) else { return Ok(None) };
+        let Some(other) = self.given.values().find(|c| normal(c) != normal(first)) else {
+            return Ok(Some((material, first.span)));
+        };
+        Err(Diagnostic::error(
+            Code::CONFLICT,
+            other.span,
+            "all pairs of types have the same normal model `mdr`, or none",
+        )
+        .label(first.span, "`mdr` here")
+        .help("write the same numbers for all: `pair_coeff * * mdr E nu Y gamma psi_b e …`")
+        .into())
+    }
+
     fn acts_on(&self, i: u16, j: u16) -> bool {
         self.only.as_ref().is_none_or(|pairs| pairs.contains(&(i, j)))
     }
@@ -154,6 +176,9 @@ impl Pair for Declared {
                 .help("add `fix ID all property/atom temperature heatflow` and `set group all temperature …`")
                 .into());
         }
+        if let Some((material, span)) = self.powder()? {
+            return Ok(vec![Box::new(Powder::new(self.name, rules, wanted, material, span))]);
+        }
         Ok(vec![Box::new(Force::new(self.name, rules, wanted, w.types))])
     }
 
@@ -174,6 +199,9 @@ impl Pair for Declared {
 
     fn check(&self, cx: &BuildCx) {
         let w = cx.world;
+        if let Err(e) = self.powder() {
+            e.0.into_iter().for_each(|d| cx.note(d));
+        }
         if let Err(e) = self.tables(w.types, w.settings.compat) {
             e.0.into_iter().for_each(|d| cx.note(d));
         }

@@ -1,0 +1,190 @@
+//! One grain pressed by a rigid plane: elastic, then plastic, then unloading with or without adhesion.
+
+use super::{Manner, Material, adhesion};
+use std::f64::consts::PI;
+
+/// How many numbers a side remembers.
+pub const WIDTH: usize = 11;
+
+/// Where `deepest` stands among the numbers.
+pub const DEEPEST: usize = 4;
+
+/// What one grain remembers of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Side {
+    /// Depth δ of the plane below the surface of radius R [length].
+    pub depth: f64,
+    /// Depth below the surface the grain had at first.
+    pub first_depth: f64,
+    /// The part of δ that shears the contact.
+    pub shearing: f64,
+    /// The part of δ that squeezes the whole grain.
+    pub squeezing: f64,
+    /// Largest `shearing` so far.
+    pub deepest: f64,
+    /// Whether it has yielded.
+    pub yielded: bool,
+    /// c_A = π(δ_Y² − δ_Y R), by which the plastic area differs from that of a cap.
+    pub offset: f64,
+    /// Radius inside which the surfaces stick.
+    pub stuck: f64,
+    /// Area of contact.
+    pub area: f64,
+    /// Part in the grain's mean volumetric strain.
+    pub strain: f64,
+    /// Depth that would be left without load.
+    pub plastic: f64,
+}
+
+/// What the plane feels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pressed {
+    /// Force of the contact itself, without the bulk's.
+    pub force: f64,
+    /// Radius of contact for damping.
+    pub radius: f64,
+    /// Whether plastic flow goes on.
+    pub flows: bool,
+}
+
+/// The ellipse of the method of dimensionality reduction: a plane pressed into springs of this profile has the force of
+/// the contact. Height A/2, width B.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipse {
+    /// A [length].
+    pub a: f64,
+    /// B [length].
+    pub b: f64,
+}
+
+impl Ellipse {
+    /// Force on a plane at depth `d`: E_c A B/4 (acos(1 − 2x) − (1 − 2x) √(4x − 4x²)), x = d/A.
+    pub fn force(&self, plane: f64, d: f64) -> f64 {
+        let x = (d / self.a).clamp(0.0, 1.0);
+        0.25 * plane * self.a * self.b * segment(x)
+    }
+
+    /// Radius of contact at depth `d`.
+    pub fn radius(&self, d: f64) -> f64 {
+        let x = (d / self.a).clamp(0.0, 1.0);
+        0.5 * self.b * (4.0 * x - 4.0 * x * x).max(0.0).sqrt()
+    }
+
+    /// Depth at which the radius of contact is `r`.
+    pub fn depth(&self, r: f64) -> f64 {
+        0.5 * self.a - self.a / self.b * (0.25 * self.b * self.b - r * r).max(0.0).sqrt()
+    }
+}
+
+/// acos(1 − 2x) − (1 − 2x) √(4x − 4x²), without cancellation at small x.
+fn segment(x: f64) -> f64 {
+    let angle = 2.0 * x.sqrt().asin();
+    if angle > 0.3 {
+        return angle - 0.5 * (2.0 * angle).sin();
+    }
+    // t − sin(2t)/2 = (2t)³/12 − (2t)⁵/240 + …; eight terms leave less than 1e-17 of it at t = 0.3.
+    let double = 2.0 * angle;
+    let square = double * double;
+    let (mut term, mut sum) = (double * square / 12.0, 0.0);
+    for k in 2..10 {
+        sum += term;
+        term *= -square / ((2 * k) as f64 * (2 * k + 1) as f64);
+    }
+    sum
+}
+
+impl Side {
+    /// From what a contact remembers.
+    pub fn read(m: &[f64]) -> Self {
+        let mut numbers = [0.0; WIDTH];
+        numbers.iter_mut().zip(m).for_each(|(a, b)| *a = *b);
+        let [depth, first_depth, shearing, squeezing, deepest, yielded, offset, stuck, area, strain, plastic] =
+            numbers;
+        Self {
+            depth,
+            first_depth,
+            shearing,
+            squeezing,
+            deepest,
+            yielded: yielded != 0.0,
+            offset,
+            stuck,
+            area,
+            strain,
+            plastic,
+        }
+    }
+
+    /// Into what a contact remembers.
+    pub fn write(&self, m: &mut [f64]) {
+        let yielded = f64::from(u8::from(self.yielded));
+        let (s, t) = ([self.depth, self.first_depth, self.shearing, self.squeezing], [self.deepest, yielded]);
+        let u = [self.offset, self.stuck, self.area, self.strain, self.plastic];
+        m.iter_mut().zip(s.into_iter().chain(t).chain(u)).for_each(|(a, b)| *a = b);
+    }
+
+    /// Moves the plane to depth `depth` below the surface of radius `radius`; `mean`: by how much the grain's planes
+    /// came nearer in this step, on average over their areas, where the bulk answers.
+    pub fn go(&mut self, depth: f64, radius: f64, first: f64, mean: Option<f64>) {
+        self.squeezing = mean.map_or(0.0, |mean| (self.squeezing + mean).max(0.0));
+        self.shearing = depth - self.squeezing;
+        self.depth = depth;
+        self.first_depth = depth - (radius - first);
+    }
+
+    /// The contact's force on the plane, for a grain of radius `radius`.
+    pub fn press(&mut self, m: &Material, radius: f64, manner: Manner) -> Pressed {
+        let plane = m.plane();
+        self.deepest = self.deepest.max(self.shearing);
+        let deepest = self.deepest;
+        let hardness = m.hardness(deepest, radius);
+        // Mean pressure of Hertz' contact.
+        let flows = self.shearing >= deepest;
+        let may = flows && !(manner.lammps && manner.setup);
+        if !self.yielded && may && 4.0 * plane * deepest.sqrt() / (3.0 * PI * radius.sqrt()) > hardness {
+            self.yielded = true;
+            self.offset = PI * (deepest * deepest - deepest * radius);
+        }
+        let (shape, lift) = self.shape(m, radius, hardness);
+        let most = if self.yielded { 0.5 * shape.a } else { deepest };
+        self.area = self.contact_area(radius);
+        self.plastic = deepest - (most + lift);
+        if most <= 0.0 {
+            return Pressed { flows, ..Pressed::default() };
+        }
+        let elastic = (self.shearing - deepest + most + lift) / (1.0 + lift / most);
+        let (force, contact) = adhesion::force(m, &shape, elastic, &mut self.stuck, flows, manner.lammps);
+        Pressed { force, radius: contact, flows }
+    }
+
+    /// The ellipse, and δ_R, by which the rim of the contact lies lower while it is loaded.
+    fn shape(&self, m: &Material, radius: f64, hardness: f64) -> (Ellipse, f64) {
+        if !self.yielded {
+            return (Ellipse { a: 4.0 * radius, b: 2.0 * radius }, 0.0);
+        }
+        let (deepest, plane, nu) = (self.deepest, m.plane(), m.poisson);
+        let square = 2.0 * deepest * radius - deepest * deepest + self.offset / PI;
+        let most = square.max(0.0).sqrt();
+        let shape = Ellipse { a: 4.0 * hardness * most / plane, b: 2.0 * most };
+        if most == 0.0 {
+            return (shape, 0.0);
+        }
+        // Boussinesq's displacement at depth z_R under a pressure spread over the contact.
+        let half = 0.5 * shape.a;
+        let force = shape.force(plane, half);
+        let z = radius - (deepest - half);
+        let far = (square + z * z).sqrt();
+        let lift = force * (2.0 * square * (nu - 1.0) - (2.0 * nu - 1.0) * z * (far - z))
+            / (2.0 * PI * square * m.shear() * far);
+        (shape, lift)
+    }
+
+    fn contact_area(&self, radius: f64) -> f64 {
+        let d = self.depth;
+        if d <= 0.0 {
+            return 0.0;
+        }
+        let area = if self.yielded { PI * (2.0 * d * radius - d * d) + self.offset } else { PI * radius * d };
+        area.max(0.0)
+    }
+}

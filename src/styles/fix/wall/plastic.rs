@@ -1,0 +1,79 @@
+//! What walls do to plastic grains (normal model `mdr`).
+
+use crate::laws::contact::powder::{self, Manner, Material, State, TOLD, WALL};
+use crate::laws::contact::walls::WallSweep;
+use crate::laws::contact::{Model, Normal};
+use crate::plan::Tick;
+use crate::world::World;
+use crate::world::contacts::Contacts;
+
+/// A wall under plastic grains.
+pub struct Plastic {
+    material: Material,
+    spare: Vec<f64>,
+}
+
+impl Plastic {
+    /// For walls whose normal model is `mdr`.
+    pub fn of(model: &Model) -> Option<Self> {
+        let Normal::Mdr { material, .. } = model.normal else { return None };
+        Some(Self { material, spare: vec![] })
+    }
+
+    /// Under which name their memory is kept.
+    pub fn key(id: &str) -> String {
+        format!("mdr/{id}")
+    }
+
+    /// Begins the step for all grains.
+    pub fn begin(&self, w: &mut World, t: &Tick) {
+        powder::begin(w, (t.step, t.setup), &self.material).put(&mut w.columns);
+    }
+
+    /// Tells the grains how much nearer the wall comes.
+    pub fn gather(&mut self, w: &mut World, t: &Tick, id: &str, sweep: &WallSweep) {
+        if t.setup {
+            return;
+        }
+        let n = w.n();
+        let mut state = State::take(&mut w.columns, n);
+        let (touching, keys) = sweep.touching();
+        let depths = touching.iter().map(|c| {
+            let k = c.grain as usize;
+            (k, w.particles.radius[k] - c.near.distance)
+        });
+        if let Some(memory) = w.wall_contacts.get(&Self::key(id)) {
+            powder::gather(&mut state, memory, keys, depths);
+        }
+        state.put(&mut w.columns);
+    }
+
+    /// Presses the grains; the rest of the law is told by `contacts`.
+    pub fn press(&mut self, w: &mut World, t: &Tick, id: &str, sweep: &WallSweep, contacts: &mut Contacts) {
+        let key = Self::key(id);
+        let n = w.n();
+        let mut state = State::take(&mut w.columns, n);
+        let mut memory = w.wall_contacts.remove(&key).unwrap_or_default();
+        // In setup forces are only evaluated.
+        let kept = t.setup.then(|| state.clone());
+        let (touching, keys) = sweep.touching();
+        memory.carry(keys, WALL, &mut self.spare);
+        let manner = Manner { lammps: w.settings.lammps(), setup: t.setup };
+        let width = contacts.width;
+        let before = memory.history.clone();
+        let rows = memory.history.chunks_exact_mut(WALL).zip(contacts.history.chunks_exact_mut(width));
+        for (c, (own, told)) in touching.iter().zip(rows) {
+            let k = c.grain as usize;
+            let radius = w.particles.radius[k];
+            let (depth, told) = (radius - c.near.distance, &mut told[width - TOLD..]);
+            let deed = powder::press(&self.material, &state, k, radius, depth, own, told, manner);
+            deed.add(&mut state, k, c.near.normal);
+        }
+        if t.setup {
+            powder::undo(&before, &mut memory.history, WALL, manner.lammps);
+        }
+        let state = kept.unwrap_or(state);
+        w.wall_contacts.insert(key, memory);
+        state.put(&mut w.columns);
+    }
+}

@@ -1,0 +1,164 @@
+//! The op of plastic grains (normal model `mdr`): growth, contacts on both sides, forces and torques.
+
+use super::force::{built_at, grains};
+use super::reach::reaching;
+use crate::diag::{Code, Diagnostic, Result, Span};
+use crate::laws::contact::driver::{Rules, Sweep};
+use crate::laws::contact::powder::{Manner, Material, Meetings, PAIR, begin, undo};
+use crate::laws::contact::{Advance, Granular};
+use crate::neigh::list::{Pair, Wanted, difference, pairs};
+use crate::plan::{Access, Op, Stage, Tick};
+use crate::world::contacts::PLASTIC;
+use crate::world::{Allowed, World};
+
+/// Forces and torques among plastic grains.
+pub struct Powder {
+    rules: Rules<Granular>,
+    wanted: Wanted,
+    material: Material,
+    style: &'static str,
+    name: String,
+    span: Span,
+    /// Whether fix freeze holds a particle; empty without one.
+    frozen: Vec<bool>,
+    /// The rebuild the list was made at.
+    generation: Option<u64>,
+    list: Vec<Pair>,
+    sweep: Sweep,
+    meetings: Meetings,
+}
+
+impl Powder {
+    /// With nothing computed yet.
+    pub fn new(
+        style: &'static str,
+        rules: Rules<Granular>,
+        wanted: Wanted,
+        material: Material,
+        span: Span,
+    ) -> Self {
+        Self {
+            rules,
+            wanted,
+            material,
+            style,
+            name: format!("pair {style}"),
+            span,
+            frozen: vec![],
+            generation: None,
+            list: vec![],
+            sweep: Sweep::default(),
+            meetings: Meetings::default(),
+        }
+    }
+
+    /// The list from the positions of the last rebuild.
+    fn renew(&mut self, w: &World) {
+        self.generation = Some(w.rebuild.generation);
+        let p = &w.particles;
+        let view = crate::neigh::list::View {
+            x: built_at(w),
+            tag: &p.tag,
+            kind: &p.kind,
+            radius: &p.radius,
+            period: w.periods(),
+        };
+        let allowed = Allowed::new(w);
+        let wanted = reaching(&self.rules, &self.wanted, w);
+        self.list = pairs(&view, &wanted, w.settings.neighbor.skin, &|i, j| allowed.pair(i, j));
+    }
+
+    fn check(&self, w: &World, t: &Tick) -> Result<()> {
+        let mut forces = self.sweep.contacts();
+        let Some((pair, _)) = forces.find(|(_, wrench)| !wrench.force.iter().all(|f| f.is_finite())) else {
+            return Ok(());
+        };
+        let [a, b] = [pair.i, pair.j].map(|k| w.particles.tag[k as usize]);
+        let text = format!(
+            "particles {a} and {b} are pressed into each other beyond all sense of `mdr` at step {}",
+            t.step
+        );
+        Err(Diagnostic::error(Code::SUSPICIOUS, self.span, text).help("take a shorter time step").into())
+    }
+}
+
+impl Op for Powder {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn stage(&self) -> Stage {
+        Stage::Force
+    }
+
+    fn access(&self) -> Access {
+        Access::new("x v omega radius mass type", "f torque contacts tally radius columns")
+    }
+
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let mut state = begin(w, (t.step, t.setup), &self.material);
+        if self.generation != Some(w.rebuild.generation) {
+            self.renew(w);
+        }
+        self.frozen.clear();
+        if let Some((_, group)) = &w.parts.frozen {
+            self.frozen.extend(w.particles.mask.iter().map(|m| m & group.bit() != 0));
+        }
+        let period = w.periods();
+        let mut memory = w.contacts.remove(self.style).unwrap_or_default();
+        let mut plastic = w.contacts.remove(PLASTIC).unwrap_or_default();
+        // In setup forces are only evaluated.
+        let kept = t.setup.then(|| (memory.clone(), state.clone()));
+        let masses = w.contact_masses();
+        let grains =
+            crate::laws::contact::driver::Grains { mass: &masses, ..grains(w, period, &[], &self.frozen)? };
+        self.sweep.meet(&self.list, &grains, &self.rules, &mut memory);
+        let (touching, keys) = self.sweep.touching();
+        let distance = |p: &Pair| difference(grains.x, &period, p);
+        self.meetings.meet(
+            touching,
+            keys,
+            grains.radius,
+            &mut state,
+            &mut plastic,
+            distance,
+            w.settings.lammps(),
+        );
+        if t.setup {
+            // Nothing has moved.
+            state.mean.fill(0.0);
+        }
+        let manner = Manner { lammps: w.settings.lammps(), setup: t.setup };
+        let width = self.rules.memory();
+        let before = plastic.history.clone();
+        let told = (&mut memory.history[..], width);
+        self.meetings.press(&self.material, grains.radius, &mut state, &mut plastic, told, manner);
+        let step = Advance { dt: t.dt, history: !t.setup };
+        self.sweep.act(&grains, &self.rules, &mut memory, step);
+        drop(masses);
+        self.check(w, t)?;
+        self.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
+        if t.virial {
+            let part = self.sweep.virial(&w.particles.x, &period);
+            w.tally.virial.iter_mut().zip(part).for_each(|(total, part)| *total += part);
+        }
+        if t.setup {
+            undo(&before, &mut plastic.history, PAIR, manner.lammps);
+        }
+        let (memory, state) = kept.unwrap_or((memory, state));
+        w.contacts.insert(self.style.to_string(), memory);
+        w.contacts.insert(PLASTIC.to_string(), plastic);
+        state.put(&mut w.columns);
+        Ok(())
+    }
+
+    fn finish(&mut self, _w: &mut World) -> Result<()> {
+        self.generation = None;
+        Ok(())
+    }
+
+    fn bytes(&self, _w: &World) -> u64 {
+        // Pairs read with both ends (12 + 2 × 32 bytes); per contact both ends' state, wrench and history.
+        (self.list.len() * 76 + self.sweep.len() * 900) as u64
+    }
+}
