@@ -142,6 +142,7 @@ impl Session {
         let vars = Arc::new(self.vars.clone());
         self.graph.computes.iter().for_each(|c| c.compute.welcome(&mut self.world));
         self.world.bonds.lost = self.graph.thermo.lost_bond;
+        self.world.parts.plastic = None;
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
         s.log = self.options.log.clone();
         s.at(span);

@@ -80,6 +80,12 @@ impl Normal {
         }
     }
 
+    /// The numbers of plastic grains: E, ν, Y, γ, ψ_b and restitution.
+    pub fn plastic(&self) -> Option<[f64; 6]> {
+        let Normal::Mdr { material: m, eta } = self else { return None };
+        Some([m.young, m.poisson, m.yield_stress, m.cohesion, m.confinement, *eta])
+    }
+
     /// Damping coefficient or restitution.
     pub fn eta(&self) -> f64 {
         match *self {

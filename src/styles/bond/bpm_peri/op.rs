@@ -152,11 +152,14 @@ fn publish(w: &mut World, families: &Families) {
         families.damage_all(w.volumes(), &mut column);
         *w.columns.scalar(&name, n) = column;
     }
-    let all: [(&str, fn(&Families, usize) -> f64); 2] =
-        [("d_theta", Families::dilatation), ("d_lambda", Families::plastic_strain)];
-    for (name, value) in all {
-        if let Some(name) = w.columns.custom(name) {
-            w.columns.scalar(&name, n).iter_mut().enumerate().for_each(|(i, v)| *v = value(families, i));
-        }
+    fill(w, "d_theta", |i| families.dilatation(i));
+    fill(w, "d_lambda", |i| families.plastic_strain(i));
+}
+
+/// Fills a column of the deck's, where it has one of this name.
+fn fill(w: &mut World, name: &str, value: impl Fn(usize) -> f64) {
+    let n = w.n();
+    if let Some(name) = w.columns.custom(name) {
+        w.columns.scalar(&name, n).iter_mut().enumerate().for_each(|(i, v)| *v = value(i));
     }
 }

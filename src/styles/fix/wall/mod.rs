@@ -82,6 +82,7 @@ struct Declared<F> {
 
 impl<F: Form> Fix for Declared<F> {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        plastic::suits(&self.common.material.model, cx)?;
         let surface = self.form.surface(&self.common, cx)?;
         let op = op::WallOp::new(F::STYLE, F::LOCAL, &self.common, surface, cx)?;
         Ok(match plastic::Plastic::of(&self.common.material.model) {

@@ -1,11 +1,36 @@
 //! What walls do to plastic grains (normal model `mdr`).
 
+use crate::diag::{Code, Diagnostic, Result};
 use crate::laws::contact::powder::{self, Manner, Material, State, TOLD, WALL};
 use crate::laws::contact::walls::WallSweep;
 use crate::laws::contact::{Model, Normal};
 use crate::plan::Tick;
+use crate::styles::SealCx;
 use crate::world::World;
 use crate::world::contacts::Contacts;
+
+/// What the numbers of plastic grains are called in decks, in their order.
+const NUMBERS: [&str; 6] = ["E", "nu", "Y", "gamma", "psi_b", "the restitution"];
+
+/// Refuses a wall that is not of what the plastic grains of the pair style are made of: their memory is one.
+///
+/// # Errors
+/// Another normal model, or another number.
+pub fn suits(model: &Model, cx: &mut dyn SealCx) -> Result<()> {
+    let Some(grains) = cx.world().parts.plastic else { return Ok(()) };
+    let Some(wall) = model.normal.plastic() else {
+        let text = format!("the grains are plastic (`mdr`), the wall is `{}`", model.normal.name());
+        let d = Diagnostic::error(Code::CONFLICT, cx.span(), text);
+        return Err(d.help("give the wall the model and the numbers of the grains").into());
+    };
+    let Some(k) = (0..NUMBERS.len()).find(|&k| wall[k] != grains[k]) else { return Ok(()) };
+    let text = format!(
+        "{} is {} in the wall and {} in the grains: plastic grains (`mdr`) need walls of their own kind",
+        NUMBERS[k], wall[k], grains[k]
+    );
+    let d = Diagnostic::error(Code::CONFLICT, cx.span(), text);
+    Err(d.help(format!("write {} for the wall too", grains[k])).into())
+}
 
 /// A wall under plastic grains.
 pub struct Plastic {

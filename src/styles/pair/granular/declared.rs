@@ -177,9 +177,11 @@ impl Pair for Declared {
                 .into());
         }
         if let Some((material, span)) = self.powder()? {
+            // Walls look it up: pair styles are sealed before fixes.
+            cx.world().parts.plastic = self.given.values().find_map(|c| c.model.normal.plastic());
             return Ok(vec![Box::new(Powder::new(self.name, rules, wanted, material, span))]);
         }
-        Ok(vec![Box::new(Force::new(self.name, rules, wanted, w.types))])
+        Ok(vec![Box::new(Force::new(self.name, rules, wanted, cx.world().types))])
     }
 
     fn probes(&self, w: &World) -> Result<Vec<Box<dyn Probe>>> {
