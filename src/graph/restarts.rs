@@ -8,6 +8,7 @@ use crate::out::file::Pattern;
 use crate::out::restart::{Saving, write};
 use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::{BuildCx, SealCx, Use, UseKind};
+use crate::world::columns::{PLASTIC_BEGUN, PLASTIC_COLUMNS};
 use crate::world::{Said, World};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -199,7 +200,8 @@ pub fn save(
 
 /// Whether a name belongs to state that a fix or compute of the restarted deck may claim.
 pub fn claimable(name: &str) -> bool {
-    name != NEXT
+    // The pair style comes with the file, and what its plastic grains have become with it.
+    name != NEXT && name != PLASTIC_BEGUN && !name.starts_with(PLASTIC_COLUMNS)
 }
 
 impl Graph {

@@ -9,6 +9,11 @@ pub const HEATFLOW: &str = "heatflow";
 /// The property that holds the volumes of particles joined by `bond_style bpm/peri`.
 pub const VOLUME_PROPERTY: &str = "d_vfrac";
 
+/// How the names of columns of plastic grains begin (normal model `mdr`): decks read them as those of fix property/atom.
+pub const PLASTIC_COLUMNS: &str = "property/atom/mdr/";
+/// Under this name the last step that plastic grains have begun is kept.
+pub const PLASTIC_BEGUN: &str = "mdr/begun";
+
 /// The vector column that keeps the slow part of the forces between steps of two lengths.
 pub const SLOW_FORCES: &str = "staggered/slow";
 /// The vector column of the forces of bonds in steps of two lengths.

@@ -51,6 +51,18 @@ const OLDER_AGAIN: &str = "pair_style gran/hertz/history 5000.0 NULL 20.0 NULL 0
     fix 2 all gravity 1.0 vector 0.2 0 -1\ntimestep 0.001\ncompute er all erotate/sphere\n\
     thermo_style custom step time ke c_er press\nthermo_modify format float %24.17g norm no\nthermo 5\n";
 
+/// Plastic grains pressed between two planes: they grow, and remember each contact on both sides.
+const POWDER: &str = "units si\natom_style sphere\nboundary f f f\nregion world block -0.02 0.02 -0.02 0.02 -0.02 0.02 units box\n\
+    create_box 1 world\ncreate_atoms 1 single 0 0 -0.0079 units box\ncreate_atoms 1 single 0.001 0 0.0019 units box\n\
+    create_atoms 1 single 0 0.001 0.0118 units box\nset group all diameter 0.01\nset group all density 2000\n\
+    velocity all set 0 0 -3 units box\ngroup top id 3\nvelocity top set 0 0 -9 units box\n";
+const POWDER_AGAIN: &str = "pair_style granular\n\
+    pair_coeff * * mdr 5.0e7 0.3 2.0e6 0.1 0.5 0.2 damping mdr 1 tangential linear_history 5.0e4 0.5 0.4\n\
+    fix low all wall/gran granular mdr 5.0e7 0.3 2.0e6 0.1 0.5 0.2 damping mdr 1 tangential linear_history 5.0e4 0.5 0.2 zplane -0.0128 NULL\n\
+    fix 1 all nve/sphere\nneighbor 0.004 bin\nneigh_modify every 1 delay 0\ntimestep 1.0e-6\n\
+    thermo_style custom step time ke press\n\
+    thermo_modify format float %24.17g\nthermo 5\n";
+
 /// Grains that come and go while others lie on a floor.
 const RAIN: &str = "units lj\natom_style sphere\nboundary p p f\nregion world block 0 5 0 5 0 16 units box\n\
     create_box 2 world\n";
@@ -109,7 +121,7 @@ const AVERAGES_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.00300
     f_h[4] f_h[3][2] c_ra[1] c_ra[2] c_rs[2]\n\
     thermo_modify format float %24.17g\nthermo 10\n";
 
-const SCENES: [Scene; 12] = [
+const SCENES: [Scene; 13] = [
     Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
     Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
     Scene { name: "lps", make: BLOCK, again: LPS_AGAIN, steps: 60, list: false },
@@ -120,6 +132,7 @@ const SCENES: [Scene; 12] = [
     Scene { name: "pile", make: PILE, again: PILE_AGAIN, steps: 400, list: false },
     Scene { name: "stiff pile", make: PILE, again: STIFF_AGAIN, steps: 200, list: false },
     Scene { name: "older pile", make: PILE, again: OLDER_AGAIN, steps: 200, list: false },
+    Scene { name: "powder pile", make: POWDER, again: POWDER_AGAIN, steps: 400, list: false },
     Scene { name: "rain", make: RAIN, again: RAIN_AGAIN, steps: 424, list: false },
     Scene { name: "impact", make: IMPACT, again: IMPACT_AGAIN, steps: 60, list: false },
 ];

@@ -2,7 +2,7 @@
 
 use super::Material;
 use crate::world::World;
-use crate::world::columns::Columns;
+use crate::world::columns::{Columns, PLASTIC_BEGUN, PLASTIC_COLUMNS};
 use std::f64::consts::PI;
 
 /// Names of the columns, as LAMMPS' decks call them.
@@ -30,15 +30,12 @@ const NAMES: [&str; 21] = [
     "grown",
 ];
 
-/// Where the world keeps the last step that was begun.
-const BEGUN: &str = "mdr/begun";
-
 /// How slowly growth follows: each step's growth is mixed with the mean of those before.
 const FRESH: f64 = 0.1;
 
 /// The full name of a column.
 pub fn of(name: &str) -> String {
-    format!("property/atom/mdr/d_{name}")
+    format!("{PLASTIC_COLUMNS}d_{name}")
 }
 
 /// The columns of all grains.
@@ -181,9 +178,9 @@ pub fn begin(w: &mut World, at: (i64, bool), m: &Material) -> State {
     let n = w.n();
     let mut state = State::take(&mut w.columns, n);
     state.welcome(&w.particles.radius);
-    if !setup && w.memo.get(BEGUN).is_none_or(|s| s[..] != [step]) {
+    if !setup && w.memo.get(PLASTIC_BEGUN).is_none_or(|s| s[..] != [step]) {
         state.begin(m, &mut w.particles.radius);
-        w.memo.insert(BEGUN.to_string(), vec![step]);
+        w.memo.insert(PLASTIC_BEGUN.to_string(), vec![step]);
     }
     state
 }
