@@ -123,10 +123,10 @@ impl Side {
         m.iter_mut().zip(s.into_iter().chain(t).chain(u)).for_each(|(a, b)| *a = b);
     }
 
-    /// Moves the plane to depth `depth` below the surface of radius `radius`; `mean`: by how much the grain's planes
+    /// Moves the plane to depth `depth` below the surface of radius `radius`, what was squeezed staying so; `mean`: by how much the grain's planes
     /// came nearer in this step, on average over their areas, where the bulk answers.
     pub fn go(&mut self, depth: f64, radius: f64, first: f64, mean: Option<f64>) {
-        self.squeezing = mean.map_or(0.0, |mean| (self.squeezing + mean).max(0.0));
+        self.squeezing = mean.map_or(self.squeezing, |mean| (self.squeezing + mean).max(0.0));
         self.shearing = depth - self.squeezing;
         self.depth = depth;
         self.first_depth = depth - (radius - first);
