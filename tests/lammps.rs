@@ -165,6 +165,7 @@ decks! {
     gran_wall_region
     mdr_pair
     mdr_box
+    mdr_die
 }
 
 /// A deck without dynamics that matter: its thermo table and the lines it prints.

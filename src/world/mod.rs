@@ -124,8 +124,8 @@ pub struct Parts {
     pub wall_springs: Option<BTreeMap<String, Vec<contacts::WallSpring>>>,
     /// The fix freeze in force and its group: contact laws take these grains for infinitely heavy.
     pub frozen: Option<(String, GroupId)>,
-    /// What the plastic grains of the pair style in force are made of (normal model `mdr`): E, ν, Y, γ, ψ_b and restitution.
-    pub plastic: Option<[f64; 6]>,
+    /// What the plastic grains of the pair style in force are made of (normal model `mdr`): E, ν, Y, ψ_b and restitution.
+    pub plastic: Option<[f64; 5]>,
     /// What ops have to say about the deck; told when the run is over.
     pub notes: crate::diag::Diagnostics,
     /// While a deck is only checked: files that its lines so far would have written, by name.

@@ -80,10 +80,10 @@ impl Normal {
         }
     }
 
-    /// The numbers of plastic grains: E, ν, Y, γ, ψ_b and restitution.
-    pub fn plastic(&self) -> Option<[f64; 6]> {
+    /// The numbers of plastic grains that are the grain's alone: E, ν, Y, ψ_b and restitution.
+    pub fn plastic(&self) -> Option<[f64; 5]> {
         let Normal::Mdr { material: m, eta } = self else { return None };
-        Some([m.young, m.poisson, m.yield_stress, m.cohesion, m.confinement, *eta])
+        Some([m.young, m.poisson, m.yield_stress, m.confinement, *eta])
     }
 
     /// Damping coefficient or restitution.

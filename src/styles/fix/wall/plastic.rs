@@ -10,9 +10,10 @@ use crate::world::World;
 use crate::world::contacts::Contacts;
 
 /// What the numbers of plastic grains are called in decks, in their order.
-const NUMBERS: [&str; 6] = ["E", "nu", "Y", "gamma", "psi_b", "the restitution"];
+const NUMBERS: [&str; 5] = ["E", "nu", "Y", "psi_b", "the restitution"];
 
-/// Refuses a wall that is not of what the plastic grains of the pair style are made of: their memory is one.
+/// Refuses a wall that is not of what the plastic grains of the pair style are made of: their memory is one. How a wall sticks
+/// is its own.
 ///
 /// # Errors
 /// Another normal model, or another number.
