@@ -184,7 +184,11 @@ impl Attribute {
     pub fn bind(&self, cx: &mut dyn SealCx, when: &When) -> Result<Bound> {
         match &self.source {
             Source::Core(core) => Ok(Bound::Core(*core)),
-            Source::Value(r) => Ok(Bound::Value(cx.value(r, Stage::Output, when)?)),
+            Source::Value(r) => {
+                // Of a fix that offers both, as a wall with `contacts`, particles show their own column.
+                let own = cx.reading(r, Wants::PerAtom, Stage::Output, when);
+                Ok(Bound::Value(own.or_else(|_| cx.value(r, Stage::Output, when))?))
+            }
             Source::Custom(column, int) => Ok(Bound::Custom(column.clone(), *int)),
         }
     }
