@@ -185,11 +185,12 @@ impl World {
         }
     }
 
-    /// Edge lengths of the box, zero where it does not repeat.
+    /// Edge lengths of the box, zero where particles do not see images of each other: where it does not repeat, and along z
+    /// in a flat scene.
     pub fn periods(&self) -> [f64; 3] {
         self.domain.as_ref().map_or([0.0; 3], |d| {
-            let lengths = d.lengths();
-            std::array::from_fn(|k| if d.boundary.periodic(k) { lengths[k] } else { 0.0 })
+            let (lengths, periodic) = (d.lengths(), d.periodic());
+            std::array::from_fn(|k| if periodic[k] { lengths[k] } else { 0.0 })
         })
     }
 

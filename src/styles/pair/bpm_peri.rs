@@ -1,10 +1,11 @@
 //! `pair_style bpm/peri`: short-range repulsion of peridynamic particles that no bond joins.
 
+use super::shared::{built_at, near, push};
 use super::{Pair, PairStyle, TypePairs};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::Args;
-use crate::math::vec3::{Vec3, add, dot, sub};
-use crate::neigh::list::{Pair as Near, Reach, View, Wanted, difference, pairs};
+use crate::math::vec3::dot;
+use crate::neigh::list::{Pair as Near, Reach, Wanted, difference};
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::styles::bond::bpm_peri::cubic;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
@@ -116,11 +117,7 @@ impl Repulsion {
         if t.setup || self.held != Some(w.rebuild.generation) {
             let mut wanted = Wanted::new(w.types);
             self.law.table.keys().for_each(|(a, b)| wanted.set(*a, *b, Reach::Fixed(range)));
-            let (p, allowed) = (&w.particles, Allowed::excluded(w));
-            let held = w.held();
-            let x = if held.len() == p.len() { held } else { &p.x };
-            let view = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
-            self.near = pairs(&view, &wanted, w.settings.neighbor.skin, &|i, j| allowed.pair(i, j));
+            self.near = near(w, built_at(w), &wanted, w.settings.neighbor.skin, &Allowed::excluded(w));
             (self.held, self.joined) = (Some(w.rebuild.generation), None);
         }
         if self.joined != Some(w.bonds.changes) {
@@ -153,7 +150,7 @@ impl Op for Repulsion {
         let (period, newton) = (w.periods(), w.bonds.newton);
         let mut energy = 0.0;
         for q in &self.list {
-            let p = &mut w.particles;
+            let p = &w.particles;
             let (i, j) = (q.i as usize, q.j as usize);
             let kinds = (p.kind[i].min(p.kind[j]), p.kind[i].max(p.kind[j]));
             let Some([k, horizon]) = self.law.table.get(&kinds).copied() else { continue };
@@ -164,33 +161,16 @@ impl Op for Repulsion {
             }
             let (a, b, r) = (volumes[i], volumes[j], square.sqrt());
             let volume = if newton { a * b } else { 0.5 * (a + b) };
-            let push = 15.0 * k * volume * (range - r) / horizon;
-            let f = d.map(|d| d * push / r);
-            p.f[i] = add(p.f[i], f);
-            p.f[j] = sub(p.f[j], f);
-            let own = 0.5 * push * (range - r);
+            let size = 15.0 * k * volume * (range - r) / horizon;
+            let f = d.map(|d| d * size / r);
+            let own = 0.5 * size * (range - r);
             energy += own;
-            tally(w, t, [i, j], (d, f), own);
+            push(w, t, [i, j], d, f, own);
         }
         if t.energy {
             w.tally.add_pair("bpm/peri", energy);
         }
         *w.columns.scalar(&name, n) = volumes;
         Ok(())
-    }
-}
-
-/// Adds what single particles and the virial get of a pair's force `f` along `d`.
-fn tally(w: &mut World, t: &Tick, ends: [usize; 2], (d, f): (Vec3, Vec3), energy: f64) {
-    if t.atom_energy {
-        ends.iter().for_each(|&i| w.tally.atom[i] += 0.5 * energy);
-    }
-    if t.virial {
-        for (k, (a, b)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
-            w.tally.virial[k] += d[a] * f[b];
-            if t.atom_virial {
-                ends.iter().for_each(|&i| w.tally.atom_virial[i][k] += 0.5 * d[a] * f[b]);
-            }
-        }
     }
 }

@@ -1,10 +1,11 @@
 //! `pair_style bpm/spring`: damped repulsion of particles of bonded solids.
 
+use super::shared::{built_at, near, push};
 use super::{Pair, PairStyle, TypePairs};
 use crate::diag::Result;
 use crate::lang::Args;
-use crate::math::vec3::{add, dot, sub};
-use crate::neigh::list::{Pair as Near, Reach, View, Wanted, difference, pairs};
+use crate::math::vec3::{dot, sub};
+use crate::neigh::list::{Pair as Near, Reach, Wanted, difference};
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::styles::{BuildCx, Doc, SealCx, Style};
 use crate::world::adapted::Coefficient;
@@ -132,20 +133,17 @@ impl Op for Repulsion {
         let period = w.periods();
         let now = (w.rebuild.generation, w.bonds.changes);
         if t.setup || self.made != Some(now) {
-            let (p, allowed) = (&w.particles, Allowed::new(w));
-            let held = w.held();
-            let x = if held.len() == p.len() { held } else { &p.x };
-            let view = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period };
-            self.list = pairs(&view, &self.wanted, w.settings.neighbor.skin, &|i, j| allowed.pair(i, j));
+            self.list = near(w, built_at(w), &self.wanted, w.settings.neighbor.skin, &Allowed::new(w));
             self.made = Some(now);
         }
         if self.adapted != w.adaptations() {
             self.adapted = w.adaptations();
             self.law = self.said.adapted(w);
         }
+        let mut energy = 0.0;
         for pair in &self.list {
             let (i, j) = (pair.i as usize, pair.j as usize);
-            let p = &mut w.particles;
+            let p = &w.particles;
             let kinds = (p.kind[i].min(p.kind[j]), p.kind[i].max(p.kind[j]));
             let Some([k, cut, gamma]) = self.law.table.get(&kinds).copied() else { continue };
             let d = difference(&p.x, &period, pair);
@@ -158,22 +156,12 @@ impl Op for Repulsion {
             let v = sub(p.v[i], p.v[j]);
             let force = (k * (cut - r) - gamma * dot(d, v) * near / r) / r;
             let f = d.map(|d| d * force);
-            p.f[i] = add(p.f[i], f);
-            p.f[j] = sub(p.f[j], f);
-            let energy = 0.5 * k * (cut - r) * (cut - r);
-            if t.energy {
-                w.tally.pair += energy;
-            }
-            if t.atom_energy {
-                [i, j].iter().for_each(|&i| w.tally.atom[i] += 0.5 * energy);
-            }
-            if t.virial {
-                for (s, (a, b)) in
-                    w.tally.virial.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)])
-                {
-                    *s += d[a] * f[b];
-                }
-            }
+            let own = 0.5 * k * (cut - r) * (cut - r);
+            energy += own;
+            push(w, t, [i, j], d, f, own);
+        }
+        if t.energy {
+            w.tally.add_pair("bpm/spring", energy);
         }
         Ok(())
     }

@@ -1,14 +1,15 @@
 //! What touching grains do to each other at a moment, by the rules of any granular pair style.
 
-use super::granular::force::{built_at, grains};
+use super::granular::force::grains;
 use super::granular::reach::{largest, reaching};
 use super::probe::{Balance, Interaction, OWN, Probe, Springs};
+use super::shared::{built_at, find_frozen, near};
 use crate::diag::Result;
 use crate::laws::contact::bodies::solids;
 use crate::laws::contact::driver::{Average, Curvature, Grains, Rules, Sweep};
 use crate::laws::contact::{Advance, ContactLaw, Wrench};
-use crate::math::vec3::{Vec3, cross, dot, length, scale, sub};
-use crate::neigh::list::{Pair, Reach, View, Wanted, difference, pairs};
+use crate::math::vec3::{cross, dot, length, scale, sub};
+use crate::neigh::list::{Pair, Reach, Wanted, difference};
 use crate::world::contacts::Contacts;
 use crate::world::{Allowed, World};
 
@@ -40,7 +41,8 @@ impl<L: ContactLaw> ContactProbe<L> {
 
     /// Pairs that may touch: those of the neighbour list, as it was when lists were last rebuilt.
     fn list(&self, w: &World) -> Vec<Pair> {
-        near(w, built_at(w), &reaching(&self.rules, &self.wanted, w), w.settings.neighbor.skin)
+        let wanted = reaching(&self.rules, &self.wanted, w);
+        near(w, built_at(w), &wanted, w.settings.neighbor.skin, &Allowed::new(w))
     }
 
     /// Evaluates all contacts at the present places and velocities, with the memory they have, and reads the outcome.
@@ -49,14 +51,13 @@ impl<L: ContactLaw> ContactProbe<L> {
         w: &World,
         read: impl FnOnce(&Grains, &Rules<L>, &Sweep, &Contacts) -> T,
     ) -> Result<T> {
-        let p = &w.particles;
         let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
         let body = match &w.families {
             Some(families) if asked => solids(families, w.n()),
             _ => vec![],
         };
-        let held = w.parts.frozen.as_ref().map(|(_, group)| group.bit());
-        let frozen: Vec<bool> = held.map_or(vec![], |bit| p.mask.iter().map(|m| m & bit != 0).collect());
+        let mut frozen = vec![];
+        find_frozen(w, &mut frozen);
         let masses = w.contact_masses();
         let grains = Grains { mass: &masses, ..grains(w, w.periods(), &body, &frozen)? };
         let mut memory = w.contacts.get(self.name).cloned().unwrap_or_default();
@@ -85,16 +86,8 @@ impl<L: ContactLaw> ContactProbe<L> {
                 }
             }
         }
-        near(w, &w.particles.x, &wanted, 0.0)
+        near(w, &w.particles.x, &wanted, 0.0, &Allowed::new(w))
     }
-}
-
-/// Pairs at the places `x` that exclusions leave.
-fn near(w: &World, x: &[Vec3], wanted: &Wanted, skin: f64) -> Vec<Pair> {
-    let p = &w.particles;
-    let view = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
-    let allowed = Allowed::new(w);
-    pairs(&view, wanted, skin, &|i, j| allowed.pair(i, j))
 }
 
 impl<L: ContactLaw + Send> Probe for ContactProbe<L> {

@@ -10,6 +10,7 @@ mod granular;
 mod hybrid;
 pub mod peri;
 pub mod probe;
+mod shared;
 mod zero;
 
 use self::probe::Probe;

@@ -8,6 +8,7 @@ use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::Args;
 use crate::math::cformat::general;
 use crate::plan::Op;
+use crate::styles::pair::peri::{beyond_elastic, lasting, stiffness};
 use crate::styles::{BuildCx, Doc, SealCx, Style};
 use crate::world::World;
 use crate::world::columns::VOLUME_PROPERTY;
@@ -121,28 +122,9 @@ fn coefficients(args: &mut Args) -> Result<Coeff> {
     let span = args.here();
     let name = args.choice("law of the bonds", &LAWS.map(|l| l.0))?;
     let kind = LAWS.iter().find(|l| l.0 == name).map_or(LawKind::Pmb, |l| l.1);
-    let (mut c, mut moduli) = (0.0, Moduli::default());
-    if kind == LawKind::Pmb {
-        c = args.non_negative("the micro-modulus c")?;
-    } else {
-        moduli.bulk = args.positive("the bulk modulus K")?;
-        moduli.shear = args.non_negative("the shear modulus G")?;
-    }
-    match kind {
-        LawKind::Ves => {
-            let at = args.here();
-            moduli.lambda = args.non_negative("the relaxing share lambda")?;
-            if moduli.lambda > 1.0 {
-                return fail(Code::BAD_VALUE, at, "lambda is the share of G that relaxes: from 0 to 1");
-            }
-            moduli.tau = args.positive("the relaxation time tau")?;
-        }
-        LawKind::Eps => moduli.yield_stress = args.positive("the yield stress")?,
-        _ => {}
-    }
-    let horizon = args.positive("the horizon")?;
-    let s00 = args.non_negative("the critical stretch s00")?;
-    let alpha = args.non_negative("alpha")?;
+    let (c, mut moduli) = stiffness(kind, args)?;
+    beyond_elastic(kind, args, &mut moduli)?;
+    let (horizon, s00, alpha) = lasting(args)?;
     if !args.is_empty() {
         let text = format!("too many numbers for bonds of law {name}");
         return fail(Code::EXTRA_ARGUMENT, span.to(args.here()), text);

@@ -1,5 +1,6 @@
 //! The op of granular contacts: list when it is due, contacts, forces and torques.
 
+use super::super::shared::{add_virial, built_at, find_frozen, near};
 use super::reach::reaching;
 use crate::diag::Result;
 use crate::laws::contact::bodies::solids;
@@ -7,7 +8,7 @@ use crate::laws::contact::driver::{Average, Curvature, Grains, Rules, Sweep};
 use crate::laws::contact::fast::{Fast, Frame, Laws, MOST_GRAINS, MOST_MEMORY};
 use crate::laws::contact::{Advance, ContactLaw, Granular, Heat};
 use crate::math::vec3::Vec3;
-use crate::neigh::list::{Pair, Reach, View, Wanted, pairs};
+use crate::neigh::list::{Pair, Reach, Wanted};
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::world::columns::{HEATFLOW, TEMPERATURE};
 use crate::world::contacts::{Contacts, Deep};
@@ -54,14 +55,6 @@ impl Force {
         Self { rules, wanted, style, name, frozen, generation: None, plain, fast, is_fast: false }
     }
 
-    /// Which particles fix freeze holds.
-    fn find_frozen(&mut self, w: &World) {
-        self.frozen.clear();
-        if let Some((_, group)) = &w.parts.frozen {
-            self.frozen.extend(w.particles.mask.iter().map(|m| m & group.bit() != 0));
-        }
-    }
-
     /// Which solid each particle belongs to, where some rule asks.
     fn find_bodies(&mut self, w: &World) {
         self.plain.body.clear();
@@ -74,7 +67,7 @@ impl Force {
     /// Lists from the positions of the last rebuild: later positions are within half a skin of those.
     fn renew(&mut self, w: &mut World) -> Result<()> {
         self.generation = Some(w.rebuild.generation);
-        let period = period(w)?;
+        let period = w.periods();
         let skin = w.settings.neighbor.skin;
         if let Some(fast) = self.fast.as_mut().filter(|fast| suits(w, period, fast)) {
             let known = if self.is_fast { None } else { w.contacts.remove(self.style) };
@@ -86,11 +79,8 @@ impl Force {
             return Ok(());
         }
         self.hand_over(w);
-        let p = &w.particles;
-        let v = View { x: built_at(w), tag: &p.tag, kind: &p.kind, radius: &p.radius, period };
-        let allowed = Allowed::new(w);
-        self.plain.list =
-            pairs(&v, &reaching(&self.rules, &self.wanted, w), skin, &|i, j| allowed.pair(i, j));
+        let wanted = reaching(&self.rules, &self.wanted, w);
+        self.plain.list = near(w, built_at(w), &wanted, skin, &Allowed::new(w));
         Ok(())
     }
 
@@ -116,7 +106,7 @@ impl Force {
         drop(masses);
         (w.particles.f, w.particles.torque) = (f, torque);
         if t.virial {
-            add(&mut w.tally.virial, virial);
+            add_virial(w, virial);
         }
         if t.contacts {
             w.contacts.insert(self.style.to_string(), fast.contacts());
@@ -146,7 +136,8 @@ impl Force {
         report(w, t, deep);
         plain.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
         if t.virial {
-            add(&mut w.tally.virial, plain.sweep.virial(&w.particles.x, &period));
+            let part = plain.sweep.virial(&w.particles.x, &period);
+            add_virial(w, part);
         }
         w.contacts.insert(self.style.to_string(), kept.unwrap_or(memory));
         Ok(())
@@ -176,10 +167,10 @@ impl Op for Force {
         if stale || self.generation != Some(w.rebuild.generation) {
             self.renew(w)?;
         }
-        let period = period(w)?;
+        let period = w.periods();
         // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
         let store = !t.setup || w.settings.lammps();
-        self.find_frozen(w);
+        find_frozen(w, &mut self.frozen);
         if self.is_fast { self.run_fast(w, t, period, store) } else { self.run_plain(w, t, period, store) }
     }
 
@@ -227,12 +218,6 @@ fn suits(w: &World, period: Vec3, fast: &Fast<Granular>) -> bool {
     still && w.families.is_none() && !p.is_empty() && p.len() <= MOST_GRAINS && most <= ALIKE * least && wide
 }
 
-/// The positions the lists are made from.
-pub fn built_at(w: &World) -> &[Vec3] {
-    let held = w.held();
-    if held.len() == w.n() { held } else { &w.particles.x }
-}
-
 /// What contacts see of the particles.
 pub fn grains<'a>(w: &'a World, period: Vec3, body: &'a [u32], frozen: &'a [bool]) -> Result<Grains<'a>> {
     let p = &w.particles;
@@ -262,17 +247,4 @@ fn report(w: &mut World, t: &Tick, deep: Option<([u32; 2], f64)>) {
     if let (Some((ids, part)), None) = (deep, &w.parts.deep) {
         w.parts.deep = Some(Deep { step: t.step, ids, part, told: false });
     }
-}
-
-fn add(total: &mut [f64; 6], part: [f64; 6]) {
-    for (total, part) in total.iter_mut().zip(part) {
-        *total += part;
-    }
-}
-
-/// Edge lengths of the box; zero where it does not repeat.
-fn period(w: &World) -> Result<Vec3> {
-    let domain = w.domain()?;
-    let (lengths, periodic) = (domain.lengths(), domain.periodic());
-    Ok(std::array::from_fn(|d| if periodic[d] { lengths[d] } else { 0.0 }))
 }

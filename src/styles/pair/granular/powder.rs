@@ -1,12 +1,13 @@
 //! The op of plastic grains (normal model `mdr`): growth, contacts on both sides, forces and torques.
 
-use super::force::{built_at, grains};
+use super::super::shared::{add_virial, built_at, find_frozen, near};
+use super::force::grains;
 use super::reach::reaching;
 use crate::diag::{Code, Diagnostic, Result, Span};
-use crate::laws::contact::driver::{Rules, Sweep};
+use crate::laws::contact::driver::{Grains, Rules, Sweep};
 use crate::laws::contact::powder::{Manner, Material, Meetings, PAIR, begin, undo};
 use crate::laws::contact::{Advance, Granular};
-use crate::neigh::list::{Pair, Wanted, difference, pairs};
+use crate::neigh::list::{Pair, Wanted, difference};
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::world::contacts::PLASTIC;
 use crate::world::{Allowed, World};
@@ -55,17 +56,8 @@ impl Powder {
     /// The list from the positions of the last rebuild.
     fn renew(&mut self, w: &World) {
         self.generation = Some(w.rebuild.generation);
-        let p = &w.particles;
-        let view = crate::neigh::list::View {
-            x: built_at(w),
-            tag: &p.tag,
-            kind: &p.kind,
-            radius: &p.radius,
-            period: w.periods(),
-        };
-        let allowed = Allowed::new(w);
         let wanted = reaching(&self.rules, &self.wanted, w);
-        self.list = pairs(&view, &wanted, w.settings.neighbor.skin, &|i, j| allowed.pair(i, j));
+        self.list = near(w, built_at(w), &wanted, w.settings.neighbor.skin, &Allowed::new(w));
     }
 
     fn check(&self, w: &World, t: &Tick) -> Result<()> {
@@ -100,18 +92,14 @@ impl Op for Powder {
         if self.generation != Some(w.rebuild.generation) {
             self.renew(w);
         }
-        self.frozen.clear();
-        if let Some((_, group)) = &w.parts.frozen {
-            self.frozen.extend(w.particles.mask.iter().map(|m| m & group.bit() != 0));
-        }
+        find_frozen(w, &mut self.frozen);
         let period = w.periods();
         let mut memory = w.contacts.remove(self.style).unwrap_or_default();
         let mut plastic = w.contacts.remove(PLASTIC).unwrap_or_default();
         // In setup forces are only evaluated.
         let kept = t.setup.then(|| (memory.clone(), state.clone()));
         let masses = w.contact_masses();
-        let grains =
-            crate::laws::contact::driver::Grains { mass: &masses, ..grains(w, period, &[], &self.frozen)? };
+        let grains = Grains { mass: &masses, ..grains(w, period, &[], &self.frozen)? };
         self.sweep.meet(&self.list, &grains, &self.rules, &mut memory);
         let (touching, keys) = self.sweep.touching();
         let distance = |p: &Pair| difference(grains.x, &period, p);
@@ -140,7 +128,7 @@ impl Op for Powder {
         self.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
         if t.virial {
             let part = self.sweep.virial(&w.particles.x, &period);
-            w.tally.virial.iter_mut().zip(part).for_each(|(total, part)| *total += part);
+            add_virial(w, part);
         }
         if t.setup {
             undo(&before, &mut plastic.history, PAIR, manner.lammps);

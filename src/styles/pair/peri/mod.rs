@@ -5,6 +5,7 @@ mod force;
 mod horizon;
 mod lps;
 pub mod materials;
+mod numbers;
 mod options;
 mod plastic;
 mod pmb;
@@ -26,6 +27,7 @@ use force::Force;
 pub use force::view;
 pub use lps::PeriLps;
 use materials::Materials;
+pub use numbers::{beyond_elastic, lasting, stiffness};
 pub use plastic::PeriPmbPlastic;
 pub use pmb::PeriPmb;
 pub use ves::PeriVes;
@@ -98,34 +100,10 @@ type Coeff = (PmbCoeff, Moduli);
 
 /// Reads the coefficients of a law as LAMMPS writes them.
 fn numbers(kind: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
-    let (mut c, mut moduli) = (0.0, Moduli::default());
-    if kind.bond_based() {
-        c = args.non_negative("the micro-modulus c")?;
-    } else {
-        moduli.bulk = args.positive("the bulk modulus K")?;
-        moduli.shear = args.non_negative("the shear modulus G")?;
-    }
+    let (mut c, mut moduli) = stiffness(kind, args)?;
     let span = args.here();
-    let horizon = args.positive("the horizon")?;
-    let s00 = args.non_negative("the critical stretch s00")?;
-    let alpha = args.non_negative("alpha")?;
-    match kind {
-        LawKind::Ves => {
-            let at = args.here();
-            moduli.lambda = args.non_negative("the relaxing share lambda")?;
-            if moduli.lambda > 1.0 {
-                return fail(Code::BAD_VALUE, at, "lambda is the share of G that relaxes: from 0 to 1");
-            }
-            moduli.tau = args.positive("the relaxation time tau")?;
-        }
-        LawKind::Yield | LawKind::Flat => {
-            let at = args.here();
-            moduli.syc = args.number("the stretch syc at which bonds flow")?;
-            below_zero(moduli.syc, at)?;
-        }
-        LawKind::Eps => moduli.yield_stress = args.positive("the yield stress")?,
-        _ => {}
-    }
+    let (horizon, s00, alpha) = lasting(args)?;
+    beyond_elastic(kind, args, &mut moduli)?;
     if !kind.bond_based() {
         c = short_range(moduli.bulk, horizon);
     }

@@ -1,0 +1,52 @@
+//! What pair styles share: who was near whom at the last rebuild, whom fix freeze holds, what a pair adds to sums.
+
+use crate::math::vec3::{Vec3, add, sub};
+use crate::neigh::list::{Pair, View, Wanted, pairs};
+use crate::plan::Tick;
+use crate::world::{Allowed, World};
+
+/// The positions that lists are made from: those of the last rebuild, of which later ones are within half a skin [length].
+pub fn built_at(w: &World) -> &[Vec3] {
+    let held = w.held();
+    if held.len() == w.n() { held } else { &w.particles.x }
+}
+
+/// Pairs within reach plus `skin` at the positions `x` that `allowed` lets meet, sorted by their tags.
+pub fn near(w: &World, x: &[Vec3], wanted: &Wanted, skin: f64, allowed: &Allowed) -> Vec<Pair> {
+    let p = &w.particles;
+    let view = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
+    pairs(&view, wanted, skin, &|i, j| allowed.pair(i, j))
+}
+
+/// Which particles fix freeze holds; empty without one.
+pub fn find_frozen(w: &World, out: &mut Vec<bool>) {
+    out.clear();
+    if let Some((_, group)) = &w.parts.frozen {
+        out.extend(w.particles.mask.iter().map(|m| m & group.bit() != 0));
+    }
+}
+
+/// Gives the force `f` to the first of `ends` and its opposite to the other, `d` = x_i − x_j apart, and single particles
+/// and the virial their shares.
+pub fn push(w: &mut World, t: &Tick, ends: [usize; 2], d: Vec3, f: Vec3, energy: f64) {
+    let [i, j] = ends;
+    let forces = &mut w.particles.f;
+    forces[i] = add(forces[i], f);
+    forces[j] = sub(forces[j], f);
+    if t.atom_energy {
+        ends.iter().for_each(|&i| w.tally.atom[i] += 0.5 * energy);
+    }
+    if t.virial {
+        for (k, (a, b)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
+            w.tally.virial[k] += d[a] * f[b];
+            if t.atom_virial {
+                ends.iter().for_each(|&i| w.tally.atom_virial[i][k] += 0.5 * d[a] * f[b]);
+            }
+        }
+    }
+}
+
+/// Adds a style's part of the virial: xx yy zz xy xz yz.
+pub fn add_virial(w: &mut World, part: [f64; 6]) {
+    w.tally.virial.iter_mut().zip(part).for_each(|(total, part)| *total += part);
+}
