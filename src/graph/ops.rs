@@ -137,13 +137,13 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor) -> Result<()> {
     p.image.wrap(domain, &mut p.x);
     domain.shrink(&p.x);
     let domain = &*domain;
-    let (kept, lost): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| domain.keeps(&p.x[i]));
+    let lost: Vec<usize> = (0..n).filter(|&i| !domain.keeps(&p.x[i])).collect();
     if !lost.is_empty() && how.lost == Lost::Error {
         return Err(too_far(w, &lost, t));
     }
     if !lost.is_empty() {
         w.rebuild.lost += lost.len() as u64;
-        w.gather(&kept);
+        lose(w);
         warn_of_bonds(w, t);
     }
     if how.sort {
@@ -155,6 +155,18 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor) -> Result<()> {
     w.rebuild.grown = w.rebuild.grown.map(|_| 0.0).filter(|_| !t.setup);
     hold(w);
     Ok(())
+}
+
+/// Deletes who is beyond fixed faces in LAMMPS' order, one axis after the other: who is drawn later hangs on it.
+fn lose(w: &mut World) {
+    w.fall_back();
+    for d in 0..3 {
+        let Some(domain) = &w.domain else { return };
+        let marked: Vec<bool> = w.particles.x.iter().map(|x| !domain.keeps_along(d, x)).collect();
+        if marked.contains(&true) {
+            w.delete(&marked, false);
+        }
+    }
 }
 
 /// `thermo_modify lost/bond warn`: tells of bonds that have lost one of their ends.

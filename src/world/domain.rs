@@ -179,9 +179,12 @@ impl Domain {
 
     /// Whether a point is inside all fixed faces (upper faces exclusive, as LAMMPS loses particles).
     pub fn keeps(&self, x: &[f64; 3]) -> bool {
-        (0..3).all(|d| {
-            (self.boundary.0[d][0] != Face::Fixed || x[d] >= self.lo[d])
-                && (self.boundary.0[d][1] != Face::Fixed || x[d] < self.hi[d])
-        })
+        (0..3).all(|d| self.keeps_along(d, x))
+    }
+
+    /// Whether a point is inside the fixed faces across one axis.
+    pub fn keeps_along(&self, d: usize, x: &[f64; 3]) -> bool {
+        let [low, high] = self.boundary.0[d];
+        (low != Face::Fixed || x[d] >= self.lo[d]) && (high != Face::Fixed || x[d] < self.hi[d])
     }
 }

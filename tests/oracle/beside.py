@@ -1,0 +1,111 @@
+"""One deck in both programs, side by side: rows of thermo output, printed lines and files."""
+import os
+import re
+import subprocess
+import tempfile
+
+# Relative to the largest magnitude of a column, positions and velocities to what is usual in the scene: round-off grows in contacts.
+LIMIT = 1e-6
+ROW = re.compile(r"^ +\d+ +\d+( +[-+0-9.enaif]+)+ *$")
+
+
+def rows(text):
+    """The rows of thermo output."""
+    return [[float(x) for x in line.split()] for line in text.splitlines() if ROW.match(line)]
+
+
+def number(word):
+    """The word as a number, or None."""
+    try:
+        return float(word)
+    except ValueError:
+        return None
+
+
+def tables(a, b, floor):
+    """None, or the column of two tables of numbers that differs most."""
+    for k in range(min(len(row) for row in a)):
+        scale = max(floor, max(abs(row[k]) for row in a))
+        worst = max(abs(p[k] - q[k]) / scale if p[k] != q[k] else 0 for p, q in zip(a, b))
+        if not worst < LIMIT:
+            return f"column {k + 1}: {worst:.1e} of {scale:.6g}"
+    return None
+
+
+def texts(a, b):
+    """None, or the first line of two texts that differs. Numbers of lines with as many words are compared by column."""
+    a, b = a.splitlines(), b.splitlines()
+    if len(a) != len(b):
+        return f"{len(a)} and {len(b)} lines"
+    scales = {}
+    for line in a:
+        values = [abs(number(word) or 0) for word in line.split()]
+        scales[len(values)] = [max(p, q) for p, q in zip(values, scales.get(len(values), values))]
+    for p, q in zip(a, b):
+        left, right = p.split(), q.split()
+        if len(left) != len(right):
+            return f"{p!r} and {q!r}"
+        for x, y, scale in zip(left, right, scales[len(left)]):
+            u, v = number(x), number(y)
+            same = x == y or (u is not None and v is not None and (u == v or abs(u - v) <= LIMIT * max(scale, 1e-3)))
+            if not same:
+                return f"{p!r} and {q!r}"
+    return None
+
+
+def files(folder):
+    """The files that a run left, by name."""
+    found = {}
+    for name in sorted(os.listdir(folder)):
+        with open(os.path.join(folder, name), errors="replace") as file:
+            found[name] = file.read()
+    return found
+
+
+def run(folder, *words):
+    """What a program prints in a folder of its own, and what it leaves there."""
+    os.makedirs(folder, exist_ok=True)
+    try:
+        said = subprocess.run(words, capture_output=True, text=True, cwd=folder, timeout=120)
+    except subprocess.TimeoutExpired:
+        return "ERROR: takes too long", {}
+    return said.stdout + said.stderr + (f"\nERROR: signal {-said.returncode}" if said.returncode < 0 else ""), files(folder)
+
+
+def compare(deck, name, lammps, perigrain):
+    """None, or what differs; then the deck stays."""
+    with open(name, "w") as file:
+        file.write("\n".join(deck) + "\n")
+    path = os.path.abspath(name)
+    with tempfile.TemporaryDirectory() as top:
+        theirs, their_files = run(f"{top}/lammps", lammps, "-in", path, "-log", "none")
+        ours, our_files = run(f"{top}/perigrain", perigrain, "-compat", "lammps", "-threads", "1", "-log", "none", path)
+    found = differences(theirs, ours) or file_differences(their_files, our_files)
+    if not found:
+        os.remove(name)
+    return found
+
+
+def differences(theirs, ours):
+    """What differs in the printed output."""
+    errors = [[line for line in text.splitlines() if re.match(r"ERROR|error|thread .* panicked", line)][:1] for text in (theirs, ours)]
+    if errors[0] and errors[1] and "panicked" not in errors[1][0]:
+        return None if "signal" not in theirs else errors
+    if errors[0] or errors[1]:
+        return errors
+    a, b = rows(theirs), rows(ours)
+    if len(a) != len(b) or any(len(p) != len(q) for p, q in zip(a, b)):
+        return f"{len(a)} and {len(b)} rows"
+    told = ["\n".join(line for line in text.splitlines() if line.startswith("= ")) for text in (theirs, ours)]
+    return (a and tables(a, b, 1e-3)) or texts(*told)
+
+
+def file_differences(theirs, ours):
+    """What differs in the files left behind."""
+    if sorted(theirs) != sorted(ours):
+        return f"files {sorted(theirs)} and {sorted(ours)}"
+    for name, text in theirs.items():
+        found = texts(text, ours[name])
+        if found:
+            return f"{name}: {found}"
+    return None
