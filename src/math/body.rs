@@ -1,17 +1,19 @@
 //! Rotation of rigid bodies: unit quaternions (w first), principal axes, Richardson's step.
 
+use super::real::Real;
 use super::vec3::{Vec3, add, cross, dot, scale};
 
 /// A unit quaternion, the real part first.
-pub type Quat = [f64; 4];
+pub type Quat<R = f64> = [R; 4];
 
 /// Three rows.
-pub type Matrix = [Vec3; 3];
+pub type Matrix<R = f64> = [Vec3<R>; 3];
 
 /// |q| = 1.
-pub fn normalized(q: Quat) -> Quat {
-    let norm = 1.0 / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();
-    q.map(|a| a * norm)
+#[inline(always)]
+pub fn normalized<R: Real>(q: Quat<R>) -> Quat<R> {
+    let norm = q[0].like(1.0) / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();
+    [q[0] * norm, q[1] * norm, q[2] * norm, q[3] * norm]
 }
 
 /// The turn by an angle [rad] about a unit axis.
@@ -22,11 +24,12 @@ pub fn turn(axis: Vec3, angle: f64) -> Quat {
 }
 
 /// The rotation matrix.
-pub fn matrix(q: Quat) -> Matrix {
+#[inline(always)]
+pub fn matrix<R: Real>(q: Quat<R>) -> Matrix<R> {
     let [w, i, j, k] = q;
     let (w2, i2, j2, k2) = (w * w, i * i, j * j, k * k);
-    let (ij, ik, jk) = (2.0 * i * j, 2.0 * i * k, 2.0 * j * k);
-    let (iw, jw, kw) = (2.0 * i * w, 2.0 * j * w, 2.0 * k * w);
+    let (ij, ik, jk) = (i * 2.0 * j, i * 2.0 * k, j * 2.0 * k);
+    let (iw, jw, kw) = (i * 2.0 * w, j * 2.0 * w, k * 2.0 * w);
     [
         [w2 + i2 - j2 - k2, ij - kw, jw + ik],
         [ij + kw, w2 - i2 + j2 - k2, jk - iw],
@@ -35,12 +38,14 @@ pub fn matrix(q: Quat) -> Matrix {
 }
 
 /// Matrix times vector.
-pub fn apply(m: &Matrix, v: Vec3) -> Vec3 {
+#[inline(always)]
+pub fn apply<R: Real>(m: &Matrix<R>, v: Vec3<R>) -> Vec3<R> {
     [dot(m[0], v), dot(m[1], v), dot(m[2], v)]
 }
 
 /// Transposed matrix times vector.
-pub fn apply_transposed(m: &Matrix, v: Vec3) -> Vec3 {
+#[inline(always)]
+pub fn apply_transposed<R: Real>(m: &Matrix<R>, v: Vec3<R>) -> Vec3<R> {
     add(add(scale(v[0], m[0]), scale(v[1], m[1])), scale(v[2], m[2]))
 }
 
@@ -81,7 +86,8 @@ pub fn from_axes([x, y, z]: Matrix) -> Quat {
 }
 
 /// ω × as a quaternion product: (0, ω) q.
-fn rate(w: Vec3, q: Quat) -> Quat {
+#[inline(always)]
+fn rate<R: Real>(w: Vec3<R>, q: Quat<R>) -> Quat<R> {
     [
         -w[0] * q[1] - w[1] * q[2] - w[2] * q[3],
         q[0] * w[0] + w[1] * q[3] - w[2] * q[2],
@@ -91,23 +97,44 @@ fn rate(w: Vec3, q: Quat) -> Quat {
 }
 
 /// Angular velocity from angular momentum L, orientation and principal moments; none about axes without inertia.
-pub fn spin(momentum: Vec3, q: Quat, moments: Vec3) -> Vec3 {
+#[inline(always)]
+pub fn spin<R: Real>(momentum: Vec3<R>, q: Quat<R>, moments: Vec3<R>) -> Vec3<R> {
     let m = matrix(q);
     let inner = apply_transposed(&m, momentum);
-    let inner = [0, 1, 2].map(|k| if moments[k] == 0.0 { 0.0 } else { inner[k] / moments[k] });
-    apply(&m, inner)
+    apply(&m, [part(inner[0], moments[0]), part(inner[1], moments[1]), part(inner[2], moments[2])])
+}
+
+/// a / b, none where b is zero.
+#[inline(always)]
+fn part<R: Real>(a: R, b: R) -> R {
+    let none = a.like(0.0);
+    R::choose(b.abs().above(none), a / b, none)
+}
+
+/// q + h b of unit length.
+#[inline(always)]
+fn ahead<R: Real>(q: Quat<R>, b: Quat<R>, h: f64) -> Quat<R> {
+    normalized([q[0] + b[0] * h, q[1] + b[1] * h, q[2] + b[2] * h, q[3] + b[3] * h])
 }
 
 /// Half a step of q̇ = ½ ω q at constant angular momentum, for a step of `half` = Δt/2: a whole step and two halves,
 /// extrapolated (Richardson). The orientation after the step and the angular velocity at its middle.
-pub fn richardson(q: Quat, momentum: Vec3, omega: Vec3, moments: Vec3, half: f64) -> (Quat, Vec3) {
-    let ahead = |q: Quat, by: Quat, h: f64| normalized([0, 1, 2, 3].map(|k| q[k] + h * by[k]));
+#[inline(always)]
+pub fn richardson<R: Real>(
+    q: Quat<R>,
+    momentum: Vec3<R>,
+    omega: Vec3<R>,
+    moments: Vec3<R>,
+    half: f64,
+) -> (Quat<R>, Vec3<R>) {
     let slope = rate(omega, q);
     let full = ahead(q, slope, half);
     let middle = ahead(q, slope, 0.5 * half);
     let omega = spin(momentum, middle, moments);
     let two = ahead(middle, rate(omega, middle), 0.5 * half);
-    (normalized([0, 1, 2, 3].map(|k| 2.0 * two[k] - full[k])), omega)
+    let ends =
+        [two[0] * 2.0 - full[0], two[1] * 2.0 - full[1], two[2] * 2.0 - full[2], two[3] * 2.0 - full[3]];
+    (normalized(ends), omega)
 }
 
 /// A free step of `dt` about the principal axes one after another, each an exact rotation (NO_SQUISH: Miller et al., J. Chem.

@@ -17,6 +17,12 @@ pub struct Placed {
     pub provides: String,
     /// Whether it reads the world's contacts.
     pub reads_contacts: bool,
+    /// Where in the step it acts.
+    pub stage: Stage,
+    /// In which steps of two lengths.
+    pub beat: Beat,
+    /// Whether it acts in the setup of a run.
+    pub in_setup: bool,
     /// What it has cost.
     pub meter: Meter,
 }
@@ -25,19 +31,21 @@ impl Placed {
     /// An op at its own times.
     pub fn new(op: Box<dyn Op>, from: Option<Span>) -> Self {
         let (when, reads_contacts) = (op.when(), op.access().reads("contacts"));
-        Self { op, when, from, provides: String::new(), reads_contacts, meter: Meter::default() }
+        let (stage, beat, in_setup, provides) = (op.stage(), op.beat(), op.in_setup(), String::new());
+        Self { op, when, from, provides, reads_contacts, stage, beat, in_setup, meter: Meter::default() }
     }
 
-    /// Lets the op act, and adds up what that costs.
+    /// Lets the op act, and adds up what that costs; `clock` is when the one before was done.
     fn timed<T>(
         &mut self,
         w: &mut World,
         t: &Tick,
+        clock: &mut Instant,
         act: impl FnOnce(&mut dyn Op, &mut World) -> Result<T>,
     ) -> Result<T> {
-        let begin = Instant::now();
         let outcome = act(&mut *self.op, w);
-        self.meter.time += begin.elapsed();
+        let begin = std::mem::replace(clock, Instant::now());
+        self.meter.time += *clock - begin;
         self.meter.calls += 1;
         self.meter.bytes += self.op.bytes(w);
         outcome.map_err(|e| placed_error(e, self, t))
@@ -78,7 +86,7 @@ impl StepPlan {
     /// Adds an op at the end of its stage (ops of a stage keep the order in which they are added).
     pub fn add(&mut self, placed: Placed) {
         let stage = placed.op.stage();
-        let at = self.ops.iter().position(|p| p.op.stage() > stage).unwrap_or(self.ops.len());
+        let at = self.ops.iter().position(|p| p.stage > stage).unwrap_or(self.ops.len());
         self.ops.insert(at, placed);
     }
 
@@ -108,17 +116,15 @@ impl StepPlan {
     /// # Errors
     /// As `run`.
     pub fn run_beats(&mut self, w: &mut World, t: &Tick, stages: &[Stage], beats: &[Beat]) -> Result<()> {
+        let mut clock = None;
         for p in &mut self.ops {
-            let stage = p.op.stage();
-            let fires = p.when.fires(t) || (t.ending && stage == Stage::Output && p.when != When::Never);
-            if !stages.contains(&stage)
-                || !beats.contains(&p.op.beat())
-                || (t.setup && !p.op.in_setup())
-                || !fires
-            {
+            if !stages.contains(&p.stage) || !beats.contains(&p.beat) || (t.setup && !p.in_setup) {
                 continue;
             }
-            p.timed(w, t, |op, w| op.run(w, t))?;
+            let ends = t.ending && p.stage == Stage::Output && p.when != When::Never;
+            if ends || p.when.fires(t) {
+                p.timed(w, t, clock.get_or_insert_with(Instant::now), |op, w| op.run(w, t))?;
+            }
         }
         Ok(())
     }
@@ -148,7 +154,7 @@ impl StepPlan {
         self.run(w, t, &[PostIntegrate, Stage::Exchange, Stage::Neighbor, Stage::PreForce])?;
         self.run(w, t, &[Stage::Force, Stage::PostForce])?;
         if let Some(last) = self.last_kick(t).filter(|_| more(w)) {
-            self.begun = self.ops[last].timed(w, t, |op, w| op.run_on(w, t))?;
+            self.begun = self.ops[last].timed(w, t, &mut Instant::now(), |op, w| op.run_on(w, t))?;
         }
         if self.begun { Ok(()) } else { self.run(w, t, &[FinalIntegrate]) }
     }
@@ -156,7 +162,7 @@ impl StepPlan {
     /// The op that ends the motion of this step if its fix alone moves particles and nobody looks before the next step.
     fn last_kick(&self, t: &Tick) -> Option<usize> {
         let fires = |p: &Placed| p.when.fires(t);
-        let at = |stage| self.ops.iter().enumerate().filter(move |(_, p)| p.op.stage() == stage);
+        let at = |stage| self.ops.iter().enumerate().filter(move |(_, p)| p.stage == stage);
         let looks = |stage| at(stage).any(|(_, p)| fires(p));
         let (mut first, mut second) = (at(Stage::InitialIntegrate), at(Stage::FinalIntegrate));
         let (Some((_, a)), None, Some((k, b)), None) =
@@ -165,7 +171,10 @@ impl StepPlan {
             return None;
         };
         let one = a.from == b.from && a.when == When::Always && b.when == When::Always;
-        (one && !looks(Stage::EndOfStep) && !looks(Stage::Output)).then_some(k)
+        // The virial of constraints comes from what the first half of a step does to velocities.
+        let next = Tick { step: t.step + 1, ..t.clone() };
+        let asked = [&self.virial, &self.atom_virial].into_iter().flatten().any(|w| w.fires(&next));
+        (one && !asked && !looks(Stage::EndOfStep) && !looks(Stage::Output)).then_some(k)
     }
 
     /// Makes ops of forces give what they hold of the scene back to the world; they take it up anew at their next step.

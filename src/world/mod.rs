@@ -242,8 +242,14 @@ impl World {
         if bodies.is_empty() {
             return own.as_slice().into();
         }
-        let of_body = |i: usize| bodies.iter().filter_map(|b| b.get(i).copied()).find(|m| *m > 0.0);
-        (0..own.len()).map(|i| of_body(i).unwrap_or(own[i])).collect::<Vec<f64>>().into()
+        let mut masses = own.clone();
+        // The first one counts.
+        for body in bodies.iter().rev() {
+            for (mass, body) in masses.iter_mut().zip(*body) {
+                *mass = if *body > 0.0 { *body } else { *mass };
+            }
+        }
+        masses.into()
     }
 
     /// Copies the masses of types into the per-particle column where particles have none of their own.

@@ -4,6 +4,7 @@ mod bodies;
 mod infile;
 mod motion;
 mod nve;
+mod pass;
 
 pub use nve::{RigidNve, RigidNveSmall};
 
@@ -18,6 +19,7 @@ use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
 use crate::world::{GroupId, World};
 use bodies::Split;
+use motion::Crew;
 
 /// Columns of the array: centre, velocity, force, torque, image counts.
 const COLUMNS: usize = 15;
@@ -312,26 +314,29 @@ impl Fix for Declared {
                 Ok(())
             },
         );
-        let me = self.clone();
+        let (me, mut crew) = (self.clone(), Crew::of(self));
         let access = || Access::new("f torque mass mask bodies", "x v omega");
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
-            me.advance(w, t);
+            me.advance(w, t, &mut crew);
             Ok(())
         });
         let second = |me: Declared| {
+            let mut crew = Crew::of(&me);
             move |w: &mut World, t: &Tick| {
-                if t.unchanged {
-                    return Ok(());
+                if !t.unchanged {
+                    me.finish_step(w, t, slot, &mut crew);
                 }
-                me.finish_step(w, t, slot);
                 Ok(())
             }
         };
+        let (me, mut crew) = (self.clone(), Crew::of(self));
+        let on = move |w: &mut World, t: &Tick| me.go_on(w, t, slot, &mut crew);
         let last = StepOp::new(name.clone(), Stage::FinalIntegrate, access(), second(self.clone()));
+        let (first, last) = (first.reporting(), last.reporting().and_on(on));
         let mut ops = vec![bodies.boxed(), first.boxed()];
         if cx.world().settings.lammps() {
             // Its setup sums up forces when it comes to this fix: those of fixes that stand below are missing.
-            let setup = StepOp::new(name, Stage::PostForce, access(), second(self.clone()));
+            let setup = StepOp::new(name, Stage::PostForce, access(), second(self.clone())).reporting();
             ops.extend([setup.when(When::First).boxed(), last.in_setup(false).boxed()]);
         } else {
             ops.push(last.in_setup(true).boxed());
@@ -349,8 +354,8 @@ impl Fix for Declared {
                 Motion::Angular => (body.momentum, body.omega) = ([0.0; 3], [0.0; 3]),
             }
         }
-        self.carry(w, &bodies);
         self.store(w, &bodies);
+        self.carry(w);
         Ok(())
     }
 

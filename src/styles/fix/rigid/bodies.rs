@@ -52,7 +52,7 @@ pub struct Body {
 }
 
 /// Numbers a body is kept in.
-const WIDTH: usize = 30;
+pub const WIDTH: usize = 30;
 
 impl Body {
     fn write(&self, row: &mut [f64]) {
