@@ -119,8 +119,7 @@ impl Slots {
 
     /// Takes a slot's content out to fill it while the world is read; give it back with `put`.
     pub fn take(&mut self, id: SlotId) -> Slot {
-        let name = self.slots[id.0].name.clone();
-        std::mem::replace(&mut self.slots[id.0], Slot { name, ..Slot::default() })
+        std::mem::take(&mut self.slots[id.0])
     }
 
     /// Gives a slot's content back, belonging to `step`.

@@ -63,6 +63,7 @@ pub struct WallSweep {
     /// Heat into the particles, contact by contact.
     heat: Vec<f64>,
     spare: Vec<f64>,
+    near: Vec<Near>,
 }
 
 impl WallSweep {
@@ -135,14 +136,13 @@ impl WallSweep {
 
     fn find<L: ContactLaw>(&mut self, wall: &dyn Wall, grains: &Spheres, law: &L, memory: &Contacts) {
         let list = &self.list[..];
-        let some = |range: std::ops::Range<usize>| {
-            let (mut touching, mut near) = (vec![], vec![]);
+        let find = |range: std::ops::Range<usize>, touching: &mut Vec<Touch>, near: &mut Vec<Near>| {
             for &grain in &list[range] {
                 let i = grain as usize;
                 let radius = grains.radius[i];
                 near.clear();
                 // Hollow walls have larger effective radii, so that cohesion may reach farther than on flat ones.
-                wall.near(grains.x[i], radius + 2.0 * law.gap(radius), &mut near);
+                wall.near(grains.x[i], radius + 2.0 * law.gap(radius), near);
                 near.sort_by_key(|n| n.part);
                 let touches = |n: &&Near| {
                     n.distance < radius
@@ -152,6 +152,14 @@ impl WallSweep {
                 };
                 touching.extend(near.iter().filter(touches).map(|n| Touch { grain, near: *n }));
             }
+        };
+        self.touching.clear();
+        if list.len() <= par::CHUNK {
+            return find(0..list.len(), &mut self.touching, &mut self.near);
+        }
+        let some = |range| {
+            let mut touching = vec![];
+            find(range, &mut touching, &mut vec![]);
             touching
         };
         self.touching = par::reduce(list.len(), some, join).unwrap_or_default();

@@ -155,7 +155,8 @@ fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, spacing: [f64; 3]) 
         Motion::Rotate { point, axis, angle } => {
             let point = [0, 1, 2].map(|d| spacing[d] * point[d]);
             for &i in &members {
-                cx.world.particles.x[i] = turned(matter::unwrapped(cx.world, i), point, *axis, *angle);
+                cx.world.particles.x[i] =
+                    turned(matter::unwrapped(cx.world, i), point, *axis, (*angle).into());
                 cx.world.particles.image.set(i, [0; 3]);
             }
         }

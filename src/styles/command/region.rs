@@ -205,7 +205,7 @@ fn turn(a: &mut Args, cx: &BuildCx, spacing: [f64; 3]) -> Result<Turn> {
         return fail(Code::BAD_VALUE, span, "the axis of rotation has no direction");
     }
     let given = length(along);
-    Ok(Turn { variable, point, axis: along.map(|x| x / given), given, angle: 0.0 })
+    Ok(Turn { variable, point, axis: along.map(|x| x / given), given, angle: 0.0.into() })
 }
 
 /// Takes `v_name` of an equal-style variable.

@@ -14,6 +14,40 @@ pub struct Variable {
     pub span: Span,
 }
 
+/// An angle [radians] with its sine and its cosine; restart files hold the number.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(from = "f64", into = "f64")]
+pub struct Angle {
+    value: f64,
+    sin: f64,
+    cos: f64,
+}
+
+impl Angle {
+    /// The number.
+    pub fn value(self) -> f64 {
+        self.value
+    }
+
+    /// The same angle the other way round.
+    #[must_use]
+    pub fn back(self) -> Self {
+        Self { value: -self.value, sin: -self.sin, cos: self.cos }
+    }
+}
+
+impl From<f64> for Angle {
+    fn from(value: f64) -> Self {
+        Self { value, sin: value.sin(), cos: value.cos() }
+    }
+}
+
+impl From<Angle> for f64 {
+    fn from(angle: Angle) -> f64 {
+        angle.value
+    }
+}
+
 /// A rotation by a variable's angle.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Turn {
@@ -26,7 +60,7 @@ pub struct Turn {
     /// The length of the axis as the deck has it, by which LAMMPS' walls are too fast.
     pub given: f64,
     /// The present angle.
-    pub angle: f64,
+    pub angle: Angle,
 }
 
 /// How a region moves: first turned, then shifted.
@@ -58,7 +92,7 @@ impl Motion {
         if let Some(turn) = &mut self.turn
             && let Some(angle) = ask(&turn.variable)?
         {
-            turn.angle = angle;
+            turn.angle = angle.into();
         }
         Ok(())
     }
@@ -68,7 +102,7 @@ impl Motion {
     pub(super) fn undo(&self, x: [f64; 3]) -> [f64; 3] {
         let x = sub(x, self.now);
         match &self.turn {
-            Some(t) => turned(x, t.point, t.axis, -t.angle),
+            Some(t) => turned(x, t.point, t.axis, t.angle.back()),
             None => x,
         }
     }
@@ -76,19 +110,27 @@ impl Motion {
 
 /// A place turned about an axis of unit length through a point (Rodrigues), summed in LAMMPS' order: random streams that
 /// belong to places see every bit.
-pub fn turned(x: [f64; 3], point: [f64; 3], axis: [f64; 3], angle: f64) -> [f64; 3] {
+pub fn turned(x: [f64; 3], point: [f64; 3], axis: [f64; 3], angle: Angle) -> [f64; 3] {
     let arm = sub(x, point);
     let along = scale(dot(arm, axis), axis);
     let across = sub(arm, along);
     let ahead = cross(axis, across);
-    let (sin, cos) = (angle.sin(), angle.cos());
-    [0, 1, 2].map(|d| point[d] + along[d] + (across[d] * cos + ahead[d] * sin))
+    [0, 1, 2].map(|d| point[d] + along[d] + (across[d] * angle.cos + ahead[d] * angle.sin))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::world::region::{Region, Shape};
+
+    // Walls asked for the sine of the opposite angle before it was kept.
+    #[test]
+    fn sines_are_odd_and_cosines_even_to_the_bit() {
+        for k in -2000..2000 {
+            let a = f64::from(k) * 0.7310585786300049;
+            assert_eq!(Angle::from(a).back(), Angle::from(-a));
+        }
+    }
 
     #[test]
     fn first_turned_then_shifted() {
@@ -98,7 +140,7 @@ mod tests {
             point: [1.0, 0.0, 0.0],
             axis: [0.0, 0.0, 1.0],
             given: 1.0,
-            angle: std::f64::consts::FRAC_PI_2,
+            angle: std::f64::consts::FRAC_PI_2.into(),
         };
         let motion = Motion { shift: [None, None, None], turn: Some(turn), now: [0.0, 0.0, 5.0] };
         let ball = Shape::Sphere { center: [3.0, 0.0, 0.0], radius: 0.1 };

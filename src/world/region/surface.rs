@@ -121,7 +121,7 @@ impl Region {
         if let (Some(turn), Some(old)) = (&now.turn, &was.turn) {
             // LAMMPS takes the axis of the deck for one of length 1 here, and here alone.
             let length = if s.lammps { turn.given } else { 1.0 };
-            let spin = scale((turn.angle - old.angle) / s.dt * length, turn.axis);
+            let spin = scale((turn.angle.value() - old.angle.value()) / s.dt * length, turn.axis);
             let place = sub(s.x, scale(near.distance, near.normal));
             velocity = add(velocity, cross(spin, sub(place, add(turn.point, now.now))));
         }
@@ -158,7 +158,8 @@ impl Region {
         let mut far = length(sub(now.now, was.now));
         if let (Some(turn), Some(old)) = (&now.turn, &was.turn) {
             let arm = |c: &Vec3| length(sub(*c, add(turn.point, now.now)));
-            far += (turn.angle - old.angle).abs() * corners.iter().map(arm).fold(0.0, f64::max);
+            far +=
+                (turn.angle.value() - old.angle.value()).abs() * corners.iter().map(arm).fold(0.0, f64::max);
         }
         far
     }
@@ -168,7 +169,7 @@ impl Region {
         out.extend(self.given.iter().map(|g| self.shape.get(g.number)));
         if let Some(m) = &self.motion {
             out.extend(m.now);
-            out.extend(m.turn.as_ref().map(|t| t.angle));
+            out.extend(m.turn.as_ref().map(|t| t.angle.value()));
         }
         if let Shape::Union(parts) | Shape::Intersect(parts) = &self.shape {
             parts.iter().for_each(|p| p.pose(out));
@@ -183,7 +184,7 @@ impl Region {
         if let Some(m) = &mut self.motion {
             m.now.iter_mut().zip(numbers.by_ref().take(3)).for_each(|(now, a)| *now = a);
             if let Some(turn) = &mut m.turn {
-                numbers.by_ref().take(1).for_each(|a| turn.angle = a);
+                numbers.by_ref().take(1).for_each(|a| turn.angle = a.into());
             }
         }
         if let Shape::Union(parts) | Shape::Intersect(parts) = &mut self.shape {

@@ -127,17 +127,18 @@ impl WallOp {
     /// Puts the wall where it is and finds who touches it.
     fn meet(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         self.travelled += self.surface.place(w, t)?;
-        let mut memory = w.wall_contacts.remove(&self.id).unwrap_or_default();
+        let mut memory = take(w, &self.id);
         // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
         self.kept = (t.setup && !w.settings.lammps()).then(|| memory.clone());
-        let (p, masses) = (&w.particles, w.contact_masses());
+        let p = &w.particles;
+        // Masses count when forces are asked for.
         let grains =
-            Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &masses, tag: &p.tag };
+            Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
         self.list(w, &grains);
         let wall = self.surface.wall(w);
         self.sweep.meet(&*wall, &grains, &self.law, &mut memory);
         drop(wall);
-        w.wall_contacts.insert(self.id.clone(), memory);
+        give(w, &self.id, memory);
         Ok(())
     }
 
@@ -184,7 +185,8 @@ impl WallOp {
     fn publish(&mut self, w: &mut World, t: &Tick, felt: [f64; FELT]) {
         let n = w.n();
         let local = self.surface.local(w, &self.sweep, t);
-        let mut out = w.slots.take(self.slot);
+        let (p, out) = (&w.particles, w.slots.get_mut(self.slot));
+        out.step = Some(t.step);
         out.vector.clear();
         out.vector.extend(felt);
         (out.local, out.local_cols) = (local, self.local);
@@ -195,18 +197,30 @@ impl WallOp {
             out.atom.resize(cols * n, 0.0);
             for (k, (touch, wrench)) in self.sweep.contacts().enumerate() {
                 let i = touch.grain as usize;
-                let point = sub(w.particles.x[i], scale(touch.near.distance, touch.near.normal));
+                let point = sub(p.x[i], scale(touch.near.distance, touch.near.normal));
                 let row = &mut out.atom[cols * i..][..cols];
                 row[0] = 1.0;
                 row[1..4].copy_from_slice(&wrench.force);
                 row[4..7].copy_from_slice(&point);
-                row[7] = w.particles.radius[i];
+                row[7] = p.radius[i];
                 if let Some(heat) = row.get_mut(COLUMNS) {
                     *heat = self.sweep.heat(k);
                 }
             }
         }
-        w.slots.put(self.slot, out, t.step);
+    }
+}
+
+/// Takes out what the contacts of a wall remember.
+fn take(w: &mut World, id: &str) -> Contacts {
+    w.wall_contacts.get_mut(id).map(std::mem::take).unwrap_or_default()
+}
+
+/// Puts it back.
+fn give(w: &mut World, id: &str, memory: Contacts) {
+    match w.wall_contacts.get_mut(id) {
+        Some(place) => *place = memory,
+        None => drop(w.wall_contacts.insert(id.to_string(), memory)),
     }
 }
 
@@ -284,7 +298,7 @@ impl Op for WallOp {
         if self.plastic.is_none() {
             self.meet(w, t)?;
         }
-        let mut memory = w.wall_contacts.remove(&self.id).unwrap_or_default();
+        let mut memory = take(w, &self.id);
         if let Some(plastic) = &mut self.plastic {
             plastic.press(w, t, &self.id, &self.sweep, &mut memory);
         }
@@ -297,7 +311,7 @@ impl Op for WallOp {
         if let (Some(all), Some(own)) = (&mut w.parts.wall_springs, springs) {
             all.insert(self.id.clone(), own);
         }
-        w.wall_contacts.insert(self.id.clone(), self.kept.take().unwrap_or(memory));
+        give(w, &self.id, self.kept.take().unwrap_or(memory));
         let p = &mut w.particles;
         let [fx, fy, fz, tx, ty, tz] = self.sweep.scatter(&mut p.f, &mut p.torque, &p.x, self.center);
         let heat = self.conduct(w);

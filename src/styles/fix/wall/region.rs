@@ -120,26 +120,26 @@ impl Surface for Running {
             return fail(Code::UNKNOWN_REGION, self.span, format!("region `{}` is gone", self.name));
         };
         let Some(before) = &mut self.before else { return Ok(0.0) };
-        let memo = w.memo.get(&self.key).map_or(&[][..], Vec::as_slice);
+        let mut nothing = vec![];
+        let memo = w.memo.get_mut(&self.key).unwrap_or(&mut nothing);
         let since = memo.first().map_or(f64::INFINITY, |step| t.step as f64 - step);
         self.elapsed = (since == 1.0).then_some(t.dt);
-        before.clone_from(region);
+        if memo.len() < 2 {
+            before.clone_from(region);
+        }
+        // Regions are put anew between runs only: all but the pose is as it was.
         before.set_pose(&mut memo.iter().skip(1).copied());
-        let mut pose = vec![t.step as f64];
-        region.pose(&mut pose);
         // Places of the wall that matter are a radius from a particle in the box at most.
         let margin = 2.0 * self.radius;
-        let corners = match &w.domain {
-            Some(d) => {
-                let end =
-                    |k: usize, a: usize| if k & (1 << a) == 0 { d.lo[a] - margin } else { d.hi[a] + margin };
-                (0..8).map(|k| [0, 1, 2].map(|a| end(k, a))).collect()
-            }
-            None => vec![],
-        };
-        let moved = region.travel(before, &corners);
-        w.memo.insert(self.key.clone(), pose);
-        Ok(moved)
+        let corners = w.domain.as_ref().map(|d| {
+            let end =
+                |k: usize, a: usize| if k & (1 << a) == 0 { d.lo[a] - margin } else { d.hi[a] + margin };
+            [0, 1, 2, 3, 4, 5, 6, 7].map(|k| [0, 1, 2].map(|a| end(k, a)))
+        });
+        memo.clear();
+        memo.push(t.step as f64);
+        region.pose(memo);
+        Ok(region.travel(before, corners.as_ref().map_or(&[], |c| &c[..])))
     }
 
     fn wall<'a>(&'a self, w: &'a World) -> Box<dyn Wall + 'a> {

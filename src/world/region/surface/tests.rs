@@ -128,7 +128,13 @@ fn variable() -> Variable {
 #[test]
 fn moving_walls_carry_and_growing_ones_push() {
     let axis = [0.0, 0.0, 1.0];
-    let turn = |angle: f64| Turn { variable: variable(), point: [1.0, 0.0, 0.0], axis, given: 2.0, angle };
+    let turn = |angle: f64| Turn {
+        variable: variable(),
+        point: [1.0, 0.0, 0.0],
+        axis,
+        given: 2.0,
+        angle: angle.into(),
+    };
     let motion = |z: f64, angle: f64| {
         Some(Motion { turn: Some(turn(angle)), now: [0.0, 0.0, z], ..Motion::default() })
     };

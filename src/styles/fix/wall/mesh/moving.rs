@@ -172,7 +172,7 @@ impl Running {
     fn undo(&self, x: Vec3) -> Vec3 {
         let x = sub(x, self.shift);
         match &self.motion {
-            Motion::Rotate(point, axis, _) => turned(x, *point, *axis, -self.angle),
+            Motion::Rotate(point, axis, _) => turned(x, *point, *axis, (-self.angle).into()),
             _ => x,
         }
     }
@@ -192,7 +192,7 @@ impl Wall for Placed<'_> {
         for near in &mut out[from..] {
             near.velocity = me.velocity;
             if let Motion::Rotate(point, axis, omega) = &me.motion {
-                near.normal = turned(near.normal, [0.0; 3], *axis, me.angle);
+                near.normal = turned(near.normal, [0.0; 3], *axis, me.angle.into());
                 let place = sub(x, scale(near.distance, near.normal));
                 let arm = sub(place, add(*point, me.shift));
                 near.velocity = add(near.velocity, scale(*omega, cross(*axis, arm)));
