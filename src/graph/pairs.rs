@@ -47,6 +47,7 @@ pub fn pair_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
     let mut pair = node.pair.boxed();
     pair.coeff(&pairs, args, &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
+    pair.declare(w);
     if let Some(node) = &mut graph.pair {
         node.pair = pair;
     }

@@ -18,6 +18,8 @@ use crate::world::{Allowed, World};
 pub enum Own {
     /// `granular`: tangential force and its size, rolling force and its size, twisting torque, x_i − x_j.
     Granular,
+    /// The same of plastic grains (`mdr`), and the mean area of contact of both sides.
+    Powder,
     /// `gran/…`: tangential force and its size, relative velocity along and across the line of centres.
     Gran,
 }
@@ -98,6 +100,7 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
     fn own(&self) -> usize {
         match self.own {
             Own::Granular => 12,
+            Own::Powder => 13,
             Own::Gran => 10,
         }
     }
@@ -109,8 +112,15 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
     fn look(&mut self, w: &World, idle: bool) -> Result<Vec<Interaction>> {
         let p = &w.particles;
         let own = self.own;
-        let acting = self.evaluated(w, |grains, _, sweep, _| {
-            sweep.contacts().map(|(pair, wrench)| interaction(grains, pair, wrench, own)).collect::<Vec<_>>()
+        let acting = self.evaluated(w, |grains, _, sweep, memory| {
+            let mut all: Vec<_> =
+                sweep.contacts().map(|(pair, wrench)| interaction(grains, pair, wrench, own)).collect();
+            if own == Own::Powder {
+                // The last of what such contacts are told.
+                let rows = memory.history.chunks_exact(memory.width.max(1));
+                all.iter_mut().zip(rows).for_each(|(a, row)| a.own[12] = row.last().copied().unwrap_or(0.0));
+            }
+            all
         })?;
         if !idle {
             return Ok(acting);
@@ -179,7 +189,7 @@ fn interaction(grains: &Grains, pair: &Pair, wrench: &Wrench, own: Own) -> Inter
     numbers[..3].copy_from_slice(&across);
     numbers[3] = length(across);
     match own {
-        Own::Granular => {
+        Own::Granular | Own::Powder => {
             // What the torque has beyond that of the tangential force, which acts in the middle of the overlap.
             let radii = [grains.radius[i], grains.radius[j]];
             let overlap = radii[0] + radii[1] - distance;

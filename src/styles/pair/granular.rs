@@ -58,7 +58,7 @@ impl Style for GranularStyle {
                 squeezes it with the bulk modulus E/(3 (1−2ν)). A contact that reaches through a third grain pushes less. All \
                 grains have the same numbers; walls too, but for `gamma`, and LAMMPS wants those of fix wall/gran/region. \
                 `damping mdr` alone goes with it: η = e √(m̄ k) with k = 2 E_c (a_i + a_j), on walls E_c a/2 (`1`), or η = e \
-                (`2`). Friction takes a = √(R̄ δ) as everywhere. After `run 0` decks can read `d_Ro` (first radius), `d_Velas`, \
+                (`2`). Friction takes a = √(R̄ δ) as everywhere. Decks can read `d_Ro` (first radius), `d_Velas`, \
                 `d_Acon1` (area of contact), `d_psi`, `d_eps_bar`, `d_sigmaxx` `…yy` `…zz` (mean stress, also `…xy` `…xz` `…yz`) and others of LAMMPS' \
                 names by compute property/atom, dump or formula. Heat, `average` and `curvature` do not go with it. Large overlaps are what it is made for.\n\n\
                 Which damping makes a wanted e: `coeff_restitution` does, exactly and at any velocity, `tsuji` as \
@@ -97,7 +97,7 @@ impl Style for GranularStyle {
                 `-compat lammps` has LAMMPS' faults: tsuji without its √2 (and its 2/√5 for hooke); the shear stiffness of mixed types from E* \
                 in the place of both moduli; a sliding twist that takes the direction of the spin even where its \
                 spring pushes the other way; for mdr a contact that sticks only where a step takes more than a hundredth of its radius, and \
-                no yielding in the setup of a run.",
+                neither yielding nor (of new contacts) damping in the setup of a run.",
             example: "pair_style granular\n\
                       pair_coeff * * hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4",
         }

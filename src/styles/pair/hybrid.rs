@@ -150,6 +150,10 @@ impl Pair for Declared {
         Ok(())
     }
 
+    fn declare(&self, w: &mut World) {
+        self.subs.iter().for_each(|s| s.declare(w));
+    }
+
     fn covers(&self, i: u16, j: u16) -> bool {
         self.users(i.min(j), i.max(j)).is_some()
     }

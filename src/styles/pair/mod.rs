@@ -43,6 +43,9 @@ pub trait Pair: Send {
     /// Every mistake in the line.
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()>;
 
+    /// Makes what decks may name of it before the first run.
+    fn declare(&self, _w: &mut World) {}
+
     /// Whether a type pair has coefficients, its own or mixed ones.
     fn covers(&self, i: u16, j: u16) -> bool;
 

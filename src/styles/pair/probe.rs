@@ -5,7 +5,7 @@ use crate::math::vec3::{Vec3, dot, length, scale, sub};
 use crate::world::World;
 
 /// How many numbers of its own a pair style may give to each pair.
-pub const OWN: usize = 12;
+pub const OWN: usize = 13;
 
 /// Two particles and what they do to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -62,6 +62,13 @@ pub struct Manner {
     pub setup: bool,
 }
 
+impl Manner {
+    /// The stiffness that damping sees: LAMMPS' setup takes that of the step before, none in a new contact.
+    fn damped(self, before: f64, now: f64) -> f64 {
+        if self.lammps && self.setup { before } else { now }
+    }
+}
+
 /// How many numbers a contact of two grains remembers: both sides, then the largest overlap.
 pub const PAIR: usize = 2 * side::WIDTH + 1;
 

@@ -207,7 +207,8 @@ fn press(
     }
     let largest = &mut memory[PAIR - 1];
     *largest = largest.max(seen.overlap);
-    told.copy_from_slice(&[force, 2.0 * m.plane() * contact, area]);
+    let damped = manner.damped(told[1], 2.0 * m.plane() * contact);
+    told.copy_from_slice(&[force, damped, area]);
 }
 
 /// The depth of the plane on each side: through the circle in which the spheres cut each other while the overlap grows;

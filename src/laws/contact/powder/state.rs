@@ -112,6 +112,14 @@ impl State {
         state
     }
 
+    /// Makes the columns.
+    pub fn declare(w: &mut World) {
+        let n = w.n();
+        for name in NAMES {
+            w.columns.scalar(&of(name), n);
+        }
+    }
+
     /// Puts them back.
     pub fn put(mut self, columns: &mut Columns) {
         for (name, column) in NAMES.iter().zip(self.all()) {

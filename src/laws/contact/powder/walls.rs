@@ -41,6 +41,7 @@ pub fn press(
     let (force, a, deed) = side(m, s, k, radius, depth, &mut one, 1.0, manner);
     one.write(memory);
     let force = force * far_pushed(one.first_depth, s.first[k]);
-    told[..TOLD].copy_from_slice(&[force, 0.5 * m.plane() * a, one.area]);
+    let damped = manner.damped(told[1], 0.5 * m.plane() * a);
+    told[..TOLD].copy_from_slice(&[force, damped, one.area]);
     deed
 }

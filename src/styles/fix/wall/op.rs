@@ -156,7 +156,8 @@ impl WallOp {
 
     /// Remembers the deepest particle when the law first holds no longer.
     fn find_deep(&mut self, w: &World, t: &Tick) {
-        if self.deep.is_some() {
+        // Plastic grains are made for deep contacts.
+        if self.deep.is_some() || self.plastic.is_some() {
             return;
         }
         let p = &w.particles;

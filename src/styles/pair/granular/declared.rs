@@ -5,7 +5,7 @@ use super::powder::Powder;
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::lang::Args;
 use crate::laws::contact::driver::{Average, Curvature, Rule, Rules};
-use crate::laws::contact::powder::Material;
+use crate::laws::contact::powder::{Material, State};
 use crate::laws::contact::{Damping, Granular, Model, Normal, Twisting};
 use crate::neigh::list::{Reach, Wanted};
 use crate::plan::Op;
@@ -157,6 +157,12 @@ impl Pair for Declared {
         Ok(())
     }
 
+    fn declare(&self, w: &mut World) {
+        if self.given.values().any(|c| c.model.normal.plastic().is_some()) {
+            State::declare(w);
+        }
+    }
+
     fn covers(&self, i: u16, j: u16) -> bool {
         let has = |a: u16, b: u16| self.given.contains_key(&(a.min(b), a.max(b)));
         has(i, j) || (has(i, i) && has(j, j))
@@ -186,7 +192,11 @@ impl Pair for Declared {
 
     fn probes(&self, w: &World) -> Result<Vec<Box<dyn Probe>>> {
         let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
-        let own = if self.name == "granular" { Own::Granular } else { Own::Gran };
+        let own = match self.name {
+            "granular" if self.powder()?.is_some() => Own::Powder,
+            "granular" => Own::Granular,
+            _ => Own::Gran,
+        };
         Ok(vec![Box::new(ContactProbe::new(self.name, rules, wanted, own))])
     }
 

@@ -5,11 +5,11 @@ use super::force::grains;
 use super::reach::reaching;
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::laws::contact::driver::{Grains, Rules, Sweep};
-use crate::laws::contact::powder::{Manner, Material, Meetings, PAIR, begin, undo};
+use crate::laws::contact::powder::{Manner, Material, Meetings, PAIR, TOLD, begin, undo};
 use crate::laws::contact::{Advance, Granular};
 use crate::neigh::list::{Pair, Wanted, difference};
 use crate::plan::{Access, Op, Stage, Tick};
-use crate::world::contacts::PLASTIC;
+use crate::world::contacts::{Contacts, PLASTIC};
 use crate::world::{Allowed, World};
 
 /// Forces and torques among plastic grains.
@@ -27,6 +27,7 @@ pub struct Powder {
     list: Vec<Pair>,
     sweep: Sweep,
     meetings: Meetings,
+    spare: Vec<f64>,
 }
 
 impl Powder {
@@ -50,6 +51,7 @@ impl Powder {
             list: vec![],
             sweep: Sweep::default(),
             meetings: Meetings::default(),
+            spare: vec![],
         }
     }
 
@@ -58,6 +60,15 @@ impl Powder {
         self.generation = Some(w.rebuild.generation);
         let wanted = reaching(&self.rules, &self.wanted, w);
         self.list = near(w, built_at(w), &wanted, w.settings.neighbor.skin, &Allowed::new(w));
+    }
+
+    /// What contacts remembered `before` a setup, and what they were told in it: whoever asks for single pairs needs that.
+    fn still(&mut self, mut before: Contacts, after: &Contacts) -> Contacts {
+        let width = after.width;
+        before.carry(&after.keys, width, &mut self.spare);
+        let rows = before.history.chunks_exact_mut(width).zip(after.history.chunks_exact(width));
+        rows.for_each(|(old, new)| old[width - TOLD..].copy_from_slice(&new[width - TOLD..]));
+        before
     }
 
     fn check(&self, w: &World, t: &Tick) -> Result<()> {
@@ -133,7 +144,10 @@ impl Op for Powder {
         if t.setup {
             undo(&before, &mut plastic.history, PAIR, manner.lammps);
         }
-        let (memory, state) = kept.unwrap_or((memory, state));
+        let (memory, state) = match kept {
+            Some((before, state)) => (self.still(before, &memory), state),
+            None => (memory, state),
+        };
         w.contacts.insert(self.style.to_string(), memory);
         w.contacts.insert(PLASTIC.to_string(), plastic);
         state.put(&mut w.columns);
