@@ -29,6 +29,11 @@ pub trait Four: Real {
     /// # Safety
     /// `p` must be writable for three numbers.
     unsafe fn store3(self, p: *mut f64);
+    /// Adds the first three numbers to those at `p`.
+    ///
+    /// # Safety
+    /// As [`Four::store3`].
+    unsafe fn add_to3(self, p: *mut f64);
     /// The same number four times.
     ///
     /// # Safety
@@ -213,6 +218,11 @@ impl Four for Plain {
         unsafe { p.cast::<[f64; 3]>().write([a, b, c]) }
     }
     #[inline(always)]
+    unsafe fn add_to3(self, p: *mut f64) {
+        // SAFETY: passed on.
+        unsafe { (Self::load3(p) + self).store3(p) }
+    }
+    #[inline(always)]
     unsafe fn splat(a: f64) -> Self {
         Self([a; 4])
     }
@@ -338,10 +348,19 @@ mod x86 {
         }
         #[inline(always)]
         unsafe fn store3(self, p: *mut f64) {
-            // Not a masked store: what follows reads these numbers soon, and such stores are slow to pass on.
             unsafe {
                 _mm_storeu_pd(p, _mm256_castpd256_pd128(self.0));
                 _mm_store_sd(p.add(2), _mm256_extractf128_pd::<1>(self.0));
+            }
+        }
+        #[inline(always)]
+        unsafe fn add_to3(self, p: *mut f64) {
+            // Read in the two parts in which it is written: a processor passes a number on from a store to a load soon
+            // after only where the load lies within the store.
+            unsafe {
+                let (low, high) = (_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
+                _mm_storeu_pd(p, _mm_add_pd(_mm_loadu_pd(p), low));
+                _mm_store_sd(p.add(2), _mm_add_sd(_mm_load_sd(p.add(2)), high));
             }
         }
         #[inline(always)]

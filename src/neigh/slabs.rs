@@ -122,6 +122,12 @@ impl Slabs {
         k * layers / slabs * layer..(k + 1) * layers / slabs * layer
     }
 
+    /// The places of slab `k`.
+    pub fn members(&self, k: usize) -> Range<usize> {
+        let cells = self.slab(k);
+        self.start[cells.start] as usize..self.start[cells.end] as usize
+    }
+
     /// The places of a cell.
     pub fn places(&self, cell: usize) -> Range<usize> {
         self.start[cell] as usize..self.start[cell + 1] as usize

@@ -56,7 +56,7 @@ impl Geometry {
         }
         let distance = square.sqrt();
         Some(Self {
-            normal: [d[0] / distance, d[1] / distance, d[2] / distance],
+            normal: crate::math::vec3::scale(1.0 / distance, d),
             overlap: sum - distance,
             radii,
             curvature: ri * rj / sum,

@@ -53,14 +53,17 @@ impl<R: Real> Slider<R> {
             return trial;
         }
         let stretched = dot(*xi, *xi).above(zero);
-        let sliding = scale(R::choose(stretched, self.limit / size, zero), trial);
+        // Without stiffness no displacement carries a force: it stays as it is.
+        let stiff = self.slack.above(zero);
+        let slack = R::choose(stiff, self.slack, zero.like(1.0));
+        // Both quotients by one division.
+        let inverse = zero.like(1.0) / (size * slack);
+        let sliding = scale(R::choose(stretched, self.limit * slack * inverse, zero), trial);
         let elastic = sub(sliding, drag);
         let (carried, fits) = if by_force {
             (elastic, R::both(slides, stretched))
         } else {
-            // Without stiffness no displacement carries a force: it stays as it is.
-            let stiff = self.slack.above(zero);
-            (scale(zero.like(-1.0) / self.slack, elastic), R::both(R::both(slides, stretched), stiff))
+            (scale(-(size * inverse), elastic), R::both(R::both(slides, stretched), stiff))
         };
         *xi = choose::<R>(fits, carried, *xi);
         choose::<R>(slides, sliding, trial)

@@ -8,7 +8,7 @@ use crate::laws::contact::driver::DEEP;
 use crate::laws::contact::{ContactLaw, Geometry, Motion, Wrench};
 use crate::math::four::{Four, Lanes};
 use crate::math::real::Real;
-use crate::math::vec3::Vec3;
+use crate::math::vec3::{Vec3, scale};
 
 /// Contacts that are evaluated together: their pairs. (Loops, no closures: those are not inlined into code for AVX.)
 pub(super) struct Group<const N: usize> {
@@ -25,10 +25,11 @@ impl<const N: usize> Group<N> {
         for lane in 0..N {
             // SAFETY: passed on.
             unsafe {
-                let k = *hits.add(lane) as usize;
-                let w = *short.w.as_ptr().add(k);
+                // Volatile, for else compilers make one gathering of eight loads and take it apart again.
+                let k = hits.add(lane).read_volatile() as usize;
+                let w = short.w.as_ptr().add(k).read_volatile();
                 (g.k[lane], g.w[lane], g.j[lane]) = (k, w, grain(w));
-                g.i[lane] = *short.i.as_ptr().add(k) as usize;
+                g.i[lane] = short.i.as_ptr().add(k).read_volatile() as usize;
             }
         }
         g
@@ -146,7 +147,7 @@ impl<const N: usize> Group<N> {
         unsafe {
             let zero = V::all(0.0);
             let ([fx, fy, fz], [ax, ay, az], [bx, by, bz]) = (w.force, w.torque_i, w.torque_j);
-            let force = V::to_rows([fx, fy, fz, zero]);
+            let (force, back) = (V::to_rows([fx, fy, fz, zero]), V::to_rows([-fx, -fy, -fz, zero]));
             let (ti, tj) = (V::to_rows([ax, ay, az, zero]), V::to_rows([bx, by, bz, zero]));
             let (f, t): (*mut f64, *mut f64) = (cx.force.as_ptr().cast(), cx.torque.as_ptr().cast());
             for lane in 0..N {
@@ -154,10 +155,10 @@ impl<const N: usize> Group<N> {
                     break;
                 }
                 let (i, j) = (3 * self.i[lane], 3 * self.j[lane]);
-                (V::Row::load3(f.add(i)) + force[lane]).store3(f.add(i));
-                (V::Row::load3(f.add(j)) - force[lane]).store3(f.add(j));
-                (V::Row::load3(t.add(i)) + ti[lane]).store3(t.add(i));
-                (V::Row::load3(t.add(j)) + tj[lane]).store3(t.add(j));
+                force[lane].add_to3(f.add(i));
+                back[lane].add_to3(f.add(j));
+                ti[lane].add_to3(t.add(i));
+                tj[lane].add_to3(t.add(j));
             }
         }
     }
@@ -177,7 +178,7 @@ fn geometry<R: Real>(d: Vec3<R>, radii: [R; 2], mass: R) -> Geometry<R> {
     let sum = radii[0] + radii[1];
     let distance = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
     Geometry {
-        normal: [d[0] / distance, d[1] / distance, d[2] / distance],
+        normal: scale(sum.like(1.0) / distance, d),
         overlap: sum - distance,
         radii,
         curvature: radii[0] * radii[1] / sum,

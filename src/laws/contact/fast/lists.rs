@@ -1,9 +1,10 @@
 //! The two lists of each slab: pairs within the skin, and of those the pairs within the thin skin.
 
-use super::near::{self, HERE_BITS};
-use super::{Fast, NONE, NOWHERE};
+use super::near::{self, HERE_BITS, InOrder};
+use super::{Fast, NONE, NOWHERE, has_avx2};
 use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::Grains;
+use crate::math::four::{Four, Plain};
 use crate::neigh::slabs::{HERE, Run, Slabs};
 use crate::par;
 use std::sync::{Mutex, PoisonError};
@@ -31,11 +32,11 @@ pub struct Short {
 }
 
 impl Short {
+    /// Forgets the pairs. What stands in `history` stays there until it is written over.
     fn clear(&mut self) {
         self.i.clear();
         self.w.clear();
         self.t.clear();
-        self.history.clear();
     }
 }
 
@@ -61,11 +62,7 @@ impl<L: ContactLaw> Fast<L> {
         skin: f64,
         keep: &(impl Fn(usize, usize) -> bool + Sync),
     ) {
-        let record = |&i: &u32| {
-            let (x, r) = (grains.x[i as usize], grains.radius[i as usize]);
-            [x[0], x[1], x[2], r]
-        };
-        let at: Vec<[f64; 4]> = slabs.order.iter().map(record).collect();
+        let at = InOrder::new(grains, &slabs.order);
         let mut lists = std::mem::take(&mut self.lists);
         lists.resize(slabs.count(), Slab::default());
         let shared = par::Shared::new(&mut lists);
@@ -77,15 +74,38 @@ impl<L: ContactLaw> Fast<L> {
                 let (i, j) = (i as usize, j as usize);
                 this.laws.which(grains.kind[i], grains.kind[j]) != NONE && keep(i, j)
             };
-            this.search((slabs, k), &at, skin, &keep, &mut slab.long);
+            // SAFETY: AVX2 only where there is AVX2.
+            unsafe {
+                #[cfg(target_arch = "x86_64")]
+                if has_avx2() {
+                    return this.search_avx2((slabs, k), &at, skin, &keep, &mut slab.long);
+                }
+                this.search::<Plain>((slabs, k), &at, skin, &keep, &mut slab.long);
+            }
         });
         self.lists = lists;
     }
 
-    fn search(
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    unsafe fn search_avx2(
+        &self,
+        of: (&Slabs, usize),
+        at: &InOrder,
+        skin: f64,
+        keep: &impl Fn(u32, u32) -> bool,
+        out: &mut Pairs,
+    ) {
+        // SAFETY: passed on.
+        unsafe { self.search::<crate::math::four::Avx2>(of, at, skin, keep, out) }
+    }
+
+    /// The pairs of slab `k`.
+    #[inline(always)]
+    unsafe fn search<F: Four>(
         &self,
         (slabs, k): (&Slabs, usize),
-        at: &[[f64; 4]],
+        at: &InOrder,
         skin: f64,
         keep: &impl Fn(u32, u32) -> bool,
         out: &mut Pairs,
@@ -102,20 +122,16 @@ impl<L: ContactLaw> Fast<L> {
             slabs.runs(cell, &mut runs);
             for i in own.clone() {
                 let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
-                let a = at[i];
                 for run in std::iter::once(&rest).chain(&runs) {
-                    let shift = self.shifts[run.image as usize];
-                    let others = &at[run.from as usize..run.to as usize];
-                    for (b, j) in others.iter().zip(run.from..) {
-                        let d =
-                            [a[0] - (b[0] + shift[0]), a[1] - (b[1] + shift[1]), a[2] - (b[2] + shift[2])];
-                        let reach = a[3] + b[3] + skin;
-                        let (i, j) = (order[i], order[j as usize]);
-                        if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach && keep(i, j) {
+                    let hit = |j: usize| {
+                        let (i, j) = (order[i], order[j]);
+                        if keep(i, j) {
                             out.i.push(i);
                             out.w.push(j | run.image << HERE_BITS);
                         }
-                    }
+                    };
+                    // SAFETY: passed on.
+                    unsafe { at.near::<F>(i, run, &self.shifts[run.image as usize], skin, hit) };
                 }
             }
         }
@@ -128,17 +144,20 @@ impl<L: ContactLaw> Fast<L> {
         fit(&mut out.w, long);
     }
 
-    /// Short lists from the present positions; contacts keep what they remember.
-    pub(super) fn make_short(&mut self, grains: &Grains) {
+    /// Short lists of these slabs from the present positions; contacts keep what they remember.
+    pub(super) fn make_short(&mut self, grains: &Grains, which: &[usize]) {
+        if which.is_empty() {
+            return;
+        }
         let book = self.book.take();
         let mut lists = std::mem::take(&mut self.lists);
         let spare = Mutex::new(std::mem::take(&mut self.spare));
         let open = || spare.lock().unwrap_or_else(PoisonError::into_inner);
         let slabs = par::Shared::new(&mut lists);
         let this = &*self;
-        par::for_rows(slabs.len(), |k| {
+        par::for_rows(which.len(), |k| {
             // SAFETY: each part writes its own slab.
-            let slab = unsafe { &mut slabs.get(k..k + 1)[0] };
+            let slab = unsafe { &mut slabs.get(which[k]..which[k] + 1)[0] };
             let mut room = open().pop().unwrap_or_default();
             room.clear();
             // SAFETY: `near` asks the processor; list entries are grains.
@@ -164,11 +183,11 @@ impl<L: ContactLaw> Fast<L> {
             new.i.push(0);
             new.w.push(NOWHERE << HERE_BITS);
         }
-        fit(&mut new.history, new.i.len() * width);
-        new.history.resize(new.i.len() * width, 0.0);
+        let all = new.i.len() * width;
+        fit(&mut new.history, all);
+        new.history.resize(all, -1.0);
         let mut at = 0;
-        for (k, t) in new.t.iter().enumerate() {
-            let row = &mut new.history[k * width..][..width];
+        for ((k, t), row) in new.t.iter().enumerate().zip(new.history.chunks_exact_mut(width)) {
             if let Some(book) = book {
                 self.look_up(book, new.i[k], new.w[k], row);
                 continue;
@@ -176,10 +195,11 @@ impl<L: ContactLaw> Fast<L> {
             while old.t.get(at).is_some_and(|o| o < t) {
                 at += 1;
             }
-            if old.t.get(at) == Some(t) {
-                row.copy_from_slice(&old.history[at * width..][..width]);
-            } else {
-                row[width - 1] = -1.0;
+            match old.history.get(at * width..(at + 1) * width) {
+                Some(before) if before[width - 1] == self.now && old.t.get(at) == Some(t) => {
+                    row.copy_from_slice(before);
+                }
+                _ => row[width - 1] = -1.0,
             }
         }
         new.history[new.t.len() * width..].fill(-1.0);
@@ -193,6 +213,7 @@ fn fit<T>(list: &mut Vec<T>, len: usize) {
     if list.capacity() < len {
         list.reserve_exact(ample - list.len());
     } else if list.capacity() > 2 * ample {
+        list.truncate(len);
         list.shrink_to(ample);
     }
 }

@@ -175,6 +175,7 @@ impl<L: ContactLaw> Fast<L> {
     /// Gives everything back but what contacts remember, which [`Fast::contacts`] can still tell.
     pub fn keep_contacts(&mut self) {
         self.lists.iter_mut().for_each(|l| l.long = Default::default());
-        (self.spare, self.seen) = (vec![], vec![]);
+        self.spare = vec![];
+        self.strays.forget();
     }
 }

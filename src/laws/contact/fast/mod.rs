@@ -11,6 +11,7 @@ mod group;
 mod lists;
 mod memory;
 mod near;
+mod stray;
 mod sweep;
 
 use super::driver::Grains;
@@ -19,17 +20,17 @@ use crate::math::four::has_avx2;
 use crate::math::vec3::Vec3;
 use crate::neigh::slabs::{Slabs, shift_of};
 use crate::par;
-use crate::world::Seen;
 use crate::world::contacts::Contacts;
 use lists::{Short, Slab};
 use memory::Book;
+use stray::Strays;
 
 /// How many numbers at most a contact of the fast loop remembers.
 pub const MOST_MEMORY: usize = 7;
 /// How many grains at most: a place and an image share 32 bits.
 pub const MOST_GRAINS: usize = (1 << near::PLACE_BITS) - 1;
 /// The second skin in units of the first.
-const THIN: f64 = 0.2;
+const THIN: f64 = 0.12;
 /// The image of what fills lists up, and how far it is away: so far that squares are infinite.
 const NOWHERE: u32 = 31;
 const FAR: f64 = 1e200;
@@ -109,10 +110,8 @@ pub struct Fast<L> {
     laws: Laws<L>,
     /// Identities of the grains when the lists were made.
     tag: Vec<u32>,
-    /// Positions and radii when the short lists were made.
-    seen: Vec<[f64; 4]>,
-    /// How far grains were from there.
-    since: Seen,
+    /// Who has strayed from where short lists were made.
+    strays: Strays,
     /// Masses with a minus sign where frozen, if some are.
     signed: Vec<f64>,
     lists: Vec<Slab>,
@@ -143,8 +142,7 @@ impl<L: ContactLaw> Fast<L> {
         Self {
             laws,
             tag: vec![],
-            seen: vec![],
-            since: Seen::default(),
+            strays: Strays::default(),
             signed: vec![],
             lists: vec![],
             shifts: [[0.0; 4]; 32],
@@ -196,7 +194,8 @@ impl<L: ContactLaw> Fast<L> {
         let book = self.remember(grains.tag, known);
         // The book has what they knew: room for what is made now.
         self.lists.iter_mut().for_each(|l| l.short = Short::default());
-        (self.spare, self.seen) = (vec![], vec![]);
+        self.spare = vec![];
+        self.strays.forget();
         self.tag.clear();
         self.tag.extend_from_slice(grains.tag);
         for (image, shift) in self.shifts.iter_mut().take(27).enumerate() {
@@ -206,49 +205,9 @@ impl<L: ContactLaw> Fast<L> {
         self.shifts[NOWHERE as usize][0] = FAR;
         self.thin = THIN * frame.skin;
         self.make_long(grains, &slabs, reach, keep);
+        self.strays.divide(&slabs);
         self.book = Some(book);
         self.stale = true;
-    }
-
-    /// How far any grain has moved, and by how much its radius has grown, since the short lists were made.
-    fn moved(&self, grains: &Grains) -> f64 {
-        let farthest = |range: std::ops::Range<usize>| {
-            let (mut far, mut grown) = (0.0_f64, 0.0_f64);
-            let now = grains.x[range.clone()].iter().zip(&grains.radius[range.clone()]);
-            for ((x, r), seen) in now.zip(&self.seen[range]) {
-                let d = [x[0] - seen[0], x[1] - seen[1], x[2] - seen[2]];
-                far = far.max(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-                grown = grown.max((r - seen[3]).abs());
-            }
-            [far, grown]
-        };
-        let join = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
-        let [far, grown] = par::reduce(self.len(), farthest, join).unwrap_or([0.0; 2]);
-        far.sqrt() + grown
-    }
-
-    /// Whether grains may have come closer than the short lists reach.
-    fn strayed(&mut self, grains: &Grains) -> bool {
-        // Two grains came closer by twice what one moved at most.
-        let reach = 0.5 * self.thin;
-        if self.since.within(grains.travel, reach) {
-            debug_assert!(self.moved(grains) < reach, "somebody moves grains without a word");
-            return false;
-        }
-        let moved = self.moved(grains);
-        self.since = Seen::now(grains.travel, moved);
-        moved >= reach
-    }
-
-    /// Keeps the present positions and radii.
-    fn see(&mut self, grains: &Grains) {
-        self.since = Seen::now(grains.travel, 0.0);
-        self.seen.resize(self.tag.len(), [0.0; 4]);
-        par::each((&mut self.seen[..], grains.x, grains.radius), |_, (seen, x, r)| {
-            for ((seen, x), r) in seen.iter_mut().zip(x).zip(r) {
-                *seen = [x[0], x[1], x[2], *r];
-            }
-        });
     }
 
     /// Evaluates all contacts for the grains' present state and adds forces and torques to `f` and `torque`. With `store`
@@ -261,11 +220,8 @@ impl<L: ContactLaw> Fast<L> {
         store: bool,
         virial: bool,
     ) -> [f64; 6] {
-        if self.stale || self.strayed(grains) {
-            self.make_short(grains);
-            self.see(grains);
-            self.stale = false;
-        }
+        let strayed = self.strays.strayed(grains, self.thin, std::mem::take(&mut self.stale));
+        self.make_short(grains, &strayed);
         self.sign_masses(grains);
         self.sweep(grains, [f, torque], step, store, virial);
         if self.deep.is_none() && self.lists.iter().any(|l| l.deep) {

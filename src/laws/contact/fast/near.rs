@@ -5,6 +5,7 @@ use super::lists::Slab;
 use crate::laws::contact::driver::Grains;
 use crate::math::four::{Four, Plain};
 use crate::math::vec3::Vec3;
+use crate::neigh::slabs::Run;
 
 /// Bits of a list entry that hold a grain; the image stands above them.
 pub const PLACE_BITS: u32 = 27;
@@ -38,6 +39,7 @@ const fn lanes() -> [[u32; 4]; 16] {
 pub fn grain(w: u32) -> usize {
     (w & ((1 << PLACE_BITS) - 1)) as usize
 }
+
 /// Calls `hit` with the numbers of all pairs of the long list whose surfaces are nearer than `thin`, in order.
 ///
 /// # Safety
@@ -70,6 +72,60 @@ unsafe fn near_in<F: Four>(at: Places, slab: &Slab, thin: f64, mut hit: impl FnM
         while bits != 0 {
             hit(k as u32 + bits.trailing_zeros());
             bits &= bits - 1;
+        }
+    }
+}
+
+/// Grains in the order of places, coordinate by coordinate.
+pub(super) struct InOrder {
+    x: [Vec<f64>; 3],
+    radius: Vec<f64>,
+}
+
+impl InOrder {
+    /// Copies the grains in this order.
+    pub fn new(grains: &Grains, order: &[u32]) -> Self {
+        // What is read beyond the end is not used.
+        let pick = |of: &dyn Fn(usize) -> f64| {
+            let mut list = Vec::with_capacity(order.len() + 4);
+            list.extend(order.iter().map(|&i| of(i as usize)));
+            list.extend([0.0; 4]);
+            list
+        };
+        let x = [0, 1, 2].map(|d| pick(&|i| grains.x[i][d]));
+        Self { x, radius: pick(&|i| grains.radius[i]) }
+    }
+
+    /// Calls `hit` with those places of a run, shifted, whose surfaces are nearer than `skin` to that of place `i`, in order.
+    ///
+    /// # Safety
+    /// The processor must have what the form needs.
+    #[inline(always)]
+    pub unsafe fn near<F: Four>(
+        &self,
+        i: usize,
+        run: &Run,
+        shift: &[f64; 4],
+        skin: f64,
+        mut hit: impl FnMut(usize),
+    ) {
+        let ([x, y, z], r) = (&self.x, &self.radius);
+        let (mut from, end) = (run.from as usize, (run.to as usize).min(r.len() - 4));
+        while from < end {
+            // SAFETY: `from` is a place, and behind the last one there is room for four more.
+            let bits = unsafe {
+                let dx = F::splat(x[i]) - (F::load(x.as_ptr().add(from)) + shift[0]);
+                let dy = F::splat(y[i]) - (F::load(y.as_ptr().add(from)) + shift[1]);
+                let dz = F::splat(z[i]) - (F::load(z.as_ptr().add(from)) + shift[2]);
+                let reach = F::splat(r[i]) + F::load(r.as_ptr().add(from)) + skin;
+                F::bits((reach * reach).above(dx * dx + dy * dy + dz * dz))
+            };
+            let mut bits = bits & ((1 << (end - from).min(4)) - 1);
+            while bits != 0 {
+                hit(from + bits.trailing_zeros() as usize);
+                bits &= bits - 1;
+            }
+            from += 4;
         }
     }
 }

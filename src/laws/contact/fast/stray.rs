@@ -1,0 +1,268 @@
+//! Who has strayed from where short lists were made: slab by slab, and only relative to each other.
+//!
+//! Two grains come closer by what their ways differ. In a flow all grains of a slab and the next go nearly the same way, and
+//! lists outlast many steps in which everybody goes far.
+
+use super::has_avx2;
+use crate::laws::contact::driver::Grains;
+use crate::math::four::{Four, Plain};
+use crate::neigh::slabs::Slabs;
+use crate::par;
+use crate::world::Seen;
+use std::ops::Range;
+
+/// The part of the thin skin that grains of a slab may use up before it gets a new list at the next look.
+const WORN: f64 = 0.5;
+
+/// Positions and radii where a slab's list was made.
+type Place = [f64; 4];
+
+/// Where grains were when the short lists that they are in were made.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Strays {
+    /// Places of the order, slab by slab.
+    members: Vec<Range<usize>>,
+    /// The grain at each place; none where it is the place itself.
+    order: Vec<u32>,
+    /// Each grain when the list of its own slab was made.
+    own: Vec<Place>,
+    /// And when that of the slab before was made, into which it reaches.
+    before: Vec<Place>,
+    /// How far, at the last look, grains of a slab and the next had strayed from each other at most.
+    since: Seen,
+}
+
+/// Bounds of ways [length], and of what radii have grown.
+#[derive(Clone, Copy)]
+struct Ways {
+    least: [f64; 3],
+    most: [f64; 3],
+    grown: f64,
+}
+
+impl Ways {
+    const NONE: Self = Self { least: [f64::INFINITY; 3], most: [f64::NEG_INFINITY; 3], grown: 0.0 };
+
+    fn join(self, other: Self) -> Self {
+        let mut all = self;
+        for d in 0..3 {
+            all.least[d] = all.least[d].min(other.least[d]);
+            all.most[d] = all.most[d].max(other.most[d]);
+        }
+        all.grown = all.grown.max(other.grown);
+        all
+    }
+
+    /// By how much two surfaces can have come closer at most [length].
+    fn closer(self) -> f64 {
+        let square: f64 = (0..3).map(|d| (self.most[d] - self.least[d]).max(0.0).powi(2)).sum();
+        square.sqrt() + 2.0 * self.grown
+    }
+}
+
+impl Strays {
+    /// Forgets all grains.
+    pub fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Takes up new slabs; all their lists have to be made.
+    pub fn divide(&mut self, slabs: &Slabs) {
+        self.members = (0..slabs.count()).map(|k| slabs.members(k)).collect();
+        let same = slabs.order.iter().zip(0..).all(|(grain, place)| *grain == place);
+        self.order = if same { vec![] } else { slabs.order.clone() };
+    }
+
+    /// The grain at a place.
+    fn grain(&self, place: usize) -> usize {
+        if self.order.is_empty() { place } else { self.order[place] as usize }
+    }
+
+    /// The slab that slab `k` reaches into.
+    fn next(&self, k: usize) -> usize {
+        (k + 1) % self.members.len()
+    }
+
+    /// The slabs whose grains may have come closer than their short lists reach, or `all`, and some that are near that; their
+    /// lists are taken to be made from the present positions.
+    pub fn strayed(&mut self, grains: &Grains, thin: f64, all: bool) -> Vec<usize> {
+        // Whatever way two grains have gone since, they came closer by twice that at most.
+        if !all && self.since.within(grains.travel, 0.5 * thin) {
+            // The box around all ways may be longer than the two longest of them.
+            let limit = 3.0_f64.sqrt() * thin;
+            debug_assert!(
+                self.closer(grains).iter().all(|c| *c < limit),
+                "somebody moves grains without a word"
+            );
+            return vec![];
+        }
+        if all {
+            self.own.resize(grains.x.len(), [0.0; 4]);
+            self.before.resize(grains.x.len(), [0.0; 4]);
+        }
+        let closer = if all { vec![f64::INFINITY; self.members.len()] } else { self.closer(grains) };
+        let worn: Vec<usize> = (0..closer.len()).filter(|&k| !(closer[k] < WORN * thin)).collect();
+        for &k in &worn {
+            self.see(grains, k);
+        }
+        let left = closer.into_iter().filter(|c| *c < WORN * thin).fold(0.0, f64::max);
+        self.since = Seen::now(grains.travel, 0.5 * left);
+        worn
+    }
+
+    /// How much closer two grains of a list can have come, for each slab [length].
+    fn closer(&self, grains: &Grains) -> Vec<f64> {
+        let mut ways = vec![[Ways::NONE; 2]; self.members.len()];
+        let shared = par::Shared::new(&mut ways);
+        par::for_rows(self.members.len(), |k| {
+            let ways = [self.ways(grains, k, &self.own), self.ways(grains, k, &self.before)];
+            // SAFETY: each part writes its own slab.
+            unsafe { shared.get(k..k + 1)[0] = ways };
+        });
+        (0..self.members.len()).map(|k| ways[k][0].join(ways[self.next(k)][1]).closer()).collect()
+    }
+
+    /// The ways of a slab's grains from there.
+    fn ways(&self, grains: &Grains, k: usize, from: &[Place]) -> Ways {
+        // SAFETY: the processor was asked; members are grains, and all of them have been seen.
+        unsafe {
+            #[cfg(target_arch = "x86_64")]
+            if has_avx2() {
+                return self.ways_avx2(grains, k, from);
+            }
+            self.ways_in::<Plain>(grains, k, from)
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    unsafe fn ways_avx2(&self, grains: &Grains, k: usize, from: &[Place]) -> Ways {
+        // SAFETY: passed on.
+        unsafe { self.ways_in::<crate::math::four::Avx2>(grains, k, from) }
+    }
+
+    #[inline(always)]
+    unsafe fn ways_in<F: Four>(&self, grains: &Grains, k: usize, from: &[Place]) -> Ways {
+        // SAFETY: passed on; arrays of four numbers.
+        unsafe {
+            let (mut least, mut most) = (F::splat(f64::INFINITY), F::splat(f64::NEG_INFINITY));
+            let (mut grown, mut bad) = (0.0_f64, F::splat(0.0));
+            for place in self.members[k].clone() {
+                let i = self.grain(place);
+                let seen = from.get_unchecked(i);
+                let way = F::load3(grains.x.get_unchecked(i).as_ptr()) - F::load3(seen.as_ptr());
+                (least, most) = (way.least(least), way.most(most));
+                // A NaN is neither the least nor the most.
+                bad = bad + way * 0.0;
+                let change = grains.radius.get_unchecked(i) - seen[3];
+                grown = if change.abs() > grown { change.abs() } else { grown };
+            }
+            let mut all = [[0.0; 4]; 3];
+            least.store(all[0].as_mut_ptr());
+            most.store(all[1].as_mut_ptr());
+            bad.store(all[2].as_mut_ptr());
+            let [[a, b, c, _], [p, q, r, _], bad] = all;
+            let p = if bad.iter().all(|b| *b == 0.0) { p } else { f64::INFINITY };
+            Ways { least: [a, b, c], most: [p, q, r], grown }
+        }
+    }
+
+    /// Keeps the present places for the list of slab `k`.
+    fn see(&mut self, grains: &Grains, k: usize) {
+        let place = |i: usize| [grains.x[i][0], grains.x[i][1], grains.x[i][2], grains.radius[i]];
+        let next = self.next(k);
+        for at in self.members[k].clone() {
+            let i = self.grain(at);
+            self.own[i] = place(i);
+        }
+        for at in self.members[next].clone() {
+            let i = self.grain(at);
+            self.before[i] = place(i);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::Travel;
+
+    /// Three grains in each of three slabs, 1 apart along x.
+    fn scene() -> (Slabs, Vec<[f64; 3]>, Vec<u32>) {
+        let x: Vec<[f64; 3]> = (0..9).map(|i| [f64::from(i), 0.0, 0.0]).collect();
+        let tag: Vec<u32> = (0..9).collect();
+        let mut slabs = Slabs::default();
+        slabs.sort(&x, &tag, 1.4, &[0.0; 3], &[0.0; 3]);
+        assert_eq!(slabs.count(), 3);
+        (slabs, x, tag)
+    }
+
+    fn grains<'a>(
+        x: &'a [[f64; 3]],
+        tag: &'a [u32],
+        more: (&'a [[f64; 3]], &'a [f64]),
+        travel: Travel,
+    ) -> Grains<'a> {
+        let (still, radius) = more;
+        let none = (&[][..], &[][..]);
+        Grains {
+            x,
+            v: still,
+            omega: still,
+            radius,
+            mass: radius,
+            kind: &[1; 9],
+            tag,
+            period: [0.0; 3],
+            flow: None,
+            body: none.0,
+            frozen: none.1,
+            travel,
+        }
+    }
+
+    #[test]
+    fn lists_wear_by_what_ways_differ_and_slab_by_slab() {
+        let (slabs, mut x, tag) = scene();
+        let (still, radius) = ([[0.0; 3]; 9], [0.5; 9]);
+        let mut strays = Strays::default();
+        strays.divide(&slabs);
+        let mut look = |x: &[[f64; 3]], all| {
+            strays.strayed(&grains(x, &tag, (&still, &radius), Travel::default()), 0.1, all)
+        };
+        assert_eq!(look(&x, true), [0, 1, 2]);
+        // All go far together.
+        x.iter_mut().for_each(|x| x[1] += 3.0);
+        assert_eq!(look(&x, false), [0usize; 0]);
+        // The last grain leaves the others of its slab and of the slab before, which reaches into it.
+        x[8][0] += 0.06;
+        assert_eq!(look(&x, false), [1, 2]);
+        assert_eq!(look(&x, false), [0usize; 0], "the new lists know");
+        x[8][0] += 0.04;
+        assert_eq!(look(&x, false), [0usize; 0], "less than half of the skin");
+        x[0][2] = f64::NAN;
+        assert_eq!(look(&x, false), [0, 2], "the last slab reaches into the first");
+    }
+
+    #[test]
+    fn the_account_saves_looks_and_growth_counts_twice() {
+        let (slabs, mut x, tag) = scene();
+        let (still, mut radius) = ([[0.0; 3]; 9], [0.5; 9]);
+        let mut travel = Travel::default();
+        travel.begin(true);
+        let mut strays = Strays::default();
+        strays.divide(&slabs);
+        strays.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, true);
+        travel.went(0.04);
+        x[4][0] += 0.04;
+        assert!(strays.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, false).is_empty());
+        travel.went(0.04);
+        assert!(
+            strays.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, false).is_empty(),
+            "0.04 of 0.05"
+        );
+        travel.went(0.04);
+        radius[4] += 0.006;
+        assert_eq!(strays.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, false), [0, 1]);
+    }
+}
