@@ -232,27 +232,22 @@ impl Particles {
 
     /// Keeps the particle `old[k]` at each new index `k`.
     pub fn gather(&mut self, old: &[usize]) {
-        fn pick<T: Copy>(column: &mut Vec<T>, old: &[usize]) {
-            if !column.is_empty() {
-                *column = old.iter().map(|&k| column[k]).collect();
+        // Columns of one type take turns in one place more: memory that comes and goes costs more than the copies.
+        fn pick<T: Copy>(columns: &mut [&mut Vec<T>], old: &[usize]) {
+            let mut spare = Vec::new();
+            for column in columns.iter_mut().filter(|c| !c.is_empty()) {
+                spare.clear();
+                spare.extend(old.iter().map(|&k| column[k]));
+                std::mem::swap(*column, &mut spare);
             }
         }
-        pick(&mut self.tag, old);
-        pick(&mut self.kind, old);
-        pick(&mut self.mask, old);
         self.image.gather(old);
-        pick(&mut self.x, old);
-        pick(&mut self.v, old);
-        pick(&mut self.f, old);
-        pick(&mut self.mass, old);
-        pick(&mut self.radius, old);
-        pick(&mut self.omega, old);
-        pick(&mut self.torque, old);
-        pick(&mut self.volume, old);
-        pick(&mut self.x0, old);
-        pick(&mut self.density, old);
-        pick(&mut self.molecule, old);
-        pick(&mut self.rank, old);
+        pick(&mut [&mut self.kind], old);
+        pick(&mut [&mut self.tag, &mut self.mask, &mut self.molecule, &mut self.rank], old);
+        pick(&mut [&mut self.mass, &mut self.radius, &mut self.volume, &mut self.density], old);
+        let mut vectors =
+            [&mut self.x, &mut self.v, &mut self.f, &mut self.omega, &mut self.torque, &mut self.x0];
+        pick(&mut vectors, old);
     }
 
     /// The index of the particle with this tag.
