@@ -3,7 +3,7 @@
 use super::spatial;
 use crate::diag::{Code, Diagnostic, Result};
 use crate::par;
-use crate::plan::{Access, Op, Phase, Stage, Tick};
+use crate::plan::{Access, Act, Gist, Op, Phase, Stage, Stretch, Tick};
 use crate::world::bonds::LostBond;
 use crate::world::columns::HEATFLOW;
 use crate::world::index::Index;
@@ -137,11 +137,11 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor) -> Result<()> {
     p.image.wrap(domain, &mut p.x);
     domain.shrink(&p.x);
     let domain = &*domain;
-    let lost: Vec<usize> = (0..n).filter(|&i| !domain.keeps(&p.x[i])).collect();
-    if !lost.is_empty() && how.lost == Lost::Error {
-        return Err(too_far(w, &lost, t));
-    }
-    if !lost.is_empty() {
+    if !p.x.iter().all(|x| domain.keeps(x)) {
+        let lost: Vec<usize> = (0..n).filter(|&i| !domain.keeps(&p.x[i])).collect();
+        if how.lost == Lost::Error {
+            return Err(too_far(w, &lost, t));
+        }
         w.rebuild.lost += lost.len() as u64;
         lose(w);
         warn_of_bonds(w, t);
@@ -231,8 +231,10 @@ impl Op for ClearForces {
         Access::new("", "f torque columns tally")
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        w.particles.f.fill([0.0; 3]);
-        w.particles.torque.fill([0.0; 3]);
+        if !std::mem::take(&mut w.parts.cleared) {
+            w.particles.f.fill([0.0; 3]);
+            w.particles.torque.fill([0.0; 3]);
+        }
         if let Some(heat) = w.columns.custom(HEATFLOW) {
             let n = w.particles.len();
             w.columns.scalar(&heat, n).fill(0.0);
@@ -243,5 +245,16 @@ impl Op for ClearForces {
             w.tally.clear_atom_virial(t.atom_virial, w.particles.len());
         }
         Ok(())
+    }
+    fn on_stretches(&self, _: &World, _: &Tick, on: bool) -> Option<Act> {
+        let clear = |s: &mut Stretch<'_>| {
+            s.f.fill([0.0; 3]);
+            s.torque.fill([0.0; 3]);
+            Gist::default()
+        };
+        on.then(|| Box::new(clear) as Act)
+    }
+    fn took_turns(&mut self, w: &mut World, _: &Tick, _: Gist) {
+        w.parts.cleared = true;
     }
 }

@@ -1,5 +1,6 @@
 //! What a step is made of: ops, their stage, what they read and write, and when they act.
 
+use super::stretch::{Act, Gist};
 use crate::diag::Result;
 use crate::world::World;
 use std::sync::Arc;
@@ -328,6 +329,14 @@ pub trait Op: Send {
     fn run_on(&mut self, _w: &mut World, _t: &Tick) -> Result<bool> {
         Ok(false)
     }
+    /// What it does to stretches of particles at this tick, where it acts on each particle by itself: such ops take turns.
+    /// With `on` it acts at the end of this step and, in the same pass, as its fix (or it itself) does at the beginning of
+    /// the next one, which nobody looks in between of. `None` if it cannot.
+    fn on_stretches(&self, _w: &World, _t: &Tick, _on: bool) -> Option<Act> {
+        None
+    }
+    /// Takes what came of all stretches.
+    fn took_turns(&mut self, _w: &mut World, _t: &Tick, _gist: Gist) {}
     /// The row of the timing table.
     fn class(&self) -> OpClass {
         match self.stage() {

@@ -1,6 +1,6 @@
 //! Ops in the order of a step, with what was left out and why.
 
-use super::{Beat, Guard, Meter, Op, OpClass, Stage, Tick, When};
+use super::{Act, Beat, Guard, Meter, Op, OpClass, Stage, Tick, When, take_turns};
 use crate::diag::{Diagnostics, Result, Span};
 use crate::world::World;
 use std::time::{Duration, Instant};
@@ -80,6 +80,8 @@ pub struct StepPlan {
     pub guard: Option<Guard>,
     /// The end of the last step has begun the present one.
     begun: bool,
+    /// Whether nobody reads forces between the drift and the next ones; unknown at first.
+    unread: Option<bool>,
 }
 
 impl StepPlan {
@@ -88,6 +90,7 @@ impl StepPlan {
         let stage = placed.op.stage();
         let at = self.ops.iter().position(|p| p.stage > stage).unwrap_or(self.ops.len());
         self.ops.insert(at, placed);
+        self.unread = None;
     }
 
     /// Fills in which sums are asked for at this tick.
@@ -141,22 +144,74 @@ impl StepPlan {
         self.begun
     }
 
-    /// Makes one step up to its outputs. Where `more` steps are sure to follow and nobody looks in between, its last kick
-    /// is made with the first one of the next step, in one pass.
+    /// Makes one step up to its outputs. Ops that act on each particle by itself take turns after the forces. Where `more`
+    /// steps are sure to follow and nobody looks in between, the last kick is made with the first one of the next step.
     ///
     /// # Errors
     /// The first op's that fails.
     pub fn step(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
-        use Stage::{FinalIntegrate, InitialIntegrate, PostIntegrate};
+        use Stage::{InitialIntegrate, PostIntegrate};
         if !std::mem::take(&mut self.begun) {
             self.run(w, t, &[InitialIntegrate])?;
         }
         self.run(w, t, &[PostIntegrate, Stage::Exchange, Stage::Neighbor, Stage::PreForce])?;
-        self.run(w, t, &[Stage::Force, Stage::PostForce])?;
-        if let Some(last) = self.last_kick(t).filter(|_| more(w)) {
-            self.begun = self.ops[last].timed(w, t, &mut Instant::now(), |op, w| op.run_on(w, t))?;
+        self.run(w, t, &[Stage::Force])?;
+        self.end(w, t, more)
+    }
+
+    /// What is left of a step after its forces. Ops that act on each particle by itself take turns.
+    fn end(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
+        let ends =
+            |p: &Placed| matches!(p.stage, Stage::PostForce | Stage::FinalIntegrate) && p.when.fires(t);
+        let mut order: Vec<usize> = (0..self.ops.len()).filter(|&k| ends(&self.ops[k])).collect();
+        let last = self.last_kick(t);
+        // Behind the last kick, if the next step begins there.
+        let clears = last.and_then(|_| self.clears_early());
+        order.extend(clears);
+        let (mut at, mut clock) = (0, Instant::now());
+        while at < order.len() {
+            let last = last.filter(|_| self.begun || more(w));
+            let goes_on = |k: usize| last == Some(k) || (last.is_some() && clears == Some(k));
+            let offer = |k: &usize| self.ops[*k].op.on_stretches(w, t, goes_on(*k));
+            let acts: Vec<Act> = order[at..].iter().map_while(offer).collect();
+            if acts.is_empty() {
+                let (k, p) = (order[at], &mut self.ops[order[at]]);
+                self.begun |= last == Some(k) && p.timed(w, t, &mut clock, |op, w| op.run_on(w, t))?;
+                if !self.begun && clears != Some(k) {
+                    p.timed(w, t, &mut clock, |op, w| op.run(w, t))?;
+                }
+                if !self.begun && last == Some(k) {
+                    return Ok(());
+                }
+                at += 1;
+                continue;
+            }
+            let gists = take_turns(w, &acts);
+            let elapsed = std::mem::replace(&mut clock, Instant::now()).elapsed() / gists.len() as u32;
+            for gist in gists {
+                let (k, p) = (order[at], &mut self.ops[order[at]]);
+                p.op.took_turns(w, t, gist);
+                p.meter.time += elapsed;
+                p.meter.calls += 1;
+                p.meter.bytes += p.op.bytes(w);
+                self.begun |= last == Some(k);
+                at += 1;
+            }
         }
-        if self.begun { Ok(()) } else { self.run(w, t, &[FinalIntegrate]) }
+        Ok(())
+    }
+
+    /// The op that clears forces, if nobody reads them between the beginning of a step and there.
+    fn clears_early(&mut self) -> Option<usize> {
+        let first = self.ops.iter().position(|p| p.stage >= Stage::PreForce)?;
+        let clears = self.ops[first].stage == Stage::PreForce && self.ops[first].when == When::Always;
+        let reads = |p: &Placed| {
+            let access = p.op.access();
+            p.stage > Stage::InitialIntegrate && (access.reads("f") || access.reads("torque"))
+        };
+        let before = &self.ops[..first];
+        let unread = *self.unread.get_or_insert_with(|| !before.iter().any(reads));
+        (clears && unread).then_some(first)
     }
 
     /// The op that ends the motion of this step if its fix alone moves particles and nobody looks before the next step.

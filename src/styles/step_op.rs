@@ -2,7 +2,7 @@
 
 use crate::diag::Result;
 use crate::par;
-use crate::plan::{Access, Beat, Op, Stage, Tick, When};
+use crate::plan::{Access, Act, Beat, Gist, Op, Stage, Tick, When, take_turns};
 use crate::world::{GroupId, Slot, SlotId, World};
 
 /// An op whose whole work is one closure at one stage.
@@ -15,11 +15,18 @@ pub struct StepOp<F> {
     beat: Beat,
     reports: bool,
     on: Option<On>,
+    turn: Option<Turn>,
     act: F,
 }
 
 /// What ends a step and begins the next one.
 type On = Box<dyn FnMut(&mut World, &Tick) + Send>;
+
+/// What an op offers to do to stretches of particles, and what it makes of what comes of them.
+struct Turn {
+    offer: Box<dyn Fn(&World, &Tick, bool) -> Option<Act> + Send>,
+    took: Box<dyn FnMut(&mut World, &Tick, Gist) + Send>,
+}
 
 impl<F> StepOp<F>
 where
@@ -36,6 +43,7 @@ where
             beat: Beat::Long,
             reports: false,
             on: None,
+            turn: None,
             act,
         }
     }
@@ -75,6 +83,18 @@ where
         self
     }
 
+    /// Acts on each particle by itself: where `offer(world, tick, on)` gives something to do to stretches of particles, that
+    /// is done instead of what else it does, and `took` gets what came of it. For `on` see [`Op::on_stretches`].
+    #[must_use]
+    pub fn taking_turns(
+        mut self,
+        offer: impl Fn(&World, &Tick, bool) -> Option<Act> + Send + 'static,
+        took: impl FnMut(&mut World, &Tick, Gist) + Send + 'static,
+    ) -> Self {
+        self.turn = Some(Turn { offer: Box::new(offer), took: Box::new(took) });
+        self
+    }
+
     /// The op as the plan takes it.
     pub fn boxed(self) -> Box<dyn Op> {
         Box::new(self)
@@ -107,10 +127,25 @@ where
         self.reports
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        (self.act)(w, t)
+        match self.on_stretches(w, t, false) {
+            Some(act) => {
+                let gists = take_turns(w, &[act]);
+                gists.into_iter().for_each(|gist| self.took_turns(w, t, gist));
+                Ok(())
+            }
+            None => (self.act)(w, t),
+        }
     }
     fn run_on(&mut self, w: &mut World, t: &Tick) -> Result<bool> {
         Ok(self.on.as_mut().map(|on| on(w, t)).is_some())
+    }
+    fn on_stretches(&self, w: &World, t: &Tick, on: bool) -> Option<Act> {
+        self.turn.as_ref().and_then(|turn| (turn.offer)(w, t, on))
+    }
+    fn took_turns(&mut self, w: &mut World, t: &Tick, gist: Gist) {
+        if let Some(turn) = &mut self.turn {
+            (turn.took)(w, t, gist);
+        }
     }
 }
 

@@ -116,6 +116,8 @@ pub struct World {
 pub struct Parts {
     /// Half-open: set when the scene has changed so that forces must be computed anew at the next run.
     pub changed: bool,
+    /// Forces and torques of the coming step have been set to zero already.
+    pub cleared: bool,
     /// Text facts that styles leave for the log's end, by name.
     pub facts: BTreeMap<String, Arc<str>>,
     /// The first grains seen to overlap by more than a tenth of a radius during a run.

@@ -3,8 +3,8 @@
 use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
-use crate::plan::{Access, Op, Stage};
-use crate::styles::matter::{Chosen, change_forces, publish};
+use crate::plan::{Access, Act, Gist, Op, Stage, Stretch, Tick};
+use crate::styles::matter::publish;
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 use crate::world::{GroupId, World};
@@ -65,20 +65,28 @@ impl Fix for Declared {
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let span = cx.span();
-        let chosen = Chosen::new(cx.world(), self.group, None, span)?;
         let (slot, bit) = (cx.slot(&format!("f_{}", self.id)), self.group.bit());
         let access = Access::new("f torque mask", "f torque");
-        let op = StepOp::new(format!("fix {} freeze", self.id), Stage::PostForce, access, move |w, t| {
-            if t.unchanged {
-                return Ok(());
-            }
-            let before = change_forces(w, &chosen, |_, _, f| std::mem::take(f));
-            let p = &mut w.particles;
-            p.torque.iter_mut().zip(&p.mask).filter(|(_, m)| **m & bit != 0).for_each(|(t, _)| *t = [0.0; 3]);
-            publish(w, slot, t, 0.0, &before);
-            Ok(())
-        });
+        let hold = move |_: &World, t: &Tick, _: bool| -> Option<Act> {
+            let act = move |s: &mut Stretch<'_>| {
+                let mut gist = Gist::default();
+                // Frozen grains lie together: most eights have none.
+                for (k, eight) in s.mask.chunks(8).enumerate() {
+                    if eight.iter().fold(0, |all, m| all | m) & bit == 0 {
+                        continue;
+                    }
+                    for i in (8 * k..).zip(eight).filter(|(_, m)| **m & bit != 0).map(|(i, _)| i) {
+                        (0..3).for_each(|d| gist.sums[d] += s.f[i][d]);
+                        (s.f[i], s.torque[i]) = ([0.0; 3], [0.0; 3]);
+                    }
+                }
+                gist
+            };
+            (!t.unchanged).then(|| Box::new(act) as Act)
+        };
+        let told = move |w: &mut World, t: &Tick, gist: Gist| publish(w, slot, t, 0.0, &gist.sums);
+        let name = format!("fix {} freeze", self.id);
+        let op = StepOp::new(name, Stage::PostForce, access, |_, _| Ok(())).taking_turns(hold, told);
         Ok(vec![op.boxed()])
     }
 

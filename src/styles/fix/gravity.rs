@@ -3,9 +3,7 @@
 use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Param};
-use crate::math::vec3::Vec3;
-use crate::par;
-use crate::plan::{Access, Op, Stage, When};
+use crate::plan::{Access, Act, Gist, Op, Stage, Tick, When};
 use crate::styles::command::common::{choice_or_refuse, variable_param};
 use crate::styles::matter::{check_masses, publish};
 use crate::styles::step_op::StepOp;
@@ -127,30 +125,29 @@ impl Fix for Declared {
         };
         let (slot, disabled) = (cx.slot(&format!("f_{}", self.id)), self.disabled);
         let access = Access::new("f x mass mask", "f");
-        let op = StepOp::new(format!("fix {} gravity", self.id), Stage::PostForce, access, move |w, t| {
+        let pull = move |w: &World, t: &Tick, _: bool| -> Option<Act> {
             if t.unchanged || disabled {
-                return Ok(());
+                return None;
             }
             let (g, unit) = (magnitude.get(w), pointer.unit(w, w.settings.two_dimensional));
             let [ax, ay, az] = unit.map(|e| g * e);
-            let p = &mut w.particles;
-            let columns = (&mut p.f[..], &p.x[..], &p.mass[..], &p.mask[..]);
-            let pull = |_, (f, x, mass, mask): (&mut [Vec3], &[Vec3], &[f64], &[u32])| {
-                let mut energy = 0.0;
-                for (((f, x), m), _) in
-                    f.iter_mut().zip(x).zip(mass).zip(mask).filter(|(_, m)| **m & bit != 0)
-                {
+            Some(Box::new(move |s| {
+                // Four sums, so that no addition waits for the one before.
+                let mut energy = [0.0; 4];
+                let mass = &s.all.mass[s.start..];
+                let particles = s.f.iter_mut().zip(&*s.x).zip(mass).zip(s.mask);
+                for (k, (((f, x), m), _)) in particles.enumerate().filter(|(_, (_, m))| **m & bit != 0) {
                     f[0] += m * ax;
                     f[1] += m * ay;
                     f[2] += m * az;
-                    energy -= m * (ax * x[0] + ay * x[1] + az * x[2]);
+                    energy[k % 4] -= m * (ax * x[0] + ay * x[1] + az * x[2]);
                 }
-                energy
-            };
-            let energy = par::reduce_each(columns, pull, |a, b| a + b).unwrap_or(0.0);
-            publish(w, slot, t, energy, &[]);
-            Ok(())
-        });
+                Gist { sums: [energy.iter().sum(), 0.0, 0.0], most: 0.0 }
+            }))
+        };
+        let told = move |w: &mut World, t: &Tick, gist: Gist| publish(w, slot, t, gist.sums[0], &[]);
+        let name = format!("fix {} gravity", self.id);
+        let op = StepOp::new(name, Stage::PostForce, access, |_, _| Ok(())).taking_turns(pull, told);
         Ok(vec![op.boxed()])
     }
 

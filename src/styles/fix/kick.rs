@@ -1,16 +1,18 @@
 //! Half kicks and drifts of velocity Verlet in one pass over memory, four particles at a time.
 
 use super::nve::half_step;
+use crate::diag::Result;
 use crate::math::four::has_avx2;
 use crate::math::vec3::Vec3;
 use crate::par;
-use crate::plan::Tick;
+use crate::plan::{Act, Gist, Phase, Tick};
 use crate::styles::matter::Masses;
+use crate::styles::step_op::StepOp;
 use crate::world::{GroupId, World};
 
 /// What a pass makes of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Part {
+enum Part {
     /// First half kick and drift: v += Δt/2 · f/m, x += Δt · v; spins as velocities.
     First,
     /// Second half kick.
@@ -19,23 +21,43 @@ pub enum Part {
     Both,
 }
 
-/// Makes a part of a whole step for a group; with `inertia`, I / (m R²), spins too: ω += Δt/2 · torque/I. How far anybody
-/// has gone at most is told to the account of ways.
-pub fn pass(w: &mut World, group: GroupId, inertia: Option<f64>, t: &Tick, part: Part) {
-    let half = half_step(w, t.dt);
-    let spin = inertia.map_or(0.0, |inertia| half / inertia);
-    let k = Kick { half, spin, dt: t.dt, bit: group.bit() };
-    let p = &mut w.particles;
-    let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
-    let turned = inertia.map(|_| (&mut p.omega[..], &p.torque[..], &p.radius[..]));
-    let columns = (&mut p.x[..], &mut p.v[..], &p.f[..], &p.mask[..], turned);
-    let all = |start: usize, (x, v, f, mask, turned): Columns<'_>| {
-        k.stretch(Chunk { x, v, f, mask, turned: turned.unwrap_or_default() }, part, &masses, start)
-    };
-    let fastest = par::reduce_each(columns, all, f64::max).unwrap_or(0.0);
-    if part != Part::Second {
-        w.rebuild.travel.went(t.dt.abs() * fastest.sqrt());
+/// Lets the op that begins a step make whole ones in stretches: half kicks and drifts of a group; with `inertia`,
+/// I / (m R²), spins too: ω += Δt/2 · torque/I. How far anybody has gone at most is told to the account of ways.
+pub fn first<F>(op: StepOp<F>, group: GroupId, inertia: Option<f64>) -> StepOp<F>
+where
+    F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
+{
+    op.taking_turns(move |w, t, _| whole(w, group, inertia, t, Part::First), went)
+}
+
+/// The same for the op that ends a step, and can begin the next one.
+pub fn second<F>(op: StepOp<F>, group: GroupId, inertia: Option<f64>) -> StepOp<F>
+where
+    F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
+{
+    let part = |on: bool| if on { Part::Both } else { Part::Second };
+    op.taking_turns(move |w, t, on| whole(w, group, inertia, t, part(on)), went)
+}
+
+/// A part of a whole step, if this is one.
+fn whole(w: &World, group: GroupId, inertia: Option<f64>, t: &Tick, part: Part) -> Option<Act> {
+    if t.phase != Phase::Whole {
+        return None;
     }
+    let half = half_step(w, t.dt);
+    let k = Kick { half, spin: inertia.map_or(0.0, |i| half / i), dt: t.dt, bit: group.bit() };
+    Some(Box::new(move |s| {
+        let masses = Masses::new(s.all.style, s.all.mass, s.all.kind, s.all.type_mass);
+        let radius = || &s.all.radius[s.start..][..s.x.len()];
+        let turned = inertia.map(|_| (&mut *s.omega, &*s.torque, radius())).unwrap_or_default();
+        let most = k.stretch(Chunk { x: s.x, v: s.v, f: s.f, mask: s.mask, turned }, part, &masses, s.start);
+        Gist { most, ..Gist::default() }
+    }))
+}
+
+/// Tells the account of ways what came of a part.
+fn went(w: &mut World, t: &Tick, gist: Gist) {
+    w.rebuild.travel.went(t.dt.abs() * gist.most.sqrt());
 }
 
 /// Makes half a step, with a drift of `dt` if there is one, for those of a group in a step of two lengths; `acts` tells from
@@ -72,8 +94,6 @@ pub fn pass_some(
 
 /// Spins, torques, radii.
 type Turned<'a> = (&'a mut [Vec3], &'a [Vec3], &'a [f64]);
-/// Positions, velocities, forces, group bits, and what turns.
-type Columns<'a> = (&'a mut [Vec3], &'a mut [Vec3], &'a [Vec3], &'a [u32], Option<Turned<'a>>);
 
 /// A stretch of particles.
 struct Chunk<'a> {
@@ -148,7 +168,8 @@ impl Kick {
         self.four::<KICKS, DRIFT, SPIN>(c, masses)
     }
 
-    /// Four particles at a time, and those one by one that are not all of the group.
+    /// Four particles at a time, and those one by one that are not all of the group. (Loops, no closures: those are not
+    /// inlined into code for AVX.)
     #[inline(always)]
     fn four<const KICKS: usize, const DRIFT: bool, const SPIN: bool>(
         &self,
@@ -175,15 +196,24 @@ impl Kick {
                 }
                 continue;
             }
-            kicked::<KICKS>(v, f, &m.map(|m| self.half / m));
+            let mut by = [0.0; 4];
+            for l in 0..4 {
+                by[l] = self.half / m[l];
+            }
+            kicked::<KICKS>(v, f, &by);
             if SPIN {
-                let by_i = std::array::from_fn(|l| self.spin / (radius4[k][l] * radius4[k][l] * m[l]));
-                kicked::<KICKS>(&mut omega4[k], &torque4[k], &by_i);
+                for l in 0..4 {
+                    by[l] = self.spin / (radius4[k][l] * radius4[k][l] * m[l]);
+                }
+                kicked::<KICKS>(&mut omega4[k], &torque4[k], &by);
             }
             if DRIFT {
                 let (x, v) = (x.as_flattened_mut(), v.as_flattened());
-                (0..12).for_each(|d| x[d] += self.dt * v[d]);
-                let square: [f64; 12] = std::array::from_fn(|d| v[d] * v[d]);
+                let mut square = [0.0; 12];
+                for d in 0..12 {
+                    x[d] += self.dt * v[d];
+                    square[d] = v[d] * v[d];
+                }
                 for l in 0..4 {
                     fastest[l] = faster(fastest[l], square[3 * l] + square[3 * l + 1] + square[3 * l + 2]);
                 }
@@ -244,7 +274,9 @@ impl Kick {
 fn kick<const KICKS: usize>(v: &mut Vec3, f: &Vec3, by: f64) {
     for d in 0..3 {
         let dv = by * f[d];
-        (0..KICKS).for_each(|_| v[d] += dv);
+        for _ in 0..KICKS {
+            v[d] += dv;
+        }
     }
 }
 
@@ -254,7 +286,9 @@ fn kicked<const KICKS: usize>(v: &mut [Vec3; 4], f: &[Vec3; 4], by: &[f64; 4]) {
     let (v, f) = (v.as_flattened_mut(), f.as_flattened());
     for d in 0..12 {
         let dv = by[d / 3] * f[d];
-        (0..KICKS).for_each(|_| v[d] += dv);
+        for _ in 0..KICKS {
+            v[d] += dv;
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! fix nve: velocity Verlet at constant energy.
 
-use super::kick::{Part, pass, pass_some};
+use super::kick::{self, pass_some};
 use super::{Fix, FixStyle};
 use crate::diag::Result;
 use crate::lang::Args;
@@ -62,9 +62,8 @@ impl Fix for Declared {
                 kick(w, group, t);
                 Ok(())
             });
-        let first = first.in_short_steps().reporting();
-        let second =
-            second.in_short_steps().reporting().and_on(move |w, t| pass(w, group, None, t, Part::Both));
+        let first = kick::first(first.in_short_steps().reporting(), group, None);
+        let second = kick::second(second.in_short_steps().reporting(), group, None);
         Ok(vec![first.boxed(), second.boxed()])
     }
 
@@ -82,20 +81,14 @@ pub fn half_step(w: &World, dt: f64) -> f64 {
     0.5 * dt * w.settings.units.constants().ftm2v
 }
 
-/// First half of a step: v += Δt/2 · f/m, x += Δt · v. In steps of two lengths solids drift in the short ones.
+/// First half of a step of two lengths: v += Δt/2 · f/m, x += Δt · v; solids drift in the short ones.
 pub fn kick_and_drift(w: &mut World, group: GroupId, t: &Tick) {
-    if t.phase != Phase::Whole {
-        return some(w, group, &t.phase, half_step(w, t.dt), Some(t.dt));
-    }
-    pass(w, group, None, t, Part::First);
+    some(w, group, &t.phase, half_step(w, t.dt), Some(t.dt));
 }
 
-/// Second half of a step: v += Δt/2 · f/m.
+/// Second half of a step of two lengths: v += Δt/2 · f/m.
 pub fn kick(w: &mut World, group: GroupId, t: &Tick) {
-    if t.phase != Phase::Whole {
-        return some(w, group, &t.phase, half_step(w, t.dt), None);
-    }
-    pass(w, group, None, t, Part::Second);
+    some(w, group, &t.phase, half_step(w, t.dt), None);
 }
 
 /// Half a step of two lengths: in the long one all are kicked and all but solids drift, in the short ones solids do both.

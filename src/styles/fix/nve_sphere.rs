@@ -1,6 +1,6 @@
 //! fix nve/sphere: velocity Verlet of spheres, translation and rotation.
 
-use super::kick::{Part, pass};
+use super::kick as kicks;
 use super::nve::{kick, kick_and_drift};
 use super::{Fix, FixStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
@@ -88,26 +88,17 @@ impl Fix for Declared {
         let name = format!("fix {} nve/sphere", self.id);
         let access = || Access::new("f torque mass radius mask", "x v omega");
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
-            if t.phase == Phase::Whole {
-                pass(w, group, Some(inertia), t, Part::First);
-                return Ok(());
-            }
             kick_and_drift(w, group, t);
             turn(w, group, inertia, t);
             Ok(())
         });
         let second = StepOp::new(name, Stage::FinalIntegrate, access(), move |w, t| {
-            if t.phase == Phase::Whole {
-                pass(w, group, Some(inertia), t, Part::Second);
-                return Ok(());
-            }
             kick(w, group, t);
             turn(w, group, inertia, t);
             Ok(())
         });
-        let first = first.in_short_steps().reporting();
-        let second = second.in_short_steps().reporting();
-        let second = second.and_on(move |w, t| pass(w, group, Some(inertia), t, Part::Both));
+        let first = kicks::first(first.in_short_steps().reporting(), group, Some(inertia));
+        let second = kicks::second(second.in_short_steps().reporting(), group, Some(inertia));
         Ok(vec![first.boxed(), second.boxed()])
     }
 
