@@ -24,9 +24,12 @@ type On = Box<dyn FnMut(&mut World, &Tick) + Send>;
 
 /// What an op offers to do to stretches of particles, and what it makes of what comes of them.
 struct Turn {
-    offer: Box<dyn Fn(&World, &Tick, bool) -> Option<Act> + Send>,
-    took: Box<dyn FnMut(&mut World, &Tick, Gist) + Send>,
+    offer: Box<Offer>,
+    took: Box<Took>,
 }
+
+type Offer = dyn Fn(&World, &Tick, bool) -> Option<Act> + Send;
+type Took = dyn FnMut(&mut World, &Tick, Gist) + Send;
 
 impl<F> StepOp<F>
 where

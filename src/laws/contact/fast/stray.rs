@@ -101,7 +101,7 @@ impl Strays {
             self.before.resize(grains.x.len(), [0.0; 4]);
         }
         let closer = if all { vec![f64::INFINITY; self.members.len()] } else { self.closer(grains) };
-        let worn: Vec<usize> = (0..closer.len()).filter(|&k| !(closer[k] < WORN * thin)).collect();
+        let worn: Vec<usize> = (0..closer.len()).filter(|&k| closer[k] >= WORN * thin).collect();
         for &k in &worn {
             self.see(grains, k);
         }
