@@ -4,6 +4,7 @@ use super::answers::{self, Declared};
 use super::keywords;
 use super::measure;
 use super::node::Graph;
+use super::offered::{from_slot, of_particles, whole_vector};
 use super::regions;
 use super::seal::Sealer;
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
@@ -75,52 +76,6 @@ fn clock(w: &World) -> Clock {
     Clock { step: c.step, begin: c.start, end: c.stop, dt: c.dt, running: c.running }
 }
 
-/// What a slot offers to a reference in a formula.
-fn from_slot(w: &World, slot: SlotId, r: &ValueRef) -> Result<Value> {
-    let s = w.slots.get(slot);
-    let missing = || fail(Code::WRONG_KIND, r.span, format!("`{r}` has no such value"));
-    let per_particle = matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom);
-    if per_particle {
-        let (tag, c) = match r.index.as_slice() {
-            [tag] => (*tag, 0),
-            [tag, c] => (*tag, c - 1),
-            _ => return missing(),
-        };
-        let Some(i) = u32::try_from(tag).ok().and_then(|t| w.particles.index_of(t)) else {
-            return fail(Code::UNKNOWN_NAME, r.span, format!("there is no particle {tag}"));
-        };
-        return if c < s.cols { Ok(Value::Number(s.atom_value(i, c))) } else { missing() };
-    }
-    let atom = |c: usize| Value::Atom((0..w.n()).map(|i| s.atom_value(i, c)).collect());
-    let number = |a: Option<f64>| a.map_or_else(missing, |a| Ok(Value::Number(a)));
-    let o = s.offers;
-    match r.index.as_slice() {
-        [] if o.scalar => Ok(Value::Number(s.scalar)),
-        [] if o.vector => Ok(Value::Vector(s.vector.clone())),
-        [] if o.atom && s.cols == 1 => Ok(atom(0)),
-        [k] if o.vector => number(s.vector.get(k - 1).copied()),
-        [k] if o.array && *k <= s.array_cols => Ok(Value::Vector(s.array_column(k - 1))),
-        [k] if o.atom && s.cols > 1 && *k <= s.cols => Ok(atom(k - 1)),
-        [i, j] if o.array => number(s.cell(i - 1, j - 1)),
-        _ => missing(),
-    }
-}
-
-/// The whole vector of a slot.
-fn whole_vector(w: &World, slot: SlotId, r: &ValueRef) -> Result<Value> {
-    let s = w.slots.get(slot);
-    match r.index.as_slice() {
-        [] if s.offers.vector => Ok(Value::Vector(s.vector.clone())),
-        [k] if s.offers.array && *k <= s.array_cols => Ok(Value::Vector(s.array_column(k - 1))),
-        [] if s.offers.atom => Ok(Value::Atom(vec![])),
-        _ => fail(
-            Code::WRONG_KIND,
-            r.span,
-            format!("`{r}` is no global vector and no column of a global array"),
-        ),
-    }
-}
-
 /// Inside a step: values come from slots that the plan has filled before.
 pub struct RunEnv<'a> {
     /// The world, read only.
@@ -140,6 +95,12 @@ impl Env for RunEnv<'_> {
         match self.from.get(&r.to_string()) {
             Some(slot) => from_slot(self.w, *slot, r),
             None => fail(Code::UNKNOWN_NAME, r.span, format!("`{r}` is not available in this step")),
+        }
+    }
+    fn of_particles(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value> {
+        match self.from.get(&r.to_string()) {
+            Some(slot) => of_particles(self.w, *slot, r),
+            None => self.reference(r, vars),
         }
     }
     fn particle(&mut self, attribute: &str, tag: usize, span: Span) -> Result<Value> {
@@ -272,6 +233,15 @@ impl Env for DeckEnv<'_> {
         regions::place_all(self.w, self.graph, vars, self.checking);
         let slot = self.now(r.span, vars, |s| s.reference(r))?;
         from_slot(self.w, slot, r)
+    }
+
+    fn of_particles(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value> {
+        if self.checking {
+            return Ok(Value::Unknown);
+        }
+        regions::place_all(self.w, self.graph, vars, self.checking);
+        let slot = self.now(r.span, vars, |s| s.reference(r))?;
+        of_particles(self.w, slot, r)
     }
 
     fn particle(&mut self, attribute: &str, tag: usize, span: Span) -> Result<Value> {

@@ -12,6 +12,7 @@ pub mod keywords;
 pub mod ledger;
 pub mod measure;
 pub mod node;
+mod offered;
 pub mod ops;
 pub mod pairs;
 pub mod regions;

@@ -63,6 +63,10 @@ pub trait Env {
     fn keyword(&mut self, name: &str, vars: &Vars) -> Option<Result<Value>>;
     /// The value of a compute or fix.
     fn reference(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value>;
+    /// The same in a formula of one value per particle: where there are both, the particles' own values.
+    fn of_particles(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value> {
+        self.reference(r, vars)
+    }
     /// The whole global vector of a compute or fix; with an index, that column of its global array.
     fn vector(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value> {
         self.reference(r, vars)

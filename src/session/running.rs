@@ -223,6 +223,7 @@ impl Session {
         (c.first, c.last, c.halt) = (c.step, c.step + steps, Halt::No);
         c.begin_moving();
         c.began = None;
+        c.onward = self.ran && !pre;
         self.settle_resume(span)?;
         let unchanged = self.ran && !self.world.parts.changed && (!self.world.settings.lammps() || !pre);
         let mut plan = self.seal(span)?;

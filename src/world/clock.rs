@@ -27,6 +27,9 @@ pub struct Clock {
     /// The steps since `time_step` were iterations of a minimization: the next run does not count their time.
     #[serde(default)]
     pub minimizing: bool,
+    /// The run goes on without a setup of its own (`pre no`).
+    #[serde(skip)]
+    pub onward: bool,
     /// Whether a fix has ended the run.
     pub halt: Halt,
 }
@@ -57,6 +60,7 @@ impl Default for Clock {
             began: None,
             running: false,
             minimizing: false,
+            onward: false,
             halt: Halt::No,
         }
     }

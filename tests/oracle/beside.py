@@ -6,6 +6,7 @@ import tempfile
 
 # Relative to the largest magnitude of a column, positions and velocities to what is usual in the scene: round-off grows in contacts.
 LIMIT = 1e-6
+REFUSED = "both refuse it"
 ROW = re.compile(r"^ +\d+ +\d+( +[-+0-9.enaif]+)+ *$")
 
 
@@ -73,24 +74,62 @@ def run(folder, *words):
 
 
 def compare(deck, name, lammps, perigrain):
-    """None, or what differs; then the deck stays."""
+    """None, or what differs; then the deck stays. REFUSED where both programs refuse the deck."""
     with open(name, "w") as file:
         file.write("\n".join(deck) + "\n")
     path = os.path.abspath(name)
     with tempfile.TemporaryDirectory() as top:
         theirs, their_files = run(f"{top}/lammps", lammps, "-in", path, "-log", "none")
         ours, our_files = run(f"{top}/perigrain", perigrain, "-compat", "lammps", "-threads", "1", "-log", "none", path)
-    found = differences(theirs, ours) or file_differences(their_files, our_files)
-    if not found:
+        found = differences(theirs, ours) or file_differences(their_files, our_files) or crosswise(top, lammps, perigrain)
+    if found in (None, REFUSED):
         os.remove(name)
     return found
+
+
+READ = """units lj
+atom_style sphere
+atom_modify map array sort 0 0
+{sides}
+newton off
+comm_modify vel yes
+read_data ../{of}/kept.data
+pair_style gran/hooke/history 500 NULL 5 NULL 0.5 1
+pair_coeff * *
+neighbor 2.0 nsq
+fix 1 all nve/sphere
+compute p all property/atom id type radius mass x y z vx vy vz omegax omegay omegaz ix iy iz
+compute s all reduce sum c_p[*]
+compute q all reduce sumsq c_p[*]
+thermo_style custom step atoms ke press c_s[*] c_q[*] xlo xhi ylo zhi
+thermo_modify norm no lost ignore format float %20.13g
+timestep 0.001
+thermo 10
+run 20
+"""
+
+
+def crosswise(top, lammps, perigrain):
+    """What differs where each program reads the data files of both."""
+    if not all(os.path.exists(f"{top}/{of}/kept.data") for of in ("lammps", "perigrain")):
+        return None
+    said = []
+    for of in ("lammps", "perigrain"):
+        with open(f"{top}/lammps/kept.sides") as file:
+            deck = READ.format(of=of, sides=file.read().strip())
+        for program, words in (("lammps", [lammps, "-log", "none", "-in"]), ("perigrain", [perigrain, "-compat", "lammps", "-threads", "1", "-log", "none"])):
+            with open(f"{top}/read.in", "w") as file:
+                file.write(deck)
+            said.append(run(f"{top}/{program}", *words, f"{top}/read.in")[0])
+    found = [differences(said[0], other) for other in said[1:]]
+    return next((f"reading data: {f}" for f in found if f), None)
 
 
 def differences(theirs, ours):
     """What differs in the printed output."""
     errors = [[line for line in text.splitlines() if re.match(r"ERROR|error|thread .* panicked", line)][:1] for text in (theirs, ours)]
     if errors[0] and errors[1] and "panicked" not in errors[1][0]:
-        return None if "signal" not in theirs else errors
+        return REFUSED if "signal" not in theirs else errors
     if errors[0] or errors[1]:
         return errors
     a, b = rows(theirs), rows(ours)
@@ -101,7 +140,9 @@ def differences(theirs, ours):
 
 
 def file_differences(theirs, ours):
-    """What differs in the files left behind."""
+    """What differs in the files left behind, restart files and the first line of data files aside."""
+    theirs, ours = ({name: text.split("\n", 1)[-1] if name.endswith(".data") else text
+                     for name, text in found.items() if not name.endswith(".restart")} for found in (theirs, ours))
     if sorted(theirs) != sorted(ours):
         return f"files {sorted(theirs)} and {sorted(ours)}"
     for name, text in theirs.items():

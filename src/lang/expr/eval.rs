@@ -144,7 +144,9 @@ impl Expr {
                 }
                 let r = ValueRef { kind: *kind, name: name.clone(), index, span };
                 if *kind != RefKind::Variable {
-                    return env.reference(&r, vars).map_err(|d| d.at(span));
+                    let value =
+                        if trail.particles { env.of_particles(&r, vars) } else { env.reference(&r, vars) };
+                    return value.map_err(|d| d.at(span));
                 }
                 // LAMMPS reads equal-style variables by way of their text
                 match vars.reference(&r, env, trail)? {

@@ -126,7 +126,11 @@ impl Fix for Declared {
         let mut sheet = self.file.as_ref().map(|(path, _)| Sheet::new(path, None));
         let (log, screen) = (cx.log(), self.screen);
         let access = Access::new("slots", "log");
-        let op = StepOp::new(format!("fix {} print", self.id), Stage::Output, access, move |w, _| {
+        let op = StepOp::new(format!("fix {} print", self.id), Stage::Output, access, move |w, t| {
+            // `pre no` leaves out the line that a setup prints.
+            if t.setup && w.clock.onward {
+                return Ok(());
+            }
             let line = text(w)?;
             if screen {
                 log.line(&line)?;
