@@ -9,6 +9,7 @@ mod inert;
 mod info;
 mod interactive;
 mod later;
+mod leveling;
 mod minimizing;
 mod rerunning;
 mod restarting;

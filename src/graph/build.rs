@@ -221,6 +221,7 @@ fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Resul
         group,
         fix,
         energy: false,
+        level: None,
         span: cx.span,
         lines: vec![],
     };
@@ -288,9 +289,14 @@ fn fix_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -
         return fail(Code::MISSING_ARGUMENT, args.here(), "fix_modify needs an option");
     }
     let mut fix = graph.fixes[k].fix.boxed();
-    let mut energy = graph.fixes[k].energy;
+    let (mut energy, mut level) = (graph.fixes[k].energy, graph.fixes[k].level);
     while !args.is_empty() {
         let word = args.here();
+        if fix.has_level() && args.eat("respa") {
+            let from_one = args.integer_from(0, "the level, from 1, or 0 for the outermost")?;
+            level = usize::try_from(from_one - 1).ok();
+            continue;
+        }
         if !args.eat("energy") {
             fix.modify(args, &cx.build(graph, w, id, graph.fixes[k].group))?;
             continue;
@@ -302,7 +308,7 @@ fn fix_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -
         }
     }
     graph.fixes[k].fix = fix;
-    graph.fixes[k].energy = energy;
+    (graph.fixes[k].energy, graph.fixes[k].level) = (energy, level);
     w.touch();
     Ok(Declared::default())
 }

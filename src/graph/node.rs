@@ -74,6 +74,8 @@ pub struct FixNode {
     pub fix: Box<dyn Fix>,
     /// `fix_modify energy yes`.
     pub energy: bool,
+    /// `fix_modify respa`, from 0.
+    pub level: Option<usize>,
     /// Its line.
     pub span: Span,
     /// Its line and those that modify it, as words with one blank between.

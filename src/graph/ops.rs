@@ -3,7 +3,7 @@
 use super::spatial;
 use crate::diag::{Code, Diagnostic, Result};
 use crate::par;
-use crate::plan::{Access, Act, Gist, Op, Phase, Stage, Stretch, Tick};
+use crate::plan::{Access, Act, Gist, Level, Op, Stage, Stretch, Tick};
 use crate::world::bonds::LostBond;
 use crate::world::columns::HEATFLOW;
 use crate::world::index::Index;
@@ -230,6 +230,9 @@ impl Op for ClearForces {
     fn access(&self) -> Access {
         Access::new("", "f torque columns tally")
     }
+    fn level(&self) -> Level {
+        Level::Every
+    }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if !std::mem::take(&mut w.parts.cleared) {
             w.particles.f.fill([0.0; 3]);
@@ -239,8 +242,8 @@ impl Op for ClearForces {
             let n = w.particles.len();
             w.columns.scalar(&heat, n).fill(0.0);
         }
-        // In steps of two lengths bonds have tallied by now.
-        if (t.energy || t.virial) && !matches!(t.phase, Phase::Long(_)) {
+        // Of several levels of steps the shorter ones have tallied by now.
+        if (t.energy || t.virial) && t.phase.level == 0 {
             w.tally.clear(t.step, t.virial, t.atom_energy, w.particles.len());
             w.tally.clear_atom_virial(t.atom_virial, w.particles.len());
         }

@@ -8,7 +8,7 @@ use super::values::{Evaluate, Keyword, Once};
 use crate::diag::{Code, Result, Span, fail};
 use crate::lang::{Dep, RefKind, ValueRef, Vars};
 use crate::out::log::Log;
-use crate::plan::{LeftOut, Op, Placed, Stage, StepPlan, When};
+use crate::plan::{LeftOut, Level, Op, Placed, Stage, StepPlan, When};
 use crate::styles::bond::BondForce;
 use crate::styles::pair::probe::Probe;
 use crate::styles::{PlaceTest, Pull, Reading, SealCx, Shape, Text, Wants};
@@ -35,6 +35,8 @@ pub struct Sealer<'a> {
     pub log: Log,
     /// What formulas may ask about declarations.
     declared: Option<Arc<Declared>>,
+    /// The level of steps that the present fix has been given.
+    chosen: Option<usize>,
 }
 
 impl<'a> Sealer<'a> {
@@ -51,14 +53,36 @@ impl<'a> Sealer<'a> {
             uses: 0,
             log: Log::silent(),
             declared: None,
+            chosen: None,
         }
     }
 
     /// Adds ops that come from the line at `span`.
     pub fn add(&mut self, ops: Vec<Box<dyn Op>>, span: Span) {
         for op in ops {
-            self.plan.add(Placed::new(op, Some(span)));
+            let mut placed = Placed::new(op, Some(span));
+            if placed.op.stage() == Stage::PostForce && placed.level == Level::Outermost {
+                placed.level = self.level();
+            }
+            self.plan.add(placed);
         }
+    }
+
+    /// As `add`, for forces; with several levels of steps they act in one of them.
+    pub fn add_forces(&mut self, ops: Vec<Box<dyn Op>>, span: Span, level: usize) {
+        for op in ops {
+            let mut placed = Placed::new(op, Some(span));
+            if self.plan.levels.is_some() {
+                placed.level = Level::At(level);
+            }
+            self.plan.add(placed);
+        }
+    }
+
+    /// What follows belongs to the fix declared at `span`, which has been given a level of steps or not.
+    pub fn at_fix(&mut self, span: Span, level: Option<usize>) {
+        self.span = span;
+        self.chosen = level.filter(|_| self.plan.levels.is_some());
     }
 
     /// Notes the parts of a full step that this scene does without.
@@ -95,6 +119,11 @@ impl<'a> Sealer<'a> {
         }
     }
 
+    /// Whether the pair style in force has plastic grains.
+    pub fn grains_are_plastic(&self) -> bool {
+        self.world.parts.plastic.is_some()
+    }
+
     /// Whether a fix changes the box during the run.
     pub fn deforms(&self) -> bool {
         self.graph.fixes.iter().any(|f| f.fix.deforms() != [false; 3])
@@ -107,12 +136,15 @@ impl<'a> Sealer<'a> {
 
     /// What follows belongs to the line at `span`.
     pub fn at(&mut self, span: Span) {
-        self.span = span;
+        self.at_fix(span, None);
     }
 
     /// Places a provider so that it runs before what is added to `stage` next.
     fn provide(&mut self, op: Box<dyn Op>, when: When, provides: String) {
-        let placed = Placed::new(op, Some(self.span));
+        let mut placed = Placed::new(op, Some(self.span));
+        if self.plan.levels.is_some() {
+            placed.level = Level::Every;
+        }
         self.plan.add(Placed { when, provides, ..placed });
     }
 
@@ -292,6 +324,10 @@ impl SealCx for Sealer<'_> {
 
     fn span(&self) -> Span {
         self.span
+    }
+
+    fn level(&self) -> Level {
+        self.chosen.map_or(Level::Outermost, Level::At)
     }
 
     fn slot(&mut self, name: &str) -> SlotId {

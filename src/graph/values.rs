@@ -10,7 +10,7 @@ use crate::world::{SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A compute's op, at the stage of its reader, at most once per step.
+/// A compute's op, at the stage of its reader, at most once per step (of the shortest ones).
 pub(super) struct Once {
     /// The op.
     pub(super) op: Box<dyn Op>,
@@ -37,7 +37,8 @@ impl Op for Once {
         OpClass::Output
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        if w.slots.get(self.slot).step == Some(t.step) {
+        // Within a step of several levels everything moves on.
+        if w.slots.get(self.slot).step == Some(t.step) && !t.phase.nested() {
             return Ok(());
         }
         self.op.run(w, t)

@@ -5,7 +5,7 @@ use crate::diag::Result;
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::styles::SealCx;
 use crate::styles::pair::probe::{Probe, look_all};
-use crate::world::World;
+use crate::world::{RunStyle, World};
 
 /// Adds the op that asks pair styles for the virials of particles; after everything that may read them.
 ///
@@ -15,12 +15,21 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
     if s.plan.atom_virial.is_empty() {
         return Ok(());
     }
-    let probes = s.probes()?;
-    if !probes.is_empty() {
-        let span = s.span();
-        s.add(vec![Box::new(Virials { probes })], span);
+    let (span, graph) = (s.span(), s.graph());
+    let Some(pair) = graph.pair.as_ref().map(|node| &node.pair) else { return Ok(()) };
+    let RunStyle::Respa(respa) = s.world().settings.run_style.clone() else {
+        let probes = s.probes()?;
+        s.add(ask(probes), span);
+        return Ok(());
+    };
+    for (k, probes) in pair.probes_by_part(s.world())? {
+        s.add_forces(ask(probes), span, respa.of_pair(k));
     }
     Ok(())
+}
+
+fn ask(probes: Vec<Box<dyn Probe>>) -> Vec<Box<dyn Op>> {
+    if probes.is_empty() { vec![] } else { vec![Box::new(Virials { probes })] }
 }
 
 /// Asks every pair after the forces of a step: positions and velocities are still those that forces saw.

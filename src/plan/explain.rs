@@ -16,6 +16,9 @@ pub fn text(plan: &StepPlan, measured: bool) -> String {
         for p in ops {
             let a = p.op.access();
             let _ = write!(s, "  {:<34} {:<22}", p.op.name(), p.when.to_string());
+            if let Some(levels) = plan.levels.filter(|_| stage < Stage::EndOfStep) {
+                let _ = write!(s, " {:<12}", p.level.told(levels));
+            }
             if measured {
                 let secs = p.meter.time.as_secs_f64();
                 let share = if total > 0.0 { 100.0 * secs / total } else { 0.0 };

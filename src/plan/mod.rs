@@ -2,13 +2,15 @@
 
 pub mod explain;
 pub mod guard;
+mod level;
 pub mod meter;
 pub mod op;
 pub mod schedule;
 pub mod stretch;
 
 pub use guard::{Energy, Guard, Rule};
+pub use level::{Level, Phase, Solids};
 pub use meter::Meter;
-pub use op::{Access, Beat, Op, OpClass, Phase, Solids, Stage, Tick, When};
+pub use op::{Access, Op, OpClass, Stage, Tick, When};
 pub use schedule::{LeftOut, Placed, StepPlan};
 pub use stretch::{Act, Gist, Stretch, take_turns};

@@ -1,6 +1,7 @@
 //! What a step is made of: ops, their stage, what they read and write, and when they act.
 
 use super::stretch::{Act, Gist};
+use super::{Level, Phase};
 use crate::diag::Result;
 use crate::world::World;
 use std::sync::Arc;
@@ -161,46 +162,6 @@ impl std::fmt::Display for When {
     }
 }
 
-/// Which part of a step of two lengths this is (`run_style staggered`).
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Phase {
-    /// The step has one length.
-    #[default]
-    Whole,
-    /// The long step: everything moves but solids, which only feel the slow forces.
-    Long(Arc<Solids>),
-    /// One of the short steps: solids move under the forces of their bonds.
-    Short(Arc<Solids>),
-}
-
-/// Who moves in short steps.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Solids {
-    /// Whether particles of a type (from 1) belong to peridynamic solids.
-    pub kinds: Vec<bool>,
-    /// Group bits of particles that drift in the long step as well (the scheme printed by Hartmann et al.).
-    pub twice: u32,
-}
-
-impl Solids {
-    /// Whether a type is a solid's.
-    #[inline]
-    pub fn has(&self, kind: u16) -> bool {
-        self.kinds.get(usize::from(kind).wrapping_sub(1)).copied().unwrap_or(false)
-    }
-}
-
-/// In which steps of two lengths an op acts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Beat {
-    /// In the long ones.
-    Long,
-    /// In the short ones: forces inside peridynamic solids.
-    Short,
-    /// In both: what moves particles, and what takes components of forces away.
-    Both,
-}
-
 /// What an op may know of the present step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
@@ -224,7 +185,7 @@ pub struct Tick {
     pub virial: bool,
     /// Somebody reads per-particle energies at this step.
     pub atom_energy: bool,
-    /// Which part of a step of two lengths.
+    /// Which of several levels of steps.
     pub phase: Phase,
     /// Somebody reads the world's contacts at this step.
     pub contacts: bool,
@@ -233,6 +194,15 @@ pub struct Tick {
 }
 
 impl Tick {
+    /// The same, and nobody reads sums.
+    pub fn silent(&self) -> Tick {
+        let none = (false, false, false, false);
+        let mut t = self.clone();
+        (t.energy, t.virial, t.atom_energy, t.atom_virial) = none;
+        t.contacts = false;
+        t
+    }
+
     /// The tick of something that happens between runs.
     pub fn between_runs(c: &crate::world::Clock) -> Tick {
         Tick {
@@ -246,7 +216,7 @@ impl Tick {
             energy: false,
             virial: false,
             atom_energy: false,
-            phase: Phase::Whole,
+            phase: Phase::default(),
             contacts: false,
             atom_virial: false,
         }
@@ -313,9 +283,9 @@ pub trait Op: Send {
     fn in_setup(&self) -> bool {
         self.stage().in_setup()
     }
-    /// In which steps of two lengths it acts.
-    fn beat(&self) -> Beat {
-        Beat::Long
+    /// In which of several levels of steps it acts.
+    fn level(&self) -> Level {
+        Level::Outermost
     }
     /// Whether it tells the world's account ([`Travel`](crate::world::Travel)) how far it moves particles in whole steps.
     fn reports_travel(&self) -> bool {

@@ -1,6 +1,6 @@
 //! Ops in the order of a step, with what was left out and why.
 
-use super::{Act, Beat, Guard, Meter, Op, OpClass, Stage, Tick, When, take_turns};
+use super::{Act, Guard, Level, Meter, Op, OpClass, Stage, Tick, When, take_turns};
 use crate::diag::{Diagnostics, Result, Span};
 use crate::world::World;
 use std::time::{Duration, Instant};
@@ -11,6 +11,8 @@ pub struct Placed {
     pub op: Box<dyn Op>,
     /// When it acts (an op's own, or the union of its readers').
     pub when: When,
+    /// In which of several levels of steps (an op's own, or what `run_style` and `fix_modify` say).
+    pub level: Level,
     /// The command that created it, for messages.
     pub from: Option<Span>,
     /// The value it provides, as `c_dmg`; empty for ops that provide none to others.
@@ -19,8 +21,6 @@ pub struct Placed {
     pub reads_contacts: bool,
     /// Where in the step it acts.
     pub stage: Stage,
-    /// In which steps of two lengths.
-    pub beat: Beat,
     /// Whether it acts in the setup of a run.
     pub in_setup: bool,
     /// What it has cost.
@@ -30,9 +30,9 @@ pub struct Placed {
 impl Placed {
     /// An op at its own times.
     pub fn new(op: Box<dyn Op>, from: Option<Span>) -> Self {
-        let (when, reads_contacts) = (op.when(), op.access().reads("contacts"));
-        let (stage, beat, in_setup, provides) = (op.stage(), op.beat(), op.in_setup(), String::new());
-        Self { op, when, from, provides, reads_contacts, stage, beat, in_setup, meter: Meter::default() }
+        let (when, level, reads_contacts) = (op.when(), op.level(), op.access().reads("contacts"));
+        let (stage, in_setup, provides) = (op.stage(), op.in_setup(), String::new());
+        Self { op, when, level, from, provides, reads_contacts, stage, in_setup, meter: Meter::default() }
     }
 
     /// Lets the op act, and adds up what that costs; `clock` is when the one before was done.
@@ -78,6 +78,8 @@ pub struct StepPlan {
     pub atom_virial: Vec<When>,
     /// Who watches the energy.
     pub guard: Option<Guard>,
+    /// How many levels of steps there are (`run_style respa`), if more than one.
+    pub levels: Option<usize>,
     /// The end of the last step has begun the present one.
     begun: bool,
     /// Whether nobody reads forces between the drift and the next ones; unknown at first.
@@ -106,22 +108,14 @@ impl StepPlan {
         t.contacts = atom_virial || self.ops.iter().any(reads);
     }
 
-    /// Runs the ops of some stages at this tick.
+    /// Runs the ops of some stages at this tick: those that act in its level of steps.
     ///
     /// # Errors
     /// The first op's that fails, with the place of its command.
     pub fn run(&mut self, w: &mut World, t: &Tick, stages: &[Stage]) -> Result<()> {
-        self.run_beats(w, t, stages, &[Beat::Long, Beat::Short, Beat::Both])
-    }
-
-    /// Runs the ops of some stages at this tick, of those that act in some of the steps of two lengths.
-    ///
-    /// # Errors
-    /// As `run`.
-    pub fn run_beats(&mut self, w: &mut World, t: &Tick, stages: &[Stage], beats: &[Beat]) -> Result<()> {
         let mut clock = None;
         for p in &mut self.ops {
-            if !stages.contains(&p.stage) || !beats.contains(&p.beat) || (t.setup && !p.in_setup) {
+            if !stages.contains(&p.stage) || !p.level.acts(&t.phase) || (t.setup && !p.in_setup) {
                 continue;
             }
             let ends = t.ending && p.stage == Stage::Output && p.when != When::Never;

@@ -5,11 +5,11 @@
 //! `m` velocity-Verlet steps under their bonds alone. Symplectic, and momentum is conserved. Where grains are the
 //! faster ones, bonds act at every m-th step, with m times their force.
 
-use super::verlet::{MOTION, Outcome, Watch, tick};
+use super::levels::{self, Levels, exchange};
+use super::verlet::{MOTION, tick};
 use crate::diag::Result;
-use crate::plan::{Beat, Phase, Solids, Stage, StepPlan, Tick};
+use crate::plan::{Solids, Stage, StepPlan, Tick};
 use crate::world::World;
-use crate::world::columns::{BOND_FORCES, SLOW_FORCES};
 use std::sync::Arc;
 
 /// How long steps and short ones relate.
@@ -41,6 +41,11 @@ impl Staggered {
             Ratio::Rare(_) => 1,
         }
     }
+
+    /// The two levels of a long step of `m` short ones.
+    fn levels(&self, m: i64) -> Levels {
+        Levels { loops: vec![m], solids: Some(self.solids.clone()) }
+    }
 }
 
 /// Forces at the start of a run, both parts, and its first outputs.
@@ -55,140 +60,77 @@ pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool, s: &Staggered)
         if m > 1 && !unchanged {
             plan.ask(&mut t);
             plan.run(w, &t, &[Stage::Neighbor, Stage::PreForce])?;
-            rare(plan, w, &t, m)?;
+            rare(plan, w, &t, m, s)?;
             plan.run(w, &t, &[Stage::InitialIntegrate, Stage::PostIntegrate, Stage::FinalIntegrate])?;
             return plan.run(w, &t, &[Stage::EndOfStep, Stage::Output]);
         }
     }
     super::verlet::setup(plan, w, unchanged)?;
-    if m > 1 && (!unchanged || w.columns.get_vector(BOND_FORCES).is_none()) {
+    if m > 1 && !(unchanged && levels::stand(w, 2)) {
         split(plan, w, s)?;
     }
     Ok(())
-}
-
-/// Makes the steps `clock.first + 1 ..= clock.last`.
-///
-/// # Errors
-/// The first op's that fails; the world is then as that op left it.
-pub fn staggered(
-    plan: &mut StepPlan,
-    w: &mut World,
-    watch: &mut dyn Watch,
-    s: &Staggered,
-) -> Result<Outcome> {
-    super::verlet::steps(plan, w, watch, |plan, w, t| step(plan, w, t, s))
 }
 
 /// One step of two lengths up to its outputs; a plain one where one short step fills the long one.
 ///
 /// # Errors
 /// The first op's that fails.
-fn step(plan: &mut StepPlan, w: &mut World, t: &Tick, s: &Staggered) -> Result<()> {
+pub fn step(plan: &mut StepPlan, w: &mut World, t: &Tick, s: &Staggered) -> Result<()> {
     match s.ratio {
         Ratio::Rare(1) => return plan.run(w, t, &MOTION),
         Ratio::Rare(m) => {
-            plan.run(w, t, &[Stage::InitialIntegrate, Stage::PostIntegrate])?;
+            plan.run(w, t, &[Stage::InitialIntegrate, Stage::PostIntegrate, Stage::Exchange])?;
             plan.run(w, t, &[Stage::Neighbor, Stage::PreForce])?;
-            rare(plan, w, t, m)?;
+            rare(plan, w, t, m, s)?;
             return plan.run(w, t, &[Stage::FinalIntegrate]);
         }
         Ratio::Short(_) | Ratio::Within(_) => {}
     }
     let m = s.count(t.dt);
     if m == 1 && s.solids.twice == 0 {
-        w.columns.remove(BOND_FORCES);
-        w.columns.remove(SLOW_FORCES);
+        w.columns.forget_levels();
         return plan.run(w, t, &MOTION);
     }
-    if w.columns.get_vector(BOND_FORCES).is_none_or(|c| c.len() != w.n()) {
+    if !levels::stand(w, 2) {
         split(plan, w, s)?;
     }
-    let long = Tick { phase: Phase::Long(s.solids.clone()), ..t.clone() };
-    let slow = [Beat::Long, Beat::Both];
-    exchange(w, SLOW_FORCES);
-    plan.run_beats(w, &long, &[Stage::InitialIntegrate], &slow)?;
-    if t.energy || t.virial {
-        w.tally.clear(t.step, t.virial, t.atom_energy, w.n());
-    }
-    exchange(w, BOND_FORCES);
-    short_steps(plan, w, t, m, s)?;
-    exchange(w, BOND_FORCES);
-    plan.run_beats(w, &long, &[Stage::PostIntegrate, Stage::Neighbor, Stage::PreForce], &slow)?;
-    plan.run_beats(w, &long, &[Stage::Force, Stage::PostForce], &slow)?;
-    plan.run_beats(w, &long, &[Stage::FinalIntegrate], &slow)?;
-    join(w);
-    Ok(())
-}
-
-/// `m` velocity-Verlet steps of the solids under their bonds; `f` holds bond forces before and after.
-fn short_steps(plan: &mut StepPlan, w: &mut World, t: &Tick, m: i64, s: &Staggered) -> Result<()> {
-    let phase = Phase::Short(s.solids.clone());
-    let mut short =
-        Tick { phase, dt: t.dt / m as f64, energy: false, virial: false, atom_energy: false, ..t.clone() };
-    for k in 1..=m {
-        if k == m {
-            (short.energy, short.virial, short.atom_energy) = (t.energy, t.virial, t.atom_energy);
-        }
-        plan.run_beats(w, &short, &[Stage::InitialIntegrate], &[Beat::Both])?;
-        bonds(plan, w, &short)?;
-        plan.run_beats(w, &short, &[Stage::FinalIntegrate], &[Beat::Both])?;
-    }
-    Ok(())
-}
-
-/// Bond forces alone, less what constraints take away.
-fn bonds(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
-    w.particles.f.fill([0.0; 3]);
-    plan.run_beats(w, t, &[Stage::Force], &[Beat::Short])?;
-    plan.run_beats(w, t, &[Stage::PostForce], &[Beat::Both])
+    levels::step(plan, w, t, &s.levels(m))
 }
 
 /// Forces where bonds act at multiples of `m` steps: `m` times then, else not at all. Where somebody asks for sums at
 /// another step, bonds are looked at without moving on.
-fn rare(plan: &mut StepPlan, w: &mut World, t: &Tick, m: i64) -> Result<()> {
-    let due = t.step.rem_euclid(m) == 0;
+fn rare(plan: &mut StepPlan, w: &mut World, t: &Tick, m: i64, s: &Staggered) -> Result<()> {
+    let (two, due) = (s.levels(m), t.step.rem_euclid(m) == 0);
     if due || t.energy || t.virial {
         // Bonds that relax have done so since they were looked at last.
         let dt = m as f64 * t.dt;
         let look = Tick { dt, setup: t.setup || !due, unchanged: t.unchanged || !due, ..t.clone() };
-        plan.run_beats(w, &look, &[Stage::Force], &[Beat::Short])?;
+        plan.run(w, &two.at(&look, 0), &[Stage::Force])?;
         let times = if due { m as f64 } else { 0.0 };
         w.particles.f.iter_mut().flatten().for_each(|a| *a *= times);
     }
-    plan.run_beats(w, t, &[Stage::Force], &[Beat::Long, Beat::Both])?;
+    plan.run(w, &two.at(t, 1), &[Stage::Force])?;
     plan.run(w, t, &[Stage::PostForce])
 }
 
-/// The present forces as bonds' and others'.
+/// The present forces as bonds' and others'; bonds turn nothing.
 fn split(plan: &mut StepPlan, w: &mut World, s: &Staggered) -> Result<()> {
-    let n = w.n();
     let all = w.particles.f.clone();
-    let constrain = Tick { phase: Phase::Short(s.solids.clone()), ..tick(w, true) };
+    let constrain = s.levels(1).at(&tick(w, true), 0);
     let look = Tick { unchanged: true, ..constrain.clone() };
     w.particles.f.fill([0.0; 3]);
-    plan.run_beats(w, &look, &[Stage::Force], &[Beat::Short])?;
-    plan.run_beats(w, &constrain, &[Stage::PostForce], &[Beat::Both])?;
-    let own = std::mem::replace(&mut w.particles.f, all);
+    plan.run(w, &look, &[Stage::Force])?;
+    plan.run(w, &constrain, &[Stage::PostForce])?;
+    let own = std::mem::replace(&mut w.particles.f, all.clone());
     let rest: Vec<[f64; 3]> =
-        w.particles.f.iter().zip(&own).map(|(f, b)| std::array::from_fn(|d| f[d] - b[d])).collect();
-    *w.columns.vector(BOND_FORCES, n) = own;
-    *w.columns.vector(SLOW_FORCES, n) = rest;
-    Ok(())
-}
-
-/// Lets the forces and a column change places.
-fn exchange(w: &mut World, column: &str) {
-    let n = w.n();
-    std::mem::swap(&mut w.particles.f, w.columns.vector(column, n));
-}
-
-/// Keeps the slow forces that `f` holds, and shows both parts together.
-fn join(w: &mut World) {
-    let n = w.n();
-    w.columns.vector(SLOW_FORCES, n).clone_from(&w.particles.f);
-    let Some(bonds) = w.columns.get_vector(BOND_FORCES) else { return };
-    for (f, b) in w.particles.f.iter_mut().zip(bonds) {
-        (0..3).for_each(|d| f[d] += b[d]);
+        all.iter().zip(&own).map(|(f, b)| std::array::from_fn(|d| f[d] - b[d])).collect();
+    w.columns.forget_levels();
+    let torque = w.particles.torque.clone();
+    for (k, part) in [(0, (own, vec![[0.0; 3]; torque.len()])), (1, (rest, torque.clone()))] {
+        (w.particles.f, w.particles.torque) = part;
+        exchange(w, k);
     }
+    (w.particles.f, w.particles.torque) = (all, torque);
+    Ok(())
 }

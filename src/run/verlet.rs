@@ -208,7 +208,7 @@ pub(super) fn tick(w: &World, setup: bool) -> Tick {
         energy: false,
         virial: false,
         atom_energy: false,
-        phase: Phase::Whole,
+        phase: Phase::default(),
         contacts: false,
         atom_virial: false,
     }

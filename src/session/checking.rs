@@ -35,6 +35,7 @@ impl Session {
             self.check_integrators(span, &mut found);
             self.check_step(span, &mut found);
         }
+        self.check_levels(span, &mut found);
         self.check_surfaces(&mut found);
         self.check_breaking(&mut found);
         self.check_box(&mut found);

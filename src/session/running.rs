@@ -13,8 +13,7 @@ use crate::graph::{FixNode, Role};
 use crate::lang::{Args, Command, Script, Word};
 use crate::out::thermo::{Finish, Section};
 use crate::plan::{OpClass, Stage, StepPlan, When, explain};
-use crate::run::staggered::{self, Staggered};
-use crate::run::verlet;
+use crate::run::{Pace, verlet};
 use crate::styles::Reading;
 use crate::styles::fix::Minimizing;
 use crate::world::Halt;
@@ -140,11 +139,14 @@ impl Session {
     /// As `seal`. A minimization leaves fixes out that do not act in it, and reads the energy.
     pub(super) fn sealed(&mut self, span: Span, minimizing: bool) -> Result<(StepPlan, Option<Reading>)> {
         let vars = Arc::new(self.vars.clone());
+        let respa = self.respa().filter(|_| !minimizing).cloned();
         self.graph.computes.iter().for_each(|c| c.compute.welcome(&mut self.world));
         self.world.bonds.lost = self.graph.thermo.lost_bond;
         self.world.parts.plastic = None;
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
         s.log = self.options.log.clone();
+        s.plan.levels = respa.as_ref().map(|r| r.loops.len() + 1);
+        let respa = respa.unwrap_or_default();
         s.at(span);
         s.add(
             vec![
@@ -156,13 +158,18 @@ impl Session {
         crate::graph::regions::seal(&mut s)?;
         if let Some(node) = &self.graph.pair {
             s.at(node.span);
-            let ops = node.pair.ops(&mut s)?;
-            s.add(ops, node.span);
+            for (k, ops) in node.pair.ops_by_part(&mut s)? {
+                s.add_forces(ops, node.span, respa.of_pair(k));
+            }
+            if s.plan.levels.is_some() && s.grains_are_plastic() {
+                let text = "plastic grains (`mdr`) grow once in a step, and under run_style respa it has several lengths";
+                return refuse(Code::NOT_SUPPORTED, node.span, text);
+            }
         }
         if let Some(node) = &self.graph.bond {
             s.at(node.span);
             let ops = node.force.ops(&mut s)?;
-            s.add(ops, node.span);
+            s.add_forces(ops, node.span, respa.bond);
         }
         s.at(span);
         let booked = !minimizing && ledger::wanted(&s);
@@ -172,7 +179,7 @@ impl Session {
         crate::graph::dynamic::seal(&mut s)?;
         let acts = |f: &&FixNode| !minimizing || f.fix.minimizing() == Minimizing::Acts;
         for f in self.graph.fixes.iter().filter(acts) {
-            s.at(f.span);
+            s.at_fix(f.span, f.level);
             let ops = f.fix.ops(&mut s)?;
             let stages = ledger::stages(&ops);
             s.add(ops, f.span);
@@ -249,9 +256,9 @@ impl Session {
             self.say_notes()?;
         }
         self.world.clock.running = true;
-        let two = self.staggered(span)?;
+        let pace = self.pace(span)?;
         spatial::line_up_again(&mut self.world);
-        let outcome = self.steps(&mut plan, unchanged, two.as_ref());
+        let outcome = self.steps(&mut plan, unchanged, &pace);
         self.world.clock.running = false;
         for (name, value) in std::mem::take(&mut self.world.controls) {
             self.vars.set_internal(&name, value);
@@ -279,23 +286,12 @@ impl Session {
         Ok(())
     }
 
-    fn steps(
-        &mut self,
-        plan: &mut StepPlan,
-        unchanged: bool,
-        two: Option<&Staggered>,
-    ) -> Result<verlet::Outcome> {
+    fn steps(&mut self, plan: &mut StepPlan, unchanged: bool, pace: &Pace) -> Result<verlet::Outcome> {
         let (w, watch) = (&mut self.world, self.watch.as_mut());
-        match two {
-            None => verlet::setup(plan, w, unchanged)?,
-            Some(s) => staggered::setup(plan, w, unchanged, s)?,
-        }
+        pace.setup(plan, w, unchanged)?;
         plan.reset_meters();
         w.clock.began = Some(Instant::now());
-        match two {
-            None => verlet::verlet(plan, w, watch),
-            Some(s) => staggered::staggered(plan, w, watch, s),
-        }
+        pace.run(plan, w, watch)
     }
 
     /// What a run, or a minimization with its own block of text, says at its end.

@@ -2,6 +2,7 @@
 
 use super::Session;
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
+use crate::styles::Pair;
 use crate::world::RunStyle;
 
 impl Session {
@@ -16,17 +17,14 @@ impl Session {
         let place = line.map_or(span, |n| n.span);
         self.check_contacts(place, density, found);
         let Some(node) = &self.graph.pair else { return };
-        let parts = node.pair.parts();
-        let all = parts.into_iter().chain([node.pair.as_ref()]);
-        let limit = all.filter_map(|p| p.stable_step(&self.world, density)).fold(f64::INFINITY, f64::min);
-        // Solids may move in shorter steps than the deck's, or feel their bonds more rarely.
-        let dt = self.world.clock.dt
-            * match self.world.settings.run_style {
-                RunStyle::Verlet => 1.0,
-                RunStyle::Staggered { ratio: Some(m), rare: true, .. } => m as f64,
-                RunStyle::Staggered { ratio: Some(m), .. } => 1.0 / m as f64,
-                RunStyle::Staggered { ratio: None, .. } => 0.0,
-            };
+        let all = sub_styles(node.pair.as_ref());
+        let own = |(k, p): (usize, &dyn Pair)| Some((p.stable_step(&self.world, density)?, self.step_of(k)));
+        let worst = all
+            .into_iter()
+            .enumerate()
+            .filter_map(own)
+            .reduce(|a, b| if b.0 * a.1 < a.0 * b.1 { b } else { a });
+        let Some((limit, dt)) = worst else { return };
         if dt <= limit {
             return;
         }
@@ -42,34 +40,52 @@ impl Session {
     /// Which step is too long for bonds, where that is said, and what to say instead.
     fn step_remedy(&self, limit: f64, place: Span) -> (&'static str, Span, String) {
         let whole = self.world.clock.dt;
-        match self.world.settings.run_style {
-            RunStyle::Staggered { ratio: Some(m), rare, .. } if m > 1 => {
+        match &self.world.settings.run_style {
+            RunStyle::Staggered { ratio: Some(m), rare, .. } if *m > 1 => {
+                let rare = *rare;
                 let remedy = match rare {
                     false => format!("say `m {}` or more", (whole / (0.8 * limit)).ceil()),
                     true => format!("say `m {}` or less", (0.8 * limit / whole).floor().max(1.0)),
                 };
                 (if rare { "the rare step" } else { "the short step" }, self.run_style_place(place), remedy)
             }
+            RunStyle::Respa(_) => {
+                let remedy = format!("let a step of their level be {:.1e} or less", 0.8 * limit);
+                ("the step of their level", self.run_style_place(place), remedy)
+            }
             _ => ("the time step", place, format!("say `timestep {:.1e}` or less", 0.8 * limit)),
+        }
+    }
+
+    /// The time between two looks of sub-style `k` at its particles: solids may move in shorter steps than the deck's, or
+    /// feel their bonds more rarely.
+    fn step_of(&self, k: usize) -> f64 {
+        let dt = self.world.clock.dt;
+        match &self.world.settings.run_style {
+            RunStyle::Verlet => dt,
+            RunStyle::Staggered { ratio: Some(m), rare: true, .. } => dt * *m as f64,
+            RunStyle::Staggered { ratio: Some(m), .. } => dt * (1.0 / *m as f64),
+            RunStyle::Staggered { ratio: None, .. } => 0.0,
+            RunStyle::Respa(r) => dt / r.steps(r.of_pair(k)) as f64,
         }
     }
 
     /// A warning where contacts of grains, with each other or with walls, last less than ten steps.
     fn check_contacts(&self, place: Span, density: Option<f64>, found: &mut Diagnostics) {
         let said = density.zip(self.said("diameter").reduce(f64::min));
-        let pairs = self.graph.pair.iter().flat_map(|n| n.pair.parts().into_iter().chain([n.pair.as_ref()]));
-        let pairs = pairs.filter_map(|p| Some((p.contact_time(&self.world, said)?, String::new())));
+        let whole = self.world.clock.dt;
+        let pairs = self.graph.pair.iter().flat_map(|n| sub_styles(n.pair.as_ref()).into_iter().enumerate());
+        let pairs = pairs.filter_map(|(k, p)| {
+            let dt =
+                if let RunStyle::Respa(_) = self.world.settings.run_style { self.step_of(k) } else { whole };
+            Some((p.contact_time(&self.world, said)?, dt, String::new()))
+        });
         let walls = self.graph.fixes.iter();
         let walls = walls.filter_map(|f| {
-            Some((f.fix.contact_time(&self.world, said)?, format!(" with the wall of fix {}", f.id)))
+            Some((f.fix.contact_time(&self.world, said)?, whole, format!(" with the wall of fix {}", f.id)))
         });
-        let Some((contact, wall)) = pairs.chain(walls).reduce(|a, b| if b.0 < a.0 { b } else { a }) else {
-            return;
-        };
-        let dt = self.world.clock.dt;
-        if dt <= 0.1 * contact {
-            return;
-        }
+        let worst = pairs.chain(walls).reduce(|a, b| if b.0 * a.1 < a.0 * b.1 { b } else { a });
+        let Some((contact, dt, wall)) = worst.filter(|(contact, dt, _)| *dt > 0.1 * contact) else { return };
         let text = format!(
             "the time step {dt:e} is longer than a tenth of a contact{wall}, which lasts about {contact:.2e}"
         );
@@ -111,4 +127,10 @@ impl Session {
         );
         self.say_notes()
     }
+}
+
+/// The sub-styles of a pair style, or itself.
+fn sub_styles(pair: &dyn Pair) -> Vec<&dyn Pair> {
+    let parts = pair.parts();
+    if parts.is_empty() { vec![pair] } else { parts }
 }

@@ -1,24 +1,43 @@
-//! Steps of two lengths: who moves in which, and whether the scene suits them.
+//! How the steps of a run are made; steps of two lengths: who moves in which, and whether the scene suits them.
 
 use super::{Session, refuse};
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::plan::Solids;
+use crate::run::Pace;
+use crate::run::levels::Levels;
 use crate::run::staggered::{Ratio, Staggered};
-use crate::world::RunStyle;
+use crate::world::{GroupId, RunStyle};
 use std::sync::Arc;
 
 /// What part of the longest stable step `m auto` uses.
 const SAFETY: f64 = 0.8;
 
 impl Session {
-    /// How steps of two lengths are made, if the deck wants them.
+    /// How the steps of a run are made.
+    ///
+    /// # Errors
+    /// A scene that does not suit them.
+    pub(super) fn pace(&self, span: Span) -> Result<Pace> {
+        Ok(match &self.world.settings.run_style {
+            RunStyle::Verlet => Pace::Even,
+            RunStyle::Respa(r) => Pace::Levels(Levels { loops: r.loops.clone(), solids: None }),
+            RunStyle::Staggered { ratio, rare, twice } => {
+                Pace::Staggered(self.staggered(span, *ratio, *rare, *twice)?)
+            }
+        })
+    }
+
+    /// How steps of two lengths are made.
     ///
     /// # Errors
     /// A scene without both kinds of particle, fixes that cannot take part, and no estimate for `m auto`.
-    pub(super) fn staggered(&self, span: Span) -> Result<Option<Staggered>> {
-        let RunStyle::Staggered { ratio, rare, twice } = self.world.settings.run_style else {
-            return Ok(None);
-        };
+    fn staggered(
+        &self,
+        span: Span,
+        ratio: Option<i64>,
+        rare: bool,
+        twice: Option<GroupId>,
+    ) -> Result<Staggered> {
         let place = self.run_style_place(span);
         let solids = Arc::new(self.solids(twice.map_or(0, |g| g.bit())));
         let p = &self.world.particles;
@@ -49,7 +68,7 @@ impl Session {
                 }
             },
         };
-        Ok(Some(Staggered { solids, ratio }))
+        Ok(Staggered { solids, ratio })
     }
 
     /// The line that asked for steps of two lengths.

@@ -200,3 +200,12 @@ pub fn publish(w: &mut World, slot: SlotId, t: &Tick, scalar: f64, vector: &[f64
     out.vector.clear();
     out.vector.extend_from_slice(vector);
 }
+
+/// Writes what a fix takes away in every one of several levels of steps into its slot: all levels together.
+pub fn publish_levels(w: &mut World, slot: SlotId, t: &Tick, taken: &[f64]) {
+    let mut sum = taken.to_vec();
+    if t.phase.level > 0 {
+        sum.iter_mut().zip(&w.slots.get(slot).vector).for_each(|(all, inner)| *all += inner);
+    }
+    publish(w, slot, t, 0.0, &sum);
+}

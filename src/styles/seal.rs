@@ -4,7 +4,7 @@ use super::bond::BondForce;
 use crate::diag::{Result, Span};
 use crate::lang::{Param, ValueRef};
 use crate::out::log::Log;
-use crate::plan::{Op, Stage, When};
+use crate::plan::{Level, Op, Stage, When};
 use crate::styles::pair::probe::Probe;
 use crate::world::adapted::Coefficient;
 use crate::world::{SlotId, World};
@@ -140,6 +140,10 @@ pub trait SealCx {
     fn world(&mut self) -> &mut World;
     /// The line that declared the style.
     fn span(&self) -> Span;
+    /// In which of several levels of steps the fix adds its force (`fix_modify respa`).
+    fn level(&self) -> Level {
+        Level::Outermost
+    }
     /// The slot `f_ID`, `c_ID` … of this name.
     fn slot(&mut self, name: &str) -> SlotId;
     /// A reference's value, fresh whenever `when` fires, before the ops of this style at `stage`.

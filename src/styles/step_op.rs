@@ -2,7 +2,7 @@
 
 use crate::diag::Result;
 use crate::par;
-use crate::plan::{Access, Act, Beat, Gist, Op, Stage, Tick, When, take_turns};
+use crate::plan::{Access, Act, Gist, Level, Op, Stage, Tick, When, take_turns};
 use crate::world::{GroupId, Slot, SlotId, World};
 
 /// An op whose whole work is one closure at one stage.
@@ -12,7 +12,7 @@ pub struct StepOp<F> {
     access: Access,
     when: When,
     in_setup: bool,
-    beat: Beat,
+    level: Level,
     reports: bool,
     on: Option<On>,
     turn: Option<Turn>,
@@ -43,7 +43,7 @@ where
             access,
             when: When::Always,
             in_setup: stage.in_setup(),
-            beat: Beat::Long,
+            level: Level::Outermost,
             reports: false,
             on: None,
             turn: None,
@@ -65,10 +65,17 @@ where
         self
     }
 
-    /// Acts in short steps of two lengths too: moves solids, or takes components of their forces away.
+    /// Acts in every one of several levels of steps: moves particles, or takes components of their forces away.
     #[must_use]
-    pub fn in_short_steps(mut self) -> Self {
-        self.beat = Beat::Both;
+    pub fn in_every_level(mut self) -> Self {
+        self.level = Level::Every;
+        self
+    }
+
+    /// Acts in the shortest of several levels of steps alone.
+    #[must_use]
+    pub fn innermost(mut self) -> Self {
+        self.level = Level::At(0);
         self
     }
 
@@ -123,8 +130,8 @@ where
     fn in_setup(&self) -> bool {
         self.in_setup
     }
-    fn beat(&self) -> Beat {
-        self.beat
+    fn level(&self) -> Level {
+        self.level
     }
     fn reports_travel(&self) -> bool {
         self.reports

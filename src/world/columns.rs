@@ -14,10 +14,13 @@ pub const PLASTIC_COLUMNS: &str = "property/atom/mdr/";
 /// Under this name the last step that plastic grains have begun is kept.
 pub const PLASTIC_BEGUN: &str = "mdr/begun";
 
-/// The vector column that keeps the slow part of the forces between steps of two lengths.
-pub const SLOW_FORCES: &str = "staggered/slow";
-/// The vector column of the forces of bonds in steps of two lengths.
-pub const BOND_FORCES: &str = "staggered/bonds";
+/// How the names of the columns begin that keep forces and torques of levels of steps between steps.
+const LEVEL: &str = "level/";
+
+/// The vector columns that keep forces and torques of a level of steps.
+pub fn of_level(level: usize) -> [String; 2] {
+    ["force", "torque"].map(|what| format!("{LEVEL}{level}/{what}"))
+}
 
 /// Named scalar and vector columns, kept in step with the particles.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -71,6 +74,11 @@ impl Columns {
     pub fn remove(&mut self, name: &str) {
         self.scalars.remove(name);
         self.vectors.remove(name);
+    }
+
+    /// Forgets the forces and torques of levels of steps.
+    pub fn forget_levels(&mut self) {
+        self.vectors.retain(|name, _| !name.starts_with(LEVEL));
     }
 
     /// Takes out the columns whose names `keep` does not hold.

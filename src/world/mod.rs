@@ -45,7 +45,7 @@ pub use particles::{AtomStyle, Own, Particles};
 pub use rebuild::Rebuild;
 pub use region::Region;
 pub use resume::{Promise, Resume, Said};
-pub use settings::{Compat, NeighborSettings, Newton, RunStyle, Settings};
+pub use settings::{Compat, NeighborSettings, Newton, Respa, RunStyle, Settings};
 pub use slots::{Offers, Slot, SlotId, Slots};
 pub use tally::Tally;
 pub use template::Template;

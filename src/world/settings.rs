@@ -66,8 +66,33 @@ impl Default for NeighborSettings {
     }
 }
 
+/// Levels of steps within each other and the forces in each (`run_style respa`); levels count from 0, the shortest steps.
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Respa {
+    /// How many steps of a level one of the next holds.
+    pub loops: Vec<i64>,
+    /// The level of bonds' forces.
+    pub bond: usize,
+    /// The level of pairs' forces.
+    pub pair: usize,
+    /// Instead of that one the level of each sub-style of pair_style hybrid.
+    pub subs: Option<Vec<usize>>,
+}
+
+impl Respa {
+    /// How many steps of a level the longest step holds.
+    pub fn steps(&self, level: usize) -> i64 {
+        self.loops.iter().skip(level).product()
+    }
+
+    /// The level of sub-style `k`, or of the pair style.
+    pub fn of_pair(&self, k: usize) -> usize {
+        self.subs.as_ref().and_then(|s| s.get(k).copied()).unwrap_or(self.pair)
+    }
+}
+
 /// How steps are made (`run_style`).
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum RunStyle {
     /// Velocity Verlet, one length of steps.
     #[default]
@@ -81,6 +106,8 @@ pub enum RunStyle {
         /// Whose particles drift in the long step as well (the scheme as printed by Hartmann et al.).
         twice: Option<super::GroupId>,
     },
+    /// Levels of steps within each other.
+    Respa(Respa),
 }
 
 /// Choices of a deck that concern everybody.

@@ -86,11 +86,13 @@ pub(super) const FIX: Entry = (
 pub(super) const FIX_MODIFY: Entry = (
     "fix_modify",
     Doc {
-        syntax: "fix_modify ID [energy yes|no] [keyword value …]",
+        syntax: "fix_modify ID [energy yes|no] [respa M] [keyword value …]",
         summary: "Sets options of a fix.",
         text: "`energy yes` adds the energy of the fix to the potential energy `pe`; it is refused for a fix that has \
-            none. Other keywords belong to the fix and stand on its page. LAMMPS' `virial`, `temp`, `press`, `respa`, \
-            `dynamic/dof` and `bodyforces` are refused unless the page names them.",
+            none. `respa M` names the level of steps in which addforce, addtorque, aveforce, drag, gravity, indent, setforce, \
+            spring, spring/self, viscous and viscous/sphere add their force under `run_style respa`: from 1, the outermost if there are \
+            fewer, and 0 for the outermost; other fixes have no such choice. Other keywords belong to the fix and stand on its \
+            page. LAMMPS' `virial`, `temp`, `press`, `dynamic/dof` and `bodyforces` are refused unless the page names them.",
         example: "fix tip all indent 1.0e9 sphere 0 0 0.006 0.004 units box\nfix_modify tip energy yes",
     },
 );

@@ -1,12 +1,13 @@
-//! `run_style`: steps of one length, or short ones for peridynamic solids inside long ones for grains.
+//! `run_style`: steps of one length, levels of steps within each other, or short ones for solids inside long ones for grains.
+
+mod respa;
 
 use super::common::setting;
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
 use crate::styles::{BuildCx, Doc, Style};
-use crate::world::RunStyle;
-use crate::world::columns::{BOND_FORCES, SLOW_FORCES};
+use crate::world::{RunStyle, World};
 
 /// The command.
 pub struct RunStyleCommand;
@@ -19,21 +20,35 @@ impl Style for RunStyleCommand {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "run_style verlet\n\
-                     run_style respa 2 m hybrid 1 2\n\
+                     run_style respa N n1 n2 … [bond M] [pair M] [hybrid M1 M2 …] [angle M] [dihedral M] [improper M] [kspace M]\n\
                      run_style staggered [m auto|N] [faster solids|grains] [scheme kick|hartmann GROUP]",
-            summary: "How steps are made: all alike, or short ones for peridynamic solids inside long ones for grains.",
-            text: "`staggered`: `timestep` is the long step. Contacts, walls and body forces kick everybody by half a long step \
+            summary: "How steps are made: all alike, several lengths within each other, or short ones for solids inside long ones for grains.",
+            text: "`respa` is the multi-level scheme of Tuckerman, Berne & Martyna (1992) with N levels, numbered from the shortest \
+                steps. n1 steps of level 1 make one of level 2, n2 of those one of level 3 …; `timestep`, and whatever counts \
+                steps, means the outermost. The forces of a level kick by half of its step at both of its ends, and particles \
+                move in level 1. `bond` (1 unless said) and `pair` (N unless said) choose the level of a style's forces, `hybrid` \
+                that of each sub-style of pair_style hybrid, in its order. `angle`, `dihedral`, `improper` and `kspace` are \
+                read, held to LAMMPS' order bond ≤ angle ≤ dihedral ≤ improper ≤ pair ≤ kspace, and name forces that no particle \
+                here has. `inner`, `middle` and `outer` are refused: no pair style here is cut up by distance.\n\n\
+                Under `respa` fixes act as in LAMMPS: addforce, addtorque, aveforce, drag, gravity, indent, setforce, spring, \
+                spring/self, viscous and viscous/sphere in the level that `fix_modify ID respa M` names, else the outermost; \
+                what takes components of forces away (setforce, aveforce, lineforce, planeforce, enforce2d, freeze) in every \
+                level, with its value in that one; walls in the outermost; `nve`, `nve/sphere` and `nve/limit` kick in every \
+                level, nve/noforce moves in level 1 and `move` in the outermost. Values of such a fix (f_ID) count all levels. \
+                Lists are made anew at the beginning of an outermost step. Refused with the reason: rigid bodies, `fix move` with \
+                free components, energy/ledger, dt/guard and plastic grains (`mdr`).\n\n\
+                `staggered`: `timestep` is the long step. Contacts, walls and body forces kick everybody by half a long step \
                 at both of its ends; in between solids make m velocity-Verlet steps under their bonds alone. Momentum is \
                 conserved; with m = 1 the bits are those of `verlet`. `m auto` (the default) takes the fewest short steps \
                 that stay within 0.8 of the solids' stable step, and looks again when the step changes. `respa 2 m hybrid \
-                1 2` says the same in LAMMPS' words, with the peridynamic sub-style named first.\n\n\
+                1 2`, with the peridynamic sub-style named first, comes to the same, but moves grains in the short steps too.\n\n\
                 `faster grains`: bonds act at every N-th step only, with N times their force; `timestep` is then the grains' step, \
                 and the forces that are printed are those that act.\n\n\
                 `scheme hartmann GROUP` lets the particles of a group drift in the long step and again in the short ones, as \
                 Hartmann, Thoeni & Rojek (2022, eq. 47) print it: a free particle then moves at twice its velocity, which is as \
                 if it had half its inertia. It is there to reproduce their figures.\n\n\
                 What takes components of forces away (setforce, lineforce, planeforce, enforce2d, freeze) does so in both kinds of \
-                step. Solids are moved by `fix nve` or `nve/sphere`; other fixes that move them are refused.",
+                staggered step. Solids are moved by `fix nve` or `nve/sphere` there; other fixes that move them are refused.",
             example: "units si\n\
                 atom_style hybrid sphere peri\n\
                 boundary s s s\n\
@@ -65,45 +80,30 @@ impl Style for RunStyleCommand {
 impl CommandStyle for RunStyleCommand {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         let style = match a.choice("run style", &["verlet", "respa", "staggered"])? {
-            "respa" => respa(a)?,
+            "respa" => {
+                let (style, said) = respa::read(a)?;
+                return Ok(setting(move |cx| {
+                    said.iter().for_each(|line| cx.say(line));
+                    put(cx.world, style.clone());
+                    Ok(())
+                }));
+            }
             "staggered" => staggered(a, cx)?,
             _ => RunStyle::Verlet,
         };
         Ok(setting(move |cx| {
-            let w = &mut *cx.world;
-            if w.settings.run_style != style {
-                w.settings.run_style = style;
-                [SLOW_FORCES, BOND_FORCES].iter().for_each(|c| w.columns.remove(c));
-            }
+            put(cx.world, style.clone());
             Ok(())
         }))
     }
 }
 
-/// The one form of LAMMPS' multi-level steps that has a meaning here.
-fn respa(a: &mut Args) -> Result<RunStyle> {
-    let span = a.here();
-    let levels = a.integer_from(1, "the number of levels")?;
-    if levels == 1 {
-        return Ok(RunStyle::Verlet);
+/// Puts a style in force; what another one has kept between steps is forgotten.
+fn put(w: &mut World, style: RunStyle) {
+    if w.settings.run_style != style {
+        w.settings.run_style = style;
+        w.columns.forget_levels();
     }
-    let form = "run_style respa 2 m hybrid 1 2";
-    if levels > 2 {
-        let text = format!("{levels} levels of steps: perigrain has two");
-        return Err(Diagnostic::error(Code::NOT_SUPPORTED, span, text)
-            .help(format!("write `{form}`"))
-            .into());
-    }
-    let ratio = a.integer_from(1, "the number of short steps")?;
-    let word = a.expect("`hybrid 1 2`: which sub-styles act in which steps")?;
-    let order = [a.peek_text() == "1" && a.next().is_some(), a.peek_text() == "2" && a.next().is_some()];
-    if word.text != "hybrid" || order != [true, true] {
-        let text = "of LAMMPS' levels there is one form here: the first sub-style in short steps, the second in long ones";
-        return Err(Diagnostic::error(Code::NOT_SUPPORTED, word.span, text)
-            .help(format!("write `{form}`, with peri/… first in pair_style hybrid"))
-            .into());
-    }
-    Ok(RunStyle::Staggered { ratio: Some(ratio), rare: false, twice: None })
 }
 
 fn staggered(a: &mut Args, cx: &BuildCx) -> Result<RunStyle> {
@@ -144,7 +144,6 @@ fn staggered(a: &mut Args, cx: &BuildCx) -> Result<RunStyle> {
 mod tests {
     use super::*;
     use crate::styles::command::testing::{act, refused};
-    use crate::world::World;
 
     fn read(words: &str) -> RunStyle {
         let mut w = World::default();
@@ -157,7 +156,6 @@ mod tests {
         let staggered = |ratio, rare, twice| RunStyle::Staggered { ratio, rare, twice };
         assert_eq!(read("verlet"), RunStyle::Verlet);
         assert_eq!(read("respa 1"), RunStyle::Verlet);
-        assert_eq!(read("respa 2 5 hybrid 1 2"), staggered(Some(5), false, None));
         assert_eq!(read("staggered"), staggered(None, false, None));
         assert_eq!(read("staggered m 4 scheme kick"), staggered(Some(4), false, None));
         assert_eq!(read("staggered m 3 faster grains"), staggered(Some(3), true, None));
@@ -170,9 +168,6 @@ mod tests {
     #[test]
     fn what_has_no_meaning_is_refused_at_its_word() {
         for (words, word) in [
-            ("respa 3 2 2 hybrid 1 2", "3"),
-            ("respa 2 4 pair 1", "pair"),
-            ("respa 2 4 hybrid 2 1", "hybrid"),
             ("staggered m 0", "0"),
             ("staggered faster grains", "run_style"),
             ("staggered scheme hartmann surf", "surf"),

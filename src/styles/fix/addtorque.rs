@@ -92,6 +92,10 @@ impl Fix for Declared {
         true
     }
 
+    fn has_level(&self) -> bool {
+        true
+    }
+
     fn boxed(&self) -> Box<dyn Fix> {
         Box::new(self.clone())
     }

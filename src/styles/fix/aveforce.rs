@@ -5,7 +5,7 @@ use super::{Fix, FixStyle, Minimizing};
 use crate::diag::Result;
 use crate::lang::Args;
 use crate::plan::{Access, Op, Stage};
-use crate::styles::matter::{change_forces, publish};
+use crate::styles::matter::{change_forces, publish_levels};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 
@@ -45,25 +45,29 @@ struct Declared {
 impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let (chosen, force) = self.components.seal(cx)?;
+        let level = cx.level();
         let slot = cx.slot(&format!("f_{}", self.id));
         let access = Access::new("x mask", "f");
         let op = StepOp::new(format!("fix {} aveforce", self.id), Stage::PostForce, access, move |w, t| {
             if t.unchanged {
                 return Ok(());
             }
+            // Of several levels of steps the added force belongs to one.
+            let here = level.acts(&t.phase);
             let [count, before @ ..] = change_forces::<4>(w, &chosen, |_, _, f| [1.0, f[0], f[1], f[2]]);
             if count > 0.0 {
-                let mean: [Option<f64>; 3] =
-                    std::array::from_fn(|d| force[d].map(|r| before[d] / count + r.get(w)));
+                let mean: [Option<f64>; 3] = std::array::from_fn(|d| {
+                    force[d].map(|r| before[d] / count + if here { r.get(w) } else { 0.0 })
+                });
                 change_forces::<0>(w, &chosen, |_, _, f| {
                     (0..3).for_each(|d| f[d] = mean[d].unwrap_or(f[d]));
                     []
                 });
             }
-            publish(w, slot, t, 0.0, &before);
+            publish_levels(w, slot, t, &before);
             Ok(())
         });
-        Ok(vec![op.boxed()])
+        Ok(vec![op.in_every_level().boxed()])
     }
 
     fn shape(&self) -> Shape {
@@ -72,6 +76,10 @@ impl Fix for Declared {
 
     fn minimizing(&self) -> Minimizing {
         Minimizing::Acts
+    }
+
+    fn has_level(&self) -> bool {
+        true
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

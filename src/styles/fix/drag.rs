@@ -87,6 +87,10 @@ impl Fix for Declared {
         Minimizing::Absent
     }
 
+    fn has_level(&self) -> bool {
+        true
+    }
+
     fn boxed(&self) -> Box<dyn Fix> {
         Box::new(self.clone())
     }

@@ -70,11 +70,16 @@ struct Rule {
 
 impl Rule {
     fn step(&self, w: &World, solids: f64, grains: f64) -> f64 {
-        let limit = match w.settings.run_style {
+        let limit = match &w.settings.run_style {
             RunStyle::Verlet => solids.min(grains),
             RunStyle::Staggered { ratio: None, .. } => grains,
-            RunStyle::Staggered { ratio: Some(m), rare: false, .. } => grains.min(m as f64 * solids),
-            RunStyle::Staggered { ratio: Some(m), .. } => grains.min(solids / m as f64),
+            RunStyle::Staggered { ratio: Some(m), rare: false, .. } => grains.min(*m as f64 * solids),
+            RunStyle::Staggered { ratio: Some(m), .. } => grains.min(solids / *m as f64),
+            // Whoever acts in the longest steps of all has the last word.
+            RunStyle::Respa(r) => {
+                let pairs = r.subs.iter().flatten().copied().max().unwrap_or(r.pair);
+                solids.min(grains) * r.steps(pairs) as f64
+            }
         };
         let step = (self.safety * limit).min(self.longest.unwrap_or(f64::INFINITY));
         if step.is_finite() { step } else { w.clock.dt }
@@ -121,7 +126,7 @@ impl Fix for Declared {
 mod tests {
     use super::*;
     use crate::styles::testing::Bench;
-    use crate::world::AtomStyle;
+    use crate::world::{AtomStyle, Respa};
 
     #[test]
     fn the_step_suits_the_way_steps_are_made() {
@@ -130,6 +135,7 @@ mod tests {
         let rule = Rule { how: Estimate::Cfl, safety: 0.5, longest: None };
         let staggered = |ratio, rare| RunStyle::Staggered { ratio, rare, twice: None };
         let inf = f64::INFINITY;
+        let levels = |subs| RunStyle::Respa(Respa { loops: vec![3, 5], bond: 0, pair: 2, subs });
         for (style, solids, grains, step) in [
             (RunStyle::Verlet, 2.0, 8.0, 1.0),
             (RunStyle::Verlet, 2.0, inf, 1.0),
@@ -139,8 +145,10 @@ mod tests {
             (staggered(None, false), 2.0, 8.0, 4.0),
             (staggered(None, false), 2.0, inf, 7.0),
             (staggered(Some(4), true), 8.0, 3.0, 1.0),
+            (levels(None), 2.0, 8.0, 1.0),
+            (levels(Some(vec![0, 1])), 2.0, 8.0, 5.0),
         ] {
-            w.settings.run_style = style;
+            w.settings.run_style = style.clone();
             assert_eq!(rule.step(&w, solids, grains), step, "{style:?}");
         }
         assert_eq!(Rule { longest: Some(0.25), ..rule }.step(&w, inf, inf), 0.25);

@@ -82,6 +82,10 @@ impl Fix for Declared {
         Some(self.rule)
     }
 
+    fn needs_whole_steps(&self, _w: &World) -> Option<&'static str> {
+        Some("its ledger counts the work of whole steps")
+    }
+
     fn boxed(&self) -> Box<dyn Fix> {
         Box::new(self.clone())
     }

@@ -70,7 +70,7 @@ impl Fix for Declared {
             }
             Ok(())
         });
-        Ok(vec![op.in_short_steps().boxed()])
+        Ok(vec![op.in_every_level().boxed()])
     }
 
     fn minimizing(&self) -> Minimizing {

@@ -4,7 +4,7 @@ use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
 use crate::plan::{Access, Act, Gist, Op, Stage, Stretch, Tick};
-use crate::styles::matter::publish;
+use crate::styles::matter::publish_levels;
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 use crate::world::{GroupId, World};
@@ -84,10 +84,10 @@ impl Fix for Declared {
             };
             (!t.unchanged).then(|| Box::new(act) as Act)
         };
-        let told = move |w: &mut World, t: &Tick, gist: Gist| publish(w, slot, t, 0.0, &gist.sums);
+        let told = move |w: &mut World, t: &Tick, gist: Gist| publish_levels(w, slot, t, &gist.sums);
         let name = format!("fix {} freeze", self.id);
         let op = StepOp::new(name, Stage::PostForce, access, |_, _| Ok(())).taking_turns(hold, told);
-        Ok(vec![op.boxed()])
+        Ok(vec![op.in_every_level().boxed()])
     }
 
     fn minimizing(&self) -> Minimizing {

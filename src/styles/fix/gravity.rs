@@ -185,6 +185,10 @@ impl Fix for Declared {
         })
     }
 
+    fn has_level(&self) -> bool {
+        true
+    }
+
     fn boxed(&self) -> Box<dyn Fix> {
         Box::new(self.clone())
     }

@@ -83,7 +83,7 @@ impl Fix for Declared {
                 *w.columns.scalar(&temperature, n) = warmth;
                 Ok(())
             });
-        Ok(vec![op.boxed()])
+        Ok(vec![op.in_every_level().boxed()])
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

@@ -256,6 +256,10 @@ impl Fix for Declared {
         Minimizing::Acts
     }
 
+    fn has_level(&self) -> bool {
+        true
+    }
+
     fn boxed(&self) -> Box<dyn Fix> {
         Box::new(self.clone())
     }

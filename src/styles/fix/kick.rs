@@ -5,7 +5,7 @@ use crate::diag::Result;
 use crate::math::four::has_avx2;
 use crate::math::vec3::Vec3;
 use crate::par;
-use crate::plan::{Act, Gist, Phase, Tick};
+use crate::plan::{Act, Gist, Tick};
 use crate::styles::matter::Masses;
 use crate::styles::step_op::StepOp;
 use crate::world::{GroupId, World};
@@ -39,11 +39,12 @@ where
     op.taking_turns(move |w, t, on| whole(w, group, inertia, t, part(on)), went)
 }
 
-/// A part of a whole step, if this is one.
+/// A part of a whole step, or of a level of steps, of which only the shortest drift; not of a step of two lengths.
 fn whole(w: &World, group: GroupId, inertia: Option<f64>, t: &Tick, part: Part) -> Option<Act> {
-    if t.phase != Phase::Whole {
+    if t.phase.solids.is_some() {
         return None;
     }
+    let part = if part == Part::First && t.phase.level > 0 { Part::Second } else { part };
     let half = half_step(w, t.dt);
     let k = Kick { half, spin: inertia.map_or(0.0, |i| half / i), dt: t.dt, bit: group.bit() };
     Some(Box::new(move |s| {

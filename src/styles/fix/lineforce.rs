@@ -82,7 +82,7 @@ impl Fix for Held {
             });
             Ok(())
         });
-        Ok(vec![op.in_short_steps().boxed()])
+        Ok(vec![op.in_every_level().boxed()])
     }
 
     fn minimizing(&self) -> Minimizing {

@@ -132,6 +132,16 @@ pub trait Fix: Send {
         Minimizing::Idle
     }
 
+    /// Whether `fix_modify respa` may choose the level of steps in which it adds its force.
+    fn has_level(&self) -> bool {
+        false
+    }
+
+    /// Why it cannot act in steps of several lengths (`run_style respa`), if it cannot.
+    fn needs_whole_steps(&self, _w: &World) -> Option<&'static str> {
+        None
+    }
+
     /// Whether its scalar is an energy that `fix_modify energy yes` may add to the potential energy.
     fn has_energy(&self) -> bool {
         false
@@ -268,7 +278,9 @@ fn no_option(args: &mut Args) -> Result<()> {
         "temp" => "this fix uses no temperature",
         "press" => "this fix uses no pressure",
         "bodyforces" => "this fix moves no rigid bodies",
-        "respa" => "there is one level of time steps here, so that no fix can choose another",
+        "respa" => {
+            "this fix has no level of steps to choose: its page and that of run_style tell in which it acts"
+        }
         "dynamic/dof" => "degrees of freedom are counted anew each time: this has nothing to change",
         _ => {
             let text = format!("this fix has no option `{}`", w.text);

@@ -205,6 +205,13 @@ impl Fix for Declared {
         true
     }
 
+    fn needs_whole_steps(&self, w: &World) -> Option<&'static str> {
+        let free = self.path.given().contains(&false) && !w.settings.lammps();
+        free.then_some(
+            "its free components would feel the forces of the outermost level alone, as they do in LAMMPS",
+        )
+    }
+
     fn boxed(&self) -> Box<dyn Fix> {
         Box::new(self.clone())
     }

@@ -4,7 +4,7 @@ use super::kick::{self, pass_some};
 use super::{Fix, FixStyle};
 use crate::diag::Result;
 use crate::lang::Args;
-use crate::plan::{Access, Op, Phase, Stage, Tick};
+use crate::plan::{Access, Op, Stage, Tick};
 use crate::styles::matter::check_masses;
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
@@ -62,8 +62,8 @@ impl Fix for Declared {
                 kick(w, group, t);
                 Ok(())
             });
-        let first = kick::first(first.in_short_steps().reporting(), group, None);
-        let second = kick::second(second.in_short_steps().reporting(), group, None);
+        let first = kick::first(first.in_every_level().reporting(), group, None);
+        let second = kick::second(second.in_every_level().reporting(), group, None);
         Ok(vec![first.boxed(), second.boxed()])
     }
 
@@ -83,22 +83,22 @@ pub fn half_step(w: &World, dt: f64) -> f64 {
 
 /// First half of a step of two lengths: v += Δt/2 · f/m, x += Δt · v; solids drift in the short ones.
 pub fn kick_and_drift(w: &mut World, group: GroupId, t: &Tick) {
-    some(w, group, &t.phase, half_step(w, t.dt), Some(t.dt));
+    some(w, group, t, Some(t.dt));
 }
 
 /// Second half of a step of two lengths: v += Δt/2 · f/m.
 pub fn kick(w: &mut World, group: GroupId, t: &Tick) {
-    some(w, group, &t.phase, half_step(w, t.dt), None);
+    some(w, group, t, None);
 }
 
 /// Half a step of two lengths: in the long one all are kicked and all but solids drift, in the short ones solids do both.
-fn some(w: &mut World, group: GroupId, phase: &Phase, half: f64, dt: Option<f64>) {
-    let bit = group.bit();
-    pass_some(w, group, dt, half, |kind, mask| match phase {
+fn some(w: &mut World, group: GroupId, t: &Tick, dt: Option<f64>) {
+    let Some(solids) = &t.phase.solids else { return };
+    let (bit, short) = (group.bit(), t.phase.level == 0);
+    pass_some(w, group, dt, half_step(w, t.dt), |kind, mask| match short {
         _ if mask & bit == 0 => [false, false],
-        Phase::Whole => [true, true],
-        Phase::Long(solids) => [true, !solids.has(kind) || mask & solids.twice != 0],
-        Phase::Short(solids) => [solids.has(kind), true],
+        false => [true, !solids.has(kind) || mask & solids.twice != 0],
+        true => [solids.has(kind), true],
     });
 }
 

@@ -102,7 +102,7 @@ impl Fix for Declared {
             let (name, access) = (format!("fix {} nve/limit", me.id), Access::new("f mass mask", "x v memo"));
             let key = me.key();
             StepOp::new(name, stage, access, move |w: &mut World, t: &Tick| {
-                let shortened = if t.setup { 0.0 } else { me.kick(w, t, drift) };
+                let shortened = if t.setup { 0.0 } else { me.kick(w, t, drift && t.phase.level == 0) };
                 let total = w.memo.get_mut(&key).and_then(|m| m.first_mut()).map_or(shortened, |n| {
                     *n += shortened;
                     *n
@@ -111,6 +111,7 @@ impl Fix for Declared {
                 Ok(())
             })
             .in_setup(drift)
+            .in_every_level()
             .boxed()
         };
         Ok(vec![

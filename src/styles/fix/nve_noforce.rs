@@ -51,7 +51,7 @@ impl Fix for Declared {
             });
             Ok(())
         });
-        Ok(vec![op.boxed()])
+        Ok(vec![op.innermost().boxed()])
     }
 
     fn integrates(&self) -> bool {

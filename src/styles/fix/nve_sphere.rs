@@ -6,7 +6,7 @@ use super::{Fix, FixStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
 use crate::par;
-use crate::plan::{Access, Op, Phase, Stage, Tick};
+use crate::plan::{Access, Op, Stage, Tick};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
 use crate::world::{GroupId, World};
@@ -97,8 +97,8 @@ impl Fix for Declared {
             turn(w, group, inertia, t);
             Ok(())
         });
-        let first = kicks::first(first.in_short_steps().reporting(), group, Some(inertia));
-        let second = kicks::second(second.in_short_steps().reporting(), group, Some(inertia));
+        let first = kicks::first(first.in_every_level().reporting(), group, Some(inertia));
+        let second = kicks::second(second.in_every_level().reporting(), group, Some(inertia));
         Ok(vec![first.boxed(), second.boxed()])
     }
 
@@ -113,7 +113,7 @@ impl Fix for Declared {
 
 /// Half a step of rotation: ω += Δt/2 · torque/I; bonds of solids turn nothing, so that short steps have none of it.
 fn turn(w: &mut World, group: GroupId, inertia: f64, t: &Tick) {
-    if matches!(t.phase, Phase::Short(_)) {
+    if t.phase.level == 0 {
         return;
     }
     let half = 0.5 * t.dt * w.settings.units.constants().ftm2v / inertia;

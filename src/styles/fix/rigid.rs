@@ -371,6 +371,12 @@ impl Fix for Declared {
         true
     }
 
+    fn needs_whole_steps(&self, _w: &World) -> Option<&'static str> {
+        Some(
+            "its bodies add up the forces of a step once, and LAMMPS' count those of one level twice and leave others out",
+        )
+    }
+
     fn adopts(&self) -> Option<&str> {
         self.template.as_deref()
     }

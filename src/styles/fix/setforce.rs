@@ -4,8 +4,8 @@ use super::components::Components;
 use super::{Fix, FixStyle, Minimizing};
 use crate::diag::Result;
 use crate::lang::Args;
-use crate::plan::{Access, Op, Phase, Stage};
-use crate::styles::matter::{change_forces, publish};
+use crate::plan::{Access, Op, Stage};
+use crate::styles::matter::{change_forces, publish_levels};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 
@@ -46,30 +46,28 @@ struct Declared {
 impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let (chosen, force) = self.components.seal(cx)?;
+        let level = cx.level();
         let slot = cx.slot(&format!("f_{}", self.id));
         let access = Access::new("f x mask", "f");
         let op = StepOp::new(format!("fix {} setforce", self.id), Stage::PostForce, access, move |w, t| {
             if t.unchanged {
                 return Ok(());
             }
-            // In steps of two lengths the value belongs to the long ones, and what bonds did comes from the last short one.
-            let short = matches!(t.phase, Phase::Short(_));
-            let mut before = change_forces(w, &chosen, |w, i, f| {
+            // Of several levels of steps the value belongs to one.
+            let here = level.acts(&t.phase);
+            let before = change_forces(w, &chosen, |w, i, f| {
                 let before = *f;
                 for d in 0..3 {
                     if let Some(reading) = force[d] {
-                        f[d] = if short { 0.0 } else { reading.atom(w, i) };
+                        f[d] = if here { reading.atom(w, i) } else { 0.0 };
                     }
                 }
                 before
             });
-            if matches!(t.phase, Phase::Long(_)) {
-                before.iter_mut().zip(&w.slots.get(slot).vector).for_each(|(all, bonds)| *all += bonds);
-            }
-            publish(w, slot, t, 0.0, &before);
+            publish_levels(w, slot, t, &before);
             Ok(())
         });
-        Ok(vec![op.in_short_steps().boxed()])
+        Ok(vec![op.in_every_level().boxed()])
     }
 
     fn shape(&self) -> Shape {
@@ -78,6 +76,10 @@ impl Fix for Declared {
 
     fn minimizing(&self) -> Minimizing {
         Minimizing::Acts
+    }
+
+    fn has_level(&self) -> bool {
+        true
     }
 
     fn boxed(&self) -> Box<dyn Fix> {

@@ -57,12 +57,16 @@ impl Fix for Declared {
             let (forces, mask) = (&w.particles.f, &w.particles.mask);
             let out = w.slots.get_mut(slot);
             (out.step, out.cols) = (Some(t.step), 3);
-            out.atom.clear();
+            // Of several levels of steps the longer ones add up.
+            if t.phase.level == 0 {
+                out.atom.clear();
+            }
+            out.atom.resize(3 * forces.len(), 0.0);
             let kept = forces.iter().zip(mask).map(|(f, m)| if m & bit != 0 { *f } else { [0.0; 3] });
-            out.atom.extend(kept.flatten());
+            out.atom.iter_mut().zip(kept.flatten()).for_each(|(sum, f)| *sum += f);
             Ok(())
         });
-        Ok(vec![op.boxed()])
+        Ok(vec![op.in_every_level().boxed()])
     }
 
     fn shape(&self) -> Shape {

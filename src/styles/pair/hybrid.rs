@@ -159,23 +159,23 @@ impl Pair for Declared {
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        Ok(self.ops_by_part(cx)?.into_iter().flat_map(|(_, ops)| ops).collect())
+    }
+
+    fn ops_by_part(&self, cx: &mut dyn SealCx) -> Result<Vec<(usize, Vec<Box<dyn Op>>)>> {
         let types = cx.world().types;
         // Solids first: contacts ask which particles belong to one.
         let mut order: Vec<usize> = (0..self.subs.len()).collect();
         order.sort_by_key(|&k| self.subs[k].true_forces().is_none());
-        let mut ops = vec![];
-        for k in order {
-            ops.append(&mut self.limited(k, types).ops(cx)?);
-        }
-        Ok(ops)
+        order.into_iter().map(|k| Ok((k, self.limited(k, types).ops(cx)?))).collect()
     }
 
     fn probes(&self, w: &World) -> Result<Vec<Box<dyn Probe>>> {
-        let mut all = vec![];
-        for k in 0..self.subs.len() {
-            all.append(&mut self.limited(k, w.types).probes(w)?);
-        }
-        Ok(all)
+        Ok(self.probes_by_part(w)?.into_iter().flat_map(|(_, probes)| probes).collect())
+    }
+
+    fn probes_by_part(&self, w: &World) -> Result<Vec<(usize, Vec<Box<dyn Probe>>)>> {
+        (0..self.subs.len()).map(|k| Ok((k, self.limited(k, w.types).probes(w)?))).collect()
     }
 
     fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {

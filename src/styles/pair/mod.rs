@@ -58,12 +58,28 @@ pub trait Pair: Send {
     /// What is missing in the scene.
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>>;
 
+    /// The same by sub-style: its number, from 0, and what it contributes.
+    ///
+    /// # Errors
+    /// As `ops`.
+    fn ops_by_part(&self, cx: &mut dyn SealCx) -> Result<Vec<(usize, Vec<Box<dyn Op>>)>> {
+        Ok(vec![(0, self.ops(cx)?)])
+    }
+
     /// What it, or each sub-style of a `hybrid`, can be asked about single pairs of particles.
     ///
     /// # Errors
     /// What is missing in the scene.
     fn probes(&self, _w: &World) -> Result<Vec<Box<dyn Probe>>> {
         Ok(vec![])
+    }
+
+    /// The same by sub-style: its number, from 0, and whom to ask.
+    ///
+    /// # Errors
+    /// As `probes`.
+    fn probes_by_part(&self, w: &World) -> Result<Vec<(usize, Vec<Box<dyn Probe>>)>> {
+        Ok(vec![(0, self.probes(w)?)])
     }
 
     /// `peri_modify …` and the like: options by command name.

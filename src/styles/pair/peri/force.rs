@@ -2,7 +2,7 @@
 
 use super::{Pair, Solid, reunion};
 use crate::diag::{Code, Diagnostic, Result};
-use crate::plan::{Access, Beat, Op, Stage, Tick};
+use crate::plan::{Access, Level, Op, Stage, Tick};
 use crate::styles::command::peri_crack::missed;
 use crate::world::adapted::Coefficient;
 use crate::world::families::{
@@ -38,8 +38,8 @@ impl Op for Force {
         Stage::Force
     }
 
-    fn beat(&self) -> Beat {
-        Beat::Short
+    fn level(&self) -> Level {
+        Level::At(0)
     }
 
     fn access(&self) -> Access {

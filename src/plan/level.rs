@@ -1,0 +1,81 @@
+//! Levels of steps within each other: which one the present step is, and in which an op acts.
+
+use std::sync::Arc;
+
+/// Which of several levels of steps this is (`run_style respa`, `run_style staggered`): each step of a level holds some
+/// of the level below.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phase {
+    /// The level, from 0: the one of the shortest steps.
+    pub level: usize,
+    /// How many levels there are; 1: the step has one length.
+    pub levels: usize,
+    /// Who alone moves in the short ones of two, and only there; `None`: everybody moves in the shortest steps.
+    pub solids: Option<Arc<Solids>>,
+}
+
+impl Default for Phase {
+    fn default() -> Self {
+        Self { level: 0, levels: 1, solids: None }
+    }
+}
+
+impl Phase {
+    /// Whether this is the level of the longest steps.
+    pub fn outermost(&self) -> bool {
+        self.level + 1 == self.levels
+    }
+
+    /// Whether everybody moves in the shortest of several levels.
+    pub fn nested(&self) -> bool {
+        self.levels > 1 && self.solids.is_none()
+    }
+}
+
+/// Who moves in short steps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solids {
+    /// Whether particles of a type (from 1) belong to peridynamic solids.
+    pub kinds: Vec<bool>,
+    /// Group bits of particles that drift in the long step as well (the scheme printed by Hartmann et al.).
+    pub twice: u32,
+}
+
+impl Solids {
+    /// Whether a type is a solid's.
+    #[inline]
+    pub fn has(&self, kind: u16) -> bool {
+        self.kinds.get(usize::from(kind).wrapping_sub(1)).copied().unwrap_or(false)
+    }
+}
+
+/// In which of several levels of steps an op acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// In the longest ones.
+    Outermost,
+    /// In this one, from 0, or the outermost if there are fewer.
+    At(usize),
+    /// In all: what moves particles, and what takes components of forces away.
+    Every,
+}
+
+impl Level {
+    /// The level in a user's words, of so many.
+    pub fn told(self, levels: usize) -> String {
+        match self {
+            Level::Outermost => format!("level {levels}"),
+            Level::At(k) => format!("level {}", (k + 1).min(levels)),
+            Level::Every => "every level".to_string(),
+        }
+    }
+
+    /// Whether who acts in this level acts in that phase.
+    pub fn acts(self, phase: &Phase) -> bool {
+        match self {
+            Level::Outermost => phase.outermost(),
+            Level::At(k) => k.min(phase.levels - 1) == phase.level,
+            Level::Every => true,
+        }
+    }
+}
