@@ -5,7 +5,7 @@ use super::node::Graph;
 use super::seal::Sealer;
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::{RefKind, Value, ValueRef, Vars};
-use crate::plan::{Access, Op, Stage, Tick, When};
+use crate::plan::{Access, Level, Op, Stage, Tick, When};
 use crate::styles::{Reading, SealCx};
 use crate::world::region::Variable;
 use crate::world::{Region, World};
@@ -115,6 +115,9 @@ impl Op for PlaceRegion {
     }
     fn in_setup(&self) -> bool {
         true
+    }
+    fn level(&self) -> Level {
+        Level::Every
     }
     fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
         let values: Vec<f64> = self.readings.iter().map(|r| r.get(w)).collect();
