@@ -73,7 +73,9 @@ fn column(w: &World, name: &str) -> Option<Result<Vec<f64>>> {
 
 fn clock(w: &World) -> Clock {
     let c = &w.clock;
-    Clock { step: c.step, begin: c.start, end: c.stop, dt: c.dt, running: c.running }
+    // Between runs LAMMPS counts from step 0.
+    let begin = if w.settings.lammps() && !c.running { 0 } else { c.start };
+    Clock { step: c.step, begin, end: c.stop, dt: c.dt, running: c.running }
 }
 
 /// Inside a step: values come from slots that the plan has filled before.

@@ -36,7 +36,7 @@ def formula(r, depth=0, atom=False):
 def shape(r, name, flat):
     c = lambda: round(r.uniform(2, 6), 2)
     # LAMMPS' ellipsoids of flat scenes know no z.
-    egg = f"ellipsoid {c()} {c()} {0 if flat else c()} {c()} {c()} 2"
+    egg = f"sphere {c()} {c()} 0 2" if flat else f"ellipsoid {c()} {c()} {c()} {c()} {c()} 2"
     kind = r.choice([f"block {c()-2:g} {c()+1:g} INF {c():g} EDGE {c():g}", f"sphere {c()} {c()} {c()} {c() - 1:g}", f"cylinder {r.choice('xyz')} {c()} {c()} {c() - 1:g} 1 6",
                      f"cone {r.choice('xyz')} {c()} {c()} 1 {c()} 0.5 7", f"plane {c()} {c()} {c()} 1 {r.choice([0, 1])} -0.5", "prism 1 5 1 5 1 5 1 0 0",
                      egg])

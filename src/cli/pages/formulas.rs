@@ -32,7 +32,7 @@ const TEXT: &str = "**Operators**, from loose to tight: `||` and `|^` (exclusive
     LAMMPS has it;\n\
     - functions of the step: `ramp(a,b)` goes from a to b over a run (`run … start … stop` counts); `vdisplace(a,b)` is \
     a + b t, `swiggle(a,b,period)` is a + b sin(2πt/period), `cwiggle(a,b,period)` is a + b (1 − cos(2πt/period)), t the \
-    time since the run began;\n\
+    time since the run began (between runs the last one; step 0 under `-compat lammps`, as in LAMMPS);\n\
     - sequences of steps, each the next one after the present: `stride(x,y,z)` `stride2(x,y,z,a,b,c)` `stagger(x,y)` \
     `logfreq(x,y,z)` `logfreq2(x,y,z)` `logfreq3(x,y,z)`.\n\n\
     **Groups**: `count(g)` `mass(g)` `ke(g)` `gyration(g)`; with a direction `xcm(g,x)` `vcm(g,x)` `fcm(g,x)` \
