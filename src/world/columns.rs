@@ -1,5 +1,6 @@
 //! Named per-particle columns beyond the core ones: they follow every reordering and deletion.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// The property of fix property/atom that holds temperatures.
@@ -44,8 +45,8 @@ impl Columns {
     /// `heatflow` (fix property/atom).
     pub fn custom(&self, word: &str) -> Option<String> {
         let name = match word.strip_suffix(']').and_then(|w| w.split_once('[')) {
-            Some((head, k)) => format!("{head}/{k}"),
-            None => word.to_string(),
+            Some((head, k)) => Cow::Owned(format!("{head}/{k}")),
+            None => Cow::Borrowed(word),
         };
         let own = |full: &&String| {
             full.strip_prefix("property/atom/")

@@ -13,6 +13,8 @@ use crate::world::{SlotId, World};
 /// Pours.
 pub struct Rain {
     name: String,
+    /// Where the world keeps its account.
+    key: String,
     fix: Pouring,
     span: Span,
     slot: SlotId,
@@ -69,19 +71,20 @@ impl Rain {
         let time =
             (relative + (relative * relative + 2.0 * gravity * (hi[down] - lo[down])).sqrt()) / gravity;
         let every = ((time / w.clock.dt + 0.5) as i64).max(1);
-        let mut account = Account::load(w, &fix.key()).unwrap_or_else(|| Account::maker(w, fix.seed));
+        let key = fix.key();
+        let mut account = Account::load(w, &key).unwrap_or_else(|| Account::maker(w, fix.seed));
         let now = w.clock.step;
         let planned = account.next.filter(|n| (now + 1..=now + every).contains(n) && !w.settings.lammps());
         let first = planned.unwrap_or(now + 1);
         account.next = (account.done < fix.count).then_some(first);
-        account.store(w, &fix.key());
+        account.store(w, &key);
         if let Some(left) = fix.count.checked_sub(account.done).filter(|n| *n > 0) {
             let last = first + ((left - 1) / batch) as i64 * every;
             log.line(&format!("Particle insertion: {batch} every {every} steps, {left} by step {last}"))?;
         }
         w.slots.get_mut(slot).scalar = account.done as f64;
         let name = format!("fix {} pour", fix.id);
-        Ok(Self { name, fix: fix.clone(), span, slot, gravity, batch, every, failed: None })
+        Ok(Self { name, key, fix: fix.clone(), span, slot, gravity, batch, every, failed: None })
     }
 
     /// What one batch consists of.
@@ -170,8 +173,7 @@ impl Op for Rain {
         Access::new("x radius", "everything")
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let key = self.fix.key();
-        let Some(mut account) = Account::load(w, &key).filter(|a| a.next == Some(t.step)) else {
+        let Some(mut account) = Account::load(w, &self.key).filter(|a| a.next == Some(t.step)) else {
             return Ok(());
         };
         let wanted = self.batch.min(self.fix.count - account.done);
@@ -186,7 +188,7 @@ impl Op for Rain {
         };
         account.done += made.len();
         account.next = (account.done < self.fix.count).then_some(t.step + self.every);
-        account.store(w, &key);
+        account.store(w, &self.key);
         let missing = wanted - made.len();
         if missing > 0 {
             let (before, step) = self.failed.unwrap_or((0, t.step));
