@@ -1,6 +1,6 @@
 //! Grains in the order of space: neighbours near each other in memory while a run lasts.
 
-use crate::neigh::slabs::Slabs;
+use crate::neigh::slabs::{Slabs, edges};
 use crate::world::World;
 
 /// Fewer than these fit the fastest memory in any order.
@@ -30,8 +30,7 @@ fn order(w: &World, x: &[[f64; 3]]) -> Option<Vec<usize>> {
         return None;
     }
     let (domain, period) = (w.domain.as_ref()?, w.periods());
-    let largest = p.radius.iter().copied().fold(0.0, f64::max);
     let mut slabs = Slabs::default();
-    slabs.sort(x, &p.tag, 2.0 * largest + w.settings.neighbor.skin, &domain.lo, &period);
+    slabs.sort(x, &p.tag, edges(&p.radius, w.settings.neighbor.skin), &domain.lo, &period);
     Some(slabs.order.iter().map(|&i| i as usize).collect())
 }

@@ -107,16 +107,46 @@ pub fn pairs(
     skin: f64,
     keep: &(impl Fn(usize, usize) -> bool + Sync),
 ) -> Vec<Pair> {
+    let mut out = found(v, wanted, skin, 0.0, keep);
+    out.sort_by_key(|p| (v.tag[p.i as usize], v.tag[p.j as usize], p.shift));
+    out
+}
+
+/// Those of [`pairs`] in which one is beyond the sizes that are [`small`], in no order to rely on.
+pub fn pairs_of_large(
+    v: &View,
+    wanted: &Wanted,
+    skin: f64,
+    keep: &(impl Fn(usize, usize) -> bool + Sync),
+) -> Vec<Pair> {
+    found(v, wanted, skin, small(v.radius), keep)
+}
+
+/// The radius that small ones stay below: they fill two octaves from the smallest on.
+pub fn small(radius: &[f64]) -> f64 {
+    let least = radius.iter().copied().filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min);
+    // The power of two at or below it: a number without its fraction.
+    let octave = f64::from_bits(least.to_bits() >> 52 << 52);
+    4.0 * octave
+}
+
+/// Pairs class by class, in which one is not below `small`.
+fn found(
+    v: &View,
+    wanted: &Wanted,
+    skin: f64,
+    small: f64,
+    keep: &(impl Fn(usize, usize) -> bool + Sync),
+) -> Vec<Pair> {
     let classes = classes(v, wanted);
     let mut out = vec![];
     for (k, a) in classes.iter().enumerate() {
-        for b in &classes[k..] {
+        for b in classes[k..].iter().filter(|b| a.largest >= small || b.largest >= small) {
             let Some(reach) = wanted.get(a.kind, b.kind) else { continue };
             let (few, many) = if b.members.len() < a.members.len() { (b, a) } else { (a, b) };
             out.append(&mut Search { v, few, many, reach, skin, keep }.run());
         }
     }
-    out.sort_by_key(|p| (v.tag[p.i as usize], v.tag[p.j as usize], p.shift));
     out
 }
 

@@ -1,10 +1,13 @@
 //! Particles in the order of cells, and cells in slabs: the spatial order that granular loops and the world work in.
 
 use super::grid::extent;
+use super::list::small;
 use std::ops::Range;
 
-/// Layers of cells in a slab: fixed, because it decides the order in which forces are added up.
+/// Layers of cells in a slab at least: fixed, because it decides the order in which forces are added up.
 const LAYERS: usize = 2;
+/// Largest radius in units of the smallest up to which one grid of cells serves all.
+const ALIKE: f64 = 4.0;
 /// Cells per particle at most; beyond that cells grow.
 const SPARSE: usize = 4;
 
@@ -20,6 +23,8 @@ pub struct Slabs {
     repeats: [bool; 3],
     lo: [f64; 3],
     per_length: [f64; 3],
+    /// Layers of cells in a slab: pairs reach into the next slab at most.
+    layers: usize,
     /// First place of each cell, and the number of all places.
     start: Vec<u32>,
     /// The point at each place.
@@ -37,6 +42,22 @@ pub struct Run {
     pub image: u32,
 }
 
+/// How long the edges of cells should be, and how far pairs reach, for spheres whose surfaces are up to `more` apart.
+///
+/// Cells of spheres of about one size are as long as pairs reach, and neighbours are in neighbouring cells. Where sizes
+/// differ much, this holds for the [`small`] ones, and [`pairs_of_large`](super::list::pairs_of_large) finds the others.
+pub fn edges(radius: &[f64], more: f64) -> [f64; 2] {
+    let bounds = |(lo, hi): (f64, f64), r: &f64| (lo.min(*r), hi.max(*r));
+    let (least, most) = radius.iter().fold((f64::INFINITY, 0.0), bounds);
+    let reach = 2.0 * most + more;
+    if most <= ALIKE * least {
+        return [reach; 2];
+    }
+    let small = small(radius);
+    let larger = radius.iter().copied().filter(|r| *r < small).fold(0.0, f64::max);
+    [2.0 * larger + more, reach]
+}
+
 /// The image in which nothing is shifted.
 pub const HERE: u32 = 13;
 
@@ -46,10 +67,17 @@ pub fn shift_of(image: u32) -> [f64; 3] {
 }
 
 impl Slabs {
-    /// Sorts all points into cells of at least `edge`; `lo` and `period` describe the box, `period` is zero where it does not
-    /// repeat, and elsewhere at least `edge`.
-    pub fn sort(&mut self, x: &[[f64; 3]], tag: &[u32], edge: f64, lo: &[f64; 3], period: &[f64; 3]) {
-        self.lay_out(x, edge, lo, period);
+    /// Sorts all points into cells of at least `edge`, for pairs that reach so far at most; `lo` and `period` describe the
+    /// box, `period` is zero where it does not repeat, and elsewhere at least the reach.
+    pub fn sort(
+        &mut self,
+        x: &[[f64; 3]],
+        tag: &[u32],
+        [edge, reach]: [f64; 2],
+        lo: &[f64; 3],
+        period: &[f64; 3],
+    ) {
+        self.lay_out(x, [edge, reach], lo, period);
         let cell: Vec<u32> = x.iter().map(|p| self.cell_of(p)).collect();
         self.start.clear();
         self.start.resize(self.cells.iter().product::<usize>() + 1, 0);
@@ -72,7 +100,7 @@ impl Slabs {
         }
     }
 
-    fn lay_out(&mut self, x: &[[f64; 3]], edge: f64, lo: &[f64; 3], period: &[f64; 3]) {
+    fn lay_out(&mut self, x: &[[f64; 3]], [edge, reach]: [f64; 2], lo: &[f64; 3], period: &[f64; 3]) {
         let (from, to) = extent(x, 0..x.len() as u32);
         let open = |d: usize| period[d] == 0.0;
         let origin: [f64; 3] = std::array::from_fn(|d| if open(d) { from[d] } else { lo[d] });
@@ -89,9 +117,10 @@ impl Slabs {
             }
             size *= (all / room).cbrt().clamp(1.01, 1e100);
         };
+        self.layers = if reach > size { LAYERS.max((reach / size).ceil() as usize) } else { LAYERS };
         // The slow axis: the longest of those that do not repeat, or the longest of all if these are thin.
         let slow = |open_only: bool| (0..3).filter(|&d| !open_only || open(d)).max_by_key(|&d| count[d]);
-        let thin = |d: &usize| count[*d] < 4 * LAYERS;
+        let thin = |d: &usize| count[*d] < 4 * self.layers;
         let slowest = slow(true).filter(|d| !thin(d)).or(slow(false)).unwrap_or(2);
         let mut rest = [0, 1, 2].into_iter().filter(|&d| d != slowest);
         self.axes = [rest.next().unwrap_or(0), rest.next().unwrap_or(1), slowest];
@@ -112,7 +141,7 @@ impl Slabs {
     /// Number of slabs. Pairs of a slab ([`Slabs::runs`]) lie in it or reach into the next one, of the last into the
     /// first where the slow axis repeats; there are then an even number of slabs, or one.
     pub fn count(&self) -> usize {
-        let slabs = (self.cells[2] / LAYERS).max(1);
+        let slabs = (self.cells[2] / self.layers.max(1)).max(1);
         if self.repeats[2] && slabs > 1 { slabs & !1 } else { slabs }
     }
 
@@ -214,7 +243,7 @@ mod tests {
         let tag: Vec<u32> = (0..300).map(|i| (i * 7919) % 300).collect();
         for period in [[0.0; 3], edges, [8.0, 0.0, 0.0], [0.0, 3.2, 5.0]] {
             let mut slabs = Slabs::default();
-            slabs.sort(&x, &tag, 1.0, &[0.0; 3], &period);
+            slabs.sort(&x, &tag, [1.0; 2], &[0.0; 3], &period);
             let (mut found, mut runs) = (BTreeSet::new(), vec![]);
             for k in 0..slabs.count() {
                 let next = slabs.slab((k + 1) % slabs.count());
@@ -242,12 +271,34 @@ mod tests {
     }
 
     #[test]
+    fn slabs_of_small_cells_are_as_thick_as_pairs_reach() {
+        let x = points(3000, [9.0, 4.0, 3.0]);
+        let tag: Vec<u32> = (0..3000).collect();
+        for period in [[0.0; 3], [9.0, 4.0, 3.0]] {
+            let mut slabs = Slabs::default();
+            slabs.sort(&x, &tag, [0.3, 1.1], &[0.0; 3], &period);
+            let count = slabs.count();
+            assert!(count >= 4);
+            let of = |i: usize| {
+                let place = slabs.order.iter().position(|o| *o as usize == i).unwrap();
+                (0..count).find(|k| slabs.members(*k).contains(&place)).unwrap()
+            };
+            for (i, j, _) in all(&x[..300], 1.1, period) {
+                let (a, b) = (of(i), of(j));
+                assert!(a == b || (a + 1) % count == b || (b + 1) % count == a, "{a} {b}");
+            }
+        }
+        assert_eq!(edges(&[1.0, 4.0], 0.5), [8.5, 8.5]);
+        assert_eq!(edges(&[1.0, 3.9, 4.1], 0.5), [8.3, 8.7]);
+    }
+
+    #[test]
     fn the_order_depends_on_places_and_tags_alone() {
         let x = points(200, [3.0; 3]);
         let tag: Vec<u32> = (0..200).collect();
         let sorted = |x: &[[f64; 3]], tag: &[u32]| {
             let mut s = Slabs::default();
-            s.sort(x, tag, 1.0, &[0.0; 3], &[0.0; 3]);
+            s.sort(x, tag, [1.0; 2], &[0.0; 3], &[0.0; 3]);
             s.order.iter().map(|&i| tag[i as usize]).collect::<Vec<_>>()
         };
         let (back, mixed): (Vec<_>, Vec<_>) = x.iter().copied().zip(tag.iter().copied()).rev().unzip();
@@ -255,7 +306,7 @@ mod tests {
         assert_eq!(sorted(&[], &[]), []);
         // Far points do not cost memory.
         let mut s = Slabs::default();
-        s.sort(&[[0.0; 3], [1e12, 3.0, 4.0]], &[1, 2], 1.0, &[0.0; 3], &[0.0; 3]);
+        s.sort(&[[0.0; 3], [1e12, 3.0, 4.0]], &[1, 2], [1.0; 2], &[0.0; 3], &[0.0; 3]);
         assert!(s.start.len() < 200);
     }
 }

@@ -18,6 +18,19 @@ pub struct Pairs {
     pub w: Vec<u32>,
 }
 
+impl Pairs {
+    /// Fills up to a multiple of four; far too much room is given back.
+    pub(super) fn fill_up(&mut self) {
+        while !self.i.len().is_multiple_of(4) {
+            self.i.push(0);
+            self.w.push(NOWHERE << HERE_BITS);
+        }
+        let long = self.i.len();
+        fit(&mut self.i, long);
+        fit(&mut self.w, long);
+    }
+}
+
 /// Pairs within the thin skin, in the order of the long list.
 #[derive(Clone, Debug, Default)]
 pub struct Short {
@@ -135,13 +148,6 @@ impl<L: ContactLaw> Fast<L> {
                 }
             }
         }
-        while !out.i.len().is_multiple_of(4) {
-            out.i.push(0);
-            out.w.push(NOWHERE << HERE_BITS);
-        }
-        let long = out.i.len();
-        fit(&mut out.i, long);
-        fit(&mut out.w, long);
     }
 
     /// Short lists of these slabs from the present positions; contacts keep what they remember.

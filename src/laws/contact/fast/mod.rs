@@ -1,6 +1,7 @@
 //! Contacts of many grains: spatial order, short lists, four contacts at a time; the same numbers as the plain driver.
 //!
-//! Grains are sorted into slabs of cells ([`Slabs`]); the world does well to stand in that order. Each slab has a list of
+//! Grains are sorted into slabs of cells ([`Slabs`], as thick as the largest grains reach); the world does well to stand in
+//! that order. Each slab has a list of
 //! the pairs within the skin, and of those a shorter list of pairs within a thin second skin, which holds what contacts
 //! remember.
 //! A step tests the distances of the short list four at a time and evaluates the law for four contacts at a time; slabs
@@ -13,12 +14,14 @@ mod memory;
 mod near;
 mod stray;
 mod sweep;
+mod uneven;
 
 use super::driver::Grains;
 use super::{Advance, ContactLaw};
 use crate::math::four::has_avx2;
 use crate::math::vec3::Vec3;
-use crate::neigh::slabs::{Slabs, shift_of};
+use crate::neigh::list::small;
+use crate::neigh::slabs::{Slabs, edges, shift_of};
 use crate::par;
 use crate::world::contacts::Contacts;
 use lists::{Short, Slab};
@@ -189,8 +192,9 @@ impl<L: ContactLaw> Fast<L> {
         let largest = grains.radius.iter().copied().fold(0.0, f64::max);
         self.span = self.laws.span(largest);
         let reach = frame.skin + self.span;
+        let [edge, far] = edges(grains.radius, reach);
         let mut slabs = Slabs::default();
-        slabs.sort(grains.x, grains.tag, 2.0 * largest + reach, &frame.lo, &frame.period);
+        slabs.sort(grains.x, grains.tag, [edge, far], &frame.lo, &frame.period);
         let book = self.remember(grains.tag, known);
         // The book has what they knew: room for what is made now.
         self.lists.iter_mut().for_each(|l| l.short = Short::default());
@@ -204,7 +208,15 @@ impl<L: ContactLaw> Fast<L> {
         }
         self.shifts[NOWHERE as usize][0] = FAR;
         self.thin = THIN * frame.skin;
-        self.make_long(grains, &slabs, reach, keep);
+        if edge == far {
+            self.make_long(grains, &slabs, reach, keep);
+        } else {
+            let small = small(grains.radius);
+            let both_small = |i: usize, j: usize| grains.radius[i] < small && grains.radius[j] < small;
+            self.make_long(grains, &slabs, reach, &|i, j| both_small(i, j) && keep(i, j));
+            self.add_large(grains, &slabs, (frame.period, reach), keep);
+        }
+        self.lists.iter_mut().for_each(|list| list.long.fill_up());
         self.strays.divide(&slabs);
         self.book = Some(book);
         self.stale = true;

@@ -192,7 +192,7 @@ mod tests {
         let x: Vec<[f64; 3]> = (0..9).map(|i| [f64::from(i), 0.0, 0.0]).collect();
         let tag: Vec<u32> = (0..9).collect();
         let mut slabs = Slabs::default();
-        slabs.sort(&x, &tag, 1.4, &[0.0; 3], &[0.0; 3]);
+        slabs.sort(&x, &tag, [1.4; 2], &[0.0; 3], &[0.0; 3]);
         assert_eq!(slabs.count(), 3);
         (slabs, x, tag)
     }

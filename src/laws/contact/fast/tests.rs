@@ -52,6 +52,31 @@ fn scene(period: [f64; 3]) -> Scene {
     }
 }
 
+/// The same with some grains that are four to seven times as large as the smallest, and no others inside them.
+fn uneven(period: [f64; 3]) -> Scene {
+    let mut s = scene(period);
+    let large = [13, 350, 401, 888, 1200];
+    for (k, i) in large.into_iter().enumerate() {
+        (s.radius[i], s.mass[i], s.frozen[i]) = (1.5 + 0.2 * k as f64, 30.0, false);
+    }
+    let free = |i: &usize| {
+        large.iter().all(|l| {
+            let d = (0..3).map(|d| {
+                let d1 = s.x[*i][d] - s.x[*l][d];
+                if period[d] > 0.0 { d1 - period[d] * (d1 / period[d]).round() } else { d1 }
+            });
+            i == l || d.map(|d| d * d).sum::<f64>().sqrt() > 0.97 * (s.radius[*i] + s.radius[*l])
+        })
+    };
+    let kept: Vec<usize> = (0..s.x.len()).filter(free).collect();
+    assert!(kept.len() > 700 && large.iter().filter(|l| kept.contains(l)).count() >= 3);
+    let [x, v, omega] = [&s.x, &s.v, &s.omega].map(|c| kept.iter().map(|&i| c[i]).collect());
+    let [radius, mass] = [&s.radius, &s.mass].map(|c| kept.iter().map(|&i| c[i]).collect());
+    let (kind, tag) = (kept.iter().map(|&i| s.kind[i]).collect(), kept.iter().map(|&i| s.tag[i]).collect());
+    let frozen = kept.iter().map(|&i| s.frozen[i]).collect();
+    Scene { x, v, omega, radius, mass, kind, tag, frozen, period }
+}
+
 /// The law of two types: there are three, one of them with all that contacts can remember.
 fn between(a: u16, b: u16) -> Granular {
     let stiffness = 200.0 * f64::from(a + b);
@@ -205,8 +230,10 @@ const PERIODS: [[f64; 3]; 3] = [[0.0; 3], [10.45, 9.5, 0.0], [10.45, 9.5, 11.4]]
 
 #[test]
 fn the_numbers_of_the_plain_driver() {
-    for (period, law) in PERIODS.into_iter().flat_map(|p| [(p, between as Table), (p, sticky)]) {
-        let mut s = scene(period);
+    let scenes = PERIODS.into_iter().flat_map(|p| [(scene(p), between as Table), (scene(p), sticky)]);
+    // With large grains reaching farther, only boxes that do not repeat or are wide enough.
+    let large = [uneven(PERIODS[0]), uneven([10.45, 0.0, 0.0])].map(|s| (s, between as Table));
+    for (mut s, law) in scenes.chain(large) {
         let mut plain = PlainLoop { law, list: vec![], sweep: Sweep::default(), memory: Contacts::default() };
         let mut fast = FastLoop::new(false, law);
         let mut beyond = 0;
@@ -238,9 +265,15 @@ fn the_numbers_of_the_plain_driver() {
 
 #[test]
 fn the_same_bits_for_threads_and_across_the_world() {
+    for (first, law) in [(scene(PERIODS[2]), sticky as Table), (uneven([10.45, 0.0, 0.0]), between)] {
+        same_bits(&first, law);
+    }
+}
+
+fn same_bits(first: &Scene, law: Table) {
     let run = |through_world: bool, threads: usize| {
         par::set_threads(threads);
-        let (mut s, mut fast) = (scene(PERIODS[2]), FastLoop::new(through_world, sticky));
+        let (mut s, mut fast) = (first.clone(), FastLoop::new(through_world, law));
         for k in 0..30 {
             if k % 7 == 0 {
                 s.wrap();

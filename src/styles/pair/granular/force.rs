@@ -9,13 +9,11 @@ use crate::laws::contact::fast::{Fast, Frame, Laws, MOST_GRAINS, MOST_MEMORY};
 use crate::laws::contact::{Advance, ContactLaw, Granular, Heat};
 use crate::math::vec3::Vec3;
 use crate::neigh::list::{Pair, Reach, Wanted};
+use crate::neigh::slabs::{edges, shift_of};
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::world::columns::{HEATFLOW, TEMPERATURE};
 use crate::world::contacts::{Contacts, Deep};
 use crate::world::{Allowed, World};
-
-/// Largest radius in units of the smallest up to which one grid of cells serves all.
-const ALIKE: f64 = 4.0;
 
 /// Forces and torques of all granular contacts of one pair style.
 pub struct Force {
@@ -36,7 +34,7 @@ pub struct Force {
     is_fast: bool,
 }
 
-/// The plain loop: knows every rule, at any size ratio.
+/// The plain loop: knows every rule.
 #[derive(Default)]
 struct Plain {
     list: Vec<Pair>,
@@ -209,13 +207,41 @@ fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<G
 /// Whether the fast loop can take these particles.
 fn suits(w: &World, period: Vec3, fast: &Fast<Granular>) -> bool {
     let p = &w.particles;
-    let bounds = |(lo, hi): (f64, f64), r: &f64| (lo.min(*r), hi.max(*r));
-    let (least, most) = p.radius.iter().fold((f64::INFINITY, 0.0), bounds);
-    let reach = 2.0 * most + w.settings.neighbor.skin + fast.span(most);
-    // Two grains must not meet in two images at once.
-    let wide = period.iter().all(|l| *l == 0.0 || *l >= 2.0 * reach);
+    let most = p.radius.iter().copied().fold(0.0, f64::max);
+    let more = w.settings.neighbor.skin + fast.span(most);
     let still = w.domain.as_ref().is_none_or(|d| d.flow.is_none());
-    still && w.families.is_none() && !p.is_empty() && p.len() <= MOST_GRAINS && most <= ALIKE * least && wide
+    let fits = still && w.families.is_none() && !p.is_empty() && p.len() <= MOST_GRAINS;
+    fits && !meet_twice(w, period, most, more)
+}
+
+/// Most grains whose images are looked at one by one.
+const FEW: usize = 64;
+
+/// Whether two grains might meet in two images at once, with surfaces up to `more` apart, or one meets itself.
+fn meet_twice(w: &World, period: Vec3, most: f64, more: f64) -> bool {
+    let (radius, x) = (&w.particles.radius, built_at(w));
+    let shortest = period.into_iter().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+    if 2.0 * (2.0 * most + more) <= shortest {
+        return false;
+    }
+    // In two images the larger distance is half a period at least.
+    let large: Vec<usize> =
+        (0..radius.len()).filter(|&i| 2.0 * (radius[i] + most + more) > shortest).collect();
+    let [edge, reach] = edges(radius, more);
+    if large.len() > FEW || edge == reach || reach > shortest {
+        return true;
+    }
+    let twice = |i: usize, j: usize| {
+        let reach = radius[i] + radius[j] + more;
+        let near = |image: &u32| {
+            let shift = shift_of(*image);
+            let d: Vec3 = std::array::from_fn(|d| x[i][d] - (x[j][d] + shift[d] * period[d]));
+            let absent = (0..3).any(|d| period[d] == 0.0 && shift[d] != 0.0);
+            !absent && d.iter().map(|d| d * d).sum::<f64>() < reach * reach
+        };
+        (0..27).filter(near).count() > 1
+    };
+    large.iter().enumerate().any(|(k, &i)| large[k + 1..].iter().any(|&j| twice(i, j)))
 }
 
 /// What contacts see of the particles.

@@ -1,0 +1,63 @@
+//! Grains of very different sizes: pairs with large ones are found size by size and go to the slabs they belong to.
+
+use super::near::HERE_BITS;
+use super::{Fast, NONE};
+use crate::laws::contact::ContactLaw;
+use crate::laws::contact::driver::Grains;
+use crate::math::vec3::Vec3;
+use crate::neigh::list::{Reach, View, Wanted, pairs_of_large};
+use crate::neigh::slabs::{HERE, Slabs};
+
+impl<L: ContactLaw> Fast<L> {
+    /// Adds pairs with large grains to the long lists, from these positions and radii in a box of these periods, with surfaces
+    /// nearer than `skin`. A pair belongs to the slab of one of its grains from where the other is in the same or the next one.
+    pub(super) fn add_large(
+        &mut self,
+        grains: &Grains,
+        slabs: &Slabs,
+        (period, skin): (Vec3, f64),
+        keep: &(impl Fn(usize, usize) -> bool + Sync),
+    ) {
+        let types = self.laws.types as u16;
+        let mut wanted = Wanted::new(self.laws.types);
+        for (a, b) in (1..=types).flat_map(|a| (a..=types).map(move |b| (a, b))) {
+            if self.laws.which(a, b) != NONE {
+                wanted.set(a, b, Reach::Touch);
+            }
+        }
+        let Grains { x, tag, kind, radius, .. } = *grains;
+        let found = pairs_of_large(&View { x, tag, kind, radius, period }, &wanted, skin, keep);
+
+        let count = slabs.count();
+        let (mut place, mut slab) = (vec![0; x.len()], vec![0; x.len()]);
+        for k in 0..count {
+            for at in slabs.members(k) {
+                let i = slabs.order[at] as usize;
+                (place[i], slab[i]) = (at as u32, k);
+            }
+        }
+        let mut entries: Vec<Vec<[u32; 3]>> = vec![vec![]; count];
+        for p in found {
+            let (a, b) = (p.i as usize, p.j as usize);
+            let next = |k: usize| (k + 1) % count;
+            debug_assert!(slab[a] == slab[b] || next(slab[a]) == slab[b] || next(slab[b]) == slab[a]);
+            let first = if slab[a] == slab[b] { place[a] < place[b] } else { next(slab[a]) == slab[b] };
+            let image = |sign: i32| {
+                let [x, y, z] = p.shift.map(|s| sign * i32::from(s));
+                (HERE as i32 + x + 3 * y + 9 * z) as u32
+            };
+            if first {
+                entries[slab[a]].push([place[a], place[b], image(1)]);
+            } else {
+                entries[slab[b]].push([place[b], place[a], image(-1)]);
+            }
+        }
+        for (list, mut entries) in self.lists.iter_mut().zip(entries) {
+            entries.sort_unstable();
+            let grain = |place: u32| slabs.order[place as usize];
+            let out = &mut list.long;
+            out.i.extend(entries.iter().map(|[i, ..]| grain(*i)));
+            out.w.extend(entries.iter().map(|[_, j, image]| grain(*j) | image << HERE_BITS));
+        }
+    }
+}
