@@ -1,4 +1,5 @@
 """Random decks of some dozen grains: contact laws, walls, fixes."""
+
 EDGE = 6.0
 
 

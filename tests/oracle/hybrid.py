@@ -98,9 +98,8 @@ def hybrid(r):
              "region low block INF INF INF INF INF 0.5", "group foot region low", "group foot2 intersect foot body"]
     pair, laws = law(r)
     overlay = r.random() < 0.3
-    words = pair if pair != "granular" else "granular"
     peri = f"peri/{style}"
-    order = [peri, words] if r.random() < 0.5 else [words, peri]
+    order = [peri, pair] if r.random() < 0.5 else [pair, peri]
     deck.append(f"pair_style hybrid{'/overlay' if overlay else ''} {' '.join(order)}")
     gran = pair.split()[0]
     own = other = material(r, style, horizon)
@@ -111,6 +110,7 @@ def hybrid(r):
     deck += [f"pair_coeff 1 1 {peri} {own}", f"pair_coeff 2 2 {peri} {other}"]
     deck.append(f"pair_coeff 1 2 {peri} {own}" if joined else f"pair_coeff 1 2 {gran} {laws[0]}")
     deck += [f"pair_coeff 1*2 3*4 {gran} {laws[0]}", f"pair_coeff 3*4 3*4 {gran} {laws[-1]}"]
+    # Walls of style history without damping are 0/0 in LAMMPS: laws here are damped.
     deck += ["neighbor 0.005 nsq", "neigh_modify every 1 delay 0 check yes", f"timestep {r.choice(['2e-8', '5e-8'])}"]
     if r.random() < 0.2:
         deck.append("neigh_modify exclude type 3 3")

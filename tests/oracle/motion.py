@@ -86,10 +86,9 @@ def computes(r, flat, plain, classic, fixed):
         "tr": ("compute tr all temp/ramp vx 0 1 y 0 6 units box", ["c_tr"]),
         "km": ("compute km odd ke\ncompute mo few momentum\ncompute cm odd com\ncompute gy odd gyration\ncompute ms odd msd com yes", ["c_km", "c_mo[*]", "c_cm[*]", "c_gy", "c_gy[*]", "c_ms[*]"]),
         "pl": ("compute pl all pair/local dist force cutoff radius\ncompute ps all reduce sum c_pl[1] c_pl[2] inputs local", ["c_ps[*]"]),
-        "lo": ("compute lo all property/local patom1 patom2 cutoff radius\ncompute ls all reduce sum c_lo[1] c_lo[2] inputs local", []),
         "di": ("compute di all displace/atom\ncompute dm all reduce maxabs c_di[1] c_di[4]", ["c_dm[*]"]),
         "cl": ("compute cl all cluster/atom 0.9\ncompute clm all reduce max c_cl", ["c_clm"]),
-        "rr": ("compute rr odd reduce/region half avesq vx vy omegaz\ncompute pa all property/atom omegaz".replace(" omegaz\n", "\n"), ["c_rr[*]"]),
+        "rr": ("compute rr odd reduce/region half avesq vx vy", ["c_rr[*]"]),
         "nb": ("compute nb all reduce minabs vx\ncompute nc all reduce sumabs vx", ["c_nb", "c_nc"]),
         "cb": (f"compute cb all chunk/atom bin/1d {r.choice('xy')} lower {r.choice([0.7, 1.5])} units box\nfix cb all ave/chunk 2 5 20 cb {r.choice(binned + ['vx vy v_each', 'temp'])}"
                f"{r.choice(['', ' norm sample', ' norm none', ' norm all'])}{r.choice(['', ' ave running', ' ave window 2'])} file cb.out\ncompute kea all ke/atom", []),
@@ -99,20 +98,18 @@ def computes(r, flat, plain, classic, fixed):
         "bc": ("compute bc all chunk/atom bin/cylinder z lower 3 3 3 0.2 2.8 3 units box\nfix bc all ave/chunk 10 1 10 bc vx file bc.out" if not flat else "compute bc all chunk/atom type", []),
         "at": (f"compute ak all ke\nfix at all ave/time 2 5 {r.choice([10, 20])} c_ak v_grow {r.choice(['', 'ave running', 'ave window 3'])} file at.out", ["f_at[1]", "f_at[2]"]),
         "av": ("compute am all momentum\nfix av all ave/time 5 2 10 c_am mode vector file av.out", []),
-        "aa": ("fix aa all ave/atom 2 5 10 vx c_kf\ncompute kf all ke/atom\ncompute as all reduce sum f_aa[1] f_aa[2]".replace("fix aa all ave/atom 2 5 10 vx c_kf\ncompute kf all ke/atom", "compute kf all ke/atom\nfix aa all ave/atom 2 5 10 vx c_kf"), ["c_as[*]"]),
+        "aa": ("compute kf all ke/atom\nfix aa all ave/atom 2 5 10 vx c_kf\ncompute as all reduce sum f_aa[1] f_aa[2]", ["c_as[*]"]),
         "ah": (f"fix ah all ave/histo 5 2 10 -1 1 {r.choice([5, 8])} vx vy mode vector beyond {r.choice(['ignore', 'end', 'extra'])} file ah.out", ["f_ah[1]", "f_ah[2]"]),
         "fv": ("fix fv all vector 10 c_thermo_temp\nvariable fvs equal max(f_fv)", ["v_fvs"]),
         "sst": ("fix sst all store/state 0 x vx\ncompute sss all reduce sum f_sst[1] f_sst[2]", ["c_sss[*]"]),
         "ssf": ("fix ssf all store/force\ncompute ssg all reduce sum f_ssf[1] f_ssf[2]", ["c_ssg[*]"]),
         "fa": ("compute fa all fabric radius contact branch" if plain else "compute fa all com", ["c_fa[*]"]),
-        "pg": ("compute pg odd group/group few", []),
-        "sl": ("compute sl all slice 1 3 1 c_thermo_press" if False else "variable vv vector [1,2,3]\ncompute sl all slice 1 3 2 v_vv", ["c_sl[1]"]),
-        "ag": ("compute ag all aggregate/atom 1.05\ncompute agm all reduce max c_ag", []),
-        "vf": ("variable vf equal sum(c_kz)+bound(all,xmax)+gyration(odd)+ke(few)+inertia(all,xy)+angmom(all,z)+omega(all,y)+torque(odd,x)+charge(all)\ncompute kz all ke/atom".replace("sum(c_kz)+", "").replace("+charge(all)", ""), ["v_vf"]),
+        "sl": ("variable vv vector [1,2,3]\ncompute sl all slice 1 3 2 v_vv", ["c_sl[1]"]),
+        "vf": ("variable vf equal bound(all,xmax)+gyration(odd)+ke(few)+inertia(all,xy)+angmom(all,z)+omega(all,y)+torque(odd,x)", ["v_vf"]),
     }
     # LAMMPS' pair/local shortens the springs of style granular that slide.
-    for dropped in ("pg", "ag", "lo", *([] if classic else ["pl"])):
-        kinds.pop(dropped)
+    if not classic:
+        kinds.pop("pl")
     lines, columns = [], []
     for key in r.sample(sorted(kinds), r.randint(3, 9)):
         own, shown = kinds[key]

@@ -22,7 +22,7 @@ def formula(r, depth=0, atom=False):
             # LAMMPS has no single elements in formulas of particles.
             names = [name for name in names if "c_" not in name.lower()]
         if atom and r.random() < 0.6:
-            names = ["x", "y", "z", "vx", "vy", "vz", "id", "type", "mass", "fx", "v_at", "c_kea", "gmask(g1)", "rmask(ra)", "grmask(g2,ra)", "radius", "mol" if False else "z"]
+            names = ["x", "y", "z", "vx", "vy", "vz", "id", "type", "mass", "fx", "v_at", "c_kea", "gmask(g1)", "rmask(ra)", "grmask(g2,ra)", "radius"]
         return r.choice(names)
     if r.random() < 0.3:
         return r.choice(FUNCTIONS[:-12] if atom and r.random() < 0.5 else FUNCTIONS).format(formula(r, depth + 1, atom))
@@ -56,7 +56,7 @@ def regions(r, flat):
 def groups(r):
     lines = [f"group g1 {r.choice(['type 1', 'id 1:20:3 25', 'type < 2', 'id <> 5 30', 'id >= 12', 'region r3', 'type != 1', 'type <= 1'])}",
              f"group g2 {r.choice(['type 2', 'id 2:40:2', 'region ra', 'variable va', 'id < 17', 'type == 2'])}", "group g3 union g1 g2", "group g4 intersect g1 g2",
-             "group g5 subtract all g1", "group g5 id 1 2 3", "group g6 empty", "group g6 type 1", f"group g7 {r.choice(['clear', 'type 2'])}" if False else "group g7 region r1",
+             "group g5 subtract all g1", "group g5 id 1 2 3", "group g6 empty", "group g6 type 1", "group g7 region r1",
              f"group dy dynamic {r.choice(['all', 'g1'])} {r.choice(['region ra', 'var va', 'region r2 var va'])} every {r.choice([1, 5])}"]
     if r.random() < 0.5:
         lines += ["group g6 clear", "group g6 id 7"]
@@ -69,13 +69,12 @@ def text(r):
     lines = ["variable a equal 3.25", f"variable b equal {r.randint(-5, 9)}", "variable s string 'two words'", f"variable i index {' '.join(str(r.randint(1, 99)) for _ in range(3))}",
              f"variable l loop {r.randint(2, 5)}", f"variable p loop {r.randint(1, 4)} {r.randint(5, 12)} pad", f"variable fm format a {form()}", "variable in internal 2.5",
              "variable ge getenv HOME_OF_NOBODY", f"variable vec vector [1,2,{r.randint(3, 9)}]", "variable vs equal sum(v_vec)+max(v_vec)*min(v_vec)+ave(v_vec)+trap(v_vec)+slope(v_vec)",
-             'print "= ${a} $b ${s} ${i} ${p} ${fm} $(v_a/3) $(v_b*2:%.3f) ${vs} ${vec}"'.replace(" ${vec}", "")]
+             'print "= ${a} $b ${s} ${i} ${p} ${fm} $(v_a/3) $(v_b*2:%.3f) ${vs}"']
     lines += ["label again", 'print "= $i $l ${p}"', 'if "$l > 2" then "variable a equal $(v_a*2)" elif "$i == 3" "print \'= three\'" else "print \'= less $i\'"',
-              f"if \"{r.choice(['$l > 1', '$l==2 && $i<50', '!($l == 1)', '$i >= 40 || $l == 2', '(${l}+1)', 'abc == abc', '${s} != ${s}', '$l |^ 0', '${a} <= 7'])}\" then 'print \"= yes\"' else 'print \"= no\"'".replace("${s} != ${s}", "x${l} != x2")
-              .replace("(${l}+1)", "$(v_l>1)"), "next l", f"jump SELF {r.choice(['again', 'again'])}", 'print "= ${a}"', "next i", "next p", 'print "= $i ${p}"']
+              f"if \"{r.choice(['$l > 1', '$l==2 && $i<50', '!($l == 1)', '$i >= 40 || $l == 2', '$(v_l>1)', 'abc == abc', 'x${l} != x2', '$l |^ 0', '${a} <= 7'])}\" then 'print \"= yes\"' else 'print \"= no\"'", "next l", f"jump SELF {'again'}", 'print "= ${a}"', "next i", "next p", 'print "= $i ${p}"']
     lines += ['variable str string "a b"', 'print """= ${str}: "quoted" \'x\' """', "print '= tab $(v_a)' append told.txt screen yes", 'print "= second" append told.txt',
               f'variable big equal 1e{r.choice([5, 6, 7, 15, 16])}', 'print "= ${big} $(v_big+1) $(1/3) $(2^0.5:%20.15f) $(10/4) $(-3^2) $(2^3^2) $(7%4) $(-7%4)"',
-              f'if "{r.choice(["1 == 1.0", "abc < 3" if False else "3 < 4", "2e3 == 2000", "-1 < 0", "a == b", "a != b"])}" then "print \'= t\'" else "print \'= f\'"']
+              f'if "{r.choice(["1 == 1.0", "3 < 4", "2e3 == 2000", "-1 < 0", "a == b", "a != b"])}" then "print \'= t\'" else "print \'= f\'"']
     return lines
 
 
@@ -96,8 +95,8 @@ def script(r):
     told = [f'print "= $(count(g{k})) $(count(g{k},ra))"' for k in range(1, 8)] + files(r, sides, flat)
     deck += reduced + ["run 0"] + [f'print "= ${{e{k}}}"' for k in range(8)] + [f'print "= $(c_f{k})"' for k in range(3)] + told
     style = r.choice(["one", "multi", "yaml", "custom step atoms ke pe etotal press lx vol", "custom step time dt temp c_com1[*] v_a v_b", "custom step elapsed elaplong atoms v_e0 v_e1 xlo yhi zhi density"])
-    deck += [f"thermo_style {style}", "thermo_modify " + r.choice(["norm yes", "norm no", "line yaml", "line multi", "line one", "norm yes", "format float %14.6f", "format int %6d", "flush yes", "format 1 %08ld" if False else "norm no"]) + " lost ignore",
-             f"thermo {r.choice([5, 7, 10])}", f"run {r.choice([20, 33])}", 'print "= $(count(dy)) $(step) $(c_ke1)"', f"run {r.choice([5, 10])} {r.choice(['', 'pre no', 'post no', 'upto start 0'[:0]])}",
+    deck += [f"thermo_style {style}", "thermo_modify " + r.choice(["norm yes", "norm no", "line yaml", "line multi", "line one", "norm yes", "format float %14.6f", "format int %6d", "flush yes", "norm no"]) + " lost ignore",
+             f"thermo {r.choice([5, 7, 10])}", f"run {r.choice([20, 33])}", 'print "= $(count(dy)) $(step) $(c_ke1)"', f"run {r.choice([5, 10])} {r.choice(['', 'pre no', 'post no'])}",
              'print "= $(step) $(xcm(all,x)) ${e2}"']
     return deck
 
@@ -106,15 +105,13 @@ def files(r, sides, flat):
     """Dumps, tables and files that are read again."""
     lines = []
     custom = "id type x y z vx xs ys zs xu yu zu ix radius mass c_kea v_at"
-    modify = r.choice(["", " format float %.8g", " format line \"%d %d %g %g %g %g %g %g %g %g %g %g %d %g %g %g %g\"", " thresh x > 3", " thresh v_at < 12.5", " region ra", " element A B" if False else " first yes",
-                       " header no", " units yes", " time yes", " append no", " format 3 %.3f", " format int %04d", " every 7", " delay 5", " scale yes" if False else " pbc yes"])
+    modify = r.choice(["", " format float %.8g", " format line \"%d %d %g %g %g %g %g %g %g %g %g %g %d %g %g %g %g\"", " thresh x > 3", " thresh v_at < 12.5", " region ra", " first yes",
+                       " header no", " units yes", " time yes", " append no", " format 3 %.3f", " format int %04d", " every 7", " delay 5", " pbc yes"])
     lines += [f"dump d1 {r.choice(['all', 'g1', 'dy'])} custom {r.choice([5, 10])} d1.dump {custom}", f"dump_modify d1 sort {r.choice(['id', '3', '-4'])}{modify}"]
     lines += some_of(r, ["dump d2 all atom 10 d2.dump\ndump_modify d2 sort id scale " + r.choice(["yes", "no"]) + r.choice(["", " image yes"]), "dump d3 g1 xyz 10 d3.xyz\ndump_modify d3 sort id" + r.choice(["", " element Si O"]),
-                         "dump d4 all cfg 10 d4.*.cfg mass type xs ys zs vx id\ndump_modify d4 sort id element A B", "dump d5 all yaml 10 d5.yaml id x vx\ndump_modify d5 sort id" + r.choice(["", " thermo yes"])
-                         if False else "dump d5 all yaml 10 d5.yaml id x vx\ndump_modify d5 sort id",
-                         "dump d6 all custom 10 d6.*.dump id x\ndump_modify d6 sort id pad 4", "compute pl all property/local patom1 patom2 cutoff radius\ndump d7 all local 10 d7.dump index c_pl[1] c_pl[2]" if False else "",
-                         f"fix pr all print 5 \"step $(step) $(c_ke1) ${{a}}\" file pr.txt screen no{r.choice(['', ' title hello'])}", "variable vf file told.txt" if False else ""])
-    again = r.choice(["", "data", "restart", "data types", "data offset", "rerun" if False else "dump"])
+                         "dump d4 all cfg 10 d4.*.cfg mass type xs ys zs vx id\ndump_modify d4 sort id element A B", "dump d5 all yaml 10 d5.yaml id x vx\ndump_modify d5 sort id",
+                         "dump d6 all custom 10 d6.*.dump id x\ndump_modify d6 sort id pad 4", f"fix pr all print 5 \"step $(step) $(c_ke1) ${{a}}\" file pr.txt screen no{r.choice(['', ' title hello'])}"])
+    again = r.choice(["", "data", "restart", "data types", "data offset", "dump"])
     if again.startswith("data"):
         lines += [f"print '{sides}' file kept.sides screen no", *(["print 'dimension 2' append kept.sides screen no"] if flat else []), f"write_data kept.data{r.choice(['', ' nocoeff', ' nofix'])}"]
     if again == "restart":

@@ -76,7 +76,7 @@ def sources(r):
     start = create(r, flat) if r.random() < 0.7 else []
     more = create(r, flat) if r.random() < 0.3 else []
     deck += ["pair_style gran/hooke/history 200 NULL 5 NULL 0.5 1", "pair_coeff * *", "neighbor 3.0 nsq", "neigh_modify every 1 delay 0 check yes"]
-    deck += start + [line for line in more if not line.startswith("variable")]
+    deck += start + (more if not any(line.startswith("variable") for line in start) else [])
     if start and r.random() < 0.5:
         deck.append(f"set type 1 diameter {u(r, 0.3, 0.9)}")
     if start and r.random() < 0.3:
