@@ -33,7 +33,7 @@ pub const MOST_MEMORY: usize = 7;
 /// How many grains at most: a place and an image share 32 bits.
 pub const MOST_GRAINS: usize = (1 << near::PLACE_BITS) - 1;
 /// The second skin in units of the first.
-const THIN: f64 = 0.12;
+const THIN: f64 = 0.15;
 /// The image of what fills lists up, and how far it is away: so far that squares are infinite.
 const NOWHERE: u32 = 31;
 const FAR: f64 = 1e200;
