@@ -214,6 +214,23 @@ impl DeckEnv<'_> {
     }
 }
 
+impl DeckEnv<'_> {
+    /// What `read` makes of the slot that a reference means, filled for this moment; unknown while a deck is checked.
+    fn filled(
+        &mut self,
+        r: &ValueRef,
+        vars: &Vars,
+        read: fn(&World, SlotId, &ValueRef) -> Result<Value>,
+    ) -> Result<Value> {
+        if self.checking {
+            return Ok(Value::Unknown);
+        }
+        regions::place_all(self.w, self.graph, vars, self.checking);
+        let slot = self.now(r.span, vars, |s| s.reference(r))?;
+        read(self.w, slot, r)
+    }
+}
+
 impl Env for DeckEnv<'_> {
     fn keyword(&mut self, name: &str, vars: &Vars) -> Option<Result<Value>> {
         let (name, _, needs) = keywords::find(name)?;
@@ -229,21 +246,11 @@ impl Env for DeckEnv<'_> {
     }
 
     fn reference(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value> {
-        if self.checking {
-            return Ok(Value::Unknown);
-        }
-        regions::place_all(self.w, self.graph, vars, self.checking);
-        let slot = self.now(r.span, vars, |s| s.reference(r))?;
-        from_slot(self.w, slot, r)
+        self.filled(r, vars, from_slot)
     }
 
     fn of_particles(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value> {
-        if self.checking {
-            return Ok(Value::Unknown);
-        }
-        regions::place_all(self.w, self.graph, vars, self.checking);
-        let slot = self.now(r.span, vars, |s| s.reference(r))?;
-        of_particles(self.w, slot, r)
+        self.filled(r, vars, of_particles)
     }
 
     fn particle(&mut self, attribute: &str, tag: usize, span: Span) -> Result<Value> {

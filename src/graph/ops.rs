@@ -234,7 +234,8 @@ impl Op for ClearForces {
         Level::Every
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        if !std::mem::take(&mut w.parts.cleared) {
+        let cleared = std::mem::take(&mut w.parts.cleared);
+        if t.setup || !cleared {
             w.particles.f.fill([0.0; 3]);
             w.particles.torque.fill([0.0; 3]);
         }

@@ -230,6 +230,7 @@ fn rotate(a: &mut [[f64; 3]; 3], v: &mut [[f64; 3]; 3], p: usize, q: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::vec3::SIX;
 
     fn close(a: f64, b: f64) {
         assert!((a - b).abs() < 1e-13, "{a} {b}"); // a few roundings of numbers about 1
@@ -257,7 +258,7 @@ mod tests {
     fn principal_axes_rebuild_the_tensor() {
         let t = [3.0, 2.5, 1.5, 0.4, -0.3, 0.2];
         let (moments, axes) = principal(t);
-        for (k, (a, b)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
+        for (k, (a, b)) in SIX.into_iter().enumerate() {
             close((0..3).map(|n| moments[n] * axes[n][a] * axes[n][b]).sum(), t[k]);
         }
         close(dot(cross(axes[0], axes[1]), axes[2]), 1.0);

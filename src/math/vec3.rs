@@ -5,6 +5,9 @@ use super::real::Real;
 /// Three components.
 pub type Vec3<R = f64> = [R; 3];
 
+/// The components of symmetric tensors in LAMMPS' order: xx yy zz xy xz yz.
+pub const SIX: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
 /// a + b.
 #[inline(always)]
 pub fn add<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {

@@ -1,5 +1,6 @@
 //! Energy and virial of the present step, as force ops add them up.
 
+use crate::math::vec3::{SIX, Vec3};
 use std::collections::BTreeMap;
 
 /// What the force ops of a step have tallied.
@@ -41,6 +42,18 @@ pub struct Tally {
     /// Of fixes that were told to add theirs.
     #[serde(default)]
     pub atom_fixes: Vec<[f64; 6]>,
+}
+
+/// Adds what two `ends`, `d` apart, have in a virial by the force `f` on the first of them: d ⊗ f, and half of it to each of
+/// both where virials of particles are asked for.
+pub fn add_share(total: &mut [f64; 6], atoms: Option<&mut [[f64; 6]]>, ends: [usize; 2], d: Vec3, f: Vec3) {
+    let product = SIX.map(|(a, b)| d[a] * f[b]);
+    (0..6).for_each(|k| total[k] += product[k]);
+    if let Some(atoms) = atoms {
+        for i in ends {
+            (0..6).for_each(|k| atoms[i][k] += 0.5 * product[k]);
+        }
+    }
 }
 
 impl Tally {

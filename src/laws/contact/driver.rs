@@ -1,7 +1,7 @@
 //! The loop over contacts: who touches, what each remembers, what each does, added up in a fixed order.
 
 use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
-use crate::math::vec3::{Vec3, add, sub};
+use crate::math::vec3::{SIX, Vec3, add, sub};
 use crate::neigh::list::{Pair, difference};
 use crate::par;
 use crate::world::Travel;
@@ -360,7 +360,7 @@ impl Sweep {
         let mut sum = [0.0; 6];
         for (p, w) in self.touching.iter().zip(&self.wrenches) {
             let (d, f) = (difference(x, period, p), w.force);
-            for (s, (a, b)) in sum.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {
+            for (s, (a, b)) in sum.iter_mut().zip(SIX) {
                 *s += d[a] * f[b];
             }
         }

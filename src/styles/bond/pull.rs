@@ -6,6 +6,7 @@ use crate::par;
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::world::bonds::LostBond;
 use crate::world::index::Index;
+use crate::world::tally::add_share;
 use crate::world::{Bond, World};
 
 /// What a bond does at some length.
@@ -148,11 +149,7 @@ pub fn tally(w: &mut World, t: &Tick, ends: [usize; 2], d: &Vec3, force: &Vec3, 
         ends.iter().for_each(|&i| w.tally.bond_atom[i] += 0.5 * energy);
     }
     if t.virial {
-        for (k, (a, b)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
-            w.tally.bond_virial[k] += d[a] * force[b];
-            if t.atom_virial {
-                ends.iter().for_each(|&i| w.tally.atom_bonds[i][k] += 0.5 * d[a] * force[b]);
-            }
-        }
+        let atoms = t.atom_virial.then_some(&mut w.tally.atom_bonds[..]);
+        add_share(&mut w.tally.bond_virial, atoms, ends, *d, *force);
     }
 }

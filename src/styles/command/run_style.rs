@@ -145,7 +145,7 @@ mod tests {
     use super::*;
     use crate::styles::command::testing::{act, refused};
 
-    fn read(words: &str) -> RunStyle {
+    pub(super) fn read(words: &str) -> RunStyle {
         let mut w = World::default();
         act(&mut w, &format!("run_style {words}"), &[]).unwrap();
         w.settings.run_style

@@ -1,7 +1,7 @@
 //! What pairs of particles do to each other at a moment, asked of any pair style.
 
 use crate::diag::Result;
-use crate::math::vec3::{Vec3, dot, length, scale, sub};
+use crate::math::vec3::{SIX, Vec3, dot, length, scale, sub};
 use crate::world::World;
 
 /// How many numbers of its own a pair style may give to each pair.
@@ -42,7 +42,7 @@ impl Interaction {
 
     /// d ⊗ F, the pair's virial: xx yy zz xy xz yz [energy].
     pub fn virial(&self) -> [f64; 6] {
-        [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(a, b)| self.d[a] * self.force[b])
+        SIX.map(|(a, b)| self.d[a] * self.force[b])
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::math::vec3::{Vec3, add, sub};
 use crate::neigh::list::{Pair, View, Wanted, pairs};
 use crate::plan::Tick;
+use crate::world::tally::add_share;
 use crate::world::{Allowed, World};
 
 /// The positions that lists are made from: those of the last rebuild, of which later ones are within half a skin [length].
@@ -37,12 +38,8 @@ pub fn push(w: &mut World, t: &Tick, ends: [usize; 2], d: Vec3, f: Vec3, energy:
         ends.iter().for_each(|&i| w.tally.atom[i] += 0.5 * energy);
     }
     if t.virial {
-        for (k, (a, b)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
-            w.tally.virial[k] += d[a] * f[b];
-            if t.atom_virial {
-                ends.iter().for_each(|&i| w.tally.atom_virial[i][k] += 0.5 * d[a] * f[b]);
-            }
-        }
+        let atoms = t.atom_virial.then_some(&mut w.tally.atom_virial[..]);
+        add_share(&mut w.tally.virial, atoms, ends, d, f);
     }
 }
 

@@ -3,6 +3,7 @@
 use std::sync::Mutex;
 
 use crate::diag::{Code, Diagnostic, Result};
+use crate::math::vec3::SIX;
 
 mod cells;
 mod crack;
@@ -247,7 +248,7 @@ impl PeriTally<'_> {
 
     /// Adds the virial of the force `pull` times `d` on `i` from `j`.
     pub fn add_virial(&mut self, i: usize, j: usize, pull: f64, d: [f64; 3]) {
-        let product = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(a, b)| pull * d[a] * d[b]);
+        let product = SIX.map(|(a, b)| pull * d[a] * d[b]);
         self.virial.iter_mut().zip(product).for_each(|(v, p)| *v += p);
         if let Some(atoms) = self.per_atom_virial.as_deref_mut() {
             for k in 0..6 {

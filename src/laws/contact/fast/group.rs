@@ -8,7 +8,7 @@ use crate::laws::contact::driver::DEEP;
 use crate::laws::contact::{ContactLaw, Geometry, Motion, Wrench};
 use crate::math::four::{Four, Lanes};
 use crate::math::real::Real;
-use crate::math::vec3::{Vec3, scale};
+use crate::math::vec3::{SIX, Vec3, scale};
 
 /// Contacts that are evaluated together: their pairs. (Loops, no closures: those are not inlined into code for AVX.)
 pub(super) struct Group<const N: usize> {
@@ -167,7 +167,7 @@ impl<const N: usize> Group<N> {
 /// Adds Σ d ⊗ F of the first lanes.
 #[inline(always)]
 fn add_virial<const N: usize, V: Lanes<N>>(d: Vec3<V>, f: Vec3<V>, count: usize, sum: &mut [f64; 6]) {
-    for (s, (a, b)) in sum.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {
+    for (s, (a, b)) in sum.iter_mut().zip(SIX) {
         (d[a] * f[b]).numbers()[..count].iter().for_each(|t| *s += t);
     }
 }
@@ -235,7 +235,7 @@ pub(super) unsafe fn one<L: ContactLaw, const W: usize>(cx: &Cx<L>, law: &L, sla
         (0..3).for_each(|d| (*t.add(j))[d] += wrench.torque_j[d]);
     }
     if cx.virial {
-        for (s, (a, b)) in slab.virial.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {
+        for (s, (a, b)) in slab.virial.iter_mut().zip(SIX) {
             *s += d[a] * wrench.force[b];
         }
     }

@@ -2,7 +2,7 @@
 
 use super::side::{Side, WIDTH};
 use super::{Manner, Material, PAIR, State, TOLD, screen};
-use crate::math::vec3::Vec3;
+use crate::math::vec3::{SIX, Vec3};
 use crate::neigh::list::Pair;
 use crate::par;
 use crate::world::contacts::Contacts;
@@ -56,7 +56,7 @@ impl Deed {
         s.surface_change[k] += self.surface;
         s.displaced[k] += self.displaced;
         s.covered[k] += self.covered;
-        for (c, (a, b)) in s.stress.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {
+        for (c, (a, b)) in s.stress.iter_mut().zip(SIX) {
             c[k] += self.stress * n[a] * n[b];
         }
     }

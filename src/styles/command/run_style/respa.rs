@@ -138,13 +138,11 @@ fn told(levels: &[usize; 6], subs: Option<&[usize]>, outermost: usize) -> Vec<St
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::styles::command::testing::{act, refused};
+    use crate::styles::command::testing::refused;
     use crate::world::World;
 
     fn read(words: &str) -> RunStyle {
-        let mut w = World::default();
-        act(&mut w, &format!("run_style respa {words}"), &[]).unwrap();
-        w.settings.run_style
+        super::super::tests::read(&format!("respa {words}"))
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::bodies::{Body, WIDTH};
 use super::pass::{POSE, Part, Pass};
 use super::{COLUMNS, Declared};
 use crate::math::body::{apply, apply_transposed, matrix};
-use crate::math::vec3::{Vec3, add, cross, dot, sub};
+use crate::math::vec3::{SIX, Vec3, add, cross, dot, sub};
 use crate::par;
 use crate::plan::Tick;
 use crate::styles::matter::{self, Masses};
@@ -165,7 +165,7 @@ impl Declared {
                 }
                 let (m, old_x) = (masses.get(i), add(old.0, shift));
                 let hold: Vec3 = std::array::from_fn(|d| m * (v[d] - old.1[d]) / half - f[i][d]);
-                for (s, (a, c)) in total.iter_mut().zip([(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]) {
+                for (s, (a, c)) in total.iter_mut().zip(SIX) {
                     *s += 0.5 * old_x[a] * hold[c];
                 }
             }

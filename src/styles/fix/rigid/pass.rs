@@ -145,6 +145,7 @@ impl Pass<'_> {
         }
         let rest = rows[done..].iter_mut().zip(&mut poses[done..]);
         for (k, (row, pose)) in rest.enumerate() {
+            // Bodies have more numbers than those of their motion: see `columns`.
             let (own, _) = row.split_first_chunk_mut::<MOVING>().unwrap_or_else(|| unreachable!());
             let mut b = Moving::of(own);
             self.go(&mut b, &self.fix.allowed(start + done + k, self.flat), |b| {
