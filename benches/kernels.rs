@@ -67,7 +67,8 @@ fn run(steps: usize, layout: Layout, breaks: bool) -> (f64, f64, f64, f64) {
     let mut options = FamilyOptions::new(DX);
     options.layout = layout;
     options.skip_rest = std::env::var("NOSKIP").is_err();
-    let view = PeriView { x: &s.x, x0: &s.x0, kind: &s.kind, volume: &s.volume, bounds: s.bounds };
+    let view =
+        PeriView { x: &s.x, x0: &s.x0, kind: &s.kind, volume: &s.volume, bounds: s.bounds, excluded: None };
     let Ok(mut families) = Families::build(&view, &table, options) else { return (0.0, 0.0, 0.0, 0.0) };
     let mut whole = f64::INFINITY;
     let mut force = f64::INFINITY;
@@ -85,7 +86,14 @@ fn run(steps: usize, layout: Layout, breaks: bool) -> (f64, f64, f64, f64) {
             }
         });
         let before = cpu_time();
-        let view = PeriView { x: &s.x, x0: &s.x0, kind: &s.kind, volume: &s.volume, bounds: s.bounds };
+        let view = PeriView {
+            x: &s.x,
+            x0: &s.x0,
+            kind: &s.kind,
+            volume: &s.volume,
+            bounds: s.bounds,
+            excluded: None,
+        };
         families.force(&view, &mut s.f, true, None);
         force = force.min(cpu_time() - before);
         par::each((&mut s.v[..], &s.f[..]), |_, (v, f)| {

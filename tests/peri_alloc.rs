@@ -44,7 +44,7 @@ fn steps_do_not_allocate() {
     let bounds = Bounds { lo: [-1.0; 3], hi: [1.0; 3], periodic: [false; 3] };
     for layout in [Layout::Auto, Layout::List] {
         let options = FamilyOptions { layout, ..FamilyOptions::new(dx) };
-        let view = PeriView { x: &x0, x0: &x0, kind: &kind, volume: &volume, bounds };
+        let view = PeriView { x: &x0, x0: &x0, kind: &kind, volume: &volume, bounds, excluded: None };
         let mut families = Families::build(&view, &table, options).unwrap();
         x.clone_from(&x0);
         let mut before = 0;
@@ -56,7 +56,7 @@ fn steps_do_not_allocate() {
                 x[0] += 1e-5 * dx * (i as f64).sin();
             }
             f.fill([0.0; 3]);
-            let view = PeriView { x: &x, x0: &x0, kind: &kind, volume: &volume, bounds };
+            let view = PeriView { x: &x, x0: &x0, kind: &kind, volume: &volume, bounds, excluded: None };
             families.force(&view, &mut f, true, None);
         }
         assert_eq!(COUNT.load(Ordering::Relaxed), before, "{layout:?}");

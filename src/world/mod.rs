@@ -32,7 +32,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-pub use allowed::Allowed;
+pub use allowed::{Allowed, Excluded};
 pub use bonds::{Bond, Bonds};
 pub use clock::{Clock, Halt};
 pub use columns::Columns;

@@ -72,7 +72,14 @@ impl Scene {
     }
 
     pub fn view(&self) -> PeriView<'_> {
-        PeriView { x: &self.x, x0: &self.x0, kind: &self.kind, volume: &self.volume, bounds: self.bounds }
+        PeriView {
+            x: &self.x,
+            x0: &self.x0,
+            kind: &self.kind,
+            volume: &self.volume,
+            bounds: self.bounds,
+            excluded: None,
+        }
     }
 
     /// Forces of the present positions.

@@ -27,7 +27,7 @@ impl Repulsion<'_, '_, '_> {
         let reach = 1.35 * self.options.lattice_spacing;
         let d = view.bounds.nearest([0, 1, 2].map(|k| view.x[i][k] - view.x[j][k]));
         let rsq = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        if rsq >= reach * reach {
+        if rsq >= reach * reach || view.excludes(a, b) {
             return;
         }
         let Some(coeff) = self.table.get(view.kind[i], view.kind[j]) else { return };

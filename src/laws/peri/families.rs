@@ -52,6 +52,10 @@ impl Families {
         }
         let reaches = table.iter().map(|c| options.volume.reach(c.horizon, options.lattice_spacing));
         families.start_near(reaches.fold(f64::INFINITY, f64::min));
+        if view.excluded.is_some() {
+            // Close pairs without a bond may meet as soon as the rules are gone.
+            families.forget_near();
+        }
         families.find_loose(view);
         Ok(families)
     }

@@ -44,7 +44,7 @@ pub fn bonds(
         }
         let Some(coeff) = table.get(view.kind[i as usize], view.kind[j as usize]) else { return };
         let cut = options.volume.reach(coeff.horizon, options.lattice_spacing);
-        if rsq <= cut * cut {
+        if rsq <= cut * cut && !view.excludes(i, j) {
             f(i, j, rsq, wraps);
         }
     });

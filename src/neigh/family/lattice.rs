@@ -188,7 +188,7 @@ fn connect(
                 let Some(coeff) = table.get(view.kind[a], view.kind[b]) else { continue };
                 let cut = options.volume.reach(coeff.horizon, options.lattice_spacing);
                 let (rsq, _) = distance(view, i, j);
-                if rsq <= cut * cut {
+                if rsq <= cut * cut && !view.excludes(i, j) {
                     body.alive[cell / LANES * entries + e] |= 1 << (cell % LANES);
                     family_volume[a] += view.volume[b];
                     family_volume[b] += view.volume[a];

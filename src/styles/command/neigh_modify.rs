@@ -26,7 +26,8 @@ impl Style for NeighModify {
                    only if some particle has moved half the skin; the delay must be a multiple of N. Wrapping into the box, shrink-wrapping and the test for \
                    lost particles happen then too. `exclude type I J` and `exclude group A B` leave pairs out, `exclude molecule/intra G` (or `molecule G`) those within a molecule of the group, `molecule/inter G` \
                    those across molecules, `exclude \
-                   none` forgets all such rules; pairs of `peri/pmb` cannot be left out yet. `page`, `one`, `binsize` and `cluster` are accepted without effect. \
+                   none` forgets all such rules. Peridynamic particles excluded from each other get no bonds if the rule stands when families are found, at the first \
+                   run; later it takes short-range contact away and leaves bonds. `page`, `one`, `binsize` and `cluster` are accepted without effect. \
                    Defaults: every 1 delay 0 check yes once no.",
             example: "neigh_modify every 5 delay 0 check yes exclude group wall wall",
         }

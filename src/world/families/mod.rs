@@ -4,6 +4,7 @@ use std::sync::Mutex;
 
 use crate::diag::{Code, Diagnostic, Result};
 use crate::math::vec3::SIX;
+use crate::world::Excluded;
 
 mod cells;
 mod crack;
@@ -272,6 +273,16 @@ pub struct PeriView<'a> {
     pub volume: &'a [f64],
     /// The box.
     pub bounds: Bounds,
+    /// Pairs that `neigh_modify exclude` takes away: no bonds when families are found, no short-range contact.
+    pub excluded: Option<Excluded<'a>>,
+}
+
+impl PeriView<'_> {
+    /// Whether a rule takes this pair away.
+    #[inline]
+    pub fn excludes(&self, i: u32, j: u32) -> bool {
+        self.excluded.is_some_and(|rules| rules.pair(i as usize, j as usize))
+    }
 }
 
 /// All families of a scene: state only; `laws::peri` builds and sweeps them.

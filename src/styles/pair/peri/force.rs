@@ -8,7 +8,7 @@ use crate::world::adapted::Coefficient;
 use crate::world::families::{
     Bounds, Families, FamilyOptions, ForceUnit, PeriTally, PeriView, PmbCoeff, PmbTable,
 };
-use crate::world::{Domain, World};
+use crate::world::{Domain, Excluded, World};
 
 /// Bond and short-range forces of all peridynamic bodies.
 pub struct Force {
@@ -223,5 +223,5 @@ pub fn view(w: &World) -> Result<PeriView<'_>> {
     let p = &w.particles;
     let bounds = Bounds { lo, hi, periodic: w.domain()?.periodic() };
     let x0 = if p.x0.is_empty() { &p.x } else { &p.x0 };
-    Ok(PeriView { x: &p.x, x0, kind: &p.kind, volume: w.volumes(), bounds })
+    Ok(PeriView { x: &p.x, x0, kind: &p.kind, volume: w.volumes(), bounds, excluded: Excluded::of(w) })
 }

@@ -151,14 +151,6 @@ impl Solid {
         of_kind.map(|(_, d)| *d).reduce(f64::min)
     }
 
-    /// Whether `neigh_modify exclude` concerns pairs that this style acts on.
-    fn loses_pairs(&self, w: &World) -> bool {
-        let (rules, p) = (&w.settings.neighbor, &w.particles);
-        let has = |bit: u32| (0..w.n()).any(|i| p.mask[i] & bit != 0 && self.covers(p.kind[i], p.kind[i]));
-        rules.exclude_types.iter().any(|&(a, b)| self.covers(a, b))
-            || rules.exclude_groups.iter().any(|&(a, b)| has(a) && has(b))
-    }
-
     /// The rule for yielding bonds on their way back, at the end of a line.
     fn unloading(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
         if !matches!(self.law.kind, LawKind::Yield | LawKind::Flat) {
@@ -304,13 +296,6 @@ impl Pair for Solid {
         let [a, b, c] = w.lattice.spacing;
         if !(a == b && b == c) {
             self.cannot(span, "needs a lattice that is the same in x, y and z")?;
-        }
-        if self.loses_pairs(w) {
-            let text = format!(
-                "neigh_modify exclude takes pairs away from {}: perigrain cannot do that yet",
-                self.name
-            );
-            return fail(Code::NOT_SUPPORTED, span, text);
         }
         if let Some((i, j)) = self.relaxes_apart() {
             let text = format!("types {i} and {j} relax differently: one body has one lambda and one tau");
