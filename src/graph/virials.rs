@@ -4,7 +4,7 @@ use super::seal::Sealer;
 use crate::diag::Result;
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::styles::SealCx;
-use crate::styles::pair::probe::{Probe, look_all};
+use crate::styles::pair::probe::{Ask, Probe, look_all};
 use crate::world::{RunStyle, World};
 
 /// Adds the op that asks pair styles for the virials of particles; after everything that may read them.
@@ -52,7 +52,7 @@ impl Op for Virials {
         if !t.atom_virial {
             return Ok(());
         }
-        let pairs = look_all(&mut self.probes, w, false)?;
+        let pairs = look_all(&mut self.probes, w, Ask::Felt { setup: t.setup })?;
         let atoms = &mut w.tally.atom_virial;
         for p in &pairs {
             let virial = p.virial();

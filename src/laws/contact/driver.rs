@@ -76,6 +76,16 @@ impl<L: Copy> Rules<L> {
         self.table.iter().flatten().map(|r| r.law.memory()).max().unwrap_or(0)
     }
 
+    /// The rules by which contacts are looked at once more ([`ContactLaw::again`]).
+    #[must_use]
+    pub fn again(&self, setup: bool) -> Self
+    where
+        L: ContactLaw,
+    {
+        let again = |rule: &Rule<L>| Rule { law: rule.law.again(setup), ..*rule };
+        Self { types: self.types, table: self.table.iter().map(|r| r.as_ref().map(again)).collect() }
+    }
+
     /// Whether some rule is of this kind.
     pub fn any(&self, is: impl Fn(&Rule<L>) -> bool) -> bool {
         self.table.iter().flatten().any(is)

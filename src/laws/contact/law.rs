@@ -2,6 +2,7 @@
 
 use super::elastic::{Elastic, Form, Push};
 use super::powder;
+use super::slider::Look;
 use super::tangential::{Drag, Friction, Spring};
 use super::turning::{Rolling, Twisting};
 use super::{
@@ -254,6 +255,10 @@ impl ContactLaw for Granular {
         w
     }
 
+    fn again(&self, setup: bool) -> Self {
+        Self { spring: self.spring.again(setup), ..*self }
+    }
+
     #[inline(always)]
     fn within(&self, work: impl Loop<Self>) {
         use {Damping::*, Form::*, Friction::*};
@@ -278,11 +283,12 @@ impl Granular {
         let same = self.elastic.form == form
             && self.damping == damping
             && self.spring.kind == kind
-            && self.arm == arm;
+            && self.arm == arm
+            && self.spring.look == Look::First;
         (same && plain).then_some(Self {
             elastic: Elastic { form, ..self.elastic },
             damping,
-            spring: Spring { kind, ..self.spring },
+            spring: Spring { kind, look: Look::First, ..self.spring },
             rolling: Rolling::None,
             twisting: Twisting::None,
             arm,

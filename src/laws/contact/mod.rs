@@ -166,6 +166,13 @@ pub trait ContactLaw: Copy + Sync {
         step: Advance,
     ) -> Wrench<R>;
 
+    /// The law that gives a contact the force of its last evaluation once more, from the history that this one left
+    /// behind; `setup`: the evaluation was that of a run's setup.
+    #[must_use]
+    fn again(&self, _setup: bool) -> Self {
+        *self
+    }
+
     /// Hands the law to a loop. A law of many forms does so in one place for each frequent form, where the form is
     /// written out: the loop is then compiled without the others.
     #[inline(always)]

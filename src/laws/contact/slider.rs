@@ -18,6 +18,22 @@ pub enum Memory {
     Force,
 }
 
+/// How well a force that slid is known again as one of the size of the limit, relative to its parts: limits come from
+/// overlaps, and one of a millionth of the radius has only ten good digits.
+const KNOWN: f64 = 1e-9;
+
+/// Whether a slider acts, or is looked at after it did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// It acts.
+    First,
+    /// It has acted and left its spring behind, in the setup of a run or in a step.
+    Again {
+        /// Whether in a setup, where the spring does not move on before it acts.
+        setup: bool,
+    },
+}
+
 /// One contact's spring, dashpot and limit in the tangent plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Slider<R> {
@@ -67,6 +83,28 @@ impl<R: Real> Slider<R> {
         };
         *xi = choose::<R>(fits, carried, *xi);
         choose::<R>(slides, sliding, trial)
+    }
+
+    /// The force that [`Slider::force`] gave as it left the displacement `xi` behind, where a spring that slides is
+    /// shortened by another stiffness than its own: then −`slack` ξ − η v is as large as the limit.
+    #[inline(always)]
+    pub fn again(&self, mut xi: Vec3<R>, setup: bool) -> Vec3<R> {
+        let zero = self.limit.like(0.0);
+        let drag = scale(-self.damping, self.v);
+        let sliding = sub(drag, scale(self.slack, xi));
+        let off = (length(sliding) - self.limit).abs();
+        let parts = length(drag) + self.slack * length(xi) + self.limit;
+        let slid = (parts * KNOWN).above(off);
+        // Any other gives the same force twice.
+        let other = self.force(&mut xi, Memory::Projected, Advance { dt: 0.0, history: false });
+        let felt = choose::<R>(slid, sliding, other);
+        if !setup {
+            return felt;
+        }
+        // In a setup the spring may be what the step before it left. Without a drag and with a softer spring, what slid
+        // then does not slide again.
+        let [drags, stiffens] = [dot(drag, drag).above(zero), self.stiffness.above(self.slack)];
+        choose::<R>(drags, felt, choose::<R>(stiffens, felt, other))
     }
 
     /// What is remembered, turned with the normal and moved on.

@@ -1,7 +1,7 @@
 //! Friction across the normal: the models decks name and their constants for one pair of types.
 
 use super::normal::{effective_shear, effective_young, geometric};
-use super::slider::{Memory, Slider};
+use super::slider::{Look, Memory, Slider};
 use super::{Advance, Normal};
 use crate::math::real::Real;
 use crate::math::vec3::{Vec3, length, scale};
@@ -147,7 +147,14 @@ impl Tangential {
         };
         let classic = matches!(self.kind, Friction::LinearHistoryClassic | Friction::MindlinClassic);
         let loose = compat == Compat::Lammps && classic && matches!(self.drag, Drag::Times(_));
-        Spring { kind: self.kind, stiffness, damping, mu: geometric(self.mu, other.mu), loose }
+        Spring {
+            kind: self.kind,
+            stiffness,
+            damping,
+            mu: geometric(self.mu, other.mu),
+            loose,
+            look: Look::First,
+        }
     }
 }
 
@@ -175,6 +182,8 @@ pub struct Spring {
     /// LAMMPS 22Jul2025's `…_classic` springs of granular models and walls: the contact radius stiffens
     /// `linear_history_classic` too, and is forgotten where a spring that slides is shortened.
     pub loose: bool,
+    /// Whether a contact is looked at once more.
+    pub look: Look,
 }
 
 impl Spring {
@@ -190,6 +199,14 @@ impl Spring {
             kind if kind.rescales() => 4,
             _ => 3,
         }
+    }
+
+    /// The spring that gives the force of its last evaluation once more, from what this one left behind.
+    #[must_use]
+    pub fn again(&self, setup: bool) -> Self {
+        // All others give the same force twice.
+        let look = if self.loose { Look::Again { setup } } else { Look::First };
+        Self { look, ..*self }
     }
 
     /// k_t of a contact of radius `a` [force/length]; 0 of friction without springs.
@@ -246,6 +263,9 @@ impl Spring {
                 }
                 let slack = if self.loose { a.like(self.stiffness) } else { stiffness };
                 let slider = Slider { n, stiffness, slack, damping, limit, v };
+                if let Look::Again { setup } = self.look {
+                    return slider.again(xi, setup);
+                }
                 let force = slider.force(&mut xi, kind.memory(), step);
                 history[..3].copy_from_slice(&xi);
                 force

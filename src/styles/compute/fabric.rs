@@ -6,7 +6,7 @@ use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::{Args, Word};
 use crate::math::vec3::length;
 use crate::plan::{Op, Stage, When};
-use crate::styles::pair::probe::{Interaction, look_all};
+use crate::styles::pair::probe::{Ask, Interaction, look_all};
 use crate::styles::step_op::{Wanted, fill};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 use crate::world::{GroupId, SlotId};
@@ -131,7 +131,7 @@ impl Compute for Declared {
         let me = self.clone();
         let reads = "x v omega radius mass type mask contacts";
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
-            let mut pairs = look_all(&mut probes, w, !me.touching)?;
+            let mut pairs = look_all(&mut probes, w, Ask::idle(!me.touching))?;
             let kind = |i: u32| w.particles.kind[i as usize];
             pairs.retain(|p| {
                 of_group(w, me.group, p)

@@ -4,7 +4,7 @@ use super::{Compute, ComputeStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Word};
 use crate::plan::{Op, Stage, When};
-use crate::styles::pair::probe::{Interaction, OWN, Probe, look_all};
+use crate::styles::pair::probe::{Ask, Interaction, OWN, Probe, look_all};
 use crate::styles::step_op::{Wanted, fill};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 use crate::world::{GroupId, SlotId, World};
@@ -153,7 +153,7 @@ impl Compute for Declared {
         let me = self.clone();
         let reads = "x v omega radius mass type mask contacts";
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
-            let pairs = look_all(&mut probes, w, !me.touching)?;
+            let pairs = look_all(&mut probes, w, Ask::idle(!me.touching))?;
             out.local_cols = me.values.len();
             out.local.clear();
             for p in pairs.iter().filter(|p| of_group(w, me.group, p) && (!me.touching || touches(w, p))) {

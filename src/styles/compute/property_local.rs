@@ -7,7 +7,7 @@ use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Word};
 use crate::neigh::list::Reach;
 use crate::plan::{Op, Stage, When};
-use crate::styles::pair::probe::look_all;
+use crate::styles::pair::probe::{Ask, look_all};
 use crate::styles::step_op::{Wanted, fill};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 use crate::world::{GroupId, SlotId, World};
@@ -170,7 +170,7 @@ impl Compute for Declared {
                     rows.sort_by_key(|r| r.tags);
                 }
                 Of::Contact if !me.touching => {
-                    let found = look_all(&mut probes, w, true)?;
+                    let found = look_all(&mut probes, w, Ask::Idle)?;
                     let chosen = found.iter().filter(|p| of_group(w, me.group, p));
                     rows.extend(chosen.map(|p| Row::of(w, p.i, p.j)));
                 }

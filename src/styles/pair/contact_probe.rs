@@ -2,7 +2,7 @@
 
 use super::granular::force::grains;
 use super::granular::reach::{largest, reaching};
-use super::probe::{Balance, Interaction, OWN, Probe, Springs};
+use super::probe::{Ask, Balance, Interaction, OWN, Probe, Springs};
 use super::shared::{built_at, find_frozen, near};
 use crate::diag::Result;
 use crate::laws::contact::bodies::solids;
@@ -51,6 +51,7 @@ impl<L: ContactLaw> ContactProbe<L> {
     fn evaluated<T>(
         &mut self,
         w: &World,
+        ask: Ask,
         read: impl FnOnce(&Grains, &Rules<L>, &Sweep, &Contacts) -> T,
     ) -> Result<T> {
         let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
@@ -69,9 +70,13 @@ impl<L: ContactLaw> ContactProbe<L> {
             Some((_, list)) => list,
             None => self.list(w),
         };
-        self.sweep.run(&list, &grains, &self.rules, &mut memory, still);
+        let rules = match ask {
+            Ask::Felt { setup } => &self.rules.again(setup),
+            Ask::Acting | Ask::Idle => &self.rules,
+        };
+        self.sweep.run(&list, &grains, rules, &mut memory, still);
         self.listed = Some((w.rebuild.generation, list));
-        Ok(read(&grains, &self.rules, &self.sweep, &memory))
+        Ok(read(&grains, rules, &self.sweep, &memory))
     }
 
     /// Pairs of spheres closer than the largest of their types, or than the cutoff given by hand.
@@ -109,10 +114,10 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
         self.list(w).iter().map(|p| [p.i, p.j]).collect()
     }
 
-    fn look(&mut self, w: &World, idle: bool) -> Result<Vec<Interaction>> {
+    fn look(&mut self, w: &World, ask: Ask) -> Result<Vec<Interaction>> {
         let p = &w.particles;
         let own = self.own;
-        let acting = self.evaluated(w, |grains, _, sweep, memory| {
+        let acting = self.evaluated(w, ask, |grains, _, sweep, memory| {
             let mut all: Vec<_> =
                 sweep.contacts().map(|(pair, wrench)| interaction(grains, pair, wrench, own)).collect();
             if own == Own::Powder {
@@ -122,7 +127,7 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
             }
             all
         })?;
-        if !idle {
+        if ask != Ask::Idle {
             return Ok(acting);
         }
         let mut acting = acting.into_iter().peekable();
@@ -143,7 +148,7 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
     }
 
     fn springs(&mut self, w: &World) -> Result<Vec<Springs>> {
-        self.evaluated(w, |grains, rules, sweep, memory| {
+        self.evaluated(w, Ask::Acting, |grains, rules, sweep, memory| {
             let mut all = vec![];
             sweep.each(grains, rules, memory, |c| {
                 let g = &c.geometry;
@@ -159,7 +164,7 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
     }
 
     fn balance(&mut self, w: &World) -> Result<Balance> {
-        self.evaluated(w, |grains, rules, sweep, memory| {
+        self.evaluated(w, Ask::Felt { setup: false }, |grains, rules, sweep, memory| {
             let mut sum = Balance::default();
             sweep.each(grains, rules, memory, |c| {
                 let (i, j) = (c.pair.i as usize, c.pair.j as usize);

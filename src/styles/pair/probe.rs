@@ -46,6 +46,29 @@ impl Interaction {
     }
 }
 
+/// What a probe is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ask {
+    /// Every pair that acts, with the forces that the particles felt in the evaluation just made; `setup`: it was that
+    /// of a run's setup.
+    Felt {
+        /// See above.
+        setup: bool,
+    },
+    /// Every pair that acts, with the forces that another evaluation gives. They are those felt, but for springs that
+    /// LAMMPS shortens wrongly: its pair styles give these numbers when they are asked about single pairs.
+    Acting,
+    /// The same, and pairs that do not touch but are within the cutoff of their types.
+    Idle,
+}
+
+impl Ask {
+    /// All pairs within the cutoff of their types, or only those that act.
+    pub fn idle(idle: bool) -> Self {
+        if idle { Ask::Idle } else { Ask::Acting }
+    }
+}
+
 /// The springs of one contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Springs {
@@ -83,12 +106,11 @@ pub trait Probe: Send {
     /// The pairs of its neighbour list, made when lists were last rebuilt, in the order of the two tags.
     fn listed(&self, w: &World) -> Vec<[u32; 2]>;
 
-    /// Every pair that acts, in the order of the two tags; with `idle` also pairs that do not touch but are within the
-    /// cutoff of their types.
+    /// The pairs that are asked for, in the order of the two tags.
     ///
     /// # Errors
     /// What is missing in the scene.
-    fn look(&mut self, w: &World, idle: bool) -> Result<Vec<Interaction>>;
+    fn look(&mut self, w: &World, ask: Ask) -> Result<Vec<Interaction>>;
 
     /// The springs of all contacts.
     ///
@@ -111,10 +133,10 @@ pub trait Probe: Send {
 ///
 /// # Errors
 /// As [`Probe::look`].
-pub fn look_all(probes: &mut [Box<dyn Probe>], w: &World, idle: bool) -> Result<Vec<Interaction>> {
+pub fn look_all(probes: &mut [Box<dyn Probe>], w: &World, ask: Ask) -> Result<Vec<Interaction>> {
     let mut all: Vec<Interaction> = vec![];
     for p in probes.iter_mut() {
-        all.append(&mut p.look(w, idle)?);
+        all.append(&mut p.look(w, ask)?);
     }
     if probes.len() < 2 {
         return Ok(all);
