@@ -1,6 +1,7 @@
 //! Eight numbers side by side in one AVX-512 register, with the bits of four and four.
 
-use super::four::{Avx2, Four, Lanes, operators};
+use super::four::{Avx2, Lanes, operators};
+use super::pair::Sse;
 use super::real::Real;
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -83,26 +84,69 @@ impl Real for Avx512 {
 
 /// Two halves side by side.
 #[inline(always)]
-fn joined(low: Avx2, high: Avx2) -> Avx512 {
-    Avx512(unsafe { _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(low.0), high.0) })
+unsafe fn joined(low: Avx2, high: Avx2) -> __m512d {
+    unsafe { _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(low.0), high.0) }
+}
+
+#[inline(always)]
+unsafe fn halves(v: __m512d) -> [Avx2; 2] {
+    unsafe { [Avx2(_mm512_castpd512_pd256(v)), Avx2(_mm512_extractf64x4_pd::<1>(v))] }
+}
+
+#[inline(always)]
+unsafe fn quarters(v: __m512d) -> [Sse; 4] {
+    unsafe {
+        let [Avx2(low), Avx2(high)] = halves(v);
+        [
+            Sse(_mm256_castpd256_pd128(low)),
+            Sse(_mm256_extractf128_pd::<1>(low)),
+            Sse(_mm256_castpd256_pd128(high)),
+            Sse(_mm256_extractf128_pd::<1>(high)),
+        ]
+    }
 }
 
 impl Lanes<8> for Avx512 {
     type Row = Avx2;
+    type Pair = Sse;
     #[inline(always)]
     fn of_rows(rows: [Avx2; 8]) -> [Self; 4] {
         let [a, b, c, d, e, f, g, h] = rows;
-        let ([x, y, z, w], [p, q, r, s]) = (Avx2::transpose([a, b, c, d]), Avx2::transpose([e, f, g, h]));
-        [joined(x, p), joined(y, q), joined(z, r), joined(w, s)]
+        unsafe {
+            let (ac, bd, eg, fh) = (joined(a, c), joined(b, d), joined(e, g), joined(f, h));
+            // x and z of rows a b | c d, of rows e f | g h; then y and w.
+            let (xz, xz2) = (_mm512_unpacklo_pd(ac, bd), _mm512_unpacklo_pd(eg, fh));
+            let (yw, yw2) = (_mm512_unpackhi_pd(ac, bd), _mm512_unpackhi_pd(eg, fh));
+            [
+                Self(_mm512_shuffle_f64x2::<0b10_00_10_00>(xz, xz2)),
+                Self(_mm512_shuffle_f64x2::<0b10_00_10_00>(yw, yw2)),
+                Self(_mm512_shuffle_f64x2::<0b11_01_11_01>(xz, xz2)),
+                Self(_mm512_shuffle_f64x2::<0b11_01_11_01>(yw, yw2)),
+            ]
+        }
     }
     #[inline(always)]
     fn to_rows(lanes: [Self; 4]) -> [Avx2; 8] {
-        let low = |v: Self| Avx2(unsafe { _mm512_castpd512_pd256(v.0) });
-        let high = |v: Self| Avx2(unsafe { _mm512_extractf64x4_pd::<1>(v.0) });
-        let [x, y, z, w] = lanes;
-        let [a, b, c, d] = Avx2::transpose([low(x), low(y), low(z), low(w)]);
-        let [e, f, g, h] = Avx2::transpose([high(x), high(y), high(z), high(w)]);
-        [a, b, c, d, e, f, g, h]
+        let [Self(x), Self(y), Self(z), Self(w)] = lanes;
+        unsafe {
+            // x and y of every other row; then z and w.
+            let (xy0, xy1) = (_mm512_unpacklo_pd(x, y), _mm512_unpackhi_pd(x, y));
+            let (zw0, zw1) = (_mm512_unpacklo_pd(z, w), _mm512_unpackhi_pd(z, w));
+            let (low, high) =
+                (_mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11), _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15));
+            let (ac, eg) = (_mm512_permutex2var_pd(xy0, low, zw0), _mm512_permutex2var_pd(xy0, high, zw0));
+            let (bd, fh) = (_mm512_permutex2var_pd(xy1, low, zw1), _mm512_permutex2var_pd(xy1, high, zw1));
+            let ([a, c], [b, d], [e, g], [f, h]) = (halves(ac), halves(bd), halves(eg), halves(fh));
+            [a, b, c, d, e, f, g, h]
+        }
+    }
+    #[inline(always)]
+    fn pairs(x: Self, y: Self) -> [Sse; 8] {
+        unsafe {
+            let (even, odd) = (_mm512_unpacklo_pd(x.0, y.0), _mm512_unpackhi_pd(x.0, y.0));
+            let ([a, c, e, g], [b, d, f, h]) = (quarters(even), quarters(odd));
+            [a, b, c, d, e, f, g, h]
+        }
     }
     #[inline(always)]
     unsafe fn all(a: f64) -> Self {
@@ -123,6 +167,8 @@ impl Lanes<8> for Avx512 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::four::Four;
+    use crate::math::pair::Pair;
 
     /// The same operations on eight numbers in these lanes.
     fn several<const N: usize, V: Lanes<N>>(rows: [V::Row; N]) -> Vec<[f64; N]> {
@@ -130,6 +176,12 @@ mod tests {
         let mask = V::both(a.above(b), c.above(d));
         let back = V::to_rows([a + b, b - c, c * d, d / a]);
         let [p, q, r, s] = V::of_rows(back);
+        let two = V::pairs(a * b, c);
+        let mut sums = [[1.0; 2]; N];
+        for (sum, pair) in sums.iter_mut().zip(two) {
+            // SAFETY: two numbers.
+            unsafe { pair.add_to(sum.as_mut_ptr()) };
+        }
         let none = if V::any(V::both(mask, b.above(a))) { a } else { -a };
         [
             a,
@@ -146,7 +198,9 @@ mod tests {
             a.each(f64::cbrt),
         ]
         .map(|v| v.numbers())
-        .into()
+        .into_iter()
+        .chain([0, 1].map(|d| sums.map(|s| s[d])))
+        .collect()
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Four numbers side by side: a plain array for any processor, one AVX register where there is one, same bits.
 
+use super::pair::Pair;
 use super::real::Real;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -24,16 +25,10 @@ pub trait Four: Real {
     /// # Safety
     /// `p` must be readable for three numbers; the processor must have what the form needs.
     unsafe fn load3(p: *const f64) -> Self;
-    /// Writes the first three numbers.
-    ///
-    /// # Safety
-    /// `p` must be writable for three numbers.
-    unsafe fn store3(self, p: *mut f64);
-    /// Adds the first three numbers to those at `p`.
-    ///
-    /// # Safety
-    /// As [`Four::store3`].
-    unsafe fn add_to3(self, p: *mut f64);
+    /// Two numbers.
+    type Two: Pair;
+    /// Lanes `k` of both, by `k`.
+    fn pairs_of(x: Self, y: Self) -> [Self::Two; 4];
     /// The same number four times.
     ///
     /// # Safety
@@ -49,7 +44,7 @@ pub trait Four: Real {
 
 /// Four lanes as an array.
 #[derive(Clone, Copy, Debug)]
-pub struct Plain([f64; 4]);
+pub struct Plain(pub(in crate::math) [f64; 4]);
 
 impl Plain {
     #[inline(always)]
@@ -90,6 +85,10 @@ pub trait Lanes<const N: usize>: Real {
     fn of_rows(rows: [Self::Row; N]) -> [Self; 4];
     /// The way back.
     fn to_rows(lanes: [Self; 4]) -> [Self::Row; N];
+    /// Two numbers.
+    type Pair: Pair;
+    /// Lanes `k` of both, by `k`.
+    fn pairs(x: Self, y: Self) -> [Self::Pair; N];
     /// The same number in every lane.
     ///
     /// # Safety
@@ -113,6 +112,11 @@ impl<F: Four> Lanes<4> for F {
     #[inline(always)]
     fn to_rows(lanes: [F; 4]) -> [F; 4] {
         F::transpose(lanes)
+    }
+    type Pair = F::Two;
+    #[inline(always)]
+    fn pairs(x: F, y: F) -> [F::Two; 4] {
+        F::pairs_of(x, y)
     }
     #[inline(always)]
     unsafe fn all(a: f64) -> F {
@@ -211,16 +215,10 @@ impl Four for Plain {
         let [a, b, c] = unsafe { p.cast::<[f64; 3]>().read() };
         Self([a, b, c, 0.0])
     }
+    type Two = [f64; 2];
     #[inline(always)]
-    unsafe fn store3(self, p: *mut f64) {
-        let [a, b, c, _] = self.0;
-        // SAFETY: writable by the caller's promise.
-        unsafe { p.cast::<[f64; 3]>().write([a, b, c]) }
-    }
-    #[inline(always)]
-    unsafe fn add_to3(self, p: *mut f64) {
-        // SAFETY: passed on.
-        unsafe { (Self::load3(p) + self).store3(p) }
+    fn pairs_of(x: Self, y: Self) -> [[f64; 2]; 4] {
+        std::array::from_fn(|k| [x.0[k], y.0[k]])
     }
     #[inline(always)]
     unsafe fn splat(a: f64) -> Self {
@@ -261,6 +259,7 @@ mod x86 {
     use std::ops::{Add, Div, Mul, Neg, Sub};
 
     use super::{Four, Real};
+    use crate::math::pair::Sse;
 
     /// Four lanes in one AVX register. There is a value of this type only where the processor has AVX2: its
     /// constructors are unsafe and promise that.
@@ -346,21 +345,17 @@ mod x86 {
         unsafe fn load3(p: *const f64) -> Self {
             Self(unsafe { _mm256_maskload_pd(p, _mm256_setr_epi64x(-1, -1, -1, 0)) })
         }
+        type Two = Sse;
         #[inline(always)]
-        unsafe fn store3(self, p: *mut f64) {
+        fn pairs_of(x: Self, y: Self) -> [Sse; 4] {
             unsafe {
-                _mm_storeu_pd(p, _mm256_castpd256_pd128(self.0));
-                _mm_store_sd(p.add(2), _mm256_extractf128_pd::<1>(self.0));
-            }
-        }
-        #[inline(always)]
-        unsafe fn add_to3(self, p: *mut f64) {
-            // Read in the two parts in which it is written: a processor passes a number on from a store to a load soon
-            // after only where the load lies within the store.
-            unsafe {
-                let (low, high) = (_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0));
-                _mm_storeu_pd(p, _mm_add_pd(_mm_loadu_pd(p), low));
-                _mm_store_sd(p.add(2), _mm_add_sd(_mm_load_sd(p.add(2)), high));
+                let (even, odd) = (_mm256_unpacklo_pd(x.0, y.0), _mm256_unpackhi_pd(x.0, y.0));
+                [
+                    Sse(_mm256_castpd256_pd128(even)),
+                    Sse(_mm256_castpd256_pd128(odd)),
+                    Sse(_mm256_extractf128_pd::<1>(even)),
+                    Sse(_mm256_extractf128_pd::<1>(odd)),
+                ]
             }
         }
         #[inline(always)]
@@ -424,7 +419,10 @@ mod tests {
         unsafe {
             let (three, mut four) = ([3.0, -4.0, 5.0, 6.0], [7.0; 4]);
             put(F::load3(three.as_ptr()));
-            (F::load3(three.as_ptr()) + 1.0).store3(four.as_mut_ptr());
+            for (k, pair) in F::pairs_of(a, b).into_iter().enumerate() {
+                pair.add_to(four.as_mut_ptr());
+                pair.take_from(four.as_mut_ptr().add(1 + k % 2));
+            }
             put(F::load(four.as_ptr()));
         }
         out.extend([F::bits(mask), F::any(mask).into(), F::any(none).into()].map(u64::from));

@@ -3,6 +3,9 @@
 use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Param};
+use crate::math::four::{Lanes, Plain, has_avx2};
+use crate::math::threes::{self, Threes};
+use crate::math::vec3::Vec3;
 use crate::plan::{Access, Act, Gist, Op, Stage, Tick, When};
 use crate::styles::command::common::{choice_or_refuse, variable_param};
 use crate::styles::matter::{check_masses, publish};
@@ -111,6 +114,73 @@ fn turned(phi: f64, theta: f64, flat: bool) -> [f64; 3] {
     [theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()]
 }
 
+/// f ← f + m a for those whose mask has the bit; Σ −m a·x.
+fn pulled(f: &mut [Vec3], x: &[Vec3], mass: &[f64], mask: &[u32], bit: u32, a: Vec3) -> f64 {
+    #[cfg(target_arch = "x86_64")]
+    if has_avx2() {
+        // SAFETY: the processor has AVX2.
+        return unsafe { pulled_avx2(f, x, mass, mask, bit, a) };
+    }
+    // SAFETY: this form needs nothing.
+    unsafe { pulled_in::<Plain>(f, x, mass, mask, bit, a) }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn pulled_avx2(f: &mut [Vec3], x: &[Vec3], mass: &[f64], mask: &[u32], bit: u32, a: Vec3) -> f64 {
+    // SAFETY: the processor has AVX2.
+    unsafe { pulled_in::<crate::math::four::Avx2>(f, x, mass, mask, bit, a) }
+}
+
+/// Four at a time, and those one by one that are not all of the group.
+///
+/// # Safety
+/// The processor must have what the form needs.
+#[inline(always)]
+unsafe fn pulled_in<F: Threes>(
+    f: &mut [Vec3],
+    x: &[Vec3],
+    mass: &[f64],
+    mask: &[u32],
+    bit: u32,
+    a: Vec3,
+) -> f64 {
+    let (mass4, mass1) = mass.as_chunks::<4>();
+    let (mask4, mask1) = mask.as_chunks::<4>();
+    let (f4, f1) = f.as_chunks_mut::<4>();
+    let (x4, x1) = x.as_chunks::<4>();
+    let mut energy = pulled_each(f1, x1, mass1, mask1, bit, a);
+    // SAFETY (all below): the caller's promise; arrays of twelve and of four numbers.
+    let (along, mut sum) = unsafe { (threes::repeated::<F>(a), F::splat(0.0)) };
+    for (((f, x), m), mask) in f4.iter_mut().zip(x4).zip(mass4).zip(mask4) {
+        if mask[0] & mask[1] & mask[2] & mask[3] & bit == 0 {
+            energy += pulled_each(f, x, m, mask, bit, a);
+            continue;
+        }
+        unsafe {
+            let (m, p) = (F::load(m.as_ptr()), f.as_flattened_mut().as_mut_ptr());
+            let ([fa, fb, fc], [ma, mb, mc]) = (threes::load::<F>(p), m.spread());
+            threes::store([fa + ma * along[0], fb + mb * along[1], fc + mc * along[2]], p);
+            let [x, y, z] = F::parted(threes::load(x.as_flattened().as_ptr()));
+            sum = sum - m * (x * a[0] + y * a[1] + z * a[2]);
+        }
+    }
+    energy + sum.numbers().iter().sum::<f64>()
+}
+
+/// One by one.
+#[inline(always)]
+fn pulled_each(f: &mut [Vec3], x: &[Vec3], mass: &[f64], mask: &[u32], bit: u32, a: Vec3) -> f64 {
+    let mut energy = 0.0;
+    for (((f, x), m), _) in f.iter_mut().zip(x).zip(mass).zip(mask).filter(|(_, mask)| **mask & bit != 0) {
+        for d in 0..3 {
+            f[d] += m * a[d];
+        }
+        energy -= m * (a[0] * x[0] + a[1] * x[1] + a[2] * x[2]);
+    }
+    energy
+}
+
 impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let span = cx.span();
@@ -132,17 +202,9 @@ impl Fix for Declared {
             let (g, unit) = (magnitude.get(w), pointer.unit(w, w.settings.two_dimensional));
             let [ax, ay, az] = unit.map(|e| g * e);
             Some(Box::new(move |s| {
-                // Four sums, so that no addition waits for the one before.
-                let mut energy = [0.0; 4];
-                let mass = &s.all.mass[s.start..];
-                let particles = s.f.iter_mut().zip(&*s.x).zip(mass).zip(s.mask);
-                for (k, (((f, x), m), _)) in particles.enumerate().filter(|(_, (_, m))| **m & bit != 0) {
-                    f[0] += m * ax;
-                    f[1] += m * ay;
-                    f[2] += m * az;
-                    energy[k % 4] -= m * (ax * x[0] + ay * x[1] + az * x[2]);
-                }
-                Gist { sums: [energy.iter().sum(), 0.0, 0.0], most: 0.0 }
+                let mass = &s.all.mass[s.start..][..s.x.len()];
+                let energy = pulled(s.f, s.x, mass, s.mask, bit, [ax, ay, az]);
+                Gist { sums: [energy, 0.0, 0.0], most: 0.0 }
             }))
         };
         let told = move |w: &mut World, t: &Tick, gist: Gist| publish(w, slot, t, gist.sums[0], &[]);
@@ -225,6 +287,26 @@ mod tests {
         b.world.settings.two_dimensional = true;
         near(force(&mut b, "5 chute 0"), [0.0, -10.0, 0.0]);
         near(force(&mut b, "5 vector 3 4 100"), [6.0, 8.0, 0.0]);
+    }
+
+    #[test]
+    fn every_form_pulls_those_of_the_group_alike() {
+        let some = |k: usize| -> Vec<Vec3> {
+            (0..11).map(|i| [0, 1, 2].map(|d| ((i * 7 + d * 5 + k) % 13) as f64 / 3.0)).collect()
+        };
+        let (x, mass, a) = (some(1), some(2).iter().map(|m| m[0]).collect::<Vec<_>>(), [0.3, -0.7, 1.1]);
+        for mask in [[1; 11], std::array::from_fn(|k| (k % 5) as u32 & 1)] {
+            let (mut one, mut each) = (some(3), some(3));
+            // SAFETY: the portable form needs nothing.
+            let energy = unsafe { pulled_in::<Plain>(&mut one, &x, &mass, &mask, 1, a) };
+            let expected = pulled_each(&mut each, &x, &mass, &mask, 1, a);
+            assert_eq!(one, each);
+            // Eleven terms of about 10, added in another order.
+            assert!((energy - expected).abs() < 1e-13, "{energy} {expected}");
+            let mut wide = some(3);
+            assert_eq!(pulled(&mut wide, &x, &mass, &mask, 1, a).to_bits(), energy.to_bits());
+            assert_eq!(wide, each);
+        }
     }
 
     #[test]

@@ -2,7 +2,8 @@
 
 use super::nve::half_step;
 use crate::diag::Result;
-use crate::math::four::has_avx2;
+use crate::math::four::{Lanes, Plain, has_avx2};
+use crate::math::threes::{self, Threes};
 use crate::math::vec3::Vec3;
 use crate::par;
 use crate::plan::{Act, Gist, Tick};
@@ -156,7 +157,8 @@ impl Kick {
             // SAFETY: the processor has AVX2.
             return unsafe { self.avx2::<KICKS, DRIFT, SPIN>(c, masses) };
         }
-        self.four::<KICKS, DRIFT, SPIN>(c, masses)
+        // SAFETY: this form needs nothing.
+        unsafe { self.four::<Plain, KICKS, DRIFT, SPIN>(c, masses) }
     }
 
     #[cfg(target_arch = "x86_64")]
@@ -166,13 +168,16 @@ impl Kick {
         c: Chunk,
         masses: impl Fn(usize) -> [f64; 4],
     ) -> f64 {
-        self.four::<KICKS, DRIFT, SPIN>(c, masses)
+        // SAFETY: the processor has AVX2.
+        unsafe { self.four::<crate::math::four::Avx2, KICKS, DRIFT, SPIN>(c, masses) }
     }
 
-    /// Four particles at a time, and those one by one that are not all of the group. (Loops, no closures: those are not
-    /// inlined into code for AVX.)
+    /// Four particles at a time, and those one by one that are not all of the group.
+    ///
+    /// # Safety
+    /// The processor must have what the form needs.
     #[inline(always)]
-    fn four<const KICKS: usize, const DRIFT: bool, const SPIN: bool>(
+    unsafe fn four<F: Threes, const KICKS: usize, const DRIFT: bool, const SPIN: bool>(
         &self,
         c: Chunk,
         masses: impl Fn(usize) -> [f64; 4],
@@ -185,8 +190,9 @@ impl Kick {
         let (omega4, omega1) = omega.as_chunks_mut::<4>();
         let (torque4, torque1) = torque.as_chunks::<4>();
         let (radius4, radius1) = radius.as_chunks::<4>();
-        let mut fastest = [0.0; 4];
         let mut slow = 0.0;
+        // SAFETY (all below): the caller's promise; arrays of twelve and of four numbers.
+        let (mut fastest, mut wrong) = unsafe { (F::splat(0.0), F::splat(0.0)) };
         for (k, (((x, v), f), mask)) in x4.iter_mut().zip(v4).zip(f4).zip(mask4).enumerate() {
             let m = masses(k);
             let all = mask[0] & mask[1] & mask[2] & mask[3] & self.bit != 0;
@@ -197,26 +203,22 @@ impl Kick {
                 }
                 continue;
             }
-            let mut by = [0.0; 4];
-            for l in 0..4 {
-                by[l] = self.half / m[l];
-            }
-            kicked::<KICKS>(v, f, &by);
-            if SPIN {
-                for l in 0..4 {
-                    by[l] = self.spin / (radius4[k][l] * radius4[k][l] * m[l]);
+            unsafe {
+                let m = F::load(m.as_ptr());
+                let v = kicked::<F, KICKS>(v, f, F::splat(self.half) / m);
+                if SPIN {
+                    let r = F::load(radius4[k].as_ptr());
+                    kicked::<F, KICKS>(&mut omega4[k], &torque4[k], F::splat(self.spin) / (r * r * m));
                 }
-                kicked::<KICKS>(&mut omega4[k], &torque4[k], &by);
-            }
-            if DRIFT {
-                let (x, v) = (x.as_flattened_mut(), v.as_flattened());
-                let mut square = [0.0; 12];
-                for d in 0..12 {
-                    x[d] += self.dt * v[d];
-                    square[d] = v[d] * v[d];
-                }
-                for l in 0..4 {
-                    fastest[l] = faster(fastest[l], square[3 * l] + square[3 * l + 1] + square[3 * l + 2]);
+                if DRIFT {
+                    let p = x.as_flattened_mut().as_mut_ptr();
+                    let [a, b, c] = threes::load::<F>(p);
+                    threes::store([a + v[0] * self.dt, b + v[1] * self.dt, c + v[2] * self.dt], p);
+                    let [x, y, z] = F::parted([v[0] * v[0], v[1] * v[1], v[2] * v[2]]);
+                    let square = x + y + z;
+                    fastest = fastest.most(square);
+                    // Zero times what is infinite or no number is no number, and stays so in a sum.
+                    wrong = wrong + square * 0.0;
                 }
             }
         }
@@ -225,7 +227,7 @@ impl Kick {
         if SPIN {
             self.turn_each::<KICKS>(omega1, torque1, radius1, &m, mask1);
         }
-        fastest.into_iter().fold(slow, faster)
+        (fastest + wrong).numbers().into_iter().fold(slow, faster)
     }
 
     /// Particles one by one.
@@ -281,15 +283,24 @@ fn kick<const KICKS: usize>(v: &mut Vec3, f: &Vec3, by: f64) {
     }
 }
 
-/// [`kick`] of four.
+/// [`kick`] of four, and what comes of it.
+///
+/// # Safety
+/// The processor must have what the form needs.
 #[inline(always)]
-fn kicked<const KICKS: usize>(v: &mut [Vec3; 4], f: &[Vec3; 4], by: &[f64; 4]) {
-    let (v, f) = (v.as_flattened_mut(), f.as_flattened());
-    for d in 0..12 {
-        let dv = by[d / 3] * f[d];
+unsafe fn kicked<F: Threes, const KICKS: usize>(v: &mut [Vec3; 4], f: &[Vec3; 4], by: F) -> [F; 3] {
+    let p = v.as_flattened_mut().as_mut_ptr();
+    // SAFETY: twelve numbers each; the rest is the caller's promise.
+    unsafe {
+        let ([a, b, c], [fa, fb, fc], [ba, bb, bc]) =
+            (threes::load::<F>(p), threes::load::<F>(f.as_flattened().as_ptr()), by.spread());
+        let (da, db, dc) = (ba * fa, bb * fb, bc * fc);
+        let mut now = [a, b, c];
         for _ in 0..KICKS {
-            v[d] += dv;
+            now = [now[0] + da, now[1] + db, now[2] + dc];
         }
+        threes::store(now, p);
+        now
     }
 }
 
@@ -330,9 +341,12 @@ mod tests {
             let c = Chunk { x: &mut x, v: &mut v, f: &f, mask: &mask, turned };
             fastest = match (part, wide) {
                 (_, true) => k.chunk(c, *part, true, masses),
-                (Part::First, _) => k.four::<1, true, true>(c, masses),
-                (Part::Second, _) => k.four::<1, false, true>(c, masses),
-                (Part::Both, _) => k.four::<2, true, true>(c, masses),
+                // SAFETY: the portable form needs nothing.
+                (Part::First, _) => unsafe { k.four::<Plain, 1, true, true>(c, masses) },
+                // SAFETY: as above.
+                (Part::Second, _) => unsafe { k.four::<Plain, 1, false, true>(c, masses) },
+                // SAFETY: as above.
+                (Part::Both, _) => unsafe { k.four::<Plain, 2, true, true>(c, masses) },
             };
         }
         (x, v, omega, fastest)
@@ -365,5 +379,16 @@ mod tests {
         }
         assert_eq!(fastest, most);
         assert_eq!([faster(1.0, f64::NAN), faster(f64::INFINITY, 2.0)], [f64::INFINITY; 2]);
+    }
+
+    #[test]
+    fn who_moves_by_no_number_is_infinitely_fast_whoever_follows() {
+        let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 1 };
+        for i in 0..N {
+            let (mut x, mut v, f) = (some(1), some(2), some(4));
+            v[i][1] = f64::NAN;
+            let c = Chunk { x: &mut x, v: &mut v, f: &f, mask: &[1; N], turned: Turned::default() };
+            assert_eq!(k.chunk(c, Part::First, false, |_| [1.0; 4]), f64::INFINITY, "{i}");
+        }
     }
 }

@@ -7,6 +7,7 @@ use super::sweep::Cx;
 use crate::laws::contact::driver::DEEP;
 use crate::laws::contact::{ContactLaw, Geometry, Motion, Wrench};
 use crate::math::four::{Four, Lanes};
+use crate::math::pair::Pair;
 use crate::math::real::Real;
 use crate::math::vec3::{SIX, Vec3, scale};
 
@@ -143,23 +144,62 @@ impl<const N: usize> Group<N> {
     /// Adds forces and torques, contact by contact.
     #[inline(always)]
     unsafe fn add<V: Lanes<N>, L>(&self, cx: &Cx<L>, w: &Wrench<V>, count: usize) {
+        let force = Apart::<V::Pair, N>::new(w.force);
+        let (own, other) = (Apart::new(w.torque_i), Apart::new(w.torque_j));
+        let (f, t): (*mut f64, *mut f64) = (cx.force.as_ptr().cast(), cx.torque.as_ptr().cast());
+        // SAFETY: passed on. Groups are full but the last one of a list: loops of known length are written out.
+        unsafe {
+            if count >= N {
+                for lane in 0..N {
+                    force.act(f, lane, self.i[lane], self.j[lane]);
+                }
+                for lane in 0..N {
+                    own.add(t, lane, self.i[lane]);
+                    other.add(t, lane, self.j[lane]);
+                }
+                return;
+            }
+            for lane in 0..count {
+                force.act(f, lane, self.i[lane], self.j[lane]);
+                own.add(t, lane, self.i[lane]);
+                other.add(t, lane, self.j[lane]);
+            }
+        }
+    }
+}
+
+/// Vectors in lanes as they go to memory: x and y together, and z.
+struct Apart<P, const N: usize> {
+    xy: [P; N],
+    z: [f64; N],
+}
+
+impl<P: Pair, const N: usize> Apart<P, N> {
+    #[inline(always)]
+    fn new<V: Lanes<N, Pair = P>>([x, y, z]: Vec3<V>) -> Self {
+        Self { xy: V::pairs(x, y), z: z.numbers() }
+    }
+
+    /// Adds the vector of a lane to that of grain `i`.
+    #[inline(always)]
+    unsafe fn add(&self, to: *mut f64, lane: usize, i: usize) {
         // SAFETY: passed on.
         unsafe {
-            let zero = V::all(0.0);
-            let ([fx, fy, fz], [ax, ay, az], [bx, by, bz]) = (w.force, w.torque_i, w.torque_j);
-            let (force, back) = (V::to_rows([fx, fy, fz, zero]), V::to_rows([-fx, -fy, -fz, zero]));
-            let (ti, tj) = (V::to_rows([ax, ay, az, zero]), V::to_rows([bx, by, bz, zero]));
-            let (f, t): (*mut f64, *mut f64) = (cx.force.as_ptr().cast(), cx.torque.as_ptr().cast());
-            for lane in 0..N {
-                if lane >= count {
-                    break;
-                }
-                let (i, j) = (3 * self.i[lane], 3 * self.j[lane]);
-                force[lane].add_to3(f.add(i));
-                back[lane].add_to3(f.add(j));
-                ti[lane].add_to3(t.add(i));
-                tj[lane].add_to3(t.add(j));
-            }
+            let to = to.add(3 * i);
+            self.xy[lane].add_to(to);
+            *to.add(2) += self.z[lane];
+        }
+    }
+
+    /// Adds the vector of a lane to that of grain `i` and takes it from that of grain `j`.
+    #[inline(always)]
+    unsafe fn act(&self, to: *mut f64, lane: usize, i: usize, j: usize) {
+        // SAFETY: passed on.
+        unsafe {
+            self.add(to, lane, i);
+            let to = to.add(3 * j);
+            self.xy[lane].take_from(to);
+            *to.add(2) -= self.z[lane];
         }
     }
 }
