@@ -9,7 +9,7 @@ use super::verlet::tick;
 use crate::diag::Result;
 use crate::plan::{Phase, Solids, Stage, StepPlan, Tick};
 use crate::world::World;
-use crate::world::columns::of_level;
+use crate::world::columns::{HEATFLOW, heat_of_level, of_level};
 use std::sync::Arc;
 
 /// Levels of steps.
@@ -38,7 +38,9 @@ impl Levels {
 pub fn stand(w: &World, levels: usize) -> bool {
     let (n, kinds) = (w.n(), if w.particles.style.sphere { 2 } else { 1 });
     let whole = |name: &String| w.columns.get_vector(name).is_some_and(|c| c.len() == n);
-    (0..levels).all(|k| of_level(k).iter().take(kinds).all(whole))
+    let warm = w.columns.custom(HEATFLOW).is_some();
+    let heat = |k| !warm || w.columns.get_scalar(&heat_of_level(k)).is_some_and(|c| c.len() == n);
+    (0..levels).all(|k| of_level(k).iter().take(kinds).all(whole) && heat(k))
 }
 
 /// Forces of all levels at the start of a run, and its first outputs.
@@ -54,7 +56,13 @@ pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool, l: &Levels) ->
     plan.run(w, &l.at(&t, l.count() - 1), &[Stage::Neighbor])?;
     w.columns.forget_levels();
     for k in 0..l.count() {
-        plan.run(w, &l.at(&t, k), &[Stage::PreForce, Stage::Force, Stage::PostForce])?;
+        plan.run(w, &l.at(&t, k), &[Stage::PreForce, Stage::Force])?;
+        exchange(w, k);
+    }
+    // Weights are those of the masses that the outermost level leaves (`fix adapt`).
+    for k in 0..l.count() {
+        exchange(w, k);
+        plan.run(w, &l.at(&t, k), &[Stage::PostForce])?;
         exchange(w, k);
     }
     join(w, l);
@@ -111,16 +119,19 @@ fn forces(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
     plan.run(w, t, &[Stage::PostForce])
 }
 
-/// Lets the present forces and torques and those of a level change places.
+/// Lets the present forces, torques and heat flows and those of a level change places.
 pub(super) fn exchange(w: &mut World, level: usize) {
     let (n, [force, torque]) = (w.n(), of_level(level));
     std::mem::swap(&mut w.particles.f, w.columns.vector(&force, n));
     if w.particles.style.sphere {
         std::mem::swap(&mut w.particles.torque, w.columns.vector(&torque, n));
     }
+    if let Some(heat) = w.columns.custom(HEATFLOW) {
+        w.columns.swap_scalars(&heat, &heat_of_level(level), n);
+    }
 }
 
-/// Shows the forces and torques of all levels together.
+/// Shows the forces, torques and heat flows of all levels together.
 fn join(w: &mut World, l: &Levels) {
     let p = &mut w.particles;
     for k in 0..l.count() {
@@ -136,4 +147,12 @@ fn join(w: &mut World, l: &Levels) {
             }
         }
     }
+    let Some(heat) = w.columns.custom(HEATFLOW) else { return };
+    let n = w.n();
+    let mut sum = vec![0.0; n];
+    for k in 0..l.count() {
+        let part = w.columns.get_scalar(&heat_of_level(k)).unwrap_or_default();
+        sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+    }
+    *w.columns.scalar(&heat, n) = sum;
 }

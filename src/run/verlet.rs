@@ -4,6 +4,7 @@ use super::guarded::{Guarded, Verdict};
 use crate::diag::Result;
 use crate::par;
 use crate::plan::{Phase, Stage, StepPlan, Tick};
+use crate::world::columns::HEATFLOW;
 use crate::world::{Halt, World};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -76,8 +77,13 @@ fn tally_anew(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
         return Ok(());
     }
     let kept = (w.particles.f.clone(), w.particles.torque.clone());
+    let n = w.particles.len();
+    let warm = w.columns.custom(HEATFLOW).map(|name| (w.columns.scalar(&name, n).clone(), name));
     // Fixes see that nothing has changed: they add their virial and leave the forces alone.
     plan.run(w, t, &[Stage::PreForce, Stage::Force, Stage::PostForce])?;
+    if let Some((heat, name)) = warm {
+        *w.columns.scalar(&name, n) = heat;
+    }
     (w.particles.f, w.particles.torque) = kept;
     Ok(())
 }

@@ -23,6 +23,11 @@ pub fn of_level(level: usize) -> [String; 2] {
     ["force", "torque"].map(|what| format!("{LEVEL}{level}/{what}"))
 }
 
+/// The scalar column that keeps the heat flow of a level of steps.
+pub fn heat_of_level(level: usize) -> String {
+    format!("{LEVEL}{level}/heat")
+}
+
 /// Named scalar and vector columns, kept in step with the particles.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Columns {
@@ -77,8 +82,16 @@ impl Columns {
         self.vectors.remove(name);
     }
 
-    /// Forgets the forces and torques of levels of steps.
+    /// Lets two scalar columns change places, each made of zeros for `n` particles if it is new.
+    pub fn swap_scalars(&mut self, a: &str, b: &str, n: usize) {
+        let of_a = std::mem::take(self.scalar(a, n));
+        let of_b = std::mem::replace(self.scalar(b, n), of_a);
+        *self.scalar(a, n) = of_b;
+    }
+
+    /// Forgets the forces, torques and heat flows of levels of steps.
     pub fn forget_levels(&mut self) {
+        self.scalars.retain(|name, _| !name.starts_with(LEVEL));
         self.vectors.retain(|name, _| !name.starts_with(LEVEL));
     }
 

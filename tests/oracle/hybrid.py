@@ -1,4 +1,5 @@
 """Random decks of one or two peridynamic bodies among grains: pair_style hybrid, contacts between both kinds, walls."""
+from levels import levels
 
 DX = 0.001
 VOLUME = 1e-9
@@ -138,4 +139,5 @@ def hybrid(r):
              "thermo_style custom step atoms pe ke c_ds c_cs c_er c_mo[*] c_kb c_kg c_mx[*] c_ps v_fz v_vx v_xg c_dm c_ss[*]",
              "thermo_modify norm no lost ignore format float %20.13g", "thermo 25", "run 75"]
     deck += r.choice([[], ["run 25"], ["velocity grain set 0 0 -20 units box", "run 25"]])
+    deck = levels(r, deck, 0.3, parts=2)
     return deck + ["write_dump all custom end.dump id type x y z vx vy vz fx fy fz omegax omegay omegaz c_dmg modify sort id format float %.12g"]

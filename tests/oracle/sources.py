@@ -1,4 +1,5 @@
 """Random decks of what comes and goes: pour, deposit, create_atoms, molecules, evaporate, delete_atoms."""
+from levels import levels
 
 
 def u(r, low, high, digits=3):
@@ -118,4 +119,6 @@ def sources(r):
     # With new ids LAMMPS loses some contacts' springs.
     deck += r.choice([[], ["run 20"], ["delete_atoms group slab compress no", "run 20"], ["unfix g", "run 0"] if what > 0.45 else [],
                       [f"create_atoms 2 random 5 {r.randint(1, 9999)} NULL", "run 10"], ["set type 2 diameter 0.7", "run 10"]])
-    return deck + ["write_dump all custom end.dump id type x y z vx vy vz radius mass modify sort id format float %.12g"]
+    deck.append("write_dump all custom end.dump id type x y z vx vy vz radius mass modify sort id format float %.12g")
+    # Across periodic faces LAMMPS' contacts of outer levels see old velocities.
+    return levels(r, deck, 0 if "p" in sides.split()[: 2 if flat else 3] else 0.4)
