@@ -5,7 +5,7 @@ use perigrain::world::families::*;
 use super::scene::Scene;
 
 const DX: f64 = 1e-3;
-const KINDS: [LawKind; 4] = [LawKind::Pmb, LawKind::Lps, LawKind::Ves, LawKind::Eps];
+const KINDS: [LawKind; 5] = [LawKind::Pmb, LawKind::Lps, LawKind::Ves, LawKind::Eps, LawKind::VesApart];
 
 /// A bar that is torn in the middle; its bonds relax and flow before they break.
 fn torn(kind: LawKind, layout: Layout) -> Scene {
@@ -15,7 +15,8 @@ fn torn(kind: LawKind, layout: Layout) -> Scene {
     s.density.iter_mut().zip(&s.volume).for_each(|(m, v)| *m *= v);
     s.table.set(1, 1, PmbCoeff { c: 1e21, horizon: 3.015 * DX, s00: 0.004, alpha: 0.25 }).unwrap();
     s.law.kind = kind;
-    let (lambda, tau) = if kind == LawKind::Ves { (0.6, 3e-7) } else { (0.0, 0.0) };
+    let (lambda, tau) =
+        if matches!(kind, LawKind::Ves | LawKind::VesApart) { (0.6, 3e-7) } else { (0.0, 0.0) };
     s.law.moduli =
         vec![Moduli { bulk: 14e9, shear: 6e9, lambda, tau, yield_stress: 2e7, ..Moduli::default() }];
     for (x, v) in s.x.iter().zip(&mut s.v) {

@@ -9,10 +9,14 @@ use super::scene::Scene;
 const DX: f64 = 1e-3;
 const K: f64 = 14e9;
 const G: f64 = 6e9;
-const KINDS: [LawKind; 3] = [LawKind::Lps, LawKind::Ves, LawKind::Eps];
+const KINDS: [LawKind; 4] = [LawKind::Lps, LawKind::Ves, LawKind::Eps, LawKind::VesApart];
 
 fn moduli(kind: LawKind, factor: f64) -> Moduli {
-    let (lambda, tau) = if kind == LawKind::Ves { (0.6, 3e-7) } else { (0.0, 0.0) };
+    let (lambda, tau) = match kind {
+        LawKind::Ves => (0.6, 3e-7),
+        LawKind::VesApart => (0.6 / factor, 3e-7 * factor * factor),
+        _ => (0.0, 0.0),
+    };
     let (bulk, shear, yield_stress) = (K * factor, G * factor * factor, 2e6 * factor);
     Moduli { bulk, shear, lambda, tau, yield_stress, ..Moduli::default() }
 }
@@ -118,7 +122,7 @@ impl Plain {
             let bonds: Vec<_> = self.ends[i].iter().map(|e| bond(i, e)).collect();
             for ((e, dev), (along, _)) in self.ends[i].iter_mut().zip(devs).zip(bonds) {
                 let effective = match s.law.kind {
-                    LawKind::Ves => {
+                    LawKind::Ves | LawKind::VesApart => {
                         let steps = m.tau / s.dt;
                         let decay = (-1.0 / steps).exp();
                         let beta = 1.0 - steps * (1.0 - decay);

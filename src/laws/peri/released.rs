@@ -5,6 +5,7 @@ use super::energy::tally;
 use super::list_kernel::RowKernels;
 use super::state::{self, kernels::StateKernels};
 use super::stretching::StretchKernels;
+use crate::world::families::lattice::PAD;
 use crate::world::families::law::SiteState;
 use crate::world::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
 
@@ -60,11 +61,47 @@ impl Families {
                 let law = std::mem::replace(&mut self.law, springs);
                 let power = 2.0 / own.tau * own.lambda * self.bond_energy::<K>(view, period);
                 self.law = law;
-                self.heat += 0.5 * self.law.dt * (self.relaxing.unwrap_or(power) + power);
-                self.relaxing = Some(power);
+                self.relax(power);
+            }
+            LawKind::VesApart => {
+                // The same with 2λ/τ of each end in its modulus.
+                let kept = self.springs_alone(view);
+                let law = self.law.clone();
+                self.law.moduli.iter_mut().for_each(|m| m.bulk = 0.0);
+                let power = self.bond_energy::<K>(view, period);
+                self.law = law;
+                let states = self.lattices.iter_mut().map(|b| &mut b.state).chain([&mut self.list.state]);
+                states.zip(kept).for_each(|(state, columns)| state.columns = columns);
+                self.relax(power);
             }
             _ => {}
         }
+    }
+
+    /// Adds the heat of a step at whose end the power is this.
+    fn relax(&mut self, power: f64) {
+        self.heat += 0.5 * self.law.dt * (self.relaxing.unwrap_or(power) + power);
+        self.relaxing = Some(power);
+    }
+
+    /// Puts 2λ/τ times the modulus of the springs in the place of all moduli of sites; returns the columns as they were.
+    fn springs_alone(&mut self, view: &PeriView) -> Vec<Vec<f64>> {
+        let law = &self.law;
+        let scale = |columns: &mut [f64], (pad, stride): (usize, usize), particle: &[u32]| {
+            for (site, &p) in particle.iter().enumerate().filter(|(_, p)| **p != u32::MAX) {
+                let own = law.of(view.kind[p as usize]);
+                columns[stride + pad + site] *= if own.tau > 0.0 { 2.0 * own.lambda / own.tau } else { 0.0 };
+                columns[3 * stride + pad + site] = 1.0;
+            }
+        };
+        let mut kept = Vec::new();
+        for body in &mut self.lattices {
+            kept.push(body.state.columns.clone());
+            scale(&mut body.state.columns, (PAD, body.stride), &body.particle);
+        }
+        kept.push(self.list.state.columns.clone());
+        scale(&mut self.list.state.columns, (0, self.list.record.len()), &self.list.particle);
+        kept
     }
 
     /// Whether what bonds remember has changed in this step.

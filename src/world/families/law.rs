@@ -1,5 +1,7 @@
 //! Which material the bonds are made of: bond-based or ordinary state-based, and what of it outlives a step.
 
+use crate::diag::{Code, Diagnostic, Result};
+
 /// How much a bond counts for its length in state-based sums (`peri_modify influence`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Influence {
@@ -73,6 +75,8 @@ pub enum LawKind {
     Flat,
     /// Microelastic bonds whose micro-modulus depends on their length or on how near the surface is.
     Shaped,
+    /// As [`LawKind::Ves`] where types relax differently: each end of a bond remembers its own stretch.
+    VesApart,
 }
 
 impl LawKind {
@@ -91,7 +95,7 @@ impl LawKind {
         match self {
             Self::Pmb | Self::Lps | Self::Flat | Self::Shaped => 0,
             Self::Yield | Self::Ves => 1,
-            Self::Eps => 2,
+            Self::Eps | Self::VesApart => 2,
         }
     }
 }
@@ -131,6 +135,32 @@ impl Law {
         }
     }
 
+    /// The viscous law in the form that its types need: one memory for both ends of a bond serves only where all relax alike.
+    /// What bonds remember `before`, the law of families that are there, cannot turn into something else.
+    ///
+    /// # Errors
+    /// Types that relax differently where bonds remember one number.
+    pub fn shared_or_apart(&mut self, before: Option<LawKind>) -> Result<()> {
+        if self.kind != LawKind::Ves {
+            return Ok(());
+        }
+        let mut viscous = self.moduli.iter().filter(|m| m.tau > 0.0).map(|m| (m.lambda, m.tau));
+        let first = viscous.next();
+        let apart = viscous.any(|own| Some(own) != first);
+        if apart && before == Some(LawKind::Ves) {
+            let text = "all types relaxed alike at the first run: they cannot relax differently now";
+            return Err(Diagnostic::error(Code::WRONG_ORDER, None, text)
+                .help(
+                    "give types their own lambda and tau before the first run; their values may change then",
+                )
+                .into());
+        }
+        if apart || before == Some(LawKind::VesApart) {
+            self.kind = LawKind::VesApart;
+        }
+        Ok(())
+    }
+
     /// The moduli of a type.
     pub fn of(&self, kind: u16) -> Moduli {
         self.moduli.get(usize::from(kind) - 1).copied().unwrap_or_default()
@@ -138,7 +168,7 @@ impl Law {
 }
 
 /// Columns that force kernels read, at most.
-pub const COLUMNS: usize = 5;
+pub const COLUMNS: usize = 6;
 
 /// In which form viscous bonds remember the stretch D of their Maxwell element: as decay D − fresh s, s being the bond's
 /// stretch at the last step that advanced. With the shares of the next step that needs only its own stretch, since

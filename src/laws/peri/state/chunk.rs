@@ -306,12 +306,12 @@ unsafe fn term_of<L: Lanes, T: Term, const DEGREE: usize, const MASKED: bool>(
 
 /// The dilatations of some neighbouring cells.
 #[inline(always)]
-unsafe fn angles<L: Lanes>(look: &Looking, at: isize) -> Angles<L> {
+unsafe fn angles<L: Lanes>(look: &Looking, at: isize, relaxing: L) -> Angles<L> {
     // SAFETY: the caller's promise.
     unsafe {
         let now = L::load(look.theta.offset(at));
         let more = now.sub(L::load(look.before.offset(at)));
-        Angles { now, unrelaxed: L::load(look.unrelaxed.offset(at)).add(more) }
+        Angles { now, unrelaxed: L::load(look.unrelaxed.offset(at)).add(more), relaxing }
     }
 }
 
@@ -356,7 +356,10 @@ pub(super) unsafe fn sums<L: Lanes, W: BondLaw>(
                 let mut memory =
                     if known { recall::<L>(s, W::MEMORY, vector, here) } else { [L::splat(0.0); 2] };
                 let omega = L::splat(*c.add(OMEGA));
-                let at = [angles::<L>(look, here as isize), angles::<L>(look, other)];
+                let at = [
+                    angles::<L>(look, here as isize, W::relaxing(&ends[0], s.moment)),
+                    angles::<L>(look, other, W::relaxing(&ends[1], s.moment)),
+                ];
                 let (mut near, mut far) = W::squares(&now, omega, &at, &memory, s.moment);
                 if look.states {
                     (near, far) = (near.mul(ends[0][1]), far.mul(ends[1][1]));

@@ -232,9 +232,15 @@ fn add_of<W: BondLaw>(families: &Families, b: &Bond, t: &mut PeriTally) {
         std::array::from_fn(|k| Single(if k < count { b.state.columns[k * b.stride + at] } else { 0.0 }))
     };
     let ends: Ends<Single> = b.at.map(columns);
-    let angles = b.at.map(|at| {
-        let now = b.state.theta[at];
-        Angles { now: Single(now), unrelaxed: Single(b.state.unrelaxed[at] + (now - b.state.before[at])) }
+    let angles: [Angles<Single>; 2] = std::array::from_fn(|end| {
+        let at = b.at[end];
+        let theta = b.state.theta[at];
+        Angles {
+            now: Single(theta),
+            unrelaxed: Single(b.state.unrelaxed[at] + (theta - b.state.before[at])),
+            // SAFETY: plain arithmetic.
+            relaxing: unsafe { W::relaxing(&ends[end], &now) },
+        }
     });
     let omega = Single(b.omega);
     // SAFETY: plain arithmetic.

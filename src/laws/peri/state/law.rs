@@ -9,7 +9,7 @@ mod viscous;
 
 use super::super::lanes::Lanes;
 use crate::world::families::law::{COLUMNS, Held};
-pub use viscous::{Viscous, ViscousLammps};
+pub use viscous::{Viscous, ViscousApart, ViscousLammps};
 
 /// A bond's stretch s in the forms that laws need.
 #[derive(Clone, Copy)]
@@ -81,6 +81,11 @@ macro_rules! of_law {
             (LawKind::Flat, _) => with!(Flattened),
             (LawKind::Ves, false) => with!(Viscous),
             (LawKind::Ves, true) => with!(ViscousLammps),
+            (LawKind::VesApart, false) => with!(ViscousApart),
+            (LawKind::VesApart, true) => {
+                type $W = law::ViscousApart<true>;
+                $e
+            }
             (LawKind::Eps, false) => with!(Plastic),
             (LawKind::Eps, true) => with!(PlasticLammps),
         }
@@ -128,6 +133,15 @@ pub trait BondLaw: Sync {
         // SAFETY: passed on to the caller.
         unsafe { deviatoric(bond.s, ends, memory) }
     }
+    /// Share of an end's shear modulus that relaxes.
+    ///
+    /// # Safety
+    /// See [`Lanes`].
+    #[inline(always)]
+    unsafe fn relaxing<L: Lanes>(_end: &[L; COLUMNS], moment: &Moment) -> L {
+        // SAFETY: passed on to the caller.
+        unsafe { L::splat(moment.lambda) }
+    }
     /// Where an end flows in this evaluation, a mask.
     ///
     /// # Safety
@@ -146,6 +160,8 @@ pub struct Angles<L> {
     pub now: L,
     /// Its unrelaxed part; what has come since the last step that advanced is not relaxed at all.
     pub unrelaxed: L,
+    /// Share of its shear modulus that relaxes.
+    pub relaxing: L,
 }
 
 /// (s − θ/3)² of both ends.

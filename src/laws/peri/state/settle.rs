@@ -34,6 +34,10 @@ struct Stiffness {
     yield_stress: f64,
     /// Twice the yield limit of LAMMPS, 25 σ²/(8π δ⁵).
     limit: f64,
+    /// Share of the shear modulus that relaxes.
+    lambda: f64,
+    /// What is left of an element's stretch after the step, and of the step's own.
+    left: (f64, f64),
 }
 
 /// The sites of a body: how many, how many unused entries columns have before the first, how far columns are apart,
@@ -59,7 +63,14 @@ impl Settling<'_> {
             let horizon = self.table.get(kind, kind).map_or(1.0, |c| c.horizon);
             let limit =
                 2.0 * 25.0 * m.yield_stress * m.yield_stress / (8.0 * std::f64::consts::PI * horizon.powi(5));
-            Stiffness { bulk: 3.0 * m.bulk, shear: 15.0 * m.shear, yield_stress: m.yield_stress, limit }
+            Stiffness {
+                bulk: 3.0 * m.bulk,
+                shear: 15.0 * m.shear,
+                yield_stress: m.yield_stress,
+                limit,
+                lambda: m.lambda,
+                left: left(m.tau, self.law.dt, self.advance),
+            }
         };
         types.map(of).collect()
     }
@@ -75,7 +86,6 @@ impl Settling<'_> {
     pub fn dilatations(&self, state: &mut SiteState, sites: &Sites) {
         let stiffness = self.stiffness();
         let kind = self.law.kind;
-        let (lambda, decay, fresh) = (self.moment.lambda, self.moment.decay, self.moment.fresh);
         let SiteState { weighted, theta, before, unrelaxed, columns, sums, .. } = state;
         let (theta, columns) = (Shared::new(theta), Shared::new(columns));
         let (before, unrelaxed) = (Shared::new(before), Shared::new(unrelaxed));
@@ -93,7 +103,11 @@ impl Settling<'_> {
                     angle = 3.0 * by_m * sums[at];
                     let shear = own.shear * by_m;
                     row = match kind {
-                        LawKind::Ves => {
+                        LawKind::Ves | LawKind::VesApart => {
+                            let (lambda, (decay, fresh)) = match kind {
+                                LawKind::Ves => (self.moment.lambda, (self.moment.decay, self.moment.fresh)),
+                                _ => (own.lambda, own.left),
+                            };
                             let left = decay * *unrelaxed + fresh * (angle - *before);
                             let third = ((1.0 - lambda) * angle + lambda * left) / 3.0;
                             if self.advance {
@@ -101,13 +115,16 @@ impl Settling<'_> {
                             }
                             let pressure = own.bulk * angle * by_m;
                             match self.compat {
-                                true => [pressure, shear, third, 0.0, 0.0],
-                                false => [pressure - shear * third, shear, 0.0, 0.0, 0.0],
+                                _ if kind == LawKind::VesApart => {
+                                    [pressure, shear, third, lambda, decay, fresh]
+                                }
+                                true => [pressure, shear, third, 0.0, 0.0, 0.0],
+                                false => [pressure - shear * third, shear, 0.0, 0.0, 0.0, 0.0],
                             }
                         }
-                        LawKind::Eps if self.compat => [angle * by_m, shear, angle / 3.0, 1.0, 0.0],
-                        LawKind::Eps => [own.bulk * angle * by_m, shear, angle / 3.0, 0.0, 0.0],
-                        _ => [(own.bulk - own.shear / 3.0) * angle * by_m, shear, 0.0, 0.0, 0.0],
+                        LawKind::Eps if self.compat => [angle * by_m, shear, angle / 3.0, 1.0, 0.0, 0.0],
+                        LawKind::Eps => [own.bulk * angle * by_m, shear, angle / 3.0, 0.0, 0.0, 0.0],
+                        _ => [(own.bulk - own.shear / 3.0) * angle * by_m, shear, 0.0, 0.0, 0.0, 0.0],
                     };
                 }
                 // SAFETY: as above.
@@ -132,7 +149,7 @@ impl Settling<'_> {
                     let horizon = self.table.get(kind, kind).map_or(0.0, |c| c.horizon);
                     share *= std::f64::consts::PI * horizon.powi(4) / weighted[at];
                 }
-                put(&columns, sites, at, &[0.0, share, 0.0, 0.0, 0.0], 2);
+                put(&columns, sites, at, &[0.0, share, 0.0, 0.0, 0.0, 0.0], 2);
             }
         });
     }
@@ -166,8 +183,8 @@ impl Settling<'_> {
                 unsafe { plastic.get(at..at + 1)[0] += more };
                 let pressure = own.bulk * theta[at] / m;
                 let row = match self.compat {
-                    true => [pressure, shear, theta[at] / 3.0, scale, more],
-                    false => [pressure, shear, theta[at] / 3.0, 1.0 - scale, 0.0],
+                    true => [pressure, shear, theta[at] / 3.0, scale, more, 0.0],
+                    false => [pressure, shear, theta[at] / 3.0, 1.0 - scale, 0.0, 0.0],
                 };
                 put(&columns, sites, at, &row, columns_of(LawKind::Eps, self.compat));
             }
@@ -183,6 +200,7 @@ pub fn columns_of(kind: LawKind, compat: bool) -> usize {
         (LawKind::Ves, true) => 3,
         (LawKind::Eps, false) => 4,
         (LawKind::Eps, true) => 5,
+        (LawKind::VesApart, _) => 6,
     }
 }
 
@@ -197,16 +215,9 @@ fn put(columns: &Shared<f64>, sites: &Sites, at: usize, row: &[f64; COLUMNS], co
 /// The moment of an evaluation: a step of `dt` if it advances, else a look at what is. The form in which a body's bonds have
 /// remembered is the body's own.
 pub fn moment(law: &Law, advance: bool) -> Moment {
-    // One law has one relaxation: bonds between types that relax differently are refused.
+    // One law has one relaxation; where types relax differently, columns of sites tell how.
     let own = law.moduli.iter().find(|m| m.tau > 0.0).copied().unwrap_or_default();
-    let steps = if law.dt > 0.0 { own.tau / law.dt } else { f64::INFINITY };
-    let (decay, fresh) = match advance && steps.is_finite() && steps > 0.0 {
-        true => {
-            let decay = (-1.0 / steps).exp();
-            (decay, steps * (1.0 - decay))
-        }
-        false => (1.0, 1.0),
-    };
+    let (decay, fresh) = left(own.tau, law.dt, advance);
     let flow = if advance { 1.0 } else { 0.0 };
     Moment {
         decay,
@@ -216,4 +227,14 @@ pub fn moment(law: &Law, advance: bool) -> Moment {
         held: Held::default(),
         hold: Held::for_steps(decay, fresh),
     }
+}
+
+/// What is left of a Maxwell element's stretch after a step, and of the stretch that comes evenly during the step.
+fn left(tau: f64, dt: f64, advance: bool) -> (f64, f64) {
+    let steps = if dt > 0.0 { tau / dt } else { f64::INFINITY };
+    if !advance || !steps.is_finite() || steps <= 0.0 {
+        return (1.0, 1.0);
+    }
+    let decay = (-1.0 / steps).exp();
+    (decay, steps * (1.0 - decay))
 }

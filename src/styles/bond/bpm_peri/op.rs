@@ -51,7 +51,8 @@ impl Op for Force {
 impl Force {
     /// Families at the first run; later, what the deck has changed since.
     fn prepare(&self, w: &mut World, t: &Tick) -> Result<()> {
-        let Links { links, table, of_bonds, law } = links(w, &self.law, self.span)?;
+        let Links { links, table, of_bonds, mut law } = links(w, &self.law, self.span)?;
+        law.shared_or_apart(w.families.as_ref().map(|f| f.law.kind)).map_err(|e| e.at(self.span))?;
         let mut options = FamilyOptions::new(w.lattice.spacing[0]);
         options.unit = if self.law.newton { ForceUnit::Newton } else { ForceUnit::Density };
         (options.skip_rest, options.portable) = (!w.settings.no_skipping, w.settings.portable);

@@ -168,7 +168,7 @@ fn keywords(law: LawKind) -> &'static [&'static str] {
     match law {
         LawKind::Pmb | LawKind::Shaped => &["form"],
         LawKind::Lps => &[],
-        LawKind::Ves => &["lambda", "tau"],
+        LawKind::Ves | LawKind::VesApart => &["lambda", "tau"],
         LawKind::Eps => &["yield"],
         LawKind::Yield | LawKind::Flat => &["form", "syc"],
     }

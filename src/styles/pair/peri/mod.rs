@@ -178,15 +178,6 @@ impl Solid {
         Ok(())
     }
 
-    /// Whether two bonded types relax differently: the one number that a bond remembers cannot serve both.
-    fn relaxes_apart(&self) -> Option<(u16, u16)> {
-        let types = self.table.types() as u16;
-        let pairs = (1..=types).flat_map(|i| (i + 1..=types).map(move |j| (i, j)));
-        let own = |i: u16| (self.law.of(i).lambda, self.law.of(i).tau);
-        let mut of_ves = pairs.filter(|&(i, j)| self.covers(i, i) && self.covers(j, j));
-        of_ves.find(|&(i, j)| self.law.kind == LawKind::Ves && own(i) != own(j))
-    }
-
     fn options(&self, w: &World) -> FamilyOptions {
         let s = &w.settings;
         FamilyOptions {
@@ -297,13 +288,8 @@ impl Pair for Solid {
         if !(a == b && b == c) {
             self.cannot(span, "needs a lattice that is the same in x, y and z")?;
         }
-        if let Some((i, j)) = self.relaxes_apart() {
-            let text = format!("types {i} and {j} relax differently: one body has one lambda and one tau");
-            return Err(Diagnostic::error(Code::NOT_SUPPORTED, span, text)
-                .help("give both types the same lambda and tau; K and G may differ")
-                .into());
-        }
         let options = self.options(w);
+        let before = w.families.as_ref().map(|f| f.law.kind);
         cx.leave_out(
             &format!("neighbour list of {}", self.name),
             "bonds never change partners; close pairs are found by their stretch",
@@ -313,6 +299,7 @@ impl Pair for Solid {
         if self.law.kind == LawKind::Pmb && (self.law.surface || self.law.influence != Influence::One) {
             style.law.kind = LawKind::Shaped;
         }
+        style.law.shared_or_apart(before).map_err(|e| e.at(span))?;
         Ok(vec![Box::new(Force::new(style, self.table.clone(), options))])
     }
 

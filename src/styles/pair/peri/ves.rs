@@ -25,8 +25,8 @@ impl Style for PeriVes {
             text: "As `peri/lps`, but of the deviatoric extension e_d = e − θ|ξ|/3 the share `lambda` sits in a Maxwell \
                 element: t_d = (15Gω/m) ((1 − λ) e_d + λ D), where D, the element's extension, follows dD/dt = de_d/dt − D/τ \
                 (Mitchell 2011). A step takes e_d to change at a constant rate, which is exact: \
-                D ← D exp(−dt/τ) + (τ/dt)(1 − exp(−dt/τ)) Δe_d. Types that are bonded to each other have one lambda and one \
-                tau.\n\n\
+                D ← D exp(−dt/τ) + (τ/dt)(1 − exp(−dt/τ)) Δe_d. Where types differ in \
+                lambda or tau each end of a bond relaxes by its own.\n\n\
                 LAMMPS gives each end of a bond its own dilatation in place of both, so that ends pull with different \
                 forces and momentum is not conserved; `compat lammps` does that too.\n\n\
                 Units: lambda without dimension, from 0 to 1; tau time; the rest as in `peri/lps`, `peri_modify` too.",

@@ -36,8 +36,8 @@ fn laws_agree_where_nothing_relaxes_or_flows() {
     let (k, g, third) = (7.0, [3.0, 2.0], [0.01, -0.02]);
     let a = [0, 1].map(|i| k * 3.0 * third[i]);
     let b = bond(0.05);
-    let lps = [0, 1].map(|i| end([a[i] - g[i] * third[i], g[i], 0.0, 0.0, 0.0]));
-    let eps = [0, 1].map(|i| end([a[i], g[i], third[i], 0.0, 0.0]));
+    let lps = [0, 1].map(|i| end([a[i] - g[i] * third[i], g[i], 0.0, 0.0, 0.0, 0.0]));
+    let eps = [0, 1].map(|i| end([a[i], g[i], third[i], 0.0, 0.0, 0.0]));
     let mut none = [Single(0.0); 2];
     // SAFETY: plain arithmetic.
     unsafe {
@@ -53,7 +53,7 @@ fn laws_agree_where_nothing_relaxes_or_flows() {
 
 #[test]
 fn a_maxwell_element_relaxes_to_the_spring() {
-    let ends = [end([0.0, 1.0, 0.0, 0.0, 0.0]); 2];
+    let ends = [end([0.0, 1.0, 0.0, 0.0, 0.0, 0.0]); 2];
     let mut memory = [Single(0.0); 2];
     let b = bond(0.1);
     let mut pulls = vec![];
@@ -76,7 +76,7 @@ fn a_maxwell_element_relaxes_to_the_spring() {
 
 #[test]
 fn both_forms_of_viscous_memory_give_the_same_pulls() {
-    let ends = [end([0.03, 1.5, 0.01, 0.0, 0.0]); 2];
+    let ends = [end([0.03, 1.5, 0.01, 0.0, 0.0, 0.0]); 2];
     // The element's stretch by its definition, and in the forms in which bonds remember it; the step changes twice.
     let (mut d, mut before, mut held) = (0.0, 0.0, ITSELF);
     let mut memory = [Single(0.0); 2];
@@ -106,7 +106,7 @@ fn both_forms_of_viscous_memory_give_the_same_pulls() {
             assert!((any - quick).abs() < 1e-15 && (looking[0].0 - memory[0].0).abs() < 1e-16, "{step}");
         }
         (memory, before, held) = (looking, s, hold);
-        let angles = [Angles { now: Single(0.0), unrelaxed: Single(0.0) }; 2];
+        let angles = [Angles { now: Single(0.0), unrelaxed: Single(0.0), relaxing: Single(0.4) }; 2];
         let now = Stretch { before: Single(s), ..bond(s) };
         // SAFETY: as above.
         let square = unsafe {
@@ -145,7 +145,7 @@ fn a_cycle_of_a_bond_that_yields() {
 #[test]
 fn energies_are_the_work_of_the_pulls() {
     // d(½ square)/ds by central differences over 2e-6 is the elastic stretch: (1 + s) times a bond-based pull.
-    let none = [Angles { now: Single(0.0), unrelaxed: Single(0.0) }; 2];
+    let none = [Angles { now: Single(0.0), unrelaxed: Single(0.0), relaxing: Single(0.0) }; 2];
     let (limit, ends, step) = (Single(-0.02), [end([0.0; COLUMNS]); 2], 1e-6);
     let square = |s: f64| {
         // SAFETY: plain arithmetic.
@@ -163,7 +163,7 @@ fn energies_are_the_work_of_the_pulls() {
 #[test]
 fn flow_returns_to_the_limit_and_stays() {
     // Trial 0.1, limit 0.04: 60 % flow.
-    let ends = [end([0.0, 1.0, 0.0, 0.6, 0.0]); 2];
+    let ends = [end([0.0, 1.0, 0.0, 0.6, 0.0, 0.0]); 2];
     let mut memory = [Single(0.0); 2];
     // SAFETY: plain arithmetic.
     unsafe {
