@@ -159,6 +159,7 @@ decks! {
     hyb_pmb_granular
     hyb_pmb_hertz
     hyb_respa
+    hyb_levels
     misc_data_hybrid
     hyb_lps_multi
     gran_settle

@@ -21,5 +21,7 @@ def levels(r, deck, share, parts=0):
         if words[0] == "fix" and words[3] in LEVELED and r.random() < 0.5:
             lines.append(f"fix_modify {words[1]} respa {r.randint(1, count)}")
     lines.append(f"run_style respa {count} {loops} {pair}".strip())
+    # Forces in the first row of a run are one level's in LAMMPS.
+    deck = [" ".join(w for w in line.split(" ") if w not in ("v_fz", "v_vf")) if line.startswith("thermo_style") else line for line in deck]
     at = next(k for k, line in enumerate(deck) if line.startswith("run "))
     return deck[:at] + lines + deck[at:]

@@ -173,7 +173,7 @@ def motion(r):
     deck += lines + ["compute sx all reduce sum x y z vx vy vz", "compute om all property/atom omegax omegay omegaz", "compute so all reduce sum c_om[*]",
                      f"thermo_style custom step atoms ke pe press c_sx[*] c_so[*] {' '.join(columns)} {'c_ttx[*]' if heat else ''} " + r.choice(["", "dt time", "vol lx xlo zhi", "pxx pxy pyy", "etotal enthalpy"]),
                      "thermo_modify norm no lost ignore format float %20.13g", "thermo 20", "run 100"]
-    deck += r.choice([[], ["run 40"], ["unfix mv", "fix mv few nve", "run 20"], ["velocity odd set 0 0.1 0", "run 20"], ["reset_timestep 1000", "run 20"] if " move " not in motor and not any(word in " ".join(deck) for word in ("/time", "dt/reset", "/chunk", "/histo", "ave/atom")) else []])
+    deck += r.choice([[], ["run 40"], ["unfix mv", "fix mv few nve", "run 20"], ["velocity odd set 0 0.1 0", "run 20"], ["reset_timestep 1000", "run 20"] if " move " not in motor and not any(word in " ".join(deck) for word in ("/time", " vector ", "dt/reset", "/chunk", "/histo", "ave/atom")) else []])
     if not heat and "p" not in sides[: 2 if flat else 3] and not any(word in line for line in deck for word in WHOLE):
         deck = levels(r, deck, 0.4)
     return deck + ["write_dump all custom end.dump id type x y z vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz radius mass ix iy iz modify sort id format float %.11g"]

@@ -66,6 +66,12 @@ def deposit(r, flat):
     return words + r.choice(["", "", f" rate {u(r, 0.1, 1)}"]) + r.choice(["", " id max", " id next"]) + " units box"
 
 
+def more_later(r, deck):
+    """Particles made between two runs; after them LAMMPS' `id next` gives ids twice."""
+    seed = r.randint(1, 9999)
+    return [] if any(" id next" in line for line in deck) else [f"create_atoms 2 random 5 {seed} NULL", "run 10"]
+
+
 def sources(r):
     """A deck of sources and sinks."""
     flat = r.random() < 0.25
@@ -118,7 +124,7 @@ def sources(r):
              "thermo_modify norm no lost ignore format float %20.13g", f"thermo {r.choice([5, 10])}", f"run {r.choice([30, 60])}"]
     # With new ids LAMMPS loses some contacts' springs.
     deck += r.choice([[], ["run 20"], ["delete_atoms group slab compress no", "run 20"], ["unfix g", "run 0"] if what > 0.45 else [],
-                      [f"create_atoms 2 random 5 {r.randint(1, 9999)} NULL", "run 10"], ["set type 2 diameter 0.7", "run 10"]])
+                      more_later(r, deck), ["set type 2 diameter 0.7", "run 10"]])
     deck.append("write_dump all custom end.dump id type x y z vx vy vz radius mass modify sort id format float %.12g")
     # Across periodic faces LAMMPS' contacts of outer levels see old velocities.
     return levels(r, deck, 0 if "p" in sides.split()[: 2 if flat else 3] else 0.4)

@@ -33,7 +33,7 @@ impl Style for Deposit {
                    the variable is not zero there; up to Q attempts (10). Velocities are uniform between bounds (0); `target` \
                    points them to a place. `rate` moves the region up. The new particle is of LAMMPS' default size, for spheres diameter 1 and density 1, and \
                    belongs to `all` and the fix's group. `id max` continues from the largest id in use, `next` from the \
-                   last one given. Distances and velocities are in lattice spacings unless `units box`.\n\n\
+                   last one given (under `compat lammps` some twice where `create_atoms` makes particles in between, as in LAMMPS). Distances and velocities are in lattice spacings unless `units box`.\n\n\
                    Random numbers and their order are LAMMPS'. A second run goes on where the first one ended, also after a restart. \
                    Steps whose particle found no place are made up for by later ones and warned about at the end of the run. \
                    \n\n\

@@ -39,7 +39,7 @@ impl Style for Pour {
                    vx, vy and densities (1) are uniform between bounds. `diam range` is uniform, `poly` gives n diameters by shares of \
                    the number that sum to 1 (default `one 1.0`). A batch makes at most its number times `tries` (50) attempts; spheres that find \
                    no place are made up for later and warned about at the end of the run. `rate` lets the region rise. `id max` continues from the largest id in use, `next` \
-                   from the last one given. Distances are in box units.\n\n\
+                   from the last one given (under `compat lammps` some twice where `create_atoms` makes particles in between, as in LAMMPS). Distances are in box units.\n\n\
                    `mol` pours copies of a molecule template with their bonds in the place of spheres, turned at random; `type` is added to \
                    their types (so 0 is one), each counts with the sphere that holds it towards the volume fraction, and `diam` and \
                    `dens` concern it not. `molfrac`: the shares of the several molecules of a template, equal without. `rigid` names \
