@@ -1,19 +1,44 @@
 //! The `perigrain` program: maps the command line's result to an exit code.
 
 fn main() -> std::process::ExitCode {
-    give_large_memory_back();
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    memory::settle();
     perigrain::cli::main()
 }
 
-/// Large pieces of memory always go back to the system when they are no longer needed. Left alone, the C library learns to keep
-/// pieces of up to 32 MiB, and lists of contacts, which come and go, leave holes: a hopper of 1.45 million spheres then
-/// needs 995 MB instead of 744.
+/// What the C library is told about memory before there are other threads.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
-fn give_large_memory_back() {
-    const LARGE: libc::c_int = 1 << 20;
-    // SAFETY: sets a number of the allocator, before there are other threads.
-    unsafe { libc::mallopt(libc::M_MMAP_THRESHOLD, LARGE) };
-}
+mod memory {
+    /// Pieces of this size and more are asked for one by one and given back [byte].
+    const LARGE: usize = 1 << 20;
+    /// Room for smaller ones in huge pages; it is taken up as it is used [byte].
+    const ROOM: usize = 128 << 20;
+    /// A huge page [byte].
+    const HUGE: usize = 2 << 20;
 
-#[cfg(not(all(target_os = "linux", target_env = "gnu")))]
-fn give_large_memory_back() {}
+    /// Large pieces of memory always go back to the system when they are no longer needed. Left alone, the C library learns to
+    /// keep pieces of up to 32 MiB, and lists of contacts, which come and go, leave holes: a hopper of 1.45 million spheres
+    /// then needs 995 MB instead of 744.
+    ///
+    /// Smaller ones lie in huge pages where the system has some: the columns of 32,000 grains are a thousand small pages, more
+    /// than a processor finds its way in at once (a chute takes 11 % less time, a bed 4 %, one of 128,000 15 %).
+    pub fn settle() {
+        // SAFETY: sets a number of the allocator.
+        let large = |size: usize| unsafe { libc::mallopt(libc::M_MMAP_THRESHOLD, size as libc::c_int) };
+        // A piece of the heap, which comes to its free ones; what stands behind it keeps it from going back.
+        large(2 * ROOM);
+        // SAFETY: memory is asked for, not looked at, and given back; the advice changes nothing but time: that some systems
+        // have no huge pages is no failure.
+        unsafe {
+            let room = libc::malloc(ROOM);
+            let behind = std::hint::black_box(libc::malloc(1));
+            if room.is_null() || behind.is_null() {
+                return;
+            }
+            let skipped = room.align_offset(HUGE);
+            libc::madvise(room.byte_add(skipped), ROOM - skipped, libc::MADV_HUGEPAGE);
+            libc::free(room);
+        }
+        large(LARGE);
+    }
+}

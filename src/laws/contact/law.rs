@@ -184,7 +184,7 @@ impl ContactLaw for Granular {
     }
 
     fn in_lanes(&self) -> bool {
-        self.elastic.form != Form::Mdr && self.heat == Heat::None
+        self.elastic.form != Form::Mdr
     }
 
     fn gap(&self, curvature: f64) -> f64 {

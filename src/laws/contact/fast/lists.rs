@@ -167,7 +167,8 @@ impl<L: ContactLaw> Fast<L> {
             let mut room = open().pop().unwrap_or_default();
             room.clear();
             // SAFETY: `near` asks the processor; list entries are grains.
-            unsafe { near::near(grains, &this.shifts, slab, this.thin + this.span, |t| room.t.push(t)) };
+            let long = [&slab.long.i[..], &slab.long.w];
+            unsafe { near::near(grains, &this.shifts, long, this.thin + this.span, &mut room.t) };
             this.fill_short(slab, book.as_ref(), &mut room);
             std::mem::swap(&mut slab.short, &mut room);
             open().push(room);
@@ -192,23 +193,36 @@ impl<L: ContactLaw> Fast<L> {
         let all = new.i.len() * width;
         fit(&mut new.history, all);
         new.history.resize(all, -1.0);
-        let mut at = 0;
-        for ((k, t), row) in new.t.iter().enumerate().zip(new.history.chunks_exact_mut(width)) {
-            if let Some(book) = book {
-                self.look_up(book, new.i[k], new.w[k], row);
-                continue;
-            }
-            while old.t.get(at).is_some_and(|o| o < t) {
-                at += 1;
-            }
-            match old.history.get(at * width..(at + 1) * width) {
-                Some(before) if before[width - 1] == self.now && old.t.get(at) == Some(t) => {
-                    row.copy_from_slice(before);
+        match (book, width) {
+            (Some(book), _) => {
+                for (k, row) in (0..new.t.len()).zip(new.history.chunks_exact_mut(width)) {
+                    self.look_up(book, new.i[k], new.w[k], row);
                 }
-                _ => row[width - 1] = -1.0,
             }
+            (None, 4) => carry::<4>(old, self.now, new),
+            _ => carry::<8>(old, self.now, new),
         }
         new.history[new.t.len() * width..].fill(-1.0);
+    }
+}
+
+/// Carries what contacts remember from one short list to the next one; both are in the order of the long list. (No branch asks
+/// whether a pair has been a contact: about half of them have.)
+fn carry<const W: usize>(old: &Short, now: f64, new: &mut Short) {
+    let (rows, row_of) = (old.history.as_chunks::<W>().0, new.history.as_chunks_mut::<W>().0);
+    if rows.is_empty() {
+        row_of.iter_mut().for_each(|row| row[W - 1] = -1.0);
+        return;
+    }
+    let mut at = 0;
+    for (t, row) in new.t.iter().zip(row_of) {
+        while old.t.get(at).is_some_and(|o| o < t) {
+            at += 1;
+        }
+        let before = &rows[at.min(rows.len() - 1)];
+        let lasts = old.t.get(at) == Some(t) && before[W - 1] == now;
+        *row = *before;
+        row[W - 1] = if lasts { now } else { -1.0 };
     }
 }
 

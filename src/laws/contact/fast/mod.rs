@@ -15,6 +15,7 @@ mod near;
 mod stray;
 mod sweep;
 mod uneven;
+mod warmth;
 
 use super::driver::Grains;
 use super::{Advance, ContactLaw};

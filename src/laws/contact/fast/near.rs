@@ -1,7 +1,6 @@
 //! Which pairs of a list are near each other, four at a time.
 
 use super::has_avx2;
-use super::lists::Slab;
 use crate::laws::contact::driver::Grains;
 use crate::math::four::{Four, Plain};
 use crate::math::vec3::Vec3;
@@ -13,10 +12,10 @@ pub const PLACE_BITS: u32 = 27;
 pub const HERE_BITS: u32 = PLACE_BITS;
 
 /// By bits of a mask: the lanes that are set, in order.
-pub const LANES: [[u32; 4]; 16] = lanes();
+const LANES: [[u32; 4]; 16] = lanes();
 
 /// By bits of a mask, four bits each: how many lanes are set.
-pub const COUNTS: u64 = 0x4332_3221_3221_2110;
+const COUNTS: u64 = 0x4332_3221_3221_2110;
 
 const fn lanes() -> [[u32; 4]; 16] {
     let (mut table, mut bits) = ([[0; 4]; 16], 0);
@@ -40,40 +39,66 @@ pub fn grain(w: u32) -> usize {
     (w & ((1 << PLACE_BITS) - 1)) as usize
 }
 
-/// Calls `hit` with the numbers of all pairs of the long list whose surfaces are nearer than `thin`, in order.
+/// Adds the numbers of those pairs of a list, filled up to fours, to `out` whose surfaces are nearer than `reach`, in order.
 ///
 /// # Safety
 /// List entries must be grains.
-pub unsafe fn near(grains: &Grains, shifts: &[[f64; 4]; 32], slab: &Slab, thin: f64, hit: impl FnMut(u32)) {
+pub unsafe fn near(
+    grains: &Grains,
+    shifts: &[[f64; 4]; 32],
+    list: [&[u32]; 2],
+    reach: f64,
+    out: &mut Vec<u32>,
+) {
     let at = Places { x: grains.x, radius: grains.radius, shifts };
     // SAFETY: passed on.
     unsafe {
         #[cfg(target_arch = "x86_64")]
         if has_avx2() {
-            return near_avx2(at, slab, thin, hit);
+            return near_avx2(at, list, reach, out);
         }
-        near_in::<Plain>(at, slab, thin, hit);
+        near_in::<Plain>(at, list, reach, out);
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-unsafe fn near_avx2(at: Places, slab: &Slab, thin: f64, hit: impl FnMut(u32)) {
+unsafe fn near_avx2(at: Places, list: [&[u32]; 2], reach: f64, out: &mut Vec<u32>) {
     // SAFETY: passed on.
-    unsafe { near_in::<crate::math::four::Avx2>(at, slab, thin, hit) }
+    unsafe { near_in::<crate::math::four::Avx2>(at, list, reach, out) }
 }
 
 #[inline(always)]
-unsafe fn near_in<F: Four>(at: Places, slab: &Slab, thin: f64, mut hit: impl FnMut(u32)) {
-    let list = &slab.long;
-    for k in (0..list.i.len()).step_by(4) {
+unsafe fn near_in<F: Four>(at: Places, [i, w]: [&[u32]; 2], reach: f64, out: &mut Vec<u32>) {
+    for k in (0..i.len()).step_by(4) {
         // SAFETY: lists are filled up to fours; entries are grains.
-        let mut bits = unsafe { at.closer::<F>(list.i.as_ptr().add(k), list.w.as_ptr().add(k), thin) };
-        while bits != 0 {
-            hit(k as u32 + bits.trailing_zeros());
-            bits &= bits - 1;
+        let bits = unsafe { at.closer::<F>(i.as_ptr().add(k), w.as_ptr().add(k), reach) };
+        if out.capacity() - out.len() < 4 {
+            out.reserve(4);
+        }
+        // SAFETY: there is room for four; those that are no hits are behind the end.
+        unsafe {
+            put(out.as_mut_ptr().add(out.len()), bits, k as u32);
+            out.set_len(out.len() + count(bits));
         }
     }
+}
+
+/// Puts `first` and the numbers of the lanes that are set, and something behind them.
+///
+/// # Safety
+/// There must be room for four.
+#[inline(always)]
+pub unsafe fn put(to: *mut u32, bits: u32, first: u32) {
+    let [a, b, c, d] = LANES[bits as usize & 15];
+    // SAFETY: the caller's promise.
+    unsafe { to.cast::<[u32; 4]>().write([first + a, first + b, first + c, first + d]) }
+}
+
+/// How many of four lanes are set.
+#[inline(always)]
+pub fn count(bits: u32) -> usize {
+    (COUNTS >> (4 * bits) & 15) as usize
 }
 
 /// Grains in the order of places, coordinate by coordinate.

@@ -5,7 +5,7 @@
 
 use super::has_avx2;
 use crate::laws::contact::driver::Grains;
-use crate::math::four::{Four, Plain};
+use crate::math::four::{Four, Lanes, Plain};
 use crate::neigh::slabs::Slabs;
 use crate::par;
 use crate::world::Seen;
@@ -57,6 +57,45 @@ impl Ways {
     fn closer(self) -> f64 {
         let square: f64 = (0..3).map(|d| (self.most[d] - self.least[d]).max(0.0).powi(2)).sum();
         square.sqrt() + 2.0 * self.grown
+    }
+}
+
+/// [`Ways`] as they are gathered, vector by vector.
+struct Span<F> {
+    least: F,
+    most: F,
+    /// Zero, but where a way was no number: that is neither the least nor the most.
+    bad: F,
+    grown: f64,
+}
+
+impl<F: Four> Span<F> {
+    /// # Safety
+    /// The processor must have what the form needs.
+    #[inline(always)]
+    unsafe fn new() -> Self {
+        // SAFETY: passed on.
+        unsafe {
+            let (least, most) = (F::splat(f64::INFINITY), F::splat(f64::NEG_INFINITY));
+            Self { least, most, bad: F::splat(0.0), grown: 0.0 }
+        }
+    }
+
+    #[inline(always)]
+    fn take(&mut self, now: F, radius: f64, seen: &Place) {
+        // SAFETY: an array of four numbers. The radius in the last lane is not looked at.
+        let way = now - unsafe { F::load(seen.as_ptr()) };
+        (self.least, self.most) = (way.least(self.least), way.most(self.most));
+        self.bad = self.bad + way * 0.0;
+        let change = (radius - seen[3]).abs();
+        self.grown = if change > self.grown { change } else { self.grown };
+    }
+
+    #[inline(always)]
+    fn ways(self) -> Ways {
+        let ([a, b, c, _], [p, q, r, _]) = (self.least.numbers(), self.most.numbers());
+        let p = if self.bad.numbers()[..3] == [0.0; 3] { p } else { f64::INFINITY };
+        Ways { least: [a, b, c], most: [p, q, r], grown: self.grown }
     }
 }
 
@@ -115,55 +154,45 @@ impl Strays {
         let mut ways = vec![[Ways::NONE; 2]; self.members.len()];
         let shared = par::Shared::new(&mut ways);
         par::for_rows(self.members.len(), |k| {
-            let ways = [self.ways(grains, k, &self.own), self.ways(grains, k, &self.before)];
+            let ways = self.ways(grains, k);
             // SAFETY: each part writes its own slab.
             unsafe { shared.get(k..k + 1)[0] = ways };
         });
         (0..self.members.len()).map(|k| ways[k][0].join(ways[self.next(k)][1]).closer()).collect()
     }
 
-    /// The ways of a slab's grains from there.
-    fn ways(&self, grains: &Grains, k: usize, from: &[Place]) -> Ways {
+    /// The ways of a slab's grains since its own list was made, and since that of the slab before.
+    fn ways(&self, grains: &Grains, k: usize) -> [Ways; 2] {
         // SAFETY: the processor was asked; members are grains, and all of them have been seen.
         unsafe {
             #[cfg(target_arch = "x86_64")]
             if has_avx2() {
-                return self.ways_avx2(grains, k, from);
+                return self.ways_avx2(grains, k);
             }
-            self.ways_in::<Plain>(grains, k, from)
+            self.ways_in::<Plain>(grains, k)
         }
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    unsafe fn ways_avx2(&self, grains: &Grains, k: usize, from: &[Place]) -> Ways {
+    unsafe fn ways_avx2(&self, grains: &Grains, k: usize) -> [Ways; 2] {
         // SAFETY: passed on.
-        unsafe { self.ways_in::<crate::math::four::Avx2>(grains, k, from) }
+        unsafe { self.ways_in::<crate::math::four::Avx2>(grains, k) }
     }
 
     #[inline(always)]
-    unsafe fn ways_in<F: Four>(&self, grains: &Grains, k: usize, from: &[Place]) -> Ways {
-        // SAFETY: passed on; arrays of four numbers.
+    unsafe fn ways_in<F: Four>(&self, grains: &Grains, k: usize) -> [Ways; 2] {
+        // SAFETY: passed on.
         unsafe {
-            let (mut least, mut most) = (F::splat(f64::INFINITY), F::splat(f64::NEG_INFINITY));
-            let (mut grown, mut bad) = (0.0_f64, F::splat(0.0));
+            let (mut own, mut before) = (Span::<F>::new(), Span::<F>::new());
             for place in self.members[k].clone() {
                 let i = self.grain(place);
-                let seen = from.get_unchecked(i);
-                let way = F::load3(grains.x.get_unchecked(i).as_ptr()) - F::load3(seen.as_ptr());
-                (least, most) = (way.least(least), way.most(most));
-                // A NaN is neither the least nor the most.
-                bad = bad + way * 0.0;
-                let change = grains.radius.get_unchecked(i) - seen[3];
-                grown = if change.abs() > grown { change.abs() } else { grown };
+                let now = F::load3(grains.x.get_unchecked(i).as_ptr());
+                let radius = grains.radius.get_unchecked(i);
+                own.take(now, *radius, self.own.get_unchecked(i));
+                before.take(now, *radius, self.before.get_unchecked(i));
             }
-            let mut all = [[0.0; 4]; 3];
-            least.store(all[0].as_mut_ptr());
-            most.store(all[1].as_mut_ptr());
-            bad.store(all[2].as_mut_ptr());
-            let [[a, b, c, _], [p, q, r, _], bad] = all;
-            let p = if bad.iter().all(|b| *b == 0.0) { p } else { f64::INFINITY };
-            Ways { least: [a, b, c], most: [p, q, r], grown }
+            [own.ways(), before.ways()]
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::group::{Group, one};
 use super::lists::{Short, Slab};
-use super::near::{COUNTS, HERE_BITS, LANES, Places, grain};
+use super::near::{self, HERE_BITS, Places, grain};
 use super::{Fast, Laws, NONE, has_avx2};
 use crate::laws::contact::driver::Grains;
 use crate::laws::contact::{Advance, ContactLaw, Loop};
@@ -186,11 +186,9 @@ unsafe fn contacts<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(c
                 let short = &slab.short;
                 at.closer::<V::Row>(short.i.as_ptr().add(k), short.w.as_ptr().add(k), cx.span)
             };
-            // Writes past `count` do no harm: the next ones overwrite them.
-            let [a, b, c, d] = LANES[bits as usize & 15];
-            let k32 = k as u32;
-            hits[count..count + 4].copy_from_slice(&[k32 + a, k32 + b, k32 + c, k32 + d]);
-            count += (COUNTS >> (4 * bits) & 15) as usize;
+            // SAFETY: there is room for four; the next ones overwrite what stands past `count`.
+            unsafe { near::put(hits.as_mut_ptr().add(count), bits, k as u32) };
+            count += near::count(bits);
             k += 4;
         }
         let ready = if k == end { count } else { count - count % BLOCK };

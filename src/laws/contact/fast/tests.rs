@@ -3,7 +3,7 @@
 use super::*;
 use crate::laws::contact::driver::{Average, Curvature, Rule, Rules, Sweep};
 use crate::laws::contact::{
-    Classic, Damping, Friction, Granular, Model, Normal, Rolling, Sds, Tangential, Twisting,
+    Classic, Damping, Friction, Granular, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting,
 };
 use crate::math::rng::ParkMiller;
 use crate::neigh::list::{Reach, View, Wanted, pairs};
@@ -92,7 +92,7 @@ fn between(a: u16, b: u16) -> Granular {
         }
         _ => Model { rolling: Rolling::Sds(sds(50.0)), twisting: Twisting::Sds(sds(5.0)), ..mindlin },
     };
-    model.law(Compat::Perigrain)
+    Model { heat: Heat::Radius(f64::from(a + b)), ..model }.law(Compat::Perigrain)
 }
 
 /// The same where grains of type 1 stick to each other and to those of type 2.
@@ -103,7 +103,8 @@ fn sticky(a: u16, b: u16) -> Granular {
     // Grains of radius 0.5 hold across 0.026 with these, an eighth of the skin.
     let normal = Normal::Jkr { young: 150.0 * f64::from(a + b), poisson: 0.3, cohesion: 1.0, eta: 0.5 };
     let friction = Tangential::new(Friction::Mindlin, Some(300.0), 0.4, 0.2);
-    Model::new(normal, Damping::Viscoelastic, friction).law(Compat::Perigrain)
+    let model = Model::new(normal, Damping::Viscoelastic, friction);
+    Model { heat: Heat::Area(0.7), ..model }.law(Compat::Perigrain)
 }
 
 /// A table of laws by types.
@@ -159,14 +160,28 @@ impl Scene {
         }
     }
 
+    fn temperatures(&self) -> Vec<f64> {
+        self.tag.iter().map(|t| f64::from(t % 17)).collect()
+    }
+
     fn zeros(&self) -> Vec<Vec3> {
         vec![[0.0; 3]; self.x.len()]
     }
 }
 
-/// Forces, torques, contacts and virials of some steps, with lists made anew every seventh.
+/// What grains get in a step.
+#[derive(Debug, PartialEq)]
+struct Got {
+    f: Vec<Vec3>,
+    torque: Vec<Vec3>,
+    heat: Vec<f64>,
+    contacts: Contacts,
+    virial: [f64; 6],
+}
+
+/// Some steps, with lists made anew every seventh.
 trait Loop {
-    fn step(&mut self, s: &Scene, k: usize) -> (Vec<Vec3>, Vec<Vec3>, Contacts, [f64; 6]);
+    fn step(&mut self, s: &Scene, k: usize) -> Got;
 }
 
 struct PlainLoop {
@@ -177,7 +192,7 @@ struct PlainLoop {
 }
 
 impl Loop for PlainLoop {
-    fn step(&mut self, s: &Scene, k: usize) -> (Vec<Vec3>, Vec<Vec3>, Contacts, [f64; 6]) {
+    fn step(&mut self, s: &Scene, k: usize) -> Got {
         let (mut wanted, mut rules) = (Wanted::new(2), Rules::new(2));
         for (a, b) in [(1, 1), (1, 2), (2, 2)] {
             wanted.set(a, b, Reach::Beyond((self.law)(a, b).gap(0.3)));
@@ -191,7 +206,9 @@ impl Loop for PlainLoop {
         self.sweep.run(&self.list, &s.grains(), &rules, &mut self.memory, Advance { dt: DT, history: true });
         let (mut f, mut torque) = (s.zeros(), s.zeros());
         self.sweep.scatter(&mut f, &mut torque);
-        (f, torque, self.memory.clone(), self.sweep.virial(&s.x, &s.period))
+        let (mut heat, virial) = (vec![0.0; s.x.len()], self.sweep.virial(&s.x, &s.period));
+        self.sweep.conduct(&s.grains(), &rules, &s.temperatures(), &mut heat);
+        Got { f, torque, heat, contacts: self.memory.clone(), virial }
     }
 }
 
@@ -208,7 +225,7 @@ impl FastLoop {
 }
 
 impl Loop for FastLoop {
-    fn step(&mut self, s: &Scene, k: usize) -> (Vec<Vec3>, Vec<Vec3>, Contacts, [f64; 6]) {
+    fn step(&mut self, s: &Scene, k: usize) -> Got {
         if k.is_multiple_of(7) {
             let known = self.through_world.then(|| self.fast.contacts());
             if self.through_world {
@@ -222,7 +239,9 @@ impl Loop for FastLoop {
         self.fast.run(&s.grains(), [&mut s.zeros(), &mut s.zeros()], step, false, false);
         let (mut f, mut torque) = (s.zeros(), s.zeros());
         let virial = self.fast.run(&s.grains(), [&mut f, &mut torque], step, true, true);
-        (f, torque, self.fast.contacts(), virial)
+        let mut heat = vec![0.0; s.x.len()];
+        self.fast.conduct(&s.grains(), &s.temperatures(), &mut heat);
+        Got { f, torque, heat, contacts: self.fast.contacts(), virial }
     }
 }
 
@@ -242,8 +261,9 @@ fn the_numbers_of_the_plain_driver() {
             if k % 7 == 0 {
                 s.wrap();
             }
-            let (f, torque, contacts, virial) = plain.step(&s, k);
-            let (f2, torque2, contacts2, virial2) = fast.step(&s, k);
+            let Got { f, torque, heat, contacts, virial } = plain.step(&s, k);
+            let other = fast.step(&s, k);
+            let (f2, torque2, contacts2, virial2) = (other.f, other.torque, other.contacts, other.virial);
             assert_eq!(contacts.keys, contacts2.keys);
             // One contact has the same bits in both loops; sums of a dozen forces of size 100 differ by their order.
             // What differs grows with the steps, by collisions, hence the width.
@@ -252,6 +272,8 @@ fn the_numbers_of_the_plain_driver() {
                 a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| near(*a, *b))
             };
             assert!(same(&f, &f2) && same(&torque, &torque2), "step {k}");
+            assert!(heat.iter().zip(&other.heat).all(|(a, b)| near(*a, *b)), "step {k}");
+            assert!(heat.iter().filter(|q| **q != 0.0).count() > 700);
             assert!(contacts.history.iter().zip(&contacts2.history).all(|(a, b)| near(*a, *b)));
             assert!(virial.iter().zip(&virial2).all(|(a, b)| (a - b).abs() < 1e-8 * (1.0 + virial[0].abs())));
             ended += usize::from(k > 0 && !contacts.is_empty());
@@ -274,15 +296,17 @@ fn same_bits(first: &Scene, law: Table) {
     let run = |through_world: bool, threads: usize| {
         par::set_threads(threads);
         let (mut s, mut fast) = (first.clone(), FastLoop::new(through_world, law));
+        let mut heat = vec![];
         for k in 0..30 {
             if k % 7 == 0 {
                 s.wrap();
             }
-            let (f, torque, ..) = fast.step(&s, k);
-            s.advance(&f, &torque);
+            let got = fast.step(&s, k);
+            s.advance(&got.f, &got.torque);
+            heat = got.heat;
         }
         par::set_threads(1);
-        (s.x, s.omega, fast.fast.contacts())
+        (s.x, s.omega, fast.fast.contacts(), heat)
     };
     let one = run(false, 1);
     assert!(one.2.len() > 300);

@@ -106,6 +106,13 @@ impl Force {
         if t.virial {
             add_virial(w, virial);
         }
+        if conducts(&self.rules) {
+            let (fast, frozen) = (&*fast, &self.frozen);
+            conduct(w, |w, temperature, flow| {
+                fast.conduct(&self::grains(w, period, &[], frozen)?, temperature, flow);
+                Ok(())
+            })?;
+        }
         if t.contacts {
             w.contacts.insert(self.style.to_string(), fast.contacts());
         }
@@ -122,14 +129,12 @@ impl Force {
         let step = Advance { dt: t.dt, history: !t.setup };
         plain.sweep.run(&plain.list, &grains, &self.rules, &mut memory, step);
         let deep = plain.sweep.deep(&grains);
-        let names = [TEMPERATURE, HEATFLOW].map(|name| w.columns.custom(name));
-        if let (true, [Some(temperature), Some(heat)]) = (conducts(&self.rules), names) {
-            let n = w.particles.len();
-            let mut flow = std::mem::take(w.columns.scalar(&heat, n));
-            let temperature = w.columns.scalar(&temperature, n).clone();
-            let grains = self::grains(w, period, &plain.body, &self.frozen)?;
-            plain.sweep.conduct(&grains, &self.rules, &temperature, &mut flow);
-            *w.columns.scalar(&heat, n) = flow;
+        if conducts(&self.rules) {
+            conduct(w, |w, temperature, flow| {
+                let grains = self::grains(w, period, &plain.body, &self.frozen)?;
+                plain.sweep.conduct(&grains, &self.rules, temperature, flow);
+                Ok(())
+            })?;
         }
         report(w, t, deep);
         plain.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
@@ -191,10 +196,7 @@ impl Op for Force {
 /// The laws as the fast loop wants them; `None` where some rule is not for it.
 fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<Granular>> {
     let plain = rules.any(|r| {
-        r.average != Average::None
-            || r.curvature != Curvature::Both
-            || r.law.heat != Heat::None
-            || r.law.memory() > MOST_MEMORY
+        r.average != Average::None || r.curvature != Curvature::Both || r.law.memory() > MOST_MEMORY
     });
     let touch = |a, b| wanted.get(a, b).is_none_or(|r| r == Reach::Touch);
     let all = 1..=types as u16;
@@ -261,6 +263,18 @@ pub fn grains<'a>(w: &'a World, period: Vec3, body: &'a [u32], frozen: &'a [bool
         frozen,
         travel: w.rebuild.travel,
     })
+}
+
+/// Gives temperatures and heat flows to who adds those through contacts, if particles have both.
+fn conduct(w: &mut World, through: impl FnOnce(&World, &[f64], &mut [f64]) -> Result<()>) -> Result<()> {
+    let names = [TEMPERATURE, HEATFLOW].map(|name| w.columns.custom(name));
+    let [Some(temperature), Some(heat)] = names else { return Ok(()) };
+    let n = w.particles.len();
+    let mut flow = std::mem::take(w.columns.scalar(&heat, n));
+    let temperature = w.columns.scalar(&temperature, n).clone();
+    through(w, &temperature, &mut flow)?;
+    *w.columns.scalar(&heat, n) = flow;
+    Ok(())
 }
 
 /// Whether some contacts conduct heat.

@@ -1,0 +1,52 @@
+//! Heat through the contacts of the fast loop.
+
+use super::lists::Short;
+use super::near::{HERE_BITS, grain, near};
+use super::{Fast, NONE};
+use crate::laws::contact::driver::Grains;
+use crate::laws::contact::{ContactLaw, Geometry};
+use crate::par;
+
+impl<L: ContactLaw> Fast<L> {
+    /// Adds the heat that flows through the contacts of the last evaluation to `flow` [energy/time], from the temperatures of
+    /// all grains.
+    pub fn conduct(&self, grains: &Grains, temperature: &[f64], flow: &mut [f64]) {
+        assert!(
+            temperature.len() == grains.x.len() && flow.len() == grains.x.len(),
+            "a number for each grain"
+        );
+        let flow = par::Shared::new(flow);
+        par::two_colours(self.lists.len(), |k| {
+            let short = &self.lists[k].short;
+            let mut hits = vec![];
+            // SAFETY: list entries are grains.
+            unsafe { near(grains, &self.shifts, [&short.i, &short.w], self.span, &mut hits) };
+            for k in hits {
+                let (i, j) = (short.i[k as usize] as usize, grain(short.w[k as usize]));
+                let Some(conductance) = self.conductance(grains, short, k as usize) else { continue };
+                let into = conductance * (temperature[j] - temperature[i]);
+                // SAFETY: both are grains of this slab and the next one, which two_colours keeps apart.
+                unsafe {
+                    flow.get(i..i + 1)[0] += into;
+                    flow.get(j..j + 1)[0] -= into;
+                }
+            }
+        });
+    }
+
+    /// That of pair `k` of a short list, if its grains touch, or stick together, and conduct.
+    fn conductance(&self, grains: &Grains, short: &Short, k: usize) -> Option<f64> {
+        let (i, w) = (short.i[k] as usize, short.w[k]);
+        let (j, s) = (grain(w), self.shifts[(w >> HERE_BITS) as usize]);
+        let (a, b) = (grains.x[i], grains.x[j]);
+        let d = [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])];
+        let which = self.laws.which(grains.kind[i], grains.kind[j]);
+        let law = self.laws.distinct.get(usize::from(which)).filter(|_| which != NONE)?;
+        let radii = [grains.radius[i], grains.radius[j]];
+        // Who has touched in the last evaluation carries its number: before or after that was counted on.
+        let lasts = short.history[(k + 1) * self.width - 1] == self.now;
+        let gap = if lasts { law.gap(radii[0] * radii[1] / (radii[0] + radii[1])) } else { 0.0 };
+        // No conductance depends on masses.
+        law.conductance(&Geometry::of_spheres(d, radii, [1.0; 2], gap)?)
+    }
+}
