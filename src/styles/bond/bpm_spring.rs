@@ -25,7 +25,7 @@ impl Style for BpmSpring {
             text: "F = w (k (r − r0) + γ r̂·v) pulls the ends together, with the distance r0 at which a run first met the bond and w = 1 − ((r − r0)/(r0 ec))⁸ \
                    unless `smooth no` is said. With `normalize yes` the spring's force is k (r − r0)/r0. At a strain beyond ±ec a bond breaks: it is gone \
                    from the next step on, and pair forces act between its ends then. `break no` lets no bond break and needs `smooth no`. \
-                   The energy is k (r − r0)²/2. Pair forces between bonded particles are off, `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` on, \
+                   The energy is k (r − r0)²/2, with `normalize yes` k (r − r0)²/(2 r0). Pair forces between bonded particles are off, `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` on, \
                    `special_bonds lj/coul 1 1 1`. Restart files hold r0, data files do not. `store/local` and `volume/factor` are refused. \
                    Clemmer and Robbins, Phys. Rev. Lett. 129, 078002 (2022).",
             example: "units lj\natom_style bond\nlattice sc 1.0\nregion b block 0 4 0 4 0 4\n\
@@ -105,7 +105,7 @@ impl BondForce for Declared {
         Ok(vec![Box::new(Springs { law: self.clone(), span, made: None, list: vec![] })])
     }
 
-    fn single(&self, _kind: u16, _r: f64) -> Option<Pull> {
+    fn single(&self, _w: &World, _kind: u16, _r: f64) -> Option<Pull> {
         None
     }
 
@@ -167,7 +167,7 @@ impl Op for Springs {
                 let near = (strain / limit).powi(2).powi(2).powi(2);
                 force *= 1.0 - near;
             }
-            let energy = 0.5 * k * (r - rest) * (r - rest);
+            let energy = 0.5 * spring * (rest - r);
             tally(w, t, found.ends, &d, &d.map(|d| d * force), energy);
         }
         if !broken.is_empty() {

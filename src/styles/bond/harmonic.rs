@@ -49,6 +49,15 @@ fn pull([k, r0]: [f64; 2], r: f64) -> Pull {
     Pull { energy: k * stretch * stretch, force_per_length: if r > 0.0 { force / r } else { 0.0 } }
 }
 
+/// Stiffness and length of a type as fixes have changed them.
+fn adapted(w: &World, kind: u16, [k, r0]: [f64; 2]) -> [f64; 2] {
+    let of = |name: &str| {
+        let (style, name, types) = ("harmonic".to_string(), name.to_string(), (kind, kind));
+        w.adapted(&Coefficient { bond: true, style, name, types })
+    };
+    [of("k").unwrap_or(k), of("r0").unwrap_or(r0)]
+}
+
 /// The springs of a run.
 struct Adapting {
     /// As the deck's lines said.
@@ -64,13 +73,8 @@ impl Law for Adapting {
 
     fn adapt(&mut self, w: &World) {
         self.now = self.said.clone();
-        for (kind, [k, r0]) in &mut self.now.springs {
-            let of = |name: &str| {
-                let (style, name, types) = ("harmonic".to_string(), name.to_string(), (*kind, *kind));
-                w.adapted(&Coefficient { bond: true, style, name, types })
-            };
-            *k = of("k").unwrap_or(*k);
-            *r0 = of("r0").unwrap_or(*r0);
+        for (kind, spring) in &mut self.now.springs {
+            *spring = adapted(w, *kind, *spring);
         }
     }
 }
@@ -108,8 +112,8 @@ impl BondForce for Harmonic {
         Some(if name == "k" { *k } else { *r0 })
     }
 
-    fn single(&self, kind: u16, r: f64) -> Option<Pull> {
-        self.springs.get(&kind).map(|s| pull(*s, r))
+    fn single(&self, w: &World, kind: u16, r: f64) -> Option<Pull> {
+        self.springs.get(&kind).map(|s| pull(adapted(w, kind, *s), r))
     }
 
     fn written(&self, kind: u16) -> Option<String> {

@@ -5,6 +5,7 @@ use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
 use crate::plan::Op;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
+use crate::world::World;
 use std::collections::BTreeMap;
 
 /// The style.
@@ -91,10 +92,10 @@ impl BondForce for Declared {
         Ok(ops)
     }
 
-    fn single(&self, kind: u16, r: f64) -> Option<Pull> {
+    fn single(&self, w: &World, kind: u16, r: f64) -> Option<Pull> {
         match self.users.get(&kind)? {
             None => Some(Pull::default()),
-            Some(k) => self.subs[*k].single(kind, r),
+            Some(k) => self.subs[*k].single(w, kind, r),
         }
     }
 

@@ -6,6 +6,7 @@ use crate::lang::Args;
 use crate::math::cformat::general;
 use crate::plan::Op;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
+use crate::world::World;
 use std::collections::BTreeMap;
 
 /// The style.
@@ -65,7 +66,7 @@ impl BondForce for Zero {
         Ok(vec![])
     }
 
-    fn single(&self, kind: u16, _r: f64) -> Option<Pull> {
+    fn single(&self, _w: &World, kind: u16, _r: f64) -> Option<Pull> {
         self.covers(kind).then(Pull::default)
     }
 

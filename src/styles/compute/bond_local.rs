@@ -177,7 +177,7 @@ impl Compute for Declared {
                 let d = apart(w, &lengths, [a, b]);
                 let mut pull = Pull::default();
                 if let (true, true, Some(style)) = (needed, bond.is_on(), &style) {
-                    let Some(found) = style.single(bond.kind as u16, norm(&d)) else {
+                    let Some(found) = style.single(w, bond.kind as u16, norm(&d)) else {
                         let text =
                             format!("the force of bond_style {} is not of the length alone", style.name());
                         return fail(Code::CONFLICT, span, text);

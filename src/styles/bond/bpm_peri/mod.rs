@@ -176,7 +176,7 @@ impl BondForce for Declared {
         Ok(vec![Box::new(Force::new(self.clone(), span))])
     }
 
-    fn single(&self, _kind: u16, _r: f64) -> Option<Pull> {
+    fn single(&self, _w: &World, _kind: u16, _r: f64) -> Option<Pull> {
         None
     }
 
