@@ -145,7 +145,7 @@ impl StepPlan {
     /// The first op's that fails.
     pub fn step(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
         use Stage::{InitialIntegrate, PostIntegrate};
-        if !std::mem::take(&mut self.begun) {
+        if !self.goes_on() {
             self.run(w, t, &[InitialIntegrate])?;
         }
         self.run(w, t, &[PostIntegrate, Stage::Exchange, Stage::Neighbor, Stage::PreForce])?;
@@ -153,10 +153,21 @@ impl StepPlan {
         self.end(w, t, more)
     }
 
-    /// What is left of a step after its forces. Ops that act on each particle by itself take turns.
-    fn end(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
-        let ends =
-            |p: &Placed| matches!(p.stage, Stage::PostForce | Stage::FinalIntegrate) && p.when.fires(t);
+    /// Whether the step before has made the beginning of this one.
+    pub fn goes_on(&mut self) -> bool {
+        std::mem::take(&mut self.begun)
+    }
+
+    /// What is left of a step, or of one of a level, after its forces. Ops that act on each particle by itself take turns;
+    /// `more` as for [`StepPlan::step`].
+    ///
+    /// # Errors
+    /// The first op's that fails.
+    pub fn end(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
+        let ends = |p: &Placed| {
+            let there = matches!(p.stage, Stage::PostForce | Stage::FinalIntegrate);
+            there && p.level.acts(&t.phase) && p.when.fires(t)
+        };
         let mut order: Vec<usize> = (0..self.ops.len()).filter(|&k| ends(&self.ops[k])).collect();
         let last = self.last_kick(t);
         // Behind the last kick, if the next step begins there.
@@ -170,7 +181,8 @@ impl StepPlan {
             let acts: Vec<Act> = order[at..].iter().map_while(offer).collect();
             if acts.is_empty() {
                 let (k, p) = (order[at], &mut self.ops[order[at]]);
-                self.begun |= last == Some(k) && p.timed(w, t, &mut clock, |op, w| op.run_on(w, t))?;
+                let whole = last == Some(k) && t.phase.levels == 1;
+                self.begun |= whole && p.timed(w, t, &mut clock, |op, w| op.run_on(w, t))?;
                 if !self.begun && clears != Some(k) {
                     p.timed(w, t, &mut clock, |op, w| op.run(w, t))?;
                 }
@@ -211,7 +223,8 @@ impl StepPlan {
     /// The op that ends the motion of this step if its fix alone moves particles and nobody looks before the next step.
     fn last_kick(&self, t: &Tick) -> Option<usize> {
         let fires = |p: &Placed| p.when.fires(t);
-        let at = |stage| self.ops.iter().enumerate().filter(move |(_, p)| p.stage == stage);
+        let acts = |p: &Placed, stage| p.stage == stage && p.level.acts(&t.phase);
+        let at = |stage| self.ops.iter().enumerate().filter(move |(_, p)| acts(p, stage));
         let looks = |stage| at(stage).any(|(_, p)| fires(p));
         let (mut first, mut second) = (at(Stage::InitialIntegrate), at(Stage::FinalIntegrate));
         let (Some((_, a)), None, Some((k, b)), None) =
@@ -220,10 +233,12 @@ impl StepPlan {
             return None;
         };
         let one = a.from == b.from && a.when == When::Always && b.when == When::Always;
-        // The virial of constraints comes from what the first half of a step does to velocities.
-        let next = Tick { step: t.step + 1, ..t.clone() };
+        // The virial of constraints comes from what the first half of a step does to velocities. Short steps that others follow
+        // have the number of the long one, in which nobody looks at them.
+        let next = Tick { step: t.step + i64::from(t.phase.outermost()), ..t.clone() };
         let asked = [&self.virial, &self.atom_virial].into_iter().flatten().any(|w| w.fires(&next));
-        (one && !asked && !looks(Stage::EndOfStep) && !looks(Stage::Output)).then_some(k)
+        let looks = t.phase.outermost() && (looks(Stage::EndOfStep) || looks(Stage::Output));
+        (one && !asked && !looks).then_some(k)
     }
 
     /// Makes ops of forces give what they hold of the scene back to the world; they take it up anew at their next step.

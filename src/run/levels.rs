@@ -75,18 +75,21 @@ pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool, l: &Levels) ->
 /// # Errors
 /// The first op's that fails.
 pub fn step(plan: &mut StepPlan, w: &mut World, t: &Tick, l: &Levels) -> Result<()> {
-    level(plan, w, t, l, l.count() - 1)?;
+    level(plan, w, t, (l, l.count() - 1), false)?;
     join(w, l);
     Ok(())
 }
 
-/// One step of a level. Only the last of the steps in it have their sums asked for: those end where the step ends.
-fn level(plan: &mut StepPlan, w: &mut World, t: &Tick, l: &Levels, k: usize) -> Result<()> {
+/// One step of a level. Only the last of the steps in it have their sums asked for: those end where the step ends. Of the
+/// shortest the last kick is made with the first one of the next where `more` follow at once.
+fn level(plan: &mut StepPlan, w: &mut World, t: &Tick, (l, k): (&Levels, usize), more: bool) -> Result<()> {
     const NEWS: [Stage; 3] = [Stage::PostIntegrate, Stage::Exchange, Stage::Neighbor];
     let here = l.at(t, k);
     let (first, last) = (here.phase.nested(), here.phase.outermost());
     exchange(w, k);
-    plan.run(w, &here, &[Stage::InitialIntegrate])?;
+    if !plan.goes_on() {
+        plan.run(w, &here, &[Stage::InitialIntegrate])?;
+    }
     if first && last {
         plan.run(w, &here, &NEWS)?;
     }
@@ -95,28 +98,27 @@ fn level(plan: &mut StepPlan, w: &mut World, t: &Tick, l: &Levels, k: usize) -> 
         let lasting = Tick { dt: t.dt / m as f64, ..t.clone() };
         let passing = lasting.silent();
         for i in 1..=m {
-            level(plan, w, if i < m { &passing } else { &lasting }, l, below)?;
+            let t = if i < m { &passing } else { &lasting };
+            level(plan, w, t, (l, below), i < m)?;
         }
     }
     if last && !first {
         plan.run(w, &here, &NEWS)?;
     }
     forces(plan, w, &here)?;
-    plan.run(w, &here, &[Stage::FinalIntegrate])?;
+    plan.end(w, &here, |_| more && k == 0)?;
     exchange(w, k);
     Ok(())
 }
 
-/// The forces of a level.
+/// The forces of a level, but for what fixes do to them.
 fn forces(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
     plan.run(w, t, &[Stage::PreForce])?;
     if w.settings.lammps() && t.phase.nested() {
         // Whatever their level, pairs and bonds take the longest step for theirs.
-        plan.run(w, &Tick { dt: w.clock.dt, ..t.clone() }, &[Stage::Force])?;
-    } else {
-        plan.run(w, t, &[Stage::Force])?;
+        return plan.run(w, &Tick { dt: w.clock.dt, ..t.clone() }, &[Stage::Force]);
     }
-    plan.run(w, t, &[Stage::PostForce])
+    plan.run(w, t, &[Stage::Force])
 }
 
 /// Lets the present forces, torques and heat flows and those of a level change places.

@@ -139,6 +139,11 @@ impl Chosen {
         Ok(Self { bit: group.bit(), region: region.map(String::from) })
     }
 
+    /// The bit of the group, if no region limits it.
+    pub fn bit_alone(&self) -> Option<u32> {
+        self.region.is_none().then_some(self.bit)
+    }
+
     /// Who is meant at this moment: regions may move. Of a region that is gone nobody.
     pub fn now<'w>(&self, w: &'w World) -> ChosenNow<'w> {
         match &self.region {

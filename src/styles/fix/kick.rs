@@ -5,8 +5,7 @@ use crate::diag::Result;
 use crate::math::four::{Lanes, Plain, has_avx2};
 use crate::math::threes::{self, Threes};
 use crate::math::vec3::Vec3;
-use crate::par;
-use crate::plan::{Act, Gist, Tick};
+use crate::plan::{Act, Gist, Solids, Stretch, Tick};
 use crate::styles::matter::Masses;
 use crate::styles::step_op::StepOp;
 use crate::world::{GroupId, World};
@@ -40,58 +39,69 @@ where
     op.taking_turns(move |w, t, on| whole(w, group, inertia, t, part(on)), went)
 }
 
-/// A part of a whole step, or of a level of steps, of which only the shortest drift; not of a step of two lengths.
+/// A part of a step, or of a level of steps, of which only the shortest drift; of the two lengths of steps for grains and
+/// solids see [`some`].
 fn whole(w: &World, group: GroupId, inertia: Option<f64>, t: &Tick, part: Part) -> Option<Act> {
-    if t.phase.solids.is_some() {
-        return None;
-    }
-    let part = if part == Part::First && t.phase.level > 0 { Part::Second } else { part };
+    let (short, solids) = (t.phase.level == 0, t.phase.solids.clone());
+    let part = if part == Part::First && !short && solids.is_none() { Part::Second } else { part };
+    // Bonds of solids turn nothing, so that short steps have none of it.
+    let inertia = inertia.filter(|_| solids.is_none() || !short);
     let half = half_step(w, t.dt);
     let k = Kick { half, spin: inertia.map_or(0.0, |i| half / i), dt: t.dt, bit: group.bit() };
     Some(Box::new(move |s| {
         let masses = Masses::new(s.all.style, s.all.mass, s.all.kind, s.all.type_mass);
-        let radius = || &s.all.radius[s.start..][..s.x.len()];
-        let turned = inertia.map(|_| (&mut *s.omega, &*s.torque, radius())).unwrap_or_default();
-        let most = k.stretch(Chunk { x: s.x, v: s.v, f: s.f, mask: s.mask, turned }, part, &masses, s.start);
+        let most = match &solids {
+            None => k.part_of(s, 0..s.x.len(), inertia.is_some(), part, &masses),
+            Some(solids) => some(&k, s, inertia.is_some(), part, &masses, (solids, short)),
+        };
         Gist { most, ..Gist::default() }
     }))
+}
+
+/// A part of a step of two lengths: in the long one all are kicked and all but solids drift, in the short ones solids do
+/// both. Solids are created one after the other: what a particle does is decided once for all like it that follow.
+fn some(
+    k: &Kick,
+    s: &mut Stretch,
+    spins: bool,
+    part: Part,
+    masses: &Masses,
+    (solids, short): (&Solids, bool),
+) -> f64 {
+    let (mut from, mut most) = (0, 0.0);
+    while from < s.x.len() {
+        let (kind, mask) = (&s.all.kind[s.start + from..s.start + s.x.len()], &s.mask[from..]);
+        let own = from..from + alike(kind, mask);
+        let solid = solids.has(kind[0]);
+        let drifts = short || !solid || mask[0] & solids.twice != 0;
+        let part = if drifts { part } else { Part::Second };
+        if solid || !short {
+            most = faster(most, k.part_of(s, own.clone(), spins, part, masses));
+        }
+        from = own.end;
+    }
+    most
+}
+
+/// How many particles from the first on have its type and groups.
+fn alike(kind: &[u16], mask: &[u32]) -> usize {
+    const EACH: usize = 16;
+    let (first, bits) = (kind[0], mask[0]);
+    let mut n = 0;
+    // Whole groups are compared without a branch for each.
+    for (kind, mask) in kind.chunks_exact(EACH).zip(mask.chunks_exact(EACH)) {
+        let differ = kind.iter().fold(0, |d, k| d | (k ^ first)) != 0;
+        if differ || mask.iter().fold(0, |d, m| d | (m ^ bits)) != 0 {
+            break;
+        }
+        n += EACH;
+    }
+    n + kind[n..].iter().zip(&mask[n..]).take_while(|(k, m)| (**k, **m) == (first, bits)).count()
 }
 
 /// Tells the account of ways what came of a part.
 fn went(w: &mut World, t: &Tick, gist: Gist) {
     w.rebuild.travel.went(t.dt.abs() * gist.most.sqrt());
-}
-
-/// Makes half a step, with a drift of `dt` if there is one, for those of a group in a step of two lengths; `acts` tells from
-/// type and mask whether particles are kicked, and whether they drift then. Solids are created one after the other: what a
-/// particle does is decided once for all like it that follow.
-pub fn pass_some(
-    w: &mut World,
-    group: GroupId,
-    dt: Option<f64>,
-    half: f64,
-    acts: impl Fn(u16, u32) -> [bool; 2] + Sync,
-) {
-    let k = Kick { half, spin: 0.0, dt: dt.unwrap_or(0.0), bit: group.bit() };
-    let p = &mut w.particles;
-    let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
-    let columns = (&mut p.x[..], &mut p.v[..], &p.f[..], &p.mask[..], &p.kind[..]);
-    par::each(columns, |start, (x, v, f, mask, kind)| {
-        let mut from = 0;
-        while from < kind.len() {
-            let like = |k: &usize| kind[*k] == kind[from] && mask[*k] == mask[from];
-            let to = (from + 1..kind.len()).take_while(like).last().map_or(from + 1, |k| k + 1);
-            let [kicks, drifts] = acts(kind[from], mask[from]);
-            if kicks {
-                let own = from..to;
-                let (x, v) = (&mut x[own.clone()], &mut v[own.clone()]);
-                let c = Chunk { x, v, f: &f[own.clone()], mask: &mask[own], turned: Turned::default() };
-                let part = if drifts && dt.is_some() { Part::First } else { Part::Second };
-                k.stretch(c, part, &masses, start + from);
-            }
-            from = to;
-        }
-    });
 }
 
 /// Spins, torques, radii.
@@ -117,6 +127,26 @@ struct Kick {
 }
 
 impl Kick {
+    /// Some particles of a stretch, and the largest v² among them after a drift.
+    fn part_of(
+        &self,
+        s: &mut Stretch,
+        own: std::ops::Range<usize>,
+        spins: bool,
+        part: Part,
+        masses: &Masses,
+    ) -> f64 {
+        let first = s.start + own.start;
+        let radius = || &s.all.radius[first..first + own.len()];
+        let turned = match spins {
+            true => (&mut s.omega[own.clone()], &s.torque[own.clone()], radius()),
+            false => Turned::default(),
+        };
+        let (x, v) = (&mut s.x[own.clone()], &mut s.v[own.clone()]);
+        let chunk = Chunk { x, v, f: &s.f[own.clone()], mask: &s.mask[own.clone()], turned };
+        self.stretch(chunk, part, masses, first)
+    }
+
     /// The particles from `start` on, and the largest v² among them after a drift.
     fn stretch(&self, c: Chunk, part: Part, masses: &Masses, start: usize) -> f64 {
         let (end, spins) = (start + c.x.len(), !c.turned.0.is_empty());

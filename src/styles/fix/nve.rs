@@ -1,6 +1,6 @@
 //! fix nve: velocity Verlet at constant energy.
 
-use super::kick::{self, pass_some};
+use super::kick;
 use super::{Fix, FixStyle};
 use crate::diag::Result;
 use crate::lang::Args;
@@ -48,20 +48,10 @@ impl Fix for Declared {
         let (group, span) = (self.group, cx.span());
         check_masses(cx.world(), span)?;
         let name = format!("fix {} nve", self.id);
-        let first = StepOp::new(
-            name.clone(),
-            Stage::InitialIntegrate,
-            Access::new("f mass mask", "x v"),
-            move |w, t| {
-                kick_and_drift(w, group, t);
-                Ok(())
-            },
-        );
-        let second =
-            StepOp::new(name, Stage::FinalIntegrate, Access::new("f mass mask", "v"), move |w, t| {
-                kick(w, group, t);
-                Ok(())
-            });
+        let idle = |_: &mut World, _: &Tick| Ok(());
+        let first =
+            StepOp::new(name.clone(), Stage::InitialIntegrate, Access::new("f mass mask", "x v"), idle);
+        let second = StepOp::new(name, Stage::FinalIntegrate, Access::new("f mass mask", "v"), idle);
         let first = kick::first(first.in_every_level().reporting(), group, None);
         let second = kick::second(second.in_every_level().reporting(), group, None);
         Ok(vec![first.boxed(), second.boxed()])
@@ -79,27 +69,6 @@ impl Fix for Declared {
 /// ½ Δt in units that turn force/mass into velocity.
 pub fn half_step(w: &World, dt: f64) -> f64 {
     0.5 * dt * w.settings.units.constants().ftm2v
-}
-
-/// First half of a step of two lengths: v += Δt/2 · f/m, x += Δt · v; solids drift in the short ones.
-pub fn kick_and_drift(w: &mut World, group: GroupId, t: &Tick) {
-    some(w, group, t, Some(t.dt));
-}
-
-/// Second half of a step of two lengths: v += Δt/2 · f/m.
-pub fn kick(w: &mut World, group: GroupId, t: &Tick) {
-    some(w, group, t, None);
-}
-
-/// Half a step of two lengths: in the long one all are kicked and all but solids drift, in the short ones solids do both.
-fn some(w: &mut World, group: GroupId, t: &Tick, dt: Option<f64>) {
-    let Some(solids) = &t.phase.solids else { return };
-    let (bit, short) = (group.bit(), t.phase.level == 0);
-    pass_some(w, group, dt, half_step(w, t.dt), |kind, mask| match short {
-        _ if mask & bit == 0 => [false, false],
-        false => [true, !solids.has(kind) || mask & solids.twice != 0],
-        true => [solids.has(kind), true],
-    });
 }
 
 #[cfg(test)]

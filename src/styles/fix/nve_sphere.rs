@@ -1,11 +1,9 @@
 //! fix nve/sphere: velocity Verlet of spheres, translation and rotation.
 
 use super::kick as kicks;
-use super::nve::{kick, kick_and_drift};
 use super::{Fix, FixStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
-use crate::par;
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
@@ -87,16 +85,9 @@ impl Fix for Declared {
         }
         let name = format!("fix {} nve/sphere", self.id);
         let access = || Access::new("f torque mass radius mask", "x v omega");
-        let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
-            kick_and_drift(w, group, t);
-            turn(w, group, inertia, t);
-            Ok(())
-        });
-        let second = StepOp::new(name, Stage::FinalIntegrate, access(), move |w, t| {
-            kick(w, group, t);
-            turn(w, group, inertia, t);
-            Ok(())
-        });
+        let idle = |_: &mut World, _: &Tick| Ok(());
+        let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), idle);
+        let second = StepOp::new(name, Stage::FinalIntegrate, access(), idle);
         let first = kicks::first(first.in_every_level().reporting(), group, Some(inertia));
         let second = kicks::second(second.in_every_level().reporting(), group, Some(inertia));
         Ok(vec![first.boxed(), second.boxed()])
@@ -109,28 +100,6 @@ impl Fix for Declared {
     fn boxed(&self) -> Box<dyn Fix> {
         Box::new(self.clone())
     }
-}
-
-/// Half a step of rotation: ω += Δt/2 · torque/I; bonds of solids turn nothing, so that short steps have none of it.
-fn turn(w: &mut World, group: GroupId, inertia: f64, t: &Tick) {
-    if t.phase.level == 0 {
-        return;
-    }
-    let half = 0.5 * t.dt * w.settings.units.constants().ftm2v / inertia;
-    let p = &mut w.particles;
-    let bit = group.bit();
-    let columns = (&mut p.omega[..], &p.torque[..], &p.radius[..], &p.mass[..], &p.mask[..]);
-    par::each(columns, |_, (omega, torque, radius, mass, mask)| {
-        for ((((omega, torque), r), m), mask) in omega.iter_mut().zip(torque).zip(radius).zip(mass).zip(mask)
-        {
-            if mask & bit != 0 {
-                let factor = half / (r * r * m);
-                for d in 0..3 {
-                    omega[d] += factor * torque[d];
-                }
-            }
-        }
-    });
 }
 
 #[cfg(test)]

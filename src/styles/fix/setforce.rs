@@ -4,10 +4,11 @@ use super::components::Components;
 use super::{Fix, FixStyle, Minimizing};
 use crate::diag::Result;
 use crate::lang::Args;
-use crate::plan::{Access, Op, Stage};
+use crate::plan::{Access, Act, Gist, Op, Stage, Stretch, Tick};
 use crate::styles::matter::{change_forces, publish_levels};
 use crate::styles::step_op::StepOp;
-use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
+use crate::styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use crate::world::World;
 
 /// The style.
 pub struct SetForce;
@@ -49,6 +50,14 @@ impl Fix for Declared {
         let level = cx.level();
         let slot = cx.slot(&format!("f_{}", self.id));
         let access = Access::new("f x mask", "f");
+        let numbers = chosen.bit_alone().zip(numbers(&force));
+        let hold = move |_: &World, t: &Tick, _: bool| {
+            let (bit, values) = numbers.filter(|_| !t.unchanged)?;
+            let here = level.acts(&t.phase);
+            let values = values.map(|v: Option<f64>| v.map(|a| if here { a } else { 0.0 }));
+            Some(Box::new(move |s: &mut Stretch<'_>| replace(s, bit, &values)) as Act)
+        };
+        let told = move |w: &mut World, t: &Tick, gist: Gist| publish_levels(w, slot, t, &gist.sums);
         let op = StepOp::new(format!("fix {} setforce", self.id), Stage::PostForce, access, move |w, t| {
             if t.unchanged {
                 return Ok(());
@@ -67,7 +76,7 @@ impl Fix for Declared {
             publish_levels(w, slot, t, &before);
             Ok(())
         });
-        Ok(vec![op.in_every_level().boxed()])
+        Ok(vec![op.taking_turns(hold, told).in_every_level().boxed()])
     }
 
     fn shape(&self) -> Shape {
@@ -85,6 +94,37 @@ impl Fix for Declared {
     fn boxed(&self) -> Box<dyn Fix> {
         Box::new(self.clone())
     }
+}
+
+/// The components, if all that are given are numbers.
+fn numbers(force: &[Option<Reading>; 3]) -> Option<[Option<f64>; 3]> {
+    let mut values = [None; 3];
+    for (value, reading) in values.iter_mut().zip(force) {
+        *value = match reading {
+            None => None,
+            Some(Reading::Const(a)) => Some(*a),
+            Some(_) => return None,
+        };
+    }
+    Some(values)
+}
+
+/// Replaces components of the forces of a group's particles by numbers; the sum of what was there before.
+fn replace(s: &mut Stretch, bit: u32, values: &[Option<f64>; 3]) -> Gist {
+    let mut gist = Gist::default();
+    // Particles that are held lie together: most eights have none.
+    for (k, eight) in s.mask.chunks(8).enumerate() {
+        if eight.iter().fold(0, |all, m| all | m) & bit == 0 {
+            continue;
+        }
+        for (f, _) in s.f[8 * k..].iter_mut().zip(eight).filter(|(_, m)| **m & bit != 0) {
+            for d in 0..3 {
+                gist.sums[d] += f[d];
+                f[d] = values[d].unwrap_or(f[d]);
+            }
+        }
+    }
+    gist
 }
 
 #[cfg(test)]
