@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::chunk::{CELLS, Chunk, Kernels, SUMS};
 use super::contact::add;
-use super::lattice::partners;
+use super::leads::partners;
 use super::list_kernel::{RowKernels, RowTask, dead};
 use super::pmb::stretch;
 use crate::par::{self, Shared};

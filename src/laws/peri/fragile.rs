@@ -1,7 +1,8 @@
 //! Breaking on the lattice: chunks with a bond near its limit, eight cells at a time.
 
 use super::breaking::{Bonds, banded, measure};
-use super::lattice::{MAY_BREAK, partners};
+use super::lattice::MAY_BREAK;
+use super::leads::partners;
 use super::pmb::stretch;
 use super::stretching::{Side, StretchKernels};
 use crate::par::{self, Shared};

@@ -1,12 +1,13 @@
 //! Forces of a body on a lattice: slabs swept, forces handed back.
 
 use super::chunk::{self, Chunk, Kernels, Various};
+use super::leads::{ahead, find_leads, row_limit};
 use super::pmb::{UP_TO_3, UP_TO_5, UP_TO_7};
 use super::state::kernels::StateKernels;
 use super::state::lattice::States;
 use crate::par::Shared;
 use crate::world::families::Window;
-use crate::world::families::lattice::{CONSTANTS, LANES, LatticeBody, MIXED, PAD, PAGE, STAGGER, staggered};
+use crate::world::families::lattice::{LANES, LatticeBody, PAD, PAGE, RowMotion, STAGGER, staggered};
 
 /// How one force evaluation treats the bonds of a body.
 #[derive(Clone, Copy, Debug)]
@@ -32,12 +33,13 @@ pub struct Sweep<'a> {
     measure: Shared<'a, f32>,
     floor: Shared<'a, f32>,
     flagged: Shared<'a, u8>,
+    growth: Shared<'a, f64>,
     mode: Mode,
     newton: bool,
     states: Option<States<'a>>,
 }
 
-/// The body's per-chunk columns, taken out so that slabs can share the rest.
+/// The body's columns by chunks and rows, taken out so that slabs can share the rest.
 #[derive(Debug, Default)]
 pub struct ChunkColumns {
     tension: Vec<f32>,
@@ -45,17 +47,20 @@ pub struct ChunkColumns {
     measure: Vec<f32>,
     floor: Vec<f32>,
     flagged: Vec<u8>,
+    growth: Vec<f64>,
 }
 
 impl ChunkColumns {
     /// Takes them out of a body.
     pub fn take(body: &mut LatticeBody) -> Self {
+        find_leads(body);
         Self {
             tension: std::mem::take(&mut body.tension),
             compression: std::mem::take(&mut body.compression),
             measure: std::mem::take(&mut body.measure),
             floor: std::mem::take(&mut body.floor),
             flagged: std::mem::take(&mut body.flagged),
+            growth: std::mem::take(&mut body.growth),
         }
     }
 
@@ -66,6 +71,7 @@ impl ChunkColumns {
         body.measure = self.measure;
         body.floor = self.floor;
         body.flagged = self.flagged;
+        body.growth = self.growth;
     }
 }
 
@@ -96,6 +102,7 @@ impl<'a> Sweep<'a> {
             measure: Shared::new(&mut columns.measure),
             floor: Shared::new(&mut columns.floor),
             flagged: Shared::new(&mut columns.flagged),
+            growth: Shared::new(&mut columns.growth),
             mode,
             newton,
         }
@@ -110,7 +117,7 @@ impl<'a> Sweep<'a> {
         let mut touched = false;
         for slot in body.slot(own.start, 0)..body.slot(own.end, 0) {
             if body.rows[slot].len > 0 {
-                let plan = self.plan(slot, &mut window.meets, &mut window.to);
+                let plan = self.plan(slot);
                 touched |= self.row::<K>(slot, &plan, window, (base, stride, first));
             }
         }
@@ -151,28 +158,46 @@ impl<'a> Sweep<'a> {
         degree(f64::from(tension.max(compression)) + plan.growth)
     }
 
-    /// Looks at the rows that a row's bonds lead to.
-    pub(super) fn plan(&self, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) -> RowPlan {
+    /// Looks at the rows that a row's bonds lead to. How far these move is looked up in the first sweep of an evaluation.
+    pub(super) fn plan(&self, slot: usize) -> RowPlan {
         let body = self.body;
-        let mut motion = body.motion[slot];
-        partners_beside(body, slot, meets, to);
-        for &step in &body.steps {
-            motion = motion.with(&body.motion[ahead(body, slot, step)]);
+        // SAFETY: a row belongs to one slab.
+        let growth = unsafe { &mut self.growth.get(slot..slot + 1)[0] };
+        let spread = self.states.as_ref().filter(|s| s.spread);
+        if spread.is_none_or(|s| s.kind.bond_based()) {
+            let motion = self.motion(slot);
+            let range = [0, 1, 2].map(|k| (motion.most[k] - motion.least[k]).max(0.0) / body.spacing);
+            let d = range.iter().map(|r| r * r).sum::<f64>().sqrt();
+            // |z' - z| <= (|eta' - eta|/|xi|) (r + r')/|xi| with r < 1.007 |xi|, r' <= r + |eta' - eta|.
+            *growth = d * (2.02 + d);
         }
-        let limit = row_limit(body, slot);
-        let range = [0, 1, 2].map(|k| (motion.most[k] - motion.least[k]).max(0.0) / body.spacing);
-        let d = range.iter().map(|r| r * r).sum::<f64>().sqrt();
-        // |z' - z| <= (|eta' - eta|/|xi|) (r + r')/|xi| with r < 1.007 |xi|, r' <= r + |eta' - eta|.
-        let growth = d * (2.02 + d);
-        let mut at = (motion.lo, motion.hi);
-        if self.states.as_ref().is_some_and(|s| s.spread) {
-            at = body.state.active[slot];
-            for &step in &body.steps {
-                let other = body.state.active[ahead(body, slot, step)];
-                at = (at.0.min(other.0), at.1.max(other.1));
-            }
-        }
-        RowPlan { active: (at.0.saturating_sub(body.reach), at.1.saturating_add(body.reach)), growth, limit }
+        let at = if spread.is_some() { self.reached(slot) } else { self.moved(slot) };
+        let active = (at.0.saturating_sub(body.reach), at.1.saturating_add(body.reach));
+        RowPlan { active, growth: *growth, limit: row_limit(body, slot) }
+    }
+
+    /// What has moved in a row and in those that its bonds lead to.
+    fn motion(&self, slot: usize) -> RowMotion {
+        let (body, motion) = (self.body, &self.body.motion);
+        body.steps.iter().fold(motion[slot], |m, &step| m.with(&motion[ahead(body, slot, step)]))
+    }
+
+    /// Where sites that a row's bonds join are not at rest.
+    fn moved(&self, slot: usize) -> (i32, i32) {
+        let (body, motion) = (self.body, &self.body.motion);
+        body.steps.iter().fold((motion[slot].lo, motion[slot].hi), |at, &step| {
+            let other = &motion[ahead(body, slot, step)];
+            (at.0.min(other.lo), at.1.max(other.hi))
+        })
+    }
+
+    /// Where sites that a row's bonds join have dilatations.
+    fn reached(&self, slot: usize) -> (i32, i32) {
+        let (body, active) = (self.body, &self.body.state.active);
+        body.steps.iter().fold(active[slot], |at, &step| {
+            let other = active[ahead(body, slot, step)];
+            (at.0.min(other.0), at.1.max(other.1))
+        })
     }
 
     /// Sweeps a row's chunks; returns whether any was not at rest.
@@ -217,7 +242,7 @@ impl<'a> Sweep<'a> {
             let fragile = self.mode.armed && self.mode.advance && high >= floor;
             let track = !rest && (fragile || bound >= f64::from(measure[k]) || !self.mode.advance);
             let cell = chunk * LANES;
-            let chunk_data = self.chunk(cell, entries, window, (base, stride, first));
+            let chunk_data = self.chunk((slot, cell), entries, window, (base, stride, first));
             // SAFETY: live bonds lead to cells of the body that the window covers; both have PAD cells around.
             let measured = unsafe {
                 match &self.states {
@@ -248,7 +273,7 @@ impl<'a> Sweep<'a> {
 
     pub(super) fn chunk<'b>(
         &'b self,
-        cell: usize,
+        (slot, cell): (usize, usize),
         entries: usize,
         window: &'b mut Window,
         (base, stride, first): (usize, usize, usize),
@@ -271,7 +296,7 @@ impl<'a> Sweep<'a> {
             // SAFETY: the window was opened for cells from `first` on that include this one.
             f: [0, 1, 2].map(|k| unsafe { f.add(base + k * stride + cell - first) }),
             alive: &body.alive[cell / LANES * entries..][..entries],
-            to: &window.to,
+            to: body.leads_of(slot),
             tables: &body.tables,
             various,
         }
@@ -287,84 +312,14 @@ pub(super) fn extent(body: &LatticeBody, slab: usize) -> (std::ops::Range<usize>
     (own, first, last)
 }
 
-/// The row slot that bonds with a row step lead to.
-fn ahead(body: &LatticeBody, slot: usize, (across, up): (i32, usize)) -> usize {
-    (slot + up * body.width).wrapping_add_signed(across as isize)
-}
-
-/// The row slot that bonds with a row step lead to, and the pair of local types if both rows have one each.
-fn meet(body: &LatticeBody, slot: usize, step: (i32, usize)) -> (usize, Option<usize>) {
-    let other = ahead(body, slot, step);
-    let (a, b) = (body.rows[slot].kind, body.rows[other].kind);
-    let uniform = a != MIXED && b != MIXED;
-    (other, uniform.then(|| usize::from(a) * body.kinds.len() + usize::from(b)))
-}
-
-/// The smallest s00 and the largest alpha of a row's bonds.
-pub fn row_limit(body: &LatticeBody, slot: usize) -> (f64, f64) {
-    if let [[_, s00, alpha]] = body.pairs[..] {
-        return (s00, alpha.max(0.0));
-    }
-    let mut limit = (f64::INFINITY, 0.0f64);
-    for &step in &body.steps {
-        let pair = meet(body, slot, step).1;
-        let known = pair.map_or(&body.pairs[..], |pair| &body.pairs[pair..=pair]);
-        for [_, s00, alpha] in known {
-            limit = (limit.0.min(*s00), limit.1.max(*alpha));
-        }
-    }
-    limit
-}
-
-/// Finds for each stencil vector how many cells further it leads from a row's cells, and the place of its
-/// constants; `meets` is scratch.
-pub fn partners(body: &LatticeBody, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) {
-    meets.clear();
-    partners_beside(body, slot, meets, to);
-}
-
-/// The same after another row of this body, or with no `meets`: where rows beside each other meet theirs alike, nothing
-/// has to be found anew.
-fn partners_beside(body: &LatticeBody, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) {
-    let known = meets.len() == body.steps.len();
-    meets.resize(body.steps.len(), (0, 0));
-    let row = &body.rows[slot];
-    let various = !body.cell_kind.is_empty();
-    let mut same = known;
-    for (meets, &step) in meets.iter_mut().zip(&body.steps) {
-        let (other, uniform) = meet(body, slot, step);
-        let other = &body.rows[other];
-        if other.len == 0 {
-            // No bond leads there.
-            continue;
-        }
-        let offset = other.start as i32 - row.start as i32 + row.lo - other.lo;
-        let table = if various { 0 } else { uniform.unwrap_or(0) * body.stencil.len() };
-        let new = (offset, (table * CONSTANTS) as u32);
-        same &= *meets == new;
-        *meets = new;
-    }
-    if same {
-        return;
-    }
-    to.clear();
-    for (e, (vector, &step)) in body.stencil.iter().zip(&body.step_of).enumerate() {
-        let (offset, table) = meets[usize::from(step)];
-        to.push((offset + vector[0], table + (e * CONSTANTS) as u32));
-    }
-}
-
-/// Makes room for so many components (at most 3) of forces of `cells` cells from `first` on, all zero, and forgets other rows'
-/// partners. Returns where the first one lies and
-/// how far components are apart: not at the page offsets of the displacements of the same cells.
+/// Makes room for so many components (at most 3) of forces of `cells` cells from `first` on, all zero. Returns where the first one
+/// lies and how far components are apart: not at the page offsets of the displacements of the same cells.
 pub(super) fn open(
     window: &mut Window,
     body: &LatticeBody,
     first: usize,
     (cells, components): (usize, usize),
 ) -> (usize, usize) {
-    // What another body has left there.
-    window.meets.clear();
     let stride = staggered(cells);
     let length = 3 * stride + PAGE + PAD;
     if window.force.len() < length {

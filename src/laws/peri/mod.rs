@@ -15,6 +15,7 @@ mod lanes;
 #[cfg(target_arch = "x86_64")]
 mod lanes512;
 mod lattice;
+mod leads;
 mod limit;
 pub mod linked;
 mod list;

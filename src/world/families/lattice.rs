@@ -118,6 +118,9 @@ pub struct LatticeBody {
     pub stride: usize,
     /// Motion per row slot.
     pub motion: Vec<RowMotion>,
+    /// Per row slot a bound on the change of z of any bond since the last step.
+    #[serde(skip)]
+    pub growth: Vec<f64>,
     /// Constants of the stencil vectors for each pair of local types, [`CONSTANTS`] each.
     pub tables: Vec<f64>,
     /// Type (1-based) of each local type.
@@ -137,9 +140,24 @@ pub struct LatticeBody {
     /// Critical measures of families in the step before, by chunks.
     #[serde(skip)]
     pub measures: Measures,
+    /// Where bonds lead.
+    #[serde(skip)]
+    pub leads: Leads,
     /// Under a state-based law: columns with [`PAD`] entries around those of the cells. Memory of bonds: number `k` of
     /// bond `e` of a chunk's eight cells from `((chunk * stencil.len() + e) * numbers + k) * LANES` on.
     pub state: SiteState,
+}
+
+/// Where bonds lead, found once for all steps.
+#[derive(Clone, Debug, Default)]
+pub struct Leads {
+    /// For each stencil vector how many cells further it leads, and the place of its constants: lists for rows, one after the
+    /// other. Rows beside each other that meet theirs alike share one.
+    pub to: Vec<(i32, u32)>,
+    /// Where the list of a row slot begins; empty where nothing has been found yet.
+    pub of_row: Vec<u32>,
+    /// Whether the second half of a chunk's cells is vacant.
+    pub half: Vec<bool>,
 }
 
 /// Unused cells around the cells of a body: kernels read beyond the ends of rows.
@@ -160,6 +178,11 @@ impl LatticeBody {
     /// The row slot of a plane and a row in it.
     pub fn slot(&self, plane: usize, row: usize) -> usize {
         plane * self.width + row
+    }
+
+    /// Where the bonds of a row lead; see [`Leads`].
+    pub fn leads_of(&self, slot: usize) -> &[(i32, u32)] {
+        &self.leads.to[self.leads.of_row[slot] as usize..][..self.stencil.len()]
     }
 
     /// The row slot of a cell.
@@ -285,6 +308,8 @@ impl LatticeBody {
             + self.intact.len() * chunk
             + self.cell_kind.len()
             + self.measures.bytes()
+            + self.leads.to.len() * size_of::<(i32, u32)>()
+            + self.leads.of_row.len() * 4
             + self.state.bytes()
             + self.rows.len() * (size_of::<Row>() + size_of::<RowMotion>())
     }

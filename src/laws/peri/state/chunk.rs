@@ -1,12 +1,13 @@
 //! The innermost loops of state-based laws on the lattice: all bonds of eight neighbouring cells.
 
-use super::super::chunk::{
-    Bonds, CELLS, CLOSED, Chunk, SUMS, bonds, constant, extremes, give, place, series, take, with_virial,
-};
+mod energies;
+
+use super::super::chunk::{CELLS, CLOSED, Chunk, bonds, constant, extremes, give, place, series, take};
 use super::super::lanes::Lanes;
-use super::law::{Angles, BondLaw, Ends, Moment, Stretch, closed};
+use super::law::{BondLaw, Ends, Moment, Stretch, closed};
 use super::terms::Term;
 use crate::world::families::law::COLUMNS;
+pub use energies::{Looking, sums};
 
 /// Places in the tables of state-based laws, beside those of [`constant`]: there [`constant::SERIES`] is scaled so that
 /// it gives s/(1 + s) in the table of forces, and the whole term in that of dilatations; [`constant::FACTOR`] is ω w V
@@ -14,6 +15,8 @@ use crate::world::families::law::COLUMNS;
 pub const OMEGA: usize = constant::ENERGY;
 /// In the table of dilatations: one over [`constant::FACTOR`].
 pub const FROM_TERM: usize = constant::ENERGY + 1;
+/// In the table of dilatations: twice the reference bond, three components.
+pub const TWICE_XI: usize = constant::XI;
 
 /// What a chunk's loop needs besides; pointers at the chunk's first cell.
 #[derive(Clone, Copy)]
@@ -32,42 +35,50 @@ pub struct Cells<'a> {
     pub moment: &'a Moment,
     /// Keep what bonds remember from this evaluation.
     pub keep: bool,
-}
-
-/// What energies need besides.
-#[derive(Clone, Copy)]
-pub struct Looking<'a> {
-    /// Dilatations of the chunk's cells.
-    pub theta: *const f64,
-    /// Dilatations at the last step that advanced.
-    pub before: *const f64,
-    /// What of those is not yet relaxed.
-    pub unrelaxed: *const f64,
-    /// Constants of dilatations.
-    pub terms: &'a [f64],
-    /// Share of the squares that counts for each end.
-    pub half: f64,
-    /// Both ends have 15G/m as column 1; else that is part of the constants.
-    pub states: bool,
-    /// The step has advanced: what bonds remember is of now.
-    pub advanced: bool,
+    /// The second half of the cells is vacant.
+    pub half: bool,
 }
 
 /// How many numbers ahead memory of bonds is fetched: it is read but once in a sweep, and processors do not follow it from
 /// page to page by themselves.
 const AHEAD: usize = 16 * CELLS;
 
+/// q of some bonds as [`bonds`] has it, and which count: where nothing else of y is needed, and the constants hold 2 xi.
+#[inline(always)]
+unsafe fn lengthened<L: Lanes, const MASKED: bool>(
+    u: &[*const f64; 3],
+    own: &[L; 3],
+    other: isize,
+    c: *const f64,
+    bits: u8,
+) -> (L, L) {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let far = place::<L>(u, other);
+        let twice = |k: usize| *c.add(TWICE_XI + k);
+        let eta = [far[0].sub(own[0]), far[1].sub(own[1]), far[2].sub(own[2])];
+        let first = eta[2].mul(eta[2].add(L::splat(twice(2))));
+        let second = eta[1].fma(eta[1].add(L::splat(twice(1))), first);
+        let q = eta[0].fma(eta[0].add(L::splat(twice(0))), second);
+        let mut live = q.abs().ge(L::splat(*c.add(constant::DEAD)));
+        if MASKED {
+            live = live.keep(L::mask(bits));
+        }
+        (q, live)
+    }
+}
+
 /// Stretches of bonds, their `before` the same.
 #[inline(always)]
-unsafe fn stretch<L: Lanes, const DEGREE: usize>(b: &Bonds<L>, c: *const f64) -> Stretch<L> {
+unsafe fn stretch<L: Lanes, const DEGREE: usize>((q, live): (L, L), c: *const f64) -> Stretch<L> {
     // SAFETY: the caller's promise.
     unsafe {
         if DEGREE == CLOSED {
-            let s = closed(b.q.mul(L::splat(*c.add(constant::INVERSE))));
-            let stretch = s.s.keep(b.live);
-            return Stretch { s: stretch, share: s.share.keep(b.live), inverse: s.inverse, before: stretch };
+            let s = closed(q.mul(L::splat(*c.add(constant::INVERSE))));
+            let stretch = s.s.keep(live);
+            return Stretch { s: stretch, share: s.share.keep(live), inverse: s.inverse, before: stretch };
         }
-        let share = series::<L, DEGREE>(b.q, c).keep(b.live);
+        let share = series::<L, DEGREE>(q, c).keep(live);
         // s = p/(1 − p) for p = s/(1 + s): below the first term left out, p^(DEGREE + 2), is 1e-16 of p.
         let one = L::splat(1.0);
         let mut s = one;
@@ -117,7 +128,13 @@ unsafe fn recall<L: Lanes>(s: &Cells, numbers: usize, e: usize, here: usize) -> 
     }
 }
 
-/// Adds the forces of a chunk's bonds to both ends. Returns the largest z and the largest −z if `TRACK`.
+/// The vectors that a chunk's cells fill.
+const fn vectors<L: Lanes>(half: bool) -> usize {
+    if half { CELLS / 2 / L::WIDTH } else { CELLS / L::WIDTH }
+}
+
+/// Adds the forces of a chunk's bonds to both ends. Returns the largest z and the largest −z if `TRACK`. With `HALF` the
+/// second half of its cells is vacant and left out.
 ///
 /// # Safety
 /// As for `chunk::force`; columns must be readable where displacements are, and `memory` writable for all bonds of the
@@ -130,6 +147,7 @@ pub(super) unsafe fn pull<
     const MASKED: bool,
     const TRACK: bool,
     const VARIOUS: bool,
+    const HALF: bool,
 >(
     a: &Chunk,
     s: &Cells,
@@ -159,14 +177,14 @@ pub(super) unsafe fn pull<
             }
             let c = a.tables.as_ptr().add(constants as usize);
             let mut v = 0;
-            while v < CELLS / L::WIDTH {
+            while v < vectors::<L>(HALF) {
                 let here = L::WIDTH * v;
                 let (other, bits) = (here as isize + to as isize, bits >> here);
                 let b = bonds::<L, MASKED>(&a.u, &u[v], other, c, bits);
-                let mut now = stretch::<L, DEGREE>(&b, c);
+                let mut now = stretch::<L, DEGREE>((b.q, b.live), c);
                 if W::BACK {
                     let last = bonds::<L, MASKED>(&s.last, &back[v], other, c, bits);
-                    now.before = stretch::<L, DEGREE>(&last, c).s;
+                    now.before = stretch::<L, DEGREE>((last.q, last.live), c).s;
                 }
                 let ends: Ends<L> = [own[v], read::<L>(s, W::COLUMNS, other)];
                 let mut memory = if known { recall::<L>(s, W::MEMORY, vector, here) } else { [zero; 2] };
@@ -224,6 +242,7 @@ pub(super) unsafe fn add_up<
     const DEGREE: usize,
     const MASKED: bool,
     const VARIOUS: bool,
+    const HALF: bool,
 >(
     a: &Chunk,
     s: &Cells,
@@ -246,16 +265,22 @@ pub(super) unsafe fn add_up<
             }
             let c = a.tables.as_ptr().add(constants as usize);
             let mut v = 0;
-            while v < CELLS / L::WIDTH {
+            while v < vectors::<L>(HALF) {
                 let here = L::WIDTH * v;
                 let (other, bits) = (here as isize + to as isize, bits >> here);
-                let b = bonds::<L, MASKED>(&a.u, &u[v], other, c, bits);
+                let (q, live) = lengthened::<L, MASKED>(&a.u, &u[v], other, c, bits);
                 let (mut near, mut far) = if DEGREE != CLOSED && T::STRETCH {
                     // The series is the term itself.
-                    let term = series::<L, DEGREE>(b.q, c).keep(b.live);
+                    let term = series::<L, DEGREE>(q, c).keep(live);
                     (term, term)
                 } else {
-                    term_of::<L, T, DEGREE, MASKED>(s, &b, c, (&own[v], other, bits), (vector, here, known))
+                    term_of::<L, T, DEGREE, MASKED>(
+                        s,
+                        (q, live),
+                        c,
+                        (&own[v], other, bits),
+                        (vector, here, known),
+                    )
                 };
                 if VARIOUS && let Some(cells) = a.various {
                     near = near.mul(L::load(cells.volume.offset(other)));
@@ -268,7 +293,7 @@ pub(super) unsafe fn add_up<
             }
         }
         let mut v = 0;
-        while v < CELLS / L::WIDTH {
+        while v < vectors::<L>(HALF) {
             let target = a.f[0].add(L::WIDTH * v);
             L::load(target).add(sum[v]).store(target);
             v += 1;
@@ -280,7 +305,7 @@ pub(super) unsafe fn add_up<
 #[inline(always)]
 unsafe fn term_of<L: Lanes, T: Term, const DEGREE: usize, const MASKED: bool>(
     s: &Cells,
-    b: &Bonds<L>,
+    (q, live): (L, L),
     c: *const f64,
     (own, other, bits): (&[L; COLUMNS], isize, u8),
     (vector, here, known): (usize, usize, bool),
@@ -288,9 +313,9 @@ unsafe fn term_of<L: Lanes, T: Term, const DEGREE: usize, const MASKED: bool>(
     // SAFETY: the caller's promise.
     unsafe {
         let s_of = if DEGREE == CLOSED {
-            stretch::<L, CLOSED>(b, c)
+            stretch::<L, CLOSED>((q, live), c)
         } else {
-            let s = series::<L, DEGREE>(b.q, c).keep(b.live).mul(L::splat(*c.add(FROM_TERM)));
+            let s = series::<L, DEGREE>(q, c).keep(live).mul(L::splat(*c.add(FROM_TERM)));
             Stretch { s, share: s, inverse: s, before: s }
         };
         let ends: Ends<L> = [*own, read::<L>(s, T::COLUMNS, other)];
@@ -301,84 +326,6 @@ unsafe fn term_of<L: Lanes, T: Term, const DEGREE: usize, const MASKED: bool>(
             factor = factor.keep(L::mask(bits));
         }
         (near.mul(factor), far.mul(factor))
-    }
-}
-
-/// The dilatations of some neighbouring cells.
-#[inline(always)]
-unsafe fn angles<L: Lanes>(look: &Looking, at: isize, relaxing: L) -> Angles<L> {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let now = L::load(look.theta.offset(at));
-        let more = now.sub(L::load(look.before.offset(at)));
-        Angles { now, unrelaxed: L::load(look.unrelaxed.offset(at)).add(more), relaxing }
-    }
-}
-
-/// Energy and virial of a chunk's bonds, cell by cell, as [`super::super::chunk::sums`].
-///
-/// # Safety
-/// As for [`pull`], without `f`; `look` must be readable where columns are.
-#[inline(always)]
-pub(super) unsafe fn sums<L: Lanes, W: BondLaw>(
-    a: &Chunk,
-    s: &Cells,
-    look: &Looking,
-) -> [[f64; CELLS]; SUMS] {
-    // SAFETY: the caller's promise covers every address formed below.
-    unsafe {
-        let mut out = [[0.0; CELLS]; SUMS];
-        let known = W::MEMORY > 0 && (!W::LAZY || *s.touched != 0);
-        let mut v = 0;
-        while v < CELLS / L::WIDTH {
-            let here = L::WIDTH * v;
-            let u = place::<L>(&a.u, here as isize);
-            let last = place::<L>(&s.last, here as isize);
-            let own = read::<L>(s, W::COLUMNS, here as isize);
-            let mut sum = [L::splat(0.0); SUMS];
-            let mut e = 0;
-            while e < a.to.len() {
-                let (to, constants) = *a.to.get_unchecked(e);
-                let bits = *a.alive.get_unchecked(e) >> here;
-                let vector = e;
-                e += 1;
-                if bits == 0 {
-                    continue;
-                }
-                let c = a.tables.as_ptr().add(constants as usize);
-                let other = here as isize + to as isize;
-                let b = bonds::<L, true>(&a.u, &u, other, c, bits);
-                let mut now = stretch::<L, CLOSED>(&b, c);
-                if W::BACK && !look.advanced {
-                    now.before = stretch::<L, CLOSED>(&bonds::<L, true>(&s.last, &last, other, c, bits), c).s;
-                }
-                let ends: Ends<L> = [own, read::<L>(s, W::COLUMNS, other)];
-                let mut memory =
-                    if known { recall::<L>(s, W::MEMORY, vector, here) } else { [L::splat(0.0); 2] };
-                let omega = L::splat(*c.add(OMEGA));
-                let at = [
-                    angles::<L>(look, here as isize, W::relaxing(&ends[0], s.moment)),
-                    angles::<L>(look, other, W::relaxing(&ends[1], s.moment)),
-                ];
-                let (mut near, mut far) = W::squares(&now, omega, &at, &memory, s.moment);
-                if look.states {
-                    (near, far) = (near.mul(ends[0][1]), far.mul(ends[1][1]));
-                }
-                let lives = L::mask(bits);
-                let term = L::splat(look.half * look.terms[constants as usize + constant::FACTOR]);
-                let energy = near.add(far).mul(term).keep(lives);
-                let (near, far) = W::pull(&now, omega, &ends, &mut memory, s.moment);
-                let pull = near.add(far).mul(L::splat(-0.5 * *c.add(constant::FACTOR))).keep(lives);
-                sum = with_virial(sum, energy, pull, &b.y);
-            }
-            let mut k = 0;
-            while k < SUMS {
-                sum[k].store(out[k].as_mut_ptr().add(here));
-                k += 1;
-            }
-            v += 1;
-        }
-        out
     }
 }
 

@@ -3,6 +3,8 @@
 use super::super::chunk::{CELLS, CLOSED, Chunk, Plain, SUMS};
 #[cfg(target_arch = "x86_64")]
 use super::super::chunk::{Wide, Widest};
+#[cfg(target_arch = "x86_64")]
+use super::super::lanes::Avx2;
 use super::super::lanes::Portable;
 use super::chunk::{Cells, Looking, add_up, pull, sums};
 use super::law::BondLaw;
@@ -20,6 +22,7 @@ pub trait StateKernels: Sync {
         const MASKED: bool,
         const TRACK: bool,
         const VARIOUS: bool,
+        const HALF: bool,
     >(
         a: &Chunk,
         s: &Cells,
@@ -28,7 +31,13 @@ pub trait StateKernels: Sync {
     ///
     /// # Safety
     /// As for [`add_up`].
-    unsafe fn add_up<T: Term, const DEGREE: usize, const MASKED: bool, const VARIOUS: bool>(
+    unsafe fn add_up<
+        T: Term,
+        const DEGREE: usize,
+        const MASKED: bool,
+        const VARIOUS: bool,
+        const HALF: bool,
+    >(
         a: &Chunk,
         s: &Cells,
     );
@@ -39,9 +48,9 @@ pub trait StateKernels: Sync {
     unsafe fn state_sums<W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -> [[f64; CELLS]; SUMS];
 }
 
-/// Kernels of one instruction set from those for its lanes.
+/// Kernels of one instruction set from those for its lanes, and for those of half a chunk.
 macro_rules! compiled_for {
-    ($kernels:ty, $lanes:ty $(, $features:literal)?) => {
+    ($kernels:ty, $lanes:ty, $half:ty $(, $features:literal)?) => {
         impl StateKernels for $kernels {
             unsafe fn pull<
                 W: BondLaw,
@@ -49,6 +58,7 @@ macro_rules! compiled_for {
                 const MASKED: bool,
                 const TRACK: bool,
                 const VARIOUS: bool,
+                const HALF: bool,
             >(
                 a: &Chunk,
                 s: &Cells,
@@ -60,30 +70,53 @@ macro_rules! compiled_for {
                     const MASKED: bool,
                     const TRACK: bool,
                     const VARIOUS: bool,
+                    const HALF: bool,
                 >(
                     a: &Chunk,
                     s: &Cells,
                 ) -> (f64, f64) {
                     // SAFETY: the caller's promise.
-                    unsafe { pull::<$lanes, W, DEGREE, MASKED, TRACK, VARIOUS>(a, s) }
+                    unsafe {
+                        match HALF {
+                            true => pull::<$half, W, DEGREE, MASKED, TRACK, VARIOUS, true>(a, s),
+                            false => pull::<$lanes, W, DEGREE, MASKED, TRACK, VARIOUS, false>(a, s),
+                        }
+                    }
                 }
                 // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<W, DEGREE, MASKED, TRACK, VARIOUS>(a, s) }
+                unsafe { inner::<W, DEGREE, MASKED, TRACK, VARIOUS, HALF>(a, s) }
             }
-            unsafe fn add_up<T: Term, const DEGREE: usize, const MASKED: bool, const VARIOUS: bool>(
+            unsafe fn add_up<
+                T: Term,
+                const DEGREE: usize,
+                const MASKED: bool,
+                const VARIOUS: bool,
+                const HALF: bool,
+            >(
                 a: &Chunk,
                 s: &Cells,
             ) {
                 $(#[target_feature(enable = $features)])?
-                unsafe fn inner<T: Term, const DEGREE: usize, const MASKED: bool, const VARIOUS: bool>(
+                unsafe fn inner<
+                    T: Term,
+                    const DEGREE: usize,
+                    const MASKED: bool,
+                    const VARIOUS: bool,
+                    const HALF: bool,
+                >(
                     a: &Chunk,
                     s: &Cells,
                 ) {
                     // SAFETY: the caller's promise.
-                    unsafe { add_up::<$lanes, T, DEGREE, MASKED, VARIOUS>(a, s) }
+                    unsafe {
+                        match HALF {
+                            true => add_up::<$half, T, DEGREE, MASKED, VARIOUS, true>(a, s),
+                            false => add_up::<$lanes, T, DEGREE, MASKED, VARIOUS, false>(a, s),
+                        }
+                    }
                 }
                 // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<T, DEGREE, MASKED, VARIOUS>(a, s) }
+                unsafe { inner::<T, DEGREE, MASKED, VARIOUS, HALF>(a, s) }
             }
             unsafe fn state_sums<W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -> [[f64; CELLS]; SUMS] {
                 $(#[target_feature(enable = $features)])?
@@ -98,11 +131,11 @@ macro_rules! compiled_for {
     };
 }
 
-compiled_for!(Plain, Portable);
+compiled_for!(Plain, Portable, Portable);
 #[cfg(target_arch = "x86_64")]
-compiled_for!(Wide, super::super::lanes::Avx2, "avx2,fma");
+compiled_for!(Wide, Avx2, Avx2, "avx2,fma");
 #[cfg(target_arch = "x86_64")]
-compiled_for!(Widest, super::super::lanes512::Avx512, "avx512f,avx512dq,avx512vl,avx2,fma");
+compiled_for!(Widest, super::super::lanes512::Avx512, Avx2, "avx512f,avx512dq,avx512vl,avx2,fma");
 
 /// Adds forces with the kernel for a degree and the other choices.
 ///
@@ -116,19 +149,27 @@ pub unsafe fn run<K: StateKernels, W: BondLaw>(
     masked: bool,
     track: bool,
 ) -> (f64, f64) {
+    macro_rules! pull {
+        ($($choice:tt)*) => { K::pull::<W, $($choice)*>(a, s) };
+    }
     // SAFETY: the caller's promise.
     unsafe {
         if a.various.is_some() {
-            return K::pull::<W, CLOSED, true, true, true>(a, s);
+            return pull!(CLOSED, true, true, true, false);
         }
-        match (degree, masked, track) {
-            (3, false, false) => K::pull::<W, 3, false, false, false>(a, s),
-            (3, false, true) => K::pull::<W, 3, false, true, false>(a, s),
-            (3, true, false) => K::pull::<W, 3, true, false, false>(a, s),
-            (3, true, true) => K::pull::<W, 3, true, true, false>(a, s),
-            (5 | 7, false, false) => K::pull::<W, 7, false, false, false>(a, s),
-            (5 | 7, _, _) => K::pull::<W, 7, true, true, false>(a, s),
-            _ => K::pull::<W, CLOSED, true, true, false>(a, s),
+        match (degree, masked, track, s.half) {
+            (3, _, false, true) => pull!(3, true, false, false, true),
+            (5, _, false, true) => pull!(5, true, false, false, true),
+            (7, _, false, true) => pull!(7, true, false, false, true),
+            (3, false, false, _) => pull!(3, false, false, false, false),
+            (3, true, false, _) => pull!(3, true, false, false, false),
+            (3, _, true, _) => pull!(3, true, true, false, false),
+            (5, false, false, _) => pull!(5, false, false, false, false),
+            (5, true, false, _) => pull!(5, true, false, false, false),
+            (7, false, false, _) => pull!(7, false, false, false, false),
+            (7, true, false, _) => pull!(7, true, false, false, false),
+            (5 | 7, _, true, _) => pull!(7, true, true, false, false),
+            _ => pull!(CLOSED, true, true, false, false),
         }
     }
 }
@@ -139,17 +180,25 @@ pub unsafe fn run<K: StateKernels, W: BondLaw>(
 /// As for [`add_up`].
 #[inline]
 pub unsafe fn run_term<K: StateKernels, T: Term>(a: &Chunk, s: &Cells, degree: usize, masked: bool) {
+    macro_rules! add_up {
+        ($($choice:tt)*) => { K::add_up::<T, $($choice)*>(a, s) };
+    }
     // SAFETY: the caller's promise.
     unsafe {
         if a.various.is_some() {
-            return K::add_up::<T, CLOSED, true, true>(a, s);
+            return add_up!(CLOSED, true, true, false);
         }
-        match (degree, masked) {
-            (3, false) => K::add_up::<T, 3, false, false>(a, s),
-            (3, true) => K::add_up::<T, 3, true, false>(a, s),
-            (5 | 7, false) => K::add_up::<T, 7, false, false>(a, s),
-            (5 | 7, true) => K::add_up::<T, 7, true, false>(a, s),
-            _ => K::add_up::<T, CLOSED, true, false>(a, s),
+        match (degree, masked, s.half) {
+            (3, _, true) => add_up!(3, true, false, true),
+            (5, _, true) => add_up!(5, true, false, true),
+            (7, _, true) => add_up!(7, true, false, true),
+            (3, false, _) => add_up!(3, false, false, false),
+            (3, true, _) => add_up!(3, true, false, false),
+            (5, false, _) => add_up!(5, false, false, false),
+            (5, true, _) => add_up!(5, true, false, false),
+            (7, false, _) => add_up!(7, false, false, false),
+            (7, true, _) => add_up!(7, true, false, false),
+            _ => add_up!(CLOSED, true, false, false),
         }
     }
 }

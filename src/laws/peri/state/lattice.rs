@@ -45,6 +45,7 @@ impl States<'_> {
             last: [0, 1, 2].map(|k| unsafe { body.u[0].as_ptr().add(k * body.stride + PAD + chunk * LANES) }),
             moment: &self.moment,
             keep: self.keep,
+            half: body.leads.half.get(chunk).copied().unwrap_or(false),
         }
     }
 
@@ -128,7 +129,7 @@ fn add_up<K: StateKernels, T: Term>(sweep: &Sweep, slab: usize, window: &mut Win
         if row.len == 0 {
             continue;
         }
-        let plan = sweep.plan(slot, &mut window.meets, &mut window.to);
+        let plan = sweep.plan(slot);
         for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
             let lo = row.lo + (chunk * LANES) as i32 - row.start as i32;
             let rest = lo > plan.active.1 || lo + (LANES as i32) <= plan.active.0;
@@ -137,7 +138,8 @@ fn add_up<K: StateKernels, T: Term>(sweep: &Sweep, slab: usize, window: &mut Win
             }
             touched = true;
             let degree = sweep.degree(chunk, &plan);
-            let mut data = sweep.chunk(chunk * LANES, body.stencil.len(), window, (base, stride, first));
+            let mut data =
+                sweep.chunk((slot, chunk * LANES), body.stencil.len(), window, (base, stride, first));
             data.tables = &body.state.tables;
             let Some(states) = sweep.states() else { continue };
             let cells = states.cells(body, chunk);

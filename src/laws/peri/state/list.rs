@@ -36,7 +36,7 @@ pub fn body(
     let (tension_of, flagged_of) = (Shared::new(&mut tension), Shared::new(&mut flagged));
     let memory_of = Shared::new(&mut memory);
     let particle = std::mem::take(&mut list.particle);
-    let sites = Sites { count: n, pad: 0, stride: n, particle: &particle, kind: view.kind };
+    let sites = Sites { count: n, pad: 0, stride: n, particle: &particle, kind: view.kind, only: None };
     let now = Moment { held: list.state.held, ..settling.moment };
     let sweep = |list: &ListBody, task: &(dyn Fn(&Sweep, usize) + Sync)| {
         let sweep = Sweep {

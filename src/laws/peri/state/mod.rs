@@ -130,7 +130,8 @@ fn lattice_body<K: Kernels + kernels::StateKernels>(
     };
     let spread = States { spread: true, ..states };
     let count = particle.len();
-    let sites = Sites { count, pad: PAD, stride: body.stride, particle: &particle, kind: view.kind };
+    let only = if let [only] = body.kinds[..] { Some(only) } else { None };
+    let sites = Sites { count, pad: PAD, stride: body.stride, particle: &particle, kind: view.kind, only };
     let mut add_up = |body: &mut LatticeBody, sum, states| {
         let mut sums = std::mem::take(&mut body.state.sums);
         sums.clear();

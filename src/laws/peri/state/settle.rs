@@ -53,6 +53,8 @@ pub struct Sites<'a> {
     pub particle: &'a [u32],
     /// Types of particles.
     pub kind: &'a [u16],
+    /// The type of all of them, if they have but one.
+    pub only: Option<u16>,
 }
 
 impl Settling<'_> {
@@ -86,6 +88,9 @@ impl Settling<'_> {
     pub fn dilatations(&self, state: &mut SiteState, sites: &Sites) {
         let stiffness = self.stiffness();
         let kind = self.law.kind;
+        if let (LawKind::Lps, Some(only)) = (kind, sites.only) {
+            return elastic(&stiffness[usize::from(only) - 1], state, sites);
+        }
         let SiteState { weighted, theta, before, unrelaxed, columns, sums, .. } = state;
         let (theta, columns) = (Shared::new(theta), Shared::new(columns));
         let (before, unrelaxed) = (Shared::new(before), Shared::new(unrelaxed));
@@ -190,6 +195,28 @@ impl Settling<'_> {
             }
         });
     }
+}
+
+/// [`Settling::dilatations`] of a linear elastic body of one material: nothing but arithmetic for each site.
+fn elastic(own: &Stiffness, state: &mut SiteState, sites: &Sites) {
+    let SiteState { weighted, theta, columns, sums, .. } = state;
+    let (theta, columns) = (Shared::new(theta), Shared::new(columns));
+    let pressure = own.bulk - own.shear / 3.0;
+    par::for_chunks(sites.count, |range| {
+        let (lo, hi) = (sites.pad + range.start, sites.pad + range.end);
+        // SAFETY: each site is one task's.
+        let (theta, first, second) = unsafe {
+            let second = columns.get(sites.stride + lo..sites.stride + hi);
+            (theta.get(lo..hi), columns.get(lo..hi), second)
+        };
+        let known = sites.particle[range].iter().zip(&weighted[lo..hi]).zip(&sums[lo..hi]);
+        let columns = theta.iter_mut().zip(first).zip(second);
+        for (((p, m), sum), ((theta, first), second)) in known.zip(columns) {
+            let by_m = if *p != u32::MAX && *m > 0.0 { 1.0 / m } else { 0.0 };
+            let angle = 3.0 * by_m * sum;
+            (*theta, *first, *second) = (angle, pressure * angle * by_m, own.shear * by_m);
+        }
+    });
 }
 
 /// Columns that a law uses.

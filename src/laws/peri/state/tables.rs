@@ -2,7 +2,7 @@
 
 use super::super::chunk::constant;
 use super::super::pmb::SERIES;
-use super::chunk::{FROM_TERM, OMEGA};
+use super::chunk::{FROM_TERM, OMEGA, TWICE_XI};
 use super::list::Weighing;
 use crate::world::families::lattice::{CONSTANTS, LANES, LatticeBody, PAD};
 use crate::world::families::law::SiteState;
@@ -56,6 +56,7 @@ pub fn fill(body: &mut LatticeBody, table: &PmbTable, options: &FamilyOptions, l
             let term = share * square * volume;
             series(&mut row, &STRETCH, term, term);
             row[FROM_TERM] = if term == 0.0 { 0.0 } else { 1.0 / term };
+            row[TWICE_XI..TWICE_XI + 3].copy_from_slice(&xi.map(|x| 2.0 * x));
             body.state.tables.extend_from_slice(&row);
         }
     }

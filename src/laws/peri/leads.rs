@@ -1,0 +1,97 @@
+//! Where the bonds of a lattice's rows lead: found once, looked up in every step.
+
+use crate::world::families::lattice::{CONSTANTS, LANES, LatticeBody, Leads, MIXED};
+
+/// The row slot that bonds with a row step lead to.
+pub(super) fn ahead(body: &LatticeBody, slot: usize, (across, up): (i32, usize)) -> usize {
+    (slot + up * body.width).wrapping_add_signed(across as isize)
+}
+
+/// The row slot that bonds with a row step lead to, and the pair of local types if both rows have one each.
+fn meet(body: &LatticeBody, slot: usize, step: (i32, usize)) -> (usize, Option<usize>) {
+    let other = ahead(body, slot, step);
+    let (a, b) = (body.rows[slot].kind, body.rows[other].kind);
+    let uniform = a != MIXED && b != MIXED;
+    (other, uniform.then(|| usize::from(a) * body.kinds.len() + usize::from(b)))
+}
+
+/// The smallest s00 and the largest alpha of a row's bonds.
+pub(super) fn row_limit(body: &LatticeBody, slot: usize) -> (f64, f64) {
+    if let [[_, s00, alpha]] = body.pairs[..] {
+        return (s00, alpha.max(0.0));
+    }
+    let mut limit = (f64::INFINITY, 0.0f64);
+    for &step in &body.steps {
+        let pair = meet(body, slot, step).1;
+        let known = pair.map_or(&body.pairs[..], |pair| &body.pairs[pair..=pair]);
+        for [_, s00, alpha] in known {
+            limit = (limit.0.min(*s00), limit.1.max(*alpha));
+        }
+    }
+    limit
+}
+
+/// Finds for each stencil vector how many cells further it leads from a row's cells, and the place of its
+/// constants; `meets` is scratch.
+pub(super) fn partners(
+    body: &LatticeBody,
+    slot: usize,
+    meets: &mut Vec<(i32, u32)>,
+    to: &mut Vec<(i32, u32)>,
+) {
+    meets.clear();
+    partners_beside(body, slot, meets, to);
+}
+
+/// Finds where the bonds of all rows lead, if that has not been found yet.
+pub(super) fn find_leads(body: &mut LatticeBody) {
+    if body.leads.of_row.len() == body.rows.len() {
+        return;
+    }
+    let (mut leads, mut meets, mut to) = (Leads::default(), vec![], vec![]);
+    leads.of_row.resize(body.rows.len(), 0);
+    let mut begin = 0;
+    for slot in (0..body.rows.len()).filter(|&slot| body.rows[slot].len > 0) {
+        partners_beside(body, slot, &mut meets, &mut to);
+        if leads.to.get(begin..) != Some(&to) {
+            begin = leads.to.len();
+            leads.to.extend_from_slice(&to);
+        }
+        leads.of_row[slot] = begin as u32;
+    }
+    let vacant = |cells: &[u32]| cells[LANES / 2..].iter().all(|&p| p == u32::MAX);
+    leads.half = body.particle.chunks(LANES).map(vacant).collect();
+    body.leads = leads;
+    body.growth.resize(body.rows.len(), 0.0);
+}
+
+/// [`partners`] after another row of this body, or with no `meets`: where rows beside each other meet theirs alike, nothing
+/// has to be found anew.
+fn partners_beside(body: &LatticeBody, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) {
+    let known = meets.len() == body.steps.len();
+    meets.resize(body.steps.len(), (0, 0));
+    let row = &body.rows[slot];
+    let various = !body.cell_kind.is_empty();
+    let mut same = known;
+    for (meets, &step) in meets.iter_mut().zip(&body.steps) {
+        let (other, uniform) = meet(body, slot, step);
+        let other = &body.rows[other];
+        if other.len == 0 {
+            // No bond leads there.
+            continue;
+        }
+        let offset = other.start as i32 - row.start as i32 + row.lo - other.lo;
+        let table = if various { 0 } else { uniform.unwrap_or(0) * body.stencil.len() };
+        let new = (offset, (table * CONSTANTS) as u32);
+        same &= *meets == new;
+        *meets = new;
+    }
+    if same {
+        return;
+    }
+    to.clear();
+    for (e, (vector, &step)) in body.stencil.iter().zip(&body.step_of).enumerate() {
+        let (offset, table) = meets[usize::from(step)];
+        to.push((offset + vector[0], table + (e * CONSTANTS) as u32));
+    }
+}
