@@ -205,7 +205,16 @@ impl Thermo {
                     self.new_temperature = Some(r);
                 }
                 "press" => {
-                    self.press = existing(args, cx, "pressure")?.name;
+                    let r = existing(args, cx, "pressure")?;
+                    if cx.names.compute_style(&r.name).is_some_and(|style| style != "pressure") {
+                        let d = Diagnostic::error(
+                            Code::WRONG_KIND,
+                            r.span,
+                            format!("compute `{}` is no pressure", r.name),
+                        );
+                        return Err(d.help("name a `compute ID all pressure …`").into());
+                    }
+                    self.press = r.name;
                     self.new_temperature = None;
                 }
                 _ => return Err(args.unknown(word, &KNOWN)),

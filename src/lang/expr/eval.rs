@@ -97,7 +97,8 @@ impl Expr {
             if stream.is_none() {
                 **stream = Some(seeded(a[2]).map_err(|e| format!("{}(): {e}", f.name))?);
             }
-            Ok(stream.as_mut().map_or(0.0, |s| draw(s, a)))
+            let number = stream.as_mut().map_or(Ok(0.0), |s| draw(s, a));
+            number.map_err(|e| format!("{}(): {e}", f.name))
         };
         if !particles {
             return self.each(step, args, one);

@@ -10,7 +10,7 @@ pub(super) enum Body {
     /// It computes; the error says what is wrong with the numbers.
     Plain(fn(&[f64], &Clock) -> Result<f64, String>),
     /// It draws from a random stream, whose seed is the last number.
-    Draw(fn(&mut Marsaglia, &[f64]) -> f64),
+    Draw(fn(&mut Marsaglia, &[f64]) -> Result<f64, String>),
 }
 
 /// One function.
@@ -68,7 +68,7 @@ const fn plain(
     Function { name, arity, body: Body::Plain(body) }
 }
 
-const fn draw(name: &'static str, body: fn(&mut Marsaglia, &[f64]) -> f64) -> Function {
+const fn draw(name: &'static str, body: fn(&mut Marsaglia, &[f64]) -> Result<f64, String>) -> Function {
     Function { name, arity: 3, body: Body::Draw(body) }
 }
 
@@ -85,8 +85,11 @@ static FUNCTIONS: &[Function] = &[
     plain("acos", 1, |a, _| within(a[0].abs() <= 1.0, ARC, a[0].acos())),
     plain("atan", 1, |a, _| Ok(a[0].atan())),
     plain("atan2", 2, |a, _| Ok(a[0].atan2(a[1]))),
-    draw("random", |r, a| r.uniform() * (a[1] - a[0]) + a[0]),
-    draw("normal", |r, a| a[0] + a[1] * r.gaussian()),
+    draw("random", |r, a| Ok(r.uniform() * (a[1] - a[0]) + a[0])),
+    draw("normal", |r, a| {
+        within(a[1] >= 0.0, "a negative deviation", 0.0)?;
+        Ok(a[0] + a[1] * r.gaussian())
+    }),
     plain("ceil", 1, |a, _| Ok(a[0].ceil())),
     plain("floor", 1, |a, _| Ok(a[0].floor())),
     plain("round", 1, |a, _| Ok(if a[0] - a[0].floor() >= 0.5 { a[0].ceil() } else { a[0].floor() })),

@@ -1,7 +1,7 @@
 //! What several scene commands share: refusals by name, distances in lattice units, choices of axes and seeds.
 
 use super::Act;
-use crate::diag::{Code, Diagnostic, Diagnostics, Result, fail, nearest};
+use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail, nearest};
 use crate::lang::args::blame;
 use crate::lang::{Args, Param, RefKind, ValueRef, Word};
 use crate::math::rng::Marsaglia;
@@ -289,6 +289,24 @@ pub fn on_particles(
     f: impl FnOnce(&mut ActCx) -> Result<()> + 'static,
 ) -> Box<dyn Act> {
     in_group(settles, None, f)
+}
+
+/// Refuses to act on particles of a scene that has none: nothing would happen, and particles made later would not be as the
+/// deck says.
+///
+/// # Errors
+/// Where there are none.
+pub fn populated(w: &World, what: &str, at: Span) -> Result<()> {
+    if w.n() > 0 {
+        return Ok(());
+    }
+    Err(Diagnostic::error(
+        Code::WRONG_ORDER,
+        at,
+        format!("there are no particles yet for `{what}` to act on"),
+    )
+    .help("`create_atoms` or `read_data` must come first")
+    .into())
 }
 
 /// As `on_particles`, for acts that put particles into a group, made if it is not there.

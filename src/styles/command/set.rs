@@ -108,7 +108,11 @@ impl CommandStyle for Set {
             word = a.next();
         }
         let settles = items.iter().filter_map(|i| i.change.settles()).collect();
-        Ok(on_particles(settles, move |cx| change::apply(cx, &choice, &items)))
+        let at = cx.span;
+        Ok(on_particles(settles, move |cx| {
+            common::populated(cx.world, "set", at)?;
+            change::apply(cx, &choice, &items)
+        }))
     }
 }
 
@@ -214,8 +218,20 @@ fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
         custom => match cx.world.columns.custom(custom) {
             Some(column) => {
                 let limit = (custom == TEMPERATURE).then_some(Limit::NotNegative);
+                let (at, known) = (a.here(), a.peek().is_some_and(|w| !w.unknown));
                 let p = value(a, cx, if limit.is_some() { "the temperature" } else { "the value" }, limit)?;
-                Ok(Change::Custom { column, whole: custom.starts_with('i'), value: p })
+                let whole = custom.starts_with('i');
+                if let (true, true, &Param::Number(x)) = (whole, known, &p)
+                    && x.fract() != 0.0
+                {
+                    let d = Diagnostic::error(
+                        Code::BAD_VALUE,
+                        at,
+                        format!("`{custom}` holds whole numbers, not {x}"),
+                    );
+                    return Err(d.help("a property `d_NAME` holds any number").into());
+                }
+                Ok(Change::Custom { column, whole, value: p })
             }
             None => Err(bad_keyword(a, keyword, &KEYWORDS, &ELSEWHERE)),
         },

@@ -84,7 +84,9 @@ impl CommandStyle for Velocity {
         if cx.world.settings.two_dimensional {
             stays_flat(&action, style)?;
         }
+        let at = cx.span;
         Ok(on_particles(vec!["velocity"], move |cx| {
+            common::populated(cx.world, "velocity", at)?;
             apply(cx, group, &action, &options)?;
             cx.world.touch();
             Ok(())

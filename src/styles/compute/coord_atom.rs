@@ -1,6 +1,6 @@
 //! compute coord/atom: how many neighbours each particle has.
 
-use super::near::within;
+use super::near::{one_image, within};
 use super::{Compute, ComputeStyle};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
@@ -23,7 +23,7 @@ impl Style for CoordAtom {
             summary: "Coordination number: neighbours of each particle within a distance.",
             text: "How many particles of group2 (all) are closer than R (distance units); 0 outside the group. Per-atom vector \
                    without types or with one; with several types or ranges such as `2*3` a column for each. Unlike LAMMPS \
-                   it needs no pair style, and R may be longer than the cutoff of forces. The style `orientorder` is refused.",
+                   it needs no pair style, and R may be longer than the cutoff of forces (up to half a periodic length). The style `orientorder` is refused.",
             example: "compute n all coord/atom cutoff 1.5",
         }
     }
@@ -71,7 +71,9 @@ impl Compute for Declared {
         Shape { atom: Some(self.types.len()), ..Shape::default() }
     }
 
-    fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let at = cx.span();
+        one_image(cx.world(), self.cutoff, at)?;
         let me = self.clone();
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "x type mask", move |w, _, out| {
             let p = &w.particles;

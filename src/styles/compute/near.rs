@@ -1,6 +1,6 @@
 //! Pairs of particles within a distance of each other, and clusters of them.
 
-use crate::diag::{Code, Diagnostic, Result};
+use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::math::forest::find;
 use crate::neigh::list::{Pair, Reach, View, Wanted, difference, pairs};
 use crate::world::index::Index;
@@ -10,6 +10,24 @@ use crate::world::{Allowed, Bond, GroupId, World};
 /// exclusions and bonds take away are none.
 pub fn within(w: &World, reach: Reach, keep: &(impl Fn(usize, usize) -> bool + Sync)) -> Vec<Pair> {
     search(w, reach, 0.0, keep)
+}
+
+/// Refuses a distance beyond which a particle would meet several images of another one: pairs are counted once.
+///
+/// # Errors
+/// The distance is longer than half of a periodic length.
+pub fn one_image(w: &World, cutoff: f64, at: Span) -> Result<()> {
+    let shortest = w.periods().into_iter().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+    if cutoff <= 0.5 * shortest {
+        return Ok(());
+    }
+    let text = format!(
+        "the cutoff {cutoff} is longer than half the periodic box, {}: several images of a particle would count as one",
+        0.5 * shortest
+    );
+    Err(Diagnostic::error(Code::BAD_VALUE, at, text)
+        .help("take a shorter cutoff, or `replicate` the scene")
+        .into())
 }
 
 fn search(w: &World, reach: Reach, skin: f64, keep: &(impl Fn(usize, usize) -> bool + Sync)) -> Vec<Pair> {

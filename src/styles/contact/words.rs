@@ -233,9 +233,6 @@ fn check_powder(normal: &Word, c: &Coeff) -> Result<()> {
         (Normal::Mdr { .. }, true) if c.average != Average::None || c.curvature != Curvature::Both => {
             "the normal model mdr knows no `average` and no `curvature`"
         }
-        (Normal::Mdr { .. }, true) if c.model.heat != Heat::None => {
-            "the normal model mdr conducts no heat in perigrain"
-        }
         (Normal::Mdr { .. }, true) | (_, false) => return Ok(()),
         (_, true) => "damping mdr goes with the normal model mdr alone",
     };

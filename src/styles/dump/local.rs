@@ -69,12 +69,14 @@ impl DumpStyle for Local {
                 names.push(word.text.clone());
             }
         }
-        if columns.is_empty() {
-            args.expect("a local value such as index or c_ID")?;
+        if !columns.iter().any(|c| matches!(c, Column::Value(_))) {
+            if columns.is_empty() {
+                args.expect("a local value such as index or c_ID")?;
+            }
             return fail(
                 Code::MISSING_ARGUMENT,
                 args.here(),
-                "dump local needs a value such as index or c_ID",
+                "dump local needs a local value of a compute or fix: c_ID, c_ID[k], f_ID or f_ID[k]",
             );
         }
         Ok(Box::new(Declared {

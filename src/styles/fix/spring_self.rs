@@ -1,7 +1,7 @@
 //! fix spring/self: every particle on a spring to where it was.
 
 use super::{Fix, FixStyle, Minimizing};
-use crate::diag::Result;
+use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Param};
 use crate::plan::{Access, Op, Stage, When};
 use crate::styles::command::common::variable_param;
@@ -32,7 +32,14 @@ impl Style for SpringSelf {
 
 impl FixStyle for SpringSelf {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let at = args.here();
         let stiffness = variable_param(args, "the stiffness K")?;
+        if let Param::Number(k) = stiffness
+            && k <= 0.0
+        {
+            let text = format!("the stiffness K must be greater than zero, not {k}");
+            return fail(Code::BAD_VALUE, at, text);
+        }
         cx.param(&stiffness, true)?;
         let along = match args.is_empty() {
             true => "xyz",

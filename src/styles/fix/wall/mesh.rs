@@ -6,7 +6,6 @@ use super::words::{self, KEYWORDS};
 use super::{Common, Declared, Form, Surface, needs_spheres};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Word};
-use crate::laws::contact::Normal;
 use crate::laws::contact::mesh::Mesh;
 use crate::laws::contact::walls::{Wall, WallSweep};
 use crate::math::vec3::{cross, dot, length, scale, sub};
@@ -62,15 +61,7 @@ const OWN: [&str; 3] = ["scale", "shift", "move"];
 impl FixStyle for WallMesh {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         needs_spheres(cx, "wall/mesh")?;
-        let at = args.here();
         let material = words::force(args, cx, &["mesh"])?;
-        if matches!(material.model.normal, Normal::Mdr { .. }) {
-            return fail(
-                Code::NOT_SUPPORTED,
-                at,
-                "fix wall/mesh knows no plastic grains (mdr): fix wall/gran/region does",
-            );
-        }
         let mut common = words::common(cx, material);
         let word = args.expect("the word `mesh`")?;
         if word.text != "mesh" {

@@ -1,14 +1,16 @@
 //! The op of plastic grains (normal model `mdr`): growth, contacts on both sides, forces and torques.
 
 use super::super::shared::{add_virial, built_at, find_frozen, near};
-use super::force::grains;
+use super::force::{conducts, grains};
 use super::reach::reaching;
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::laws::contact::driver::{Grains, Rules, Sweep};
 use crate::laws::contact::powder::{Manner, Material, Meetings, PAIR, TOLD, begin, undo};
 use crate::laws::contact::{Advance, Granular};
+use crate::math::vec3::Vec3;
 use crate::neigh::list::{Pair, Wanted, difference};
 use crate::plan::{Access, Op, Stage, Tick};
+use crate::world::columns::{HEATFLOW, TEMPERATURE};
 use crate::world::contacts::{Contacts, PLASTIC};
 use crate::world::{Allowed, World};
 
@@ -69,6 +71,18 @@ impl Powder {
         let rows = before.history.chunks_exact_mut(width).zip(after.history.chunks_exact(width));
         rows.for_each(|(old, new)| old[width - TOLD..].copy_from_slice(&new[width - TOLD..]));
         before
+    }
+
+    /// Adds the heat that flows through the contacts.
+    fn conduct(&self, w: &mut World, period: Vec3) -> Result<()> {
+        let names = [TEMPERATURE, HEATFLOW].map(|name| w.columns.custom(name));
+        let (true, [Some(temperature), Some(heat)]) = (conducts(&self.rules), names) else { return Ok(()) };
+        let n = w.n();
+        let mut flow = std::mem::take(w.columns.scalar(&heat, n));
+        let temperature = w.columns.scalar(&temperature, n).clone();
+        self.sweep.conduct(&grains(w, period, &[], &self.frozen)?, &self.rules, &temperature, &mut flow);
+        *w.columns.scalar(&heat, n) = flow;
+        Ok(())
     }
 
     fn check(&self, w: &World, t: &Tick) -> Result<()> {
@@ -136,6 +150,7 @@ impl Op for Powder {
         self.sweep.act(&grains, &self.rules, &mut memory, step);
         drop(masses);
         self.check(w, t)?;
+        self.conduct(w, period)?;
         self.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
         if t.virial {
             let part = self.sweep.virial(&w.particles.x, &period);
