@@ -43,9 +43,10 @@ impl Op for Reneighbor {
         if t.setup {
             w.rebuild.builds = 0;
             w.rebuild.dangerous = 0;
-            w.rebuild.due = false;
+            (w.rebuild.due, w.rebuild.freed) = (false, false);
             return rebuild(w, t, self);
         }
+        w.rebuild.generation += u64::from(std::mem::take(&mut w.rebuild.freed));
         if std::mem::take(&mut w.rebuild.due) {
             w.rebuild.builds += 1;
             return rebuild(w, t, self);

@@ -5,7 +5,8 @@ use super::travel::{Seen, Travel};
 /// The state behind LAMMPS' reneighbouring rule.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Rebuild {
-    /// Counts rebuilds since the program began; lists compare it with the one they were made at.
+    /// Counts rebuilds since the program began, and what else lists are made anew for (growing radii, broken bonds); they compare
+    /// it with the one they were made at.
     pub generation: u64,
     /// Step of the last rebuild.
     pub step: i64,
@@ -28,6 +29,9 @@ pub struct Rebuild {
     pub lost: u64,
     /// Particles have come or gone in this step: everything is rebuilt.
     pub due: bool,
+    /// Pairs have lost in this step what kept them from touching: in the next one lists are made anew, from the positions held.
+    #[serde(skip)]
+    pub freed: bool,
     /// Counts how often particles have come or gone since the program began.
     pub roster: u64,
     /// How far particles may have gone in this run.

@@ -282,14 +282,26 @@ pub unsafe fn sums<L: Lanes>(a: &Chunk) -> [[f64; CELLS]; SUMS] {
                 let pull = share.mul(L::splat(-*c.add(constant::FACTOR)));
                 sum = with_virial(sum, energy, pull, &b.y);
             }
-            let mut k = 0;
-            while k < SUMS {
-                sum[k].store(out[k].as_mut_ptr().add(here));
-                k += 1;
-            }
+            put_sums(&sum, &mut out, here);
             v += 1;
         }
         out
+    }
+}
+
+/// Puts sums to the cells from `here` on.
+///
+/// # Safety
+/// There must be cells for all lanes; the processor must have what the lanes need.
+#[inline(always)]
+pub unsafe fn put_sums<L: Lanes>(sum: &[L; SUMS], out: &mut [[f64; CELLS]; SUMS], here: usize) {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let mut k = 0;
+        while k < SUMS {
+            sum[k].store(out[k].as_mut_ptr().add(here));
+            k += 1;
+        }
     }
 }
 

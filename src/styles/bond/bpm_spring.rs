@@ -187,4 +187,6 @@ fn take_away(w: &mut World, broken: &[usize]) {
         broken.binary_search(&(at - 1)).is_err()
     });
     w.bonds.special.retain(|p| !pairs.contains(p));
+    // Lists of contacts leave bonded pairs out.
+    w.rebuild.freed = true;
 }

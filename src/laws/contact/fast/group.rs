@@ -2,7 +2,7 @@
 
 use super::MOST_MEMORY;
 use super::lists::{Short, Slab};
-use super::near::{HERE_BITS, grain};
+use super::near::grain;
 use super::sweep::Cx;
 use crate::laws::contact::driver::DEEP;
 use crate::laws::contact::{ContactLaw, Geometry, Motion, Wrench};
@@ -248,9 +248,7 @@ fn beside_frozen<R: Real>(mi: R, mj: R) -> R {
 /// A single contact in plain numbers.
 pub(super) unsafe fn one<L: ContactLaw, const W: usize>(cx: &Cx<L>, law: &L, slab: &mut Slab, k: usize) {
     let (i, w) = (slab.short.i[k] as usize, slab.short.w[k]);
-    let (j, s) = (grain(w), cx.shifts[(w >> HERE_BITS) as usize]);
-    let (a, b) = (cx.x[i], cx.x[j]);
-    let d = [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])];
+    let (j, d) = (grain(w), cx.places().between(i, w));
     let (mi, mj) = (cx.mass[i], cx.mass[j]);
     let mass = if cx.frozen { beside_frozen(mi, mj) } else { reduced(mi, mj) };
     let g = geometry(d, [cx.radius[i], cx.radius[j]], mass);

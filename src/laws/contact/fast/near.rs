@@ -197,6 +197,13 @@ impl Places<'_> {
         }
     }
 
+    /// x_i − x_j of one pair [length], with the bits of [`Places::apart`].
+    #[inline(always)]
+    pub fn between(&self, i: usize, w: u32) -> Vec3 {
+        let (a, b, s) = (self.x[i], self.x[grain(w)], self.shifts[(w >> HERE_BITS) as usize]);
+        [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])]
+    }
+
     /// x_i − x_j.
     #[inline(always)]
     pub unsafe fn apart<F: Four>(&self, i: u32, w: u32) -> F {

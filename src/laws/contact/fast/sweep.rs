@@ -2,7 +2,7 @@
 
 use super::group::{Group, one};
 use super::lists::{Short, Slab};
-use super::near::{self, HERE_BITS, Places, grain};
+use super::near::{self, Places, grain};
 use super::{Fast, Laws, NONE, has_avx2};
 use crate::laws::contact::driver::Grains;
 use crate::laws::contact::{Advance, ContactLaw, Loop};
@@ -86,9 +86,7 @@ impl<L: ContactLaw> Cx<'_, L> {
 
     fn holds<const W: usize>(&self, short: &Short, k: usize) -> bool {
         let (i, w) = (short.i[k] as usize, short.w[k]);
-        let (j, s) = (grain(w), self.shifts[(w >> HERE_BITS) as usize]);
-        let (a, b) = (self.x[i], self.x[j]);
-        let d = [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])];
+        let (j, d) = (grain(w), self.places().between(i, w));
         let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
         let (ri, rj) = (self.radius[i], self.radius[j]);
         let sum = ri + rj;

@@ -1,7 +1,7 @@
 //! Heat through the contacts of the fast loop.
 
 use super::lists::Short;
-use super::near::{HERE_BITS, grain, near};
+use super::near::{Places, grain, near};
 use super::{Fast, NONE};
 use crate::laws::contact::driver::Grains;
 use crate::laws::contact::{ContactLaw, Geometry};
@@ -9,7 +9,10 @@ use crate::par;
 
 impl<L: ContactLaw> Fast<L> {
     /// Adds the heat that flows through the contacts of the last evaluation to `flow` [energy/time], from the temperatures of
-    /// all grains.
+    /// all grains, in the order of `grains`.
+    ///
+    /// # Panics
+    /// If there is not a number for each grain.
     pub fn conduct(&self, grains: &Grains, temperature: &[f64], flow: &mut [f64]) {
         assert!(
             temperature.len() == grains.x.len() && flow.len() == grains.x.len(),
@@ -37,9 +40,8 @@ impl<L: ContactLaw> Fast<L> {
     /// That of pair `k` of a short list, if its grains touch, or stick together, and conduct.
     fn conductance(&self, grains: &Grains, short: &Short, k: usize) -> Option<f64> {
         let (i, w) = (short.i[k] as usize, short.w[k]);
-        let (j, s) = (grain(w), self.shifts[(w >> HERE_BITS) as usize]);
-        let (a, b) = (grains.x[i], grains.x[j]);
-        let d = [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])];
+        let at = Places { x: grains.x, radius: grains.radius, shifts: &self.shifts };
+        let (j, d) = (grain(w), at.between(i, w));
         let which = self.laws.which(grains.kind[i], grains.kind[j]);
         let law = self.laws.distinct.get(usize::from(which)).filter(|_| which != NONE)?;
         let radii = [grains.radius[i], grains.radius[j]];

@@ -9,7 +9,7 @@ mod viscous;
 
 use super::super::lanes::Lanes;
 use crate::world::families::law::{COLUMNS, Held};
-pub use viscous::{Viscous, ViscousApart, ViscousLammps};
+pub use viscous::{Viscous, ViscousApart};
 
 /// A bond's stretch s in the forms that laws need.
 #[derive(Clone, Copy)]
@@ -52,7 +52,7 @@ impl Moment {
 /// is enough for it.
 macro_rules! of_law {
     ($kind:expr, $compat:expr, $moment:expr, $W:ident => $e:expr) => {{
-        use crate::laws::peri::state::law::{Viscous, ViscousLammps, of_law};
+        use crate::laws::peri::state::law::{Viscous, of_law};
         use crate::world::families::LawKind;
         match ($kind, $compat) {
             (LawKind::Ves, false) if $moment.steady() => {
@@ -60,7 +60,7 @@ macro_rules! of_law {
                 $e
             }
             (LawKind::Ves, true) if $moment.steady() => {
-                type $W = ViscousLammps<false>;
+                type $W = Viscous<false, true>;
                 $e
             }
             (kind, compat) => of_law!(kind, compat, $W => $e),
@@ -70,24 +70,21 @@ macro_rules! of_law {
         use crate::laws::peri::state::law;
         use crate::world::families::LawKind;
         macro_rules! with {
-            ($law:ident) => {{
-                type $W = law::$law;
+            ($law:ty) => {{
+                type $W = $law;
                 $e
             }};
         }
         match ($kind, $compat) {
-            (LawKind::Pmb | LawKind::Lps | LawKind::Shaped, _) => with!(Elastic),
-            (LawKind::Yield, _) => with!(Yielding),
-            (LawKind::Flat, _) => with!(Flattened),
-            (LawKind::Ves, false) => with!(Viscous),
-            (LawKind::Ves, true) => with!(ViscousLammps),
-            (LawKind::VesApart, false) => with!(ViscousApart),
-            (LawKind::VesApart, true) => {
-                type $W = law::ViscousApart<true>;
-                $e
-            }
-            (LawKind::Eps, false) => with!(Plastic),
-            (LawKind::Eps, true) => with!(PlasticLammps),
+            (LawKind::Pmb | LawKind::Lps | LawKind::Shaped, _) => with!(law::Elastic),
+            (LawKind::Yield, _) => with!(law::Yielding),
+            (LawKind::Flat, _) => with!(law::Flattened),
+            (LawKind::Ves, false) => with!(law::Viscous),
+            (LawKind::Ves, true) => with!(law::Viscous<true, true>),
+            (LawKind::VesApart, false) => with!(law::ViscousApart),
+            (LawKind::VesApart, true) => with!(law::ViscousApart<true>),
+            (LawKind::Eps, false) => with!(law::Plastic),
+            (LawKind::Eps, true) => with!(law::PlasticLammps),
         }
     }};
 }

@@ -25,21 +25,13 @@ pub struct Force {
     name: String,
     /// Whether fix freeze holds a particle; empty without one.
     frozen: Vec<bool>,
-    /// What the lists were made for.
-    made: Option<Made>,
+    /// The rebuild the lists were made at.
+    generation: Option<u64>,
     plain: Plain,
     /// The fast loop, where it knows all the rules.
     fast: Option<Fast<Granular>>,
     /// Whether the fast loop has the contacts now.
     is_fast: bool,
-}
-
-/// The rebuild that lists were made at, and the changes of bonds seen then: ends of a bond do not touch.
-pub type Made = (u64, u64);
-
-/// What lists made now are made for.
-pub fn made_now(w: &World) -> Made {
-    (w.rebuild.generation, w.bonds.changes)
 }
 
 /// The plain loop: knows every rule.
@@ -58,7 +50,7 @@ impl Force {
         let fast = laws(&rules, &wanted, types).map(Fast::new);
         let (name, plain) = (format!("pair {style}"), Plain::default());
         let frozen = vec![];
-        Self { rules, wanted, style, name, frozen, made: None, plain, fast, is_fast: false }
+        Self { rules, wanted, style, name, frozen, generation: None, plain, fast, is_fast: false }
     }
 
     /// Which solid each particle belongs to, where some rule asks.
@@ -72,7 +64,7 @@ impl Force {
 
     /// Lists from the positions of the last rebuild: later positions are within half a skin of those.
     fn renew(&mut self, w: &mut World) -> Result<()> {
-        self.made = Some(made_now(w));
+        self.generation = Some(w.rebuild.generation);
         let period = w.periods();
         let skin = w.settings.neighbor.skin;
         if let Some(fast) = self.fast.as_mut().filter(|fast| suits(w, period, fast)) {
@@ -170,12 +162,12 @@ impl Op for Force {
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         // A run that continues an unchanged scene has no setup; who comes or goes shifts the others.
-        if t.setup || self.made.is_none() || self.plain.roster != Some(w.rebuild.roster) {
+        if t.setup || self.generation.is_none() || self.plain.roster != Some(w.rebuild.roster) {
             self.plain.roster = Some(w.rebuild.roster);
             self.find_bodies(w);
         }
         let stale = self.is_fast && self.fast.as_ref().is_some_and(|f| f.len() != w.n());
-        if stale || self.made != Some(made_now(w)) {
+        if stale || self.generation != Some(w.rebuild.generation) {
             self.renew(w)?;
         }
         let period = w.periods();
@@ -187,7 +179,7 @@ impl Op for Force {
 
     fn finish(&mut self, w: &mut World) -> Result<()> {
         self.hand_over(w);
-        self.made = None;
+        self.generation = None;
         Ok(())
     }
 

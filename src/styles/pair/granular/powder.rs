@@ -1,7 +1,7 @@
 //! The op of plastic grains (normal model `mdr`): growth, contacts on both sides, forces and torques.
 
 use super::super::shared::{add_virial, built_at, find_frozen, near};
-use super::force::{Made, conducts, grains, made_now};
+use super::force::{conducts, grains};
 use super::reach::reaching;
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::laws::contact::driver::{Grains, Rules, Sweep};
@@ -25,7 +25,7 @@ pub struct Powder {
     /// Whether fix freeze holds a particle; empty without one.
     frozen: Vec<bool>,
     /// The rebuild the list was made at.
-    made: Option<Made>,
+    generation: Option<u64>,
     list: Vec<Pair>,
     sweep: Sweep,
     meetings: Meetings,
@@ -49,7 +49,7 @@ impl Powder {
             name: format!("pair {style}"),
             span,
             frozen: vec![],
-            made: None,
+            generation: None,
             list: vec![],
             sweep: Sweep::default(),
             meetings: Meetings::default(),
@@ -59,7 +59,7 @@ impl Powder {
 
     /// The list from the positions of the last rebuild.
     fn renew(&mut self, w: &World) {
-        self.made = Some(made_now(w));
+        self.generation = Some(w.rebuild.generation);
         let wanted = reaching(&self.rules, &self.wanted, w);
         self.list = near(w, built_at(w), &wanted, w.settings.neighbor.skin, &Allowed::new(w));
     }
@@ -114,7 +114,7 @@ impl Op for Powder {
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let mut state = begin(w, (t.step, t.setup), &self.material);
-        if self.made != Some(made_now(w)) {
+        if self.generation != Some(w.rebuild.generation) {
             self.renew(w);
         }
         find_frozen(w, &mut self.frozen);
@@ -170,7 +170,7 @@ impl Op for Powder {
     }
 
     fn finish(&mut self, _w: &mut World) -> Result<()> {
-        self.made = None;
+        self.generation = None;
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! Energies and virials of state-based bonds on the lattice, eight neighbouring cells at a time.
 
-use super::super::super::chunk::{CELLS, CLOSED, Chunk, SUMS, bonds, constant, place, with_virial};
+use super::super::super::chunk::{CELLS, CLOSED, Chunk, SUMS, bonds, constant, place, put_sums, with_virial};
 use super::super::super::lanes::Lanes;
 use super::super::law::{Angles, BondLaw, Ends};
 use super::{Cells, OMEGA, read, recall, stretch};
@@ -88,11 +88,7 @@ pub unsafe fn sums<L: Lanes, W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -
                 let pull = near.add(far).mul(L::splat(-0.5 * *c.add(constant::FACTOR))).keep(lives);
                 sum = with_virial(sum, energy, pull, &b.y);
             }
-            let mut k = 0;
-            while k < SUMS {
-                sum[k].store(out[k].as_mut_ptr().add(here));
-                k += 1;
-            }
+            put_sums(&sum, &mut out, here);
             v += 1;
         }
         out

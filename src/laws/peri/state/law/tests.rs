@@ -93,7 +93,7 @@ fn both_forms_of_viscous_memory_give_the_same_pulls() {
         let (any, lammps) = unsafe {
             (
                 Viscous::<true>::pull(&b, Single(1.0), &ends, &mut looking, &moment).0.0,
-                ViscousLammps::<true>::pull(&b, Single(1.0), &ends, &mut memory.clone(), &moment).0.0,
+                Viscous::<true, true>::pull(&b, Single(1.0), &ends, &mut memory.clone(), &moment).0.0,
             )
         };
         let relaxed = 3.0 * (0.6 * s + 0.4 * d);

@@ -6,8 +6,9 @@ use crate::world::families::law::{COLUMNS, Held};
 
 /// A Maxwell element beside a spring: the element's stretch D is remembered, in the form that [`Held`] tells. Columns:
 /// A = (3Kθ − 5GY)/m with Y = (1 − λ)θ + λ times the unrelaxed dilatation, B = 15G/m. The form that looks `BACK` serves for
-/// any moment, the other for one that is [`Moment::steady`].
-pub struct Viscous<const BACK: bool = true>;
+/// any moment, the other for one that is [`Moment::steady`]. If `LAMMPS` each end takes its own dilatation for that of both, so
+/// that ends pull unequally; columns are then 3Kθ/m, B, Y/3.
+pub struct Viscous<const BACK: bool = true, const LAMMPS: bool = false>;
 
 /// The pull of the effective stretch (1 − λ)s + λD over B, without A; brings what is remembered up to date.
 #[inline(always)]
@@ -59,59 +60,8 @@ unsafe fn relaxed_squares<L: Lanes>(bond: &Stretch<L>, ends: &[Angles<L>; 2], el
     }
 }
 
-/// The same of bonds that remember one D for both ends, in the form that they hold.
-#[inline(always)]
-unsafe fn squares_of_one<L: Lanes>(
-    bond: &Stretch<L>,
-    ends: &[Angles<L>; 2],
-    memory: &[L; 2],
-    moment: &Moment,
-) -> (L, L) {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        let element = element(bond.before, memory[0], &moment.held);
-        relaxed_squares(bond, ends, &[element; 2])
-    }
-}
-
-impl<const BACK: bool> BondLaw for Viscous<BACK> {
-    const COLUMNS: usize = 2;
-    const MEMORY: usize = 1;
-    const BACK: bool = BACK;
-    #[inline(always)]
-    unsafe fn pull<L: Lanes>(
-        bond: &Stretch<L>,
-        _: L,
-        [own, far]: &Ends<L>,
-        memory: &mut [L; 2],
-        moment: &Moment,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let (a, b) = (own[0].add(far[0]), own[1].add(far[1]));
-            let pull = a.fma(bond.inverse, b.mul(relaxed::<L, BACK>(bond, memory, moment)));
-            (pull, pull)
-        }
-    }
-    #[inline(always)]
-    unsafe fn squares<L: Lanes>(
-        bond: &Stretch<L>,
-        _: L,
-        ends: &[Angles<L>; 2],
-        memory: &[L; 2],
-        moment: &Moment,
-    ) -> (L, L) {
-        // SAFETY: passed on to the caller.
-        unsafe { squares_of_one(bond, ends, memory, moment) }
-    }
-}
-
-/// The same with LAMMPS' forces: each end takes its own dilatation for that of both, so that ends pull unequally.
-/// Columns: 3Kθ/m, B, Y/3.
-pub struct ViscousLammps<const BACK: bool = true>;
-
-impl<const BACK: bool> BondLaw for ViscousLammps<BACK> {
-    const COLUMNS: usize = 3;
+impl<const BACK: bool, const LAMMPS: bool> BondLaw for Viscous<BACK, LAMMPS> {
+    const COLUMNS: usize = if LAMMPS { 3 } else { 2 };
     const MEMORY: usize = 1;
     const BACK: bool = BACK;
     #[inline(always)]
@@ -126,8 +76,12 @@ impl<const BACK: bool> BondLaw for ViscousLammps<BACK> {
         unsafe {
             let (a, b) = (own[0].add(far[0]), own[1].add(far[1]));
             let pull = b.mul(relaxed::<L, BACK>(bond, memory, moment));
-            let (near, far) = (b.fnma(own[2], a), b.fnma(far[2], a));
-            (near.fma(bond.inverse, pull), far.fma(bond.inverse, pull))
+            if LAMMPS {
+                let (near, far) = (b.fnma(own[2], a), b.fnma(far[2], a));
+                return (near.fma(bond.inverse, pull), far.fma(bond.inverse, pull));
+            }
+            let pull = a.fma(bond.inverse, pull);
+            (pull, pull)
         }
     }
     #[inline(always)]
@@ -139,7 +93,10 @@ impl<const BACK: bool> BondLaw for ViscousLammps<BACK> {
         moment: &Moment,
     ) -> (L, L) {
         // SAFETY: passed on to the caller.
-        unsafe { squares_of_one(bond, ends, memory, moment) }
+        unsafe {
+            let element = element(bond.before, memory[0], &moment.held);
+            relaxed_squares(bond, ends, &[element; 2])
+        }
     }
 }
 
