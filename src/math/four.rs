@@ -2,6 +2,7 @@
 
 use super::pair::Pair;
 use super::real::Real;
+use super::vec3::Vec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Four lanes that a formula is evaluated on at once, and the moves between rows in memory and lanes.
@@ -27,8 +28,8 @@ pub trait Four: Real {
     unsafe fn load3(p: *const f64) -> Self;
     /// Two numbers.
     type Two: Pair;
-    /// Lanes `k` of both, by `k`.
-    fn pairs_of(x: Self, y: Self) -> [Self::Two; 4];
+    /// See [`Lanes::pairs`].
+    fn pairs_of(x: Self, y: Self) -> [Self; 2];
     /// The same number four times.
     ///
     /// # Safety
@@ -38,8 +39,6 @@ pub trait Four: Real {
     fn transpose(rows: [Self; 4]) -> [Self; 4];
     /// Lane `k` of a mask as bit `k`.
     fn bits(mask: Self::Mask) -> u32;
-    /// Asks for the memory at `p` ahead of its use.
-    fn prefetch<T>(p: *const T);
 }
 
 /// Four lanes as an array.
@@ -55,8 +54,8 @@ impl Plain {
 
 /// The eight operators of a number, each from one expression of two values in lanes.
 macro_rules! operators {
-    ($lanes:ty, $a:ident $b:ident: $($trait:ident $method:ident $e:expr;)*) => {$(
-        impl $trait for $lanes {
+    (@ [$($of:tt)*] $lanes:ty, $a:ident $b:ident: $trait:ident $method:ident $e:expr) => {
+        impl<$($of)*> $trait for $lanes {
             type Output = Self;
             #[inline(always)]
             fn $method(self, $b: Self) -> Self {
@@ -64,7 +63,7 @@ macro_rules! operators {
                 $e
             }
         }
-        impl $trait<f64> for $lanes {
+        impl<$($of)*> $trait<f64> for $lanes {
             type Output = Self;
             #[inline(always)]
             fn $method(self, $b: f64) -> Self {
@@ -72,7 +71,13 @@ macro_rules! operators {
                 $e
             }
         }
-    )*};
+    };
+    ([$($of:tt)*] $lanes:ty, $a:ident $b:ident: $add:expr, $sub:expr, $mul:expr, $div:expr) => {
+        operators! { @ [$($of)*] $lanes, $a $b: Add add $add }
+        operators! { @ [$($of)*] $lanes, $a $b: Sub sub $sub }
+        operators! { @ [$($of)*] $lanes, $a $b: Mul mul $mul }
+        operators! { @ [$($of)*] $lanes, $a $b: Div div $div }
+    };
 }
 
 pub(super) use operators;
@@ -87,8 +92,8 @@ pub trait Lanes<const N: usize>: Real {
     fn to_rows(lanes: [Self; 4]) -> [Self::Row; N];
     /// Two numbers.
     type Pair: Pair;
-    /// Lanes `k` of both, by `k`.
-    fn pairs(x: Self, y: Self) -> [Self::Pair; N];
+    /// Lanes 0, 2, 4 … of both in turns, and lanes 1, 3, 5 ….
+    fn pairs(x: Self, y: Self) -> [Self; 2];
     /// The same number in every lane.
     ///
     /// # Safety
@@ -101,6 +106,113 @@ pub trait Lanes<const N: usize>: Real {
     unsafe fn of(a: [f64; N]) -> Self;
     /// The numbers of the lanes.
     fn numbers(self) -> [f64; N];
+    /// The numbers at these places of a list.
+    ///
+    /// # Safety
+    /// `at` must be readable for as many entries as there are lanes, and their [`place`]s be places of the list.
+    unsafe fn pick(list: *const f64, at: *const u32) -> Self;
+    /// The vectors at these places of a list.
+    ///
+    /// # Safety
+    /// As [`Lanes::pick`].
+    unsafe fn vectors(list: *const Vec3, at: *const u32) -> Vec3<Self>;
+    /// a − (b + shift) of the vectors at these places of a list, where the entries of b tell which of the `shifts` it is;
+    /// the one in the middle of 27 is none.
+    ///
+    /// # Safety
+    /// As [`Lanes::pick`], and there must be these shifts.
+    unsafe fn apart(list: *const Vec3, a: *const u32, b: *const u32, shifts: &[[f64; 4]; 32]) -> Vec3<Self>;
+    /// Puts `first` and the numbers of the lanes that are set to memory, and something behind them; how many are set.
+    ///
+    /// # Safety
+    /// There must be room for as many as there are lanes.
+    unsafe fn put(mask: Self::Mask, first: u32, to: *mut u32) -> usize;
+}
+
+/// Bits of an entry that hold a place in a list; what stands above them tells which shift.
+pub const PLACE_BITS: u32 = 27;
+
+/// The place in an entry.
+#[inline(always)]
+pub fn place(entry: u32) -> usize {
+    (entry & ((1 << PLACE_BITS) - 1)) as usize
+}
+
+/// By bits of a mask: the lanes that are set, in order.
+const LANES: [[u32; 4]; 16] = lanes();
+
+/// By bits of a mask, four bits each: how many lanes are set.
+const COUNTS: u64 = 0x4332_3221_3221_2110;
+
+const fn lanes() -> [[u32; 4]; 16] {
+    let (mut table, mut bits) = ([[0; 4]; 16], 0);
+    while bits < 16 {
+        let (mut lane, mut count) = (0, 0);
+        while lane < 4 {
+            if bits >> lane & 1 == 1 {
+                table[bits][count] = lane as u32;
+                count += 1;
+            }
+            lane += 1;
+        }
+        bits += 1;
+    }
+    table
+}
+
+/// Rows of a − (b + shift), one for each lane.
+///
+/// # Safety
+/// As [`Lanes::apart`].
+#[inline(always)]
+pub(super) unsafe fn rows_apart<F: Four, const N: usize>(
+    list: *const Vec3,
+    a: *const u32,
+    b: *const u32,
+    shifts: &[[f64; 4]; 32],
+) -> [F; N] {
+    // SAFETY: passed on.
+    unsafe {
+        let mut rows = [F::splat(0.0); N];
+        for lane in 0..N {
+            let (a, b) = (*a.add(lane), *b.add(lane));
+            let shift = F::load(shifts.as_ptr().add((b >> PLACE_BITS) as usize).cast());
+            rows[lane] = F::load3(list.add(place(a)).cast()) - (F::load3(list.add(place(b)).cast()) + shift);
+        }
+        rows
+    }
+}
+
+/// The vectors at these places as rows.
+///
+/// # Safety
+/// As [`Lanes::vectors`].
+#[inline(always)]
+pub(super) unsafe fn rows_at<F: Four, const N: usize>(list: *const Vec3, at: *const u32) -> [F; N] {
+    // SAFETY: passed on.
+    unsafe {
+        let mut rows = [F::splat(0.0); N];
+        for lane in 0..N {
+            rows[lane] = F::load3(list.add(place(*at.add(lane))).cast());
+        }
+        rows
+    }
+}
+
+/// The numbers at these places.
+///
+/// # Safety
+/// As [`Lanes::pick`].
+#[inline(always)]
+pub(super) unsafe fn numbers_at<const N: usize>(list: *const f64, at: *const u32) -> [f64; N] {
+    // SAFETY: passed on.
+    unsafe {
+        let mut numbers = [0.0; N];
+        for lane in 0..N {
+            numbers[lane] = *list.add(place(*at.add(lane)));
+        }
+        numbers
+    }
 }
 
 impl<F: Four> Lanes<4> for F {
@@ -115,7 +227,7 @@ impl<F: Four> Lanes<4> for F {
     }
     type Pair = F::Two;
     #[inline(always)]
-    fn pairs(x: F, y: F) -> [F::Two; 4] {
+    fn pairs(x: F, y: F) -> [F; 2] {
         F::pairs_of(x, y)
     }
     #[inline(always)]
@@ -135,13 +247,38 @@ impl<F: Four> Lanes<4> for F {
         unsafe { self.store(out.as_mut_ptr()) };
         out
     }
+    #[inline(always)]
+    unsafe fn pick(list: *const f64, at: *const u32) -> F {
+        // SAFETY: passed on.
+        unsafe { F::load(numbers_at::<4>(list, at).as_ptr()) }
+    }
+    #[inline(always)]
+    unsafe fn vectors(list: *const Vec3, at: *const u32) -> Vec3<F> {
+        // SAFETY: passed on.
+        let [x, y, z, _] = F::transpose(unsafe { rows_at(list, at) });
+        [x, y, z]
+    }
+    #[inline(always)]
+    unsafe fn apart(list: *const Vec3, a: *const u32, b: *const u32, shifts: &[[f64; 4]; 32]) -> Vec3<F> {
+        // SAFETY: passed on.
+        let [x, y, z, _] = F::transpose(unsafe { rows_apart(list, a, b, shifts) });
+        [x, y, z]
+    }
+    #[inline(always)]
+    unsafe fn put(mask: F::Mask, first: u32, to: *mut u32) -> usize {
+        let bits = F::bits(mask);
+        let [a, b, c, d] = LANES[bits as usize & 15];
+        // SAFETY: the caller's promise.
+        unsafe { to.cast::<[u32; 4]>().write([first + a, first + b, first + c, first + d]) };
+        (COUNTS >> (4 * bits) & 15) as usize
+    }
 }
 
-operators! { Plain, a b:
-    Add add a.zip(b, |a, b| a + b);
-    Sub sub a.zip(b, |a, b| a - b);
-    Mul mul a.zip(b, |a, b| a * b);
-    Div div a.zip(b, |a, b| a / b);
+operators! { [] Plain, a b:
+    a.zip(b, |a, b| a + b),
+    a.zip(b, |a, b| a - b),
+    a.zip(b, |a, b| a * b),
+    a.zip(b, |a, b| a / b)
 }
 
 impl Neg for Plain {
@@ -217,8 +354,8 @@ impl Four for Plain {
     }
     type Two = [f64; 2];
     #[inline(always)]
-    fn pairs_of(x: Self, y: Self) -> [[f64; 2]; 4] {
-        std::array::from_fn(|k| [x.0[k], y.0[k]])
+    fn pairs_of(x: Self, y: Self) -> [Self; 2] {
+        [0, 1].map(|k| Self([x.0[k], y.0[k], x.0[k + 2], y.0[k + 2]]))
     }
     #[inline(always)]
     unsafe fn splat(a: f64) -> Self {
@@ -232,8 +369,6 @@ impl Four for Plain {
     fn bits(mask: [bool; 4]) -> u32 {
         (0..4).map(|k| u32::from(mask[k]) << k).sum()
     }
-    #[inline(always)]
-    fn prefetch<T>(_: *const T) {}
 }
 
 /// Whether the processor has AVX2.
@@ -249,7 +384,7 @@ pub fn has_avx2() -> bool {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub use super::eight::{Avx512, has_avx512};
+pub use super::eight::{Avx512, gathers_pay, has_avx512};
 #[cfg(target_arch = "x86_64")]
 pub use x86::Avx2;
 
@@ -268,11 +403,11 @@ mod x86 {
 
     // SAFETY (all blocks): a value exists, so the processor has AVX2; or the caller promises that.
 
-    operators! { Avx2, a b:
-        Add add Avx2(unsafe { _mm256_add_pd(a.0, b.0) });
-        Sub sub Avx2(unsafe { _mm256_sub_pd(a.0, b.0) });
-        Mul mul Avx2(unsafe { _mm256_mul_pd(a.0, b.0) });
-        Div div Avx2(unsafe { _mm256_div_pd(a.0, b.0) });
+    operators! { [] Avx2, a b:
+        Avx2(unsafe { _mm256_add_pd(a.0, b.0) }),
+        Avx2(unsafe { _mm256_sub_pd(a.0, b.0) }),
+        Avx2(unsafe { _mm256_mul_pd(a.0, b.0) }),
+        Avx2(unsafe { _mm256_div_pd(a.0, b.0) })
     }
 
     impl Neg for Avx2 {
@@ -347,16 +482,8 @@ mod x86 {
         }
         type Two = Sse;
         #[inline(always)]
-        fn pairs_of(x: Self, y: Self) -> [Sse; 4] {
-            unsafe {
-                let (even, odd) = (_mm256_unpacklo_pd(x.0, y.0), _mm256_unpackhi_pd(x.0, y.0));
-                [
-                    Sse(_mm256_castpd256_pd128(even)),
-                    Sse(_mm256_castpd256_pd128(odd)),
-                    Sse(_mm256_extractf128_pd::<1>(even)),
-                    Sse(_mm256_extractf128_pd::<1>(odd)),
-                ]
-            }
+        fn pairs_of(x: Self, y: Self) -> [Self; 2] {
+            unsafe { [Self(_mm256_unpacklo_pd(x.0, y.0)), Self(_mm256_unpackhi_pd(x.0, y.0))] }
         }
         #[inline(always)]
         unsafe fn splat(a: f64) -> Self {
@@ -379,10 +506,6 @@ mod x86 {
         #[inline(always)]
         fn bits(mask: __m256d) -> u32 {
             unsafe { _mm256_movemask_pd(mask) as u32 }
-        }
-        #[inline(always)]
-        fn prefetch<T>(p: *const T) {
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(p.cast()) }
         }
     }
 }
@@ -419,9 +542,11 @@ mod tests {
         unsafe {
             let (three, mut four) = ([3.0, -4.0, 5.0, 6.0], [7.0; 4]);
             put(F::load3(three.as_ptr()));
-            for (k, pair) in F::pairs_of(a, b).into_iter().enumerate() {
+            for (k, pairs) in F::pairs_of(a, b).into_iter().enumerate() {
+                let pair = F::Two::load(pairs.numbers().as_ptr().add(2 * k));
                 pair.add_to(four.as_mut_ptr());
-                pair.take_from(four.as_mut_ptr().add(1 + k % 2));
+                pair.take_from(four.as_mut_ptr().add(1 + k));
+                put(pairs);
             }
             put(F::load(four.as_ptr()));
         }

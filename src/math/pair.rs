@@ -3,6 +3,11 @@
 /// Two numbers and their way into memory. Sums are read in the parts in which they are written: a processor passes a number
 /// on from a store to a load soon after only where the load lies within the store.
 pub trait Pair: Copy {
+    /// Both from memory.
+    ///
+    /// # Safety
+    /// `p` must be readable for two numbers.
+    unsafe fn load(p: *const f64) -> Self;
     /// Adds both to what stands at `p`.
     ///
     /// # Safety
@@ -16,6 +21,11 @@ pub trait Pair: Copy {
 }
 
 impl Pair for [f64; 2] {
+    #[inline(always)]
+    unsafe fn load(p: *const f64) -> Self {
+        // SAFETY: passed on.
+        unsafe { p.cast::<Self>().read() }
+    }
     #[inline(always)]
     unsafe fn add_to(self, p: *mut f64) {
         // SAFETY: passed on.
@@ -37,6 +47,11 @@ pub struct Sse(pub(in crate::math) std::arch::x86_64::__m128d);
 
 #[cfg(target_arch = "x86_64")]
 impl Pair for Sse {
+    #[inline(always)]
+    unsafe fn load(p: *const f64) -> Self {
+        // SAFETY: passed on; every processor of this kind has SSE2.
+        Self(unsafe { std::arch::x86_64::_mm_loadu_pd(p) })
+    }
     #[inline(always)]
     unsafe fn add_to(self, p: *mut f64) {
         use std::arch::x86_64::*;

@@ -18,6 +18,8 @@ pub trait Real:
     + Mul<f64, Output = Self>
     + Div<f64, Output = Self>
 {
+    /// Whether this is one number: then it is worth asking what need not be evaluated.
+    const ONE: bool = false;
     /// Yes or no for every lane.
     type Mask: Copy;
 
@@ -44,6 +46,7 @@ pub trait Real:
 }
 
 impl Real for f64 {
+    const ONE: bool = true;
     type Mask = bool;
 
     #[inline(always)]

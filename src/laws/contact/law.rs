@@ -179,6 +179,7 @@ pub struct Granular {
 
 impl ContactLaw for Granular {
     /// The tangential spring of i against j, then the rolling displacement, then the angle of twisting.
+    #[inline(always)]
     fn memory(&self) -> usize {
         self.before_told() + self.told()
     }

@@ -60,6 +60,7 @@ impl Friction {
     }
 
     /// Whether k_t is multiplied by the contact radius.
+    #[inline(always)]
     pub fn by_radius(self) -> bool {
         !matches!(
             self,
@@ -75,6 +76,7 @@ impl Friction {
         self.by_radius() && self != Friction::MindlinClassic
     }
 
+    #[inline(always)]
     fn rescales(self) -> bool {
         matches!(self, Friction::MindlinRescale | Friction::MindlinRescaleForce)
     }
@@ -188,11 +190,13 @@ pub struct Spring {
 
 impl Spring {
     /// Whether its stiffness grows with the radius of the contact.
+    #[inline(always)]
     pub fn by_radius(&self) -> bool {
         self.kind.by_radius() || self.loose
     }
 
     /// How many numbers it remembers: a displacement or force and, to shrink it, the contact radius.
+    #[inline(always)]
     pub fn memory(&self) -> usize {
         match self.kind {
             Friction::None | Friction::LinearNohistory => 0,

@@ -57,6 +57,7 @@ impl Rolling {
     }
 
     /// How many numbers it remembers: the rolling displacement.
+    #[inline(always)]
     pub fn memory(&self) -> usize {
         if *self == Rolling::None { 0 } else { 3 }
     }
@@ -124,6 +125,7 @@ impl Twisting {
     }
 
     /// How many numbers it remembers: the angle.
+    #[inline(always)]
     pub fn memory(&self) -> usize {
         usize::from(*self != Twisting::None)
     }

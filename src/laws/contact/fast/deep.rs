@@ -1,16 +1,16 @@
 //! Grains that overlap so far that contact laws mean little.
 
 use super::Fast;
-use super::near::{HERE_BITS, grain};
 use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::{DEEP, Grains};
+use crate::math::four::{PLACE_BITS, place};
 
 impl<L: ContactLaw> Fast<L> {
     /// The pair of smallest ids that overlaps by more than [`DEEP`] of the smaller radius, and by which part.
     pub(super) fn find_deep(&self, grains: &Grains) -> Option<([u32; 2], f64)> {
         let of = |i: u32, w: u32| {
-            let (i, j) = (i as usize, grain(w));
-            let (a, b, s) = (grains.x[i], grains.x[j], self.shifts[(w >> HERE_BITS) as usize]);
+            let (i, j) = (i as usize, place(w));
+            let (a, b, s) = (grains.x[i], grains.x[j], self.shifts[(w >> PLACE_BITS) as usize]);
             let d = [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])];
             let (ri, rj) = (grains.radius[i], grains.radius[j]);
             let (sum, least) = (ri + rj, ri.min(rj));

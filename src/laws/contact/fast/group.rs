@@ -2,115 +2,215 @@
 
 use super::MOST_MEMORY;
 use super::lists::{Short, Slab};
-use super::near::grain;
 use super::sweep::Cx;
 use crate::laws::contact::driver::DEEP;
-use crate::laws::contact::{ContactLaw, Geometry, Motion, Wrench};
-use crate::math::four::{Four, Lanes};
+use crate::laws::contact::{ContactLaw, Geometry, Motion};
+use crate::math::four::{Four, Lanes, place};
 use crate::math::pair::Pair;
 use crate::math::real::Real;
 use crate::math::vec3::{SIX, Vec3, scale};
 
-/// Contacts that are evaluated together: their pairs. (Loops, no closures: those are not inlined into code for AVX.)
-pub(super) struct Group<const N: usize> {
-    k: [usize; N],
-    i: [usize; N],
-    j: [usize; N],
-    w: [u32; N],
+/// How many contacts go through each stage of the evaluation before the next stage begins. A processor looks ahead over some
+/// five hundred instructions: stages are so short that several groups of contacts are under way in each of them, and nobody
+/// waits for roots and quotients.
+pub(super) const STRIP: usize = 64;
+/// The most groups of a strip.
+const GROUPS: usize = STRIP / 4;
+
+/// Contacts that go from stage to stage together; what is past the last one repeats it up to a full group.
+pub(super) struct Strip<V, const N: usize> {
+    /// Numbers of the pairs in the short list.
+    k: [u32; STRIP],
+    i: [u32; STRIP],
+    /// The others and their images.
+    w: [u32; STRIP],
+    /// x_i − x_j, by groups [length].
+    apart: [Vec3<V>; GROUPS],
+    geometry: [Geometry<V>; GROUPS],
+    force: [Apart<N>; GROUPS],
+    torque: [[Apart<N>; 2]; GROUPS],
 }
 
-impl<const N: usize> Group<N> {
+/// Vectors in lanes as they go to memory: x and y together, of lanes 0, 2, 4 … and of lanes 1, 3, 5 …, and z.
+#[derive(Clone, Copy)]
+struct Apart<const N: usize> {
+    xy: [[f64; N]; 2],
+    z: [f64; N],
+}
+
+impl<const N: usize> Apart<N> {
+    const ZERO: Self = Self { xy: [[0.0; N]; 2], z: [0.0; N] };
+
     #[inline(always)]
-    pub unsafe fn load(short: &Short, hits: *const u32) -> Self {
-        let mut g = Self { k: [0; N], i: [0; N], j: [0; N], w: [0; N] };
-        for lane in 0..N {
-            // SAFETY: passed on.
+    fn set<V: Lanes<N>>(&mut self, [x, y, z]: Vec3<V>) {
+        let [even, odd] = V::pairs(x, y);
+        self.xy = [even.numbers(), odd.numbers()];
+        self.z = z.numbers();
+    }
+
+    #[inline(always)]
+    unsafe fn lane<P: Pair>(&self, lane: usize) -> (P, f64) {
+        // SAFETY: two numbers in one row of the array.
+        let xy = unsafe { P::load(self.xy.as_ptr().cast::<f64>().add(lane % 2 * N + lane / 2 * 2)) };
+        (xy, self.z[lane])
+    }
+
+    /// Adds the vector of a lane to that of grain `i`.
+    #[inline(always)]
+    unsafe fn add<P: Pair>(&self, to: *mut f64, lane: usize, i: u32) {
+        // SAFETY: passed on.
+        unsafe {
+            let ((xy, z), to) = (self.lane::<P>(lane), to.add(3 * i as usize));
+            xy.add_to(to);
+            *to.add(2) += z;
+        }
+    }
+
+    /// Adds the vector of a lane to that of grain `i` and takes it from that of grain `j`.
+    #[inline(always)]
+    unsafe fn act<P: Pair>(&self, to: *mut f64, lane: usize, i: u32, j: u32) {
+        // SAFETY: passed on.
+        unsafe {
+            let (xy, z) = self.lane::<P>(lane);
+            let (to, from) = (to.add(3 * i as usize), to.add(3 * j as usize));
+            xy.add_to(to);
+            *to.add(2) += z;
+            xy.take_from(from);
+            *from.add(2) -= z;
+        }
+    }
+}
+
+impl<V: Lanes<N>, const N: usize> Strip<V, N> {
+    /// Without contacts.
+    ///
+    /// # Safety
+    /// The processor must have what the form needs.
+    #[inline(always)]
+    pub unsafe fn new() -> Self {
+        // SAFETY: passed on.
+        let zero = unsafe { V::all(0.0) };
+        let geometry =
+            Geometry { normal: [zero; 3], overlap: zero, radii: [zero; 2], curvature: zero, mass: zero };
+        Self {
+            k: [0; STRIP],
+            i: [0; STRIP],
+            w: [0; STRIP],
+            apart: [[zero; 3]; GROUPS],
+            geometry: [geometry; GROUPS],
+            force: [Apart::ZERO; GROUPS],
+            torque: [[Apart::ZERO; 2]; GROUPS],
+        }
+    }
+
+    /// Evaluates the law for these pairs of the short list, at least one and at most [`STRIP`].
+    ///
+    /// # Safety
+    /// They must be pairs of the list, and its entries grains.
+    #[inline(always)]
+    pub unsafe fn run<L: ContactLaw, const W: usize>(
+        &mut self,
+        cx: &Cx<L>,
+        law: &L,
+        slab: &mut Slab,
+        pairs: &[u32],
+    ) {
+        let count = pairs.len();
+        // SAFETY: passed on.
+        unsafe {
+            self.gather(&slab.short, pairs);
+            for group in 0..count.div_ceil(N) {
+                slab.deep |= self.meet(cx, group);
+            }
+            let memory = law.memory();
+            for group in 0..count.div_ceil(N) {
+                self.act::<L, W>(cx, law, memory, &mut slab.short, group);
+            }
+            if cx.virial {
+                self.add_virial(count, &mut slab.virial);
+            }
+            for group in 0..count / N {
+                for lane in 0..N {
+                    self.add(cx, group, lane);
+                }
+            }
+            for lane in 0..count % N {
+                self.add(cx, count / N, lane);
+            }
+        }
+    }
+
+    /// First stage: who they are.
+    #[inline(always)]
+    unsafe fn gather(&mut self, short: &Short, pairs: &[u32]) {
+        let count = pairs.len();
+        self.k[..count].copy_from_slice(pairs);
+        self.k[count..count.next_multiple_of(N)].fill(pairs[count - 1]);
+        for at in 0..count.next_multiple_of(N) {
+            // SAFETY: passed on; the strip has room for whole groups.
             unsafe {
-                // Volatile, for else compilers make one gathering of eight loads and take it apart again.
-                let k = hits.add(lane).read_volatile() as usize;
-                let w = short.w.as_ptr().add(k).read_volatile();
-                (g.k[lane], g.w[lane], g.j[lane]) = (k, w, grain(w));
-                g.i[lane] = short.i.as_ptr().add(k).read_volatile() as usize;
+                let k = *self.k.get_unchecked(at);
+                let (i, w) = (*short.i.as_ptr().add(k as usize), *short.w.as_ptr().add(k as usize));
+                *self.i.get_unchecked_mut(at) = i;
+                *self.w.get_unchecked_mut(at) = w;
             }
-        }
-        g
-    }
-
-    /// Vectors of these grains, turned into lanes.
-    #[inline(always)]
-    unsafe fn vectors<V: Lanes<N>>(p: &[Vec3], at: &[usize; N]) -> Vec3<V> {
-        // SAFETY: passed on.
-        unsafe {
-            let mut rows = [V::Row::splat(0.0); N];
-            for lane in 0..N {
-                rows[lane] = V::Row::load3(p.as_ptr().add(at[lane]).cast());
-            }
-            let [x, y, z, _] = V::of_rows(rows);
-            [x, y, z]
         }
     }
 
-    /// Numbers of these grains in lanes.
+    /// Second stage: where and how grains touch. Whether some overlap too far.
     #[inline(always)]
-    unsafe fn numbers<V: Lanes<N>>(p: &[f64], at: &[usize; N]) -> V {
+    unsafe fn meet<L: ContactLaw>(&mut self, cx: &Cx<L>, group: usize) -> bool {
         // SAFETY: passed on.
         unsafe {
-            let mut a = [0.0; N];
-            for lane in 0..N {
-                a[lane] = *p.as_ptr().add(at[lane]);
-            }
-            V::of(a)
+            let (i, w) = (self.i.as_ptr().add(N * group), self.w.as_ptr().add(N * group));
+            let [x, y, z] = V::apart(cx.x.as_ptr(), i, w, cx.shifts);
+            let (r, m) = (cx.radius.as_ptr(), cx.mass.as_ptr());
+            let radii = [V::pick(r, i), V::pick(r, w)];
+            let (mi, mj) = (V::pick(m, i), V::pick(m, w));
+            let mass = if cx.frozen { beside_frozen(mi, mj) } else { reduced(mi, mj) };
+            let g = geometry([x, y, z], radii, mass);
+            *self.apart.get_unchecked_mut(group) = [x, y, z];
+            *self.geometry.get_unchecked_mut(group) = g;
+            V::any(too_deep(&g))
         }
     }
 
     /// Four numbers from `part` on of records of `width` numbers, turned into lanes.
     #[inline(always)]
-    unsafe fn records<V: Lanes<N>>(p: *const f64, width: usize, part: usize, at: &[usize; N]) -> [V; 4] {
+    unsafe fn records(p: *const f64, width: usize, part: usize, at: *const u32) -> [V; 4] {
         // SAFETY: passed on.
         unsafe {
             let mut rows = [V::Row::splat(0.0); N];
             for lane in 0..N {
-                rows[lane] = V::Row::load(p.add(width * at[lane] + part));
+                rows[lane] = V::Row::load(p.add(width * *at.add(lane) as usize + part));
             }
             V::of_rows(rows)
         }
     }
 
+    /// Third stage: forces, torques and what is remembered.
     #[inline(always)]
-    unsafe fn apart<V: Lanes<N>, L>(&self, cx: &Cx<L>) -> [V; 4] {
-        // SAFETY: passed on.
-        unsafe {
-            let mut rows = [V::Row::splat(0.0); N];
-            for lane in 0..N {
-                rows[lane] = cx.places().apart(self.i[lane] as u32, self.w[lane]);
-            }
-            V::of_rows(rows)
-        }
-    }
-
-    #[inline(always)]
-    pub unsafe fn act<V: Lanes<N>, L: ContactLaw, const W: usize>(
-        &self,
+    unsafe fn act<L: ContactLaw, const W: usize>(
+        &mut self,
         cx: &Cx<L>,
         law: &L,
         memory: usize,
-        slab: &mut Slab,
-        count: usize,
+        short: &mut Short,
+        group: usize,
     ) {
         // SAFETY: passed on.
         unsafe {
-            let [dx, dy, dz, _] = self.apart::<V, L>(cx);
-            let own =
-                Motion { velocity: Self::vectors(cx.v, &self.i), spin: Self::vectors(cx.omega, &self.i) };
-            let other =
-                Motion { velocity: Self::vectors(cx.v, &self.j), spin: Self::vectors(cx.omega, &self.j) };
-            let radii = [Self::numbers(cx.radius, &self.i), Self::numbers(cx.radius, &self.j)];
-            let (mi, mj): (V, V) = (Self::numbers(cx.mass, &self.i), Self::numbers(cx.mass, &self.j));
+            let at = N * group;
+            let (i, w, k) = (self.i.as_ptr().add(at), self.w.as_ptr().add(at), self.k.as_ptr().add(at));
+            // (No closures in here: they are not compiled for AVX.)
+            let (v, spin) = (cx.v.as_ptr(), cx.omega.as_ptr());
+            let own = Motion { velocity: V::vectors(v, i), spin: V::vectors(spin, i) };
+            let other = Motion { velocity: V::vectors(v, w), spin: V::vectors(spin, w) };
 
-            let past = slab.short.history.as_mut_ptr();
+            let past = short.history.as_mut_ptr();
             let mut history = [V::all(0.0); MOST_MEMORY + 1];
             for part in (0..W).step_by(4) {
-                let lanes = Self::records::<V>(past, W, part, &self.k);
+                let lanes = Self::records(past, W, part, k);
                 [history[part], history[part + 1], history[part + 2], history[part + 3]] = lanes;
             }
             let lasts = history[W - 1].above(V::all(cx.now - 0.5));
@@ -118,97 +218,54 @@ impl<const N: usize> Group<N> {
                 history[part] = V::choose(lasts, history[part], V::all(0.0));
             }
 
-            let mass = if cx.frozen { beside_frozen(mi, mj) } else { reduced(mi, mj) };
-            let g = geometry([dx, dy, dz], radii, mass);
-            let wrench = law.contact(&g, &own, &other, &mut history[..memory], cx.step);
-            slab.deep |= V::any(too_deep(&g));
-
-            if cx.store {
-                history[W - 1] = V::all(cx.now + 1.0);
-                for part in (0..W).step_by(4) {
-                    let rows =
-                        V::to_rows([history[part], history[part + 1], history[part + 2], history[part + 3]]);
-                    // Lanes without a contact repeat the last one, in whose place they would write the same.
-                    for lane in 0..N {
-                        rows[lane].store(past.add(W * self.k[lane] + part));
-                    }
-                }
-            }
-            self.add(cx, &wrench, count);
-            if cx.virial {
-                add_virial([dx, dy, dz], wrench.force, count, &mut slab.virial);
-            }
-        }
-    }
-
-    /// Adds forces and torques, contact by contact.
-    #[inline(always)]
-    unsafe fn add<V: Lanes<N>, L>(&self, cx: &Cx<L>, w: &Wrench<V>, count: usize) {
-        let force = Apart::<V::Pair, N>::new(w.force);
-        let (own, other) = (Apart::new(w.torque_i), Apart::new(w.torque_j));
-        let (f, t): (*mut f64, *mut f64) = (cx.force.as_ptr().cast(), cx.torque.as_ptr().cast());
-        // SAFETY: passed on. Groups are full but the last one of a list: loops of known length are written out.
-        unsafe {
-            if count >= N {
-                for lane in 0..N {
-                    force.act(f, lane, self.i[lane], self.j[lane]);
-                }
-                for lane in 0..N {
-                    own.add(t, lane, self.i[lane]);
-                    other.add(t, lane, self.j[lane]);
-                }
+            let g = self.geometry.get_unchecked(group);
+            let wrench = law.contact(g, &own, &other, &mut history[..memory], cx.step);
+            self.force.get_unchecked_mut(group).set(wrench.force);
+            let [own, other] = self.torque.get_unchecked_mut(group);
+            own.set(wrench.torque_i);
+            other.set(wrench.torque_j);
+            if !cx.store {
                 return;
             }
-            for lane in 0..count {
-                force.act(f, lane, self.i[lane], self.j[lane]);
-                own.add(t, lane, self.i[lane]);
-                other.add(t, lane, self.j[lane]);
+            history[W - 1] = V::all(cx.now + 1.0);
+            for part in (0..W).step_by(4) {
+                let rows =
+                    V::to_rows([history[part], history[part + 1], history[part + 2], history[part + 3]]);
+                // Lanes without a contact repeat the last one, in whose place they would write the same.
+                for lane in 0..N {
+                    rows[lane].store(past.add(W * *k.add(lane) as usize + part));
+                }
             }
         }
     }
-}
 
-/// Vectors in lanes as they go to memory: x and y together, and z.
-struct Apart<P, const N: usize> {
-    xy: [P; N],
-    z: [f64; N],
-}
-
-impl<P: Pair, const N: usize> Apart<P, N> {
+    /// Last stage: adds the forces and torques of one contact.
     #[inline(always)]
-    fn new<V: Lanes<N, Pair = P>>([x, y, z]: Vec3<V>) -> Self {
-        Self { xy: V::pairs(x, y), z: z.numbers() }
-    }
-
-    /// Adds the vector of a lane to that of grain `i`.
-    #[inline(always)]
-    unsafe fn add(&self, to: *mut f64, lane: usize, i: usize) {
+    unsafe fn add<L>(&self, cx: &Cx<L>, group: usize, lane: usize) {
+        let (f, t): (*mut f64, *mut f64) = (cx.force.as_ptr().cast(), cx.torque.as_ptr().cast());
         // SAFETY: passed on.
         unsafe {
-            let to = to.add(3 * i);
-            self.xy[lane].add_to(to);
-            *to.add(2) += self.z[lane];
+            let at = N * group + lane;
+            let (i, j) = (*self.i.get_unchecked(at), place(*self.w.get_unchecked(at)) as u32);
+            self.force.get_unchecked(group).act::<V::Pair>(f, lane, i, j);
+            let [own, other] = self.torque.get_unchecked(group);
+            own.add::<V::Pair>(t, lane, i);
+            other.add::<V::Pair>(t, lane, j);
         }
     }
 
-    /// Adds the vector of a lane to that of grain `i` and takes it from that of grain `j`.
-    #[inline(always)]
-    unsafe fn act(&self, to: *mut f64, lane: usize, i: usize, j: usize) {
-        // SAFETY: passed on.
-        unsafe {
-            self.add(to, lane, i);
-            let to = to.add(3 * j);
-            self.xy[lane].take_from(to);
-            *to.add(2) -= self.z[lane];
+    /// Adds Σ d ⊗ F of the first contacts.
+    fn add_virial(&self, count: usize, sum: &mut [f64; 6]) {
+        for at in 0..count {
+            let (group, lane) = (at / N, at % N);
+            let d = self.apart[group].map(|d| d.numbers()[lane]);
+            let force = &self.force[group];
+            let xy = &force.xy[lane % 2][lane / 2 * 2..];
+            let f = [xy[0], xy[1], force.z[lane]];
+            for (s, (a, b)) in sum.iter_mut().zip(SIX) {
+                *s += d[a] * f[b];
+            }
         }
-    }
-}
-
-/// Adds Σ d ⊗ F of the first lanes.
-#[inline(always)]
-fn add_virial<const N: usize, V: Lanes<N>>(d: Vec3<V>, f: Vec3<V>, count: usize, sum: &mut [f64; 6]) {
-    for (s, (a, b)) in sum.iter_mut().zip(SIX) {
-        (d[a] * f[b]).numbers()[..count].iter().for_each(|t| *s += t);
     }
 }
 
@@ -248,7 +305,7 @@ fn beside_frozen<R: Real>(mi: R, mj: R) -> R {
 /// A single contact in plain numbers.
 pub(super) unsafe fn one<L: ContactLaw, const W: usize>(cx: &Cx<L>, law: &L, slab: &mut Slab, k: usize) {
     let (i, w) = (slab.short.i[k] as usize, slab.short.w[k]);
-    let (j, d) = (grain(w), cx.places().between(i, w));
+    let (j, d) = (place(w), cx.places().between(i, w));
     let (mi, mj) = (cx.mass[i], cx.mass[j]);
     let mass = if cx.frozen { beside_frozen(mi, mj) } else { reduced(mi, mj) };
     let g = geometry(d, [cx.radius[i], cx.radius[j]], mass);

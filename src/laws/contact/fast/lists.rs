@@ -1,15 +1,18 @@
 //! The two lists of each slab: pairs within the skin, and of those the pairs within the thin skin.
 
-use super::near::{self, HERE_BITS, InOrder};
+use super::near::{self, InOrder};
 use super::{Fast, NONE, NOWHERE, has_avx2};
 use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::Grains;
-use crate::math::four::{Four, Plain};
+use crate::math::four::{Four, PLACE_BITS, Plain};
 use crate::neigh::slabs::{HERE, Run, Slabs};
 use crate::par;
 use std::sync::{Mutex, PoisonError};
 
-/// Pairs of grains and images. Filled up to a multiple of four with pairs that are nowhere near.
+/// Lists are filled up to multiples of the most pairs that are looked at at a time.
+pub const FILL: usize = 8;
+
+/// Pairs of grains and images. Filled up to a multiple of [`FILL`] with pairs that are nowhere near.
 #[derive(Clone, Debug, Default)]
 pub struct Pairs {
     /// The grain that lies in the slab.
@@ -19,11 +22,11 @@ pub struct Pairs {
 }
 
 impl Pairs {
-    /// Fills up to a multiple of four; far too much room is given back.
+    /// Fills up; far too much room is given back.
     pub(super) fn fill_up(&mut self) {
-        while !self.i.len().is_multiple_of(4) {
+        while !self.i.len().is_multiple_of(FILL) {
             self.i.push(0);
-            self.w.push(NOWHERE << HERE_BITS);
+            self.w.push(NOWHERE << PLACE_BITS);
         }
         let long = self.i.len();
         fit(&mut self.i, long);
@@ -140,7 +143,7 @@ impl<L: ContactLaw> Fast<L> {
                         let (i, j) = (order[i], order[j]);
                         if keep(i, j) {
                             out.i.push(i);
-                            out.w.push(j | run.image << HERE_BITS);
+                            out.w.push(j | run.image << PLACE_BITS);
                         }
                     };
                     // SAFETY: passed on.
@@ -166,9 +169,9 @@ impl<L: ContactLaw> Fast<L> {
             let slab = unsafe { &mut slabs.get(which[k]..which[k] + 1)[0] };
             let mut room = open().pop().unwrap_or_default();
             room.clear();
-            // SAFETY: `near` asks the processor; list entries are grains.
+            // SAFETY: the processor has what its form needs; list entries are grains.
             let long = [&slab.long.i[..], &slab.long.w];
-            unsafe { near::near(grains, &this.shifts, long, this.thin + this.span, &mut room.t) };
+            unsafe { near::near(this.form, grains, &this.shifts, long, this.thin + this.span, &mut room.t) };
             this.fill_short(slab, book.as_ref(), &mut room);
             std::mem::swap(&mut slab.short, &mut room);
             open().push(room);
@@ -180,15 +183,15 @@ impl<L: ContactLaw> Fast<L> {
     /// Fills in pairs and memory of a new short list that knows its pairs of the long list.
     fn fill_short(&self, slab: &Slab, book: Option<&super::Book>, new: &mut Short) {
         let (old, width) = (&slab.short, self.width);
-        let near = new.t.len().next_multiple_of(4);
+        let near = new.t.len().next_multiple_of(FILL);
         fit(&mut new.t, near);
         fit(&mut new.i, near);
         fit(&mut new.w, near);
         new.i.extend(new.t.iter().map(|t| slab.long.i[*t as usize]));
         new.w.extend(new.t.iter().map(|t| slab.long.w[*t as usize]));
-        while !new.i.len().is_multiple_of(4) {
+        while !new.i.len().is_multiple_of(FILL) {
             new.i.push(0);
-            new.w.push(NOWHERE << HERE_BITS);
+            new.w.push(NOWHERE << PLACE_BITS);
         }
         let all = new.i.len() * width;
         fit(&mut new.history, all);

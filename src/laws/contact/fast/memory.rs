@@ -3,6 +3,7 @@
 use super::Fast;
 use super::lists::Short;
 use crate::laws::contact::ContactLaw;
+use crate::math::four::place;
 use crate::world::contacts::{Contacts, mirror};
 use std::ops::Range;
 
@@ -103,7 +104,7 @@ impl<L: ContactLaw> Fast<L> {
         for list in &self.lists {
             let short = &list.short;
             for k in (0..short.i.len()).filter(|k| short.history[(k + 1) * self.width - 1] == self.now) {
-                let (i, j) = (short.i[k] as usize, super::near::grain(short.w[k]));
+                let (i, j) = (short.i[k] as usize, place(short.w[k]));
                 let h = &short.history[k * self.width..][..memory];
                 if self.tag[i] <= self.tag[j] {
                     f([self.tag[i], self.tag[j]], h);
@@ -118,7 +119,7 @@ impl<L: ContactLaw> Fast<L> {
 
     /// Writes what the book holds of a pair of grains into the row of a short list: what is remembered and the step.
     pub(super) fn look_up(&self, book: &Book, i: u32, w: u32, row: &mut [f64]) {
-        let j = super::near::grain(w) as u32;
+        let j = place(w) as u32;
         let memory = self.width - 1;
         row.fill(0.0);
         row[memory] = -1.0;
@@ -169,7 +170,7 @@ impl<L: ContactLaw> Fast<L> {
 
     /// The identities of a pair of a short list.
     fn tags(&self, short: &Short, k: usize) -> (u32, u32) {
-        (self.tag[short.i[k] as usize], self.tag[super::near::grain(short.w[k])])
+        (self.tag[short.i[k] as usize], self.tag[place(short.w[k])])
     }
 
     /// Gives everything back but what contacts remember, which [`Fast::contacts`] can still tell.

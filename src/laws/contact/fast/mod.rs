@@ -8,6 +8,7 @@
 //! in two colours keep the order of additions for any number of threads.
 
 mod deep;
+mod form;
 mod group;
 mod lists;
 mod memory;
@@ -19,12 +20,13 @@ mod warmth;
 
 use super::driver::Grains;
 use super::{Advance, ContactLaw};
-use crate::math::four::has_avx2;
+use crate::math::four::{PLACE_BITS, has_avx2};
 use crate::math::vec3::Vec3;
 use crate::neigh::list::small;
 use crate::neigh::slabs::{Slabs, edges, shift_of};
 use crate::par;
 use crate::world::contacts::Contacts;
+use form::Form;
 use lists::{Short, Slab};
 use memory::Book;
 use stray::Strays;
@@ -32,7 +34,7 @@ use stray::Strays;
 /// How many numbers at most a contact of the fast loop remembers.
 pub const MOST_MEMORY: usize = 7;
 /// How many grains at most: a place and an image share 32 bits.
-pub const MOST_GRAINS: usize = (1 << near::PLACE_BITS) - 1;
+pub const MOST_GRAINS: usize = (1 << PLACE_BITS) - 1;
 /// The second skin in units of the first.
 const THIN: f64 = 0.15;
 /// The image of what fills lists up, and how far it is away: so far that squares are infinite.
@@ -112,6 +114,7 @@ pub struct Frame {
 #[derive(Clone, Debug)]
 pub struct Fast<L> {
     laws: Laws<L>,
+    form: Form,
     /// Identities of the grains when the lists were made.
     tag: Vec<u32>,
     /// Who has strayed from where short lists were made.
@@ -145,6 +148,7 @@ impl<L: ContactLaw> Fast<L> {
         let width = if laws.memory() <= 3 { 4 } else { 8 };
         Self {
             laws,
+            form: Form::here(),
             tag: vec![],
             strays: Strays::default(),
             signed: vec![],

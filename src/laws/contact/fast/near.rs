@@ -1,49 +1,19 @@
-//! Which pairs of a list are near each other, four at a time.
+//! Which pairs of a list are near each other, several at a time.
 
-use super::has_avx2;
+use super::form::Form;
 use crate::laws::contact::driver::Grains;
-use crate::math::four::{Four, Plain};
+#[cfg(target_arch = "x86_64")]
+use crate::math::four::Avx512;
+use crate::math::four::{Four, Lanes, PLACE_BITS, Plain, place};
 use crate::math::vec3::Vec3;
 use crate::neigh::slabs::Run;
 
-/// Bits of a list entry that hold a grain; the image stands above them.
-pub const PLACE_BITS: u32 = 27;
-/// How far the image is shifted.
-pub const HERE_BITS: u32 = PLACE_BITS;
-
-/// By bits of a mask: the lanes that are set, in order.
-const LANES: [[u32; 4]; 16] = lanes();
-
-/// By bits of a mask, four bits each: how many lanes are set.
-const COUNTS: u64 = 0x4332_3221_3221_2110;
-
-const fn lanes() -> [[u32; 4]; 16] {
-    let (mut table, mut bits) = ([[0; 4]; 16], 0);
-    while bits < 16 {
-        let (mut lane, mut count) = (0, 0);
-        while lane < 4 {
-            if bits >> lane & 1 == 1 {
-                table[bits][count] = lane as u32;
-                count += 1;
-            }
-            lane += 1;
-        }
-        bits += 1;
-    }
-    table
-}
-
-/// The grain in a list entry.
-#[inline(always)]
-pub fn grain(w: u32) -> usize {
-    (w & ((1 << PLACE_BITS) - 1)) as usize
-}
-
-/// Adds the numbers of those pairs of a list, filled up to fours, to `out` whose surfaces are nearer than `reach`, in order.
+/// Adds the numbers of those pairs of a list, filled up, to `out` whose surfaces are nearer than `reach`, in order.
 ///
 /// # Safety
-/// List entries must be grains.
+/// List entries must be grains; the processor must have what the form needs.
 pub unsafe fn near(
+    form: Form,
     grains: &Grains,
     shifts: &[[f64; 4]; 32],
     list: [&[u32]; 2],
@@ -53,52 +23,58 @@ pub unsafe fn near(
     let at = Places { x: grains.x, radius: grains.radius, shifts };
     // SAFETY: passed on.
     unsafe {
-        #[cfg(target_arch = "x86_64")]
-        if has_avx2() {
-            return near_avx2(at, list, reach, out);
+        match form {
+            #[cfg(target_arch = "x86_64")]
+            Form::Gathers => near_gathers(at, list, reach, out),
+            #[cfg(target_arch = "x86_64")]
+            Form::Eight => near_avx512(at, list, reach, out),
+            #[cfg(target_arch = "x86_64")]
+            Form::Four => near_avx2(at, list, reach, out),
+            Form::Plain => near_in::<4, Plain>(at, list, reach, out),
         }
-        near_in::<Plain>(at, list, reach, out);
     }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl,popcnt")]
+unsafe fn near_gathers(at: Places, list: [&[u32]; 2], reach: f64, out: &mut Vec<u32>) {
+    // SAFETY: passed on.
+    unsafe { near_in::<8, Avx512<true>>(at, list, reach, out) }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl,popcnt")]
+unsafe fn near_avx512(at: Places, list: [&[u32]; 2], reach: f64, out: &mut Vec<u32>) {
+    // SAFETY: passed on.
+    unsafe { near_in::<8, Avx512<false>>(at, list, reach, out) }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 unsafe fn near_avx2(at: Places, list: [&[u32]; 2], reach: f64, out: &mut Vec<u32>) {
     // SAFETY: passed on.
-    unsafe { near_in::<crate::math::four::Avx2>(at, list, reach, out) }
+    unsafe { near_in::<4, crate::math::four::Avx2>(at, list, reach, out) }
 }
 
 #[inline(always)]
-unsafe fn near_in<F: Four>(at: Places, [i, w]: [&[u32]; 2], reach: f64, out: &mut Vec<u32>) {
-    for k in (0..i.len()).step_by(4) {
-        // SAFETY: lists are filled up to fours; entries are grains.
-        let bits = unsafe { at.closer::<F>(i.as_ptr().add(k), w.as_ptr().add(k), reach) };
-        if out.capacity() - out.len() < 4 {
-            out.reserve(4);
+unsafe fn near_in<const N: usize, V: Lanes<N>>(
+    at: Places,
+    [i, w]: [&[u32]; 2],
+    reach: f64,
+    out: &mut Vec<u32>,
+) {
+    for k in (0..i.len()).step_by(N) {
+        if out.capacity() - out.len() < N {
+            out.reserve(N);
         }
-        // SAFETY: there is room for four; those that are no hits are behind the end.
+        // SAFETY: lists are filled up; entries are grains. There is room for all lanes; those that are no hits are behind the
+        // end.
         unsafe {
-            put(out.as_mut_ptr().add(out.len()), bits, k as u32);
-            out.set_len(out.len() + count(bits));
+            let hits = at.closer::<N, V>(i.as_ptr().add(k), w.as_ptr().add(k), reach);
+            let count = V::put(hits, k as u32, out.as_mut_ptr().add(out.len()));
+            out.set_len(out.len() + count);
         }
     }
-}
-
-/// Puts `first` and the numbers of the lanes that are set, and something behind them.
-///
-/// # Safety
-/// There must be room for four.
-#[inline(always)]
-pub unsafe fn put(to: *mut u32, bits: u32, first: u32) {
-    let [a, b, c, d] = LANES[bits as usize & 15];
-    // SAFETY: the caller's promise.
-    unsafe { to.cast::<[u32; 4]>().write([first + a, first + b, first + c, first + d]) }
-}
-
-/// How many of four lanes are set.
-#[inline(always)]
-pub fn count(bits: u32) -> usize {
-    (COUNTS >> (4 * bits) & 15) as usize
 }
 
 /// Grains in the order of places, coordinate by coordinate.
@@ -167,52 +143,30 @@ pub(super) struct Places<'a> {
 }
 
 impl Places<'_> {
-    /// Which of four pairs have surfaces nearer than `extra`, as bits.
+    /// Which of some pairs have surfaces nearer than `extra`.
+    ///
+    /// # Safety
+    /// As many entries as there are lanes must be grains; the processor must have what the form needs.
     #[inline(always)]
-    pub unsafe fn closer<F: Four>(&self, i: *const u32, w: *const u32, extra: f64) -> u32 {
+    pub unsafe fn closer<const N: usize, V: Lanes<N>>(
+        &self,
+        i: *const u32,
+        w: *const u32,
+        extra: f64,
+    ) -> V::Mask {
         // SAFETY: passed on.
         unsafe {
-            let rows = [
-                self.apart(*i, *w),
-                self.apart(*i.add(1), *w.add(1)),
-                self.apart(*i.add(2), *w.add(2)),
-                self.apart(*i.add(3), *w.add(3)),
-            ];
-            let [x, y, z, _]: [F; 4] = F::transpose(rows);
+            let [x, y, z] = V::apart(self.x.as_ptr(), i, w, self.shifts);
             let r = self.radius.as_ptr();
-            let own = [
-                *r.add(*i as usize),
-                *r.add(*i.add(1) as usize),
-                *r.add(*i.add(2) as usize),
-                *r.add(*i.add(3) as usize),
-            ];
-            let other = [
-                *r.add(grain(*w)),
-                *r.add(grain(*w.add(1))),
-                *r.add(grain(*w.add(2))),
-                *r.add(grain(*w.add(3))),
-            ];
-            let reach = F::load(own.as_ptr()) + F::load(other.as_ptr()) + extra;
-            F::bits((reach * reach).above(x * x + y * y + z * z))
+            let reach = V::pick(r, i) + V::pick(r, w) + extra;
+            (reach * reach).above(x * x + y * y + z * z)
         }
     }
 
-    /// x_i − x_j of one pair [length], with the bits of [`Places::apart`].
+    /// x_i − x_j of one pair [length], with the bits of [`Lanes::apart`].
     #[inline(always)]
     pub fn between(&self, i: usize, w: u32) -> Vec3 {
-        let (a, b, s) = (self.x[i], self.x[grain(w)], self.shifts[(w >> HERE_BITS) as usize]);
+        let (a, b, s) = (self.x[i], self.x[place(w)], self.shifts[(w >> PLACE_BITS) as usize]);
         [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])]
-    }
-
-    /// x_i − x_j.
-    #[inline(always)]
-    pub unsafe fn apart<F: Four>(&self, i: u32, w: u32) -> F {
-        // SAFETY: passed on.
-        unsafe {
-            let a = F::load3(self.x.as_ptr().add(i as usize).cast());
-            let b = F::load3(self.x.as_ptr().add(grain(w)).cast());
-            let shift = F::load(self.shifts.as_ptr().add((w >> HERE_BITS) as usize).cast());
-            a - (b + shift)
-        }
     }
 }

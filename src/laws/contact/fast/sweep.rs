@@ -1,47 +1,22 @@
 //! The inner loops: distances four at a time, contacts four at a time, forces into the records.
 
-use super::group::{Group, one};
-use super::lists::{Short, Slab};
-use super::near::{self, Places, grain};
-use super::{Fast, Laws, NONE, has_avx2};
+use super::form::Form;
+use super::group::{STRIP, Strip, one};
+use super::lists::{FILL, Short, Slab};
+use super::near::Places;
+use super::{Fast, Laws, NONE};
 use crate::laws::contact::driver::Grains;
 use crate::laws::contact::{Advance, ContactLaw, Loop};
-use crate::math::four::{Four, Lanes, Plain};
+#[cfg(target_arch = "x86_64")]
+use crate::math::four::Avx512;
+use crate::math::four::{Four, Lanes, Plain, place};
 use crate::math::vec3::Vec3;
 use crate::par;
-use std::marker::PhantomData;
 
 /// Hits that laws are evaluated for at a time where there are several laws: part of the order of additions.
 const BLOCK: usize = 64;
 /// Room for hits: some blocks and what a test may put behind them.
 const ROOM: usize = 4 * BLOCK;
-/// How many hits ahead memory is asked for.
-const AHEAD: usize = 12;
-
-/// Most contacts evaluated at a time.
-const MOST: usize = 8;
-
-/// How many contacts are evaluated at a time; all have the same bits.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Form {
-    /// Eight, with AVX-512.
-    Eight,
-    /// Four, with AVX2.
-    Four,
-    /// Four, on any processor.
-    Plain,
-}
-
-impl Form {
-    /// The widest one of this processor.
-    fn here() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if crate::math::four::has_avx512() {
-            return Self::Eight;
-        }
-        if has_avx2() { Self::Four } else { Self::Plain }
-    }
-}
 
 /// What the loops read and where they write.
 pub(super) struct Cx<'a, L> {
@@ -86,7 +61,7 @@ impl<L: ContactLaw> Cx<'_, L> {
 
     fn holds<const W: usize>(&self, short: &Short, k: usize) -> bool {
         let (i, w) = (short.i[k] as usize, short.w[k]);
-        let (j, d) = (grain(w), self.places().between(i, w));
+        let (j, d) = (place(w), self.places().between(i, w));
         let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
         let (ri, rj) = (self.radius[i], self.radius[j]);
         let sum = ri + rj;
@@ -112,7 +87,7 @@ impl<L: ContactLaw> Fast<L> {
         store: bool,
         virial: bool,
     ) {
-        let (width, form) = (self.width, Form::here());
+        let (width, form) = (self.width, self.form);
         let mut lists = std::mem::take(&mut self.lists);
         let slabs = par::Shared::new(&mut lists);
         let cx = Cx {
@@ -140,6 +115,10 @@ impl<L: ContactLaw> Fast<L> {
                 let slab = &mut slabs.get(k..k + 1)[0];
                 match (width, form) {
                     #[cfg(target_arch = "x86_64")]
+                    (4, Form::Gathers) => contacts_gathers::<L, 4>(&cx, slab),
+                    #[cfg(target_arch = "x86_64")]
+                    (_, Form::Gathers) => contacts_gathers::<L, 8>(&cx, slab),
+                    #[cfg(target_arch = "x86_64")]
                     (4, Form::Eight) => contacts_avx512::<L, 4>(&cx, slab),
                     #[cfg(target_arch = "x86_64")]
                     (_, Form::Eight) => contacts_avx512::<L, 8>(&cx, slab),
@@ -147,8 +126,8 @@ impl<L: ContactLaw> Fast<L> {
                     (4, Form::Four) => contacts_avx2::<L, 4>(&cx, slab),
                     #[cfg(target_arch = "x86_64")]
                     (_, Form::Four) => contacts_avx2::<L, 8>(&cx, slab),
-                    (4, _) => contacts::<4, Plain, L, 4>(&cx, slab),
-                    _ => contacts::<4, Plain, L, 8>(&cx, slab),
+                    (4, Form::Plain) => contacts::<4, Plain, L, 4>(&cx, slab),
+                    (_, Form::Plain) => contacts::<4, Plain, L, 8>(&cx, slab),
                 }
             }
         });
@@ -164,10 +143,17 @@ unsafe fn contacts_avx2<L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut Sl
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
+#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl,popcnt")]
 unsafe fn contacts_avx512<L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut Slab) {
     // SAFETY: passed on.
-    unsafe { contacts::<8, crate::math::four::Avx512, L, W>(cx, slab) }
+    unsafe { contacts::<8, Avx512<false>, L, W>(cx, slab) }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl,popcnt")]
+unsafe fn contacts_gathers<L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut Slab) {
+    // SAFETY: passed on.
+    unsafe { contacts::<8, Avx512<true>, L, W>(cx, slab) }
 }
 
 /// All contacts of a slab.
@@ -175,88 +161,84 @@ unsafe fn contacts_avx512<L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut 
 unsafe fn contacts<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut Slab) {
     (slab.virial, slab.deep) = ([0.0; 6], false);
     let at = cx.places();
-    let mut hits = [0; ROOM + AHEAD + MOST];
+    let mut hits = [0; ROOM];
+    // SAFETY: passed on.
+    let mut strip = unsafe { Strip::<V, N>::new() };
     let (mut count, mut k, end) = (0, 0, slab.short.i.len());
     loop {
-        while k < end && count + 4 <= ROOM {
-            // SAFETY: lists are filled up to fours; entries are grains.
-            let bits = unsafe {
-                let short = &slab.short;
-                at.closer::<V::Row>(short.i.as_ptr().add(k), short.w.as_ptr().add(k), cx.span)
-            };
-            // SAFETY: there is room for four; the next ones overwrite what stands past `count`.
-            unsafe { near::put(hits.as_mut_ptr().add(count), bits, k as u32) };
-            count += near::count(bits);
-            k += 4;
+        // By the same steps in all forms: where it stops, blocks of what holds end.
+        while k < end && count + FILL <= ROOM {
+            for k in (k..k + FILL).step_by(N) {
+                // SAFETY: lists are filled up; entries are grains. There is room for all lanes; the next ones overwrite what
+                // stands past `count`.
+                unsafe {
+                    let (i, w) = (slab.short.i.as_ptr().add(k), slab.short.w.as_ptr().add(k));
+                    let near = at.closer::<N, V>(i, w, cx.span);
+                    count += V::put(near, k as u32, hits.as_mut_ptr().add(count));
+                }
+            }
+            k += FILL;
         }
         let ready = if k == end { count } else { count - count % BLOCK };
-        // The evaluation writes behind the hits it is given.
-        let mut rest = [0; BLOCK];
-        rest[..count - ready].copy_from_slice(&hits[ready..count]);
+        // What holds is moved to the front of what is ready; the rest stays where it is.
         let holding = if cx.span > 0.0 { cx.holding::<W>(&slab.short, &mut hits[..ready]) } else { ready };
         // SAFETY: passed on.
-        unsafe { evaluate::<N, V, L, W>(cx, slab, &mut hits, holding) };
+        unsafe { evaluate::<N, V, L, W>(cx, slab, &mut strip, &hits[..holding]) };
         if k == end {
             break;
         }
+        hits.copy_within(ready..count, 0);
         count -= ready;
-        hits[..count].copy_from_slice(&rest[..count]);
     }
 }
 
-/// The contacts of the first `ready` hits.
+/// The contacts of these hits.
 #[inline(always)]
 unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     cx: &Cx<L>,
     slab: &mut Slab,
-    hits: &mut [u32; ROOM + AHEAD + MOST],
-    ready: usize,
+    strip: &mut Strip<V, N>,
+    hits: &[u32],
 ) {
     // SAFETY: passed on.
     unsafe {
         if let [law] = &cx.laws.distinct[..] {
-            return of_law::<N, V, L, W>(cx, law, slab, hits, ready);
+            return of_law::<N, V, L, W>(cx, law, slab, strip, hits);
         }
-        let mut own = [0; BLOCK + AHEAD + MOST];
-        for block in hits[..ready].chunks(BLOCK) {
+        let mut own = [0; BLOCK];
+        for block in hits.chunks(BLOCK) {
             for (number, law) in cx.laws.distinct.iter().enumerate() {
                 let mut count = 0;
                 for &k in block {
                     let (i, w) = (slab.short.i[k as usize], slab.short.w[k as usize]);
-                    let which = cx.laws.which(cx.kind[i as usize], cx.kind[grain(w)]);
+                    let which = cx.laws.which(cx.kind[i as usize], cx.kind[place(w)]);
                     own[count] = k;
                     count += usize::from(which != NONE && usize::from(which) == number);
                 }
-                of_law::<N, V, L, W>(cx, law, slab, &mut own, count);
+                of_law::<N, V, L, W>(cx, law, slab, strip, &own[..count]);
             }
         }
     }
 }
 
-/// Contacts of one law: four at a time or, where the law wants that, one by one.
+/// Contacts of one law: several at a time or, where the law wants that, one by one.
 #[inline(always)]
 unsafe fn of_law<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     cx: &Cx<L>,
     law: &L,
     slab: &mut Slab,
-    hits: &mut [u32],
-    count: usize,
+    strip: &mut Strip<V, N>,
+    hits: &[u32],
 ) {
-    if count == 0 {
-        return;
-    }
-    // What stands behind the last hit is looked at and not used.
-    let last = hits[count - 1];
-    hits[count..count + AHEAD + MOST].fill(last);
     // SAFETY: passed on.
     unsafe {
         if !law.in_lanes() {
-            for k in &hits[..count] {
+            for k in hits {
                 one::<L, W>(cx, law, slab, *k as usize);
             }
             return;
         }
-        let many = Many::<N, V, L, W> { cx, slab, hits, count, lanes: PhantomData };
+        let many = Many::<N, V, L, W> { cx, slab, strip, hits };
         if W == 4 && V::Row::FAST { law.within(many) } else { many.run(law) }
     }
 }
@@ -265,30 +247,16 @@ unsafe fn of_law<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
 struct Many<'a, 'b, const N: usize, V, L, const W: usize> {
     cx: &'a Cx<'b, L>,
     slab: &'a mut Slab,
+    strip: &'a mut Strip<V, N>,
     hits: &'a [u32],
-    count: usize,
-    lanes: PhantomData<V>,
 }
 
 impl<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize> Loop<L> for Many<'_, '_, N, V, L, W> {
     #[inline(always)]
     fn run(self, law: &L) {
-        let (cx, hits, memory) = (self.cx, self.hits, law.memory());
-        for k in (0..self.count).step_by(N) {
-            // SAFETY: hits are pairs of the list, and their entries grains; `of_law` made it.
-            unsafe {
-                for ahead in &hits[k + AHEAD..k + AHEAD + N] {
-                    let j = grain(*self.slab.short.w.as_ptr().add(*ahead as usize));
-                    V::Row::prefetch(cx.v.as_ptr().add(j));
-                    V::Row::prefetch(cx.omega.as_ptr().add(j));
-                    V::Row::prefetch(cx.force.as_ptr().add(j));
-                    V::Row::prefetch(cx.torque.as_ptr().add(j));
-                    // Few of the near pairs touch: what contacts remember does not come by itself.
-                    V::Row::prefetch(self.slab.short.history.as_ptr().add(W * *ahead as usize));
-                }
-                let group = Group::<N>::load(&self.slab.short, hits.as_ptr().add(k));
-                group.act::<V, L, W>(cx, law, memory, self.slab, (self.count - k).min(N));
-            }
+        for pairs in self.hits.chunks(STRIP) {
+            // SAFETY: hits are pairs of the list, and their entries grains.
+            unsafe { self.strip.run::<L, W>(self.cx, law, self.slab, pairs) };
         }
     }
 }

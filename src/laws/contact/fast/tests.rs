@@ -313,3 +313,27 @@ fn same_bits(first: &Scene, law: Table) {
     assert_eq!(one, run(false, 2));
     assert_eq!(one, run(true, 1));
 }
+
+#[test]
+fn all_forms_have_the_same_bits() {
+    for law in [between as Table, sticky] {
+        let run = |form| {
+            let (mut s, mut fast) = (scene(PERIODS[1]), FastLoop::new(false, law));
+            fast.fast.form = form;
+            let mut last = None;
+            for k in 0..20 {
+                if k % 7 == 0 {
+                    s.wrap();
+                }
+                let got = fast.step(&s, k);
+                s.advance(&got.f, &got.torque);
+                last = Some(got);
+            }
+            (s.x, s.omega, last)
+        };
+        let plain = run(Form::Plain);
+        for form in Form::all() {
+            assert_eq!(run(form), plain, "{form:?}");
+        }
+    }
+}

@@ -1,9 +1,9 @@
 //! Grains of very different sizes: pairs with large ones are found size by size and go to the slabs they belong to.
 
-use super::near::HERE_BITS;
 use super::{Fast, NONE};
 use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::Grains;
+use crate::math::four::PLACE_BITS;
 use crate::math::vec3::Vec3;
 use crate::neigh::list::{Reach, View, Wanted, pairs_of_large};
 use crate::neigh::slabs::{HERE, Slabs};
@@ -57,7 +57,7 @@ impl<L: ContactLaw> Fast<L> {
             let grain = |place: u32| slabs.order[place as usize];
             let out = &mut list.long;
             out.i.extend(entries.iter().map(|[i, ..]| grain(*i)));
-            out.w.extend(entries.iter().map(|[_, j, image]| grain(*j) | image << HERE_BITS));
+            out.w.extend(entries.iter().map(|[_, j, image]| grain(*j) | image << PLACE_BITS));
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Heat through the contacts of the fast loop.
 
 use super::lists::Short;
-use super::near::{Places, grain, near};
+use super::near::{Places, near};
 use super::{Fast, NONE};
 use crate::laws::contact::driver::Grains;
 use crate::laws::contact::{ContactLaw, Geometry};
+use crate::math::four::place;
 use crate::par;
 
 impl<L: ContactLaw> Fast<L> {
@@ -22,10 +23,10 @@ impl<L: ContactLaw> Fast<L> {
         par::two_colours(self.lists.len(), |k| {
             let short = &self.lists[k].short;
             let mut hits = vec![];
-            // SAFETY: list entries are grains.
-            unsafe { near(grains, &self.shifts, [&short.i, &short.w], self.span, &mut hits) };
+            // SAFETY: list entries are grains; the processor has what its form needs.
+            unsafe { near(self.form, grains, &self.shifts, [&short.i, &short.w], self.span, &mut hits) };
             for k in hits {
-                let (i, j) = (short.i[k as usize] as usize, grain(short.w[k as usize]));
+                let (i, j) = (short.i[k as usize] as usize, place(short.w[k as usize]));
                 let Some(conductance) = self.conductance(grains, short, k as usize) else { continue };
                 let into = conductance * (temperature[j] - temperature[i]);
                 // SAFETY: both are grains of this slab and the next one, which two_colours keeps apart.
@@ -41,7 +42,7 @@ impl<L: ContactLaw> Fast<L> {
     fn conductance(&self, grains: &Grains, short: &Short, k: usize) -> Option<f64> {
         let (i, w) = (short.i[k] as usize, short.w[k]);
         let at = Places { x: grains.x, radius: grains.radius, shifts: &self.shifts };
-        let (j, d) = (grain(w), at.between(i, w));
+        let (j, d) = (place(w), at.between(i, w));
         let which = self.laws.which(grains.kind[i], grains.kind[j]);
         let law = self.laws.distinct.get(usize::from(which)).filter(|_| which != NONE)?;
         let radii = [grains.radius[i], grains.radius[j]];
