@@ -1,10 +1,11 @@
 //! The two lists of each slab: pairs within the skin, and of those the pairs within the thin skin.
 
+use super::form::Form;
 use super::near::{self, InOrder};
-use super::{Fast, NONE, NOWHERE, has_avx2};
+use super::{Fast, NONE, NOWHERE};
 use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::Grains;
-use crate::math::four::{Four, PLACE_BITS, Plain};
+use crate::math::four::{Lanes, PLACE_BITS, Plain};
 use crate::neigh::slabs::{HERE, Run, Slabs};
 use crate::par;
 use std::sync::{Mutex, PoisonError};
@@ -83,23 +84,42 @@ impl<L: ContactLaw> Fast<L> {
         lists.resize(slabs.count(), Slab::default());
         let shared = par::Shared::new(&mut lists);
         let this = &*self;
+        let everywhere = !this.laws.which.contains(&NONE);
         par::for_rows(slabs.count(), |k| {
             // SAFETY: each part writes its own slab.
             let slab = unsafe { &mut shared.get(k..k + 1)[0] };
             let keep = |i: u32, j: u32| {
                 let (i, j) = (i as usize, j as usize);
-                this.laws.which(grains.kind[i], grains.kind[j]) != NONE && keep(i, j)
+                (everywhere || this.laws.which(grains.kind[i], grains.kind[j]) != NONE) && keep(i, j)
             };
-            // SAFETY: AVX2 only where there is AVX2.
+            // SAFETY: the processor has what its form needs.
             unsafe {
-                #[cfg(target_arch = "x86_64")]
-                if has_avx2() {
-                    return this.search_avx2((slabs, k), &at, skin, &keep, &mut slab.long);
+                match this.form {
+                    #[cfg(target_arch = "x86_64")]
+                    Form::Gathers | Form::Eight => {
+                        this.search_avx512((slabs, k), &at, skin, &keep, &mut slab.long);
+                    }
+                    #[cfg(target_arch = "x86_64")]
+                    Form::Four => this.search_avx2((slabs, k), &at, skin, &keep, &mut slab.long),
+                    Form::Plain => this.search::<4, Plain>((slabs, k), &at, skin, &keep, &mut slab.long),
                 }
-                this.search::<Plain>((slabs, k), &at, skin, &keep, &mut slab.long);
             }
         });
         self.lists = lists;
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl,popcnt")]
+    unsafe fn search_avx512(
+        &self,
+        of: (&Slabs, usize),
+        at: &InOrder,
+        skin: f64,
+        keep: &impl Fn(u32, u32) -> bool,
+        out: &mut Pairs,
+    ) {
+        // SAFETY: passed on.
+        unsafe { self.search::<8, crate::math::four::Avx512<false>>(of, at, skin, keep, out) }
     }
 
     #[cfg(target_arch = "x86_64")]
@@ -113,12 +133,12 @@ impl<L: ContactLaw> Fast<L> {
         out: &mut Pairs,
     ) {
         // SAFETY: passed on.
-        unsafe { self.search::<crate::math::four::Avx2>(of, at, skin, keep, out) }
+        unsafe { self.search::<4, crate::math::four::Avx2>(of, at, skin, keep, out) }
     }
 
     /// The pairs of slab `k`.
     #[inline(always)]
-    unsafe fn search<F: Four>(
+    unsafe fn search<const N: usize, V: Lanes<N>>(
         &self,
         (slabs, k): (&Slabs, usize),
         at: &InOrder,
@@ -147,7 +167,7 @@ impl<L: ContactLaw> Fast<L> {
                         }
                     };
                     // SAFETY: passed on.
-                    unsafe { at.near::<F>(i, run, &self.shifts[run.image as usize], skin, hit) };
+                    unsafe { at.near::<N, V>(i, run, &self.shifts[run.image as usize], skin, hit) };
                 }
             }
         }

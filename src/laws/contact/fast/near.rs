@@ -1,10 +1,11 @@
 //! Which pairs of a list are near each other, several at a time.
 
 use super::form::Form;
+use super::lists::FILL;
 use crate::laws::contact::driver::Grains;
 #[cfg(target_arch = "x86_64")]
 use crate::math::four::Avx512;
-use crate::math::four::{Four, Lanes, PLACE_BITS, Plain, place};
+use crate::math::four::{Lanes, PLACE_BITS, Plain, place};
 use crate::math::vec3::Vec3;
 use crate::neigh::slabs::Run;
 
@@ -88,9 +89,9 @@ impl InOrder {
     pub fn new(grains: &Grains, order: &[u32]) -> Self {
         // What is read beyond the end is not used.
         let pick = |of: &dyn Fn(usize) -> f64| {
-            let mut list = Vec::with_capacity(order.len() + 4);
+            let mut list = Vec::with_capacity(order.len() + FILL);
             list.extend(order.iter().map(|&i| of(i as usize)));
-            list.extend([0.0; 4]);
+            list.extend([0.0; FILL]);
             list
         };
         let x = [0, 1, 2].map(|d| pick(&|i| grains.x[i][d]));
@@ -100,9 +101,9 @@ impl InOrder {
     /// Calls `hit` with those places of a run, shifted, whose surfaces are nearer than `skin` to that of place `i`, in order.
     ///
     /// # Safety
-    /// The processor must have what the form needs.
+    /// They must be places; the processor must have what the form needs.
     #[inline(always)]
-    pub unsafe fn near<F: Four>(
+    pub unsafe fn near<const N: usize, V: Lanes<N>>(
         &self,
         i: usize,
         run: &Run,
@@ -110,23 +111,22 @@ impl InOrder {
         skin: f64,
         mut hit: impl FnMut(usize),
     ) {
-        let ([x, y, z], r) = (&self.x, &self.radius);
-        let (mut from, end) = (run.from as usize, (run.to as usize).min(r.len() - 4));
-        while from < end {
-            // SAFETY: `from` is a place, and behind the last one there is room for four more.
-            let bits = unsafe {
-                let dx = F::splat(x[i]) - (F::load(x.as_ptr().add(from)) + shift[0]);
-                let dy = F::splat(y[i]) - (F::load(y.as_ptr().add(from)) + shift[1]);
-                let dz = F::splat(z[i]) - (F::load(z.as_ptr().add(from)) + shift[2]);
-                let reach = F::splat(r[i]) + F::load(r.as_ptr().add(from)) + skin;
-                F::bits((reach * reach).above(dx * dx + dy * dy + dz * dz))
+        let (x, y, z, r) = (self.x[0].as_ptr(), self.x[1].as_ptr(), self.x[2].as_ptr(), self.radius.as_ptr());
+        let mut hits = [0; FILL];
+        for from in (run.from as usize..run.to as usize).step_by(N) {
+            // SAFETY: behind the last place there is room for whole lanes, and in `hits` for all of them.
+            let count = unsafe {
+                let dx = V::all(*x.add(i)) - (V::of(x.add(from).cast::<[f64; N]>().read()) + shift[0]);
+                let dy = V::all(*y.add(i)) - (V::of(y.add(from).cast::<[f64; N]>().read()) + shift[1]);
+                let dz = V::all(*z.add(i)) - (V::of(z.add(from).cast::<[f64; N]>().read()) + shift[2]);
+                let reach = V::all(*r.add(i)) + V::of(r.add(from).cast::<[f64; N]>().read()) + skin;
+                let near = (reach * reach).above(dx * dx + dy * dy + dz * dz);
+                V::put(near, from as u32, hits.as_mut_ptr())
             };
-            let mut bits = bits & ((1 << (end - from).min(4)) - 1);
-            while bits != 0 {
-                hit(from + bits.trailing_zeros() as usize);
-                bits &= bits - 1;
+            // Behind the run others stand.
+            for k in hits[..count].iter().take_while(|k| **k < run.to) {
+                hit(*k as usize);
             }
-            from += 4;
         }
     }
 }
