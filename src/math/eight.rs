@@ -1,6 +1,7 @@
 //! Eight numbers side by side in one AVX-512 register, with the bits of four and four.
 
-use super::four::{Avx2, Lanes, PLACE_BITS, numbers_at, operators, rows_apart, rows_at};
+use super::four::{Avx2, operators};
+use super::lanes::{Lanes, PLACE_BITS, numbers_at, rows_apart, rows_at};
 use super::pair::Sse;
 use super::real::Real;
 use super::vec3::Vec3;

@@ -6,6 +6,7 @@ pub mod cformat;
 mod eight;
 pub mod forest;
 pub mod four;
+pub mod lanes;
 pub mod pair;
 pub mod real;
 pub mod rng;

@@ -95,7 +95,7 @@ impl Threes for Avx2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::four::Lanes;
+    use crate::math::lanes::Lanes;
 
     unsafe fn both<F: Threes>() {
         let twelve: [f64; 12] = std::array::from_fn(|k| k as f64);

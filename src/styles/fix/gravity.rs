@@ -3,7 +3,8 @@
 use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Result, fail};
 use crate::lang::{Args, Param};
-use crate::math::four::{Lanes, Plain, has_avx2};
+use crate::math::four::{Plain, has_avx2};
+use crate::math::lanes::Lanes;
 use crate::math::threes::{self, Threes};
 use crate::math::vec3::Vec3;
 use crate::plan::{Access, Act, Gist, Op, Stage, Tick, When};

@@ -2,7 +2,8 @@
 
 use super::nve::half_step;
 use crate::diag::Result;
-use crate::math::four::{Lanes, Plain, has_avx2};
+use crate::math::four::{Plain, has_avx2};
+use crate::math::lanes::Lanes;
 use crate::math::threes::{self, Threes};
 use crate::math::vec3::Vec3;
 use crate::plan::{Act, Gist, Solids, Stretch, Tick};

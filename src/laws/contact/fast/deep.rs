@@ -3,7 +3,7 @@
 use super::Fast;
 use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::{DEEP, Grains};
-use crate::math::four::{PLACE_BITS, place};
+use crate::math::lanes::{PLACE_BITS, place};
 
 impl<L: ContactLaw> Fast<L> {
     /// The pair of smallest ids that overlaps by more than [`DEEP`] of the smaller radius, and by which part.

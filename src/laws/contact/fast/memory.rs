@@ -3,7 +3,7 @@
 use super::Fast;
 use super::lists::Short;
 use crate::laws::contact::ContactLaw;
-use crate::math::four::place;
+use crate::math::lanes::place;
 use crate::world::contacts::{Contacts, mirror};
 use std::ops::Range;
 

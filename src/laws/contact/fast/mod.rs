@@ -20,7 +20,8 @@ mod warmth;
 
 use super::driver::Grains;
 use super::{Advance, ContactLaw};
-use crate::math::four::{PLACE_BITS, has_avx2};
+use crate::math::four::has_avx2;
+use crate::math::lanes::PLACE_BITS;
 use crate::math::vec3::Vec3;
 use crate::neigh::list::small;
 use crate::neigh::slabs::{Slabs, edges, shift_of};

@@ -5,7 +5,8 @@ use super::lists::FILL;
 use crate::laws::contact::driver::Grains;
 #[cfg(target_arch = "x86_64")]
 use crate::math::four::Avx512;
-use crate::math::four::{Lanes, PLACE_BITS, Plain, place};
+use crate::math::four::Plain;
+use crate::math::lanes::{Lanes, PLACE_BITS, place};
 use crate::math::vec3::Vec3;
 use crate::neigh::slabs::Run;
 

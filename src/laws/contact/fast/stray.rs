@@ -5,7 +5,8 @@
 
 use super::has_avx2;
 use crate::laws::contact::driver::Grains;
-use crate::math::four::{Four, Lanes, Plain};
+use crate::math::four::{Four, Plain};
+use crate::math::lanes::Lanes;
 use crate::neigh::slabs::Slabs;
 use crate::par;
 use crate::world::Seen;

@@ -9,7 +9,8 @@ use crate::laws::contact::driver::Grains;
 use crate::laws::contact::{Advance, ContactLaw, Loop};
 #[cfg(target_arch = "x86_64")]
 use crate::math::four::Avx512;
-use crate::math::four::{Four, Lanes, Plain, place};
+use crate::math::four::{Four, Plain};
+use crate::math::lanes::{Lanes, place};
 use crate::math::vec3::Vec3;
 use crate::par;
 

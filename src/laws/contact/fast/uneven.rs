@@ -3,7 +3,7 @@
 use super::{Fast, NONE};
 use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::Grains;
-use crate::math::four::PLACE_BITS;
+use crate::math::lanes::PLACE_BITS;
 use crate::math::vec3::Vec3;
 use crate::neigh::list::{Reach, View, Wanted, pairs_of_large};
 use crate::neigh::slabs::{HERE, Slabs};

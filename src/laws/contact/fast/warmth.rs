@@ -5,7 +5,7 @@ use super::near::{Places, near};
 use super::{Fast, NONE};
 use crate::laws::contact::driver::Grains;
 use crate::laws::contact::{ContactLaw, Geometry};
-use crate::math::four::place;
+use crate::math::lanes::place;
 use crate::par;
 
 impl<L: ContactLaw> Fast<L> {
