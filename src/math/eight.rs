@@ -1,7 +1,7 @@
 //! Eight numbers side by side in one AVX-512 register, with the bits of four and four.
 
 use super::four::{Avx2, operators};
-use super::lanes::{Lanes, PLACE_BITS, numbers_at, rows_apart, rows_at};
+use super::lanes::{Lanes, NO_SHIFT, PLACE_BITS, numbers_at, rows_apart, rows_at};
 use super::pair::Sse;
 use super::real::Real;
 use super::vec3::Vec3;
@@ -217,7 +217,7 @@ impl<const GATHERS: bool> Lanes<8> for Avx512<GATHERS> {
             let ([ax, ay, az], [bx, by, bz]) = (Self::vectors(list, a), Self::vectors(list, b));
             let which = _mm256_srli_epi32::<{ PLACE_BITS as _ }>(_mm256_loadu_si256(b.cast()));
             let mut shift = [Self::all(0.0); 3];
-            if _mm256_cmpneq_epi32_mask(which, _mm256_set1_epi32(NO_SHIFT)) != 0 {
+            if _mm256_cmpneq_epi32_mask(which, _mm256_set1_epi32(NO_SHIFT as i32)) != 0 {
                 shift = gathered(shifts.as_ptr().cast(), _mm256_slli_epi32::<2>(which));
             }
             [ax - (bx + shift[0]), ay - (by + shift[1]), az - (bz + shift[2])]
@@ -233,9 +233,6 @@ impl<const GATHERS: bool> Lanes<8> for Avx512<GATHERS> {
         mask.count_ones() as usize
     }
 }
-
-/// The shift of 27 that is none.
-const NO_SHIFT: i32 = 13;
 
 /// The places in eight entries.
 #[inline(always)]

@@ -40,7 +40,7 @@ pub trait Lanes<const N: usize>: Real {
     /// As [`Lanes::pick`].
     unsafe fn vectors(list: *const Vec3, at: *const u32) -> Vec3<Self>;
     /// a − (b + shift) of the vectors at these places of a list, where the entries of b tell which of the `shifts` it is;
-    /// the one in the middle of 27 is none.
+    /// [`NO_SHIFT`] is none.
     ///
     /// # Safety
     /// As [`Lanes::pick`], and there must be these shifts.
@@ -54,6 +54,9 @@ pub trait Lanes<const N: usize>: Real {
 
 /// Bits of an entry that hold a place in a list; what stands above them tells which shift.
 pub const PLACE_BITS: u32 = 27;
+
+/// Of 27 shifts, by −1, 0 or 1 in three directions, the one in the middle that is none.
+pub const NO_SHIFT: u32 = 13;
 
 /// The place in an entry.
 #[inline(always)]

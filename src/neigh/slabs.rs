@@ -59,7 +59,7 @@ pub fn edges(radius: &[f64], more: f64) -> [f64; 2] {
 }
 
 /// The image in which nothing is shifted.
-pub const HERE: u32 = 13;
+pub const HERE: u32 = crate::math::lanes::NO_SHIFT;
 
 /// How many periods an image is away along x, y and z.
 pub fn shift_of(image: u32) -> [f64; 3] {

@@ -1,7 +1,7 @@
 //! `pair_style hybrid` and `hybrid/overlay`: several pair styles, each for its own pairs of types.
 
 use super::probe::Probe;
-use super::{PAIRS, Pair, PairStyle, TypePairs};
+use super::{ByPart, PAIRS, Pair, PairStyle, TypePairs};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
 use crate::plan::Op;
@@ -162,7 +162,7 @@ impl Pair for Declared {
         Ok(self.ops_by_part(cx)?.into_iter().flat_map(|(_, ops)| ops).collect())
     }
 
-    fn ops_by_part(&self, cx: &mut dyn SealCx) -> Result<Vec<(usize, Vec<Box<dyn Op>>)>> {
+    fn ops_by_part(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {
         let types = cx.world().types;
         // Solids first: contacts ask which particles belong to one.
         let mut order: Vec<usize> = (0..self.subs.len()).collect();
@@ -174,7 +174,7 @@ impl Pair for Declared {
         Ok(self.probes_by_part(w)?.into_iter().flat_map(|(_, probes)| probes).collect())
     }
 
-    fn probes_by_part(&self, w: &World) -> Result<Vec<(usize, Vec<Box<dyn Probe>>)>> {
+    fn probes_by_part(&self, w: &World) -> Result<ByPart<dyn Probe>> {
         (0..self.subs.len()).map(|k| Ok((k, self.limited(k, w.types).probes(w)?))).collect()
     }
 

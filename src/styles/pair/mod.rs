@@ -23,6 +23,9 @@ use crate::world::World;
 /// Type pairs (i ≤ j, from 1) that a `pair_coeff` line speaks of.
 pub type TypePairs = [(u16, u16)];
 
+/// What each sub-style contributes: its number, from 0, and its ops or probes.
+pub type ByPart<T> = Vec<(usize, Vec<Box<T>>)>;
+
 /// A pair style: one file, one line in `PAIRS`.
 pub trait PairStyle: Style {
     /// Reads the words after the style's name.
@@ -62,7 +65,7 @@ pub trait Pair: Send {
     ///
     /// # Errors
     /// As `ops`.
-    fn ops_by_part(&self, cx: &mut dyn SealCx) -> Result<Vec<(usize, Vec<Box<dyn Op>>)>> {
+    fn ops_by_part(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {
         Ok(vec![(0, self.ops(cx)?)])
     }
 
@@ -78,7 +81,7 @@ pub trait Pair: Send {
     ///
     /// # Errors
     /// As `probes`.
-    fn probes_by_part(&self, w: &World) -> Result<Vec<(usize, Vec<Box<dyn Probe>>)>> {
+    fn probes_by_part(&self, w: &World) -> Result<ByPart<dyn Probe>> {
         Ok(vec![(0, self.probes(w)?)])
     }
 

@@ -1,17 +1,18 @@
 //! Grains that overlap so far that contact laws mean little.
 
 use super::Fast;
+use super::near::Places;
 use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::{DEEP, Grains};
-use crate::math::lanes::{PLACE_BITS, place};
+use crate::math::lanes::place;
 
 impl<L: ContactLaw> Fast<L> {
     /// The pair of smallest ids that overlaps by more than [`DEEP`] of the smaller radius, and by which part.
     pub(super) fn find_deep(&self, grains: &Grains) -> Option<([u32; 2], f64)> {
+        let at = Places::new(grains, &self.shifts);
         let of = |i: u32, w: u32| {
             let (i, j) = (i as usize, place(w));
-            let (a, b, s) = (grains.x[i], grains.x[j], self.shifts[(w >> PLACE_BITS) as usize]);
-            let d = [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])];
+            let d = at.between(i, w);
             let (ri, rj) = (grains.radius[i], grains.radius[j]);
             let (sum, least) = (ri + rj, ri.min(rj));
             let deep = sum - DEEP * least;

@@ -1,11 +1,10 @@
 //! The two lists of each slab: pairs within the skin, and of those the pairs within the thin skin.
 
-use super::form::Form;
+use super::form::InLanes;
 use super::near::{self, InOrder};
 use super::{Fast, NONE, NOWHERE};
 use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::Grains;
-use crate::math::four::Plain;
 use crate::math::lanes::{Lanes, PLACE_BITS};
 use crate::neigh::slabs::{HERE, Run, Slabs};
 use crate::par;
@@ -93,85 +92,11 @@ impl<L: ContactLaw> Fast<L> {
                 let (i, j) = (i as usize, j as usize);
                 (everywhere || this.laws.which(grains.kind[i], grains.kind[j]) != NONE) && keep(i, j)
             };
+            let search = Search { slabs, k, at: &at, shifts: &this.shifts, skin, keep, out: &mut slab.long };
             // SAFETY: the processor has what its form needs.
-            unsafe {
-                match this.form {
-                    #[cfg(target_arch = "x86_64")]
-                    Form::Gathers | Form::Eight => {
-                        this.search_avx512((slabs, k), &at, skin, &keep, &mut slab.long);
-                    }
-                    #[cfg(target_arch = "x86_64")]
-                    Form::Four => this.search_avx2((slabs, k), &at, skin, &keep, &mut slab.long),
-                    Form::Plain => this.search::<4, Plain>((slabs, k), &at, skin, &keep, &mut slab.long),
-                }
-            }
+            unsafe { this.form.run(search) }
         });
         self.lists = lists;
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl,popcnt")]
-    unsafe fn search_avx512(
-        &self,
-        of: (&Slabs, usize),
-        at: &InOrder,
-        skin: f64,
-        keep: &impl Fn(u32, u32) -> bool,
-        out: &mut Pairs,
-    ) {
-        // SAFETY: passed on.
-        unsafe { self.search::<8, crate::math::four::Avx512<false>>(of, at, skin, keep, out) }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    unsafe fn search_avx2(
-        &self,
-        of: (&Slabs, usize),
-        at: &InOrder,
-        skin: f64,
-        keep: &impl Fn(u32, u32) -> bool,
-        out: &mut Pairs,
-    ) {
-        // SAFETY: passed on.
-        unsafe { self.search::<4, crate::math::four::Avx2>(of, at, skin, keep, out) }
-    }
-
-    /// The pairs of slab `k`.
-    #[inline(always)]
-    unsafe fn search<const N: usize, V: Lanes<N>>(
-        &self,
-        (slabs, k): (&Slabs, usize),
-        at: &InOrder,
-        skin: f64,
-        keep: &impl Fn(u32, u32) -> bool,
-        out: &mut Pairs,
-    ) {
-        out.i.clear();
-        out.w.clear();
-        let order = &slabs.order;
-        let mut runs = vec![];
-        for cell in slabs.slab(k) {
-            let own = slabs.places(cell);
-            if own.is_empty() {
-                continue;
-            }
-            slabs.runs(cell, &mut runs);
-            for i in own.clone() {
-                let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
-                for run in std::iter::once(&rest).chain(&runs) {
-                    let hit = |j: usize| {
-                        let (i, j) = (order[i], order[j]);
-                        if keep(i, j) {
-                            out.i.push(i);
-                            out.w.push(j | run.image << PLACE_BITS);
-                        }
-                    };
-                    // SAFETY: passed on.
-                    unsafe { at.near::<N, V>(i, run, &self.shifts[run.image as usize], skin, hit) };
-                }
-            }
-        }
     }
 
     /// Short lists of these slabs from the present positions; contacts keep what they remember.
@@ -259,5 +184,50 @@ fn fit<T>(list: &mut Vec<T>, len: usize) {
     } else if list.capacity() > 2 * ample {
         list.truncate(len);
         list.shrink_to(ample);
+    }
+}
+
+/// The search of the pairs of slab `k`.
+struct Search<'a, K> {
+    slabs: &'a Slabs,
+    k: usize,
+    at: &'a InOrder,
+    shifts: &'a [[f64; 4]; 32],
+    skin: f64,
+    keep: K,
+    out: &'a mut Pairs,
+}
+
+impl<K: Fn(u32, u32) -> bool> InLanes for Search<'_, K> {
+    type Out = ();
+
+    #[inline(always)]
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
+        let Self { slabs, k, at, shifts, skin, keep, out } = self;
+        out.i.clear();
+        out.w.clear();
+        let order = &slabs.order;
+        let mut runs = vec![];
+        for cell in slabs.slab(k) {
+            let own = slabs.places(cell);
+            if own.is_empty() {
+                continue;
+            }
+            slabs.runs(cell, &mut runs);
+            for i in own.clone() {
+                let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
+                for run in std::iter::once(&rest).chain(&runs) {
+                    let hit = |j: usize| {
+                        let (i, j) = (order[i], order[j]);
+                        if keep(i, j) {
+                            out.i.push(i);
+                            out.w.push(j | run.image << PLACE_BITS);
+                        }
+                    };
+                    // SAFETY: passed on.
+                    unsafe { at.near::<N, V>(i, run, &shifts[run.image as usize], skin, hit) };
+                }
+            }
+        }
     }
 }

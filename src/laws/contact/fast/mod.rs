@@ -1,19 +1,18 @@
-//! Contacts of many grains: spatial order, short lists, four contacts at a time; the same numbers as the plain driver.
+//! Contacts of many grains: spatial order, short lists, several contacts at a time; the same numbers as the plain driver.
 //!
 //! Grains are sorted into slabs of cells ([`Slabs`], as thick as the largest grains reach); the world does well to stand in
-//! that order. Each slab has a list of
-//! the pairs within the skin, and of those a shorter list of pairs within a thin second skin, which holds what contacts
-//! remember.
-//! A step tests the distances of the short list four at a time and evaluates the law for four contacts at a time; slabs
-//! in two colours keep the order of additions for any number of threads.
+//! that order. Each slab has a list of the pairs within the skin, and of those a shorter list of pairs within a thin second
+//! skin, which holds what contacts remember.
+//! A step tests the distances of the short list and evaluates the law for four or eight pairs at a time ([`form`]), stage by
+//! stage ([`strip`]); slabs in two colours keep the order of additions for any number of threads.
 
 mod deep;
 mod form;
-mod group;
 mod lists;
 mod memory;
 mod near;
 mod stray;
+mod strip;
 mod sweep;
 mod uneven;
 mod warmth;

@@ -1,11 +1,8 @@
 //! Which pairs of a list are near each other, several at a time.
 
-use super::form::Form;
+use super::form::{Form, InLanes};
 use super::lists::FILL;
 use crate::laws::contact::driver::Grains;
-#[cfg(target_arch = "x86_64")]
-use crate::math::four::Avx512;
-use crate::math::four::Plain;
 use crate::math::lanes::{Lanes, PLACE_BITS, place};
 use crate::math::vec3::Vec3;
 use crate::neigh::slabs::Run;
@@ -22,59 +19,36 @@ pub unsafe fn near(
     reach: f64,
     out: &mut Vec<u32>,
 ) {
-    let at = Places { x: grains.x, radius: grains.radius, shifts };
+    let at = Places::new(grains, shifts);
     // SAFETY: passed on.
-    unsafe {
-        match form {
-            #[cfg(target_arch = "x86_64")]
-            Form::Gathers => near_gathers(at, list, reach, out),
-            #[cfg(target_arch = "x86_64")]
-            Form::Eight => near_avx512(at, list, reach, out),
-            #[cfg(target_arch = "x86_64")]
-            Form::Four => near_avx2(at, list, reach, out),
-            Form::Plain => near_in::<4, Plain>(at, list, reach, out),
-        }
-    }
+    unsafe { form.run(Near { at, list, reach, out }) }
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl,popcnt")]
-unsafe fn near_gathers(at: Places, list: [&[u32]; 2], reach: f64, out: &mut Vec<u32>) {
-    // SAFETY: passed on.
-    unsafe { near_in::<8, Avx512<true>>(at, list, reach, out) }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl,popcnt")]
-unsafe fn near_avx512(at: Places, list: [&[u32]; 2], reach: f64, out: &mut Vec<u32>) {
-    // SAFETY: passed on.
-    unsafe { near_in::<8, Avx512<false>>(at, list, reach, out) }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-unsafe fn near_avx2(at: Places, list: [&[u32]; 2], reach: f64, out: &mut Vec<u32>) {
-    // SAFETY: passed on.
-    unsafe { near_in::<4, crate::math::four::Avx2>(at, list, reach, out) }
-}
-
-#[inline(always)]
-unsafe fn near_in<const N: usize, V: Lanes<N>>(
-    at: Places,
-    [i, w]: [&[u32]; 2],
+/// The loop of [`near`].
+struct Near<'a> {
+    at: Places<'a>,
+    list: [&'a [u32]; 2],
     reach: f64,
-    out: &mut Vec<u32>,
-) {
-    for k in (0..i.len()).step_by(N) {
-        if out.capacity() - out.len() < N {
-            out.reserve(N);
-        }
-        // SAFETY: lists are filled up; entries are grains. There is room for all lanes; those that are no hits are behind the
-        // end.
-        unsafe {
-            let hits = at.closer::<N, V>(i.as_ptr().add(k), w.as_ptr().add(k), reach);
-            let count = V::put(hits, k as u32, out.as_mut_ptr().add(out.len()));
-            out.set_len(out.len() + count);
+    out: &'a mut Vec<u32>,
+}
+
+impl InLanes for Near<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
+        let Self { at, list: [i, w], reach, out } = self;
+        for k in (0..i.len()).step_by(N) {
+            if out.capacity() - out.len() < N {
+                out.reserve(N);
+            }
+            // SAFETY: lists are filled up; entries are grains. There is room for all lanes; those that are no hits are behind
+            // the end.
+            unsafe {
+                let hits = at.closer::<N, V>(i.as_ptr().add(k), w.as_ptr().add(k), reach);
+                let count = V::put(hits, k as u32, out.as_mut_ptr().add(out.len()));
+                out.set_len(out.len() + count);
+            }
         }
     }
 }
@@ -143,7 +117,12 @@ pub(super) struct Places<'a> {
     pub shifts: &'a [[f64; 4]; 32],
 }
 
-impl Places<'_> {
+impl<'a> Places<'a> {
+    /// Those of these grains.
+    pub fn new(grains: &Grains<'a>, shifts: &'a [[f64; 4]; 32]) -> Self {
+        Self { x: grains.x, radius: grains.radius, shifts }
+    }
+
     /// Which of some pairs have surfaces nearer than `extra`.
     ///
     /// # Safety

@@ -1,15 +1,13 @@
-//! The inner loops: distances four at a time, contacts four at a time, forces into the records.
+//! The inner loop of a step: which pairs of short lists touch, and their contacts, strip by strip.
 
-use super::form::Form;
-use super::group::{STRIP, Strip, one};
+use super::form::InLanes;
 use super::lists::{FILL, Short, Slab};
 use super::near::Places;
+use super::strip::{STRIP, Strip, one};
 use super::{Fast, Laws, NONE};
 use crate::laws::contact::driver::Grains;
 use crate::laws::contact::{Advance, ContactLaw, Loop};
-#[cfg(target_arch = "x86_64")]
-use crate::math::four::Avx512;
-use crate::math::four::{Four, Plain};
+use crate::math::four::Four;
 use crate::math::lanes::{Lanes, place};
 use crate::math::vec3::Vec3;
 use crate::par;
@@ -114,21 +112,9 @@ impl<L: ContactLaw> Fast<L> {
             // apart; list entries are grains; AVX only where there is AVX.
             unsafe {
                 let slab = &mut slabs.get(k..k + 1)[0];
-                match (width, form) {
-                    #[cfg(target_arch = "x86_64")]
-                    (4, Form::Gathers) => contacts_gathers::<L, 4>(&cx, slab),
-                    #[cfg(target_arch = "x86_64")]
-                    (_, Form::Gathers) => contacts_gathers::<L, 8>(&cx, slab),
-                    #[cfg(target_arch = "x86_64")]
-                    (4, Form::Eight) => contacts_avx512::<L, 4>(&cx, slab),
-                    #[cfg(target_arch = "x86_64")]
-                    (_, Form::Eight) => contacts_avx512::<L, 8>(&cx, slab),
-                    #[cfg(target_arch = "x86_64")]
-                    (4, Form::Four) => contacts_avx2::<L, 4>(&cx, slab),
-                    #[cfg(target_arch = "x86_64")]
-                    (_, Form::Four) => contacts_avx2::<L, 8>(&cx, slab),
-                    (4, Form::Plain) => contacts::<4, Plain, L, 4>(&cx, slab),
-                    (_, Form::Plain) => contacts::<4, Plain, L, 8>(&cx, slab),
+                match width {
+                    4 => form.run(Contacts::<L, 4> { cx: &cx, slab }),
+                    _ => form.run(Contacts::<L, 8> { cx: &cx, slab }),
                 }
             }
         });
@@ -136,60 +122,50 @@ impl<L: ContactLaw> Fast<L> {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-unsafe fn contacts_avx2<L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut Slab) {
-    // SAFETY: passed on.
-    unsafe { contacts::<4, crate::math::four::Avx2, L, W>(cx, slab) }
+/// All contacts of a slab, which remember `W` − 1 numbers at most.
+struct Contacts<'a, 'b, L, const W: usize> {
+    cx: &'a Cx<'b, L>,
+    slab: &'a mut Slab,
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl,popcnt")]
-unsafe fn contacts_avx512<L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut Slab) {
-    // SAFETY: passed on.
-    unsafe { contacts::<8, Avx512<false>, L, W>(cx, slab) }
-}
+impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
+    type Out = ();
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl,popcnt")]
-unsafe fn contacts_gathers<L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut Slab) {
-    // SAFETY: passed on.
-    unsafe { contacts::<8, Avx512<true>, L, W>(cx, slab) }
-}
-
-/// All contacts of a slab.
-#[inline(always)]
-unsafe fn contacts<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(cx: &Cx<L>, slab: &mut Slab) {
-    (slab.virial, slab.deep) = ([0.0; 6], false);
-    let at = cx.places();
-    let mut hits = [0; ROOM];
-    // SAFETY: passed on.
-    let mut strip = unsafe { Strip::<V, N>::new() };
-    let (mut count, mut k, end) = (0, 0, slab.short.i.len());
-    loop {
-        // By the same steps in all forms: where it stops, blocks of what holds end.
-        while k < end && count + FILL <= ROOM {
-            for k in (k..k + FILL).step_by(N) {
-                // SAFETY: lists are filled up; entries are grains. There is room for all lanes; the next ones overwrite what
-                // stands past `count`.
-                unsafe {
-                    let (i, w) = (slab.short.i.as_ptr().add(k), slab.short.w.as_ptr().add(k));
-                    let near = at.closer::<N, V>(i, w, cx.span);
-                    count += V::put(near, k as u32, hits.as_mut_ptr().add(count));
-                }
-            }
-            k += FILL;
-        }
-        let ready = if k == end { count } else { count - count % BLOCK };
-        // What holds is moved to the front of what is ready; the rest stays where it is.
-        let holding = if cx.span > 0.0 { cx.holding::<W>(&slab.short, &mut hits[..ready]) } else { ready };
+    #[inline(always)]
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
+        let Self { cx, slab } = self;
+        (slab.virial, slab.deep) = ([0.0; 6], false);
+        let at = cx.places();
+        let mut hits = [0; ROOM];
         // SAFETY: passed on.
-        unsafe { evaluate::<N, V, L, W>(cx, slab, &mut strip, &hits[..holding]) };
-        if k == end {
-            break;
+        let mut strip = unsafe { Strip::<V, N>::new() };
+        let (mut count, mut k, end) = (0, 0, slab.short.i.len());
+        loop {
+            // By the same steps in all forms: where it stops, blocks of what holds end.
+            while k < end && count + FILL <= ROOM {
+                for k in (k..k + FILL).step_by(N) {
+                    // SAFETY: lists are filled up; entries are grains. There is room for all lanes; the next ones overwrite what
+                    // stands past `count`.
+                    unsafe {
+                        let (i, w) = (slab.short.i.as_ptr().add(k), slab.short.w.as_ptr().add(k));
+                        let near = at.closer::<N, V>(i, w, cx.span);
+                        count += V::put(near, k as u32, hits.as_mut_ptr().add(count));
+                    }
+                }
+                k += FILL;
+            }
+            let ready = if k == end { count } else { count - count % BLOCK };
+            // What holds is moved to the front of what is ready; the rest stays where it is.
+            let holding =
+                if cx.span > 0.0 { cx.holding::<W>(&slab.short, &mut hits[..ready]) } else { ready };
+            // SAFETY: passed on.
+            unsafe { evaluate::<N, V, L, W>(cx, slab, &mut strip, &hits[..holding]) };
+            if k == end {
+                break;
+            }
+            hits.copy_within(ready..count, 0);
+            count -= ready;
         }
-        hits.copy_within(ready..count, 0);
-        count -= ready;
     }
 }
 

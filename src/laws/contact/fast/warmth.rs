@@ -41,7 +41,7 @@ impl<L: ContactLaw> Fast<L> {
     /// That of pair `k` of a short list, if its grains touch, or stick together, and conduct.
     fn conductance(&self, grains: &Grains, short: &Short, k: usize) -> Option<f64> {
         let (i, w) = (short.i[k] as usize, short.w[k]);
-        let at = Places { x: grains.x, radius: grains.radius, shifts: &self.shifts };
+        let at = Places::new(grains, &self.shifts);
         let (j, d) = (place(w), at.between(i, w));
         let which = self.laws.which(grains.kind[i], grains.kind[j]);
         let law = self.laws.distinct.get(usize::from(which)).filter(|_| which != NONE)?;

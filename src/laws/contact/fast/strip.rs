@@ -1,4 +1,4 @@
-//! Contacts evaluated together: what they need in lanes, and what comes of it to its places.
+//! Contacts that are evaluated together, stage by stage: who they are, where they touch, what the law says, sums to memory.
 
 use super::MOST_MEMORY;
 use super::lists::{Short, Slab};
@@ -28,18 +28,20 @@ pub(super) struct Strip<V, const N: usize> {
     /// x_i − x_j, by groups [length].
     apart: [Vec3<V>; GROUPS],
     geometry: [Geometry<V>; GROUPS],
-    force: [Apart<N>; GROUPS],
-    torque: [[Apart<N>; 2]; GROUPS],
+    /// On i [force].
+    force: [Outgoing<N>; GROUPS],
+    /// On i and on j, each about its centre [force × length].
+    torque: [[Outgoing<N>; 2]; GROUPS],
 }
 
 /// Vectors in lanes as they go to memory: x and y together, of lanes 0, 2, 4 … and of lanes 1, 3, 5 …, and z.
 #[derive(Clone, Copy)]
-struct Apart<const N: usize> {
+struct Outgoing<const N: usize> {
     xy: [[f64; N]; 2],
     z: [f64; N],
 }
 
-impl<const N: usize> Apart<N> {
+impl<const N: usize> Outgoing<N> {
     const ZERO: Self = Self { xy: [[0.0; N]; 2], z: [0.0; N] };
 
     #[inline(always)]
@@ -99,8 +101,8 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
             w: [0; STRIP],
             apart: [[zero; 3]; GROUPS],
             geometry: [geometry; GROUPS],
-            force: [Apart::ZERO; GROUPS],
-            torque: [[Apart::ZERO; 2]; GROUPS],
+            force: [Outgoing::ZERO; GROUPS],
+            torque: [[Outgoing::ZERO; 2]; GROUPS],
         }
     }
 
