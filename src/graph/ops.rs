@@ -3,11 +3,11 @@
 use super::spatial;
 use crate::diag::{Code, Diagnostic, Result};
 use crate::par;
-use crate::plan::{Access, Act, Gist, Level, Op, Stage, Stretch, Tick};
+use crate::plan::{Access, Act, Gist, Level, Op, Stage, Tick};
 use crate::world::bonds::LostBond;
 use crate::world::columns::HEATFLOW;
 use crate::world::index::Index;
-use crate::world::{Domain, Particles, Seen, World};
+use crate::world::{Domain, Kept, Particles, Seen, World};
 
 /// Wraps, shrinks, checks for lost particles and tells lists to rebuild, at LAMMPS' reneighbour times.
 pub struct Reneighbor {
@@ -44,12 +44,12 @@ impl Op for Reneighbor {
             w.rebuild.builds = 0;
             w.rebuild.dangerous = 0;
             (w.rebuild.due, w.rebuild.freed) = (false, false);
-            return rebuild(w, t, self);
+            return rebuild(w, t, self, true);
         }
         w.rebuild.generation += u64::from(std::mem::take(&mut w.rebuild.freed));
         if std::mem::take(&mut w.rebuild.due) {
             w.rebuild.builds += 1;
-            return rebuild(w, t, self);
+            return rebuild(w, t, self, true);
         }
         let s = &w.settings.neighbor;
         let ago = t.step - w.rebuild.step;
@@ -71,7 +71,7 @@ impl Op for Reneighbor {
             w.rebuild.dangerous += u64::from(first_chance && s.delay.max(s.every) > 1);
         }
         w.rebuild.builds += 1;
-        rebuild(w, t, self)
+        rebuild(w, t, self, false)
     }
 }
 
@@ -127,8 +127,10 @@ fn not_finite(w: &World, i: usize, t: &Tick) -> crate::diag::Diagnostics {
     .into()
 }
 
-fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor) -> Result<()> {
+/// `anew`: the scene may have changed, so that no list can stay.
+fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> {
     let n = w.n();
+    let before = w.rebuild.generation;
     let Some(domain) = &mut w.domain else { return Ok(()) };
     let p = &mut w.particles;
     if let Some(bad) = (0..n).find(|&i| p.x[i].iter().any(|a| !a.is_finite())) {
@@ -147,10 +149,17 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor) -> Result<()> {
         lose(w);
         warn_of_bonds(w, t);
     }
-    if how.sort {
+    let stays = how.sort && !anew && w.n() == n && spatial::stays(w);
+    if anew || !how.sort || w.n() != n {
+        w.rebuild.kept = Kept::default();
+    }
+    if how.sort && !stays {
         spatial::line_up(w);
     }
     w.rebuild.generation += 1;
+    if stays {
+        w.rebuild.kept.last = [before, w.rebuild.generation];
+    }
     w.rebuild.step = t.step;
     // Whoever makes radii grow says so anew in each run.
     w.rebuild.grown = w.rebuild.grown.map(|_| 0.0).filter(|_| !t.setup);
@@ -252,12 +261,7 @@ impl Op for ClearForces {
         Ok(())
     }
     fn on_stretches(&self, _: &World, _: &Tick, on: bool) -> Option<Act> {
-        let clear = |s: &mut Stretch<'_>| {
-            s.f.fill([0.0; 3]);
-            s.torque.fill([0.0; 3]);
-            Gist::default()
-        };
-        on.then(|| Box::new(clear) as Act)
+        on.then(Act::clear)
     }
     fn took_turns(&mut self, w: &mut World, _: &Tick, _: Gist) {
         w.parts.cleared = true;

@@ -1,7 +1,7 @@
 //! Grains in the order of space: neighbours near each other in memory while a run lasts.
 
 use crate::neigh::slabs::{Slabs, edges};
-use crate::world::World;
+use crate::world::{Domain, Kept, World};
 
 /// Fewer than these fit the fastest memory in any order.
 const FEW: usize = 256;
@@ -15,22 +15,128 @@ pub fn line_up(w: &mut World) {
     }
 }
 
-/// The same from the positions of the last rebuild of lists: a run that continues one has the order that this one had.
+/// The same from the positions that lists are made from: a run that continues one has the order that this one had.
 pub fn line_up_again(w: &mut World) {
-    let held = w.held();
-    let order = if held.len() == w.n() { order(w, held) } else { None };
+    let made = w.made();
+    let order = if made.len() == w.n() { order(w, made) } else { None };
     if let Some(order) = order {
         w.line_up(&order);
     }
 }
 
-fn order(w: &World, x: &[[f64; 3]]) -> Option<Vec<usize>> {
+/// Whether the grains of a scene stand in the order of space, and with which edges of cells.
+fn cells(w: &World) -> Option<[f64; 2]> {
     let p = &w.particles;
     if !p.style.sphere || p.style.peri || w.families.is_some() || p.len() < FEW {
         return None;
     }
+    Some(edges(&p.radius, w.rebuild.kept.reach(w.settings.neighbor.skin)))
+}
+
+fn order(w: &World, x: &[[f64; 3]]) -> Option<Vec<usize>> {
     let (domain, period) = (w.domain.as_ref()?, w.periods());
     let mut slabs = Slabs::default();
-    slabs.sort(x, &p.tag, edges(&p.radius, w.settings.neighbor.skin), &domain.lo, &period);
+    slabs.sort(x, &w.particles.tag, cells(w)?, &domain.lo, &period);
     Some(slabs.order.iter().map(|&i| i as usize).collect())
+}
+
+/// How far grains have gone relative to each other since lists were made for them.
+struct Drift {
+    /// At most among those of a slab and the next [length].
+    near: f64,
+    /// At most among all, along the axis of slabs [length].
+    far: f64,
+    /// See [`Kept::turns`](crate::world::Kept::turns).
+    turns: Vec<[i8; 3]>,
+}
+
+/// The part of the skin within which neighbours have to stay in one rebuild, so that lists that reach farther pay.
+const CALM: f64 = 0.4;
+/// So many rebuilds they have to outlast then.
+const PAYS: u32 = 2;
+/// Positions are added up with rounding errors.
+const SURE: f64 = 0.999;
+
+/// At a rebuild, when all have been wrapped into the box and `held` is not yet renewed: whether lists of grains, and the order
+/// that they stand in, stay as they are.
+///
+/// Lists that reach two skins beyond touching last as long as no two grains have come closer by more than one of them, because
+/// until the next rebuild they come closer by one at most. If they do not stay, this also settles how far the next ones reach.
+pub fn stays(w: &mut World) -> bool {
+    let skin = w.settings.neighbor.skin;
+    let Some(drift) = drift(w) else {
+        w.rebuild.kept = Kept::default();
+        return false;
+    };
+    let held = if w.rebuild.kept.x.is_empty() { w.held().to_vec() } else { vec![] };
+    let kept = &mut w.rebuild.kept;
+    if kept.ample && drift.near.max(drift.far) <= SURE * skin {
+        if kept.x.is_empty() {
+            kept.x = held;
+        }
+        (kept.turns, kept.outlasted) = (drift.turns, kept.outlasted + 1);
+        return true;
+    }
+    let calm = drift.near.max(drift.far) <= CALM * skin;
+    let ample = if kept.ample { kept.outlasted >= PAYS } else { calm };
+    *kept = Kept { ample, ..Kept::default() };
+    false
+}
+
+/// None where lists cannot stay, or it is not known.
+fn drift(w: &World) -> Option<Drift> {
+    let (domain, period, s) = (w.domain.as_ref()?, w.periods(), &w.settings.neighbor);
+    let [edge, far] = cells(w)?;
+    let (x, made, held) = (&w.particles.x, w.made(), w.held());
+    let known = made.len() == w.n() && held.len() == w.n();
+    let rigid = domain.flow.is_none() && w.rebuild.corners.is_some_and(|c| same_box(domain, c));
+    // Lists of two skins have to fit between a grain and its image.
+    let wide = period.iter().all(|l| *l == 0.0 || *l > 4.0 * (far + s.skin));
+    if !known || !rigid || !wide || edge != far || !s.check || w.rebuild.grown.is_some() {
+        return None;
+    }
+    let slabs = Slabs::laid_out(made, [edge, far], &domain.lo, &period);
+    let none = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    let mut ways = vec![none; slabs.count()];
+    let mut turns = w.rebuild.kept.turns.clone();
+    let of_layers = slabs.of_layers();
+    let half = period.map(|l| if l == 0.0 { f64::INFINITY } else { 0.5 * l });
+    for i in 0..x.len() {
+        // Who goes half around the box from one rebuild to the next was moved by a period.
+        if (0..3).any(|d| (x[i][d] - held[i][d]).abs() > half[d]) {
+            turns.resize(x.len(), [0; 3]);
+            for d in (0..3).filter(|d| period[*d] > 0.0) {
+                let turned = ((x[i][d] - held[i][d]) / period[d]).round();
+                turns[i][d] = turns[i][d].saturating_add(turned as i8);
+                if turns[i][d].unsigned_abs() > MOST_TURNS {
+                    return None;
+                }
+            }
+        }
+        let turned = turns.get(i).copied().unwrap_or_default();
+        let [least, most] = &mut ways[of_layers[slabs.layer_of(&made[i])]];
+        for d in 0..3 {
+            let way = x[i][d] - f64::from(turned[d]) * period[d] - made[i][d];
+            (least[d], most[d]) = (least[d].min(way), most[d].max(way));
+        }
+    }
+    let both = |a: [[f64; 3]; 2], b: [[f64; 3]; 2]| -> [[f64; 3]; 2] {
+        [std::array::from_fn(|d| a[0][d].min(b[0][d])), std::array::from_fn(|d| a[1][d].max(b[1][d]))]
+    };
+    let across = |[least, most]: [[f64; 3]; 2]| {
+        (0..3).map(|d| (most[d] - least[d]).max(0.0).powi(2)).sum::<f64>().sqrt()
+    };
+    let with_next = |k: usize| slabs.next(k).map_or(ways[k], |next| both(ways[k], ways[next]));
+    let near = (0..ways.len()).map(|k| across(with_next(k))).fold(0.0, f64::max);
+    let [least, most] = ways.iter().copied().fold(none, both);
+    let slow = slabs.slow_axis();
+    Some(Drift { near, far: most[slow] - least[slow], turns })
+}
+
+/// More turns around the box are not counted.
+const MOST_TURNS: u8 = 100;
+
+/// Whether the faces that repeat are where they were.
+fn same_box(domain: &Domain, [lo, hi]: [[f64; 3]; 2]) -> bool {
+    (0..3).all(|d| !domain.boundary.periodic(d) || (domain.lo[d], domain.hi[d]) == (lo[d], hi[d]))
 }

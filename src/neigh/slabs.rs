@@ -100,6 +100,30 @@ impl Slabs {
         }
     }
 
+    /// Cells and slabs for all points, as [`Slabs::sort`] makes them, into which nobody is sorted.
+    pub fn laid_out(x: &[[f64; 3]], edges: [f64; 2], lo: &[f64; 3], period: &[f64; 3]) -> Self {
+        let mut slabs = Self::default();
+        slabs.lay_out(x, edges, lo, period);
+        slabs
+    }
+
+    /// The axis along which slabs follow each other.
+    pub fn slow_axis(&self) -> usize {
+        self.axes[2]
+    }
+
+    /// The slab of each layer of cells.
+    pub fn of_layers(&self) -> Vec<usize> {
+        let layer = self.cells[0] * self.cells[1];
+        (0..self.count()).flat_map(|k| vec![k; self.slab(k).len() / layer]).collect()
+    }
+
+    /// The layer of cells that a point lies in.
+    pub fn layer_of(&self, x: &[f64; 3]) -> usize {
+        // A float below zero becomes 0 in the cast.
+        (((x[self.axes[2]] - self.lo[2]) * self.per_length[2]) as usize).min(self.cells[2] - 1)
+    }
+
     fn lay_out(&mut self, x: &[[f64; 3]], [edge, reach]: [f64; 2], lo: &[f64; 3], period: &[f64; 3]) {
         let (from, to) = extent(x, 0..x.len() as u32);
         let open = |d: usize| period[d] == 0.0;
@@ -143,6 +167,12 @@ impl Slabs {
     pub fn count(&self) -> usize {
         let slabs = (self.cells[2] / self.layers.max(1)).max(1);
         if self.repeats[2] && slabs > 1 { slabs & !1 } else { slabs }
+    }
+
+    /// The slab that pairs of slab `k` reach into, if there is one.
+    pub fn next(&self, k: usize) -> Option<usize> {
+        let next = (k + 1) % self.count();
+        (next > k || self.repeats[2]).then_some(next)
     }
 
     /// The cells of slab `k`.
@@ -249,6 +279,8 @@ mod tests {
                 let next = slabs.slab((k + 1) % slabs.count());
                 for cell in slabs.slab(k) {
                     let own = slabs.places(cell);
+                    let point = |at: usize| &x[slabs.order[at] as usize];
+                    assert!(own.clone().all(|at| slabs.of_layers()[slabs.layer_of(point(at))] == k));
                     slabs.runs(cell, &mut runs);
                     for i in own.clone() {
                         let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };

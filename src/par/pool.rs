@@ -73,13 +73,19 @@ pub fn for_rows(n: usize, f: impl Fn(usize) + Sync) {
 pub fn two_colours(n: usize, f: impl Fn(usize) + Sync) {
     let f = &f;
     enter(n, |threaded| {
-        for colour in 0..2 {
-            let count = (n + 1 - colour) / 2;
-            if threaded {
-                halve(0, count, &|k| f(2 * k + colour));
-            } else {
-                (0..count).for_each(|k| f(2 * k + colour));
+        if threaded {
+            (0..2).for_each(|colour| halve(0, (n + 1 - colour) / 2, &|k| f(2 * k + colour)));
+            return;
+        }
+        // An odd part right after the two even ones beside it: what it touches is in fast memory still.
+        for even in (0..n).step_by(2) {
+            f(even);
+            if even > 0 {
+                f(even - 1);
             }
+        }
+        if n > 0 && n.is_multiple_of(2) {
+            f(n - 1);
         }
     });
 }

@@ -54,12 +54,16 @@ pub fn reduce_each<S: Split, T: Send>(
         }
         let mid = n.div_ceil(CHUNK).div_ceil(2) * CHUNK;
         let (low, high) = columns.cut(mid);
-        let (a, b) = if threaded {
-            rayon::join(|| tree(start, low, true, map, join), || tree(start + mid, high, true, map, join))
-        } else {
-            (tree(start, low, false, map, join), tree(start + mid, high, false, map, join))
-        };
-        join(a, b)
+        if threaded {
+            let (a, b) = rayon::join(
+                || tree(start, low, true, map, join),
+                || tree(start + mid, high, true, map, join),
+            );
+            return join(a, b);
+        }
+        // From behind: what a loop before has touched last is in fast memory still.
+        let b = tree(start + mid, high, false, map, join);
+        join(tree(start, low, false, map, join), b)
     }
     let n = columns.rows();
     (n > 0).then(|| enter(n.div_ceil(CHUNK), |threaded| tree(0, columns, threaded, &map, &join)))

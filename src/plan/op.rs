@@ -291,6 +291,8 @@ pub trait Op: Send {
     fn reports_travel(&self) -> bool {
         false
     }
+    /// Told once all ops of a plan are known: which columns and states some of them write by name.
+    fn settle(&mut self, _written: &dyn Fn(&str) -> bool) {}
     /// Acts at the end of this step and, in the same pass, as its fix does at the beginning of the next one, which nobody
     /// looks in between of; `false` if it cannot, and has then done nothing.
     ///

@@ -95,6 +95,12 @@ impl StepPlan {
         self.unread = None;
     }
 
+    /// Tells every op what all of them write, now that they are known.
+    pub fn settle(&mut self) {
+        let written: Vec<&str> = self.ops.iter().flat_map(|p| p.op.access().writes).collect();
+        self.ops.iter_mut().for_each(|p| p.op.settle(&|what| written.contains(&what)));
+    }
+
     /// Fills in which sums are asked for at this tick.
     pub fn ask(&self, t: &mut Tick) {
         let any = |list: &[When]| list.iter().any(|w| t.ending || w.fires(t));

@@ -1,11 +1,13 @@
 //! Ops that act on each particle by itself, one after the other on each stretch of particles while that is in fast memory.
 
 use crate::math::vec3::Vec3;
-use crate::par;
+use crate::par::{self, Split};
 use crate::world::{AtomStyle, World};
 
 /// Most ops that take turns.
 const MOST: usize = 6;
+/// Particles of a stretch: what ops read and write of them fits the fastest memory.
+const STRETCH: usize = 256;
 
 /// A stretch of particles as ops see it: columns they may write, cut to the stretch, and whole columns to read.
 pub struct Stretch<'a> {
@@ -58,7 +60,118 @@ impl Gist {
 }
 
 /// What an op does to one stretch.
-pub type Act = Box<dyn Fn(&mut Stretch) -> Gist + Sync>;
+pub struct Act {
+    alone: Box<Alone>,
+    kind: Kind,
+}
+
+type Alone = dyn Fn(&mut Stretch) -> Gist + Sync;
+/// What came of a pull and a hold before, and of the motion itself.
+type Together = dyn Fn(&mut Stretch, &Beside) -> [Gist; 3] + Sync;
+
+/// What others have to know of an act to do it in their pass over particles.
+enum Kind {
+    /// Nothing: it acts alone.
+    Other,
+    /// Adds forces m a.
+    Pull(Pull),
+    /// Sets forces and torques of particles with this group bit to zero.
+    Hold(u32),
+    /// Moves particles, and can do what stands beside it.
+    Move(Box<Together>),
+    /// Sets all forces and torques to zero.
+    Clear,
+}
+
+/// An acceleration that particles of a group share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pull {
+    /// Bit of the group.
+    pub bit: u32,
+    /// The acceleration [force/mass].
+    pub a: Vec3,
+}
+
+/// What acts on particles right before and right after they are moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Beside {
+    /// First a pull.
+    pub pull: Option<Pull>,
+    /// Then forces and torques of particles with one of these group bits are set to zero.
+    pub held: u32,
+    /// At last all forces and torques are set to zero.
+    pub clears: bool,
+}
+
+impl Act {
+    /// An act of whatever kind.
+    pub fn new(alone: impl Fn(&mut Stretch) -> Gist + Sync + 'static) -> Self {
+        Self { alone: Box::new(alone), kind: Kind::Other }
+    }
+
+    /// One that adds forces m a.
+    pub fn pull(pull: Pull, alone: impl Fn(&mut Stretch) -> Gist + Sync + 'static) -> Self {
+        Self { kind: Kind::Pull(pull), ..Self::new(alone) }
+    }
+
+    /// One that sets forces and torques of a group to zero.
+    pub fn hold(bit: u32, alone: impl Fn(&mut Stretch) -> Gist + Sync + 'static) -> Self {
+        Self { kind: Kind::Hold(bit), ..Self::new(alone) }
+    }
+
+    /// One that sets all forces and torques to zero.
+    pub fn clear() -> Self {
+        let kind = Kind::Clear;
+        let alone = |s: &mut Stretch<'_>| {
+            s.f.fill([0.0; 3]);
+            s.torque.fill([0.0; 3]);
+            Gist::default()
+        };
+        Self { kind, ..Self::new(alone) }
+    }
+
+    /// One that moves particles, and in the same pass does what stands beside it, with the same bits.
+    pub fn moving(act: impl Fn(&mut Stretch, &Beside) -> [Gist; 3] + Clone + Sync + 'static) -> Self {
+        let together = act.clone();
+        let kind = Kind::Move(Box::new(together));
+        Self { kind, ..Self::new(move |s| act(s, &Beside::default())[2]) }
+    }
+}
+
+/// One pass over a stretch.
+enum Pass<'a> {
+    /// An act alone, which is at this place.
+    Alone(usize, &'a Alone),
+    /// What moves particles with what stands beside it, and the places of pull, hold and motion.
+    Together(&'a Together, Beside, [Option<usize>; 3]),
+}
+
+/// Acts in as few passes as can be.
+fn passes(acts: &[Act]) -> Vec<Pass<'_>> {
+    let mut passes = vec![];
+    let mut at = 0;
+    while at < acts.len() {
+        let (mut beside, mut places, mut k) = (Beside::default(), [None; 3], at);
+        if let Kind::Pull(pull) = acts[k].kind {
+            (beside.pull, places[0]) = (Some(pull), Some(k));
+            k += 1;
+        }
+        if let Some(Kind::Hold(bit)) = acts.get(k).map(|act| &act.kind) {
+            (beside.held, places[1]) = (*bit, Some(k));
+            k += 1;
+        }
+        let Some(Kind::Move(together)) = acts.get(k).map(|act| &act.kind) else {
+            passes.push(Pass::Alone(at, &*acts[at].alone));
+            at += 1;
+            continue;
+        };
+        places[2] = Some(k);
+        beside.clears = matches!(acts.get(k + 1).map(|act| &act.kind), Some(Kind::Clear));
+        at = k + 1 + usize::from(beside.clears);
+        passes.push(Pass::Together(&**together, beside, places));
+    }
+    passes
+}
 
 /// Lets ops take turns on all stretches; what came of each of them. Every particle sees the same as if the ops acted one
 /// after the other.
@@ -75,15 +188,32 @@ fn some(w: &mut World, acts: &[Act]) -> [Gist; MOST] {
     let columns = (&mut p.x[..], &mut p.v[..], &mut p.f[..], &p.mask[..], turned);
     type Columns<'a> =
         (&'a mut [Vec3], &'a mut [Vec3], &'a mut [Vec3], &'a [u32], Option<(&'a mut [Vec3], &'a mut [Vec3])>);
+    let passes = passes(acts);
     let stretch = |start: usize, (x, v, f, mask, turned): Columns<'_>| {
         let (omega, torque) = turned.unwrap_or_default();
         let mut stretch = Stretch { start, x, v, f, omega, torque, mask, all };
         let mut gists = [Gist::default(); MOST];
-        for (gist, act) in gists.iter_mut().zip(acts) {
-            *gist = act(&mut stretch);
+        for pass in &passes {
+            match pass {
+                Pass::Alone(at, act) => gists[*at] = act(&mut stretch),
+                Pass::Together(act, beside, places) => {
+                    let came = act(&mut stretch, beside);
+                    places.iter().zip(came).for_each(|(at, gist)| at.iter().for_each(|at| gists[*at] = gist));
+                }
+            }
         }
         gists
     };
     let join = |a: [Gist; MOST], b: [Gist; MOST]| std::array::from_fn(|k| a[k].join(b[k]));
-    par::reduce_each(columns, stretch, join).unwrap_or_default()
+    let chunk = |mut start: usize, mut rest: Columns<'_>| {
+        let mut gists = [Gist::default(); MOST];
+        while rest.rows() > 0 {
+            let n = rest.rows().min(STRETCH);
+            let (now, later) = rest.cut(n);
+            gists = join(gists, stretch(start, now));
+            (start, rest) = (start + n, later);
+        }
+        gists
+    };
+    par::reduce_each(columns, chunk, join).unwrap_or_default()
 }

@@ -221,6 +221,7 @@ impl Session {
             crate::graph::guard::seal(&mut s)?;
         }
         s.say_what_is_missing();
+        s.plan.settle();
         Ok((s.plan, energy))
     }
 

@@ -22,7 +22,7 @@ pub fn bytes(w: &World) -> u64 {
         + of(&w.bonds.list)
         + of(&w.bonds.special);
     let families = w.families.as_ref().map_or(0, |f| f.bytes() as u64);
-    columns + own + of(&w.rebuild.held) + families
+    columns + own + of(&w.rebuild.held) + of(&w.rebuild.kept.x) + of(&w.rebuild.kept.turns) + families
 }
 
 /// Bytes a particle needs besides its columns once forces act: rows of the lattice layout, or lists of contacts.

@@ -42,7 +42,7 @@ pub use images::Images;
 pub use lattice::Lattice;
 pub use minimizer::Minimizer;
 pub use particles::{AtomStyle, Own, Particles};
-pub use rebuild::Rebuild;
+pub use rebuild::{Kept, Rebuild};
 pub use region::Region;
 pub use resume::{Promise, Resume, Said};
 pub use settings::{Compat, NeighborSettings, Newton, Respa, RunStyle, Settings};
@@ -213,6 +213,12 @@ impl World {
     /// Positions at the last rebuild of neighbour lists; none before the first.
     pub fn held(&self) -> &[[f64; 3]] {
         if self.rebuild.unmoved { &self.particles.x0 } else { &self.rebuild.held }
+    }
+
+    /// The positions that lists of grains are made from: perhaps those of an earlier rebuild.
+    pub fn made(&self) -> &[[f64; 3]] {
+        let kept = &self.rebuild.kept.x;
+        if !kept.is_empty() && kept.len() == self.n() { kept } else { self.held() }
     }
 
     /// Keeps the particle `old[k]` at each new index `k`, with all that belongs to it; bonds of those

@@ -27,10 +27,10 @@ impl World {
         self.columns.gather(old);
         self.slots.gather(old, old.len());
         self.tally.gather(old);
-        let held = &mut self.rebuild.held;
-        if held.len() == old.len() {
-            *held = old.iter().map(|&k| held[k]).collect();
-        }
+        let rebuild = &mut self.rebuild;
+        gather_all(&mut rebuild.held, old);
+        gather_all(&mut rebuild.kept.x, old);
+        gather_all(&mut rebuild.kept.turns, old);
         // Lists made of indices are void.
         self.rebuild.generation += 1;
     }
@@ -70,6 +70,13 @@ impl World {
         for c in self.wall_contacts.values_mut() {
             c.rename(|[a, part]| Some(([*new.get(&a)?, part], false)), mirror);
         }
+    }
+}
+
+/// Lets entry `old[k]` stand at `k`, if there is one for each.
+fn gather_all<T: Copy>(list: &mut Vec<T>, old: &[usize]) {
+    if list.len() == old.len() {
+        *list = old.iter().map(|&k| list[k]).collect();
     }
 }
 

@@ -34,12 +34,37 @@ pub struct Rebuild {
     pub freed: bool,
     /// Counts how often particles have come or gone since the program began.
     pub roster: u64,
+    /// What lists of grains are made from.
+    #[serde(default)]
+    pub kept: Kept,
     /// How far particles may have gone in this run.
     #[serde(skip)]
     pub travel: Travel,
     /// How far they were from where they were at the last rebuild.
     #[serde(skip)]
     pub seen: Seen,
+}
+
+/// Lists of grains outlast rebuilds where all neighbours have gone nearly the same way since they were made.
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub struct Kept {
+    /// Positions that lists are made from, if not those of the last rebuild; read them by [`World::made`](super::World::made).
+    pub x: Vec<[f64; 3]>,
+    /// How many periods each particle has been moved since then to be in the box; empty where nobody was.
+    pub turns: Vec<[i8; 3]>,
+    /// Whether lists reach twice as far as one rebuild needs.
+    pub ample: bool,
+    /// How many rebuilds they have outlasted.
+    pub outlasted: u32,
+    /// The generations before and after the last rebuild that they outlasted.
+    pub last: [u64; 2],
+}
+
+impl Kept {
+    /// How far lists of grains reach beyond touching [length].
+    pub fn reach(&self, skin: f64) -> f64 {
+        if self.ample { 2.0 * skin } else { skin }
+    }
 }
 
 /// The part of the skin that growing particles may use up before lists are made anew for their size.

@@ -3,6 +3,7 @@
 
 mod budgets;
 mod cooling;
+mod flowing;
 mod impacts;
 mod looking;
 mod oblique;

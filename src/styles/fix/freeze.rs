@@ -82,7 +82,7 @@ impl Fix for Declared {
                 }
                 gist
             };
-            (!t.unchanged).then(|| Box::new(act) as Act)
+            (!t.unchanged).then(|| Act::hold(bit, act))
         };
         let told = move |w: &mut World, t: &Tick, gist: Gist| publish_levels(w, slot, t, &gist.sums);
         let name = format!("fix {} freeze", self.id);

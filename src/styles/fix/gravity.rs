@@ -7,7 +7,7 @@ use crate::math::four::{Plain, has_avx2};
 use crate::math::lanes::Lanes;
 use crate::math::threes::{self, Threes};
 use crate::math::vec3::Vec3;
-use crate::plan::{Access, Act, Gist, Op, Stage, Tick, When};
+use crate::plan::{self, Access, Act, Gist, Op, Stage, Tick, When};
 use crate::styles::command::common::{choice_or_refuse, variable_param};
 use crate::styles::matter::{check_masses, publish};
 use crate::styles::step_op::StepOp;
@@ -171,7 +171,7 @@ unsafe fn pulled_in<F: Threes>(
 
 /// One by one.
 #[inline(always)]
-fn pulled_each(f: &mut [Vec3], x: &[Vec3], mass: &[f64], mask: &[u32], bit: u32, a: Vec3) -> f64 {
+pub(super) fn pulled_each(f: &mut [Vec3], x: &[Vec3], mass: &[f64], mask: &[u32], bit: u32, a: Vec3) -> f64 {
     let mut energy = 0.0;
     for (((f, x), m), _) in f.iter_mut().zip(x).zip(mass).zip(mask).filter(|(_, mask)| **mask & bit != 0) {
         for d in 0..3 {
@@ -201,10 +201,10 @@ impl Fix for Declared {
                 return None;
             }
             let (g, unit) = (magnitude.get(w), pointer.unit(w, w.settings.two_dimensional));
-            let [ax, ay, az] = unit.map(|e| g * e);
-            Some(Box::new(move |s| {
+            let a = unit.map(|e| g * e);
+            Some(Act::pull(plan::Pull { bit, a }, move |s| {
                 let mass = &s.all.mass[s.start..][..s.x.len()];
-                let energy = pulled(s.f, s.x, mass, s.mask, bit, [ax, ay, az]);
+                let energy = pulled(s.f, s.x, mass, s.mask, bit, a);
                 Gist { sums: [energy, 0.0, 0.0], most: 0.0 }
             }))
         };

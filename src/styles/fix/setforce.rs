@@ -55,7 +55,7 @@ impl Fix for Declared {
             let (bit, values) = numbers.filter(|_| !t.unchanged)?;
             let here = level.acts(&t.phase);
             let values = values.map(|v: Option<f64>| v.map(|a| if here { a } else { 0.0 }));
-            Some(Box::new(move |s: &mut Stretch<'_>| replace(s, bit, &values)) as Act)
+            Some(Act::new(move |s: &mut Stretch<'_>| replace(s, bit, &values)))
         };
         let told = move |w: &mut World, t: &Tick, gist: Gist| publish_levels(w, slot, t, &gist.sums);
         let op = StepOp::new(format!("fix {} setforce", self.id), Stage::PostForce, access, move |w, t| {

@@ -14,6 +14,7 @@ mod near;
 mod stray;
 mod strip;
 mod sweep;
+mod turned;
 mod uneven;
 mod warmth;
 
@@ -107,7 +108,23 @@ pub struct Frame {
     /// Edge lengths; zero where the box does not repeat.
     pub period: [f64; 3],
     /// How far beyond touching the lists reach [length].
+    pub reach: f64,
+    /// How far beyond touching lists reach that are made at every rebuild [length].
     pub skin: f64,
+}
+
+/// What all grains have in common: nobody looks it up for each of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Alike {
+    radius: Option<f64>,
+    /// Where some are frozen, the mass without its sign.
+    mass: Option<f64>,
+}
+
+/// The number that all of a list are, if they are the same.
+fn one_of_all(list: &[f64]) -> Option<f64> {
+    let (first, rest) = list.split_first()?;
+    rest.iter().all(|a| a == first).then_some(*first)
 }
 
 /// Lists and contacts of all grains.
@@ -121,6 +138,10 @@ pub struct Fast<L> {
     strays: Strays,
     /// Masses with a minus sign where frozen, if some are.
     signed: Vec<f64>,
+    /// What all grains have in common.
+    alike: Alike,
+    /// How many periods grains have been moved since lists were made.
+    turns: Vec<[i8; 3]>,
     lists: Vec<Slab>,
     /// How far a grain is shifted in each image, and 0; very far for what fills lists up.
     shifts: [[f64; 4]; 32],
@@ -152,6 +173,8 @@ impl<L: ContactLaw> Fast<L> {
             tag: vec![],
             strays: Strays::default(),
             signed: vec![],
+            alike: Alike::default(),
+            turns: vec![],
             lists: vec![],
             shifts: [[0.0; 4]; 32],
             thin: 0.0,
@@ -185,7 +208,7 @@ impl<L: ContactLaw> Fast<L> {
         self.tag.is_empty()
     }
 
-    /// Makes all lists anew from these positions (wrapped into the box), pairs for which `keep(i, j)`. Contacts of the last
+    /// Makes all lists anew from these positions (wrapped into the box, see [`Fast::turn`]), pairs for which `keep(i, j)`. Contacts of the last
     /// evaluation keep what they remember; `known` are taken in addition. An evaluation must follow.
     pub fn rebuild(
         &mut self,
@@ -196,7 +219,7 @@ impl<L: ContactLaw> Fast<L> {
     ) {
         let largest = grains.radius.iter().copied().fold(0.0, f64::max);
         self.span = self.laws.span(largest);
-        let reach = frame.skin + self.span;
+        let reach = frame.reach + self.span;
         let [edge, far] = edges(grains.radius, reach);
         let mut slabs = Slabs::default();
         slabs.sort(grains.x, grains.tag, [edge, far], &frame.lo, &frame.period);
@@ -205,6 +228,7 @@ impl<L: ContactLaw> Fast<L> {
         self.lists.iter_mut().for_each(|l| l.short = Short::default());
         self.spare = vec![];
         self.strays.forget();
+        self.turns = vec![];
         self.tag.clear();
         self.tag.extend_from_slice(grains.tag);
         for (image, shift) in self.shifts.iter_mut().take(27).enumerate() {
@@ -239,7 +263,6 @@ impl<L: ContactLaw> Fast<L> {
     ) -> [f64; 6] {
         let strayed = self.strays.strayed(grains, self.thin, std::mem::take(&mut self.stale));
         self.make_short(grains, &strayed);
-        self.sign_masses(grains);
         self.sweep(grains, [f, torque], step, store, virial);
         if self.deep.is_none() && self.lists.iter().any(|l| l.deep) {
             self.deep = self.find_deep(grains);
@@ -252,7 +275,10 @@ impl<L: ContactLaw> Fast<L> {
         total
     }
 
-    fn sign_masses(&mut self, grains: &Grains) {
+    /// Takes up who is frozen and who is alike: after a [`Fast::rebuild`], and when masses, radii or who is frozen may have
+    /// changed.
+    pub fn weigh(&mut self, grains: &Grains) {
+        self.alike = Alike { radius: one_of_all(grains.radius), mass: one_of_all(grains.mass) };
         let known = if grains.frozen.is_empty() { 0 } else { self.tag.len() };
         self.signed.resize(known, 0.0);
         if known > 0 {

@@ -45,7 +45,7 @@ impl InLanes for Near<'_> {
             // SAFETY: lists are filled up; entries are grains. There is room for all lanes; those that are no hits are behind
             // the end.
             unsafe {
-                let hits = at.closer::<N, V>(i.as_ptr().add(k), w.as_ptr().add(k), reach);
+                let hits = at.closer::<N, V, false>(i.as_ptr().add(k), w.as_ptr().add(k), reach);
                 let count = V::put(hits, k as u32, out.as_mut_ptr().add(out.len()));
                 out.set_len(out.len() + count);
             }
@@ -113,6 +113,8 @@ pub(super) struct Places<'a> {
     pub x: &'a [Vec3],
     /// Radii.
     pub radius: &'a [f64],
+    /// The radius of all, if it is the same.
+    pub alike: Option<f64>,
     /// How far each image is shifted.
     pub shifts: &'a [[f64; 4]; 32],
 }
@@ -120,15 +122,15 @@ pub(super) struct Places<'a> {
 impl<'a> Places<'a> {
     /// Those of these grains.
     pub fn new(grains: &Grains<'a>, shifts: &'a [[f64; 4]; 32]) -> Self {
-        Self { x: grains.x, radius: grains.radius, shifts }
+        Self { x: grains.x, radius: grains.radius, alike: None, shifts }
     }
 
-    /// Which of some pairs have surfaces nearer than `extra`.
+    /// Which of some pairs have surfaces nearer than `extra`; `ALIKE`: all have one radius, and it is known.
     ///
     /// # Safety
     /// As many entries as there are lanes must be grains; the processor must have what the form needs.
     #[inline(always)]
-    pub unsafe fn closer<const N: usize, V: Lanes<N>>(
+    pub unsafe fn closer<const N: usize, V: Lanes<N>, const ALIKE: bool>(
         &self,
         i: *const u32,
         w: *const u32,
@@ -138,7 +140,11 @@ impl<'a> Places<'a> {
         unsafe {
             let [x, y, z] = V::apart(self.x.as_ptr(), i, w, self.shifts);
             let r = self.radius.as_ptr();
-            let reach = V::pick(r, i) + V::pick(r, w) + extra;
+            let radii = match self.alike {
+                Some(r) if ALIKE => V::all(r + r),
+                _ => V::pick(r, i) + V::pick(r, w),
+            };
+            let reach = radii + extra;
             (reach * reach).above(x * x + y * y + z * z)
         }
     }

@@ -7,6 +7,7 @@ use super::has_avx2;
 use crate::laws::contact::driver::Grains;
 use crate::math::four::{Four, Plain};
 use crate::math::lanes::Lanes;
+use crate::math::vec3::Vec3;
 use crate::neigh::slabs::Slabs;
 use crate::par;
 use crate::world::Seen;
@@ -23,6 +24,8 @@ type Place = [f64; 4];
 pub(super) struct Strays {
     /// Places of the order, slab by slab.
     members: Vec<Range<usize>>,
+    /// The slab that each one reaches into.
+    next: Vec<Option<usize>>,
     /// The grain at each place; none where it is the place itself.
     order: Vec<u32>,
     /// Each grain when the list of its own slab was made.
@@ -106,9 +109,19 @@ impl Strays {
         *self = Self::default();
     }
 
+    /// Grains have been moved by so many periods: that is not a way.
+    pub fn turn(&mut self, turns: &[[i8; 3]], period: Vec3) {
+        for place in [&mut self.own, &mut self.before] {
+            for (at, turns) in place.iter_mut().zip(turns).filter(|(_, turns)| **turns != [0; 3]) {
+                (0..3).for_each(|d| at[d] += f64::from(turns[d]) * period[d]);
+            }
+        }
+    }
+
     /// Takes up new slabs; all their lists have to be made.
     pub fn divide(&mut self, slabs: &Slabs) {
         self.members = (0..slabs.count()).map(|k| slabs.members(k)).collect();
+        self.next = (0..slabs.count()).map(|k| slabs.next(k)).collect();
         let same = slabs.order.iter().zip(0..).all(|(grain, place)| *grain == place);
         self.order = if same { vec![] } else { slabs.order.clone() };
     }
@@ -116,11 +129,6 @@ impl Strays {
     /// The grain at a place.
     fn grain(&self, place: usize) -> usize {
         if self.order.is_empty() { place } else { self.order[place] as usize }
-    }
-
-    /// The slab that slab `k` reaches into.
-    fn next(&self, k: usize) -> usize {
-        (k + 1) % self.members.len()
     }
 
     /// The slabs whose grains may have come closer than their short lists reach, or `all`, and some that are near that; their
@@ -159,7 +167,11 @@ impl Strays {
             // SAFETY: each part writes its own slab.
             unsafe { shared.get(k..k + 1)[0] = ways };
         });
-        (0..self.members.len()).map(|k| ways[k][0].join(ways[self.next(k)][1]).closer()).collect()
+        let both = |(own, next): (&[Ways; 2], &Option<usize>)| match next {
+            Some(next) => own[0].join(ways[*next][1]).closer(),
+            None => own[0].closer(),
+        };
+        ways.iter().zip(&self.next).map(both).collect()
     }
 
     /// The ways of a slab's grains since its own list was made, and since that of the slab before.
@@ -200,12 +212,11 @@ impl Strays {
     /// Keeps the present places for the list of slab `k`.
     fn see(&mut self, grains: &Grains, k: usize) {
         let place = |i: usize| [grains.x[i][0], grains.x[i][1], grains.x[i][2], grains.radius[i]];
-        let next = self.next(k);
         for at in self.members[k].clone() {
             let i = self.grain(at);
             self.own[i] = place(i);
         }
-        for at in self.members[next].clone() {
+        for at in self.next[k].map_or(0..0, |next| self.members[next].clone()) {
             let i = self.grain(at);
             self.before[i] = place(i);
         }
@@ -271,7 +282,11 @@ mod tests {
         x[8][0] += 0.04;
         assert_eq!(look(&x, false), [0usize; 0], "less than half of the skin");
         x[0][2] = f64::NAN;
-        assert_eq!(look(&x, false), [0, 2], "the last slab reaches into the first");
+        assert_eq!(look(&x, false), [0], "the last slab reaches into the first only where the axis repeats");
+        let mut around = Slabs::default();
+        around.sort(&x[..8], &tag[..8], [1.4; 2], &[0.0; 3], &[8.0, 0.0, 0.0]);
+        assert_eq!([0, 1, 2].map(|k| slabs.next(k)), [Some(1), Some(2), None]);
+        assert_eq!([0, 1].map(|k| around.next(k)), [Some(1), Some(0)]);
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Contacts that are evaluated together, stage by stage: who they are, where they touch, what the law says, sums to memory.
 
-use super::MOST_MEMORY;
 use super::lists::{Short, Slab};
 use super::sweep::Cx;
+use super::{Alike, MOST_MEMORY};
 use crate::laws::contact::driver::DEEP;
 use crate::laws::contact::{ContactLaw, Geometry, Motion};
 use crate::math::four::Four;
@@ -28,6 +28,10 @@ pub(super) struct Strip<V, const N: usize> {
     /// x_i − x_j, by groups [length].
     apart: [Vec3<V>; GROUPS],
     geometry: [Geometry<V>; GROUPS],
+    /// Of two grains, where all have one radius.
+    sizes: Option<Sizes<V>>,
+    /// The reduced mass, where all have one mass.
+    mass: Option<V>,
     /// On i [force].
     force: [Outgoing<N>; GROUPS],
     /// On i and on j, each about its centre [force × length].
@@ -90,9 +94,19 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
     /// # Safety
     /// The processor must have what the form needs.
     #[inline(always)]
-    pub unsafe fn new() -> Self {
-        // SAFETY: passed on.
-        let zero = unsafe { V::all(0.0) };
+    pub unsafe fn new(alike: Alike) -> Self {
+        // SAFETY: passed on. (No closures in here: they are not compiled for AVX.)
+        let (zero, sizes, mass) = unsafe {
+            let sizes = match alike.radius {
+                Some(radius) => Some(Sizes::of([V::all(radius); 2])),
+                None => None,
+            };
+            let mass = match alike.mass {
+                Some(mass) => Some(reduced(V::all(mass), V::all(mass))),
+                None => None,
+            };
+            (V::all(0.0), sizes, mass)
+        };
         let geometry =
             Geometry { normal: [zero; 3], overlap: zero, radii: [zero; 2], curvature: zero, mass: zero };
         Self {
@@ -101,6 +115,8 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
             w: [0; STRIP],
             apart: [[zero; 3]; GROUPS],
             geometry: [geometry; GROUPS],
+            sizes,
+            mass,
             force: [Outgoing::ZERO; GROUPS],
             torque: [[Outgoing::ZERO; 2]; GROUPS],
         }
@@ -168,10 +184,16 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
             let (i, w) = (self.i.as_ptr().add(N * group), self.w.as_ptr().add(N * group));
             let [x, y, z] = V::apart(cx.x.as_ptr(), i, w, cx.shifts);
             let (r, m) = (cx.radius.as_ptr(), cx.mass.as_ptr());
-            let radii = [V::pick(r, i), V::pick(r, w)];
-            let (mi, mj) = (V::pick(m, i), V::pick(m, w));
-            let mass = if cx.frozen { beside_frozen(mi, mj) } else { reduced(mi, mj) };
-            let g = geometry([x, y, z], radii, mass);
+            let sizes = match self.sizes {
+                Some(sizes) => sizes,
+                None => Sizes::of([V::pick(r, i), V::pick(r, w)]),
+            };
+            let mass = match (self.mass, cx.frozen) {
+                (Some(mass), false) => mass,
+                (None, false) => reduced(V::pick(m, i), V::pick(m, w)),
+                (mass, true) => beside_frozen(V::pick(m, i), V::pick(m, w), mass),
+            };
+            let g = geometry([x, y, z], &sizes, mass);
             *self.apart.get_unchecked_mut(group) = [x, y, z];
             *self.geometry.get_unchecked_mut(group) = g;
             V::any(too_deep(&g))
@@ -272,16 +294,32 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
     }
 }
 
+/// Of two grains: their radii, the sum of these, and what is made of them.
+#[derive(Clone, Copy)]
+struct Sizes<R> {
+    radii: [R; 2],
+    sum: R,
+    /// The effective radius.
+    curvature: R,
+}
+
+impl<R: Real> Sizes<R> {
+    #[inline(always)]
+    fn of(radii: [R; 2]) -> Self {
+        let sum = radii[0] + radii[1];
+        Self { radii, sum, curvature: radii[0] * radii[1] / sum }
+    }
+}
+
 /// The geometry of touching spheres, as `Geometry::of_spheres`.
 #[inline(always)]
-fn geometry<R: Real>(d: Vec3<R>, radii: [R; 2], mass: R) -> Geometry<R> {
-    let sum = radii[0] + radii[1];
+fn geometry<R: Real>(d: Vec3<R>, sizes: &Sizes<R>, mass: R) -> Geometry<R> {
     let distance = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
     Geometry {
-        normal: scale(sum.like(1.0) / distance, d),
-        overlap: sum - distance,
-        radii,
-        curvature: radii[0] * radii[1] / sum,
+        normal: scale(distance.like(1.0) / distance, d),
+        overlap: sizes.sum - distance,
+        radii: sizes.radii,
+        curvature: sizes.curvature,
         mass,
     }
 }
@@ -298,11 +336,16 @@ fn reduced<R: Real>(mi: R, mj: R) -> R {
     mi * mj / (mi + mj)
 }
 
-/// The reduced mass where frozen grains have a minus sign and count as infinitely heavy.
+/// The reduced mass where frozen grains have a minus sign and count as infinitely heavy; `free`: that of two that are not, if
+/// it is known.
 #[inline(always)]
-fn beside_frozen<R: Real>(mi: R, mj: R) -> R {
+fn beside_frozen<R: Real>(mi: R, mj: R, free: Option<R>) -> R {
     let (zero, a, b) = (mi.like(0.0), mi.abs(), mj.abs());
-    R::choose(zero.above(mj), a, R::choose(zero.above(mi), b, reduced(a, b)))
+    let free = match free {
+        Some(mass) => mass,
+        None => reduced(a, b),
+    };
+    R::choose(zero.above(mj), a, R::choose(zero.above(mi), b, free))
 }
 
 /// A single contact in plain numbers.
@@ -310,8 +353,8 @@ pub(super) unsafe fn one<L: ContactLaw, const W: usize>(cx: &Cx<L>, law: &L, sla
     let (i, w) = (slab.short.i[k] as usize, slab.short.w[k]);
     let (j, d) = (place(w), cx.places().between(i, w));
     let (mi, mj) = (cx.mass[i], cx.mass[j]);
-    let mass = if cx.frozen { beside_frozen(mi, mj) } else { reduced(mi, mj) };
-    let g = geometry(d, [cx.radius[i], cx.radius[j]], mass);
+    let mass = if cx.frozen { beside_frozen(mi, mj, None) } else { reduced(mi, mj) };
+    let g = geometry(d, &Sizes::of([cx.radius[i], cx.radius[j]]), mass);
     let motion = |i: usize| Motion { velocity: cx.v[i], spin: cx.omega[i] };
     let mut row = [0.0; MOST_MEMORY + 1];
     let past = &mut slab.short.history[k * W..][..W];

@@ -4,13 +4,14 @@ use super::form::InLanes;
 use super::lists::{FILL, Short, Slab};
 use super::near::Places;
 use super::strip::{STRIP, Strip, one};
-use super::{Fast, Laws, NONE};
+use super::{Alike, Fast, Laws, NONE};
 use crate::laws::contact::driver::Grains;
 use crate::laws::contact::{Advance, ContactLaw, Loop};
 use crate::math::four::Four;
 use crate::math::lanes::{Lanes, place};
 use crate::math::vec3::Vec3;
 use crate::par;
+use std::ops::Range;
 
 /// Hits that laws are evaluated for at a time where there are several laws: part of the order of additions.
 const BLOCK: usize = 64;
@@ -25,6 +26,8 @@ pub(super) struct Cx<'a, L> {
     pub omega: &'a [Vec3],
     pub radius: &'a [f64],
     pub mass: &'a [f64],
+    /// What all have in common.
+    pub alike: Alike,
     pub kind: &'a [u16],
     pub shifts: &'a [[f64; 4]; 32],
     pub force: par::Shared<'a, Vec3>,
@@ -42,7 +45,7 @@ pub(super) struct Cx<'a, L> {
 impl<L> Cx<'_, L> {
     /// Where grains are.
     pub fn places(&self) -> Places<'_> {
-        Places { x: self.x, radius: self.radius, shifts: self.shifts }
+        Places { x: self.x, radius: self.radius, alike: self.alike.radius, shifts: self.shifts }
     }
 }
 
@@ -96,6 +99,7 @@ impl<L: ContactLaw> Fast<L> {
             omega: grains.omega,
             radius: grains.radius,
             mass: if self.signed.is_empty() { grains.mass } else { &self.signed },
+            alike: self.alike,
             kind: grains.kind,
             shifts: &self.shifts,
             force: par::Shared::new(f),
@@ -138,21 +142,21 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
         let at = cx.places();
         let mut hits = [0; ROOM];
         // SAFETY: passed on.
-        let mut strip = unsafe { Strip::<V, N>::new() };
+        let mut strip = unsafe { Strip::<V, N>::new(cx.alike) };
         let (mut count, mut k, end) = (0, 0, slab.short.i.len());
         loop {
             // By the same steps in all forms: where it stops, blocks of what holds end.
             while k < end && count + FILL <= ROOM {
-                for k in (k..k + FILL).step_by(N) {
-                    // SAFETY: lists are filled up; entries are grains. There is room for all lanes; the next ones overwrite what
-                    // stands past `count`.
-                    unsafe {
-                        let (i, w) = (slab.short.i.as_ptr().add(k), slab.short.w.as_ptr().add(k));
-                        let near = at.closer::<N, V>(i, w, cx.span);
-                        count += V::put(near, k as u32, hits.as_mut_ptr().add(count));
+                let sure = (end - k).min((ROOM - count) / FILL * FILL);
+                let pairs = Hits { short: &slab.short, at: &at, span: cx.span, hits: &mut hits, count };
+                // SAFETY: lists are filled up; entries are grains. There is room for so many.
+                count = unsafe {
+                    match at.alike {
+                        Some(_) => pairs.of::<N, V, true>(k..k + sure),
+                        None => pairs.of::<N, V, false>(k..k + sure),
                     }
-                }
-                k += FILL;
+                };
+                k += sure;
             }
             let ready = if k == end { count } else { count - count % BLOCK };
             // What holds is moved to the front of what is ready; the rest stays where it is.
@@ -166,6 +170,35 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
             hits.copy_within(ready..count, 0);
             count -= ready;
         }
+    }
+}
+
+/// What touches, behind what is known to touch.
+struct Hits<'a, 'b> {
+    short: &'a Short,
+    at: &'a Places<'b>,
+    span: f64,
+    hits: &'a mut [u32; ROOM],
+    count: usize,
+}
+
+impl Hits<'_, '_> {
+    /// Tests some pairs of the short list; how many touch by then.
+    ///
+    /// # Safety
+    /// The range must hold whole groups of pairs of the list, for which there must be room; for `ALIKE` see [`Places::closer`].
+    #[inline(always)]
+    unsafe fn of<const N: usize, V: Lanes<N>, const ALIKE: bool>(self, pairs: Range<usize>) -> usize {
+        let Self { short, at, span, hits, mut count } = self;
+        for k in pairs.step_by(N) {
+            // SAFETY: passed on. There is room for all lanes; the next ones overwrite what stands past `count`.
+            unsafe {
+                let (i, w) = (short.i.as_ptr().add(k), short.w.as_ptr().add(k));
+                let near = at.closer::<N, V, ALIKE>(i, w, span);
+                count += V::put(near, k as u32, hits.as_mut_ptr().add(count));
+            }
+        }
+        count
     }
 }
 

@@ -231,8 +231,9 @@ impl Loop for FastLoop {
             if self.through_world {
                 self.fast.clear();
             }
-            let frame = Frame { lo: [0.0; 3], period: s.period, skin: SKIN };
+            let frame = Frame { lo: [0.0; 3], period: s.period, reach: SKIN, skin: SKIN };
             self.fast.rebuild(&s.grains(), &frame, known.as_ref(), &|i, j| s.keep(i, j));
+            self.fast.weigh(&s.grains());
         }
         let step = Advance { dt: DT, history: true };
         // An evaluation that stores nothing changes nothing.

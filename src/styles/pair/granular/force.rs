@@ -14,6 +14,7 @@ use crate::plan::{Access, Op, Stage, Tick};
 use crate::world::columns::{HEATFLOW, TEMPERATURE};
 use crate::world::contacts::{Contacts, Deep};
 use crate::world::{Allowed, World};
+use std::borrow::Cow;
 
 /// Forces and torques of all granular contacts of one pair style.
 pub struct Force {
@@ -25,6 +26,8 @@ pub struct Force {
     name: String,
     /// Whether fix freeze holds a particle; empty without one.
     frozen: Vec<bool>,
+    /// Whether nobody changes masses, radii and groups in a step.
+    steady: bool,
     /// The rebuild the lists were made at.
     generation: Option<u64>,
     plain: Plain,
@@ -50,7 +53,8 @@ impl Force {
         let fast = laws(&rules, &wanted, types).map(Fast::new);
         let (name, plain) = (format!("pair {style}"), Plain::default());
         let frozen = vec![];
-        Self { rules, wanted, style, name, frozen, generation: None, plain, fast, is_fast: false }
+        let steady = false;
+        Self { rules, wanted, style, name, frozen, steady, generation: None, plain, fast, is_fast: false }
     }
 
     /// Which solid each particle belongs to, where some rule asks.
@@ -64,15 +68,24 @@ impl Force {
 
     /// Lists from the positions of the last rebuild: later positions are within half a skin of those.
     fn renew(&mut self, w: &mut World) -> Result<()> {
-        self.generation = Some(w.rebuild.generation);
-        let period = w.periods();
+        let before = self.generation.replace(w.rebuild.generation);
+        let (period, kept) = (w.periods(), &w.rebuild.kept);
+        if let Some(fast) = self.fast.as_mut().filter(|fast| self.is_fast && fast.len() == w.n())
+            && kept.outlasted > 0
+            && before == Some(kept.last[0])
+            && w.rebuild.generation == kept.last[1]
+        {
+            fast.turn(&kept.turns, period);
+            return Ok(());
+        }
         let skin = w.settings.neighbor.skin;
         if let Some(fast) = self.fast.as_mut().filter(|fast| suits(w, period, fast)) {
             let known = if self.is_fast { None } else { w.contacts.remove(self.style) };
-            let frame = Frame { lo: w.domain()?.lo, period, skin };
+            let frame = Frame { lo: w.domain()?.lo, period, reach: kept.reach(skin), skin };
             let allowed = Allowed::new(w);
-            let grains = Grains { x: built_at(w), ..grains(w, period, &[], &[])? };
+            let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
             fast.rebuild(&grains, &frame, known.as_ref(), &|i, j| allowed.pair(i, j));
+            fast.turn(&kept.turns, period);
             self.is_fast = true;
             return Ok(());
         }
@@ -91,7 +104,8 @@ impl Force {
         }
     }
 
-    fn run_fast(&mut self, w: &mut World, t: &Tick, period: Vec3, store: bool) -> Result<()> {
+    /// Contacts by the fast loop; `anew`: masses may not be those of the step before.
+    fn run_fast(&mut self, w: &mut World, t: &Tick, period: Vec3, store: bool, anew: bool) -> Result<()> {
         let Some(fast) = &mut self.fast else { return Ok(()) };
         w.contacts.remove(self.style);
         let step = Advance { dt: t.dt, history: !t.setup };
@@ -99,6 +113,9 @@ impl Force {
         let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
         let masses = w.contact_masses();
         let grains = Grains { mass: &masses, ..grains(w, period, &[], &self.frozen)? };
+        if anew || matches!(masses, Cow::Owned(_)) {
+            fast.weigh(&grains);
+        }
         let virial = fast.run(&grains, [&mut f, &mut torque], step, store, t.virial);
         let deep = fast.deep;
         drop(masses);
@@ -167,14 +184,26 @@ impl Op for Force {
             self.find_bodies(w);
         }
         let stale = self.is_fast && self.fast.as_ref().is_some_and(|f| f.len() != w.n());
-        if stale || self.generation != Some(w.rebuild.generation) {
+        let renewed = stale || self.generation != Some(w.rebuild.generation);
+        if renewed {
             self.renew(w)?;
         }
         let period = w.periods();
         // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
         let store = !t.setup || w.settings.lammps();
-        find_frozen(w, &mut self.frozen);
-        if self.is_fast { self.run_fast(w, t, period, store) } else { self.run_plain(w, t, period, store) }
+        let anew = renewed || t.setup || !self.steady;
+        if anew {
+            find_frozen(w, &mut self.frozen);
+        }
+        match self.is_fast {
+            true => self.run_fast(w, t, period, store, anew),
+            false => self.run_plain(w, t, period, store),
+        }
+    }
+
+    fn settle(&mut self, written: &dyn Fn(&str) -> bool) {
+        // Who comes or goes has lists made anew, and all is read again.
+        self.steady = !["mass", "mask", "radius"].into_iter().any(written);
     }
 
     fn finish(&mut self, w: &mut World) -> Result<()> {
@@ -206,11 +235,17 @@ fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<G
     Laws::new(types, |a, b| rules.get(a, b).map(|r| r.law))
 }
 
+/// The positions that lists are made from. They may be older than those of the last rebuild.
+fn made_at(w: &World) -> &[Vec3] {
+    let made = w.made();
+    if made.len() == w.n() { made } else { &w.particles.x }
+}
+
 /// Whether the fast loop can take these particles.
 fn suits(w: &World, period: Vec3, fast: &Fast<Granular>) -> bool {
     let p = &w.particles;
     let most = p.radius.iter().copied().fold(0.0, f64::max);
-    let more = w.settings.neighbor.skin + fast.span(most);
+    let more = w.rebuild.kept.reach(w.settings.neighbor.skin) + fast.span(most);
     let still = w.domain.as_ref().is_none_or(|d| d.flow.is_none());
     let fits = still && w.families.is_none() && !p.is_empty() && p.len() <= MOST_GRAINS;
     fits && !meet_twice(w, period, most, more)
@@ -221,7 +256,7 @@ const FEW: usize = 64;
 
 /// Whether two grains might meet in two images at once, with surfaces up to `more` apart, or one meets itself.
 fn meet_twice(w: &World, period: Vec3, most: f64, more: f64) -> bool {
-    let (radius, x) = (&w.particles.radius, built_at(w));
+    let (radius, x) = (&w.particles.radius, made_at(w));
     let shortest = period.into_iter().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
     if 2.0 * (2.0 * most + more) <= shortest {
         return false;
