@@ -1,7 +1,9 @@
 //! Grains in the order of space: neighbours near each other in memory while a run lasts.
 
 use crate::neigh::slabs::{Slabs, edges};
+use crate::par;
 use crate::world::{Domain, Kept, World};
+use std::ops::Range;
 
 /// Fewer than these fit the fastest memory in any order.
 const FEW: usize = 256;
@@ -96,45 +98,78 @@ fn drift(w: &World) -> Option<Drift> {
         return None;
     }
     let slabs = Slabs::laid_out(made, [edge, far], &domain.lo, &period);
-    let none = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    let mut ways = vec![none; slabs.count()];
-    let mut turns = w.rebuild.kept.turns.clone();
     let of_layers = slabs.of_layers();
-    let half = period.map(|l| if l == 0.0 { f64::INFINITY } else { 0.5 * l });
-    for i in 0..x.len() {
-        // Who goes half around the box from one rebuild to the next was moved by a period.
-        if (0..3).any(|d| (x[i][d] - held[i][d]).abs() > half[d]) {
-            turns.resize(x.len(), [0; 3]);
+    let before = &w.rebuild.kept.turns;
+    let gone = |range: Range<usize>| {
+        let mut gone = Gone { ways: vec![STILL; slabs.count()], turned: vec![] };
+        for i in range {
+            let mut turns = before.get(i).copied().unwrap_or_default();
+            // Who is half around the box from where it was at the last rebuild has been moved by a period.
             for d in (0..3).filter(|d| period[*d] > 0.0) {
-                let turned = ((x[i][d] - held[i][d]) / period[d]).round();
-                turns[i][d] = turns[i][d].saturating_add(turned as i8);
-                if turns[i][d].unsigned_abs() > MOST_TURNS {
-                    return None;
+                let way = x[i][d] - held[i][d];
+                if way.abs() > 0.5 * period[d] {
+                    turns[d] = turns[d].saturating_add((way / period[d]).round() as i8);
+                    gone.turned.push((i, turns));
                 }
             }
+            let [least, most] = &mut gone.ways[of_layers[slabs.layer_of(&made[i])]];
+            for d in 0..3 {
+                let way = x[i][d] - f64::from(turns[d]) * period[d] - made[i][d];
+                (least[d], most[d]) = (least[d].min(way), most[d].max(way));
+            }
         }
-        let turned = turns.get(i).copied().unwrap_or_default();
-        let [least, most] = &mut ways[of_layers[slabs.layer_of(&made[i])]];
-        for d in 0..3 {
-            let way = x[i][d] - f64::from(turned[d]) * period[d] - made[i][d];
-            (least[d], most[d]) = (least[d].min(way), most[d].max(way));
+        gone
+    };
+    let Gone { ways, turned } = par::reduce(x.len(), gone, Gone::join)?;
+    let mut turns = before.clone();
+    for (i, now) in turned {
+        turns.resize(x.len(), [0; 3]);
+        turns[i] = now;
+        if now.iter().any(|n| n.unsigned_abs() > MOST_TURNS) {
+            return None;
         }
     }
-    let both = |a: [[f64; 3]; 2], b: [[f64; 3]; 2]| -> [[f64; 3]; 2] {
-        [std::array::from_fn(|d| a[0][d].min(b[0][d])), std::array::from_fn(|d| a[1][d].max(b[1][d]))]
-    };
-    let across = |[least, most]: [[f64; 3]; 2]| {
-        (0..3).map(|d| (most[d] - least[d]).max(0.0).powi(2)).sum::<f64>().sqrt()
-    };
     let with_next = |k: usize| slabs.next(k).map_or(ways[k], |next| both(ways[k], ways[next]));
     let near = (0..ways.len()).map(|k| across(with_next(k))).fold(0.0, f64::max);
-    let [least, most] = ways.iter().copied().fold(none, both);
+    let [least, most] = ways.iter().copied().fold(STILL, both);
     let slow = slabs.slow_axis();
     Some(Drift { near, far: most[slow] - least[slow], turns })
 }
 
 /// More turns around the box are not counted.
 const MOST_TURNS: u8 = 100;
+
+/// The least and the most of some ways [length].
+type Bounds = [[f64; 3]; 2];
+
+/// Those of nobody.
+const STILL: Bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+
+/// Bounds of two sets of ways together.
+fn both(a: Bounds, b: Bounds) -> Bounds {
+    [std::array::from_fn(|d| a[0][d].min(b[0][d])), std::array::from_fn(|d| a[1][d].max(b[1][d]))]
+}
+
+/// How far two of these ways are from each other at most.
+fn across([least, most]: Bounds) -> f64 {
+    (0..3).map(|d| (most[d] - least[d]).max(0.0).powi(2)).sum::<f64>().sqrt()
+}
+
+/// What some grains have done since lists were made.
+struct Gone {
+    /// Their ways, slab by slab.
+    ways: Vec<Bounds>,
+    /// Who was moved by periods since the last rebuild, and by how many since lists were made.
+    turned: Vec<(usize, [i8; 3])>,
+}
+
+impl Gone {
+    fn join(mut self, other: Self) -> Self {
+        self.ways.iter_mut().zip(other.ways).for_each(|(a, b)| *a = both(*a, b));
+        self.turned.extend(other.turned);
+        self
+    }
+}
 
 /// Whether the faces that repeat are where they were.
 fn same_box(domain: &Domain, [lo, hi]: [[f64; 3]; 2]) -> bool {

@@ -24,7 +24,8 @@ impl Style for NeighModify {
             summary: "Says when neighbour lists are rebuilt and which pairs they leave out.",
             text: "A rebuild is considered every N steps, not before `delay` steps after the last one, and with `check yes` \
                    only if some particle has moved half the skin; the delay must be a multiple of N. Wrapping into the box, shrink-wrapping and the test for \
-                   lost particles happen then too. `exclude type I J` and `exclude group A B` leave pairs out, `exclude molecule/intra G` (or `molecule G`) those within a molecule of the group, `molecule/inter G` \
+                   lost particles happen then too. Lists of grains that flow side by side outlast rebuilds, which the log counts all \
+                   the same. `exclude type I J` and `exclude group A B` leave pairs out, `exclude molecule/intra G` (or `molecule G`) those within a molecule of the group, `molecule/inter G` \
                    those across molecules, `exclude \
                    none` forgets all such rules. Peridynamic particles excluded from each other get no bonds if the rule stands when families are found, at the first \
                    run; later it takes short-range contact away and leaves bonds. `page`, `one`, `binsize` and `cluster` are accepted without effect. \

@@ -169,9 +169,10 @@ fn carry<const W: usize>(old: &Short, now: f64, new: &mut Short) {
             at += 1;
         }
         let before = &rows[at.min(rows.len() - 1)];
-        let lasts = old.t.get(at) == Some(t) && before[W - 1] == now;
+        let lasts = usize::from(old.t.get(at) == Some(t)) & usize::from(before[W - 1] == now);
         *row = *before;
-        row[W - 1] = if lasts { now } else { -1.0 };
+        // Looked up: as a choice it becomes a branch, which is guessed wrong for every other pair.
+        row[W - 1] = [-1.0, now][lasts];
     }
 }
 
