@@ -94,8 +94,9 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
     /// # Safety
     /// The processor must have what the form needs.
     #[inline(always)]
+    #[allow(clippy::manual_map)] // closures are not compiled for AVX
     pub unsafe fn new(alike: Alike) -> Self {
-        // SAFETY: passed on. (No closures in here: they are not compiled for AVX.)
+        // SAFETY: passed on.
         let (zero, sizes, mass) = unsafe {
             let sizes = match alike.radius {
                 Some(radius) => Some(Sizes::of([V::all(radius); 2])),

@@ -326,6 +326,7 @@ pub(super) fn faster(a: f64, b: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::Pull;
 
     const N: usize = 11;
 
@@ -389,6 +390,51 @@ mod tests {
         }
         assert_eq!(fastest, most);
         assert_eq!([faster(1.0, f64::NAN), faster(f64::INFINITY, 2.0)], [f64::INFINITY; 2]);
+    }
+
+    #[test]
+    fn what_stands_beside_a_motion_has_the_bits_it_has_alone() {
+        let (pull, held) = (Pull { bit: 1, a: [0.3, -0.7, 1.1] }, 4);
+        let beside = Beside { pull: Some(pull), held, clears: true };
+        let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 2 };
+        let mass: Vec<f64> = (0..N).map(|i| 1.0 + i as f64 / 3.0).collect();
+        let masses = |k: usize| std::array::from_fn(|l| mass.get(4 * k + l).copied().unwrap_or(1.0));
+        let radius: Vec<f64> = (0..N).map(|i| 0.3 + 0.01 * i as f64).collect();
+        // All alike, one that is held, one that is not pulled, one that stays.
+        for mask in [[3; N], [3, 3, 3, 3, 7, 3, 3, 3, 3, 3, 7], [3, 3, 3, 3, 3, 2, 3, 3, 1, 3, 3]] {
+            let run = |together: bool| {
+                let (mut x, mut v, mut omega) = (some(1), some(2), some(3));
+                let (mut f, mut torque) = (some(4), some(5));
+                let (mut energy, mut taken) = (0.0, [0.0; 3]);
+                if !together {
+                    energy = pulled_each(&mut f, &x, &mass, &mask, pull.bit, pull.a);
+                    for i in (0..N).filter(|&i| mask[i] & held != 0) {
+                        (0..3).for_each(|d| taken[d] += f[i][d]);
+                        (f[i], torque[i]) = ([0.0; 3], [0.0; 3]);
+                    }
+                }
+                let c = Chunk {
+                    x: &mut x,
+                    v: &mut v,
+                    f: &mut f,
+                    mask: &mask,
+                    omega: &mut omega,
+                    torque: &mut torque,
+                    radius: &radius,
+                };
+                let with = if together { beside } else { Beside::default() };
+                let came = k.chunk(c, Part::Both, true, &with, masses);
+                if together {
+                    (energy, taken) = (came.energy, came.held);
+                    assert_eq!([f, torque], [vec![[0.0; 3]; N], vec![[0.0; 3]; N]]);
+                }
+                ((x, v, omega, taken, came.most), energy)
+            };
+            let ((one, energy), (each, expected)) = (run(true), run(false));
+            assert_eq!(one, each);
+            // Eleven terms of about 10, added in another order.
+            assert!((energy - expected).abs() < 1e-13, "{energy} {expected}");
+        }
     }
 
     #[test]
