@@ -149,10 +149,11 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> 
         lose(w);
         warn_of_bonds(w, t);
     }
-    let stays = how.sort && !anew && w.n() == n && spatial::stays(w);
-    if anew || !how.sort || w.n() != n {
+    let same = how.sort && !anew && w.n() == n;
+    if !same {
         w.rebuild.kept = Kept::default();
     }
+    let stays = same && spatial::stays(w);
     if how.sort && !stays {
         spatial::line_up(w);
     }

@@ -1,4 +1,5 @@
-//! Grains in the order of space: neighbours near each other in memory while a run lasts.
+//! Grains in the order of space: neighbours near each other in memory while a run lasts, and for how many rebuilds their
+//! lists and this order last.
 
 use crate::neigh::slabs::{Slabs, edges};
 use crate::par;
@@ -92,8 +93,9 @@ fn drift(w: &World) -> Option<Drift> {
     let (x, made, held) = (&w.particles.x, w.made(), w.held());
     let known = made.len() == w.n() && held.len() == w.n();
     let rigid = domain.flow.is_none() && w.rebuild.corners.is_some_and(|c| same_box(domain, c));
-    // Lists of two skins have to fit between a grain and its image.
-    let wide = period.iter().all(|l| *l == 0.0 || *l > 4.0 * (far + s.skin));
+    // Lists of two skins have to fit between a grain and its image, with room to spare.
+    let most = far - w.rebuild.kept.reach(s.skin) + 2.0 * s.skin;
+    let wide = period.iter().all(|l| *l == 0.0 || *l > 4.0 * most);
     if !known || !rigid || !wide || edge != far || !s.check || w.rebuild.grown.is_some() {
         return None;
     }

@@ -120,8 +120,13 @@ impl Slabs {
 
     /// The layer of cells that a point lies in.
     pub fn layer_of(&self, x: &[f64; 3]) -> usize {
+        self.along(2, x)
+    }
+
+    /// Which cell along one of the axes, of which 2 is the slow one.
+    fn along(&self, k: usize, x: &[f64; 3]) -> usize {
         // A float below zero becomes 0 in the cast.
-        (((x[self.axes[2]] - self.lo[2]) * self.per_length[2]) as usize).min(self.cells[2] - 1)
+        (((x[self.axes[k]] - self.lo[k]) * self.per_length[k]) as usize).min(self.cells[k] - 1)
     }
 
     fn lay_out(&mut self, x: &[[f64; 3]], [edge, reach]: [f64; 2], lo: &[f64; 3], period: &[f64; 3]) {
@@ -155,10 +160,7 @@ impl Slabs {
     }
 
     fn cell_of(&self, x: &[f64; 3]) -> u32 {
-        // A float below zero becomes 0 in the cast.
-        let at: [usize; 3] = std::array::from_fn(|k| {
-            (((x[self.axes[k]] - self.lo[k]) * self.per_length[k]) as usize).min(self.cells[k] - 1)
-        });
+        let at = [0, 1, 2].map(|k| self.along(k, x));
         ((at[2] * self.cells[1] + at[1]) * self.cells[0] + at[0]) as u32
     }
 

@@ -68,8 +68,9 @@ pub fn for_rows(n: usize, f: impl Fn(usize) + Sync) {
     });
 }
 
-/// Calls `f` for the parts 0, 2, 4, ..., then for 1, 3, 5, ...: part `k` may write into part `k + 1` as well,
-/// and every particle receives its additions in the same order for any number of threads.
+/// Calls `f` for the parts 0, 2, 4, ..., and for each of 1, 3, 5, ... after the two beside it: part `k` may write into part
+/// `k + 1` as well (the last one into the first if there is an even number of them), and every particle receives its additions in
+/// the same order for any number of threads.
 pub fn two_colours(n: usize, f: impl Fn(usize) + Sync) {
     let f = &f;
     enter(n, |threaded| {
@@ -117,6 +118,20 @@ mod tests {
                 hits[k].fetch_add(1, Ordering::Relaxed);
             });
             assert!(hits.iter().all(|h| h.load(Ordering::Relaxed) == 2));
+        }
+    }
+
+    #[test]
+    fn odd_parts_follow_both_even_ones_beside_them() {
+        set_threads(1);
+        for n in [1, 2, 3, 8, 9] {
+            let order = std::sync::Mutex::new(vec![]);
+            two_colours(n, |k| order.lock().unwrap().push(k));
+            let order = order.into_inner().unwrap();
+            let at = |k: usize| order.iter().position(|o| *o == k % n);
+            for k in (1..n).step_by(2) {
+                assert!(at(k) > at(k - 1) && (at(k) > at(k + 1)), "{order:?}");
+            }
         }
     }
 

@@ -60,25 +60,27 @@ impl Gist {
 }
 
 /// What an op does to one stretch.
-pub struct Act {
-    alone: Box<Alone>,
-    kind: Kind,
+pub struct Act(Does);
+
+enum Does {
+    /// In a pass of its own, but for what a motion can take into its pass.
+    Alone(Box<Alone>, Kind),
+    /// Moves particles, with what stands beside it.
+    Move(Box<Together>),
 }
 
 type Alone = dyn Fn(&mut Stretch) -> Gist + Sync;
 /// What came of a pull and a hold before, and of the motion itself.
 type Together = dyn Fn(&mut Stretch, &Beside) -> [Gist; 3] + Sync;
 
-/// What others have to know of an act to do it in their pass over particles.
+/// What a motion has to know of an act to take it into its pass.
 enum Kind {
-    /// Nothing: it acts alone.
+    /// Nothing: it stays alone.
     Other,
     /// Adds forces m a.
     Pull(Pull),
     /// Sets forces and torques of particles with this group bit to zero.
     Hold(u32),
-    /// Moves particles, and can do what stands beside it.
-    Move(Box<Together>),
     /// Sets all forces and torques to zero.
     Clear,
 }
@@ -104,37 +106,45 @@ pub struct Beside {
 }
 
 impl Act {
+    fn of(kind: Kind, alone: impl Fn(&mut Stretch) -> Gist + Sync + 'static) -> Self {
+        Self(Does::Alone(Box::new(alone), kind))
+    }
+
     /// An act of whatever kind.
     pub fn new(alone: impl Fn(&mut Stretch) -> Gist + Sync + 'static) -> Self {
-        Self { alone: Box::new(alone), kind: Kind::Other }
+        Self::of(Kind::Other, alone)
     }
 
     /// One that adds forces m a.
     pub fn pull(pull: Pull, alone: impl Fn(&mut Stretch) -> Gist + Sync + 'static) -> Self {
-        Self { kind: Kind::Pull(pull), ..Self::new(alone) }
+        Self::of(Kind::Pull(pull), alone)
     }
 
     /// One that sets forces and torques of a group to zero.
     pub fn hold(bit: u32, alone: impl Fn(&mut Stretch) -> Gist + Sync + 'static) -> Self {
-        Self { kind: Kind::Hold(bit), ..Self::new(alone) }
+        Self::of(Kind::Hold(bit), alone)
     }
 
     /// One that sets all forces and torques to zero.
     pub fn clear() -> Self {
-        let kind = Kind::Clear;
-        let alone = |s: &mut Stretch<'_>| {
+        Self::of(Kind::Clear, |s| {
             s.f.fill([0.0; 3]);
             s.torque.fill([0.0; 3]);
             Gist::default()
-        };
-        Self { kind, ..Self::new(alone) }
+        })
     }
 
-    /// One that moves particles, and in the same pass does what stands beside it, with the same bits.
-    pub fn moving(act: impl Fn(&mut Stretch, &Beside) -> [Gist; 3] + Clone + Sync + 'static) -> Self {
-        let together = act.clone();
-        let kind = Kind::Move(Box::new(together));
-        Self { kind, ..Self::new(move |s| act(s, &Beside::default())[2]) }
+    /// One that moves particles, and in the same pass does what stands beside it, with the bits that this has alone.
+    pub fn moving(act: impl Fn(&mut Stretch, &Beside) -> [Gist; 3] + Sync + 'static) -> Self {
+        Self(Does::Move(Box::new(act)))
+    }
+
+    /// What a motion has to know of it; nothing of a motion.
+    fn kind(&self) -> &Kind {
+        match &self.0 {
+            Does::Alone(_, kind) => kind,
+            Does::Move(_) => &Kind::Other,
+        }
     }
 }
 
@@ -146,29 +156,33 @@ enum Pass<'a> {
     Together(&'a Together, Beside, [Option<usize>; 3]),
 }
 
-/// Acts in as few passes as can be.
+/// Acts in as few passes as can be: a motion takes a pull and then a hold right before it, and a clearing right behind.
 fn passes(acts: &[Act]) -> Vec<Pass<'_>> {
     let mut passes = vec![];
     let mut at = 0;
-    while at < acts.len() {
+    while let Some(act) = acts.get(at) {
         let (mut beside, mut places, mut k) = (Beside::default(), [None; 3], at);
-        if let Kind::Pull(pull) = acts[k].kind {
-            (beside.pull, places[0]) = (Some(pull), Some(k));
+        if let Kind::Pull(pull) = act.kind() {
+            (beside.pull, places[0]) = (Some(*pull), Some(k));
             k += 1;
         }
-        if let Some(Kind::Hold(bit)) = acts.get(k).map(|act| &act.kind) {
+        if let Some(Kind::Hold(bit)) = acts.get(k).map(Act::kind) {
             (beside.held, places[1]) = (*bit, Some(k));
             k += 1;
         }
-        let Some(Kind::Move(together)) = acts.get(k).map(|act| &act.kind) else {
-            passes.push(Pass::Alone(at, &*acts[at].alone));
-            at += 1;
-            continue;
-        };
-        places[2] = Some(k);
-        beside.clears = matches!(acts.get(k + 1).map(|act| &act.kind), Some(Kind::Clear));
-        at = k + 1 + usize::from(beside.clears);
-        passes.push(Pass::Together(&**together, beside, places));
+        match (acts.get(k).map(|act| &act.0), &act.0) {
+            (Some(Does::Move(together)), _) => {
+                places[2] = Some(k);
+                beside.clears = matches!(acts.get(k + 1).map(Act::kind), Some(Kind::Clear));
+                at = k + 1 + usize::from(beside.clears);
+                passes.push(Pass::Together(&**together, beside, places));
+            }
+            (_, Does::Alone(alone, _)) => {
+                passes.push(Pass::Alone(at, &**alone));
+                at += 1;
+            }
+            (_, Does::Move(_)) => unreachable!("a motion begins its own pass"),
+        }
     }
     passes
 }
@@ -216,4 +230,37 @@ fn some(w: &mut World, acts: &[Act]) -> [Gist; MOST] {
         gists
     };
     par::reduce_each(columns, chunk, join).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Passes in a word each: the acts' places in a pass of a motion, `c` if it clears.
+    fn told(acts: &[Act]) -> Vec<String> {
+        let told = |pass: &Pass| match pass {
+            Pass::Alone(at, _) => format!("{at}"),
+            Pass::Together(_, beside, places) => {
+                let at: String = places.iter().flatten().map(|k| format!("{k}+")).collect();
+                at + if beside.clears { "c" } else { "" }
+            }
+        };
+        passes(acts).iter().map(told).collect()
+    }
+
+    #[test]
+    fn a_motion_takes_what_stands_right_beside_it_in_this_order() {
+        let none = |_: &mut Stretch<'_>| Gist::default();
+        let pull = || Act::pull(Pull { bit: 1, a: [0.0; 3] }, none);
+        let hold = || Act::hold(2, none);
+        let moving = || Act::moving(|_, _| [Gist::default(); 3]);
+        assert_eq!(told(&[pull(), hold(), moving(), Act::clear()]), ["0+1+2+c"]);
+        assert_eq!(told(&[hold(), pull(), moving(), Act::clear()]), ["0", "1+2+c"]);
+        assert_eq!(told(&[pull(), pull(), hold(), moving()]), ["0", "1+2+3+"]);
+        assert_eq!(
+            told(&[pull(), Act::new(none), moving(), hold(), Act::clear()]),
+            ["0", "1", "2+", "3", "4"]
+        );
+        assert_eq!(told(&[pull(), hold(), Act::clear(), moving(), moving()]), ["0", "1", "2", "3+", "4+"]);
+    }
 }

@@ -3,6 +3,7 @@
 use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
+use crate::math::vec3::Vec3;
 use crate::plan::{Access, Act, Gist, Op, Stage, Stretch, Tick};
 use crate::styles::matter::publish_levels;
 use crate::styles::step_op::StepOp;
@@ -48,6 +49,22 @@ impl FixStyle for Freeze {
     }
 }
 
+/// Sets forces and torques, where there are some, of particles with the bit to zero and adds up the forces [force].
+#[inline(always)]
+pub(super) fn hold(f: &mut [Vec3], torque: &mut [Vec3], mask: &[u32], bit: u32, taken: &mut [f64; 3]) {
+    // Frozen grains lie together: most eights have none.
+    for (k, eight) in mask.chunks(8).enumerate() {
+        if eight.iter().fold(0, |all, m| all | m) & bit == 0 {
+            continue;
+        }
+        for i in (8 * k..).zip(eight).filter(|(_, m)| **m & bit != 0).map(|(i, _)| i) {
+            (0..3).for_each(|d| taken[d] += f[i][d]);
+            f[i] = [0.0; 3];
+            torque.get_mut(i).into_iter().for_each(|torque| *torque = [0.0; 3]);
+        }
+    }
+}
+
 #[derive(Clone)]
 struct Declared {
     id: String,
@@ -70,16 +87,7 @@ impl Fix for Declared {
         let hold = move |_: &World, t: &Tick, _: bool| -> Option<Act> {
             let act = move |s: &mut Stretch<'_>| {
                 let mut gist = Gist::default();
-                // Frozen grains lie together: most eights have none.
-                for (k, eight) in s.mask.chunks(8).enumerate() {
-                    if eight.iter().fold(0, |all, m| all | m) & bit == 0 {
-                        continue;
-                    }
-                    for i in (8 * k..).zip(eight).filter(|(_, m)| **m & bit != 0).map(|(i, _)| i) {
-                        (0..3).for_each(|d| gist.sums[d] += s.f[i][d]);
-                        (s.f[i], s.torque[i]) = ([0.0; 3], [0.0; 3]);
-                    }
-                }
+                hold(s.f, s.torque, s.mask, bit, &mut gist.sums);
                 gist
             };
             (!t.unchanged).then(|| Act::hold(bit, act))

@@ -160,16 +160,30 @@ unsafe fn pulled_in<F: Threes>(
         }
         unsafe {
             let (m, p) = (F::load(m.as_ptr()), f.as_flattened_mut().as_mut_ptr());
-            let ([fa, fb, fc], [ma, mb, mc]) = (threes::load::<F>(p), m.spread());
-            threes::store([fa + ma * along[0], fb + mb * along[1], fc + mc * along[2]], p);
-            let [x, y, z] = F::parted(threes::load(x.as_flattened().as_ptr()));
-            sum = sum - m * (x * a[0] + y * a[1] + z * a[2]);
+            let (f, depth) =
+                pulled_four(threes::load::<F>(p), threes::load(x.as_flattened().as_ptr()), m, along, a);
+            threes::store(f, p);
+            sum = sum - depth;
         }
     }
     energy + sum.numbers().iter().sum::<f64>()
 }
 
-/// One by one.
+/// f + m a of four, and m a·x; `along`: four times a.
+#[inline(always)]
+pub(super) fn pulled_four<F: Threes>(
+    [fa, fb, fc]: [F; 3],
+    x: [F; 3],
+    m: F,
+    along: [F; 3],
+    a: Vec3,
+) -> ([F; 3], F) {
+    let ([ma, mb, mc], [x, y, z]) = (m.spread(), F::parted(x));
+    let f = [fa + ma * along[0], fb + mb * along[1], fc + mc * along[2]];
+    (f, m * (x * a[0] + y * a[1] + z * a[2]))
+}
+
+/// [`pulled`], one by one.
 #[inline(always)]
 pub(super) fn pulled_each(f: &mut [Vec3], x: &[Vec3], mass: &[f64], mask: &[u32], bit: u32, a: Vec3) -> f64 {
     let mut energy = 0.0;

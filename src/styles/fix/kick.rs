@@ -1,6 +1,6 @@
 //! Half kicks and drifts of velocity Verlet in one pass over memory, with what acts on particles right before and after.
 
-mod lanes;
+mod pass;
 
 use super::nve::half_step;
 use crate::diag::Result;
@@ -8,7 +8,7 @@ use crate::plan::{Act, Gist, Solids, Stretch, Tick};
 use crate::styles::matter::Masses;
 use crate::styles::step_op::StepOp;
 use crate::world::{GroupId, World};
-use lanes::{Kick, Part, faster};
+use pass::{Kick, Part, faster};
 
 /// Lets the op that begins a step make whole ones in stretches: half kicks and drifts of a group; with `inertia`,
 /// I / (m R²), spins too: ω += Δt/2 · torque/I. How far anybody has gone at most is told to the account of ways.

@@ -8,8 +8,16 @@ use crate::world::{Allowed, World};
 
 /// The positions that lists are made from: those of the last rebuild, of which later ones are within half a skin [length].
 pub fn built_at(w: &World) -> &[Vec3] {
-    let held = w.held();
-    if held.len() == w.n() { held } else { &w.particles.x }
+    known_or_present(w, w.held())
+}
+
+/// The positions that lists are made from which outlast rebuilds: perhaps those of an earlier one [length].
+pub fn made_at(w: &World) -> &[Vec3] {
+    known_or_present(w, w.made())
+}
+
+fn known_or_present<'a>(w: &'a World, known: &'a [Vec3]) -> &'a [Vec3] {
+    if known.len() == w.n() { known } else { &w.particles.x }
 }
 
 /// Pairs within reach plus `skin` at the positions `x` that `allowed` lets meet, sorted by their tags.

@@ -208,8 +208,9 @@ impl<L: ContactLaw> Fast<L> {
         self.tag.is_empty()
     }
 
-    /// Makes all lists anew from these positions (wrapped into the box, see [`Fast::turn`]), pairs for which `keep(i, j)`. Contacts of the last
-    /// evaluation keep what they remember; `known` are taken in addition. An evaluation must follow.
+    /// Makes all lists anew from these positions (wrapped into the box; who is elsewhere by now, see [`Fast::turn`]), pairs for
+    /// which `keep(i, j)`. Contacts of the last evaluation keep what they remember; `known` are taken in addition. An evaluation
+    /// must follow.
     pub fn rebuild(
         &mut self,
         grains: &Grains,

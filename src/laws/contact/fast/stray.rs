@@ -110,7 +110,7 @@ impl Strays {
     }
 
     /// Grains have been moved by so many periods: that is not a way.
-    pub fn turn(&mut self, turns: &[[i8; 3]], period: Vec3) {
+    pub fn turn(&mut self, turns: &[[i16; 3]], period: Vec3) {
         for place in [&mut self.own, &mut self.before] {
             for (at, turns) in place.iter_mut().zip(turns).filter(|(_, turns)| **turns != [0; 3]) {
                 (0..3).for_each(|d| at[d] += f64::from(turns[d]) * period[d]);

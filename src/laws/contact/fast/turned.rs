@@ -14,9 +14,9 @@ impl<L: ContactLaw> Fast<L> {
         if turns == self.turns {
             return;
         }
-        let code = |n: &[i8; 3]| i32::from(n[0]) + 3 * i32::from(n[1]) + 9 * i32::from(n[2]);
-        let of = |list: &[[i8; 3]], i: usize| list.get(i).copied().unwrap_or_default();
-        let more: Vec<[i8; 3]> = (0..self.tag.len())
+        let code = |n: &[i16; 3]| i32::from(n[0]) + 3 * i32::from(n[1]) + 9 * i32::from(n[2]);
+        let of = |list: &[[i8; 3]], i: usize| list.get(i).copied().unwrap_or_default().map(i16::from);
+        let more: Vec<[i16; 3]> = (0..self.tag.len())
             .map(|i| std::array::from_fn(|d| of(turns, i)[d] - of(&self.turns, i)[d]))
             .collect();
         // The code of an image is a sum over axes: what its grains are moved by adds to it.

@@ -1,6 +1,6 @@
 //! The op of granular contacts: list when it is due, contacts, forces and torques.
 
-use super::super::shared::{add_virial, built_at, find_frozen, near};
+use super::super::shared::{add_virial, built_at, find_frozen, made_at, near};
 use super::reach::reaching;
 use crate::diag::Result;
 use crate::laws::contact::bodies::solids;
@@ -66,7 +66,8 @@ impl Force {
         }
     }
 
-    /// Lists from the positions of the last rebuild: later positions are within half a skin of those.
+    /// Lists for the present rebuild: those there are, if they outlast it; else new ones from the positions that the world keeps
+    /// for that, from which all lists reach far enough until the next rebuild.
     fn renew(&mut self, w: &mut World) -> Result<()> {
         let before = self.generation.replace(w.rebuild.generation);
         let (period, kept) = (w.periods(), &w.rebuild.kept);
@@ -233,12 +234,6 @@ fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<G
         return None;
     }
     Laws::new(types, |a, b| rules.get(a, b).map(|r| r.law))
-}
-
-/// The positions that lists are made from. They may be older than those of the last rebuild.
-fn made_at(w: &World) -> &[Vec3] {
-    let made = w.made();
-    if made.len() == w.n() { made } else { &w.particles.x }
 }
 
 /// Whether the fast loop can take these particles.
