@@ -7,7 +7,7 @@ use crate::plan::{Access, Act, Gist, Level, Op, Stage, Tick};
 use crate::world::bonds::LostBond;
 use crate::world::columns::HEATFLOW;
 use crate::world::index::Index;
-use crate::world::{Domain, Kept, Particles, Seen, World};
+use crate::world::{Domain, Extent, Kept, Particles, Seen, World};
 
 /// Wraps, shrinks, checks for lost particles and tells lists to rebuild, at LAMMPS' reneighbour times.
 pub struct Reneighbor {
@@ -133,14 +133,19 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> 
     let before = w.rebuild.generation;
     let Some(domain) = &mut w.domain else { return Ok(()) };
     let p = &mut w.particles;
-    if let Some(bad) = (0..n).find(|&i| p.x[i].iter().any(|a| !a.is_finite())) {
+    let extent = Extent::of(&p.x, domain);
+    if let Some(bad) = extent.as_ref().and_then(|e| e.bad) {
         return Err(not_finite(w, bad, t));
     }
     carry(domain, p);
-    p.image.wrap(domain, &mut p.x);
-    domain.shrink(&p.x);
+    let inside = extent.is_none_or(|extent| {
+        p.image.wrap(domain, &mut p.x, &extent.out);
+        domain.shrink(extent.corners);
+        // Faces that are fixed wrap nobody.
+        extent.corners.iter().all(|corner| domain.keeps(corner))
+    });
     let domain = &*domain;
-    if !p.x.iter().all(|x| domain.keeps(x)) {
+    if !inside {
         let lost: Vec<usize> = (0..n).filter(|&i| !domain.keeps(&p.x[i])).collect();
         if how.lost == Lost::Error {
             return Err(too_far(w, &lost, t));
@@ -224,7 +229,9 @@ fn hold(w: &mut World) {
     if rebuild.unmoved {
         rebuild.held = Vec::new();
     } else {
-        rebuild.held.clone_from(&p.x);
+        rebuild.held.reserve_exact(p.x.len().saturating_sub(rebuild.held.len()));
+        rebuild.held.resize(p.x.len(), [0.0; 3]);
+        par::each((&mut rebuild.held[..], &p.x[..]), |_, (held, x)| held.copy_from_slice(x));
     }
 }
 

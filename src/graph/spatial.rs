@@ -100,10 +100,11 @@ fn drift(w: &World) -> Option<Drift> {
         return None;
     }
     let slabs = Slabs::laid_out(made, [edge, far], &domain.lo, &period);
-    let of_layers = slabs.of_layers();
+    let slabs_of = slabs.far();
+    let of_layers = slabs_of.of_layers();
     let before = &w.rebuild.kept.turns;
     let gone = |range: Range<usize>| {
-        let mut gone = Gone { ways: vec![STILL; slabs.count()], turned: vec![] };
+        let mut gone = Gone { ways: vec![STILL; slabs_of.count()], turned: vec![] };
         for i in range {
             let mut turns = before.get(i).copied().unwrap_or_default();
             // Who is half around the box from where it was at the last rebuild has been moved by a period.
@@ -131,7 +132,7 @@ fn drift(w: &World) -> Option<Drift> {
             return None;
         }
     }
-    let with_next = |k: usize| slabs.next(k).map_or(ways[k], |next| both(ways[k], ways[next]));
+    let with_next = |k: usize| slabs_of.next(k).map_or(ways[k], |next| both(ways[k], ways[next]));
     let near = (0..ways.len()).map(|k| across(with_next(k))).fold(0.0, f64::max);
     let [least, most] = ways.iter().copied().fold(STILL, both);
     let slow = slabs.slow_axis();

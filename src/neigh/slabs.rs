@@ -2,6 +2,7 @@
 
 use super::grid::extent;
 use super::list::small;
+use crate::par;
 use std::ops::Range;
 
 /// Layers of cells in a slab at least: fixed, because it decides the order in which forces are added up.
@@ -23,8 +24,8 @@ pub struct Slabs {
     repeats: [bool; 3],
     lo: [f64; 3],
     per_length: [f64; 3],
-    /// Layers of cells in a slab: pairs reach into the next slab at most.
-    layers: usize,
+    /// Layers of cells in a slab, so that pairs of cells reach into the next slab at most, and so that all pairs do.
+    layers: [usize; 2],
     /// First place of each cell, and the number of all places.
     start: Vec<u32>,
     /// The point at each place.
@@ -78,7 +79,10 @@ impl Slabs {
         period: &[f64; 3],
     ) {
         self.lay_out(x, [edge, reach], lo, period);
-        let cell: Vec<u32> = x.iter().map(|p| self.cell_of(p)).collect();
+        let mut cell = vec![0; x.len()];
+        par::each((&mut cell[..], x), |_, (cell, x)| {
+            cell.iter_mut().zip(x).for_each(|(cell, x)| *cell = self.cell_of(x));
+        });
         self.start.clear();
         self.start.resize(self.cells.iter().product::<usize>() + 1, 0);
         cell.iter().for_each(|&c| self.start[c as usize + 1] += 1);
@@ -112,10 +116,14 @@ impl Slabs {
         self.axes[2]
     }
 
-    /// The slab of each layer of cells.
-    pub fn of_layers(&self) -> Vec<usize> {
-        let layer = self.cells[0] * self.cells[1];
-        (0..self.count()).flat_map(|k| vec![k; self.slab(k).len() / layer]).collect()
+    /// Slabs for pairs that reach into neighbouring cells.
+    pub fn near(&self) -> Cut<'_> {
+        Cut { of: self, layers: self.layers[0] }
+    }
+
+    /// Slabs for all pairs: where spheres are of about one size, the same ones.
+    pub fn far(&self) -> Cut<'_> {
+        Cut { of: self, layers: self.layers[1] }
     }
 
     /// The layer of cells that a point lies in.
@@ -146,10 +154,11 @@ impl Slabs {
             }
             size *= (all / room).cbrt().clamp(1.01, 1e100);
         };
-        self.layers = if reach > size { LAYERS.max((reach / size).ceil() as usize) } else { LAYERS };
+        let far = if reach > size { LAYERS.max((reach / size).ceil() as usize) } else { LAYERS };
+        self.layers = [LAYERS, far];
         // The slow axis: the longest of those that do not repeat, or the longest of all if these are thin.
         let slow = |open_only: bool| (0..3).filter(|&d| !open_only || open(d)).max_by_key(|&d| count[d]);
-        let thin = |d: &usize| count[*d] < 4 * self.layers;
+        let thin = |d: &usize| count[*d] < 4 * far;
         let slowest = slow(true).filter(|d| !thin(d)).or(slow(false)).unwrap_or(2);
         let mut rest = [0, 1, 2].into_iter().filter(|&d| d != slowest);
         self.axes = [rest.next().unwrap_or(0), rest.next().unwrap_or(1), slowest];
@@ -162,31 +171,6 @@ impl Slabs {
     fn cell_of(&self, x: &[f64; 3]) -> u32 {
         let at = [0, 1, 2].map(|k| self.along(k, x));
         ((at[2] * self.cells[1] + at[1]) * self.cells[0] + at[0]) as u32
-    }
-
-    /// Number of slabs. Pairs of a slab ([`Slabs::runs`]) lie in it or reach into the next one, of the last into the
-    /// first where the slow axis repeats; there are then an even number of slabs, or one.
-    pub fn count(&self) -> usize {
-        let slabs = (self.cells[2] / self.layers.max(1)).max(1);
-        if self.repeats[2] && slabs > 1 { slabs & !1 } else { slabs }
-    }
-
-    /// The slab that pairs of slab `k` reach into, if there is one.
-    pub fn next(&self, k: usize) -> Option<usize> {
-        let next = (k + 1) % self.count();
-        (next > k || self.repeats[2]).then_some(next)
-    }
-
-    /// The cells of slab `k`.
-    pub fn slab(&self, k: usize) -> Range<usize> {
-        let (layers, slabs, layer) = (self.cells[2], self.count(), self.cells[0] * self.cells[1]);
-        k * layers / slabs * layer..(k + 1) * layers / slabs * layer
-    }
-
-    /// The places of slab `k`.
-    pub fn members(&self, k: usize) -> Range<usize> {
-        let cells = self.slab(k);
-        self.start[cells.start] as usize..self.start[cells.end] as usize
     }
 
     /// The places of a cell.
@@ -239,6 +223,47 @@ impl Slabs {
     }
 }
 
+/// Cells cut into slabs across the slow axis, some layers each.
+#[derive(Clone, Copy, Debug)]
+pub struct Cut<'a> {
+    of: &'a Slabs,
+    layers: usize,
+}
+
+impl Cut<'_> {
+    /// Number of slabs. Pairs of a slab lie in it or reach into the next one, of the last into the first where the slow axis
+    /// repeats; there are then an even number of slabs, or one.
+    pub fn count(&self) -> usize {
+        let slabs = (self.of.cells[2] / self.layers.max(1)).max(1);
+        if self.of.repeats[2] && slabs > 1 { slabs & !1 } else { slabs }
+    }
+
+    /// The slab that pairs of slab `k` reach into, if there is one.
+    pub fn next(&self, k: usize) -> Option<usize> {
+        let next = (k + 1) % self.count();
+        (next > k || self.of.repeats[2]).then_some(next)
+    }
+
+    /// The cells of slab `k`.
+    pub fn slab(&self, k: usize) -> Range<usize> {
+        let [nx, ny, layers] = self.of.cells;
+        let slabs = self.count();
+        k * layers / slabs * (nx * ny)..(k + 1) * layers / slabs * (nx * ny)
+    }
+
+    /// The places of slab `k`.
+    pub fn members(&self, k: usize) -> Range<usize> {
+        let cells = self.slab(k);
+        self.of.start[cells.start] as usize..self.of.start[cells.end] as usize
+    }
+
+    /// The slab of each layer of cells.
+    pub fn of_layers(&self) -> Vec<usize> {
+        let layer = self.of.cells[0] * self.of.cells[1];
+        (0..self.count()).flat_map(|k| vec![k; self.slab(k).len() / layer]).collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -277,12 +302,12 @@ mod tests {
             let mut slabs = Slabs::default();
             slabs.sort(&x, &tag, [1.0; 2], &[0.0; 3], &period);
             let (mut found, mut runs) = (BTreeSet::new(), vec![]);
-            for k in 0..slabs.count() {
-                let next = slabs.slab((k + 1) % slabs.count());
-                for cell in slabs.slab(k) {
+            for k in 0..slabs.near().count() {
+                let next = slabs.near().slab((k + 1) % slabs.near().count());
+                for cell in slabs.near().slab(k) {
                     let own = slabs.places(cell);
                     let point = |at: usize| &x[slabs.order[at] as usize];
-                    assert!(own.clone().all(|at| slabs.of_layers()[slabs.layer_of(point(at))] == k));
+                    assert!(own.clone().all(|at| slabs.near().of_layers()[slabs.layer_of(point(at))] == k));
                     slabs.runs(cell, &mut runs);
                     for i in own.clone() {
                         let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
@@ -290,7 +315,7 @@ mod tests {
                             for j in r.from as usize..r.to as usize {
                                 let reach =
                                     |c: &Range<usize>| c.clone().any(|c| slabs.places(c).contains(&j));
-                                assert!(reach(&slabs.slab(k)) || reach(&next));
+                                assert!(reach(&slabs.near().slab(k)) || reach(&next));
                                 let (a, b) = (slabs.order[i] as usize, slabs.order[j] as usize);
                                 let entry = if a > b { (a, b, r.image) } else { (b, a, 26 - r.image) };
                                 assert!(found.insert(entry), "{entry:?} twice");
@@ -311,11 +336,11 @@ mod tests {
         for period in [[0.0; 3], [9.0, 4.0, 3.0]] {
             let mut slabs = Slabs::default();
             slabs.sort(&x, &tag, [0.3, 1.1], &[0.0; 3], &period);
-            let count = slabs.count();
-            assert!(count >= 4);
+            let count = slabs.far().count();
+            assert!(count >= 4 && slabs.near().count() > count);
             let of = |i: usize| {
                 let place = slabs.order.iter().position(|o| *o as usize == i).unwrap();
-                (0..count).find(|k| slabs.members(*k).contains(&place)).unwrap()
+                (0..count).find(|k| slabs.far().members(*k).contains(&place)).unwrap()
             };
             for (i, j, _) in all(&x[..300], 1.1, period) {
                 let (a, b) = (of(i), of(j));

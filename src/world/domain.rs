@@ -145,19 +145,9 @@ impl Domain {
         d
     }
 
-    /// Moves shrink-wrapped faces to the particles' extent, as LAMMPS does at every reneighbouring.
-    pub fn shrink(&mut self, x: &[[f64; 3]]) {
-        let mut lo = [f64::INFINITY; 3];
-        let mut hi = [f64::NEG_INFINITY; 3];
-        for p in x {
-            for d in 0..3 {
-                lo[d] = lo[d].min(p[d]);
-                hi[d] = hi[d].max(p[d]);
-            }
-        }
-        if x.is_empty() {
-            return;
-        }
+    /// Moves shrink-wrapped faces to the extent of the particles, which lie between these corners, as LAMMPS does at every
+    /// reneighbouring.
+    pub fn shrink(&mut self, [lo, hi]: [[f64; 3]; 2]) {
         for d in 0..3 {
             match self.boundary.0[d][0] {
                 Face::Shrink => self.lo[d] = lo[d] - self.small[d],

@@ -55,14 +55,11 @@ impl Images {
         self.particles = old.len();
     }
 
-    /// Wraps all positions into the box and counts their crossings.
-    pub fn wrap(&mut self, domain: &Domain, x: &mut [[f64; 3]]) {
-        if domain.periodic() == [false; 3] {
-            return;
-        }
-        for (i, x) in x.iter_mut().enumerate() {
+    /// Wraps those who are `out` of the box into it and counts their crossings.
+    pub fn wrap(&mut self, domain: &Domain, x: &mut [[f64; 3]], out: &[usize]) {
+        for &i in out {
             let mut image = self[i];
-            domain.wrap(x, &mut image);
+            domain.wrap(&mut x[i], &mut image);
             self.set(i, image);
         }
     }
@@ -106,9 +103,9 @@ mod tests {
         let mut images = Images::default();
         (0..3).for_each(|_| images.push([0; 3]));
         let mut x = [[0.5; 3], [1.25, 0.5, 0.5], [0.5; 3]];
-        images.wrap(&domain(Face::Fixed), &mut x);
+        images.wrap(&domain(Face::Fixed), &mut x, &[]);
         assert_eq!((images[1], images.bytes()), ([0; 3], 0));
-        images.wrap(&domain(Face::Periodic), &mut x);
+        images.wrap(&domain(Face::Periodic), &mut x, &[1]);
         assert_eq!((images[1], x[1][0]), ([1, 0, 0], 0.25));
         images.push([0, 0, 2]);
         images.append(&mut Images::default());

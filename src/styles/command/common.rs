@@ -6,7 +6,7 @@ use crate::lang::args::blame;
 use crate::lang::{Args, Param, RefKind, ValueRef, Word};
 use crate::math::rng::Marsaglia;
 use crate::styles::{ActCx, BuildCx};
-use crate::world::{Boundary, Domain, Particles, World};
+use crate::world::{Boundary, Domain, Extent, Particles, World};
 
 /// The refusal of a word that LAMMPS understands and perigrain does not.
 pub fn not_here(word: &Word, what: &str) -> Diagnostics {
@@ -236,8 +236,11 @@ pub fn ramp(at: f64, between: [f64; 2], by: [f64; 2]) -> f64 {
 /// Wraps particles into the box and lets shrink-wrapped faces follow, as LAMMPS does after it has moved them.
 pub fn settle(world: &mut World) {
     let Some(domain) = &mut world.domain else { return };
-    world.particles.image.wrap(domain, &mut world.particles.x);
-    domain.shrink(&world.particles.x);
+    let p = &mut world.particles;
+    if let Some(extent) = Extent::of(&p.x, domain) {
+        p.image.wrap(domain, &mut p.x, &extent.out);
+        domain.shrink(extent.corners);
+    }
 }
 
 /// Gives particles the mass that belongs to a density: 4/3 π r³ ρ for one with a radius, else ρ itself.

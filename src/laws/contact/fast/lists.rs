@@ -81,11 +81,11 @@ impl<L: ContactLaw> Fast<L> {
     ) {
         let at = InOrder::new(grains, &slabs.order);
         let mut lists = std::mem::take(&mut self.lists);
-        lists.resize(slabs.count(), Slab::default());
+        lists.resize(slabs.near().count(), Slab::default());
         let shared = par::Shared::new(&mut lists);
         let this = &*self;
         let everywhere = !this.laws.which.contains(&NONE);
-        par::for_rows(slabs.count(), |k| {
+        par::for_rows(slabs.near().count(), |k| {
             // SAFETY: each part writes its own slab.
             let slab = unsafe { &mut shared.get(k..k + 1)[0] };
             let keep = |i: u32, j: u32| {
@@ -209,7 +209,7 @@ impl<K: Fn(u32, u32) -> bool> InLanes for Search<'_, K> {
         out.w.clear();
         let order = &slabs.order;
         let mut runs = vec![];
-        for cell in slabs.slab(k) {
+        for cell in slabs.near().slab(k) {
             let own = slabs.places(cell);
             if own.is_empty() {
                 continue;

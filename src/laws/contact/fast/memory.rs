@@ -178,5 +178,6 @@ impl<L: ContactLaw> Fast<L> {
         self.lists.iter_mut().for_each(|l| l.long = Default::default());
         self.spare = vec![];
         self.strays.forget();
+        self.strays_of_large.forget();
     }
 }

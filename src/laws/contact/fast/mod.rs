@@ -1,8 +1,8 @@
 //! Contacts of many grains: spatial order, short lists, several contacts at a time; the same numbers as the plain driver.
 //!
-//! Grains are sorted into slabs of cells ([`Slabs`], as thick as the largest grains reach); the world does well to stand in
-//! that order. Each slab has a list of the pairs within the skin, and of those a shorter list of pairs within a thin second
-//! skin, which holds what contacts remember.
+//! Grains are sorted into slabs of cells ([`Slabs`]); the world does well to stand in that order. Each slab has a list of the
+//! pairs within the skin, and of those a shorter list of pairs within a thin second skin, which holds what contacts remember.
+//! Where sizes differ much, slabs are as thick as small grains reach, and pairs with large ones have lists of their own.
 //! A step tests the distances of the short list and evaluates the law for four or eight pairs at a time ([`form`]), stage by
 //! stage ([`strip`]); slabs in two colours keep the order of additions for any number of threads.
 
@@ -136,12 +136,15 @@ pub struct Fast<L> {
     tag: Vec<u32>,
     /// Who has strayed from where short lists were made.
     strays: Strays,
+    /// The same for lists of pairs with large grains.
+    strays_of_large: Strays,
     /// Masses with a minus sign where frozen, if some are.
     signed: Vec<f64>,
     /// What all grains have in common.
     alike: Alike,
     /// How many periods grains have been moved since lists were made.
     turns: Vec<[i8; 3]>,
+    /// Those of slabs, then those of pairs with large grains.
     lists: Vec<Slab>,
     /// How far a grain is shifted in each image, and 0; very far for what fills lists up.
     shifts: [[f64; 4]; 32],
@@ -172,6 +175,7 @@ impl<L: ContactLaw> Fast<L> {
             form: Form::here(),
             tag: vec![],
             strays: Strays::default(),
+            strays_of_large: Strays::default(),
             signed: vec![],
             alike: Alike::default(),
             turns: vec![],
@@ -229,6 +233,7 @@ impl<L: ContactLaw> Fast<L> {
         self.lists.iter_mut().for_each(|l| l.short = Short::default());
         self.spare = vec![];
         self.strays.forget();
+        self.strays_of_large.forget();
         self.turns = vec![];
         self.tag.clear();
         self.tag.extend_from_slice(grains.tag);
@@ -262,7 +267,10 @@ impl<L: ContactLaw> Fast<L> {
         store: bool,
         virial: bool,
     ) -> [f64; 6] {
-        let strayed = self.strays.strayed(grains, self.thin, std::mem::take(&mut self.stale));
+        let stale = std::mem::take(&mut self.stale);
+        let mut strayed = self.strays.strayed(grains, self.thin, stale);
+        let of_large = self.strays_of_large.strayed(grains, self.thin, stale);
+        strayed.extend(of_large.into_iter().map(|k| self.strays.lists() + k));
         self.make_short(grains, &strayed);
         self.sweep(grains, [f, torque], step, store, virial);
         if self.deep.is_none() && self.lists.iter().any(|l| l.deep) {
@@ -274,6 +282,14 @@ impl<L: ContactLaw> Fast<L> {
             (0..6).for_each(|k| total[k] += slab.virial[k]);
         }
         total
+    }
+
+    /// Calls `f` for all lists in two rounds, of those of slabs and then of those of large grains: a list may write to its slab
+    /// and the next one.
+    fn each_list(&self, f: impl Fn(usize) + Sync) {
+        let first = self.strays.lists();
+        par::two_colours(first, &f);
+        par::two_colours(self.strays_of_large.lists(), |k| f(first + k));
     }
 
     /// Takes up who is frozen and who is alike: after a [`Fast::rebuild`], and when masses, radii or who is frozen may have

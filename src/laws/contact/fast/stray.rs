@@ -22,13 +22,13 @@ type Place = [f64; 4];
 /// Where grains were when the short lists that they are in were made.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Strays {
-    /// Places of the order, slab by slab.
+    /// Places of the order, list by list.
     members: Vec<Range<usize>>,
     /// The slab that each one reaches into.
     next: Vec<Option<usize>>,
     /// The grain at each place; none where it is the place itself.
     order: Vec<u32>,
-    /// Each grain when the list of its own slab was made.
+    /// Who is at each place, when the list of its own slab was made.
     own: Vec<Place>,
     /// And when that of the slab before was made, into which it reaches.
     before: Vec<Place>,
@@ -109,21 +109,43 @@ impl Strays {
         *self = Self::default();
     }
 
+    /// How many lists.
+    pub fn lists(&self) -> usize {
+        self.members.len()
+    }
+
     /// Grains have been moved by so many periods: that is not a way.
     pub fn turn(&mut self, turns: &[[i16; 3]], period: Vec3) {
-        for place in [&mut self.own, &mut self.before] {
-            for (at, turns) in place.iter_mut().zip(turns).filter(|(_, turns)| **turns != [0; 3]) {
-                (0..3).for_each(|d| at[d] += f64::from(turns[d]) * period[d]);
+        for at in 0..self.own.len() {
+            let turns = turns[self.grain(at)];
+            for place in [&mut self.own[at], &mut self.before[at]] {
+                (0..3).filter(|d| turns[*d] != 0).for_each(|d| place[d] += f64::from(turns[d]) * period[d]);
             }
         }
     }
 
     /// Takes up new slabs; all their lists have to be made.
     pub fn divide(&mut self, slabs: &Slabs) {
-        self.members = (0..slabs.count()).map(|k| slabs.members(k)).collect();
-        self.next = (0..slabs.count()).map(|k| slabs.next(k)).collect();
+        let near = slabs.near();
+        self.members = (0..near.count()).map(|k| near.members(k)).collect();
+        self.next = (0..near.count()).map(|k| near.next(k)).collect();
         let same = slabs.order.iter().zip(0..).all(|(grain, place)| *grain == place);
         self.order = if same { vec![] } else { slabs.order.clone() };
+        self.make_room(slabs.order.len());
+    }
+
+    /// Takes up lists in which these grains are, each of them once; all have to be made.
+    pub fn take(&mut self, lists: &[Vec<u32>]) {
+        let end_of = |k: usize| lists[..k].iter().map(Vec::len).sum();
+        self.members = (0..lists.len()).map(|k| end_of(k)..end_of(k + 1)).collect();
+        self.next = vec![None; lists.len()];
+        self.order = lists.concat();
+        self.make_room(self.order.len());
+    }
+
+    fn make_room(&mut self, places: usize) {
+        self.own.resize(places, [0.0; 4]);
+        self.before.resize(places, [0.0; 4]);
     }
 
     /// The grain at a place.
@@ -143,10 +165,6 @@ impl Strays {
                 "somebody moves grains without a word"
             );
             return vec![];
-        }
-        if all {
-            self.own.resize(grains.x.len(), [0.0; 4]);
-            self.before.resize(grains.x.len(), [0.0; 4]);
         }
         let closer = if all { vec![f64::INFINITY; self.members.len()] } else { self.closer(grains) };
         let worn: Vec<usize> = (0..closer.len()).filter(|&k| closer[k] >= WORN * thin).collect();
@@ -202,8 +220,8 @@ impl Strays {
                 let i = self.grain(place);
                 let now = F::load3(grains.x.get_unchecked(i).as_ptr());
                 let radius = grains.radius.get_unchecked(i);
-                own.take(now, *radius, self.own.get_unchecked(i));
-                before.take(now, *radius, self.before.get_unchecked(i));
+                own.take(now, *radius, self.own.get_unchecked(place));
+                before.take(now, *radius, self.before.get_unchecked(place));
             }
             [own.ways(), before.ways()]
         }
@@ -213,12 +231,10 @@ impl Strays {
     fn see(&mut self, grains: &Grains, k: usize) {
         let place = |i: usize| [grains.x[i][0], grains.x[i][1], grains.x[i][2], grains.radius[i]];
         for at in self.members[k].clone() {
-            let i = self.grain(at);
-            self.own[i] = place(i);
+            self.own[at] = place(self.grain(at));
         }
         for at in self.next[k].map_or(0..0, |next| self.members[next].clone()) {
-            let i = self.grain(at);
-            self.before[i] = place(i);
+            self.before[at] = place(self.grain(at));
         }
     }
 }
@@ -234,7 +250,7 @@ mod tests {
         let tag: Vec<u32> = (0..9).collect();
         let mut slabs = Slabs::default();
         slabs.sort(&x, &tag, [1.4; 2], &[0.0; 3], &[0.0; 3]);
-        assert_eq!(slabs.count(), 3);
+        assert_eq!(slabs.near().count(), 3);
         (slabs, x, tag)
     }
 
@@ -285,8 +301,8 @@ mod tests {
         assert_eq!(look(&x, false), [0], "the last slab reaches into the first only where the axis repeats");
         let mut around = Slabs::default();
         around.sort(&x[..8], &tag[..8], [1.4; 2], &[0.0; 3], &[8.0, 0.0, 0.0]);
-        assert_eq!([0, 1, 2].map(|k| slabs.next(k)), [Some(1), Some(2), None]);
-        assert_eq!([0, 1].map(|k| around.next(k)), [Some(1), Some(0)]);
+        assert_eq!([0, 1, 2].map(|k| slabs.near().next(k)), [Some(1), Some(2), None]);
+        assert_eq!([0, 1].map(|k| around.near().next(k)), [Some(1), Some(0)]);
     }
 
     #[test]

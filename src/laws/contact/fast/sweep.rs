@@ -111,8 +111,8 @@ impl<L: ContactLaw> Fast<L> {
             frozen: !self.signed.is_empty(),
             span: self.span,
         };
-        par::two_colours(slabs.len(), |k| {
-            // SAFETY: each part writes its own slab, and forces of grains in it and the next one, which two_colours keeps
+        self.each_list(|k| {
+            // SAFETY: each part writes its own slab, and forces of grains in it and the next one, which each_list keeps
             // apart; list entries are grains; AVX only where there is AVX.
             unsafe {
                 let slab = &mut slabs.get(k..k + 1)[0];

@@ -5,6 +5,7 @@ use crate::laws::contact::driver::{Average, Curvature, Rule, Rules, Sweep};
 use crate::laws::contact::{
     Classic, Damping, Friction, Granular, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting,
 };
+use crate::math::lanes::place;
 use crate::math::rng::ParkMiller;
 use crate::neigh::list::{Reach, View, Wanted, pairs};
 use crate::world::{Compat, Travel};
@@ -319,6 +320,26 @@ fn same_bits(first: &Scene, law: Table) {
     assert!(one.2.len() > 300);
     assert_eq!(one, run(false, 2));
     assert_eq!(one, run(true, 1));
+}
+
+#[test]
+fn small_grains_beside_large_ones_have_slabs_of_their_own() {
+    let s = uneven([10.45, 0.0, 0.0]);
+    let mut fast = FastLoop::new(false, between);
+    fast.step(&s, 0);
+    let Fast { lists, strays, strays_of_large, .. } = &fast.fast;
+    let (of_slabs, of_large) = (strays.lists(), strays_of_large.lists());
+    assert!(
+        of_large > 0 && of_slabs > of_large && lists.len() == of_slabs + of_large,
+        "{of_slabs} {of_large}"
+    );
+    let limit = crate::neigh::list::small(&s.radius);
+    for (k, list) in lists.iter().enumerate() {
+        let real = list.short.i.iter().zip(&list.short.w).filter(|(_, w)| **w >> PLACE_BITS != NOWHERE);
+        let any_large = |i: &u32, w: &u32| s.radius[*i as usize].max(s.radius[place(*w)]) >= limit;
+        assert!(real.clone().count() > 0 || k >= of_slabs);
+        assert!(real.clone().all(|(i, w)| any_large(i, w) == (k >= of_slabs)), "list {k}");
+    }
 }
 
 /// What is left of 20 steps.

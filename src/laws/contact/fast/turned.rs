@@ -38,6 +38,7 @@ impl<L: ContactLaw> Fast<L> {
             }
         });
         self.strays.turn(&more, period);
+        self.strays_of_large.turn(&more, period);
         self.turns = turns.to_vec();
     }
 }

@@ -1,5 +1,7 @@
-//! Grains of very different sizes: pairs with large ones are found size by size and go to the slabs they belong to.
+//! Grains of very different sizes: pairs with large ones are found size by size and have lists of their own, slab by slab, in
+//! slabs as thick as they reach. They come after the pairs of small grains, whose slabs are thin and many.
 
+use super::lists::Slab;
 use super::{Fast, NONE};
 use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::Grains;
@@ -9,8 +11,8 @@ use crate::neigh::list::{Reach, View, Wanted, pairs_of_large};
 use crate::neigh::slabs::{HERE, Slabs};
 
 impl<L: ContactLaw> Fast<L> {
-    /// Adds pairs with large grains to the long lists, from these positions and radii in a box of these periods, with surfaces
-    /// nearer than `skin`. A pair belongs to the slab of one of its grains from where the other is in the same or the next one.
+    /// Adds long lists of pairs with large grains, from these positions and radii in a box of these periods, with surfaces nearer
+    /// than `skin`. A pair belongs to the slab of one of its grains from where the other is in the same or the next one.
     pub(super) fn add_large(
         &mut self,
         grains: &Grains,
@@ -28,10 +30,11 @@ impl<L: ContactLaw> Fast<L> {
         let Grains { x, tag, kind, radius, .. } = *grains;
         let found = pairs_of_large(&View { x, tag, kind, radius, period }, &wanted, skin, keep);
 
-        let count = slabs.count();
+        let far = slabs.far();
+        let count = far.count();
         let (mut place, mut slab) = (vec![0; x.len()], vec![0; x.len()]);
         for k in 0..count {
-            for at in slabs.members(k) {
+            for at in far.members(k) {
                 let i = slabs.order[at] as usize;
                 (place[i], slab[i]) = (at as u32, k);
             }
@@ -52,12 +55,19 @@ impl<L: ContactLaw> Fast<L> {
                 entries[slab[b]].push([place[b], place[a], image(-1)]);
             }
         }
-        for (list, mut entries) in self.lists.iter_mut().zip(entries) {
+        let mut members = vec![];
+        for mut entries in entries {
             entries.sort_unstable();
             let grain = |place: u32| slabs.order[place as usize];
-            let out = &mut list.long;
-            out.i.extend(entries.iter().map(|[i, ..]| grain(*i)));
-            out.w.extend(entries.iter().map(|[_, j, image]| grain(*j) | image << PLACE_BITS));
+            let mut list = Slab::default();
+            list.long.i.extend(entries.iter().map(|[i, ..]| grain(*i)));
+            list.long.w.extend(entries.iter().map(|[_, j, image]| grain(*j) | image << PLACE_BITS));
+            self.lists.push(list);
+            let mut places: Vec<u32> = entries.iter().flat_map(|[i, j, _]| [*i, *j]).collect();
+            places.sort_unstable();
+            places.dedup();
+            members.push(places.into_iter().map(grain).collect());
         }
+        self.strays_of_large.take(&members);
     }
 }

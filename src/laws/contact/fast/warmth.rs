@@ -20,7 +20,7 @@ impl<L: ContactLaw> Fast<L> {
             "a number for each grain"
         );
         let flow = par::Shared::new(flow);
-        par::two_colours(self.lists.len(), |k| {
+        self.each_list(|k| {
             let short = &self.lists[k].short;
             let mut hits = vec![];
             // SAFETY: list entries are grains; the processor has what its form needs.
@@ -29,7 +29,7 @@ impl<L: ContactLaw> Fast<L> {
                 let (i, j) = (short.i[k as usize] as usize, place(short.w[k as usize]));
                 let Some(conductance) = self.conductance(grains, short, k as usize) else { continue };
                 let into = conductance * (temperature[j] - temperature[i]);
-                // SAFETY: both are grains of this slab and the next one, which two_colours keeps apart.
+                // SAFETY: both are grains of this slab and the next one, which each_list keeps apart.
                 unsafe {
                     flow.get(i..i + 1)[0] += into;
                     flow.get(j..j + 1)[0] -= into;
