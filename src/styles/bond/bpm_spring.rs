@@ -1,7 +1,7 @@
 //! bond bpm/spring: damped springs that break, at rest as they are when a run first meets them.
 
 use super::pull::{Found, apart, find, periods, tally};
-use super::{BondForce, BondStyle, Pull, breaking_weights};
+use super::{BondForce, BondStyle, Pull, Stretched, breaking_weights};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::Args;
 use crate::math::cformat::general;
@@ -105,8 +105,8 @@ impl BondForce for Declared {
         Ok(vec![Box::new(Springs { law: self.clone(), span, made: None, list: vec![] })])
     }
 
-    fn single(&self, _w: &World, _kind: u16, _r: f64) -> Option<Pull> {
-        None
+    fn single(&self, _w: &World, bond: &Stretched) -> Option<Pull> {
+        self.springs.get(&bond.kind).map(|s| self.options.pull(*s, bond))
     }
 
     fn written(&self, kind: u16) -> Option<String> {
@@ -115,6 +115,21 @@ impl BondForce for Declared {
 
     fn boxed(&self) -> Box<dyn BondForce> {
         Box::new(self.clone())
+    }
+}
+
+impl Options {
+    /// The force of a spring of this stiffness, breaking strain and damping.
+    fn pull(&self, [k, limit, gamma]: [f64; 3], bond: &Stretched) -> Pull {
+        let (r, strain) = (bond.length(), bond.strain());
+        let longer = if bond.rest == 0.0 { 0.0 } else { r - bond.rest };
+        let spring = if self.normalize { -k * strain } else { -k * longer };
+        let mut force_per_length = (spring - gamma * dot(bond.d, bond.v) / r) / r;
+        if self.smooth {
+            let near = (strain / limit).powi(2).powi(2).powi(2);
+            force_per_length *= 1.0 - near;
+        }
+        Pull { energy: -0.5 * spring * longer, force_per_length }
     }
 }
 
@@ -144,31 +159,23 @@ impl Op for Springs {
             self.made = Some(now);
         }
         let lengths = periods(w)?;
-        let Options { smooth, normalize, breaks, .. } = self.law.options;
         let mut broken = vec![];
         for (at, found) in &self.list {
-            let Some([k, limit, gamma]) = self.law.springs.get(&found.kind).copied() else { continue };
+            let Some(spring) = self.law.springs.get(&found.kind).copied() else { continue };
             let d = apart(w, &lengths, found.ends);
-            let r = dot(d, d).sqrt();
+            let v = sub(w.particles.v[found.ends[0]], w.particles.v[found.ends[1]]);
             let bond = &mut w.bonds.list[*at];
+            let mut now = Stretched { kind: found.kind, d, v, rest: bond.length };
             if bond.length == 0.0 {
-                bond.length = r;
+                bond.length = now.length();
+                now.rest = bond.length;
             }
-            let rest = bond.length;
-            let strain = (r - rest) / rest;
-            if breaks && strain.abs() > limit {
+            if self.law.options.breaks && now.strain().abs() > spring[1] {
                 broken.push(*at);
                 continue;
             }
-            let v = sub(w.particles.v[found.ends[0]], w.particles.v[found.ends[1]]);
-            let spring = if normalize { -k * strain } else { k * (rest - r) };
-            let mut force = (spring - gamma * dot(d, v) / r) / r;
-            if smooth {
-                let near = (strain / limit).powi(2).powi(2).powi(2);
-                force *= 1.0 - near;
-            }
-            let energy = 0.5 * spring * (rest - r);
-            tally(w, t, found.ends, &d, &d.map(|d| d * force), energy);
+            let pull = self.law.options.pull(spring, &now);
+            tally(w, t, found.ends, &d, &d.map(|d| d * pull.force_per_length), pull.energy);
         }
         if !broken.is_empty() {
             take_away(w, &broken);

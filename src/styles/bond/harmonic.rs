@@ -1,7 +1,7 @@
 //! bond harmonic: springs along bonds.
 
 use super::pull::{Along, Law};
-use super::{BondForce, BondStyle, Pull};
+use super::{BondForce, BondStyle, Pull, Stretched};
 use crate::diag::Result;
 use crate::lang::Args;
 use crate::math::cformat::general;
@@ -112,8 +112,8 @@ impl BondForce for Harmonic {
         Some(if name == "k" { *k } else { *r0 })
     }
 
-    fn single(&self, w: &World, kind: u16, r: f64) -> Option<Pull> {
-        self.springs.get(&kind).map(|s| pull(adapted(w, kind, *s), r))
+    fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
+        self.springs.get(&bond.kind).map(|s| pull(adapted(w, bond.kind, *s), bond.length()))
     }
 
     fn written(&self, kind: u16) -> Option<String> {

@@ -1,6 +1,6 @@
 //! `bond_style hybrid`: several bond styles, each for its own bond types.
 
-use super::{BONDS, BondForce, BondStyle, Pull};
+use super::{BONDS, BondForce, BondStyle, Pull, Stretched};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
 use crate::plan::Op;
@@ -92,10 +92,10 @@ impl BondForce for Declared {
         Ok(ops)
     }
 
-    fn single(&self, w: &World, kind: u16, r: f64) -> Option<Pull> {
-        match self.users.get(&kind)? {
+    fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
+        match self.users.get(&bond.kind)? {
             None => Some(Pull::default()),
-            Some(k) => self.subs[*k].single(w, kind, r),
+            Some(k) => self.subs[*k].single(w, bond),
         }
     }
 

@@ -12,7 +12,7 @@ use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::lang::Args;
 use crate::plan::Op;
 use crate::world::World;
-pub use pull::{Pull, apart};
+pub use pull::{Pull, Stretched, apart};
 
 /// A bond style: one file, one line in `BONDS`.
 pub trait BondStyle: Style {
@@ -46,9 +46,9 @@ pub trait BondForce: Send + Sync {
     /// What is missing in the scene.
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>>;
 
-    /// What a bond of this type does at length `r`, by the coefficients it has at the moment, for `compute bond/local`;
-    /// `None` where that takes more than a length.
-    fn single(&self, w: &World, kind: u16, r: f64) -> Option<Pull>;
+    /// What a bond does, by the coefficients it has at the moment, for `compute bond/local`; `None` where that takes more than
+    /// its two ends.
+    fn single(&self, w: &World, bond: &Stretched) -> Option<Pull>;
 
     /// The pair styles of which one has to be in force besides; any will do by default.
     fn companions(&self) -> &'static [&'static str] {

@@ -1,7 +1,7 @@
 //! The op of bonds whose force depends on their length alone.
 
 use crate::diag::{Code, Diagnostic, Result, Span};
-use crate::math::vec3::{Vec3, add, sub};
+use crate::math::vec3::{Vec3, add, dot, sub};
 use crate::par;
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::world::bonds::LostBond;
@@ -16,6 +16,31 @@ pub struct Pull {
     pub energy: f64,
     /// Force over length: positive pushes the ends apart.
     pub force_per_length: f64,
+}
+
+/// A bond as its ends are and move.
+#[derive(Clone, Copy, Debug)]
+pub struct Stretched {
+    /// Type.
+    pub kind: u16,
+    /// From the second end to the first [length].
+    pub d: Vec3,
+    /// Velocity of the first end less that of the second.
+    pub v: Vec3,
+    /// Its own rest length, or 0 where it has none yet.
+    pub rest: f64,
+}
+
+impl Stretched {
+    /// Its length.
+    pub fn length(&self) -> f64 {
+        dot(self.d, self.d).sqrt()
+    }
+
+    /// By which part it is longer than at rest.
+    pub fn strain(&self) -> f64 {
+        if self.rest == 0.0 { 0.0 } else { (self.length() - self.rest) / self.rest }
+    }
 }
 
 /// A bond whose ends have been found.

@@ -1,6 +1,6 @@
 //! bond zero: bonds without forces.
 
-use super::{BondForce, BondStyle, Pull};
+use super::{BondForce, BondStyle, Pull, Stretched};
 use crate::diag::Result;
 use crate::lang::Args;
 use crate::math::cformat::general;
@@ -66,8 +66,8 @@ impl BondForce for Zero {
         Ok(vec![])
     }
 
-    fn single(&self, _w: &World, kind: u16, _r: f64) -> Option<Pull> {
-        self.covers(kind).then(Pull::default)
+    fn single(&self, _w: &World, bond: &Stretched) -> Option<Pull> {
+        self.covers(bond.kind).then(Pull::default)
     }
 
     fn written(&self, kind: u16) -> Option<String> {

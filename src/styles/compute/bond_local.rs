@@ -4,9 +4,9 @@ use super::near::bonds_within;
 use super::{Compute, ComputeStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
-use crate::math::vec3::Vec3;
+use crate::math::vec3::{Vec3, dot, sub};
 use crate::plan::{Op, Stage, When};
-use crate::styles::bond::{Pull, apart};
+use crate::styles::bond::{Pull, Stretched, apart};
 use crate::styles::matter::Masses;
 use crate::styles::step_op::{Wanted, fill};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
@@ -29,7 +29,7 @@ impl Style for BondLocal {
                    `engpot force fx fy fz`: energy and force of the bond (0 while it is turned off; negative pulls the ends \
                    together); of the ends' motion against their centre of mass: `engvib` kinetic energy along the bond, `engrot` \
                    across it, `velvib` the speed of lengthening, `omega` angular velocity; `engtrans`: kinetic energy of the \
-                   centre. Energies and forces need a bond style whose force depends on the length alone.",
+                   centre. Energies and forces are not told of `bond_style bpm/peri`, whose bonds depend on more than their ends.",
             example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
                       create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\n\
                       create_bonds single/bond 1 1 2\nbond_style harmonic\nbond_coeff 1 50.0 1.0\nfix 1 all nve\n\
@@ -122,11 +122,11 @@ impl Row {
     fn get(&self, value: Value) -> f64 {
         let [a, b] = self.mass;
         let total = a + b;
-        let r = norm(&self.d);
-        let relative: Vec3 = std::array::from_fn(|k| self.v[0][k] - self.v[1][k]);
-        let along = dot(&relative, &self.d) / r;
+        let r = norm(self.d);
+        let relative = sub(self.v[0], self.v[1]);
+        let along = dot(relative, self.d) / r;
         let reduced = a * b / total;
-        let across2 = (dot(&relative, &relative) - along * along).max(0.0);
+        let across2 = (dot(relative, relative) - along * along).max(0.0);
         match value {
             Value::Dist => r,
             Value::D(k) => self.d[k],
@@ -137,7 +137,7 @@ impl Row {
             Value::EngRot => 0.5 * self.mvv2e * reduced * across2,
             Value::EngTrans => {
                 let c: Vec3 = std::array::from_fn(|k| (a * self.v[0][k] + b * self.v[1][k]) / total);
-                0.5 * self.mvv2e * total * dot(&c, &c)
+                0.5 * self.mvv2e * total * dot(c, c)
             }
             Value::Omega => across2.sqrt() / r,
             Value::VelVib => along,
@@ -145,11 +145,7 @@ impl Row {
     }
 }
 
-fn dot(a: &Vec3, b: &Vec3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn norm(a: &Vec3) -> f64 {
+fn norm(a: Vec3) -> f64 {
     dot(a, a).sqrt()
 }
 
@@ -177,9 +173,11 @@ impl Compute for Declared {
                 let d = apart(w, &lengths, [a, b]);
                 let mut pull = Pull::default();
                 if let (true, true, Some(style)) = (needed, bond.is_on(), &style) {
-                    let Some(found) = style.single(w, bond.kind as u16, norm(&d)) else {
+                    let v = sub(p.v[a], p.v[b]);
+                    let now = Stretched { kind: bond.kind as u16, d, v, rest: bond.length };
+                    let Some(found) = style.single(w, &now) else {
                         let text =
-                            format!("the force of bond_style {} is not of the length alone", style.name());
+                            format!("the force of bond_style {} is not of its two ends alone", style.name());
                         return fail(Code::CONFLICT, span, text);
                     };
                     pull = found;

@@ -3,7 +3,7 @@
 mod op;
 mod table;
 
-use super::{BondForce, BondStyle, Pull, breaking_weights};
+use super::{BondForce, BondStyle, Pull, Stretched, breaking_weights};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::Args;
 use crate::math::cformat::general;
@@ -176,7 +176,7 @@ impl BondForce for Declared {
         Ok(vec![Box::new(Force::new(self.clone(), span))])
     }
 
-    fn single(&self, _w: &World, _kind: u16, _r: f64) -> Option<Pull> {
+    fn single(&self, _w: &World, _bond: &Stretched) -> Option<Pull> {
         None
     }
 
