@@ -8,7 +8,7 @@ use crate::out::file::Pattern;
 use crate::out::restart::{Saving, write};
 use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::{BuildCx, SealCx, Use, UseKind};
-use crate::world::columns::{PLASTIC_BEGUN, PLASTIC_COLUMNS};
+use crate::world::columns::{LEVEL, PLASTIC_BEGUN, PLASTIC_COLUMNS};
 use crate::world::{Said, World};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -200,8 +200,9 @@ pub fn save(
 
 /// Whether a name belongs to state that a fix or compute of the restarted deck may claim.
 pub fn claimable(name: &str) -> bool {
-    // The pair style comes with the file, and what its plastic grains have become with it.
-    name != NEXT && name != PLASTIC_BEGUN && !name.starts_with(PLASTIC_COLUMNS)
+    // The pair style comes with the file, and what its plastic grains have become with it; the forces of each level of steps
+    // belong to the run style, which is a setting.
+    name != NEXT && name != PLASTIC_BEGUN && !name.starts_with(PLASTIC_COLUMNS) && !name.starts_with(LEVEL)
 }
 
 impl Graph {

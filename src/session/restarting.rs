@@ -4,6 +4,7 @@ use super::{Session, refuse};
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use crate::graph::Role;
 use crate::graph::build::{Context, declare};
+use crate::graph::regions::place_all;
 use crate::graph::restarts::{claimable, one_process, pattern, save};
 use crate::lang::{Args, Command, Word};
 use crate::math::cformat::general;
@@ -196,6 +197,7 @@ impl Session {
     pub(super) fn settle_resume(&mut self, span: Span) -> Result<()> {
         self.drop_unclaimed(span);
         let Some(resume) = self.world.parts.resume.take() else { return Ok(()) };
+        place_all(&mut self.world, &self.graph, &self.vars, false);
         let declared = self.graph.declared();
         let other = declared.iter().find(|l| !resume.declared.contains(l));
         let gone = resume.declared.iter().find(|l| !declared.contains(l));

@@ -16,7 +16,7 @@ pub const PLASTIC_COLUMNS: &str = "property/atom/mdr/";
 pub const PLASTIC_BEGUN: &str = "mdr/begun";
 
 /// How the names of the columns begin that keep forces and torques of levels of steps between steps.
-const LEVEL: &str = "level/";
+pub const LEVEL: &str = "level/";
 
 /// The vector columns that keep forces and torques of a level of steps.
 pub fn of_level(level: usize) -> [String; 2] {

@@ -31,6 +31,11 @@ const PILE: &str = "units lj\natom_style sphere\nboundary p p s\nlattice sc 1.0\
     create_box 1 world\nregion fill block 0.3 3.9 0.3 3.9 0.6 3.5 units box\nlattice sc 1.2\ncreate_atoms 1 region fill\n\
     variable d atom 0.93+0.06*sin(5.0*x+2.0*y+9.0*z)\nset group all diameter v_d\nset group all density 1.2\n\
     variable u0 atom 0.9*sin(2.0*y+z)\nvelocity all set v_u0 0.2 -0.5\n";
+/// The same of two types, of which one lies below.
+const PAIR_OF_PILES: &str = "units lj\natom_style sphere\nboundary p p s\nlattice sc 1.0\nregion world block 0 4 0 4 0 9 units box\n\
+    create_box 2 world\nregion fill block 0.3 3.9 0.3 3.9 0.6 3.5 units box\nlattice sc 1.2\ncreate_atoms 1 region fill\n\
+    set group all diameter 0.96\nset group all density 1.2\nset atom 1*4 type 2\n\
+    variable u0 atom 0.9*sin(2.0*y+z)\nvelocity all set v_u0 0.2 -0.5\n";
 const PILE_AGAIN: &str = "pair_style granular\n\
     pair_coeff * * hertz 5000.0 20.0 tangential mindlin 4000.0 0.7 0.5\nneighbor 0.1 bin\n\
     neigh_modify every 1 delay 0 check yes\nregion low block INF INF INF INF INF 1.0 units box\n\
@@ -50,6 +55,17 @@ const OLDER_AGAIN: &str = "pair_style gran/hertz/history 5000.0 NULL 20.0 NULL 0
     neighbor 0.1 bin\nneigh_modify every 1 delay 0 check yes\nfix 1 all nve/sphere\n\
     fix 2 all gravity 1.0 vector 0.2 0 -1\ntimestep 0.001\ncompute er all erotate/sphere\n\
     thermo_style custom step time ke c_er press\nthermo_modify format float %24.17g norm no\nthermo 5\n";
+
+/// The same pile with steps of two lengths, a floor that follows a variable, pairs left out and forces kept.
+const LEVELS_AGAIN: &str = "pair_style gran/hooke/history 5000.0 NULL 20.0 NULL 0.5 1\npair_coeff * *\n\
+    neighbor 0.1 bin\nneigh_modify every 1 delay 0 check yes\nneigh_modify exclude type 1 2\n\
+    group foot id 1 2 3 4\nneigh_modify exclude group foot foot\nvariable lift equal 0.3+0.1*sin(0.02*step)\n\
+    region floor plane 0 0 0 0 0 1 move NULL NULL v_lift units box\nfix 1 all nve/sphere\n\
+    fix 2 all gravity 1.0 vector 0.2 0 -1\nfix 3 all store/force\n\
+    fix 4 all wall/gran/region hooke/history 5000.0 NULL 20.0 NULL 0.5 1 region floor\n\
+    run_style respa 2 3 pair 1\nfix_modify 2 respa 2\ntimestep 0.002\n\
+    compute er all erotate/sphere\ncompute kept all reduce sum f_3[*]\nthermo_style custom step time ke c_er press c_kept[3]\n\
+    thermo_modify format float %24.17g norm no\nthermo 5\n";
 
 /// Plastic grains pressed between two planes: they grow, and remember each contact on both sides.
 const POWDER: &str = "units si\natom_style sphere\nboundary f f f\nregion world block -0.02 0.02 -0.02 0.02 -0.02 0.02 units box\n\
@@ -121,7 +137,7 @@ const AVERAGES_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.00300
     f_h[4] f_h[3][2] c_ra[1] c_ra[2] c_rs[2]\n\
     thermo_modify format float %24.17g\nthermo 10\n";
 
-const SCENES: [Scene; 13] = [
+const SCENES: [Scene; 14] = [
     Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
     Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
     Scene { name: "lps", make: BLOCK, again: LPS_AGAIN, steps: 60, list: false },
@@ -132,6 +148,7 @@ const SCENES: [Scene; 13] = [
     Scene { name: "pile", make: PILE, again: PILE_AGAIN, steps: 400, list: false },
     Scene { name: "stiff pile", make: PILE, again: STIFF_AGAIN, steps: 200, list: false },
     Scene { name: "older pile", make: PILE, again: OLDER_AGAIN, steps: 200, list: false },
+    Scene { name: "levels pile", make: PAIR_OF_PILES, again: LEVELS_AGAIN, steps: 200, list: false },
     Scene { name: "powder pile", make: POWDER, again: POWDER_AGAIN, steps: 400, list: false },
     Scene { name: "rain", make: RAIN, again: RAIN_AGAIN, steps: 424, list: false },
     Scene { name: "impact", make: IMPACT, again: IMPACT_AGAIN, steps: 60, list: false },

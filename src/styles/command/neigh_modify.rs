@@ -104,16 +104,16 @@ fn exclude(set: &mut NeighborSettings, a: &mut Args, cx: &BuildCx) -> Result<()>
     match kind {
         "molecule" | "molecule/intra" | "molecule/inter" => {
             let group = cx.group(a.expect("a group")?)?.bit();
-            set.exclude_molecules.push((group, kind != "molecule/inter"));
+            add(&mut set.exclude_molecules, (group, kind != "molecule/inter"));
         }
         "type" => {
             let types = cx.world.types;
             let (i, j) = (one_type(a, types)?, one_type(a, types)?);
-            set.exclude_types.push((i.min(j), i.max(j)));
+            add(&mut set.exclude_types, (i.min(j), i.max(j)));
         }
         "group" => {
             let mut bit = || Ok::<u32, crate::diag::Diagnostics>(cx.group(a.expect("a group")?)?.bit());
-            set.exclude_groups.push((bit()?, bit()?));
+            add(&mut set.exclude_groups, (bit()?, bit()?));
         }
         _ => {
             set.exclude_types.clear();
@@ -122,6 +122,13 @@ fn exclude(set: &mut NeighborSettings, a: &mut Args, cx: &BuildCx) -> Result<()>
         }
     }
     Ok(())
+}
+
+/// A rule that stands already is not a second one: decks say it again behind `read_restart`, which brings it along.
+fn add<T: PartialEq>(rules: &mut Vec<T>, rule: T) {
+    if !rules.contains(&rule) {
+        rules.push(rule);
+    }
 }
 
 fn one_type(a: &mut Args, types: usize) -> Result<u16> {

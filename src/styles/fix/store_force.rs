@@ -43,7 +43,10 @@ impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         let (id, n) = (w.slots.id(&format!("f_{}", self.id)), w.n());
         let out = w.slots.get_mut(id);
-        (out.cols, out.atom) = (3, vec![0.0; 3 * n]);
+        // A restart file brings what the last step kept.
+        if out.atom.len() != 3 * n {
+            (out.cols, out.atom) = (3, vec![0.0; 3 * n]);
+        }
         Ok(())
     }
 
