@@ -413,6 +413,8 @@ pub fn shortest(x: f64) -> impl std::fmt::Display {
             // Where C's %g would leave the exponent away.
             if size == 0.0 || (1e-4..1e16).contains(&size) {
                 write!(f, "{}", self.0)
+            } else if !size.is_finite() {
+                f.write_str(&general(self.0, 6))
             } else {
                 let text = format!("{:e}", self.0);
                 let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));

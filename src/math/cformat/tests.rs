@@ -80,6 +80,7 @@ fn shortest_form_is_read_back() {
         (0.0, "0"),
         (1.2599210498948732, "1.2599210498948732"),
         (1.6e21, "1.6e+21"),
+        (f64::NEG_INFINITY, "-inf"),
     ];
     for (x, text) in oracle {
         assert_eq!(shortest(x).to_string(), text);

@@ -28,7 +28,7 @@ impl Style for ChangeBox {
             text: "What is asked happens in order. `scale` and `volume` change an edge about its middle; `volume` keeps the \
                    volume that the box had before the edge named just before it changed (two `volume` in a row share it). \
                    Particles stay where they are unless `remap` is said: then those of the group move with the box, from \
-                   where it was at the start of the line, or at the last `set`, to where it is now. `boundary` changes \
+                   where it was at the start of the line, or at the last `set` or `remap`, to where it is now. `boundary` changes \
                    what the faces do; image counts along a dimension that is no longer periodic become 0. At the end \
                    shrink-wrapped faces follow the particles and periodic ones wrap them. Distances are in lattice \
                    spacings unless `units box` is said. Triclinic boxes (`xy xz yz triclinic`) are refused.",
@@ -96,6 +96,7 @@ impl CommandStyle for ChangeBox {
                     common::check_flat(faces, (domain.lo[2], domain.hi[2]), domain.flat)?;
                     domain.boundary = faces;
                 }
+                cx.world.settings.boundary = faces;
                 Ok(())
             }));
         }
@@ -159,6 +160,8 @@ fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span:
                 for (x, _) in x.iter_mut().zip(members).filter(|(_, member)| *member) {
                     *x = carried(*x, &saved, &domain);
                 }
+                // What has moved along does not move along again.
+                saved = domain.clone();
             }
         }
     }
@@ -170,6 +173,8 @@ fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span:
         say_box(cx)?;
     }
     unwind(cx, unwound);
+    // What is read into the box later finds these faces in force.
+    cx.world.settings.boundary = domain.boundary;
     cx.world.domain = Some(domain);
     cx.world.particles.x = x;
     common::settle(cx.world);
@@ -264,6 +269,9 @@ mod tests {
         more(&mut w, "change_box all x final 0 4 remap");
         // A fraction 3/8 of the way.
         assert_eq!(w.particles.x[0], [1.5, 1.0, 0.5]);
+        // The second `remap` moves along y alone, half of the way as before.
+        more(&mut w, "change_box all x final 0 8 remap y final 0 3 remap");
+        assert_eq!(w.particles.x[0], [3.0, 1.5, 0.5]);
     }
 
     #[test]

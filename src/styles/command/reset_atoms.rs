@@ -254,8 +254,9 @@ fn by_place(w: &World) -> Vec<u32> {
     let size = (volume / cells).powf(if flat { 0.5 } else { 1.0 / 3.0 });
     let count =
         [0, 1, 2].map(|d| if size > 0.0 && !(flat && d == 2) { (length(d) / size) as usize + 1 } else { 1 });
+    // By the reciprocal, as LAMMPS does: sites of a lattice lie on the borders of cells.
     let cell = |x: &[f64; 3], d: usize| match length(d) > 0.0 {
-        true => ((((x[d] - lo[d]) / length(d)) * count[d] as f64) as usize).min(count[d] - 1),
+        true => (((x[d] - lo[d]) * (1.0 / length(d)) * count[d] as f64) as usize).min(count[d] - 1),
         false => 0,
     };
     let index = |x: &[f64; 3]| (cell(x, 2) * count[1] + cell(x, 1)) * count[0] + cell(x, 0);

@@ -278,8 +278,8 @@ fn image(a: &mut Args, cx: &BuildCx) -> Result<Change> {
         let value = common::param_or_null(a, "the image count")?;
         let Some(param) = value else { continue };
         cx.param(&param, true)?;
-        if !domain.boundary.periodic(d) {
-            let text = format!("the box does not repeat along {}: write NULL", ["x", "y", "z"][d]);
+        if !domain.boundary.periodic(d) && !matches!(param, Param::Number(0.0)) {
+            let text = format!("the box does not repeat along {}: write 0 or NULL", ["x", "y", "z"][d]);
             return fail(Code::CONFLICT, span, text);
         }
         if matches!(param, Param::Number(x) if x.fract() != 0.0) {

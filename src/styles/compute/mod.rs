@@ -35,7 +35,7 @@ mod plasticity_atom;
 mod pressure;
 pub mod property_atom;
 mod property_local;
-mod reduce;
+pub mod reduce;
 mod slice;
 mod stress_atom;
 mod temp;

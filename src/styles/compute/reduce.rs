@@ -57,7 +57,7 @@ const MODES: &[&str] =
     &["sum", "min", "max", "ave", "sumsq", "avesq", "sumabs", "aveabs", "minabs", "maxabs"];
 
 /// What LAMMPS says of the extreme of nothing.
-const BIG: f64 = 1e20;
+pub const BIG: f64 = 1e20;
 
 impl Mode {
     fn named(name: &str) -> Self {

@@ -9,6 +9,7 @@ use crate::diag::{Code, Result, Span, fail};
 use crate::lang::{Args, ValueRef, Word};
 use crate::math::cformat::{general, shortest};
 use crate::plan::{Access, Op, Stage};
+use crate::styles::compute::reduce::BIG;
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use crate::world::{GroupId, Slot, World};
@@ -272,7 +273,9 @@ impl Declared {
         } else if let [.., lo, hi] = &mut list[..] {
             (*lo, *hi) = (lo.min(one[0]), hi.max(one[1]));
         }
-        fold(list)
+        let [lo, hi] = fold(list);
+        // Of no value at all, as `compute reduce` has it.
+        if lo > hi { [BIG, -BIG] } else { [lo, hi] }
     }
 
     /// The block of one histogram in the file.

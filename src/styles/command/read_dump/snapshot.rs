@@ -60,7 +60,8 @@ pub(super) fn enter(w: &mut World, s: &Snapshot, list: &[Particle], wish: &Wish)
         w.clock.reset(s.step);
     }
     if wish.domain {
-        let mut domain = Domain::new(s.lo, s.hi, w.settings.boundary);
+        let flat = w.settings.two_dimensional;
+        let mut domain = Domain { flat, ..Domain::new(s.lo, s.hi, w.settings.boundary) };
         domain.open_shrinking_faces();
         w.domain = Some(domain);
     }
