@@ -11,6 +11,11 @@ fn g(x: f64) -> String {
     Format::parse("%g").map_or_else(|_| x.to_string(), |f| f.text(&[Value::Float(x)]))
 }
 
+/// A name as a word of YAML: brackets would begin a list.
+fn word(name: &str) -> String {
+    if name.contains(['[', ']']) { format!("'{name}'") } else { name.to_string() }
+}
+
 /// One XYZ snapshot: the number of particles, a line of comment, and a row for each.
 pub fn xyz(
     to: &mut dyn Write,
@@ -52,7 +57,7 @@ impl Yaml<'_> {
             self.head(to, rows.len())?;
             write!(to, "keywords: [ ")?;
             for f in fields {
-                write!(to, "{}, ", f.name)?;
+                write!(to, "{}, ", word(f.name))?;
             }
             writeln!(to, " ]\ndata:")?;
         }
@@ -75,7 +80,7 @@ impl Yaml<'_> {
         writeln!(to, "]")?;
         if let Some(row) = self.row {
             write!(to, "thermo:\n  - keywords: [ ")?;
-            row.values.iter().try_for_each(|(name, _)| write!(to, "{name}, "))?;
+            row.values.iter().try_for_each(|(name, _)| write!(to, "{}, ", word(name)))?;
             write!(to, "]\n  - data: [ ")?;
             for (_, value) in &row.values {
                 match value {

@@ -71,6 +71,8 @@ pub struct Chunking {
     pub coordinates: usize,
     /// Chunks without particles are left out: each has an original number.
     pub compressed: bool,
+    /// They are counted once (`nchunk once`).
+    pub fixed: bool,
 }
 
 impl Shape {

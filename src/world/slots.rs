@@ -44,6 +44,9 @@ pub struct Slot {
     pub local_cols: usize,
     /// What other styles need of it and decks cannot name.
     pub inner: Vec<f64>,
+    /// The slot of the `compute chunk/atom` of whose chunks there is a row each, where their number may change.
+    #[serde(skip)]
+    pub chunks: Option<SlotId>,
     /// Which of all these the producer has; set when a plan is sealed.
     pub offers: Offers,
 }

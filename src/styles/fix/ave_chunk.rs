@@ -4,12 +4,12 @@ use super::ave_atom::{Input, Source};
 use super::ave_time::{Output, number_format};
 use super::window::{Ave, Averager, Due, Schedule, forget};
 use super::{Fix, FixStyle};
-use crate::diag::{Code, Diagnostic, Result, Span, fail};
+use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, RefKind, ValueRef, Word};
 use crate::math::cformat::{Format, Value, general, shortest};
 use crate::math::vec3::sub;
 use crate::plan::{Access, Op, Stage, Tick};
-use crate::styles::compute::chunk::{ChunkRef, Chunks, lock_key};
+use crate::styles::compute::chunk::{ChunkRef, Chunks, hold, let_go};
 use crate::styles::compute::temp_flow;
 use crate::styles::matter::{Masses, check_masses};
 use crate::styles::step_op::StepOp;
@@ -291,29 +291,6 @@ impl Declared {
         Some(many)
     }
 
-    /// Holds the number of chunks while an average is made.
-    fn hold(&self, w: &mut World, step: i64, span: Span) -> Result<()> {
-        let mut window = vec![step as f64];
-        if self.ave == Ave::One {
-            window.push((step + (self.schedule.repeat - 1) * self.schedule.every) as f64);
-        }
-        let name = lock_key(&self.chunks.id);
-        if let Some(old) = w.memo.get(&name) {
-            let open = old.get(1).is_none_or(|last| *last >= step as f64);
-            if open && old.len() == 1 && self.ave != Ave::One {
-                return Ok(());
-            }
-            if open && *old != window {
-                let text = format!("another fix ave/chunk holds compute {} for other steps", self.chunks.id);
-                return Err(Diagnostic::error(Code::CONFLICT, span, text)
-                    .help("give each of them a compute chunk/atom of its own, or the same steps")
-                    .into());
-            }
-        }
-        w.memo.insert(name, window);
-        Ok(())
-    }
-
     /// What comes before the number of particles in a row.
     fn lead(&self, chunks: &Chunks, k: usize) -> Vec<f64> {
         let kind = self.chunks.kind;
@@ -368,7 +345,7 @@ impl Fix for Declared {
 
     fn remove(&self, w: &mut World) {
         forget(w, &self.key());
-        w.memo.remove(&lock_key(&self.chunks.id));
+        let_go(w, &self.chunks.id);
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -400,7 +377,8 @@ impl Fix for Declared {
                 let flow = bias.as_ref().and_then(|b| b.flow(w));
                 let sample = me.sample(w, &sources, flow.as_ref(), &chunks);
                 if due.first {
-                    me.hold(w, t.step, span)?;
+                    let last = (me.ave == Ave::One).then(|| me.schedule.last(t.step));
+                    hold(w, &me.chunks.id, t.step, last, span)?;
                 }
                 let Some(rows) = me.add(w, sample, due) else { return Ok(()) };
                 let whole = Due { first: true, last: true };

@@ -7,6 +7,7 @@ use crate::lang::{Args, ValueRef};
 use crate::math::cformat::{Format, Value};
 use crate::out::Sheet;
 use crate::plan::{Access, Op, Stage};
+use crate::styles::compute::chunk::{behind, hold, let_go};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use crate::world::{SlotId, World};
@@ -34,7 +35,9 @@ impl Style for AveTime {
                    `ave running`). `format %g`: of each number. `title1 title2 title3`: the lines at the head of the file \
                    (the third in mode vector only).\n\n\
                    Scalar where there is one value and vector where there are several in mode scalar; vector for one, array \
-                   with a column per value for several in mode vector. 0 before the first average.",
+                   with a column per value for several in mode vector. 0 before the first average. Where \
+                   rows are those of chunks, their number is held from the first sample of an average to its last, for good with \
+                   `ave running` and `ave window`.",
             example: "compute t all temp\nfix mean all ave/time 1 5 10 c_t c_t[*] v_force file mean.txt ave running",
         }
     }
@@ -256,6 +259,12 @@ impl Declared {
         }
     }
 
+    /// The computes that make the chunks of which values have rows: their number is held as long as rows are added up.
+    fn chunks(&self, w: &World) -> Vec<String> {
+        let adds = self.vector && (self.schedule.repeat > 1 || self.ave != Ave::One);
+        self.values.iter().filter(|_| adds).filter_map(|r| behind(w, r)).collect()
+    }
+
     /// The block of one average in the file.
     fn block(&self, step: i64, means: &[f64]) -> String {
         let cols = self.values.len();
@@ -301,6 +310,7 @@ impl Fix for Declared {
 
     fn remove(&self, w: &mut World) {
         forget(w, &self.key());
+        self.chunks(w).iter().for_each(|id| let_go(w, id));
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -310,13 +320,17 @@ impl Fix for Declared {
         for r in &self.values {
             readings.push(cx.reading(r, wants, Stage::EndOfStep, &when)?);
         }
-        let (me, key, slot) = (self.clone(), self.key(), cx.slot(&format!("f_{}", self.id)));
+        let (me, key, slot, span) = (self.clone(), self.key(), cx.slot(&format!("f_{}", self.id)), cx.span());
         let mut sheet = self.output.sheet(cx.world(), &key);
         let (repeat, ave, off) = (self.schedule.repeat, self.ave, self.off.clone());
         let averager = Averager { key: key.clone(), repeat, ave, off };
         let access = Access::new("slots", "slots memo");
         let op = StepOp::new(format!("fix {} ave/time", self.id), Stage::EndOfStep, access, move |w, t| {
             let Some(due) = me.schedule.due(w, &key, t.step) else { return Ok(()) };
+            if due.first {
+                let last = (me.ave == Ave::One).then(|| me.schedule.last(t.step));
+                me.chunks(w).iter().try_for_each(|id| hold(w, id, t.step, last, span))?;
+            }
             let lists: Vec<Vec<f64>> = readings.iter().map(|r| r.list(w)).collect();
             let rows = lists.first().map_or(0, Vec::len);
             if lists.iter().any(|l| l.len() != rows) {

@@ -80,6 +80,11 @@ impl Schedule {
         w.memo.insert(format!("{key}/next"), vec![next as f64, 0.0]);
     }
 
+    /// The last sample of an average whose first one is at this step.
+    pub fn last(&self, first: i64) -> i64 {
+        first + (self.repeat - 1) * self.every
+    }
+
     /// Whether a sample is due at this step; then the schedule moves on.
     pub fn due(&self, w: &mut World, key: &str, step: i64) -> Option<Due> {
         let name = format!("{key}/next");

@@ -2,7 +2,7 @@
 
 use super::bins::{Layers, Shells};
 use super::words::{Discard, Ids, Spec, What};
-use crate::diag::{Code, Result, Span, fail};
+use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::styles::Reading;
 use crate::world::{Domain, Region, Slot, World};
 
@@ -43,7 +43,7 @@ impl Layout {
     }
 }
 
-/// The window in which a `fix ave/chunk` holds the number of chunks: its first step and its last, or none.
+/// The window in which a fix that averages chunks holds their number: its first step and its last, or none.
 type Lock = Option<(i64, Option<i64>)>;
 
 /// Names of what the world keeps for a `compute chunk/atom`.
@@ -51,9 +51,37 @@ pub fn key(id: &str) -> String {
     format!("compute {id} chunks")
 }
 
-/// Name of a window that a `fix ave/chunk` holds.
-pub fn lock_key(id: &str) -> String {
+/// Name of a window in which their number is held.
+fn lock_key(id: &str) -> String {
     format!("compute {id} window")
+}
+
+/// Holds the number of chunks of a `compute chunk/atom` from a step on while an average is made, to its last step or for good.
+///
+/// # Errors
+/// Another fix that holds it for other steps.
+pub fn hold(w: &mut World, id: &str, step: i64, last: Option<i64>, span: Span) -> Result<()> {
+    let mut window = vec![step as f64];
+    window.extend(last.map(|last| last as f64));
+    if let Some(old) = w.memo.get(&lock_key(id)) {
+        let open = old.get(1).is_none_or(|last| *last >= step as f64);
+        if open && old.len() == 1 && last.is_none() {
+            return Ok(());
+        }
+        if open && *old != window {
+            let text = format!("another fix holds the chunks of compute {id} for other steps");
+            return Err(Diagnostic::error(Code::CONFLICT, span, text)
+                .help("give each of them a compute chunk/atom of its own, or the same steps")
+                .into());
+        }
+    }
+    w.memo.insert(lock_key(id), window);
+    Ok(())
+}
+
+/// Holds them no longer.
+pub fn let_go(w: &mut World, id: &str) {
+    w.memo.remove(&lock_key(id));
 }
 
 fn lock(w: &World, id: &str, step: i64) -> Lock {
@@ -253,7 +281,8 @@ impl Task<'_> {
         let number = if self.spec.compress {
             match layout.used.binary_search_by(|u| u.total_cmp(&self.limited(raw))) {
                 Ok(k) => k as f64 + 1.0,
-                Err(_) if self.binned() => 0.0,
+                // A bin that was empty when the chunks were counted is no chunk, and no other one has it.
+                Err(_) if self.binned() => return 0.0,
                 Err(_) => outside,
             }
         } else {

@@ -36,7 +36,7 @@ impl Style for ChunkAtom {
                    leaves out numbers without particles; `discard yes|no|mixed`: whether those outside all chunks belong \
                    to none or to the nearest (`mixed`: to the nearest where bins end at the box); `bound dim lo hi` for \
                    layers; `pbc yes`: minimum image distances for spheres and cylinders; `units box|lattice|reduced` \
-                   (lattice). A `fix ave/chunk` holds the number of chunks during its windows. `molecule` is refused: \
+                   (lattice). A `fix ave/chunk`, or a `fix ave/time` of rows of chunks, holds their number during its windows. `molecule` is refused: \
                    particles have none. Under `-compat lammps` `mixed` drops what is above the last layer \
                    also where layers end at the box, as LAMMPS 22Jul2025 does. LAMMPS 22Jul2025 ignores or crashes on `limit` together with `compress`; here it \
                    does what LAMMPS' manual says.",
@@ -61,7 +61,8 @@ struct Declared(Spec);
 
 impl Compute for Declared {
     fn shape(&self) -> Shape {
-        let chunks = Chunking { coordinates: self.0.coordinates(), compressed: self.0.compress };
+        let Spec { compress: compressed, once: fixed, .. } = self.0;
+        let chunks = Chunking { coordinates: self.0.coordinates(), compressed, fixed };
         Shape { atom: Some(1), chunks: Some(chunks), ..Shape::default() }
     }
 

@@ -1,6 +1,6 @@
 //! compute com/chunk: centre of mass of each chunk.
 
-use super::{ChunkRef, Chunks, sums};
+use super::{ChunkRef, Chunks, sums, varying};
 use crate::diag::Result;
 use crate::lang::Args;
 use crate::plan::{Op, Stage, When};
@@ -61,7 +61,7 @@ impl Compute for Means {
                 let (m, [x, y, z]) = (masses.get(i), of(w, i));
                 [x * m, y * m, z * m, m]
             });
-            out.array_cols = 3;
+            (out.array_cols, out.chunks) = (3, varying(chunks, kind));
             out.array.clear();
             for [x, y, z, m] in rows {
                 out.array.extend([x, y, z].map(|a| if m > 0.0 { a / m } else { 0.0 }));

@@ -9,7 +9,7 @@ pub mod reduce;
 pub mod vcm;
 mod words;
 
-pub use assign::lock_key;
+pub use assign::{hold, let_go};
 
 use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::lang::{Args, RefKind, ValueRef};
@@ -101,6 +101,17 @@ impl<'a> Chunks<'a> {
     pub fn coordinate(&self, k: usize, d: usize) -> f64 {
         self.slot.inner[k * self.stride + HEAD + d]
     }
+}
+
+/// Of whose chunks the rows of a compute are, where their number may change: who averages them holds it.
+fn varying(chunks: SlotId, kind: Chunking) -> Option<SlotId> {
+    (!kind.fixed).then_some(chunks)
+}
+
+/// The ID of the `compute chunk/atom` of whose chunks a value has a row each, where their number may change.
+pub fn behind(w: &World, value: &ValueRef) -> Option<String> {
+    let slot = w.slots.get(w.slots.find(&format!("{}_{}", value.kind.letter(), value.name))?);
+    w.slots.get(slot.chunks?).name.strip_prefix("c_").map(String::from)
 }
 
 /// Adds `term(i)` up by chunk over the particles of a group: rows of `N` numbers. In storage order, so that the sums

@@ -1,6 +1,6 @@
 //! compute property/chunk: counts, original numbers and coordinates of chunks.
 
-use super::{ChunkRef, Chunks, sums};
+use super::{ChunkRef, Chunks, sums, varying};
 use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
 use crate::plan::{Op, Stage, When};
@@ -92,6 +92,7 @@ impl Compute for Declared {
         let (group, kind, list) = (self.group, self.chunks.kind, self.list.clone());
         let chunks = self.chunks.seal(cx, stage, when)?;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "mask", move |w, _, out| {
+            out.chunks = varying(chunks, kind);
             let chunks = Chunks::of(w, chunks, kind);
             let counts = match list.iter().any(|a| matches!(a, Attribute::Count)) {
                 true => sums(w, group, &chunks, |_| [1.0]),

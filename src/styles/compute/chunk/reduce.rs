@@ -1,6 +1,6 @@
 //! compute reduce/chunk: a sum or an extreme of values per particle for each chunk.
 
-use super::{ChunkRef, Chunks};
+use super::{ChunkRef, Chunks, varying};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::{Args, RefKind, ValueRef};
 use crate::plan::{Op, Stage, When};
@@ -104,6 +104,7 @@ impl Compute for Declared {
         let inputs: Vec<Reading> =
             self.inputs.iter().map(|r| cx.reading(r, Wants::PerAtom, stage, when)).collect::<Result<_>>()?;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "mask", move |w, _, out| {
+            out.chunks = varying(chunks, kind);
             let chunks = Chunks::of(w, chunks, kind);
             let columns = inputs.len();
             let into = if columns == 1 { &mut out.vector } else { &mut out.array };
