@@ -68,7 +68,9 @@ impl Op for Reneighbor {
                 return Ok(());
             }
             let first_chance = ago == s.every.max(s.delay);
-            w.rebuild.dangerous += u64::from(first_chance && s.delay.max(s.every) > 1);
+            // Where lists are looked at in every step none is late; LAMMPS counts these too.
+            let late = w.settings.lammps() || s.delay.max(s.every) > 1;
+            w.rebuild.dangerous += u64::from(first_chance && late);
         }
         w.rebuild.builds += 1;
         rebuild(w, t, self, false)
