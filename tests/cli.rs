@@ -33,7 +33,7 @@ fn err(o: &Output) -> String {
 #[test]
 fn a_deck_is_an_argument_a_switch_or_standard_input() {
     let folder = tempfile::tempdir().unwrap();
-    let deck = "print \"seven is $(3+4:%g)\"\n";
+    let deck = "print \"seven is $(3+4:%.6g)\"\n";
     fs::write(folder.path().join("in.deck"), deck).unwrap();
     for (args, stdin) in
         [(&["in.deck"][..], ""), (&["-in", "in.deck"], ""), (&["run", "in.deck"], ""), (&[], deck)]

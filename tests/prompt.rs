@@ -199,8 +199,8 @@ fn a_line_that_fails_changes_nothing() {
         "create_atoms 1 single 0.1 0.1 0.1 units box\nvariable a equal 5\nno_such\n",
     )
     .unwrap();
-    let after = "run 100\nprint \"lost $(step) $(x[1]:%g)\"\ninclude in.half\nprint \"half $(atoms) $(is_defined(variable,a))\"\n\
-        jump SELF\nrun 10\nprint \"ten $(step) $(x[1]:%g)\"\n:undo 99\n:undo\n";
+    let after = "run 100\nprint \"lost $(step) $(x[1]:%.6g)\"\ninclude in.half\nprint \"half $(atoms) $(is_defined(variable,a))\"\n\
+        jump SELF\nrun 10\nprint \"ten $(step) $(x[1]:%.6g)\"\n:undo 99\n:undo\n";
     let o = piped(folder.path(), &format!("{deck}{after}"));
     let (said, wrong) = (out(&o), err(&o));
     assert!(said.lines().any(|l| l == "lost 0 0.5"), "{said}{wrong}");

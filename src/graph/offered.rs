@@ -1,6 +1,6 @@
 //! What the slots of computes and fixes offer to references in formulas.
 
-use crate::diag::{Code, Result, fail};
+use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{RefKind, Value, ValueRef};
 use crate::world::{SlotId, World};
 
@@ -41,13 +41,27 @@ pub(super) fn of_particles(w: &World, slot: SlotId, r: &ValueRef) -> Result<Valu
     let column = match r.index.as_slice() {
         [] if s.cols == 1 => 0,
         [k] if s.cols > 1 && (1..=s.cols).contains(k) => k - 1,
-        _ => return from_slot(w, slot, r),
+        _ => return only_particles(from_slot(w, slot, r)?, r),
     };
     let per_particle = matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom);
     if per_particle || !s.offers.atom {
-        return from_slot(w, slot, r);
+        return only_particles(from_slot(w, slot, r)?, r);
     }
     Ok(Value::Atom((0..w.n()).map(|i| s.atom_value(i, column)).collect()))
+}
+
+/// Refuses, as LAMMPS does, what is not there for each particle; `C_ID[7]` is one particle's value on purpose.
+fn only_particles(value: Value, r: &ValueRef) -> Result<Value> {
+    if matches!(value, Value::Atom(_)) || matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom) {
+        return Ok(value);
+    }
+    let text = format!("`{r}` is {}: a formula of particles takes values per particle here", value.kind());
+    Err(by_variable(Diagnostic::error(Code::WRONG_KIND, r.span, text), r).into())
+}
+
+/// Says how a single number gets into a formula of many.
+fn by_variable(d: Diagnostic, r: &ValueRef) -> Diagnostic {
+    d.help(format!("write `variable NAME equal {r}` and put `v_NAME` into this formula"))
 }
 
 /// The whole vector of a slot.
@@ -57,10 +71,10 @@ pub(super) fn whole_vector(w: &World, slot: SlotId, r: &ValueRef) -> Result<Valu
         [] if s.offers.vector => Ok(Value::Vector(s.vector.clone())),
         [k] if s.offers.array && *k <= s.array_cols => Ok(Value::Vector(s.array_column(k - 1))),
         [] if s.offers.atom => Ok(Value::Atom(vec![])),
-        _ => fail(
-            Code::WRONG_KIND,
-            r.span,
-            format!("`{r}` is no global vector and no column of a global array"),
-        ),
+        _ => {
+            let text = format!("`{r}` is no global vector and no column of a global array");
+            let d = Diagnostic::error(Code::WRONG_KIND, r.span, text);
+            Err(if s.offers.scalar && r.index.is_empty() { by_variable(d, r) } else { d }.into())
+        }
     }
 }

@@ -7,7 +7,7 @@ use super::scan::{place, taken};
 use super::text::{Mapped, within};
 use super::value::Env;
 use super::vars::{Text, Vars};
-use crate::diag::{Code, Result, Span, fail};
+use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use nom::bytes::complete::{tag, take_until};
 use nom::character::complete::{anychar, char};
 use nom::combinator::verify;
@@ -108,7 +108,7 @@ fn no_dollar(line: &Mapped, rest: &str) -> crate::diag::Diagnostics {
         Some(b'(') => (line.text.len(), "this $( is never closed by )"),
         _ => (at + 1, "a variable's name is expected after $"),
     };
-    let d = crate::diag::Diagnostic::error(Code::SYNTAX, line.span(at..end), message);
+    let d = Diagnostic::error(Code::SYNTAX, line.span(at..end), message);
     d.help("write $x, ${name} or $(formula); put text with a $ of its own into quotes").into()
 }
 
@@ -143,11 +143,30 @@ fn lookup(
         None => crate::math::cformat::general(value + 0.0, 20),
         Some(f) => {
             let place = within(line.span(at..at + whole.len()), whole.len(), formula.len() + 1..whole.len());
-            float_format(f, place)?;
+            inline_format(f, place)?;
             printf(f, value + 0.0).or_else(|e| fail(Code::FORMAT, place, e))?
         }
     };
     Ok(Text { text, origin: None, unknown: false })
+}
+
+/// Refuses a format that LAMMPS does not take behind the colon: zeros, blanks, a width, and a precision that must be there.
+fn inline_format(format: &str, span: Span) -> Result<()> {
+    float_format(format, span)?;
+    let width = |c: char| c == ' ' || c.is_ascii_digit();
+    let precision = format.strip_prefix('%').and_then(|f| f.trim_start_matches(width).strip_prefix('.'));
+    let letter = precision.map_or("", |p| p.trim_start_matches(|c: char| c.is_ascii_digit()));
+    if letter != precision.unwrap_or("") && letter.starts_with(['e', 'f', 'g', 'E', 'F', 'G']) {
+        return Ok(());
+    }
+    let text =
+        format!("the format `{format}` must be % with a width and a precision alone, as %8.3f or %.6g");
+    let d = Diagnostic::error(Code::FORMAT, span, text);
+    Err(match format {
+        "%e" | "%f" | "%g" | "%E" | "%F" | "%G" => d.help(format!("`%.6{}` prints the same", &format[1..])),
+        _ => d.help("other formats: `variable NAME format v %-10.4g`, then ${NAME}"),
+    }
+    .into())
 }
 
 /// Refuses a format that does not suit a number with a fraction.

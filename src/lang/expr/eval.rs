@@ -13,18 +13,30 @@ use std::cell::RefCell;
 /// How many variables may stand for one another in a chain.
 const CHAIN: usize = 100;
 
+/// What a formula is for: it decides which of a compute's values a name means, and what `random` draws.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in super::super) enum Yields {
+    /// One number, or whatever comes out.
+    #[default]
+    Any,
+    /// A global vector.
+    Vector,
+    /// A value per particle.
+    Particles,
+}
+
 /// The variables under evaluation, outermost first.
 #[derive(Clone, Debug, Default)]
 pub(in super::super) struct Trail {
     names: Vec<String>,
-    /// Whether a value per particle is wanted (decides what `random` draws).
-    pub particles: bool,
+    /// What the innermost formula is for.
+    pub yields: Yields,
 }
 
 impl Trail {
     /// For a formula that yields a value per particle.
     pub fn for_particles() -> Self {
-        Self { names: vec![], particles: true }
+        Self { names: vec![], yields: Yields::Particles }
     }
 
     /// Goes into a variable; refuses circles and endless chains.
@@ -63,7 +75,7 @@ impl Expr {
                 }
                 Op::Call(f) => {
                     let args = stack.split_off(stack.len().saturating_sub(f.arity));
-                    self.call(step, f, &args, vars, env, trail.particles)?
+                    self.call(step, f, &args, vars, env, trail.yields == Yields::Particles)?
                 }
                 _ => self.leaf(step, vars, env, trail)?,
             };
@@ -145,8 +157,16 @@ impl Expr {
                 }
                 let r = ValueRef { kind: *kind, name: name.clone(), index, span };
                 if *kind != RefKind::Variable {
-                    let value =
-                        if trail.particles { env.of_particles(&r, vars) } else { env.reference(&r, vars) };
+                    let value = match trail.yields {
+                        Yields::Particles => env.of_particles(&r, vars),
+                        Yields::Vector if r.index.is_empty() => env.vector(&r, vars).and_then(|v| match v {
+                            Value::Atom(_) => {
+                                fail(Code::WRONG_KIND, span, format!("`{r}` is no global vector"))
+                            }
+                            v => Ok(v),
+                        }),
+                        _ => env.reference(&r, vars),
+                    };
                     return value.map_err(|d| d.at(span));
                 }
                 // LAMMPS reads equal-style variables by way of their text

@@ -18,7 +18,7 @@ use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use functions::Function;
 use std::ops::Range;
 
-pub(super) use eval::{Trail, element};
+pub(super) use eval::{Trail, Yields, element};
 pub(super) use grammar::balanced;
 
 /// Attributes of particles that formulas may name, as a column (`vx`) or for one particle (`vx[3]`).

@@ -159,9 +159,14 @@ impl Vars {
         }
         let format = args.expect("a format such as %.6g")?;
         float_format(&format.text, format.span)?;
-        if Spec::parse(&format.text).is_err() {
+        let Ok(spec) = Spec::parse(&format.text) else {
             let message = format!("`{}` holds more than a conversion such as %.6g", format.text);
             return Err(blame(format, Code::SYNTAX, message).into());
+        };
+        if spec.plus || spec.alternate || format.text.contains(['l', 'L']) {
+            let message = format!("`{}` has a flag or length that is not taken here", format.text);
+            let d = blame(format, Code::FORMAT, message);
+            return Err(d.help("write %, then `-` or `0`, a width and a precision, as %-10.4g").into());
         }
         Ok(Data::Format { name: of.text.clone(), format: format.text.clone() })
     }

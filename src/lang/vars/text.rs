@@ -2,7 +2,7 @@
 
 use super::{Data, Kind, Variable, Vars};
 use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
-use crate::lang::expr::{Trail, element};
+use crate::lang::expr::{Trail, Yields, element};
 use crate::lang::number::{self, printf, value_text};
 use crate::lang::reference::{RefKind, ValueRef};
 use crate::lang::value::{Env, Value};
@@ -120,15 +120,15 @@ impl Vars {
         }
         match &variable.data {
             Data::Formula(e) if variable.kind == Kind::Equal && r.index.is_empty() => {
-                let v = trail.inside(r, false, |trail| e.scalar(self, env, trail))?;
+                let v = trail.inside(r, Yields::Any, |trail| e.scalar(self, env, trail))?;
                 Ok(v.map_or(Value::Unknown, Value::Number))
             }
             Data::Formula(e) if variable.kind == Kind::Vector => {
-                let v = trail.inside(r, false, |trail| e.vector(self, env, trail))?;
+                let v = trail.inside(r, Yields::Vector, |trail| e.vector(self, env, trail))?;
                 picked_element(v, r)
             }
             Data::Formula(e) if variable.kind == Kind::Atom => {
-                let all = match trail.inside(r, true, |trail| e.run(self, env, trail))? {
+                let all = match trail.inside(r, Yields::Particles, |trail| e.run(self, env, trail))? {
                     Value::Number(v) => Value::Atom(vec![v; env.natoms()]),
                     other => other,
                 };
@@ -167,13 +167,13 @@ impl Trail {
     fn inside<T>(
         &mut self,
         r: &ValueRef,
-        particles: bool,
+        yields: Yields,
         run: impl FnOnce(&mut Trail) -> Result<T>,
     ) -> Result<T> {
         self.enter(&r.name, r.span)?;
-        let outer = std::mem::replace(&mut self.particles, particles);
+        let outer = std::mem::replace(&mut self.yields, yields);
         let v = run(self).map_err(|d| used(d, &r.name, r.span))?;
-        self.particles = outer;
+        self.yields = outer;
         self.leave();
         Ok(v)
     }
