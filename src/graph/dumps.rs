@@ -1,11 +1,16 @@
 //! `dump`, `undump`, `dump_modify`, `write_dump`: lines that declare snapshots.
 
-use super::build::{Context, Declared, find, id_of, needs_box, style};
+use super::build::{Context, Declared, find, needs_box, style};
 use super::node::{DumpNode, Graph};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::Args;
 use crate::styles::dump::DUMPS;
 use crate::world::{GroupId, World};
+
+/// The ID of a dump: any word, for nothing but its own commands names it.
+fn id_of<'a>(args: &mut Args<'a>) -> Result<(&'a str, Span)> {
+    args.expect("the dump's ID").map(|word| (word.text.as_str(), word.span))
+}
 
 fn find_dump(graph: &Graph, id: &str, span: Span) -> Result<usize> {
     let known = graph.dumps.iter().map(|f| f.id.as_str()).collect();
@@ -15,7 +20,7 @@ fn find_dump(graph: &Graph, id: &str, span: Span) -> Result<usize> {
 /// `dump ID GROUP STYLE N FILE …`.
 pub fn dump(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
     needs_box(w, args)?;
-    let (id, id_span) = id_of(args, "dump")?;
+    let (id, id_span) = id_of(args)?;
     if let Some(old) = graph.dumps.iter().find(|d| d.id == id) {
         return Err(Diagnostic::error(Code::DUPLICATE_NAME, id_span, format!("dump `{id}` exists already"))
             .label(old.span, "defined here")
@@ -34,7 +39,7 @@ pub fn dump(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> 
 
 /// `undump ID`.
 pub fn undump(graph: &mut Graph, args: &mut Args) -> Result<Declared> {
-    let (id, span) = id_of(args, "dump")?;
+    let (id, span) = id_of(args)?;
     let k = find_dump(graph, id, span)?;
     args.finish()?;
     graph.dumps.remove(k);
@@ -43,7 +48,7 @@ pub fn undump(graph: &mut Graph, args: &mut Args) -> Result<Declared> {
 
 /// `dump_modify ID …`.
 pub fn dump_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
-    let (id, span) = id_of(args, "dump")?;
+    let (id, span) = id_of(args)?;
     let k = find_dump(graph, id, span)?;
     if args.is_empty() {
         return fail(Code::MISSING_ARGUMENT, args.here(), "dump_modify needs an option");

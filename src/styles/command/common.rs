@@ -181,6 +181,15 @@ pub fn id(word: &Word, what: &str) -> Result<String> {
     )
 }
 
+/// Checks the ID of a group or region: any word that formulas can name, as `count(wall-1)`.
+pub fn free_id(word: &Word, what: &str) -> Result<String> {
+    if word.unknown || !word.text.contains(['(', ')', '[', ']', ',', '"', '\'', '$']) {
+        return Ok(word.text.clone());
+    }
+    let text = format!("{what} `{}` must not hold brackets, commas, quotes or $", word.text);
+    fail(Code::BAD_VALUE, word.span, text)
+}
+
 /// Reads a whole number from a word.
 pub fn whole(word: &Word, what: &str) -> Result<i64> {
     match word.text.parse() {

@@ -210,7 +210,7 @@ fn deciding(a: &mut Args, cx: &BuildCx, what: &str) -> Result<ValueRef> {
 /// A group that is there or can be made.
 fn group(a: &mut Args, cx: &BuildCx) -> Result<String> {
     let word = a.expect("a group")?;
-    let name = common::id(word, "the group's ID")?;
+    let name = common::free_id(word, "the group's ID")?;
     match cx.world.groups.find(&name) {
         Some(g) if cx.world.groups.dynamic(g).is_some() => {
             let text = format!("the dynamic group `{name}` chooses its particles itself");

@@ -1,6 +1,6 @@
 //! `group`: named sets of particles.
 
-use super::common::{self, atom_variable, bad_keyword, id, in_group, setting, unknown_style, whole};
+use super::common::{self, atom_variable, bad_keyword, free_id, in_group, setting, unknown_style, whole};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Param, ValueRef, Word};
@@ -94,7 +94,7 @@ impl CommandStyle for Group {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         common::domain(cx)?;
         let word = a.expect("the group's ID")?;
-        let name = id(word, "the group's ID")?;
+        let name = free_id(word, "the group's ID")?;
         let style = a.expect("a style")?;
         match style.text.as_str() {
             "delete" => return delete(cx, word, name),

@@ -2,7 +2,7 @@
 
 mod shapes;
 
-use super::common::{self, id, scales, setting, units_lattice, unknown_style};
+use super::common::{self, free_id, scales, setting, units_lattice, unknown_style};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Param, Word};
@@ -73,7 +73,7 @@ struct Options {
 impl CommandStyle for RegionCommand {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         let word = a.expect("the region's ID")?;
-        let name = id(word, "the region's ID")?;
+        let name = free_id(word, "the region's ID")?;
         let style = a.expect("a shape")?;
         if style.text == "delete" {
             return delete(cx, name, word);
