@@ -19,6 +19,10 @@ impl Session {
                 "perigrain chooses its kernels itself"
             }
             "package" => {
+                if self.world.domain.is_some() {
+                    let text = "`package` must come before the simulation box is defined";
+                    return refuse(Code::WRONG_ORDER, cmd.span, text);
+                }
                 args.choice("package", &PACKAGES)?;
                 args.rest();
                 "perigrain chooses its kernels itself; threads are set by `-threads N`"

@@ -26,6 +26,9 @@ impl Style for CommModify {
 
 impl CommandStyle for CommModify {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        if a.is_empty() {
+            a.expect("a keyword such as vel or cutoff")?;
+        }
         while let Some(word) = a.next() {
             match word.text.as_str() {
                 "vel" => {

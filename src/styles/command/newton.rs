@@ -2,7 +2,7 @@
 
 use super::common::setting;
 use super::{Act, CommandStyle};
-use crate::diag::{Code, Diagnostic, Result};
+use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
 use crate::styles::{BuildCx, Doc, Style};
 
@@ -18,7 +18,7 @@ impl Style for Newton {
         Doc {
             syntax: "newton on|off [on|off]",
             summary: "Accepted for the sake of LAMMPS decks: every pair is computed once, whatever the flags.",
-            text: "One flag for pairs and bonds, or one each.",
+            text: "One flag for pairs and bonds, or one each. That for bonds must not change once the box exists.",
             example: "newton off",
         }
     }
@@ -28,6 +28,10 @@ impl CommandStyle for Newton {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         let pair = a.flag("newton")?;
         let bond = if a.is_empty() { pair } else { a.flag("newton for bonds")? };
+        if cx.world.domain.is_some() && cx.world.settings.newton.bond != bond {
+            let text = "`newton` for bonds must be set before the simulation box is defined";
+            return fail(Code::WRONG_ORDER, cx.span, text);
+        }
         let text = "newton has no effect here: every pair is computed once";
         cx.note(Diagnostic::note(Code::NO_EFFECT, a.name_span(), text));
         Ok(setting(move |cx| {

@@ -1,6 +1,6 @@
 //! `processors`: LAMMPS' grid of processes; one process here.
 
-use super::common::{bad_keyword, setting, whole};
+use super::common::{bad_keyword, before_box, setting, whole};
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::Args;
@@ -18,7 +18,7 @@ impl Style for Processors {
         Doc {
             syntax: "processors Px Py Pz",
             summary: "Accepted for the sake of LAMMPS decks: perigrain is one process with threads.",
-            text: "Each number is `*` or from 1. Threads are set on the command line.",
+            text: "Must come before the box. Each number is `*` or from 1. Threads are set on the command line.",
             example: "processors * * 1",
         }
     }
@@ -26,6 +26,7 @@ impl Style for Processors {
 
 impl CommandStyle for Processors {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        before_box(cx, "processors")?;
         for what in ["the processes in x", "the processes in y", "the processes in z"] {
             let word = a.expect(what)?;
             if word.text != "*" && whole(word, what)? < 1 {

@@ -2,9 +2,12 @@
 
 use super::common::setting;
 use super::{Act, CommandStyle};
-use crate::diag::{Code, Result, fail};
+use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
-use crate::styles::{BuildCx, Doc, Style};
+use crate::styles::{BuildCx, Doc, Style, UseKind};
+
+/// Fixes that count on the steps going on, as in LAMMPS: averages, lists of values, batches.
+const COUNTING: [&str; 6] = ["ave/atom", "ave/chunk", "ave/time", "dt/reset", "pour", "vector"];
 
 /// The command.
 pub struct ResetTimestep;
@@ -18,26 +21,28 @@ impl Style for ResetTimestep {
         Doc {
             syntax: "reset_timestep N [time T]",
             summary: "Sets the step counter; elapsed time becomes N times the step size, or T.",
-            text: "The scene is left alone. N is a whole number from 0.",
+            text: "The scene is left alone. N is a whole number from 0. Refused while a fix counts steps: `ave/atom`, `ave/chunk`, \
+                   `ave/time`, `dt/reset`, `pour` or `vector`.",
             example: "reset_timestep 0",
         }
     }
 }
 
 impl CommandStyle for ResetTimestep {
-    fn parse(&self, a: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Act>> {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         let step = a.integer_from(0, "the step")?;
         let mut time = None;
         while let Some(word) = a.next() {
             if word.text != "time" {
                 return Err(a.unknown(word, &["time"]));
             }
-            let span = a.here();
-            let t = a.number("the time")?;
-            if t < 0.0 {
-                return fail(Code::BAD_VALUE, span, format!("the time must not be negative: {t}"));
-            }
-            time = Some(t);
+            time = Some(a.number("the time")?);
+        }
+        for id in cx.names.all(UseKind::Fix) {
+            let Some(style) = cx.names.fix_style(&id).filter(|s| COUNTING.contains(s)) else { continue };
+            let text = format!("the step cannot be reset while fix `{id}` ({style}) counts on it");
+            let help = format!("put `unfix {id}` before this line, and the fix again after it");
+            return Err(Diagnostic::error(Code::CONFLICT, cx.span, text).help(help).into());
         }
         Ok(setting(move |cx| {
             let clock = &mut cx.world.clock;

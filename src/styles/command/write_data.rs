@@ -20,13 +20,13 @@ impl Style for WriteData {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "write_data FILE [pair ii|ij] [nocoeff] [nofix]",
+            syntax: "write_data FILE [pair ii|ij] [nocoeff] [nofix] [nolabelmap]",
             summary: "Writes box, particles, velocities and masses as a LAMMPS data file.",
             text: "A `*` in the name becomes the step. The file has LAMMPS' sections and columns (see read_data) and \
                    appears whole or not at all. Numbers are written in the shortest form that is read back to the same \
                    bits. Positions are wrapped and shrink-wrapped faces follow the particles first, as in LAMMPS. None of \
                    the pair styles here writes coefficients into data files, in LAMMPS neither: `pair` makes no difference; \
-                   `nocoeff` leaves out those of bonds. `nofix` makes no difference, as no fix adds a section. Peridynamic bonds, damage, contact history, forces and \
+                   `nocoeff` leaves out those of bonds. `nofix` and `nolabelmap` make no difference, as no fix adds a section and types have no labels. Peridynamic bonds, damage, contact history, forces and \
                    the clock are not in a data file: write_restart has them. `types labels` and `triclinic/general` are \
                    refused.",
             example: "write_data plate.*.data nocoeff",
@@ -51,13 +51,13 @@ impl CommandStyle for WriteData {
             match key.text.as_str() {
                 "pair" => drop(a.choice("value of pair", &["ii", "ij"])?),
                 "nocoeff" => coeffs = false,
-                "nofix" => {}
+                "nofix" | "nolabelmap" => {}
                 "types" => match a.peek() {
                     Some(w) if w.text == "labels" => return Err(not_here(w, "write_data types")),
                     _ => drop(a.choice("value of types", &["numeric"])?),
                 },
                 "triclinic/general" => return Err(not_here(key, "keyword of write_data")),
-                _ => return Err(a.unknown(key, &["pair", "nocoeff", "nofix", "types"])),
+                _ => return Err(a.unknown(key, &["pair", "nocoeff", "nofix", "nolabelmap", "types"])),
             }
         }
         Ok(Box::new(Writing { file, span: word.span, coeffs, checking: cx.checking }))

@@ -86,8 +86,10 @@ pub(super) fn temperature(word: &Word, cx: &BuildCx) -> Result<ValueRef> {
     }
     let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
     cx.value(&r, false)?;
+    // A pressure has six components, too.
+    let other = cx.names.compute_style(&r.name).is_some_and(|s| !s.starts_with("temp"));
     match cx.names.compute(&r.name) {
-        Some(s) if s.vector != 6 => {
+        Some(s) if s.vector != 6 || other => {
             fail(Code::WRONG_KIND, word.span, format!("compute `{}` is no temperature", r.name))
         }
         _ => Ok(r),

@@ -19,7 +19,7 @@ impl Style for HaltFix {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group halt N attribute operator value [error hard|soft|continue] [message yes|no] [path name]",
+            syntax: "fix ID group halt N attribute operator value [error hard|soft|continue] [message yes|no] [path name] [universe yes|no]",
             summary: "Ends the run when a quantity passes a value; looked at every N steps.",
             text: "Attributes: `v_name` of an equal-style variable, `tlimit` (seconds since the steps of this run began), \
                    `diskfree` (free megabytes where `path` lies, by default in the working folder), `bondmax` (longest bond \
@@ -77,6 +77,8 @@ impl FixStyle for HaltFix {
             match word.text.as_str() {
                 "error" => how = args.choice("value of error", &["hard", "soft", "continue"])?,
                 "message" => message = args.flag("message")?,
+                // One process is the whole universe.
+                "universe" => drop(args.flag("universe")?),
                 "path" => {
                     let name = args.expect("the path to look at")?;
                     path_span = Some(name.span);
@@ -84,7 +86,7 @@ impl FixStyle for HaltFix {
                         *path = PathBuf::from(&name.text);
                     }
                 }
-                _ => return Err(args.unknown(word, &["error", "message", "path"])),
+                _ => return Err(args.unknown(word, &["error", "message", "path", "universe"])),
             }
         }
         if let (Attribute::Disk(path), false) = (&attribute, cx.checking) {

@@ -188,7 +188,14 @@ pub trait Fix: Send {
     ///
     /// # Errors
     /// Unknown keywords; by default there are none.
-    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let span = args.here();
+        if args.eat("dynamic/dof") {
+            args.flag("dynamic/dof")?;
+            let text = "without effect: degrees of freedom are counted anew each time";
+            cx.note(Diagnostic::note(Code::NO_EFFECT, span, text));
+            return Ok(());
+        }
         no_option(args)
     }
 
@@ -281,7 +288,6 @@ fn no_option(args: &mut Args) -> Result<()> {
         "respa" => {
             "this fix has no level of steps to choose: its page and that of run_style tell in which it acts"
         }
-        "dynamic/dof" => "degrees of freedom are counted anew each time: this has nothing to change",
         _ => {
             let text = format!("this fix has no option `{}`", w.text);
             let d = Diagnostic::error(Code::UNKNOWN_KEYWORD, w.span, text);

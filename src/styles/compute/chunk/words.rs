@@ -329,6 +329,13 @@ impl Options {
             let word = args.expect("a bound")?;
             let what = format!("a bound that is not `{end}`");
             self.bound[dim][k] = if word.text == *end { None } else { Some(parse_number(word, &what)?) };
+            if let [Some(lo), Some(hi)] = self.bound[dim]
+                && k == 1
+                && lo > hi
+            {
+                let text = format!("the lower bound {lo} lies above the upper bound {hi}");
+                return fail(Code::BAD_VALUE, word.span, text);
+            }
         }
         Ok(())
     }
