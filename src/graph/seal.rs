@@ -427,6 +427,10 @@ impl SealCx for Sealer<'_> {
         self.graph.knows_flow(&r.name).map(|c| c.boxed())
     }
 
+    fn pair_styles(&self) -> Vec<&'static str> {
+        crate::styles::Names::pair_styles(self.graph)
+    }
+
     fn coefficient(&self, of: &Coefficient) -> Option<f64> {
         self.graph.coefficient(of)
     }

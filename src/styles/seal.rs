@@ -208,6 +208,10 @@ pub trait SealCx {
     fn refresh(&mut self, _id: &str, _stage: Stage, _when: &When) -> Result<Option<Box<dyn Op>>> {
         Ok(None)
     }
+    /// The pair style in force and its sub-styles.
+    fn pair_styles(&self) -> Vec<&'static str> {
+        vec![]
+    }
     /// What the deck's lines said of a coefficient of the pair or bond style in force.
     fn coefficient(&self, _of: &Coefficient) -> Option<f64> {
         None

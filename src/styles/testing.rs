@@ -169,6 +169,9 @@ impl SealCx for Bench {
     fn span(&self) -> Span {
         span()
     }
+    fn pair_styles(&self) -> Vec<&'static str> {
+        vec!["peri/pmb", "peri/eps"]
+    }
     fn slot(&mut self, name: &str) -> SlotId {
         self.world.slots.id(name)
     }

@@ -61,6 +61,14 @@ impl Columns {
         self.scalars.keys().find(own).cloned()
     }
 
+    /// The column that a full name of fix property/atom means now: itself, or that of another fix which has the same property.
+    pub fn present(&self, full: &str) -> Option<String> {
+        if self.scalars.contains_key(full) {
+            return Some(full.to_string());
+        }
+        self.custom(full.splitn(4, '/').nth(3)?)
+    }
+
     /// The vector column of this name, if there is one.
     pub fn get_vector(&self, name: &str) -> Option<&[[f64; 3]]> {
         self.vectors.get(name).map(Vec::as_slice)

@@ -1,12 +1,10 @@
 //! compute damage/atom: the share of each particle's family that it has lost.
 
-use super::family_values::of_families;
+use super::family_values::{Known, of_families};
 use super::{Compute, ComputeStyle};
 use crate::diag::Result;
 use crate::lang::Args;
 use crate::styles::{BuildCx, Doc, Style};
-use crate::world::World;
-use crate::world::families::Families;
 
 /// The style.
 pub struct DamageAtom;
@@ -21,7 +19,8 @@ impl Style for DamageAtom {
             summary: "Damage of each peridynamic particle, from 0 (whole) to 1 (every bond broken).",
             text: "Per-atom vector: φ_i = 1 − Σ V_j over the live bonds / Σ V_j over the family at the first run \
                    (Silling & Askari 2005, equation 29), with plain volumes, without the partial-volume weights of the \
-                   force. 0 for particles that never had a bond, before the first run, and outside the group.",
+                   force. 0 for particles that never had a bond, before the first run, and outside the group. Needs a pair style \
+                   `peri/…` or `bond_style bpm/peri`.",
             example: "compute broken all damage/atom",
         }
     }
@@ -29,8 +28,13 @@ impl Style for DamageAtom {
 
 impl ComputeStyle for DamageAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let damage = |w: &World, f: &Families, i: usize| f.damage(i, w.volumes());
-        of_families("damage/atom", "families volume mask", damage, args, cx)
+        let known = Known {
+            name: self.name(),
+            by: &["peri/pmb", "peri/pmb/plastic", "peri/lps", "peri/ves", "peri/eps"],
+            reads: "families volume mask",
+            value: |w, f, i| f.damage(i, w.volumes()),
+        };
+        of_families(known, args, cx)
     }
 }
 
@@ -39,7 +43,7 @@ mod tests {
     use super::*;
     use crate::styles::testing::Bench;
     use crate::world::AtomStyle;
-    use crate::world::families::{Bounds, FamilyOptions, PeriView, PmbCoeff, PmbTable};
+    use crate::world::families::{Bounds, Families, FamilyOptions, PeriView, PmbCoeff, PmbTable};
 
     #[test]
     fn lost_volume_over_all_volume() {

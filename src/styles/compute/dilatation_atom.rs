@@ -1,6 +1,6 @@
 //! compute dilatation/atom: the relative change of volume of each peridynamic particle.
 
-use super::family_values::of_families;
+use super::family_values::{Known, of_families};
 use super::{Compute, ComputeStyle};
 use crate::diag::Result;
 use crate::lang::Args;
@@ -17,8 +17,9 @@ impl Style for DilatationAtom {
         Doc {
             syntax: "compute ID group dilatation/atom",
             summary: "Dilatation of each particle of a state-based peridynamic body.",
-            text: "Per-atom vector: θ of the latest force evaluation, without dimension (see pair_style peri/lps). 0 under \
-                   peri/pmb, before the first run, for particles without a family, and outside the group.",
+            text: "Per-atom vector: θ of the latest force evaluation, without dimension (see pair_style peri/lps). 0 \
+                   before the first run, for particles without a family, and outside the group. Needs `pair_style peri/lps`, \
+                   `peri/ves` or `peri/eps`, or `bond_style bpm/peri`.",
             example: "compute swell all dilatation/atom",
         }
     }
@@ -26,7 +27,13 @@ impl Style for DilatationAtom {
 
 impl ComputeStyle for DilatationAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        of_families("dilatation/atom", "families mask", |_, f, i| f.dilatation(i), args, cx)
+        let known = Known {
+            name: self.name(),
+            by: &["peri/lps", "peri/ves", "peri/eps"],
+            reads: "families mask",
+            value: |_, f, i| f.dilatation(i),
+        };
+        of_families(known, args, cx)
     }
 }
 

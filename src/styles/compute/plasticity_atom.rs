@@ -1,6 +1,6 @@
 //! compute plasticity/atom: how much each particle of an elastic, perfectly plastic body has flowed.
 
-use super::family_values::of_families;
+use super::family_values::{Known, of_families};
 use super::{Compute, ComputeStyle};
 use crate::diag::Result;
 use crate::lang::Args;
@@ -18,8 +18,8 @@ impl Style for PlasticityAtom {
             syntax: "compute ID group plasticity/atom",
             summary: "Accumulated plastic multiplier of each particle under pair_style peri/eps.",
             text: "Per-atom vector: the sum of Δλ = (m/15G)(norm/limit − 1) over the steps in which the particle has flowed, \
-                   as LAMMPS defines it (volume²/force·length² with ω = 1/|ξ|). 0 under other pair styles, before the first run, \
-                   and outside the group.",
+                   as LAMMPS defines it (volume²/force·length² with ω = 1/|ξ|). 0 before the first run and outside the group. \
+                   Needs `pair_style peri/eps` or `bond_style bpm/peri`.",
             example: "compute flow all plasticity/atom",
         }
     }
@@ -27,7 +27,13 @@ impl Style for PlasticityAtom {
 
 impl ComputeStyle for PlasticityAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        of_families("plasticity/atom", "families mask", |_, f, i| f.plastic_strain(i), args, cx)
+        let known = Known {
+            name: self.name(),
+            by: &["peri/eps"],
+            reads: "families mask",
+            value: |_, f, i| f.plastic_strain(i),
+        };
+        of_families(known, args, cx)
     }
 }
 

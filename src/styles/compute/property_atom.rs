@@ -1,7 +1,7 @@
 //! compute property/atom: the particles' own attributes as values.
 
 use super::{Compute, ComputeStyle};
-use crate::diag::{Code, Diagnostic, Result, fail, nearest};
+use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use crate::lang::{Args, Word};
 use crate::laws::peri::linked::Strain;
 use crate::par;
@@ -68,6 +68,15 @@ pub enum Getter {
 }
 
 impl Getter {
+    /// What it reads now that a run begins: the fix of a property may have gone.
+    ///
+    /// # Errors
+    /// Nobody has the property any more.
+    pub fn present(&self, w: &World, span: Span) -> Result<Self> {
+        let Getter::Column(full) = self else { return Ok(self.clone()) };
+        w.columns.present(full).map(Getter::Column).ok_or_else(|| gone(full, span).into())
+    }
+
     /// The value of particle `i`.
     pub fn get(&self, w: &World, i: usize) -> f64 {
         match self {
@@ -125,6 +134,14 @@ const ELSEWHERE: &[&str] = &[
     "e", "de", "cv", "buckling",
 ];
 
+/// The refusal of a property of fix property/atom that somebody reads and nobody has.
+pub(in crate::styles) fn gone(full: &str, span: Span) -> Diagnostic {
+    let key = full.splitn(4, '/').nth(3).unwrap_or(full);
+    let name = key.split('/').next().unwrap_or(key);
+    let text = format!("the particles have no `{name}` any more: its fix property/atom is gone");
+    Diagnostic::error(Code::INCOMPLETE, span, text).help("leave out the `unfix`, or what reads the property")
+}
+
 /// How strained the bonds of a particle are under `bond_style bpm/peri`.
 fn strain(w: &World, i: usize) -> Option<Strain> {
     let families = w.families.as_ref().filter(|f| !f.of_bonds.is_empty())?;
@@ -141,7 +158,7 @@ impl ComputeStyle for PropertyAtom {
         while let Some(word) = args.next() {
             getters.push(read_attribute(word, cx)?);
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, getters }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, span: cx.span, getters }))
     }
 }
 
@@ -204,6 +221,7 @@ pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
 struct Declared {
     id: String,
     group: GroupId,
+    span: Span,
     getters: Vec<Getter>,
 }
 
@@ -212,8 +230,10 @@ impl Compute for Declared {
         Shape { atom: Some(self.getters.len()), ..Shape::default() }
     }
 
-    fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let (group, getters) = (self.group, self.getters.clone());
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let w = &*cx.world();
+        let getters: Result<Vec<Getter>> = self.getters.iter().map(|g| g.present(w, self.span)).collect();
+        let (group, getters) = (self.group, getters?);
         Ok(fill(&self.id, &Wanted { slot, stage, when }, "particles", move |w, _, out| {
             let (bit, columns) = (group.bit(), getters.len());
             out.cols = columns;

@@ -6,6 +6,7 @@ use crate::lang::{ValueRef, Word};
 use crate::out::dump::Data;
 use crate::out::formats::Kind;
 use crate::plan::{Stage, When};
+use crate::styles::compute::property_atom::gone;
 use crate::styles::{BuildCx, Reading, SealCx, Wants};
 use crate::world::{Domain, World};
 
@@ -189,7 +190,10 @@ impl Attribute {
                 let own = cx.reading(r, Wants::PerAtom, Stage::Output, when);
                 Ok(Bound::Value(own.or_else(|_| cx.value(r, Stage::Output, when))?))
             }
-            Source::Custom(column, int) => Ok(Bound::Custom(column.clone(), *int)),
+            Source::Custom(full, int) => match cx.world().columns.present(full) {
+                Some(column) => Ok(Bound::Custom(column, *int)),
+                None => Err(gone(full, cx.span()).into()),
+            },
         }
     }
 }

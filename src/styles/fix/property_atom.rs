@@ -43,13 +43,9 @@ impl FixStyle for PropertyAtomFix {
                         "without effect: there are no ghosts",
                     ));
                 }
-                "mol" if !cx.world.particles.style.bonded => molecules = true,
                 "mol" => {
-                    let text = format!(
-                        "particles of atom_style {} have molecules by themselves",
-                        cx.world.particles.style.name()
-                    );
-                    return fail(Code::CONFLICT, word.span, text);
+                    no_molecules(word, cx, molecules)?;
+                    molecules = true;
                 }
                 "q" | "rmass" => {
                     let text =
@@ -64,6 +60,21 @@ impl FixStyle for PropertyAtomFix {
         }
         Ok(Box::new(Declared { id: cx.id.to_string(), names, molecules }))
     }
+}
+
+/// Checks that particles have no molecule IDs yet, from their style, this line or another fix.
+fn no_molecules(word: &Word, cx: &BuildCx, before: bool) -> Result<()> {
+    let style = &cx.world.particles.style;
+    if style.bonded {
+        let text = format!("particles of atom_style {} have molecules by themselves", style.name());
+        return fail(Code::CONFLICT, word.span, text);
+    }
+    // A fix of this ID may be declared again.
+    let again = cx.names.fix_style(cx.id) == Some("property/atom");
+    if before || (style.molecules && !again) {
+        return fail(Code::DUPLICATE_NAME, word.span, "`mol` exists already");
+    }
+    Ok(())
 }
 
 /// The columns of one name, as `d_heat` or `d2_heat/1`.
@@ -90,14 +101,31 @@ fn columns(word: &Word, args: &mut Args, cx: &BuildCx, before: &[String]) -> Res
     Ok((1..=count).map(key).collect())
 }
 
-/// Checks that no other fix has a property of this name. A fix of this ID may be declared again.
+/// The name alone, of `i_heat`, `d_heat` and `d2_heat/1` alike; `None` of `temperature` and `heatflow`.
+fn stem(key: &str) -> Option<&str> {
+    let head = key.split_once('/').map_or(key, |(head, _)| head);
+    head.split_once('_').map(|(_, stem)| stem)
+}
+
+/// Checks that there is no property of this name yet, of whatever kind. A fix of this ID may be declared again.
 fn free(word: &Word, cx: &BuildCx, before: &[String], key: &str) -> Result<()> {
     let own = format!("property/atom/{}/", cx.id);
-    let taken = cx.world.columns.custom(key).is_some_and(|full| !full.starts_with(&own));
-    if taken || before.iter().any(|b| b == key) {
-        return fail(Code::DUPLICATE_NAME, word.span, format!("`{}` exists already", word.text));
+    let columns = cx.world.columns.names();
+    let others = columns.iter().filter(|full| !full.starts_with(&own));
+    let others = others.filter_map(|full| full.strip_prefix("property/atom/")?.split_once('/'));
+    let mut taken = others.map(|(_, key)| key).chain(before.iter().map(String::as_str));
+    match taken.find(|other| *other == key || (stem(other).is_some() && stem(other) == stem(key))) {
+        None => Ok(()),
+        Some(other) if other == key => {
+            fail(Code::DUPLICATE_NAME, word.span, format!("`{}` exists already", word.text))
+        }
+        Some(other) => {
+            let shown = other.split('/').next().unwrap_or(other);
+            let text = format!("`{}` and `{shown}` differ in nothing but their kind", word.text);
+            let d = Diagnostic::error(Code::DUPLICATE_NAME, word.span, text);
+            Err(d.help("names must differ behind the first underscore").into())
+        }
     }
-    Ok(())
 }
 
 #[derive(Clone)]
