@@ -22,6 +22,8 @@ boundary s s s
 atom_style hybrid sphere peri
 atom_modify map array
 newton on
+processors * * *
+package omp 1
 lattice sc 0.001
 region world block -0.006 0.006 -0.006 0.006 -0.003 0.009 units box
 create_box 3 world
@@ -65,9 +67,9 @@ fn subject(line: &str) -> Option<Vec<&str>> {
     let mut words = line.split_whitespace();
     let first = words.next()?;
     match first {
-        "units" | "dimension" | "boundary" | "atom_style" | "atom_modify" | "newton" | "lattice"
-        | "create_box" | "timestep" | "neighbor" | "neigh_modify" | "pair_style" | "pair_coeff"
-        | "thermo" | "thermo_style" => Some(vec![first]),
+        "units" | "dimension" | "boundary" | "atom_style" | "atom_modify" | "newton" | "package"
+        | "processors" | "lattice" | "create_box" | "timestep" | "neighbor" | "neigh_modify"
+        | "pair_style" | "pair_coeff" | "thermo" | "thermo_style" => Some(vec![first]),
         "region" | "group" | "compute" | "fix" | "variable" => Some(vec![first, words.next()?]),
         _ => None,
     }
