@@ -1,10 +1,20 @@
 //! The thread pool and loops over parts; the only user of rayon.
 
+use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
+use std::thread;
+use std::time::{Duration, Instant};
 
-use rayon::ThreadPool;
+use rayon::{ThreadPool, Yield};
 
-static POOL: RwLock<Option<Arc<ThreadPool>>> = RwLock::new(None);
+static POOL: RwLock<Option<Arc<Pool>>> = RwLock::new(None);
+
+/// Threads, and whether they look out for work.
+struct Pool {
+    threads: ThreadPool,
+    awake: Arc<AtomicBool>,
+}
 
 /// Room on the stack of each thread: loops compiled without optimisation need some megabytes.
 const STACK: usize = 16 << 20;
@@ -18,13 +28,14 @@ pub fn set_threads(n: usize) -> usize {
     } else {
         None
     };
-    *POOL.write().unwrap_or_else(PoisonError::into_inner) = pool.map(Arc::new);
+    let pool = pool.map(|threads| Arc::new(Pool { threads, awake: Arc::default() }));
+    *POOL.write().unwrap_or_else(PoisonError::into_inner) = pool;
     threads()
 }
 
 /// The number of threads in use.
 pub fn threads() -> usize {
-    pool().map_or(1, |p| p.current_num_threads())
+    pool().map_or(1, |p| p.threads.current_num_threads())
 }
 
 /// The calling thread's number, below [`threads`]: for scratch memory of one piece per thread.
@@ -32,7 +43,7 @@ pub fn slot() -> usize {
     rayon::current_thread_index().unwrap_or(0)
 }
 
-fn pool() -> Option<Arc<ThreadPool>> {
+fn pool() -> Option<Arc<Pool>> {
     POOL.read().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
@@ -41,7 +52,11 @@ fn pool() -> Option<Arc<ThreadPool>> {
 pub fn inside<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     match pool() {
         None => work(),
-        Some(pool) => pool.install(work),
+        Some(pool) => pool.threads.install(|| {
+            // Who looks out may be the one that makes this run.
+            pool.awake.store(false, Ordering::Relaxed);
+            work()
+        }),
     }
 }
 
@@ -52,8 +67,51 @@ pub(super) fn enter<R: Send>(parts: usize, work: impl FnOnce(bool) -> R + Send) 
     }
     match pool() {
         None => work(false),
-        Some(pool) => pool.install(|| work(true)),
+        Some(pool) => {
+            pool.wake();
+            pool.threads.install(|| work(true))
+        }
     }
+}
+
+impl Pool {
+    /// Has all threads look out for work for a while: between two loops of a step they would fall asleep, and to wake one
+    /// takes longer than many a loop.
+    fn wake(&self) {
+        if self.awake.load(Ordering::Relaxed) || self.awake.swap(true, Ordering::Relaxed) {
+            return;
+        }
+        let (awake, home) = (self.awake.clone(), rayon::current_thread_index());
+        self.threads.spawn_broadcast(move |thread| {
+            if Some(thread.index()) != home {
+                look_out(&awake);
+            }
+        });
+    }
+}
+
+/// How long a thread that finds no work looks for some.
+const PATIENCE: Duration = Duration::from_millis(1);
+
+/// Does what work there is until there has been none for a while.
+fn look_out(awake: &AtomicBool) {
+    thread_local! {
+        static LOOKS_OUT: Cell<bool> = const { Cell::new(false) };
+    }
+    // What it finds may be to look out.
+    if LOOKS_OUT.replace(true) {
+        return;
+    }
+    let mut last = Instant::now();
+    while last.elapsed() < PATIENCE {
+        if rayon::yield_now() == Some(Yield::Executed) {
+            last = Instant::now();
+        } else {
+            thread::yield_now();
+        }
+    }
+    LOOKS_OUT.set(false);
+    awake.store(false, Ordering::Relaxed);
 }
 
 /// Calls `f` once for each of `n` parts, in any order; parts must not write what others touch.
@@ -91,6 +149,48 @@ pub fn two_colours(n: usize, f: impl Fn(usize) + Sync) {
     });
 }
 
+/// As [`two_colours`] for parts with much data, of these `weights`: each thread takes neighbouring parts, in the order of one
+/// thread, and what stands beside them is in its fast memory still. The odd parts between threads come last.
+pub fn neighbours(weights: &[usize], f: impl Fn(usize) + Sync) {
+    let (n, f) = (weights.len(), &f);
+    let ranges = threads();
+    if ranges < 2 || n < FEW * ranges {
+        return two_colours(n, f);
+    }
+    let total: usize = weights.iter().sum();
+    // The first even part before which lies a share of all weights.
+    let bound = |range: usize| {
+        let mut before = 0;
+        let share = |before: usize| before * ranges >= total * range;
+        let first = weights.iter().position(|w| {
+            let found = share(before);
+            before += w;
+            found
+        });
+        if range == ranges { n } else { first.unwrap_or(n) / 2 * 2 }
+    };
+    enter(n, |_| {
+        halve(0, ranges, &|range| {
+            let first = bound(range);
+            for even in (first..bound(range + 1)).step_by(2) {
+                f(even);
+                if even > first {
+                    f(even - 1);
+                }
+            }
+        });
+        halve(1, ranges + 1, &|range| {
+            let (first, end) = (bound(range - 1), bound(range));
+            if end > first && end.is_multiple_of(2) {
+                f(end - 1);
+            }
+        });
+    });
+}
+
+/// Fewer parts for each thread than this many are shared as they come.
+const FEW: usize = 4;
+
 /// Halves a range of parts until one is left; idle threads steal the upper halves.
 fn halve(lo: usize, hi: usize, f: &(impl Fn(usize) + Sync)) {
     if hi - lo < 2 {
@@ -119,6 +219,31 @@ mod tests {
             });
             assert!(hits.iter().all(|h| h.load(Ordering::Relaxed) == 2));
         }
+    }
+
+    #[test]
+    fn neighbours_stay_together_and_odd_parts_still_follow() {
+        for (threads, weigh) in [(2, [1, 1]), (3, [1, 5]), (2, [0, 0]), (2, [0, 9]), (3, [100, 1])] {
+            set_threads(threads);
+            for n in [1, 7, 8, 9, 12, 13, 40, 41] {
+                // One part in five has the second weight.
+                let weights: Vec<usize> = (0..n).map(|k| weigh[usize::from(k % 5 == 0)]).collect();
+                let order = std::sync::Mutex::new(vec![]);
+                // By when a part has begun and ended: a part that runs beside another one has not followed it.
+                neighbours(&weights, |k| {
+                    order.lock().unwrap().push((k, false));
+                    order.lock().unwrap().push((k, true));
+                });
+                let order = order.into_inner().unwrap();
+                assert_eq!(order.len(), 2 * n, "{order:?}");
+                let at = |k: usize, end: bool| order.iter().position(|o| *o == (k, end)).unwrap();
+                for k in (1..n).step_by(2) {
+                    assert!(at(k, false) > at(k - 1, true), "{order:?}");
+                    assert!(at(k, false) > at((k + 1) % n, true) || (k + 1 == n && n % 2 == 1), "{order:?}");
+                }
+            }
+        }
+        set_threads(1);
     }
 
     #[test]

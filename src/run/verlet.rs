@@ -38,7 +38,7 @@ pub struct Made {
 }
 
 /// Told after every step, for a progress bar.
-pub trait Watch {
+pub trait Watch: Send {
     /// A step is made.
     fn step(&mut self, made: &Made);
 }
@@ -137,39 +137,44 @@ pub(super) fn steps(
 ) -> Result<Outcome> {
     let (begin, cpu) = (Instant::now(), cpu_seconds());
     let first = w.clock.step;
-    let mut interrupted = false;
     let mut guard = match plan.guard.take() {
         Some(guard) => Some(Guarded::new(guard, plan, w)?),
         None => None,
     };
-    while w.clock.step < w.clock.last && w.clock.halt == Halt::No {
-        if plan.begun() {
-            // Half of this step is made.
-        } else if w.settings.stop.load(Ordering::Relaxed) {
-            interrupted = true;
-            break;
-        } else if w.settings.ends_at(w.clock.step) {
-            w.clock.halt = Halt::All;
-            break;
-        }
-        w.clock.step += 1;
-        let mut t = tick(w, false);
-        plan.ask(&mut t);
-        match &mut guard {
-            None => par::inside(|| step(plan, w, &t).and_then(|()| plan.run(w, &t, &OUTPUTS)))?,
-            Some(guard) => {
-                let made = par::inside(|| step(plan, w, &t));
-                if guard.judge(plan, w, &t, made)? == Verdict::Back {
-                    continue;
-                }
-                plan.run(w, &t, &OUTPUTS)?;
-                guard.keep(plan, w, &t)?;
+    // All of it on one thread of the pool: to hand over at every step would take longer than many a step.
+    let interrupted = par::inside(|| -> Result<bool> {
+        while w.clock.step < w.clock.last && w.clock.halt == Halt::No {
+            if plan.begun() {
+                // Half of this step is made.
+            } else if w.settings.stop.load(Ordering::Relaxed) {
+                return Ok(true);
+            } else if w.settings.ends_at(w.clock.step) {
+                w.clock.halt = Halt::All;
+                break;
             }
+            w.clock.step += 1;
+            let mut t = tick(w, false);
+            plan.ask(&mut t);
+            match &mut guard {
+                None => {
+                    step(plan, w, &t)?;
+                    plan.run(w, &t, &OUTPUTS)?;
+                }
+                Some(guard) => {
+                    let made = step(plan, w, &t);
+                    if guard.judge(plan, w, &t, made)? == Verdict::Back {
+                        continue;
+                    }
+                    plan.run(w, &t, &OUTPUTS)?;
+                    guard.keep(plan, w, &t)?;
+                }
+            }
+            let c = &w.clock;
+            let (done, total) = (c.step - first, c.last - first);
+            watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });
         }
-        let c = &w.clock;
-        let (done, total) = (c.step - first, c.last - first);
-        watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });
-    }
+        Ok(false)
+    })?;
     plan.guard = guard.map(Guarded::into_guard);
     let steps = w.clock.step - first;
     Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })

@@ -70,6 +70,11 @@ pub struct Slab {
     pub deep: bool,
 }
 
+/// How many pairs are in each short list.
+pub fn lengths(lists: &[Slab]) -> Vec<usize> {
+    lists.iter().map(|list| list.short.i.len()).collect()
+}
+
 impl<L: ContactLaw> Fast<L> {
     /// Long lists from these positions and radii.
     pub(super) fn make_long(

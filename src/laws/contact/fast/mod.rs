@@ -284,11 +284,11 @@ impl<L: ContactLaw> Fast<L> {
         total
     }
 
-    /// Calls `f` for all lists in two rounds, of those of slabs and then of those of large grains: a list may write to its slab
-    /// and the next one.
-    fn each_list(&self, f: impl Fn(usize) + Sync) {
+    /// Calls `f` for lists of these lengths in two rounds, for those of slabs and then for those of large grains: a list may write to
+    /// its slab and the next one.
+    fn each_list(&self, lengths: &[usize], f: impl Fn(usize) + Sync) {
         let first = self.strays.lists();
-        par::two_colours(first, &f);
+        par::neighbours(&lengths[..first], &f);
         par::two_colours(self.strays_of_large.lists(), |k| f(first + k));
     }
 

@@ -1,7 +1,7 @@
 //! The inner loop of a step: which pairs of short lists touch, and their contacts, strip by strip.
 
 use super::form::InLanes;
-use super::lists::{FILL, Short, Slab};
+use super::lists::{FILL, Short, Slab, lengths};
 use super::near::Places;
 use super::strip::{STRIP, Strip, one};
 use super::{Alike, Fast, Laws, NONE};
@@ -91,6 +91,7 @@ impl<L: ContactLaw> Fast<L> {
     ) {
         let (width, form) = (self.width, self.form);
         let mut lists = std::mem::take(&mut self.lists);
+        let lengths = lengths(&lists);
         let slabs = par::Shared::new(&mut lists);
         let cx = Cx {
             laws: &self.laws,
@@ -111,7 +112,7 @@ impl<L: ContactLaw> Fast<L> {
             frozen: !self.signed.is_empty(),
             span: self.span,
         };
-        self.each_list(|k| {
+        self.each_list(&lengths, |k| {
             // SAFETY: each part writes its own slab, and forces of grains in it and the next one, which each_list keeps
             // apart; list entries are grains; AVX only where there is AVX.
             unsafe {
