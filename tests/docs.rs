@@ -56,7 +56,8 @@ const BOOK: [&str; 2] = [
      - [The language](language.md)\n\
      - [Commands and styles](commands.md)\n",
     "- [Error codes](errors.md)\n\
-     - [Coming from LAMMPS](coming-from-lammps.md)\n\n\
+     - [Coming from LAMMPS](coming-from-lammps.md)\n\
+     - [How fast, and what limits it](speed.md)\n\n\
      # The program inside\n\n\
      - [The house](architecture.md)\n\
      - [Decisions: dependencies](decisions/dependencies.md)\n",
