@@ -25,11 +25,12 @@ pub struct Sealer<'a> {
     /// The ops so far.
     pub plan: StepPlan,
     span: Span,
-    /// Computes placed so far: ID and stage.
+    /// What has been placed so far and may be asked for again: computes, and what they have evaluated; name and stage.
     placed: Vec<(String, Stage)>,
     /// Names being resolved, to find circles.
     trail: Vec<String>,
-    /// Variables placed so far, to give each use a slot of its own.
+    /// Evaluations of variables and keywords so far, for the compute that is being asked or else for all other lines: each has a
+    /// slot of its own.
     uses: usize,
     /// Where the run speaks.
     pub log: Log,
@@ -171,9 +172,9 @@ impl<'a> Sealer<'a> {
             self.widen(&key, stage, when);
         }
         self.enter(key.clone(), span)?;
-        let outer = std::mem::replace(&mut self.span, node.span);
+        let outer = (std::mem::replace(&mut self.span, node.span), std::mem::take(&mut self.uses));
         let op = node.compute.op(self, slot, stage, when);
-        self.span = outer;
+        (self.span, self.uses) = outer;
         self.trail.pop();
         let op = op?;
         if !self.placed.contains(&(key.clone(), stage)) {
@@ -181,6 +182,31 @@ impl<'a> Sealer<'a> {
             self.placed.push((key, stage));
         }
         Ok(slot)
+    }
+
+    /// Places what evaluates a variable or keyword into a slot. A compute that is asked again asks again for what it reads: that
+    /// is not evaluated once more, but at these times too.
+    fn evaluate(
+        &mut self,
+        what: &str,
+        stage: Stage,
+        when: &When,
+        op: impl FnOnce(SlotId) -> Box<dyn Op>,
+    ) -> SlotId {
+        self.uses += 1;
+        let reader = self.trail.iter().rev().find(|name| name.starts_with("c_"));
+        let key = match reader {
+            Some(reader) => format!("{what}#{reader} {stage:?} {}", self.uses),
+            None => format!("{what}#{}", self.uses),
+        };
+        let slot = self.world.slots.id(&key);
+        if self.placed.contains(&(key.clone(), stage)) {
+            self.widen(&key, stage, when);
+        } else {
+            self.provide(op(slot), when.clone(), key.clone());
+            self.placed.push((key, stage));
+        }
+        slot
     }
 
     fn widen(&mut self, key: &str, stage: Stage, when: &When) {
@@ -216,21 +242,12 @@ impl<'a> Sealer<'a> {
             from.insert(name, slot);
         }
         self.trail.pop();
-        self.uses += 1;
-        let slot = self.world.slots.id(&format!("v_{}#{}", r.name, self.uses));
         let shape = self.graph.variables.get(&r.name).copied().unwrap_or_default();
         let declared = self.declared();
-        let op = Evaluate {
-            declared,
-            name: format!("variable {}", r.name),
-            variable: r.name.clone(),
-            span: r.span,
-            vars,
-            from,
-            slot,
-            stage,
-        };
-        self.provide(Box::new(op), when.clone(), String::new());
+        let (name, variable, span) = (format!("variable {}", r.name), r.name.clone(), r.span);
+        let slot = self.evaluate(&format!("v_{}", r.name), stage, when, |slot| {
+            Box::new(Evaluate { declared, name, variable, span, vars, from, slot, stage })
+        });
         self.world.slots.get_mut(slot).offers = shape.offers();
         Ok(match r.index.as_slice() {
             _ if shape.atom.is_some() => Reading::Atom(slot, 0),
@@ -270,10 +287,9 @@ impl<'a> Sealer<'a> {
                 Need::Pair => self.ask_energy(when),
             }
         }
-        self.uses += 1;
-        let slot = self.world.slots.id(&format!("{name}#{}", self.uses));
-        self.provide(Box::new(Keyword { name, sources, slot, stage }), when.clone(), String::new());
-        Ok(Reading::Scalar(slot))
+        Ok(Reading::Scalar(
+            self.evaluate(name, stage, when, |slot| Box::new(Keyword { name, sources, slot, stage })),
+        ))
     }
 
     /// The slot of a compute or fix, fresh for a formula evaluated between runs.
