@@ -143,7 +143,7 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> 
     let inside = extent.is_none_or(|extent| {
         p.image.wrap(domain, &mut p.x, &extent.out);
         domain.shrink(extent.corners);
-        // Faces that are fixed wrap nobody.
+        // Across fixed faces nobody has been wrapped: there the corners still are those of all.
         extent.corners.iter().all(|corner| domain.keeps(corner))
     });
     let domain = &*domain;

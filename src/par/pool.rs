@@ -1,7 +1,7 @@
 //! The thread pool and loops over parts; the only user of rayon.
 
 use std::cell::Cell;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -13,7 +13,8 @@ static POOL: RwLock<Option<Arc<Pool>>> = RwLock::new(None);
 /// Threads, and whether they look out for work.
 struct Pool {
     threads: ThreadPool,
-    awake: Arc<AtomicBool>,
+    /// The number + 1 of the thread for which the others do; 0 if they sleep.
+    awake: Arc<AtomicUsize>,
 }
 
 /// Room on the stack of each thread: loops compiled without optimisation need some megabytes.
@@ -52,11 +53,7 @@ fn pool() -> Option<Arc<Pool>> {
 pub fn inside<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     match pool() {
         None => work(),
-        Some(pool) => pool.threads.install(|| {
-            // Who looks out may be the one that makes this run.
-            pool.awake.store(false, Ordering::Relaxed);
-            work()
-        }),
+        Some(pool) => pool.threads.install(work),
     }
 }
 
@@ -75,15 +72,17 @@ pub(super) fn enter<R: Send>(parts: usize, work: impl FnOnce(bool) -> R + Send) 
 }
 
 impl Pool {
-    /// Has all threads look out for work for a while: between two loops of a step they would fall asleep, and to wake one
-    /// takes longer than many a loop.
+    /// Has the other threads look out for work of this one for a while: between two loops of a step they would fall asleep, and
+    /// to wake one takes longer than many a loop. Who is not of the pool waits for a thread anyway.
     fn wake(&self) {
-        if self.awake.load(Ordering::Relaxed) || self.awake.swap(true, Ordering::Relaxed) {
+        let Some(home) = self.threads.current_thread_index() else { return };
+        if self.awake.load(Ordering::Relaxed) == home + 1 {
             return;
         }
-        let (awake, home) = (self.awake.clone(), rayon::current_thread_index());
+        self.awake.store(home + 1, Ordering::Relaxed);
+        let awake = self.awake.clone();
         self.threads.spawn_broadcast(move |thread| {
-            if Some(thread.index()) != home {
+            if thread.index() != home {
                 look_out(&awake);
             }
         });
@@ -94,7 +93,7 @@ impl Pool {
 const PATIENCE: Duration = Duration::from_millis(1);
 
 /// Does what work there is until there has been none for a while.
-fn look_out(awake: &AtomicBool) {
+fn look_out(awake: &AtomicUsize) {
     thread_local! {
         static LOOKS_OUT: Cell<bool> = const { Cell::new(false) };
     }
@@ -111,7 +110,7 @@ fn look_out(awake: &AtomicBool) {
         }
     }
     LOOKS_OUT.set(false);
-    awake.store(false, Ordering::Relaxed);
+    awake.store(0, Ordering::Relaxed);
 }
 
 /// Calls `f` once for each of `n` parts, in any order; parts must not write what others touch.
@@ -160,14 +159,16 @@ pub fn neighbours(weights: &[usize], f: impl Fn(usize) + Sync) {
     let total: usize = weights.iter().sum();
     // The first even part before which lies a share of all weights.
     let bound = |range: usize| {
+        if range == ranges {
+            return n;
+        }
         let mut before = 0;
-        let share = |before: usize| before * ranges >= total * range;
         let first = weights.iter().position(|w| {
-            let found = share(before);
+            let found = before * ranges >= total * range;
             before += w;
             found
         });
-        if range == ranges { n } else { first.unwrap_or(n) / 2 * 2 }
+        first.unwrap_or(n) / 2 * 2
     };
     enter(n, |_| {
         halve(0, ranges, &|range| {
@@ -203,8 +204,6 @@ fn halve(lo: usize, hi: usize, f: &(impl Fn(usize) + Sync)) {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::atomic::{AtomicUsize, Ordering};
-
     use super::*;
 
     #[test]

@@ -24,8 +24,8 @@ impl Style for WriteData {
             summary: "Writes box, particles, velocities and masses as a LAMMPS data file.",
             text: "A `*` in the name becomes the step. The file has LAMMPS' sections and columns (see read_data) and \
                    appears whole or not at all. Numbers are written in the shortest form that is read back to the same \
-                   bits. Positions are wrapped and shrink-wrapped faces follow the particles first, as in LAMMPS. None of \
-                   the pair styles here writes coefficients into data files, in LAMMPS neither: `pair` makes no difference; \
+                   bits. Positions are wrapped and shrink-wrapped faces follow the particles first, as in LAMMPS. No \
+                   pair style writes coefficients into data files (of those that are here LAMMPS writes those of `zero` alone): `pair` makes no difference; \
                    `nocoeff` leaves out those of bonds. `nofix` and `nolabelmap` make no difference, as no fix adds a section and types have no labels. Peridynamic bonds, damage, contact history, forces and \
                    the clock are not in a data file: write_restart has them. `types labels` and `triclinic/general` are \
                    refused.",

@@ -17,14 +17,14 @@ impl Style for PropertyAtomFix {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group property/atom name … [temperature] [heatflow] [ghost yes|no] [writedata yes|no]",
+            syntax: "fix ID group property/atom name … [mol] [temperature] [heatflow] [ghost yes|no] [writedata yes|no]",
             summary: "Gives all particles properties of the deck's own.",
             text: "A name is `i_NAME` (whole numbers) or `d_NAME` (numbers), or `i2_NAME N` and `d2_NAME N` for N columns. They \
                    are 0 at first, belong to all particles whatever the group, and are set by `set … d_NAME value` (or \
                    `d2_NAME[k]`). Read them with `compute property/atom`, in `dump custom`, `fix store/state` and in formulas \
                    (`d_NAME`, `d_NAME[7]`; without columns). `temperature` and `heatflow` are what granular contacts that conduct heat \
-                   read and write, and `fix heat/flow` integrates. `ghost` and `writedata` are read for LAMMPS' decks. LAMMPS' `mol`, \
-                   `q` and `rmass` are refused: atom styles say what particles have.",
+                   read and write, and `fix heat/flow` integrates. `ghost` and `writedata` are read for LAMMPS' decks. `mol` gives \
+                   molecule IDs to particles whose style has none. LAMMPS' `q` and `rmass` are refused: atom styles say what particles have.",
             example: "fix mine all property/atom i_flag d_heat\nset group ball d_heat 3.5 i_flag 2\nvariable heat atom d_heat+1",
         }
     }
