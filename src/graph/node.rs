@@ -275,6 +275,10 @@ impl Names for Graph {
         self.find_fix(id).map(|f| f.style)
     }
 
+    fn counting_fix(&self) -> Option<(&str, &'static str)> {
+        self.fixes.iter().find(|f| f.fix.counts_steps()).map(|f| (f.id.as_str(), f.style))
+    }
+
     fn pair_styles(&self) -> Vec<&'static str> {
         let Some(node) = &self.pair else { return vec![] };
         let parts = node.pair.parts();

@@ -128,6 +128,10 @@ pub trait Names {
     fn fix_style(&self, _id: &str) -> Option<&'static str> {
         None
     }
+    /// The first fix that counts on the steps going on, and its style.
+    fn counting_fix(&self) -> Option<(&str, &'static str)> {
+        None
+    }
     /// The pair style in force and its sub-styles.
     fn pair_styles(&self) -> Vec<&'static str> {
         vec![]

@@ -1,8 +1,5 @@
 """Random decks of what is written: thermo styles, dumps, averages, chunks, reductions, printed text."""
-
-
-def u(r, low, high):
-    return round(r.uniform(low, high), 3)
+from sources import u
 
 
 def chunks(r, name, flat):

@@ -1,11 +1,8 @@
 """Random decks that make scenes and change them between short runs: all that edits particles, groups and boxes."""
 from script import shape
+from sources import u
 
 KEPT = "id type x y z vx vy vz omegax omegay omegaz radius mass ix iy iz xu yu zu"
-
-
-def u(r, low, high):
-    return round(r.uniform(low, high), 3)
 
 
 def created(r, flat):

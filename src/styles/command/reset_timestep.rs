@@ -4,10 +4,7 @@ use super::common::setting;
 use super::{Act, CommandStyle};
 use crate::diag::{Code, Diagnostic, Result};
 use crate::lang::Args;
-use crate::styles::{BuildCx, Doc, Style, UseKind};
-
-/// Fixes that count on the steps going on, as in LAMMPS: averages, lists of values, batches.
-const COUNTING: [&str; 6] = ["ave/atom", "ave/chunk", "ave/time", "dt/reset", "pour", "vector"];
+use crate::styles::{BuildCx, Doc, Style};
 
 /// The command.
 pub struct ResetTimestep;
@@ -38,8 +35,7 @@ impl CommandStyle for ResetTimestep {
             }
             time = Some(a.number("the time")?);
         }
-        for id in cx.names.all(UseKind::Fix) {
-            let Some(style) = cx.names.fix_style(&id).filter(|s| COUNTING.contains(s)) else { continue };
+        if let Some((id, style)) = cx.names.counting_fix() {
             let text = format!("the step cannot be reset while fix `{id}` ({style}) counts on it");
             let help = format!("put `unfix {id}` before this line, and the fix again after it");
             return Err(Diagnostic::error(Code::CONFLICT, cx.span, text).help(help).into());

@@ -134,6 +134,10 @@ impl Declared {
 }
 
 impl Fix for Declared {
+    fn counts_steps(&self) -> bool {
+        true
+    }
+
     fn declare(&self, w: &mut World) -> Result<()> {
         self.remove(w);
         self.schedule.declare(w, &self.key());

@@ -334,6 +334,10 @@ impl Declared {
 }
 
 impl Fix for Declared {
+    fn counts_steps(&self) -> bool {
+        true
+    }
+
     fn declare(&self, w: &mut World) -> Result<()> {
         self.schedule.declare(w, &self.key());
         let name = format!("f_{}", self.id);

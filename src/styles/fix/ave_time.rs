@@ -293,6 +293,10 @@ fn offer(w: &mut World, slot: SlotId, step: i64, means: &[f64], cols: usize, vec
 }
 
 impl Fix for Declared {
+    fn counts_steps(&self) -> bool {
+        true
+    }
+
     fn declare(&self, w: &mut World) -> Result<()> {
         self.schedule.declare(w, &self.key());
         let slot = w.slots.id(&format!("f_{}", self.id));

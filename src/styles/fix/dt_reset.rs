@@ -139,6 +139,10 @@ struct Declared {
 }
 
 impl Fix for Declared {
+    fn counts_steps(&self) -> bool {
+        true
+    }
+
     fn declare(&self, w: &mut World) -> Result<()> {
         self.follower.declare(w);
         Ok(())

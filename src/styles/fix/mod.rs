@@ -122,6 +122,11 @@ pub trait Fix: Send {
         false
     }
 
+    /// Whether it counts on the steps going on one by one, so that `reset_timestep` is refused beside it, as in LAMMPS.
+    fn counts_steps(&self) -> bool {
+        false
+    }
+
     /// Which lengths of the box it changes during a run.
     fn deforms(&self) -> [bool; 3] {
         [false; 3]

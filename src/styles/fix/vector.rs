@@ -75,6 +75,10 @@ impl Declared {
 }
 
 impl Fix for Declared {
+    fn counts_steps(&self) -> bool {
+        true
+    }
+
     fn declare(&self, w: &mut World) -> Result<()> {
         self.remove(w);
         let name = format!("f_{}", self.id);

@@ -24,7 +24,7 @@ type Place = [f64; 4];
 pub(super) struct Strays {
     /// Places of the order, list by list.
     members: Vec<Range<usize>>,
-    /// The slab that each one reaches into.
+    /// The slab that each one reaches into, if it is a slab's list.
     next: Vec<Option<usize>>,
     /// The grain at each place; none where it is the place itself.
     order: Vec<u32>,

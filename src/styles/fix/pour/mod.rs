@@ -239,6 +239,10 @@ impl Pouring {
 }
 
 impl Fix for Pouring {
+    fn counts_steps(&self) -> bool {
+        true
+    }
+
     fn declare(&self, w: &mut World) -> Result<()> {
         Account::maker(w, self.seed).store(w, &self.key());
         Ok(())
