@@ -6,7 +6,7 @@ use crate::par;
 use std::ops::Range;
 
 /// Layers of cells in a slab at least: fixed, because it decides the order in which forces are added up.
-const LAYERS: usize = 2;
+const LAYERS: usize = 1;
 /// Largest radius in units of the smallest up to which one grid of cells serves all.
 const ALIKE: f64 = 4.0;
 /// Cells per particle at most; beyond that cells grow.
@@ -89,12 +89,16 @@ impl Slabs {
         for c in 1..self.start.len() {
             self.start[c] += self.start[c - 1];
         }
-        let mut next = self.start.clone();
         self.order.clear();
-        self.order.resize(x.len(), 0);
-        for (i, &c) in cell.iter().enumerate() {
-            self.order[next[c as usize] as usize] = i as u32;
-            next[c as usize] += 1;
+        if cell.is_sorted() {
+            self.order.extend(0..x.len() as u32);
+        } else {
+            let mut next = self.start.clone();
+            self.order.resize(x.len(), 0);
+            for (i, &c) in cell.iter().enumerate() {
+                self.order[next[c as usize] as usize] = i as u32;
+                next[c as usize] += 1;
+            }
         }
         for c in self.start.windows(2) {
             let members = &mut self.order[c[0] as usize..c[1] as usize];
@@ -138,7 +142,13 @@ impl Slabs {
     }
 
     fn lay_out(&mut self, x: &[[f64; 3]], [edge, reach]: [f64; 2], lo: &[f64; 3], period: &[f64; 3]) {
-        let (from, to) = extent(x, 0..x.len() as u32);
+        let wider = |a: ([f64; 3], [f64; 3]), b: ([f64; 3], [f64; 3])| {
+            let with =
+                |f: fn(f64, f64) -> f64, a: [f64; 3], b: [f64; 3]| std::array::from_fn(|d| f(a[d], b[d]));
+            (with(f64::min, a.0, b.0), with(f64::max, a.1, b.1))
+        };
+        let of = |range: Range<usize>| extent(x, range.start as u32..range.end as u32);
+        let (from, to) = par::reduce(x.len(), of, wider).unwrap_or_else(|| extent(x, 0..0));
         let open = |d: usize| period[d] == 0.0;
         let origin: [f64; 3] = std::array::from_fn(|d| if open(d) { from[d] } else { lo[d] });
         let length: [f64; 3] =

@@ -9,7 +9,7 @@ mod pool;
 mod split;
 mod sum;
 
-pub use pool::{for_rows, inside, neighbours, set_threads, slot, threads, two_colours};
+pub use pool::{both, for_rows, inside, neighbours, set_threads, slot, threads, two_colours};
 pub use split::{Rows, Shared, Split, each, for_chunks};
 pub use sum::{max, reduce, reduce_each, sum};
 

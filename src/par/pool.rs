@@ -1,7 +1,7 @@
 //! The thread pool and loops over parts; the only user of rayon.
 
 use std::cell::Cell;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -92,14 +92,27 @@ impl Pool {
 /// How long a thread that finds no work looks for some.
 const PATIENCE: Duration = Duration::from_millis(1);
 
+thread_local! {
+    /// Whether the thread looks out for work already, or waits for another one to end some.
+    static LOOKS_OUT: Cell<Looks> = const { Cell::new(Looks::Not) };
+}
+
+/// What a thread without work of its own does.
+#[derive(Clone, Copy, PartialEq)]
+enum Looks {
+    Not,
+    ForWork,
+    ForAnEnd,
+}
+
 /// Does what work there is until there has been none for a while.
 fn look_out(awake: &AtomicUsize) {
-    thread_local! {
-        static LOOKS_OUT: Cell<bool> = const { Cell::new(false) };
-    }
-    // What it finds may be to look out.
-    if LOOKS_OUT.replace(true) {
-        return;
+    match LOOKS_OUT.get() {
+        Looks::Not => LOOKS_OUT.set(Looks::ForWork),
+        // What it finds may be to look out.
+        Looks::ForWork => return,
+        // Who waits for this thread must not wait for it to run out of patience: it is asked again.
+        Looks::ForAnEnd => return awake.store(0, Ordering::Relaxed),
     }
     let mut last = Instant::now();
     while last.elapsed() < PATIENCE {
@@ -109,8 +122,37 @@ fn look_out(awake: &AtomicUsize) {
             thread::yield_now();
         }
     }
-    LOOKS_OUT.set(false);
+    LOOKS_OUT.set(Looks::Not);
     awake.store(0, Ordering::Relaxed);
+}
+
+/// Does both, the second on another thread if one looks out for work. A thread that has done its part does other work until the other
+/// part ends, and looks out for that: [`rayon::join`] alone falls asleep soon.
+pub(super) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    let done = AtomicBool::new(false);
+    let first = || {
+        let out = a();
+        let looked = LOOKS_OUT.replace(Looks::ForAnEnd);
+        let since = Instant::now();
+        while !done.load(Ordering::Acquire) && since.elapsed() < PATIENCE {
+            if rayon::yield_now() != Some(Yield::Executed) {
+                thread::yield_now();
+            }
+        }
+        LOOKS_OUT.set(looked);
+        out
+    };
+    let second = || {
+        let out = b();
+        done.store(true, Ordering::Release);
+        out
+    };
+    rayon::join(first, second)
+}
+
+/// Does two things at the same time, if there are threads.
+pub fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    enter(2, |threaded| if threaded { join(a, b) } else { (a(), b()) })
 }
 
 /// Calls `f` once for each of `n` parts, in any order; parts must not write what others touch.
@@ -157,18 +199,18 @@ pub fn neighbours(weights: &[usize], f: impl Fn(usize) + Sync) {
         return two_colours(n, f);
     }
     let total: usize = weights.iter().sum();
-    // The first even part before which lies a share of all weights.
+    // The even part before which lies a share of all weights, as nearly as can be.
     let bound = |range: usize| {
         if range == ranges {
             return n;
         }
-        let mut before = 0;
-        let first = weights.iter().position(|w| {
-            let found = before * ranges >= total * range;
-            before += w;
-            found
-        });
-        first.unwrap_or(n) / 2 * 2
+        let (mut before, mut at) = (0, (0, usize::MAX));
+        for (pair, of_pair) in weights.chunks(2).enumerate() {
+            let off = (before * ranges).abs_diff(total * range);
+            at = if off < at.1 { (2 * pair, off) } else { at };
+            before += of_pair.iter().sum::<usize>();
+        }
+        at.0
     };
     enter(n, |_| {
         halve(0, ranges, &|range| {
@@ -199,7 +241,7 @@ fn halve(lo: usize, hi: usize, f: &(impl Fn(usize) + Sync)) {
         return;
     }
     let mid = lo.midpoint(hi);
-    rayon::join(|| halve(lo, mid, f), || halve(mid, hi, f));
+    join(|| halve(lo, mid, f), || halve(mid, hi, f));
 }
 
 #[cfg(test)]

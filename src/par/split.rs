@@ -3,7 +3,8 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use super::{CHUNK, pool::enter};
+use super::CHUNK;
+use super::pool::{enter, join};
 
 /// Columns that can be cut in two at one place: slices, and tuples of up to six of them.
 pub trait Split: Sized + Send {
@@ -98,7 +99,7 @@ pub fn each<S: Split>(columns: S, f: impl Fn(usize, S) + Sync) {
         let mid = n.div_ceil(CHUNK).div_ceil(2) * CHUNK;
         let (low, high) = columns.cut(mid);
         if threaded {
-            rayon::join(|| halve(start, low, true, f), || halve(start + mid, high, true, f));
+            join(|| halve(start, low, true, f), || halve(start + mid, high, true, f));
         } else {
             halve(start, low, false, f);
             halve(start + mid, high, false, f);

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::{CHUNK, Split, pool::enter};
+use super::pool::{self, enter};
+use super::{CHUNK, Split};
 
 /// Maps every chunk of [`CHUNK`] indices below `n` and joins the results along a fixed tree; `None` if `n` is 0.
 pub fn reduce<T: Send>(
@@ -22,7 +23,7 @@ pub fn reduce<T: Send>(
         let mid = range.start + range.len().div_ceil(CHUNK).div_ceil(2) * CHUNK;
         let (low, high) = (range.start..mid, mid..range.end);
         let (a, b) = if threaded {
-            rayon::join(|| tree(low, true, map, join), || tree(high, true, map, join))
+            pool::join(|| tree(low, true, map, join), || tree(high, true, map, join))
         } else {
             (tree(low, false, map, join), tree(high, false, map, join))
         };
@@ -55,10 +56,8 @@ pub fn reduce_each<S: Split, T: Send>(
         let mid = n.div_ceil(CHUNK).div_ceil(2) * CHUNK;
         let (low, high) = columns.cut(mid);
         if threaded {
-            let (a, b) = rayon::join(
-                || tree(start, low, true, map, join),
-                || tree(start + mid, high, true, map, join),
-            );
+            let (a, b) =
+                pool::join(|| tree(start, low, true, map, join), || tree(start + mid, high, true, map, join));
             return join(a, b);
         }
         // From behind: what a loop before has touched last is in fast memory still.

@@ -1,6 +1,7 @@
 //! The particles' core columns as plain fields.
 
 use super::Images;
+use crate::par;
 
 /// Which optional columns exist (`atom_style`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -233,11 +234,13 @@ impl Particles {
     /// Keeps the particle `old[k]` at each new index `k`.
     pub fn gather(&mut self, old: &[usize]) {
         // Columns of one type take turns in one place more: memory that comes and goes costs more than the copies.
-        fn pick<T: Copy>(columns: &mut [&mut Vec<T>], old: &[usize]) {
+        fn pick<T: Copy + Send + Sync>(columns: &mut [&mut Vec<T>], old: &[usize]) {
             let mut spare = Vec::new();
             for column in columns.iter_mut().filter(|c| !c.is_empty()) {
-                spare.clear();
-                spare.extend(old.iter().map(|&k| column[k]));
+                spare.resize(old.len(), column[0]);
+                par::each((&mut spare[..], old), |_, (spare, old)| {
+                    spare.iter_mut().zip(old).for_each(|(to, &k)| *to = column[k]);
+                });
                 std::mem::swap(*column, &mut spare);
             }
         }

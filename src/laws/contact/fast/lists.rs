@@ -68,11 +68,16 @@ pub struct Slab {
     pub virial: [f64; 6],
     /// Whether some grains overlapped too far in the last evaluation.
     pub deep: bool,
+    /// How many contacts there were in the last evaluation.
+    pub touching: usize,
 }
 
-/// How many pairs are in each short list.
-pub fn lengths(lists: &[Slab]) -> Vec<usize> {
-    lists.iter().map(|list| list.short.i.len()).collect()
+/// How long it takes to evaluate a contact, in units of what it takes to find out that a listed pair does not touch.
+const CONTACT: usize = 8;
+
+/// How much work each short list is.
+pub fn weights(lists: &[Slab]) -> Vec<usize> {
+    lists.iter().map(|list| list.short.i.len() + CONTACT * list.touching).collect()
 }
 
 impl<L: ContactLaw> Fast<L> {

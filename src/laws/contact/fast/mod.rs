@@ -226,9 +226,16 @@ impl<L: ContactLaw> Fast<L> {
         self.span = self.laws.span(largest);
         let reach = frame.reach + self.span;
         let [edge, far] = edges(grains.radius, reach);
-        let mut slabs = Slabs::default();
-        slabs.sort(grains.x, grains.tag, [edge, far], &frame.lo, &frame.period);
-        let book = self.remember(grains.tag, known);
+        let sort = || {
+            let mut slabs = Slabs::default();
+            slabs.sort(grains.x, grains.tag, [edge, far], &frame.lo, &frame.period);
+            slabs
+        };
+        let remember = || self.remember(grains.tag, known);
+        // Work of one thread each.
+        let large =
+            || if edge == far { vec![] } else { self.find_large(grains, (frame.period, reach), keep) };
+        let ((slabs, book), large) = par::both(|| par::both(sort, remember), large);
         // The book has what they knew: room for what is made now.
         self.lists.iter_mut().for_each(|l| l.short = Short::default());
         self.spare = vec![];
@@ -249,7 +256,7 @@ impl<L: ContactLaw> Fast<L> {
             let small = small(grains.radius);
             let both_small = |i: usize, j: usize| grains.radius[i] < small && grains.radius[j] < small;
             self.make_long(grains, &slabs, reach, &|i, j| both_small(i, j) && keep(i, j));
-            self.add_large(grains, &slabs, (frame.period, reach), keep);
+            self.add_large(&large, &slabs);
         }
         self.lists.iter_mut().for_each(|list| list.long.fill_up());
         self.strays.divide(&slabs);
@@ -284,11 +291,11 @@ impl<L: ContactLaw> Fast<L> {
         total
     }
 
-    /// Calls `f` for lists of these lengths in two rounds, for those of slabs and then for those of large grains: a list may write to
+    /// Calls `f` for lists of these weights in two rounds, for those of slabs and then for those of large grains: a list may write to
     /// its slab and the next one.
-    fn each_list(&self, lengths: &[usize], f: impl Fn(usize) + Sync) {
+    fn each_list(&self, weights: &[usize], f: impl Fn(usize) + Sync) {
         let first = self.strays.lists();
-        par::neighbours(&lengths[..first], &f);
+        par::neighbours(&weights[..first], &f);
         par::two_colours(self.strays_of_large.lists(), |k| f(first + k));
     }
 

@@ -1,7 +1,7 @@
 //! The inner loop of a step: which pairs of short lists touch, and their contacts, strip by strip.
 
 use super::form::InLanes;
-use super::lists::{FILL, Short, Slab, lengths};
+use super::lists::{FILL, Short, Slab, weights};
 use super::near::Places;
 use super::strip::{STRIP, Strip, one};
 use super::{Alike, Fast, Laws, NONE};
@@ -91,7 +91,7 @@ impl<L: ContactLaw> Fast<L> {
     ) {
         let (width, form) = (self.width, self.form);
         let mut lists = std::mem::take(&mut self.lists);
-        let lengths = lengths(&lists);
+        let weights = weights(&lists);
         let slabs = par::Shared::new(&mut lists);
         let cx = Cx {
             laws: &self.laws,
@@ -112,7 +112,7 @@ impl<L: ContactLaw> Fast<L> {
             frozen: !self.signed.is_empty(),
             span: self.span,
         };
-        self.each_list(&lengths, |k| {
+        self.each_list(&weights, |k| {
             // SAFETY: each part writes its own slab, and forces of grains in it and the next one, which each_list keeps
             // apart; list entries are grains; AVX only where there is AVX.
             unsafe {
@@ -139,7 +139,7 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) {
         let Self { cx, slab } = self;
-        (slab.virial, slab.deep) = ([0.0; 6], false);
+        (slab.virial, slab.deep, slab.touching) = ([0.0; 6], false, 0);
         let at = cx.places();
         let mut hits = [0; ROOM];
         // SAFETY: passed on.
@@ -163,6 +163,7 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
             // What holds is moved to the front of what is ready; the rest stays where it is.
             let holding =
                 if cx.span > 0.0 { cx.holding::<W>(&slab.short, &mut hits[..ready]) } else { ready };
+            slab.touching += holding;
             // SAFETY: passed on.
             unsafe { evaluate::<N, V, L, W>(cx, slab, &mut strip, &hits[..holding]) };
             if k == end {

@@ -7,19 +7,17 @@ use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::Grains;
 use crate::math::lanes::PLACE_BITS;
 use crate::math::vec3::Vec3;
-use crate::neigh::list::{Reach, View, Wanted, pairs_of_large};
+use crate::neigh::list::{Pair, Reach, View, Wanted, pairs_of_large};
 use crate::neigh::slabs::{HERE, Slabs};
 
 impl<L: ContactLaw> Fast<L> {
-    /// Adds long lists of pairs with large grains, from these positions and radii in a box of these periods, with surfaces nearer
-    /// than `skin`. A pair belongs to the slab of one of its grains from where the other is in the same or the next one.
-    pub(super) fn add_large(
-        &mut self,
+    /// Pairs with large grains, from these positions and radii in a box of these periods, with surfaces nearer than `skin`.
+    pub(super) fn find_large(
+        &self,
         grains: &Grains,
-        slabs: &Slabs,
         (period, skin): (Vec3, f64),
         keep: &(impl Fn(usize, usize) -> bool + Sync),
-    ) {
+    ) -> Vec<Pair> {
         let types = self.laws.types as u16;
         let mut wanted = Wanted::new(self.laws.types);
         for (a, b) in (1..=types).flat_map(|a| (a..=types).map(move |b| (a, b))) {
@@ -28,11 +26,15 @@ impl<L: ContactLaw> Fast<L> {
             }
         }
         let Grains { x, tag, kind, radius, .. } = *grains;
-        let found = pairs_of_large(&View { x, tag, kind, radius, period }, &wanted, skin, keep);
+        pairs_of_large(&View { x, tag, kind, radius, period }, &wanted, skin, keep)
+    }
 
+    /// Adds long lists of these pairs. A pair belongs to the slab of one of its grains from where the other is in the same or the
+    /// next one.
+    pub(super) fn add_large(&mut self, found: &[Pair], slabs: &Slabs) {
         let far = slabs.far();
-        let count = far.count();
-        let (mut place, mut slab) = (vec![0; x.len()], vec![0; x.len()]);
+        let (count, n) = (far.count(), slabs.order.len());
+        let (mut place, mut slab) = (vec![0; n], vec![0; n]);
         for k in 0..count {
             for at in far.members(k) {
                 let i = slabs.order[at] as usize;

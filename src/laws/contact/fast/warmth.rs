@@ -1,6 +1,6 @@
 //! Heat through the contacts of the fast loop.
 
-use super::lists::{Short, lengths};
+use super::lists::{Short, weights};
 use super::near::{Places, near};
 use super::{Fast, NONE};
 use crate::laws::contact::driver::Grains;
@@ -20,7 +20,7 @@ impl<L: ContactLaw> Fast<L> {
             "a number for each grain"
         );
         let flow = par::Shared::new(flow);
-        self.each_list(&lengths(&self.lists), |k| {
+        self.each_list(&weights(&self.lists), |k| {
             let short = &self.lists[k].short;
             let mut hits = vec![];
             // SAFETY: list entries are grains; the processor has what its form needs.
