@@ -124,7 +124,7 @@ pub fn pairs_of_large(
 
 /// The radius that small ones stay below: they fill two octaves from the smallest on.
 pub fn small(radius: &[f64]) -> f64 {
-    let least = radius.iter().copied().filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min);
+    let least = par::best(radius, f64::INFINITY, |a, r| if r > 0.0 && r < a { r } else { a });
     // The power of two at or below it: a number without its fraction.
     let octave = f64::from_bits(least.to_bits() >> 52 << 52);
     4.0 * octave

@@ -48,14 +48,13 @@ pub struct Run {
 /// Cells of spheres of about one size are as long as pairs reach, and neighbours are in neighbouring cells. Where sizes
 /// differ much, this holds for the [`small`] ones, and [`pairs_of_large`](super::list::pairs_of_large) finds the others.
 pub fn edges(radius: &[f64], more: f64) -> [f64; 2] {
-    let bounds = |(lo, hi): (f64, f64), r: &f64| (lo.min(*r), hi.max(*r));
-    let (least, most) = radius.iter().fold((f64::INFINITY, 0.0), bounds);
+    let (least, most) = (par::best(radius, f64::INFINITY, f64::min), par::best(radius, 0.0, f64::max));
     let reach = 2.0 * most + more;
     if most <= ALIKE * least {
         return [reach; 2];
     }
     let small = small(radius);
-    let larger = radius.iter().copied().filter(|r| *r < small).fold(0.0, f64::max);
+    let larger = par::best(radius, 0.0, |a, r| if r < small && r > a { r } else { a });
     [2.0 * larger + more, reach]
 }
 

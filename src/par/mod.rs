@@ -11,7 +11,7 @@ mod sum;
 
 pub use pool::{both, for_rows, inside, neighbours, set_threads, slot, threads, two_colours};
 pub use split::{Rows, Shared, Split, each, for_chunks};
-pub use sum::{max, reduce, reduce_each, sum};
+pub use sum::{best, max, reduce, reduce_each, sum};
 
 /// Particles per chunk, everywhere: fixed, so that the order of additions is too.
 pub const CHUNK: usize = 2048;

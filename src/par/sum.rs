@@ -79,6 +79,19 @@ pub fn max(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
         .unwrap_or(f64::NEG_INFINITY)
 }
 
+/// What is left of `first` and all numbers of a list if of two the `better` one stays, whatever the order: eight at a time.
+pub fn best(list: &[f64], first: f64, better: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
+    let of = |range: Range<usize>| {
+        let (eights, rest) = list[range].as_chunks::<8>();
+        let mut best = [first; 8];
+        for eight in eights {
+            best.iter_mut().zip(eight).for_each(|(best, a)| *best = better(*best, *a));
+        }
+        best.into_iter().chain(rest.iter().copied()).fold(first, &better)
+    };
+    reduce(list.len(), of, &better).unwrap_or(first)
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::set_threads;
@@ -110,5 +123,11 @@ mod tests {
         assert_eq!(reduce_each(&mut rows[..], write, |a, b| a + b), Some(sum(n, term)));
         assert_eq!(rows[n - 1], term(n - 1));
         assert_eq!(max(n, |i| i as f64), (n - 1) as f64);
+        for n in [0, 1, 7, 8, 9, n] {
+            let list: Vec<f64> = (0..n).map(term).collect();
+            assert_eq!(best(&list, -50.0, f64::max), list.iter().copied().fold(-50.0, f64::max));
+            let least_above = |a: f64, b: f64| if b > 0.5 && b < a { b } else { a };
+            assert_eq!(best(&list, 60.0, least_above), list.iter().copied().fold(60.0, least_above));
+        }
     }
 }

@@ -222,7 +222,7 @@ impl<L: ContactLaw> Fast<L> {
         known: Option<&Contacts>,
         keep: &(impl Fn(usize, usize) -> bool + Sync),
     ) {
-        let largest = grains.radius.iter().copied().fold(0.0, f64::max);
+        let largest = par::best(grains.radius, 0.0, f64::max);
         self.span = self.laws.span(largest);
         let reach = frame.reach + self.span;
         let [edge, far] = edges(grains.radius, reach);

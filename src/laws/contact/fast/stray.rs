@@ -249,7 +249,7 @@ mod tests {
         let x: Vec<[f64; 3]> = (0..9).map(|i| [f64::from(i), 0.0, 0.0]).collect();
         let tag: Vec<u32> = (0..9).collect();
         let mut slabs = Slabs::default();
-        slabs.sort(&x, &tag, [1.4; 2], &[0.0; 3], &[0.0; 3]);
+        slabs.sort(&x, &tag, [2.8; 2], &[0.0; 3], &[0.0; 3]);
         assert_eq!(slabs.near().count(), 3);
         (slabs, x, tag)
     }
@@ -300,7 +300,7 @@ mod tests {
         x[0][2] = f64::NAN;
         assert_eq!(look(&x, false), [0], "the last slab reaches into the first only where the axis repeats");
         let mut around = Slabs::default();
-        around.sort(&x[..8], &tag[..8], [1.4; 2], &[0.0; 3], &[8.0, 0.0, 0.0]);
+        around.sort(&x[..8], &tag[..8], [2.8; 2], &[0.0; 3], &[8.0, 0.0, 0.0]);
         assert_eq!([0, 1, 2].map(|k| slabs.near().next(k)), [Some(1), Some(2), None]);
         assert_eq!([0, 1].map(|k| around.near().next(k)), [Some(1), Some(0)]);
     }

@@ -10,6 +10,7 @@ use crate::laws::contact::{Advance, ContactLaw, Granular, Heat};
 use crate::math::vec3::Vec3;
 use crate::neigh::list::{Pair, Reach, Wanted};
 use crate::neigh::slabs::{edges, shift_of};
+use crate::par;
 use crate::plan::{Access, Op, Stage, Tick};
 use crate::world::columns::{HEATFLOW, TEMPERATURE};
 use crate::world::contacts::{Contacts, Deep};
@@ -239,7 +240,7 @@ fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<G
 /// Whether the fast loop can take these particles.
 fn suits(w: &World, period: Vec3, fast: &Fast<Granular>) -> bool {
     let p = &w.particles;
-    let most = p.radius.iter().copied().fold(0.0, f64::max);
+    let most = par::best(&p.radius, 0.0, f64::max);
     let more = w.rebuild.kept.reach(w.settings.neighbor.skin) + fast.span(most);
     let still = w.domain.as_ref().is_none_or(|d| d.flow.is_none());
     let fits = still && w.families.is_none() && !p.is_empty() && p.len() <= MOST_GRAINS;
