@@ -1,18 +1,16 @@
 //! Declarations and world become a step plan: values before their readers, and only what somebody reads.
 
+mod context;
+
 use super::answers::Declared;
 use super::keywords::{self, Need, Sources};
 use super::node::Graph;
-use super::said;
 use super::values::{Evaluate, Keyword, Once};
 use crate::diag::{Code, Result, Span, fail};
 use crate::lang::{Dep, RefKind, ValueRef, Vars};
 use crate::out::log::Log;
-use crate::plan::{LeftOut, Level, Op, Placed, Stage, StepPlan, When};
-use crate::styles::bond::BondForce;
-use crate::styles::pair::probe::Probe;
-use crate::styles::{PlaceTest, Pull, Reading, SealCx, Shape, Text, Wants};
-use crate::world::adapted::Coefficient;
+use crate::plan::{Level, Op, Placed, Stage, StepPlan, When};
+use crate::styles::{Reading, SealCx, Shape};
 use crate::world::{SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -329,160 +327,6 @@ impl<'a> Sealer<'a> {
                 }
                 _ => fail(Code::WRONG_KIND, r.span, "this variable has no value here"),
             },
-        }
-    }
-}
-
-impl SealCx for Sealer<'_> {
-    fn world(&mut self) -> &mut World {
-        self.world
-    }
-
-    fn span(&self) -> Span {
-        self.span
-    }
-
-    fn level(&self) -> Level {
-        self.chosen.map_or(Level::Outermost, Level::At)
-    }
-
-    fn slot(&mut self, name: &str) -> SlotId {
-        self.world.slots.id(name)
-    }
-
-    fn value(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<Reading> {
-        let shape = self.shape_of(r);
-        let number = match r.index.as_slice() {
-            [] => shape.scalar,
-            [k] => *k <= shape.vector,
-            _ => true,
-        };
-        self.reading(r, if number { Wants::Number } else { Wants::PerAtom }, stage, when)
-    }
-
-    fn reading(&mut self, r: &ValueRef, wants: Wants, stage: Stage, when: &When) -> Result<Reading> {
-        let wrong = |text: String| fail(Code::WRONG_KIND, r.span, text);
-        match r.kind {
-            RefKind::ComputeAtom | RefKind::FixAtom => {
-                return wrong(format!("`{r}` belongs in a formula: use an equal-style variable"));
-            }
-            RefKind::Variable => {
-                let reading = self.variable(r, stage, when)?;
-                return match (wants, &reading) {
-                    (Wants::Vector, Reading::Vector(_)) | (Wants::Number | Wants::PerAtom, _) => Ok(reading),
-                    _ => wrong(format!("`{r}` has no such value")),
-                };
-            }
-            RefKind::Compute | RefKind::Fix => {}
-        }
-        let shape = self.shape_of(r);
-        let slot = self.source(r, stage, when)?;
-        Ok(match (wants, r.index.as_slice()) {
-            (Wants::Number, []) if shape.scalar => Reading::Scalar(slot),
-            (Wants::Number, [k]) if *k <= shape.vector => Reading::Element(slot, k - 1),
-            (Wants::Number, [i, j]) if *i <= shape.array_rows && *j <= shape.array => {
-                Reading::Cell(slot, i - 1, j - 1)
-            }
-            (Wants::PerAtom, []) if shape.atom == Some(1) => Reading::Atom(slot, 0),
-            (Wants::PerAtom, [k]) if shape.atom.is_some_and(|c| *k <= c) => Reading::Atom(slot, k - 1),
-            (Wants::Vector, []) if shape.vector > 0 => Reading::Vector(slot),
-            (Wants::Vector, [k]) if *k <= shape.array => Reading::Column(slot, k - 1),
-            (Wants::Local, []) if shape.local == 1 => Reading::Local(slot, 0),
-            (Wants::Local, [k]) if *k <= shape.local => Reading::Local(slot, k - 1),
-            _ => return wrong(format!("`{r}` has no such value")),
-        })
-    }
-
-    fn keyword(&mut self, name: &str, span: Span, stage: Stage, when: &When) -> Result<Reading> {
-        let norm = self.graph.thermo.normalized(self.world);
-        self.keyword_as(name, span, stage, when, norm)
-    }
-
-    fn text(&mut self, text: &str, span: Span, stage: Stage, when: &When) -> Result<Text> {
-        let vars = self.vars.clone();
-        said::text(self, vars, text, span, stage, when)
-    }
-
-    fn steps(&mut self, r: &ValueRef) -> Result<When> {
-        said::steps(self.world, &self.vars, r)
-    }
-
-    fn test(
-        &mut self,
-        r: &ValueRef,
-        sets: &[Option<ValueRef>; 3],
-        stage: Stage,
-        when: &When,
-    ) -> Result<PlaceTest> {
-        let vars = self.vars.clone();
-        said::test(self, vars, r, sets, stage, when)
-    }
-
-    fn pulls(&self) -> Vec<Pull> {
-        let flat = self.world.settings.two_dimensional;
-        self.graph.fixes.iter().filter_map(|f| f.fix.pull(flat)).collect()
-    }
-
-    fn adopts(&self, id: &str) -> Option<Option<String>> {
-        self.graph.find_fix(id).map(|f| f.fix.adopts().map(str::to_string))
-    }
-
-    fn log(&self) -> Log {
-        self.log.clone()
-    }
-
-    fn refresh(&mut self, id: &str, stage: Stage, when: &When) -> Result<Option<Box<dyn Op>>> {
-        let graph = self.graph;
-        match graph.find_compute(id) {
-            Some(node) => node.compute.refresh(self, stage, when),
-            None => fail(Code::UNKNOWN_NAME, self.span, format!("there is no compute `{id}`")),
-        }
-    }
-
-    fn bias(&self, r: &ValueRef) -> Option<Box<dyn crate::styles::Compute>> {
-        self.graph.knows_flow(&r.name).map(|c| c.boxed())
-    }
-
-    fn pair_styles(&self) -> Vec<&'static str> {
-        crate::styles::Names::pair_styles(self.graph)
-    }
-
-    fn coefficient(&self, of: &Coefficient) -> Option<f64> {
-        self.graph.coefficient(of)
-    }
-
-    fn bonds(&self) -> Option<Box<dyn BondForce>> {
-        self.graph.bond.as_ref().map(|b| b.force.boxed())
-    }
-
-    fn ask_energy(&mut self, when: &When) {
-        self.plan.energy.push(when.clone());
-    }
-
-    fn ask_virial(&mut self, when: &When) {
-        self.plan.virial.push(when.clone());
-    }
-
-    fn ask_atom_energy(&mut self, when: &When) {
-        self.plan.atom_energy.push(when.clone());
-    }
-
-    fn ask_atom_virial(&mut self, when: &When) {
-        self.plan.atom_virial.push(when.clone());
-    }
-
-    fn probes(&mut self) -> Result<Vec<Box<dyn Probe>>> {
-        self.graph.pair.as_ref().map_or(Ok(vec![]), |node| node.pair.probes(self.world))
-    }
-
-    fn energy_fixes(&self) -> Vec<String> {
-        self.graph.fixes.iter().filter(|f| f.energy).map(|f| format!("f_{}", f.id)).collect()
-    }
-
-    fn leave_out(&mut self, what: &str, why: &str) {
-        let l = LeftOut { what: what.to_string(), why: why.to_string() };
-        if !self.plan.left_out.contains(&l) {
-            self.plan.left_out.push(l);
         }
     }
 }
