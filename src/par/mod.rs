@@ -9,9 +9,9 @@ mod pool;
 mod split;
 mod sum;
 
-pub use pool::{both, for_rows, inside, neighbours, set_threads, slot, threads, two_colours};
+pub use pool::{both, for_rows, in_turn, inside, neighbours, set_threads, slot, threads, two_colours};
 pub use split::{Rows, Shared, Split, each, for_chunks};
-pub use sum::{best, max, reduce, reduce_each, sum};
+pub use sum::{along_tree, best, max, reduce, reduce_each, sum};
 
 /// Particles per chunk, everywhere: fixed, so that the order of additions is too.
 pub const CHUNK: usize = 2048;

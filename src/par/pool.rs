@@ -177,17 +177,16 @@ pub fn two_colours(n: usize, f: impl Fn(usize) + Sync) {
             (0..2).for_each(|colour| halve(0, (n + 1 - colour) / 2, &|k| f(2 * k + colour)));
             return;
         }
-        // An odd part right after the two even ones beside it: what it touches is in fast memory still.
-        for even in (0..n).step_by(2) {
-            f(even);
-            if even > 0 {
-                f(even - 1);
-            }
-        }
-        if n > 0 && n.is_multiple_of(2) {
-            f(n - 1);
-        }
+        in_turn(n).for_each(f);
     });
+}
+
+/// The order in which one thread calls the parts of [`two_colours`]: an odd part comes right after the two even ones beside it, and what
+/// it touches is in fast memory still.
+pub fn in_turn(n: usize) -> impl Iterator<Item = usize> {
+    let beside = |even: usize| [Some(even), even.checked_sub(1)].into_iter().flatten();
+    let last = (n > 0 && n.is_multiple_of(2)).then(|| n - 1);
+    (0..n).step_by(2).flat_map(beside).chain(last)
 }
 
 /// As [`two_colours`] for parts with much data, of these `weights`: each thread takes neighbouring parts, in the order of one

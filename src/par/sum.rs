@@ -68,6 +68,18 @@ pub fn reduce_each<S: Split, T: Send>(
     (n > 0).then(|| enter(n.div_ceil(CHUNK), |threaded| tree(0, columns, threaded, &map, &join)))
 }
 
+/// Joins what came of each chunk along the tree of [`reduce`]; `None` if there are no chunks.
+pub fn along_tree<T: Copy>(came: &[T], join: impl Fn(T, T) -> T) -> Option<T> {
+    fn tree<T: Copy>(came: &[T], join: &impl Fn(T, T) -> T) -> Option<T> {
+        if came.len() < 2 {
+            return came.first().copied();
+        }
+        let (low, high) = came.split_at(came.len().div_ceil(2));
+        tree(low, join).zip(tree(high, join)).map(|(a, b)| join(a, b))
+    }
+    tree(came, &join)
+}
+
 /// The sum of `term(i)` for `i` below `n`: in order within a chunk, chunks along a fixed tree.
 pub fn sum(n: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     reduce(n, |range| range.fold(0.0, |sum, i| sum + term(i)), |a, b| a + b).unwrap_or(0.0)
@@ -122,6 +134,12 @@ mod tests {
         };
         assert_eq!(reduce_each(&mut rows[..], write, |a, b| a + b), Some(sum(n, term)));
         assert_eq!(rows[n - 1], term(n - 1));
+        for n in [1, CHUNK, 3 * CHUNK, n] {
+            let chunk = |start: usize| (start..n.min(start + CHUNK)).fold(0.0, |sum, i| sum + term(i));
+            let came: Vec<f64> = (0..n).step_by(CHUNK).map(chunk).collect();
+            assert_eq!(along_tree(&came, |a, b| a + b), Some(sum(n, term)));
+        }
+        assert_eq!(along_tree(&[] as &[f64], |a, b| a + b), None);
         assert_eq!(max(n, |i| i as f64), (n - 1) as f64);
         for n in [0, 1, 7, 8, 9, n] {
             let list: Vec<f64> = (0..n).map(term).collect();

@@ -13,4 +13,4 @@ pub use level::{Level, Phase, Solids};
 pub use meter::Meter;
 pub use op::{Access, Op, OpClass, Stage, Tick, When};
 pub use schedule::{LeftOut, Placed, StepPlan};
-pub use stretch::{Act, Beside, Gist, Pull, Stretch, take_turns};
+pub use stretch::{Act, Beside, Gist, Pull, Stretch, Turns, take_turns};

@@ -4,6 +4,7 @@ use super::stretch::{Act, Gist};
 use super::{Level, Phase};
 use crate::diag::Result;
 use crate::world::World;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The stages of a step in their order, in LAMMPS' words.
@@ -300,6 +301,19 @@ pub trait Op: Send {
     /// As `run`.
     fn run_on(&mut self, _w: &mut World, _t: &Tick) -> Result<bool> {
         Ok(false)
+    }
+    /// As `run`, for the last op that adds forces: it may tell which particles have all of theirs while these are in fast memory,
+    /// each once, and reads and writes nothing of those any more; they may be moved at once. `false` if it did not tell.
+    ///
+    /// # Errors
+    /// As `run`.
+    fn run_telling(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        _ready: &mut dyn FnMut(&mut World, Range<usize>),
+    ) -> Result<bool> {
+        self.run(w, t).map(|()| false)
     }
     /// What it does to stretches of particles at this tick, where it acts on each particle by itself: such ops take turns.
     /// With `on` it acts at the end of this step and, in the same pass, as its fix (or it itself) does at the beginning of

@@ -1,6 +1,6 @@
 //! Ops in the order of a step, with what was left out and why.
 
-use super::{Act, Guard, Level, Meter, Op, OpClass, Stage, Tick, When, take_turns};
+use super::{Act, Gist, Guard, Level, Meter, Op, OpClass, Stage, Tick, Turns, When, take_turns};
 use crate::diag::{Diagnostics, Result, Span};
 use crate::world::World;
 use std::time::{Duration, Instant};
@@ -59,6 +59,16 @@ pub struct LeftOut {
     pub what: String,
     /// Why it is not needed.
     pub why: String,
+}
+
+/// What follows the forces of a step.
+struct Ending {
+    /// Ops in order; behind the last kick what clears forces, if the next step begins there.
+    order: Vec<usize>,
+    /// The last kick, if the next step can begin there.
+    last: Option<usize>,
+    /// What clears forces then.
+    clears: Option<usize>,
 }
 
 /// The sealed step.
@@ -155,8 +165,78 @@ impl StepPlan {
             self.run(w, t, &[InitialIntegrate])?;
         }
         self.run(w, t, &[PostIntegrate, Stage::Exchange, Stage::Neighbor, Stage::PreForce])?;
+        if self.force_and_end(w, t, &more)? {
+            return Ok(());
+        }
         self.run(w, t, &[Stage::Force])?;
         self.end(w, t, more)
+    }
+
+    /// Where one op alone adds forces and all that follows acts on each particle by itself: particles that have all their forces
+    /// are moved while they are in fast memory, if the op tells who has. Every particle sees the same as otherwise. `false` where
+    /// that is not so, and nothing has been done.
+    fn force_and_end(&mut self, w: &mut World, t: &Tick, more: &impl Fn(&World) -> bool) -> Result<bool> {
+        let forces = |p: &Placed| p.stage == Stage::Force && p.level.acts(&t.phase) && p.when.fires(t);
+        let mut adding = (0..self.ops.len()).filter(|&k| forces(&self.ops[k]));
+        let (Some(force), None) = (adding.next(), adding.next()) else { return Ok(false) };
+        let Ending { order, last, clears } = self.ending(t);
+        let last = last.filter(|_| more(w));
+        let acts = self.offers(w, t, &order, [last, clears]);
+        let turns = Turns::new(&acts, w.n()).filter(|_| !acts.is_empty() && acts.len() == order.len());
+        let Some(mut turns) = turns else { return Ok(false) };
+        let (mut clock, mut moving) = (Instant::now(), Duration::ZERO);
+        let p = &mut self.ops[force];
+        let told = p.timed(w, t, &mut clock, |op, w| {
+            op.run_telling(w, t, &mut |w, particles| {
+                let begin = Instant::now();
+                turns.ready(w, particles);
+                moving += begin.elapsed();
+            })
+        })?;
+        p.meter.time = p.meter.time.saturating_sub(moving);
+        let gists = if told { turns.finish() } else { take_turns(w, &acts) };
+        self.took_turns(w, t, (&order, last), gists, moving + clock.elapsed());
+        Ok(true)
+    }
+
+    /// Tells ops what came of their turns, which took so long together.
+    fn took_turns(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        (ops, last): (&[usize], Option<usize>),
+        gists: Vec<Gist>,
+        elapsed: Duration,
+    ) {
+        let each = elapsed / gists.len().max(1) as u32;
+        for (&k, gist) in ops.iter().zip(gists) {
+            let p = &mut self.ops[k];
+            p.op.took_turns(w, t, gist);
+            p.meter.time += each;
+            p.meter.calls += 1;
+            p.meter.bytes += p.op.bytes(w);
+            self.begun |= last == Some(k);
+        }
+    }
+
+    /// What these ops, from the first on, offer to do to stretches. The last kick of the step goes on into the next one, and what
+    /// clears forces then, if there is one.
+    fn offers(&self, w: &World, t: &Tick, ops: &[usize], [last, clears]: [Option<usize>; 2]) -> Vec<Act> {
+        let goes_on = |k: usize| last == Some(k) || (last.is_some() && clears == Some(k));
+        ops.iter().map_while(|&k| self.ops[k].op.on_stretches(w, t, goes_on(k))).collect()
+    }
+
+    /// What follows the forces of this step.
+    fn ending(&mut self, t: &Tick) -> Ending {
+        let ends = |p: &Placed| {
+            let there = matches!(p.stage, Stage::PostForce | Stage::FinalIntegrate);
+            there && p.level.acts(&t.phase) && p.when.fires(t)
+        };
+        let mut order: Vec<usize> = (0..self.ops.len()).filter(|&k| ends(&self.ops[k])).collect();
+        let last = self.last_kick(t);
+        let clears = last.and_then(|_| self.clears_early());
+        order.extend(clears);
+        Ending { order, last, clears }
     }
 
     /// Whether the step before has made the beginning of this one.
@@ -170,21 +250,11 @@ impl StepPlan {
     /// # Errors
     /// The first op's that fails.
     pub fn end(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
-        let ends = |p: &Placed| {
-            let there = matches!(p.stage, Stage::PostForce | Stage::FinalIntegrate);
-            there && p.level.acts(&t.phase) && p.when.fires(t)
-        };
-        let mut order: Vec<usize> = (0..self.ops.len()).filter(|&k| ends(&self.ops[k])).collect();
-        let last = self.last_kick(t);
-        // Behind the last kick, if the next step begins there.
-        let clears = last.and_then(|_| self.clears_early());
-        order.extend(clears);
+        let Ending { order, last, clears } = self.ending(t);
         let (mut at, mut clock) = (0, Instant::now());
         while at < order.len() {
             let last = last.filter(|_| self.begun || more(w));
-            let goes_on = |k: usize| last == Some(k) || (last.is_some() && clears == Some(k));
-            let offer = |k: &usize| self.ops[*k].op.on_stretches(w, t, goes_on(*k));
-            let acts: Vec<Act> = order[at..].iter().map_while(offer).collect();
+            let acts = self.offers(w, t, &order[at..], [last, clears]);
             if acts.is_empty() {
                 let (k, p) = (order[at], &mut self.ops[order[at]]);
                 let whole = last == Some(k) && t.phase.levels == 1;
@@ -199,16 +269,9 @@ impl StepPlan {
                 continue;
             }
             let gists = take_turns(w, &acts);
-            let elapsed = std::mem::replace(&mut clock, Instant::now()).elapsed() / gists.len() as u32;
-            for gist in gists {
-                let (k, p) = (order[at], &mut self.ops[order[at]]);
-                p.op.took_turns(w, t, gist);
-                p.meter.time += elapsed;
-                p.meter.calls += 1;
-                p.meter.bytes += p.op.bytes(w);
-                self.begun |= last == Some(k);
-                at += 1;
-            }
+            let elapsed = std::mem::replace(&mut clock, Instant::now()).elapsed();
+            self.took_turns(w, t, (&order[at..], last), gists, elapsed);
+            at += acts.len();
         }
         Ok(())
     }

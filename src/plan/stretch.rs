@@ -1,8 +1,9 @@
 //! Ops that act on each particle by itself, one after the other on each stretch of particles while that is in fast memory.
 
 use crate::math::vec3::Vec3;
-use crate::par::{self, Split};
+use crate::par::{self, CHUNK, Split};
 use crate::world::{AtomStyle, World};
+use std::ops::Range;
 
 /// Most ops that take turns.
 const MOST: usize = 6;
@@ -194,42 +195,89 @@ pub fn take_turns(w: &mut World, acts: &[Act]) -> Vec<Gist> {
 }
 
 fn some(w: &mut World, acts: &[Act]) -> [Gist; MOST] {
+    let passes = passes(acts);
+    let (all, columns) = columns(w);
+    par::reduce_each(columns, |start, rows| chunk(&passes, all, start, rows), join).unwrap_or_default()
+}
+
+type Columns<'a> =
+    (&'a mut [Vec3], &'a mut [Vec3], &'a mut [Vec3], &'a [u32], Option<(&'a mut [Vec3], &'a mut [Vec3])>);
+
+/// What ops read of all particles, and the columns that are cut.
+fn columns(w: &mut World) -> (Known<'_>, Columns<'_>) {
     let p = &mut w.particles;
     let all =
         Known { style: p.style, kind: &p.kind, radius: &p.radius, mass: &p.mass, type_mass: &w.type_mass };
     let spins = p.omega.len() == p.x.len() && p.torque.len() == p.x.len();
     let turned = spins.then_some((&mut p.omega[..], &mut p.torque[..]));
-    let columns = (&mut p.x[..], &mut p.v[..], &mut p.f[..], &p.mask[..], turned);
-    type Columns<'a> =
-        (&'a mut [Vec3], &'a mut [Vec3], &'a mut [Vec3], &'a [u32], Option<(&'a mut [Vec3], &'a mut [Vec3])>);
-    let passes = passes(acts);
-    let stretch = |start: usize, (x, v, f, mask, turned): Columns<'_>| {
+    (all, (&mut p.x[..], &mut p.v[..], &mut p.f[..], &p.mask[..], turned))
+}
+
+/// All passes over one stretch after the other.
+fn chunk(passes: &[Pass<'_>], all: Known<'_>, mut start: usize, mut rest: Columns<'_>) -> [Gist; MOST] {
+    let mut gists = [Gist::default(); MOST];
+    while rest.rows() > 0 {
+        let n = rest.rows().min(STRETCH);
+        let ((x, v, f, mask, turned), later) = rest.cut(n);
         let (omega, torque) = turned.unwrap_or_default();
         let mut stretch = Stretch { start, x, v, f, omega, torque, mask, all };
-        let mut gists = [Gist::default(); MOST];
-        for pass in &passes {
+        let mut came = [Gist::default(); MOST];
+        for pass in passes {
             match pass {
-                Pass::Alone(at, act) => gists[*at] = act(&mut stretch),
+                Pass::Alone(at, act) => came[*at] = act(&mut stretch),
                 Pass::Together(act, beside, places) => {
-                    let came = act(&mut stretch, beside);
-                    places.iter().zip(came).for_each(|(at, gist)| at.iter().for_each(|at| gists[*at] = gist));
+                    let all = act(&mut stretch, beside);
+                    places.iter().zip(all).for_each(|(at, gist)| at.iter().for_each(|at| came[*at] = gist));
                 }
             }
         }
-        gists
-    };
-    let join = |a: [Gist; MOST], b: [Gist; MOST]| std::array::from_fn(|k| a[k].join(b[k]));
-    let chunk = |mut start: usize, mut rest: Columns<'_>| {
-        let mut gists = [Gist::default(); MOST];
-        while rest.rows() > 0 {
-            let n = rest.rows().min(STRETCH);
-            let (now, later) = rest.cut(n);
-            gists = join(gists, stretch(start, now));
-            (start, rest) = (start + n, later);
+        (gists, start, rest) = (join(gists, came), start + n, later);
+    }
+    gists
+}
+
+fn join(a: [Gist; MOST], b: [Gist; MOST]) -> [Gist; MOST] {
+    std::array::from_fn(|k| a[k].join(b[k]))
+}
+
+/// [`take_turns`] by and by, as particles get all their forces.
+pub struct Turns<'a> {
+    acts: usize,
+    passes: Vec<Pass<'a>>,
+    /// Of each chunk, how many particles wait for forces.
+    waiting: Vec<usize>,
+    came: Vec<[Gist; MOST]>,
+}
+
+impl<'a> Turns<'a> {
+    /// With `n` particles that wait for forces; `None` if there are too many ops for one turn.
+    pub fn new(acts: &'a [Act], n: usize) -> Option<Self> {
+        let waiting: Vec<usize> = (0..n).step_by(CHUNK).map(|start| CHUNK.min(n - start)).collect();
+        let came = vec![[Gist::default(); MOST]; waiting.len()];
+        (acts.len() <= MOST).then(|| Self { acts: acts.len(), passes: passes(acts), waiting, came })
+    }
+
+    /// These particles have all their forces; each is told once. Ops take turns on chunks in which nobody waits any more.
+    pub fn ready(&mut self, w: &mut World, particles: Range<usize>) {
+        let end = if particles.is_empty() { 0 } else { particles.end.div_ceil(CHUNK) };
+        for k in particles.start / CHUNK..end {
+            let rows = k * CHUNK..((k + 1) * CHUNK).min(w.n());
+            self.waiting[k] -= particles.end.min(rows.end) - particles.start.max(rows.start);
+            if self.waiting[k] == 0 {
+                let (all, columns) = columns(w);
+                let (_, from) = columns.cut(rows.start);
+                let (own, _) = from.cut(rows.len());
+                self.came[k] = chunk(&self.passes, all, rows.start, own);
+            }
         }
-        gists
-    };
-    par::reduce_each(columns, chunk, join).unwrap_or_default()
+    }
+
+    /// What came of each op when all particles have been told.
+    pub fn finish(self) -> Vec<Gist> {
+        debug_assert!(self.waiting.iter().all(|n| *n == 0), "somebody waits for forces still");
+        let all = par::along_tree(&self.came, join).unwrap_or_default();
+        all.into_iter().take(self.acts).collect()
+    }
 }
 
 #[cfg(test)]
@@ -262,5 +310,38 @@ mod tests {
             ["0", "1", "2+", "3", "4"]
         );
         assert_eq!(told(&[pull(), hold(), Act::clear(), moving(), moving()]), ["0", "1", "2", "3+", "4+"]);
+    }
+
+    #[test]
+    fn by_and_by_all_is_as_at_once() {
+        let n = 3 * CHUNK + 77;
+        let world = || {
+            let mut w = World::default();
+            let p = &mut w.particles;
+            p.x = (0..n).map(|i| [1.0 / (i as f64 + 1.0), 0.5, -3.0]).collect();
+            (p.v, p.f, p.mask, p.tag) = (p.x.clone(), p.x.clone(), vec![1; n], (0..n as u32).collect());
+            w
+        };
+        let acts = [
+            Act::new(|s| {
+                s.v.iter_mut().zip(s.f.iter()).for_each(|(v, f)| v[0] += 0.3 * f[0]);
+                Gist { sums: [s.v.iter().map(|v| v[0]).sum(), 0.0, 0.0], most: s.v[0][0] }
+            }),
+            Act::clear(),
+        ];
+        let (mut once, mut by_and_by) = (world(), world());
+        let came = take_turns(&mut once, &acts);
+        let mut turns = Turns::new(&acts, n).unwrap();
+        // In pieces that end anywhere, from the middle on, and with nobody.
+        for piece in [5000..n, 5..5000, 7..7, 0..5] {
+            let early = piece.start > 0;
+            turns.ready(&mut by_and_by, piece);
+            assert!(!early || by_and_by.particles.f[0] != [0.0; 3], "the first ones wait for forces");
+        }
+        assert_eq!(turns.finish(), came);
+        assert_eq!(once.particles.v, by_and_by.particles.v);
+        assert!(by_and_by.particles.f.iter().all(|f| *f == [0.0; 3]));
+        let many: Vec<Act> = (0..=MOST).map(|_| Act::clear()).collect();
+        assert!(Turns::new(&many, n).is_none());
     }
 }

@@ -1,14 +1,15 @@
 //! Grains that overlap so far that contact laws mean little.
 
 use super::Fast;
+use super::lists::Slab;
 use super::near::Places;
 use crate::laws::contact::ContactLaw;
 use crate::laws::contact::driver::{DEEP, Grains};
 use crate::math::lanes::place;
 
 impl<L: ContactLaw> Fast<L> {
-    /// The pair of smallest ids that overlaps by more than [`DEEP`] of the smaller radius, and by which part.
-    pub(super) fn find_deep(&self, grains: &Grains) -> Option<([u32; 2], f64)> {
+    /// The pair of smallest ids that overlaps by more than [`DEEP`] of the smaller radius, in these lists, and by which part.
+    pub(super) fn find_deep(&self, grains: &Grains, lists: &[Slab]) -> Option<([u32; 2], f64)> {
         let at = Places::new(grains, &self.shifts);
         let of = |i: u32, w: u32| {
             let (i, j) = (i as usize, place(w));
@@ -23,7 +24,7 @@ impl<L: ContactLaw> Fast<L> {
             let (p, q) = (self.tag[i], self.tag[j]);
             Some(([p.min(q), p.max(q)], (sum - square.sqrt()) / least))
         };
-        let pairs = self.lists.iter().flat_map(|l| l.short.i.iter().zip(&l.short.w));
+        let pairs = lists.iter().flat_map(|l| l.short.i.iter().zip(&l.short.w));
         pairs.filter_map(|(&i, &w)| of(i, w)).min_by_key(|(ids, _)| *ids)
     }
 }

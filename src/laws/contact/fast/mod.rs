@@ -11,6 +11,7 @@ mod form;
 mod lists;
 mod memory;
 mod near;
+mod piecewise;
 mod stray;
 mod strip;
 mod sweep;
@@ -274,14 +275,10 @@ impl<L: ContactLaw> Fast<L> {
         store: bool,
         virial: bool,
     ) -> [f64; 6] {
-        let stale = std::mem::take(&mut self.stale);
-        let mut strayed = self.strays.strayed(grains, self.thin, stale);
-        let of_large = self.strays_of_large.strayed(grains, self.thin, stale);
-        strayed.extend(of_large.into_iter().map(|k| self.strays.lists() + k));
-        self.make_short(grains, &strayed);
-        self.sweep(grains, [f, torque], step, store, virial);
+        self.begin(grains);
+        self.sweep(grains, [f, torque], step, (store, virial), None);
         if self.deep.is_none() && self.lists.iter().any(|l| l.deep) {
-            self.deep = self.find_deep(grains);
+            self.deep = self.find_deep(grains, &self.lists);
         }
         self.now += if store { 1.0 } else { 0.0 };
         let mut total = [0.0; 6];
@@ -289,6 +286,15 @@ impl<L: ContactLaw> Fast<L> {
             (0..6).for_each(|k| total[k] += slab.virial[k]);
         }
         total
+    }
+
+    /// Makes short lists where they are due.
+    pub(super) fn begin(&mut self, grains: &Grains) {
+        let stale = std::mem::take(&mut self.stale);
+        let mut strayed = self.strays.strayed(grains, self.thin, stale);
+        let of_large = self.strays_of_large.strayed(grains, self.thin, stale);
+        strayed.extend(of_large.into_iter().map(|k| self.strays.lists() + k));
+        self.make_short(grains, &strayed);
     }
 
     /// Calls `f` for lists of these weights in two rounds, for those of slabs and then for those of large grains: a list may write to

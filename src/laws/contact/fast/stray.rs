@@ -114,6 +114,21 @@ impl Strays {
         self.members.len()
     }
 
+    /// Whether every grain stands at its place.
+    pub fn stand_in_order(&self) -> bool {
+        self.order.is_empty()
+    }
+
+    /// The slab that the list of this one reaches into, if there is one.
+    pub fn next(&self, slab: usize) -> Option<usize> {
+        self.next[slab]
+    }
+
+    /// The places of a slab.
+    pub fn members(&self, slab: usize) -> Range<usize> {
+        self.members[slab].clone()
+    }
+
     /// Grains have been moved by so many periods: that is not a way.
     pub fn turn(&mut self, turns: &[[i16; 3]], period: Vec3) {
         for at in 0..self.own.len() {

@@ -80,18 +80,18 @@ impl<L: ContactLaw> Cx<'_, L> {
 }
 
 impl<L: ContactLaw> Fast<L> {
-    /// Adds up the forces of all contacts.
+    /// Adds up the forces of all contacts, or of those of one list.
     pub(super) fn sweep(
         &mut self,
         grains: &Grains,
         [f, torque]: [&mut [Vec3]; 2],
         step: Advance,
-        store: bool,
-        virial: bool,
+        (store, virial): (bool, bool),
+        only: Option<usize>,
     ) {
         let (width, form) = (self.width, self.form);
         let mut lists = std::mem::take(&mut self.lists);
-        let weights = weights(&lists);
+        let weights = if only.is_none() { weights(&lists) } else { vec![] };
         let slabs = par::Shared::new(&mut lists);
         let cx = Cx {
             laws: &self.laws,
@@ -112,7 +112,7 @@ impl<L: ContactLaw> Fast<L> {
             frozen: !self.signed.is_empty(),
             span: self.span,
         };
-        self.each_list(&weights, |k| {
+        let contacts = |k: usize| {
             // SAFETY: each part writes its own slab, and forces of grains in it and the next one, which each_list keeps
             // apart; list entries are grains; AVX only where there is AVX.
             unsafe {
@@ -122,7 +122,11 @@ impl<L: ContactLaw> Fast<L> {
                     _ => form.run(Contacts::<L, 8> { cx: &cx, slab }),
                 }
             }
-        });
+        };
+        match only {
+            None => self.each_list(&weights, contacts),
+            Some(k) => contacts(k),
+        }
         self.lists = lists;
     }
 }

@@ -16,6 +16,7 @@ use crate::world::columns::{HEATFLOW, TEMPERATURE};
 use crate::world::contacts::{Contacts, Deep};
 use crate::world::{Allowed, World};
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// Forces and torques of all granular contacts of one pair style.
 pub struct Force {
@@ -139,6 +140,69 @@ impl Force {
         Ok(())
     }
 
+    /// As [`Force::run_fast`], list by list: `ready` is told which grains have all their forces. `false`, with nothing done, where
+    /// somebody reads more than forces, or lists do not come one by one.
+    fn run_piecewise(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        (period, store, anew): (Vec3, bool, bool),
+        ready: &mut dyn FnMut(&mut World, Range<usize>),
+    ) -> Result<bool> {
+        let plain = !t.virial && !t.contacts && !conducts(&self.rules);
+        let alone = matches!(w.contact_masses(), Cow::Borrowed(_));
+        let fast = self.fast.as_mut().filter(|fast| self.is_fast && plain && alone && fast.is_piecewise());
+        let Some(fast) = fast else { return Ok(false) };
+        let seen = grains(w, period, &[], &self.frozen)?;
+        if anew {
+            fast.weigh(&seen);
+        }
+        let step = Advance { dt: t.dt, history: !t.setup };
+        let mut piecewise = fast.begin_piecewise(&seen, step, store);
+        w.contacts.remove(self.style);
+        loop {
+            let p = &mut w.particles;
+            let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
+            let seen = grains(w, period, &[], &self.frozen)?;
+            let complete = fast.go_on(&mut piecewise, &seen, [&mut f, &mut torque]);
+            (w.particles.f, w.particles.torque) = (f, torque);
+            let Some(complete) = complete else { break };
+            complete.into_iter().for_each(|particles| ready(w, particles));
+        }
+        let deep = fast.deep;
+        report(w, t, deep);
+        Ok(true)
+    }
+
+    /// What precedes contacts: lists where they are due; the box, whether contacts remember, and whether masses may be others.
+    fn prepare(&mut self, w: &mut World, t: &Tick) -> Result<(Vec3, bool, bool)> {
+        // A run that continues an unchanged scene has no setup; who comes or goes shifts the others.
+        if t.setup || self.generation.is_none() || self.plain.roster != Some(w.rebuild.roster) {
+            self.plain.roster = Some(w.rebuild.roster);
+            self.find_bodies(w);
+        }
+        let stale = self.is_fast && self.fast.as_ref().is_some_and(|f| f.len() != w.n());
+        let renewed = stale || self.generation != Some(w.rebuild.generation);
+        if renewed {
+            self.renew(w)?;
+        }
+        // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
+        let store = !t.setup || w.settings.lammps();
+        let anew = renewed || t.setup || !self.steady;
+        if anew {
+            find_frozen(w, &mut self.frozen);
+        }
+        Ok((w.periods(), store, anew))
+    }
+
+    /// All contacts.
+    fn act(&mut self, w: &mut World, t: &Tick, (period, store, anew): (Vec3, bool, bool)) -> Result<()> {
+        match self.is_fast {
+            true => self.run_fast(w, t, period, store, anew),
+            false => self.run_plain(w, t, period, store),
+        }
+    }
+
     fn run_plain(&mut self, w: &mut World, t: &Tick, period: Vec3, store: bool) -> Result<()> {
         let mut memory = w.contacts.remove(self.style).unwrap_or_default();
         let kept: Option<Contacts> = (!store).then(|| memory.clone());
@@ -180,27 +244,22 @@ impl Op for Force {
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        // A run that continues an unchanged scene has no setup; who comes or goes shifts the others.
-        if t.setup || self.generation.is_none() || self.plain.roster != Some(w.rebuild.roster) {
-            self.plain.roster = Some(w.rebuild.roster);
-            self.find_bodies(w);
+        let how = self.prepare(w, t)?;
+        self.act(w, t, how)
+    }
+
+    fn run_telling(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        ready: &mut dyn FnMut(&mut World, Range<usize>),
+    ) -> Result<bool> {
+        let how = self.prepare(w, t)?;
+        let told = self.run_piecewise(w, t, how, ready)?;
+        if !told {
+            self.act(w, t, how)?;
         }
-        let stale = self.is_fast && self.fast.as_ref().is_some_and(|f| f.len() != w.n());
-        let renewed = stale || self.generation != Some(w.rebuild.generation);
-        if renewed {
-            self.renew(w)?;
-        }
-        let period = w.periods();
-        // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
-        let store = !t.setup || w.settings.lammps();
-        let anew = renewed || t.setup || !self.steady;
-        if anew {
-            find_frozen(w, &mut self.frozen);
-        }
-        match self.is_fast {
-            true => self.run_fast(w, t, period, store, anew),
-            false => self.run_plain(w, t, period, store),
-        }
+        Ok(told)
     }
 
     fn settle(&mut self, written: &dyn Fn(&str) -> bool) {
