@@ -44,8 +44,11 @@ impl Session {
         let outcome = verlet::look(&mut plan, &mut self.world, |w| {
             // Snapshots meet particles in the order of their creation.
             w.fall_back();
-            w.contacts.clone_from(&contacts);
+            let left = std::mem::replace(&mut w.contacts, contacts.clone());
             let shown = reel.next(w)?;
+            if shown.is_none() {
+                w.contacts = left;
+            }
             // Reading has set the counter; the run as a whole goes from `first` to `last`.
             let c = &mut w.clock;
             (c.start, c.stop) = (start.unwrap_or(first), stop.unwrap_or(last));

@@ -68,8 +68,8 @@ pub(super) const RERUN: Entry = (
             For each, forces are computed as in the setup of a run, fixes that change forces act and integrators do not; \
             thermo output, dumps and averages appear for steps that are multiples of their intervals, rows of the step table for \
             the first and the last snapshot too. `start` and `stop` are as for `run`; no snapshot may be behind `stop`.\n\n\
-            Contacts remember at every snapshot what they remembered before `rerun`, those with walls as long as no snapshot opens \
-            them. \
+            Contacts remember at every snapshot, and afterwards, what they remembered before `rerun`; those with walls as long as no \
+            snapshot opens them (under `-compat lammps` afterwards what the last snapshot has left, as in LAMMPS). \
             The clock shows step · dt of each snapshot (LAMMPS counts the time from its own first snapshot). Peridynamic \
             bonds are those of the scene before, or of the first snapshot if there was no run: bonds do not break, and \
             damage is not in a dump.",
