@@ -8,6 +8,7 @@ use crate::out::file::Pattern;
 use crate::out::restart::{Saving, write};
 use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::{BuildCx, SealCx, Use, UseKind};
+use crate::world::adapted;
 use crate::world::columns::{LEVEL, PLASTIC_BEGUN, PLASTIC_COLUMNS};
 use crate::world::{Said, World};
 use std::collections::BTreeSet;
@@ -200,9 +201,13 @@ pub fn save(
 
 /// Whether a name belongs to state that a fix or compute of the restarted deck may claim.
 pub fn claimable(name: &str) -> bool {
-    // The pair style comes with the file, and what its plastic grains have become with it; the forces of each level of steps
-    // belong to the run style, which is a setting.
-    name != NEXT && name != PLASTIC_BEGUN && !name.starts_with(PLASTIC_COLUMNS) && !name.starts_with(LEVEL)
+    // The pair style comes with the file, and what its plastic grains and fixes have made of it; the forces of each level of
+    // steps belong to the run style, which is a setting.
+    name != NEXT
+        && !adapted::is(name)
+        && name != PLASTIC_BEGUN
+        && !name.starts_with(PLASTIC_COLUMNS)
+        && !name.starts_with(LEVEL)
 }
 
 impl Graph {

@@ -142,6 +142,29 @@ impl StepPlan {
         Ok(())
     }
 
+    /// Runs what acts at the end of steps at the first tick of a run without motion: those that act in no setup too.
+    ///
+    /// # Errors
+    /// The first op's that fails, with the place of its command.
+    pub fn end_first(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let later = Tick { setup: false, ..t.clone() };
+        for p in self.ops.iter_mut().filter(|p| p.stage == Stage::EndOfStep) {
+            let t = if p.in_setup { t } else { &later };
+            if p.when.fires(t) {
+                p.timed(w, t, &mut Instant::now(), |op, w| op.run(w, t))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Forces give back to the world what they keep of contacts, as at the end of a run.
+    ///
+    /// # Errors
+    /// The first op's that fails.
+    pub fn let_go(&mut self, w: &mut World) -> Result<()> {
+        self.ops.iter_mut().filter(|p| p.stage == Stage::Force).try_for_each(|p| p.op.finish(w))
+    }
+
     /// Whether all that move particles report how far, and none grows; who adds or wraps particles has lists made anew.
     pub fn reports_travel(&self) -> bool {
         let moves = |p: &&Placed| ["x", "radius"].iter().any(|what| p.op.access().writes(what));

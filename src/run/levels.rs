@@ -55,9 +55,12 @@ pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool, l: &Levels) ->
     plan.ask(&mut t);
     plan.run(w, &l.at(&t, l.count() - 1), &[Stage::Neighbor])?;
     w.columns.forget_levels();
-    for k in 0..l.count() {
-        plan.run(w, &l.at(&t, k), &[Stage::PreForce, Stage::Force])?;
-        exchange(w, k);
+    for stages in first_forces(w) {
+        for k in 0..l.count() {
+            exchange(w, k);
+            plan.run(w, &l.at(&t, k), stages)?;
+            exchange(w, k);
+        }
     }
     // Weights are those of the masses that the outermost level leaves (`fix adapt`).
     for k in 0..l.count() {
@@ -68,6 +71,15 @@ pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool, l: &Levels) ->
     join(w, l);
     plan.run(w, &t, &[Stage::InitialIntegrate, Stage::PostIntegrate, Stage::FinalIntegrate])?;
     plan.run(w, &t, &[Stage::EndOfStep, Stage::Output])
+}
+
+/// What is done level by level before the first forces, and what then: all that the outermost level changes holds for forces of
+/// every level, but not in LAMMPS.
+fn first_forces(w: &World) -> &'static [&'static [Stage]] {
+    match w.settings.lammps() {
+        true => &[&[Stage::PreForce, Stage::Force]],
+        false => &[&[Stage::PreForce], &[Stage::Force]],
+    }
 }
 
 /// One step of the outermost level up to its outputs.

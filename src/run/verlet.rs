@@ -200,7 +200,13 @@ pub fn look(
         plan.ask(&mut shown);
         let forces = Tick { setup: true, ..shown.clone() };
         plan.run(w, &forces, &[Stage::Neighbor, Stage::PreForce, Stage::Force, Stage::PostForce])?;
-        plan.run(w, &shown, &[Stage::EndOfStep, Stage::Output])?;
+        if shown.setup {
+            plan.end_first(w, &shown)?;
+        } else {
+            plan.run(w, &shown, &[Stage::EndOfStep])?;
+        }
+        plan.run(w, &shown, &[Stage::Output])?;
+        plan.let_go(w)?;
         steps += 1;
     }
     Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })

@@ -39,15 +39,22 @@ impl Session {
         }
         self.world.clock.running = true;
         self.world.clock.began = Some(Instant::now());
+        // What contacts remember belongs to the scene before, not to the snapshot before.
+        let contacts = self.world.contacts.clone();
         let outcome = verlet::look(&mut plan, &mut self.world, |w| {
             // Snapshots meet particles in the order of their creation.
             w.fall_back();
-            let more = reel.next(w)?;
+            let left = std::mem::replace(&mut w.contacts, contacts.clone());
+            let shown = reel.next(w)?;
+            if shown.is_none() {
+                w.contacts = left;
+            }
             // Reading has set the counter; the run as a whole goes from `first` to `last`.
             let c = &mut w.clock;
-            (c.first, c.last) = (first, last);
             (c.start, c.stop) = (start.unwrap_or(first), stop.unwrap_or(last));
-            Ok(more)
+            let end = shown.as_ref().filter(|s| s.last).map_or(last, |s| s.step);
+            (c.first, c.last) = (c.start, end);
+            Ok(shown.is_some())
         });
         self.world.clock.running = false;
         let finished = plan.finish(&mut self.world);

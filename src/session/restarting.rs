@@ -157,9 +157,10 @@ impl Session {
         Ok(())
     }
 
-    /// Says the lines of the stored pair style again, each with the lattice that was in force.
+    /// Says the lines of the stored pair and bond styles again, each with the lattice that was in force. What fixes have made
+    /// of their coefficients stands.
     fn replay(&mut self, pair: &[Said], span: Span) -> Result<()> {
-        let lattice = self.world.lattice.clone();
+        let (lattice, adapted) = (self.world.lattice.clone(), self.world.adaptations_made());
         (self.graph.pair, self.graph.bond) = (None, None);
         for said in pair {
             self.world.lattice = said.lattice.clone();
@@ -172,6 +173,7 @@ impl Session {
             declare(&mut self.graph, &mut self.world, &cmd, &cx)?;
         }
         self.world.lattice = lattice;
+        self.world.memo.extend(adapted);
         Ok(())
     }
 

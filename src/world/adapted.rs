@@ -23,6 +23,16 @@ impl Coefficient {
         let (a, b) = self.types;
         format!("{}{}/{a}/{b}", prefix(self.bond, &self.style), self.name)
     }
+
+    /// Where a fix keeps what it was when the run began.
+    pub fn kept_by(&self, fix: &str) -> String {
+        format!("adapt/{fix}/{}", self.key())
+    }
+}
+
+/// Whether something remembered is a coefficient that a fix has made, or their count.
+pub fn is(name: &str) -> bool {
+    name.strip_prefix(CHANGES).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 
 fn prefix(bond: bool, style: &str) -> String {
@@ -48,6 +58,12 @@ impl World {
     /// A number that grows with every change; 0 as long as there was none.
     pub fn adaptations(&self) -> f64 {
         self.memo.get(CHANGES).and_then(|m| m.first().copied()).unwrap_or(0.0)
+    }
+
+    /// All values that fixes have given, as they are remembered.
+    pub fn adaptations_made(&self) -> Vec<(String, Vec<f64>)> {
+        let made = self.memo.iter().filter(|(key, _)| is(key));
+        made.map(|(key, value)| (key.clone(), value.clone())).collect()
     }
 
     /// A line of the deck has set coefficients: what fixes have made of those of these types (of all: `None`) is past.

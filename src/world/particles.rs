@@ -45,6 +45,12 @@ impl AtomStyle {
         self.sphere || self.peri
     }
 
+    /// Whether types may be given masses that nobody uses: LAMMPS asks for them where spheres or peridynamic particles are in a
+    /// hybrid with bonds.
+    pub fn idle_type_mass(&self) -> bool {
+        self.own_mass() && self.hybrid && self.bonded
+    }
+
     /// The word after `atom_style`.
     pub fn name(&self) -> &'static str {
         match (self.hybrid, self.sphere, self.peri, self.bonded) {

@@ -11,6 +11,7 @@ from bodies import bodies
 from bonds import bonds
 from grains import grains
 from hybrid import hybrid
+from mixed import mixed
 from motion import motion
 from sources import sources
 
@@ -24,14 +25,16 @@ class Cut(list):
 
     def __init__(self, head, first, rest, tail):
         super().__init__(head + [f"run {first}", f"run {rest}"] + tail)
-        said = [line for line in head if line.split()[0] in SAID or " dynamic " in line]
+        # A new line of coefficients ends what fix adapt has made of them.
+        adapts = any(line.split()[:1] == ["fix"] and line.split()[3] == "adapt" for line in head)
+        said = [line for line in head if (line.split()[0] in SAID or " dynamic " in line) and not (adapts and line.startswith("bond_"))]
         self.cut = head + [f"run {first}", "write_restart kept.restart", "clear", "read_restart kept.restart"] + said + [f"run {rest}"] + tail
         self.whole = head + [f"run {first + rest}"] + tail
 
 
 def again(r):
     """A deck that is cut in the middle of its first longer run."""
-    deck = r.choice([bodies, bonds, grains, hybrid, motion, motion, sources])(r)
+    deck = r.choice([bodies, bonds, grains, hybrid, mixed, motion, motion, sources])(r)
     at = next(k for k, line in enumerate(deck) if line.startswith("run ") and int(line.split()[1]) > 0)
     steps = int(deck[at].split()[1])
     # LAMMPS' fix vector can be asked only where it has a value.

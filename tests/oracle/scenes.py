@@ -5,17 +5,30 @@ from sources import u
 KEPT = "id type x y z vx vy vz omegax omegay omegaz radius mass ix iy iz xu yu zu"
 
 
+def custom(r, flat):
+    """The words of a lattice of the deck's own: edges, tilted or not, and points in the cell."""
+    tilt = lambda: r.choice([0, 0, 0, u(r, -0.4, 0.4)])
+    edges = [[u(r, 0.7, 1.4) if d == k else tilt() for d in range(3)] for k in range(3)]
+    if flat:
+        edges = [edges[0][:2] + [0], edges[1][:2] + [0], [0, 0, 1]]
+    words = "".join(f" a{k + 1} {' '.join(f'{x:g}' for x in edge)}" for k, edge in enumerate(edges))
+    points = [[0, 0, 0]] + [[u(r, 0, 0.99) for _ in range(3)] for _ in range(r.randint(0, 2))]
+    return words + "".join(f" basis {p[0]} {p[1]} {0 if flat else p[2]}" for p in points)
+
+
 def created(r, flat):
     """A line that makes particles, with what it needs."""
     z = 0 if flat else u(r, 0.5, 7.5)
     lattice = f"lattice {r.choice(['sq', 'sq2', 'hex'] if flat else ['sc', 'bcc', 'fcc', 'hcp', 'diamond'])} {u(r, 0.1, 0.4)}"
+    if r.random() < 0.2:
+        lattice = f"lattice custom {u(r, 0.1, 0.4)}{custom(r, flat)}"
     if r.random() < 0.4:
         lattice += f" origin {u(r, 0, 0.9)} {u(r, 0, 0.9)} 0"
     if r.random() < 0.2:
         lattice += " orient x 0 1 0 orient y -1 0 0 orient z 0 0 1" if flat else r.choice([" orient x 1 1 0 orient y -1 1 0 orient z 0 0 1", " orient x 0 1 0 orient y 0 0 1 orient z 1 0 0"])
     if r.random() < 0.2:
         lattice += f" spacing 1.2 1.5 {r.choice([1, 0.8])}"
-    rest = r.choice(["", "", f" subset {r.randint(1, 9)} {r.randint(1, 999)}", f" ratio {u(r, 0.1, 0.9)} {r.randint(1, 999)}", " var keep set x xx set y yy", " basis 1 2", " group made"])
+    rest = r.choice(["", "", f" subset {r.randint(1, 9)} {r.randint(1, 999)}", f" ratio {u(r, 0.1, 0.9)} {r.randint(1, 999)}", " var keep set x xx set y yy", f" var keep set x xx set y yy subset 3 {r.randint(1, 99)}", " basis 1 2", " group made"])
     kind, seed = r.choice([1, 2]), r.randint(1, 9999)
     return r.choice([[lattice, f"create_atoms {kind} {r.choice(['box', 'region ra', 'region r2'])}{rest}"], [f"create_atoms {kind} single {u(r, 0.5, 7)} {u(r, -2, 9)} {z} units box{r.choice(['', ' remap yes'])}"],
                      [f"create_atoms {kind} random {r.randint(1, 20)} {seed} {r.choice(['NULL', 'ra', 'r1'])}{r.choice(['', ' overlap 0.8 maxtry 20 units box', ' var keep set x xx set y yy', ' group made'])}"]])
@@ -42,7 +55,7 @@ def edits(r, flat):
         [f"velocity {who} create {u(r, 0.1, 2)} {seed}{r.choice(['', ' dist gaussian', ' rot yes', ' mom no', ' loop geom', ' loop local', ' sum yes'])}"],
         [f"velocity {who} set {value()} NULL {0 if flat else 'v_push'}{units}"], [f"velocity {who} ramp vx 0 {u(r, 0, 2)} y 1 7{units}"], [f"velocity all zero {r.choice(['linear', 'angular'])}"], [f"velocity all scale {u(r, 0.1, 2)}"],
         [f"change_box {who} {' '.join(r.sample(box, r.randint(1, len(box))))}{r.choice(['', ' remap'])}{units}"], [f"change_box all boundary {r.choice('pfsm')} {r.choice('pfsm')} {'p' if flat else r.choice('pfsm')}"],
-        [f"change_box all set x scale 1.1 remap y final 0 9 remap{units}"], [f"replicate {r.choice([1, 2])} {r.choice([1, 2])} 1"], [f"reset_atoms id sort {r.choice(['yes', 'no'])}"],
+        [f"change_box all set x scale 1.1 remap y final 0 9 remap{units}"], ["run 0", f"replicate {r.choice([1, 2])} {r.choice([1, 2])} 1"], [f"reset_atoms id sort {r.choice(['yes', 'no'])}"],
         ["write_data scene.data nocoeff", "read_data scene.data " + r.choice(["add append shift 0.3 0.2 0", "add append offset 0 0 0 0 0 group made", "add 1000 shift 9 0 0", "add append group made nocoeff"])],
         ["write_data scene.data nocoeff", "clear"], created(r, flat), created(r, flat), ["run 0"], ["run 5"], ["run 4", "run 3 pre no"], [f"reset_timestep {r.choice([0, 100])}"],
         ["write_dump all custom back.dump id type x y z vx vy vz ix iy iz modify sort id format float %.16g", f"delete_atoms group {who} compress no", f"read_dump back.dump $(step:%.0f) x y {'' if flat else 'z'} vx {r.choice(['', 'ix', 'iy iz'])} {r.choice(['add keep', 'add yes', 'replace yes', 'trim yes', 'box no', 'purge yes replace no add keep'])}"],

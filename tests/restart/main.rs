@@ -297,6 +297,33 @@ fn the_pair_style_comes_with_the_file() {
 }
 
 #[test]
+fn coefficients_that_a_fix_has_changed_come_with_the_file() {
+    const CHAIN: &str = "atom_style bond\natom_modify map array\nregion b block 0 20 0 20 0 20\n\
+        create_box 1 b bond/types 1 extra/bond/per/atom 3 extra/special/per/atom 6\ncreate_atoms 1 single 1 1 1\n\
+        create_atoms 1 single 2 1 1\ncreate_atoms 1 single 3.1 1 1\nmass 1 1\npair_style zero 3\npair_coeff * *\n\
+        bond_style harmonic\nbond_coeff 1 50 1.0\ncreate_bonds single/bond 1 1 2\ncreate_bonds single/bond 1 2 3\n";
+    for words in ["", " scale yes", " reset yes"] {
+        let again = format!(
+            "variable k equal 2+step\nfix a all adapt 5 bond harmonic k 1 v_k{words}\nfix 1 all nve\n\
+             thermo_style custom step ebond\nthermo_modify format float %24.17g\nthermo 1\n"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let whole = format!(
+            "{CHAIN}{again}restart 7 DIR/mid.restart DIR/other.restart\nrun 13\nwrite_restart DIR/end"
+        );
+        let (_, said) = run(folder.path(), &whole, false);
+        let (whole, more) = run(folder.path(), &format!("{CHAIN}{again}run 13\nrun 7"), false);
+        let from =
+            |file: &str| run(folder.path(), &format!("read_restart DIR/{file}\n{again}run 20 upto"), false);
+        let (end, rest) = from("end");
+        assert!(bits(&end) == bits(&whole), "{words}: after the run\n{more}\n{rest}");
+        let deck = format!("read_restart DIR/mid.restart\n{again}run 13 upto");
+        let (_, rest) = run(folder.path(), &deck, false);
+        assert_eq!(rows(&rest).last(), rows(&said).last(), "{words}: in the middle of a run\n{said}\n{rest}");
+    }
+}
+
+#[test]
 fn regions_and_materials_may_be_said_again_once() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &format!("{IMPACT}{IMPACT_AGAIN}run 0\nwrite_restart DIR/a"), false);

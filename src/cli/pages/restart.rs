@@ -62,10 +62,14 @@ pub(super) const RERUN: Entry = (
         summary: "Computes forces and output for the snapshots of dumps, without motion.",
         text: "The files are text dumps, read one after the other; what stands after `dump` is as for `read_dump`, without file \
             and step. Snapshots before the step `first` or behind `last` are left out, and so are those whose step is not \
-            above that of the one before; after the first one only multiples of `every` count, and of these one in `skip`. \
+            above that of the one before; after the first one, one in `skip` is looked at, and taken if its step is a multiple of \
+            `every`. It is an error if none is left (LAMMPS takes the first one behind `first` even if it is behind `last`, and \
+            so does perigrain under `-compat lammps`). \
             For each, forces are computed as in the setup of a run, fixes that change forces act and integrators do not; \
-            thermo output, dumps and averages appear for steps that are multiples of their intervals. `start` and `stop` \
-            are as for `run`.\n\n\
+            thermo output, dumps and averages appear for steps that are multiples of their intervals, rows of the step table for \
+            the first and the last snapshot too. `start` and `stop` are as for `run`; no snapshot may be behind `stop`.\n\n\
+            Contacts remember at every snapshot, and afterwards, what they remembered before `rerun`; those with walls as long as no \
+            snapshot opens them (under `-compat lammps` afterwards what the last snapshot has left, as in LAMMPS). \
             The clock shows step · dt of each snapshot (LAMMPS counts the time from its own first snapshot). Peridynamic \
             bonds are those of the scene before, or of the first snapshot if there was no run: bonds do not break, and \
             damage is not in a dump.",

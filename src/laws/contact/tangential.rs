@@ -260,10 +260,13 @@ impl Spring {
             }
             kind => {
                 let mut xi = [history[0], history[1], history[2]];
-                if kind.rescales() && step.history {
+                if kind.rescales() {
                     let shrinks = history[3].above(a);
                     xi = scale(R::choose(shrinks, a / history[3], a.like(1.0)), xi);
-                    history[3] = a;
+                    // Where LAMMPS stores what it computes in a setup, it forgets that the spring has shrunk, which shrinks again.
+                    if step.history {
+                        history[3] = a;
+                    }
                 }
                 let slack = if self.loose { a.like(self.stiffness) } else { stiffness };
                 let slider = Slider { n, stiffness, slack, damping, limit, v };

@@ -12,8 +12,12 @@ pub fn refresh(
     options: &FamilyOptions,
     law: &Law,
 ) {
-    body.leads = Leads::default();
     let some = body.particle.iter().copied().filter(|&p| p != u32::MAX);
+    if some.clone().next().is_none() {
+        // All of it has been deleted: what its rows look up stays as it was.
+        return;
+    }
+    body.leads = Leads::default();
     let first = some.clone().next().map_or(0.0, |p| view.volume[p as usize]);
     let mut various = some.clone().any(|p| view.volume[p as usize].to_bits() != first.to_bits());
     body.kinds.clear();

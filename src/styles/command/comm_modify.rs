@@ -75,7 +75,7 @@ mod tests {
     #[test]
     fn is_validated() {
         scene(
-            "comm_modify vel yes cutoff 0.5 mode multi group all cutoff/multi 1*2 0.3\nnewton on off\nprocessors * 1 1\ndimension 3",
+            "comm_modify vel yes cutoff 0.5 mode multi group all cutoff/multi 1*2 0.3\nnewton on off\nprocessors * 1 1 map xyz grid numa numa_nodes 0\ndimension 3",
         );
         let empty = Default::default();
         assert_eq!(refused(&empty, "comm_modify velo yes").0, "velo");
@@ -83,6 +83,8 @@ mod tests {
         assert_eq!(refused(&empty, "comm_modify group some").0, "some");
         assert_eq!(refused(&empty, "newton maybe").0, "maybe");
         assert_eq!(refused(&empty, "processors 2 0 1").0, "0");
+        assert_eq!(refused(&empty, "processors * * * map zz").0, "zz");
+        assert_eq!(refused(&empty, "processors * * * part 1 2 multiple").0, "part");
         assert_eq!(refused(&empty, "dimension 4").0, "4");
     }
 }

@@ -66,6 +66,7 @@ impl Style for ReadData {
                    `add` brings particles into an existing box, which grows to hold the file's: `append` puts the ids \
                    behind the largest one, a number is added to each, `merge` keeps them. `offset` adds to types and bond types (the \
                    last three numbers are for angles and the like), `shift` to places and to the file's box. \
+                   Masses of types are skipped where particles in a hybrid with bonds have their own (LAMMPS writes zeros there). \
                    `extra/atom/types` and `extra/bond/types` leave room for more types, room per particle is not limited; `group` puts the particles into a group, new if there is \
                    none; `nocoeff` skips coefficients. Where a comment names the style (`Atoms # sphere`), it must be the \
                    deck's; LAMMPS only warns. Ids that occur twice, lines beyond the promised number and particles outside \
@@ -282,6 +283,10 @@ impl Reading {
         if flags {
             let text = "image flags along dimensions that are not periodic were set to 0";
             cx.note(Diagnostic::warning(Code::SUSPICIOUS, None, text));
+        }
+        if data.idle_masses {
+            let text = "the section Masses has no effect: every particle has its own mass";
+            cx.note(Diagnostic::note(Code::NO_EFFECT, self.file.span, text));
         }
         data.particles = p;
         for (bond, _) in &mut data.bonds {

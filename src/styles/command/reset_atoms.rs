@@ -236,6 +236,9 @@ fn images(a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
 /// About how many particles a cell holds.
 const PER_CELL: usize = 10;
 
+/// By which part of their extent cells reach beyond the outermost particles.
+const RIM: f64 = 0.0001;
+
 /// The id of each particle when they are counted cell by cell, and by coordinates within a cell.
 fn by_place(w: &World) -> Vec<u32> {
     let x = &w.particles.x;
@@ -244,8 +247,9 @@ fn by_place(w: &World) -> Vec<u32> {
         (0..3).for_each(|d| (lo[d], hi[d]) = (lo[d].min(x[d]), hi[d].max(x[d])));
     }
     for d in 0..3 {
-        let rim = 0.0001 * (hi[d] - lo[d]);
-        (lo[d], hi[d]) = (lo[d] - rim, hi[d] + rim);
+        // The upper rim is a part of what the lower one has made longer: sites of a lattice in the middle are below a border.
+        lo[d] -= RIM * (hi[d] - lo[d]);
+        hi[d] += RIM * (hi[d] - lo[d]);
     }
     let flat = w.settings.two_dimensional;
     let length = |d: usize| hi[d] - lo[d];

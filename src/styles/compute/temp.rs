@@ -94,12 +94,18 @@ pub(super) struct Freedom {
 }
 
 impl Freedom {
-    /// The number that counts, of the present one.
-    pub fn now(&mut self, w: &World, t: &Tick, present: f64) -> f64 {
+    /// The number that counts, of the present one; `before`: what was offered last.
+    pub fn now(&mut self, w: &World, t: &Tick, present: f64, before: &Slot) -> f64 {
+        if !w.settings.lammps() || self.dynamic {
+            return present;
+        }
+        if w.clock.onward {
+            return *self.begun.get_or_insert(before.inner.first().copied().unwrap_or(present));
+        }
         if t.setup || self.begun.is_none() {
             self.begun = Some(present);
         }
-        if w.settings.lammps() && !self.dynamic { self.begun.unwrap_or(present) } else { present }
+        self.begun.unwrap_or(present)
     }
 }
 
@@ -120,7 +126,7 @@ impl Compute for Declared {
                 [mv2, m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z]
             });
             let dimension = if w.settings.two_dimensional { 2.0 } else { 3.0 };
-            let dof = freedom.now(w, t, dimension * count(w, group) as f64 - extra.unwrap_or(dimension));
+            let dof = freedom.now(w, t, dimension * count(w, group) as f64 - extra.unwrap_or(dimension), out);
             offer(w, out, mv2, tensor, dof);
             Ok(())
         }))

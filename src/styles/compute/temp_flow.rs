@@ -222,7 +222,7 @@ impl Compute for Declared {
                 let ([x, y, z], m) = (sub(p.v[i], taken(i)), masses.get(i));
                 [m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z]
             });
-            let dof = freedom.now(w, t, me.freedom(w));
+            let dof = freedom.now(w, t, me.freedom(w), out);
             offer(w, out, tensor[0] + tensor[1] + tensor[2], tensor, dof);
             Ok(())
         }))

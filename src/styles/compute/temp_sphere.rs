@@ -104,7 +104,8 @@ impl Compute for Declared {
                 [pair(0, 0), pair(1, 1), pair(2, 2), pair(0, 1), pair(0, 2), pair(1, 2)]
             });
             let taken = flow.map_or(0.0, |f| f.whole.iter().filter(|d| **d).count() as f64);
-            let (twice, dof) = (tensor[0] + tensor[1] + tensor[2], freedom.now(w, t, me.freedom(w, taken)));
+            let (twice, dof) =
+                (tensor[0] + tensor[1] + tensor[2], freedom.now(w, t, me.freedom(w, taken), out));
             offer(w, out, twice, tensor, dof);
             Ok(())
         }))

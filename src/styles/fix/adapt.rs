@@ -232,6 +232,9 @@ impl Op for Change {
         self.when.clone()
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if t.unchanged {
+            return Ok(());
+        }
         let (value, fix, n) = (self.value.get(w), &self.fix, w.n());
         if !(value > 0.0 && value.is_finite()) {
             let variable = &self.size.variable;

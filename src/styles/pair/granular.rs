@@ -95,7 +95,8 @@ impl Style for GranularStyle {
                 action and reaction stay equal. `curvature impactor` takes R̄ = R of the grain where it meets a \
                 peridynamic solid, whose surface counts as flat (Walayat et al., table 1).\n\n\
                 `-compat lammps` has LAMMPS' faults: tsuji without its √2 (and its 2/√5 for hooke); the shear stiffness of mixed types from E* \
-                in the place of both moduli; a sliding twist that takes the direction of the spin even where its \
+                in the place of both moduli; springs of `…_rescale` that shrink twice, in the setup and in the first step, where grains have \
+                been moved apart between two runs; a sliding twist that takes the direction of the spin even where its \
                 spring pushes the other way; for mdr a contact that sticks only where a step takes more than a hundredth of its radius, and \
                 neither yielding nor (of new contacts) damping in the setup of a run.",
             example: "pair_style granular\n\

@@ -39,6 +39,8 @@ pub struct DataFile {
     pub types: usize,
     /// Type and mass.
     pub masses: Vec<(u16, f64)>,
+    /// Whether there were masses of types that have no effect.
+    pub idle_masses: bool,
     /// The particles with ids, types, places and images as in the file; no density has become a mass yet.
     pub particles: Particles,
     /// Whether there were velocities.
@@ -225,7 +227,8 @@ impl<'a> Reader<'a> {
     }
 
     fn mass(&mut self, line: &Line) -> Result<()> {
-        if self.how.style.own_mass() {
+        let idle = self.how.style.idle_type_mass();
+        if self.how.style.own_mass() && !idle {
             let text = format!("particles of atom_style {} have masses of their own", self.how.style.name());
             return fail(Code::CONFLICT, line.span(), text);
         }
@@ -235,6 +238,10 @@ impl<'a> Reader<'a> {
         };
         let kind = self.kind(line, kind)?;
         let m = number(line, mass, "the mass")?;
+        if idle {
+            self.data.idle_masses = true;
+            return Ok(());
+        }
         if m <= 0.0 {
             let text = format!("the mass must be greater than zero, not {mass}");
             return fail(Code::BAD_VALUE, line.span_of(mass), text);

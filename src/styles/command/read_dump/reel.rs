@@ -13,18 +13,38 @@ use std::sync::Arc;
 /// Snapshots of several dumps one after the other, as `rerun` takes them.
 pub struct Reel {
     files: std::vec::IntoIter<Word>,
+    /// The file that is being read, and where its next snapshot begins.
     now: Option<(Arc<Source>, usize)>,
+    /// The snapshot that comes next, once one has been taken.
+    ahead: Option<Place>,
     /// No snapshot before this step.
     pub first: i64,
     /// None after this one.
     pub last: i64,
     every: i64,
     skip: i64,
+    /// None may be behind this step.
+    stop: i64,
     wish: Wish,
-    /// Step of the last snapshot taken.
+    /// Step of the last snapshot found.
     step: Option<i64>,
-    /// Snapshots that could have been taken since then.
+    /// Snapshots since one could have been taken.
     passed: i64,
+}
+
+/// Where a snapshot begins.
+struct Place {
+    text: Arc<Source>,
+    at: usize,
+    step: i64,
+}
+
+/// A snapshot that is in the world.
+pub struct Shown {
+    /// Its step.
+    pub step: i64,
+    /// Whether none follows.
+    pub last: bool,
 }
 
 /// A `rerun` line.
@@ -72,62 +92,102 @@ impl Rerun {
                 format!("`last` must not be before `first`: {last} is before {first}"),
             );
         }
-        let files = files.into_iter();
-        let reel = Reel { files, now: None, first, last, every, skip, wish, step: None, passed: 0 };
+        let (files, end) = (files.into_iter(), stop.unwrap_or(i64::MAX));
+        let (now, ahead, step, passed) = (None, None, None, 0);
+        let reel = Reel { files, now, ahead, first, last, every, skip, stop: end, wish, step, passed };
         Ok(Self { reel, start, stop, post })
     }
 }
 
 impl Reel {
-    /// Puts the next snapshot into the world; `false` when there is none.
+    /// Puts the next snapshot into the world; `None` when there is none.
     ///
     /// # Errors
-    /// Dumps that cannot be read.
-    pub fn next(&mut self, w: &mut World) -> Result<bool> {
+    /// Dumps that cannot be read, or hold no snapshot that is wanted, or one behind the end of ramps.
+    pub fn next(&mut self, w: &mut World) -> Result<Option<Shown>> {
+        let place = match self.ahead.take() {
+            Some(place) => Some(place),
+            None if self.step.is_some() => None,
+            None => Some(self.first_of_all(w)?),
+        };
+        let Some(Place { text, at, step }) = place else { return Ok(None) };
+        if step > self.stop {
+            let text = format!("the snapshot of step {step} is behind `stop`, which is {}", self.stop);
+            return fail(Code::BAD_VALUE, self.wish.span, text);
+        }
+        self.show(&text, at, w).map_err(|e| e.within(&text))?;
+        // The clock belongs to the snapshot whatever `timestep` says.
+        w.clock.reset(step);
+        self.ahead = self.find(w)?;
+        Ok(Some(Shown { step, last: self.ahead.is_none() }))
+    }
+
+    /// Puts the snapshot that begins at a place of a file into the world.
+    fn show(&self, text: &Source, at: usize, w: &mut World) -> Result<()> {
+        let Some(s) = dump::next(&mut Lines::at(&text.text, at))? else { return Ok(()) };
+        let list = particles(&s, &self.wish, w)?;
+        enter(w, &s, &list, &self.wish);
+        Ok(())
+    }
+
+    fn first_of_all(&mut self, w: &World) -> Result<Place> {
+        let Some(place) = self.find(w)? else {
+            let text = match self.last {
+                i64::MAX => format!("the dumps have no snapshot from step {} on", self.first),
+                last => format!("the dumps have no snapshot between the steps {} and {last}", self.first),
+            };
+            return fail(Code::BAD_VALUE, self.wish.span, text);
+        };
+        Ok(place)
+    }
+
+    /// Where the next wanted snapshot begins.
+    fn find(&mut self, w: &World) -> Result<Option<Place>> {
         loop {
             let (text, at) = match self.now.take() {
                 Some(now) => now,
                 None => match self.files.next() {
                     Some(file) => (open(&file, w)?, 0),
-                    None => return Ok(false),
+                    None => return Ok(None),
                 },
             };
             let mut lines = Lines::at(&text.text, at);
-            let taken = self.advance(&mut lines, w).map_err(|e| e.within(&text))?;
-            let at = lines.position();
-            if let Some(step) = taken {
-                // The clock belongs to the snapshot whatever `timestep` says.
-                w.clock.reset(step);
-                self.now = Some((text, at));
-                return Ok(true);
+            let found = self.advance(&mut lines, w.settings.lammps()).map_err(|e| e.within(&text))?;
+            if let Some((at, step)) = found {
+                self.now = Some((text.clone(), lines.position()));
+                return Ok(Some(Place { text, at, step }));
             }
         }
     }
 
-    /// The next wanted snapshot of one file; its step.
-    fn advance(&mut self, lines: &mut Lines, w: &mut World) -> Result<Option<i64>> {
-        while let Some(s) = dump::next(lines)? {
-            if s.step > self.last {
+    /// The next wanted snapshot of one file: where it begins, and its step. LAMMPS asks the first one only for `first`.
+    fn advance(&mut self, lines: &mut Lines, lammps: bool) -> Result<Option<(usize, i64)>> {
+        loop {
+            let at = lines.position();
+            let Some(s) = dump::next(lines)? else { return Ok(None) };
+            if s.step > self.last && !(lammps && self.step.is_none() && s.step >= self.first) {
                 self.files = vec![].into_iter();
                 return Ok(None);
             }
-            if s.step < self.first || self.step.is_some_and(|last| s.step <= last) {
-                continue;
+            if s.step >= self.first && self.wants(s.step) {
+                self.step = Some(s.step);
+                return Ok(Some((at, s.step)));
             }
-            if self.step.is_some() {
-                if self.every > 0 && s.step % self.every != 0 {
-                    continue;
-                }
-                self.passed += 1;
-                if self.passed < self.skip {
-                    continue;
-                }
-            }
-            (self.step, self.passed) = (Some(s.step), 0);
-            let list = particles(&s, &self.wish, w)?;
-            enter(w, &s, &list, &self.wish);
-            return Ok(Some(s.step));
         }
-        Ok(None)
+    }
+
+    /// Whether a snapshot not before `first` is wanted: the first one, then one in `skip` of those that go on in time, if it is
+    /// a multiple of `every`.
+    fn wants(&mut self, step: i64) -> bool {
+        let Some(before) = self.step else { return true };
+        if step <= before {
+            return false;
+        }
+        self.passed += 1;
+        if self.passed < self.skip {
+            return false;
+        }
+        self.passed = 0;
+        self.every == 0 || step % self.every == 0
     }
 }

@@ -72,11 +72,11 @@ impl Follows {
                 let text = format!("{what} style {} has no coefficients for types {i} {j}", of.style);
                 return fail(Code::INCOMPLETE, self.style.span, text);
             };
-            let adapted = cx.world().adapted(of);
-            before.push((adapted.unwrap_or(said), adapted));
+            before.push(Before::of(cx.world(), id, of, said));
         }
         Ok(Box::new(Change {
             name: format!("fix {id} adapt"),
+            id: id.to_string(),
             follows: self.clone(),
             when: when.clone(),
             value,
@@ -90,13 +90,30 @@ impl Follows {
 /// Gives the coefficients their present values, and the old ones back at the end.
 struct Change {
     name: String,
+    id: String,
     follows: Follows,
     when: When,
     value: Reading,
     scale: bool,
     reset: bool,
-    /// At the beginning of the run: the values, and whether a fix had made them.
-    before: Vec<(f64, Option<f64>)>,
+    before: Vec<Before>,
+}
+
+/// A coefficient as it was when the run began.
+struct Before {
+    value: f64,
+    /// A fix had made it.
+    adapted: bool,
+}
+
+impl Before {
+    /// That of a run that a restart file interrupted, or what is in force.
+    fn of(w: &World, id: &str, of: &Coefficient, said: f64) -> Self {
+        match (w.memo.get(&of.kept_by(id)).map(Vec::as_slice), w.adapted(of)) {
+            (Some(&[value, adapted]), _) => Before { value, adapted: adapted != 0.0 },
+            (_, now) => Before { value: now.unwrap_or(said), adapted: now.is_some() },
+        }
+    }
 }
 
 impl Op for Change {
@@ -113,25 +130,32 @@ impl Op for Change {
         self.when.clone()
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if t.unchanged {
+            return Ok(());
+        }
         let value = self.value.get(w);
-        for (of, (before, _)) in self.follows.coefficients.iter().zip(&self.before) {
-            let new = if self.scale { before * value } else { value };
+        for (of, before) in self.follows.coefficients.iter().zip(&self.before) {
+            let new = if self.scale { before.value * value } else { value };
             // What a coefficient cannot be is a matter of its style; these no coefficient can.
             if !new.is_finite() || (new < 0.0 && !of.bond) {
                 let (text, variable) = (format!("{new} at step {}", t.step), &self.follows.variable);
                 let text = format!("`{variable}` makes `{}` of {} {text}", of.name, of.style);
                 return fail(Code::BAD_VALUE, variable.span, text);
             }
+            w.memo.insert(of.kept_by(&self.id), vec![before.value, f64::from(u8::from(before.adapted))]);
             w.adapt(of, Some(new));
         }
         Ok(())
     }
     fn finish(&mut self, w: &mut World) -> Result<()> {
+        for of in &self.follows.coefficients {
+            w.memo.remove(&of.kept_by(&self.id));
+        }
         if !self.reset {
             return Ok(());
         }
-        for (of, (_, adapted)) in self.follows.coefficients.iter().zip(&self.before) {
-            w.adapt(of, *adapted);
+        for (of, before) in self.follows.coefficients.iter().zip(&self.before) {
+            w.adapt(of, before.adapted.then_some(before.value));
         }
         w.touch();
         Ok(())

@@ -74,7 +74,8 @@ impl Rain {
         let key = fix.key();
         let mut account = Account::load(w, &key).unwrap_or_else(|| Account::maker(w, fix.seed));
         let now = w.clock.step;
-        let planned = account.next.filter(|n| (now + 1..=now + every).contains(n) && !w.settings.lammps());
+        let again = w.settings.lammps() && !w.clock.onward;
+        let planned = account.next.filter(|n| (now + 1..=now + every).contains(n) && !again);
         let first = planned.unwrap_or(now + 1);
         account.next = (account.done < fix.count).then_some(first);
         account.store(w, &key);
