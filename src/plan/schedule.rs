@@ -157,14 +157,6 @@ impl StepPlan {
         Ok(())
     }
 
-    /// Forces give back to the world what they keep of contacts, as at the end of a run.
-    ///
-    /// # Errors
-    /// The first op's that fails.
-    pub fn let_go(&mut self, w: &mut World) -> Result<()> {
-        self.ops.iter_mut().filter(|p| p.stage == Stage::Force).try_for_each(|p| p.op.finish(w))
-    }
-
     /// Whether all that move particles report how far, and none grows; who adds or wraps particles has lists made anew.
     pub fn reports_travel(&self) -> bool {
         let moves = |p: &&Placed| ["x", "radius"].iter().any(|what| p.op.access().writes(what));

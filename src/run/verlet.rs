@@ -206,7 +206,7 @@ pub fn look(
             plan.run(w, &shown, &[Stage::EndOfStep])?;
         }
         plan.run(w, &shown, &[Stage::Output])?;
-        plan.let_go(w)?;
+        plan.release(w)?;
         steps += 1;
     }
     Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })
