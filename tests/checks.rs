@@ -1,6 +1,9 @@
 //! `perigrain check`: all mistakes of a deck at once, in no time, and no warning where nothing is wrong.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
+#[path = "checks/written.rs"]
+mod written;
+
 use perigrain::diag::{Code, Diagnostic, Severity};
 use perigrain::out::log::Log;
 use perigrain::session::{Mode, Options, Session};

@@ -16,7 +16,7 @@ use crate::plan::{OpClass, Stage, StepPlan, When, explain};
 use crate::run::{Pace, verlet};
 use crate::styles::Reading;
 use crate::styles::fix::Minimizing;
-use crate::world::Halt;
+use crate::world::{Halt, Promise};
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::time::Instant;
@@ -39,7 +39,7 @@ impl Session {
         self.ready(cmd.span)?;
         self.check_run(cmd.span, args.steps > 0)?;
         if self.checking() {
-            self.graph.restarts.names().into_iter().for_each(|name| self.promise_restart(name));
+            self.promise_outputs();
             return Ok(());
         }
         self.say_notes()?;
@@ -354,6 +354,8 @@ impl Session {
         let dump = dump?;
         self.record(cmd, Role::Act, None, uses.into_inner(), vec![]);
         if self.checking() {
+            let file = cmd.args.get(2).map_or("", |w| &w.text);
+            self.world.parts.promised.keep(file, Promise::Unseen);
             return Ok(());
         }
         self.world.spread_type_masses();
