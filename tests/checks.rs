@@ -168,6 +168,13 @@ fn the_time_step_is_held_against_the_stiffest_bonds() {
 }
 
 #[test]
+fn a_fix_that_moves_to_another_group_is_told() {
+    let deck = format!("{SCENE}\ngroup few id 1:9\nfix d all viscous 1\nfix d GROUP viscous 2\nrun 10\n");
+    warns(&deck.replace("GROUP", "few"), &["18:7 fix `d` concerns another group"]);
+    warns(&deck.replace("GROUP", "all").replace("group few id 1:9", ""), &[]);
+}
+
+#[test]
 fn horizons_on_a_shell_of_neighbours_are_seen() {
     let with = |h: &str| SCENE.replace("0.0030001", h) + "\nrun 1\n";
     warns(&with("0.0030001"), &[]);

@@ -222,21 +222,27 @@ fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Resul
         span: cx.span,
         lines: vec![],
     };
-    // LAMMPS lets a fix of the same ID, style and group replace the old one in its place.
+    // LAMMPS lets a fix of the same ID and style replace the old one in its place.
     let old = graph.fixes.iter().position(|f| f.id == id);
     if let Some(k) = old
-        && (graph.fixes[k].style != node.style || graph.fixes[k].group != group)
+        && graph.fixes[k].style != node.style
     {
         return Err(Diagnostic::error(
             Code::DUPLICATE_NAME,
             id_span,
-            format!("fix `{id}` exists already, with another style or group"),
+            format!("fix `{id}` exists already, with another style"),
         )
         .label(graph.fixes[k].span, "defined here")
         .help(format!("put `unfix {id}` before this line, or choose another ID"))
         .into());
     }
     if let Some(k) = old {
+        if graph.fixes[k].group != group {
+            let text = format!("fix `{id}` concerns another group than before");
+            let d = Diagnostic::warning(Code::SUSPICIOUS, group_word.span, text);
+            let d = d.label(graph.fixes[k].span, "replaces this one");
+            cx.build(graph, w, id, group).note(d.help("choose another ID if both are meant"));
+        }
         graph.fixes[k].fix.remove(w);
     }
     w.inherit(&format!("{}/{id}", node.style), |w| node.fix.declare(w))?;

@@ -59,7 +59,8 @@ impl Session {
             Some((every, commands)) => {
                 let mut left = args.steps;
                 let mut first = true;
-                while left > 0 {
+                // A run of no steps is one stretch, too.
+                while left > 0 || first {
                     let n = left.min(every);
                     left -= n;
                     // Runs of their own: `pre no` and `post no` leave out the setups and summaries in between.
@@ -93,6 +94,7 @@ impl Session {
                 "post" => out.post = args.flag("post")?,
                 "every" => {
                     let n = args.integer_from(1, "the interval of commands")?;
+                    args.clone().expect("a command in quotes, or NULL")?;
                     let words = args.rest();
                     let commands =
                         if words.len() == 1 && words[0].text == "NULL" { vec![] } else { words.to_vec() };

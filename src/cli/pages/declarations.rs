@@ -91,8 +91,8 @@ pub(super) const FIX: Entry = (
         summary: "Declares something that is done to particles in every step.",
         text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc fix nve`. The ID has \
             letters, digits and underscores. Within a stage of the step, fixes act in the order of their lines. The same \
-            ID with the same style and group replaces the old fix in its place; with another style or group it is \
-            refused. Values of a fix are `f_ID` and `f_ID[i]` in formulas, thermo output and dumps.",
+            ID with the same style replaces the old fix in its place, with a warning if the group is another one; with another \
+            style it is refused. Values of a fix are `f_ID` and `f_ID[i]` in formulas, thermo output and dumps.",
         example: "fix 1 all nve\nfix calm plate viscous 1.0e-3",
     },
 );
