@@ -175,8 +175,11 @@ impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let when = if self.every == 0 { When::First } else { When::First.or(When::Every(self.every)) };
         let (mut me, mut readings) = (self.clone(), vec![]);
+        // What is stored once and for all may go.
+        let stored = self.every == 0 && cx.world().memo.contains_key(&self.filled());
         for input in &mut me.inputs {
             readings.push(match input {
+                _ if stored => None,
                 Input::Attribute(_, getter) => {
                     let span = cx.span();
                     *getter = getter.present(cx.world(), span)?;
