@@ -126,10 +126,10 @@ pub struct Session {
     typed: Option<Script>,
     /// What is being worked off was typed, and is this text.
     prompt: Option<FileId>,
-    /// A shell command was passed over (`check` mode).
-    shelled: bool,
     /// Commands whose lack of effect has been said.
     told: std::collections::BTreeSet<String>,
+    /// A file could not be looked into (`check` mode).
+    blind: bool,
     timer: timer::Timer,
     born: std::time::Instant,
     /// The pair style was refused (`check` mode): that there is none is no news.
@@ -168,8 +168,8 @@ impl Session {
             quit: None,
             typed: None,
             prompt: None,
-            shelled: false,
             told: Default::default(),
+            blind: false,
             timer: Default::default(),
             born: std::time::Instant::now(),
             pairless: false,
@@ -231,7 +231,7 @@ impl Session {
         let file = self.sources.add(name, text);
         let mut script = Script::new(file);
         let outcome = self.work_off(&mut script);
-        if self.checking() {
+        if self.checking() && !self.blind {
             let given: Vec<String> = self.options.vars.iter().map(|v| v.0.clone()).collect();
             self.notes.append(unused::unused(&self.sources, &given));
         }
@@ -261,6 +261,11 @@ impl Session {
             match self.line(script, &line) {
                 Ok(Some(code)) => self.quit = Some(code),
                 Ok(None) => {}
+                Err(e) if self.unseen(script, &e) => {
+                    if !script.is_speculative() {
+                        break;
+                    }
+                }
                 Err(e) if self.checking() => problems.append(refused.causes(&line.raw, e)),
                 Err(e) => return Err(e),
             }
@@ -271,6 +276,20 @@ impl Session {
         }
         let status = self.quit.unwrap_or(0);
         if problems.is_empty() { Ok(Ending { status, interrupted: self.interrupted }) } else { Err(problems) }
+    }
+
+    /// Whether a line of a check failed for want of a file that only a run writes; the note is taken.
+    fn unseen(&mut self, script: &Script, e: &Diagnostics) -> bool {
+        if !self.checking() || e.is_empty() || e.has_errors() {
+            return false;
+        }
+        let help = match script.is_speculative() {
+            true => "what it would change is not known in the lines below",
+            false => "the check ends here: what follows depends on this file",
+        };
+        self.blind = true;
+        self.notes.0.extend(e.0.iter().map(|d| d.clone().help(help)));
+        true
     }
 
     fn checking(&self) -> bool {

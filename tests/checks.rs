@@ -1,6 +1,9 @@
 //! `perigrain check`: all mistakes of a deck at once, in no time, and no warning where nothing is wrong.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
+#[path = "checks/written.rs"]
+mod written;
+
 use perigrain::diag::{Code, Diagnostic, Severity};
 use perigrain::out::log::Log;
 use perigrain::session::{Mode, Options, Session};
@@ -162,6 +165,13 @@ fn the_time_step_is_held_against_the_stiffest_bonds() {
     warns(&format!("{SCENE}\ntimestep 2e-7\nrun 10\n"), &[]);
     warns(&format!("{SCENE}\ntimestep 2.2e-7\nrun 10\n"), &["16:1 the time step 2.2e-7 is longer"]);
     warns(&format!("{SCENE}\ntimestep 2.2e-7\nfix t all dt/reset 10 NULL NULL 0.1\nrun 10\n"), &[]);
+}
+
+#[test]
+fn a_fix_that_moves_to_another_group_is_told() {
+    let deck = format!("{SCENE}\ngroup few id 1:9\nfix d all viscous 1\nfix d GROUP viscous 2\nrun 10\n");
+    warns(&deck.replace("GROUP", "few"), &["18:7 fix `d` concerns another group"]);
+    warns(&deck.replace("GROUP", "all").replace("group few id 1:9", ""), &[]);
 }
 
 #[test]

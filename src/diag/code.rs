@@ -95,7 +95,7 @@ codes! {
         "compute d all damage/atom\nthermo_style custom step c_d", "compute d all damage/atom\ncompute m all reduce max c_d\nthermo_style custom step c_m";
     INCOMPLETE = 114, "scene incomplete",
         "A run needs something that was never given: coefficients for all pairs of types, masses, volumes.",
-        "pair_style peri/pmb\nrun 1", "pair_style peri/pmb\npair_coeff * * 2e21 0.0030001 0.004 0\nrun 1";
+        "pair_style peri/lps\nrun 1", "pair_style peri/pmb\npair_coeff * * 2e21 0.0030001 0.004 0\nrun 1";
     CONFLICT = 115, "declarations contradict each other",
         "Two statements of the deck cannot both hold. The second label shows the other one where there is one.",
         "fix_modify 1 energy yes", "fix 2 all indent 1e9 sphere 0 0 0.1 0.01\nfix_modify 2 energy yes";

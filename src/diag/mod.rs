@@ -171,6 +171,12 @@ impl std::error::Error for Diagnostics {}
 /// What everything that can go wrong returns.
 pub type Result<T> = core::result::Result<T, Diagnostics>;
 
+/// Why a check cannot go on: a file that only a run of the deck writes. Notes that come back as a failure end a check.
+pub fn unseen(span: impl Into<Option<Span>>, name: &str) -> Diagnostics {
+    let text = format!("`check` cannot look into `{name}`, which the deck itself may have written by now");
+    Diagnostic::note(Code::NO_FILE, span, text).into()
+}
+
 /// Short form of a failing return: one error diagnostic.
 pub fn fail<T>(code: Code, span: impl Into<Option<Span>>, message: impl Into<String>) -> Result<T> {
     Err(Diagnostic::error(code, span, message).into())

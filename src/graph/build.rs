@@ -1,6 +1,7 @@
 //! Lines that declare become nodes: fixes, computes, thermo, and what stands in files of its own.
 
 use super::node::{ComputeNode, FixNode, Graph};
+use super::pair_modify::pair_modify;
 use super::{bonds, dumps, elsewhere, pairs};
 use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use crate::lang::{Args, Command};
@@ -72,14 +73,10 @@ pub fn declare(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) ->
     let declared = match cmd.name.text.as_str() {
         "bond_style" => bonds::bond_style(graph, w, &mut args, cx),
         "bond_coeff" => bonds::bond_coeff(graph, w, &mut args, cx),
-        "pair_style" => pairs::pair_style(graph, w, &mut args, cx),
+        "pair_style" => return pairs::pair_style(graph, w, cmd, cx),
         "pair_coeff" => pairs::pair_coeff(graph, w, &mut args, cx),
-        "pair_modify" => fail(
-            Code::NOT_SUPPORTED,
-            cmd.name.span,
-            "pair_modify: none of the pair styles here uses its options",
-        ),
-        "peri_modify" => pairs::pair_modify(graph, w, &mut args, cx),
+        "pair_modify" => pair_modify(graph, w, &mut args, cx),
+        "peri_modify" => pairs::peri_modify(graph, w, &mut args, cx),
         "fix" => fix(graph, w, &mut args, cx),
         "unfix" => unfix(graph, w, &mut args),
         "fix_modify" => fix_modify(graph, w, &mut args, cx),
@@ -119,11 +116,11 @@ pub fn declare(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) ->
 }
 
 /// Keeps the lines of the pair style and of fixes for restart files.
-fn keep_line(graph: &mut Graph, w: &World, cmd: &Command) {
+pub(super) fn keep_line(graph: &mut Graph, w: &World, cmd: &Command) {
     let words: Vec<String> = std::iter::once(&cmd.name).chain(&cmd.args).map(|w| w.text.clone()).collect();
     let id = cmd.args.first().map_or("", |w| &w.text);
     match cmd.name.text.as_str() {
-        "pair_style" | "pair_coeff" | "pair_modify" | "peri_modify" => {
+        "pair_style" | "pair_coeff" | "peri_modify" => {
             if let Some(node) = &mut graph.pair {
                 node.lines.push(Said { words, lattice: w.lattice.clone() });
             }
@@ -225,21 +222,27 @@ fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Resul
         span: cx.span,
         lines: vec![],
     };
-    // LAMMPS lets a fix of the same ID, style and group replace the old one in its place.
+    // LAMMPS lets a fix of the same ID and style replace the old one in its place.
     let old = graph.fixes.iter().position(|f| f.id == id);
     if let Some(k) = old
-        && (graph.fixes[k].style != node.style || graph.fixes[k].group != group)
+        && graph.fixes[k].style != node.style
     {
         return Err(Diagnostic::error(
             Code::DUPLICATE_NAME,
             id_span,
-            format!("fix `{id}` exists already, with another style or group"),
+            format!("fix `{id}` exists already, with another style"),
         )
         .label(graph.fixes[k].span, "defined here")
         .help(format!("put `unfix {id}` before this line, or choose another ID"))
         .into());
     }
     if let Some(k) = old {
+        if graph.fixes[k].group != group {
+            let text = format!("fix `{id}` concerns another group than before");
+            let d = Diagnostic::warning(Code::SUSPICIOUS, group_word.span, text);
+            let d = d.label(graph.fixes[k].span, "replaces this one");
+            cx.build(graph, w, id, group).note(d.help("choose another ID if both are meant"));
+        }
         graph.fixes[k].fix.remove(w);
     }
     w.inherit(&format!("{}/{id}", node.style), |w| node.fix.declare(w))?;

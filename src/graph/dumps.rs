@@ -31,9 +31,10 @@ pub fn dump(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> 
     let group = cx.build(graph, w, id, GroupId::ALL).group(group_word)?;
     let style = style(DUMPS, "dump", args)?;
     let every = args.integer_from(1, "the dump's interval")?;
+    let file = args.peek().map_or(String::new(), |word| word.text.clone());
     let dump = style.build(args, &cx.build(graph, w, id, group))?;
     args.finish()?;
-    graph.dumps.push(DumpNode { id: id.to_string(), style: style.name(), every, dump, span: cx.span });
+    graph.dumps.push(DumpNode { id: id.to_string(), style: style.name(), every, file, dump, span: cx.span });
     Ok(Declared::default())
 }
 

@@ -14,6 +14,7 @@ pub mod measure;
 pub mod node;
 mod offered;
 pub mod ops;
+mod pair_modify;
 pub mod pairs;
 pub mod regions;
 pub mod restarts;

@@ -102,6 +102,8 @@ pub struct DumpNode {
     pub style: &'static str,
     /// Interval in steps.
     pub every: i64,
+    /// The name of its file, with `*` for the step.
+    pub file: String,
     /// The dump.
     pub dump: Box<dyn Dump>,
     /// Its line.
@@ -166,7 +168,7 @@ impl Clone for ComputeNode {
 
 impl Clone for DumpNode {
     fn clone(&self) -> Self {
-        Self { id: self.id.clone(), dump: self.dump.boxed(), ..*self }
+        Self { id: self.id.clone(), file: self.file.clone(), dump: self.dump.boxed(), ..*self }
     }
 }
 

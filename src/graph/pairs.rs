@@ -1,19 +1,50 @@
 //! `pair_style`, `pair_coeff`, `peri_modify`: lines that declare forces between pairs of particles.
 
-use super::build::{Context, Declared, needs_box, style};
+use super::build::{Context, Declared, declare, keep_line, needs_box, style};
 use super::node::{Graph, PairNode};
 use crate::diag::{Code, Diagnostic, Result, fail};
-use crate::lang::Args;
+use crate::lang::{Args, Command, Word};
 use crate::styles::pair::PAIRS;
 use crate::world::{GroupId, World};
 
-/// `pair_style STYLE …`, `pair_style none`.
-pub fn pair_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+/// `pair_style STYLE …`, `pair_style none`. The same style again keeps its coefficients, as in LAMMPS; a `hybrid` does not.
+pub fn pair_style(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) -> Result<Declared> {
+    let before = graph.pair.clone();
+    choose(graph, w, &mut Args::new(cmd), cx)?;
+    keep_line(graph, w, cmd);
+    let same = |old: &PairNode| {
+        let now = graph.pair.as_ref().map(|p| p.pair.name());
+        now == Some(old.pair.name()) && old.pair.parts().is_empty()
+    };
+    if let Some(old) = before.filter(same)
+        && let Err(e) = restate(graph, w, &old, cx)
+    {
+        graph.pair = Some(old);
+        return Err(e);
+    }
+    Ok(Declared::default())
+}
+
+/// Says the lines behind an earlier `pair_style` again, each with the lattice that was in force.
+fn restate(graph: &mut Graph, w: &mut World, old: &PairNode, cx: &Context) -> Result<()> {
+    let lattice = w.lattice.clone();
+    let outcome = old.lines.iter().filter(|said| said.words[0] != "pair_style").try_for_each(|said| {
+        w.lattice = said.lattice.clone();
+        let mut words = said.words.iter().map(|text| Word::new(text.as_str(), cx.span));
+        let Some(name) = words.next() else { return Ok(()) };
+        let cmd = Command { name, args: words.collect(), span: cx.span, text: said.words.join(" ") };
+        declare(graph, w, &cmd, cx).map(drop)
+    });
+    w.lattice = lattice;
+    outcome
+}
+
+fn choose(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<()> {
     if args.eat("none") {
         args.finish()?;
         graph.pair = None;
         w.touch();
-        return Ok(Declared::default());
+        return Ok(());
     }
     let style = style(PAIRS, "pair", args)?;
     let pair = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
@@ -21,7 +52,7 @@ pub fn pair_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
     graph.pair = Some(PairNode { pair, span: cx.span, lines: vec![] });
     w.set_anew(false, None);
     w.touch();
-    Ok(Declared::default())
+    Ok(())
 }
 
 /// `pair_coeff I J …`.
@@ -56,8 +87,8 @@ pub fn pair_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
     Ok(Declared::default())
 }
 
-/// `pair_modify` and `peri_modify`.
-pub fn pair_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+/// `peri_modify`.
+pub fn peri_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
     let Some(node) = &graph.pair else {
         let text = format!("`{}` comes before any pair_style", args.command());
         return fail(Code::WRONG_ORDER, args.name_span(), text);

@@ -8,7 +8,7 @@ use super::substitute::expand;
 use super::text::Mapped;
 use super::value::Env;
 use super::vars::Vars;
-use crate::diag::{Code, Diagnostic, FileId, Result, Sources, fail};
+use crate::diag::{Code, Diagnostic, FileId, Result, Sources, fail, unseen};
 
 /// How deep includes and then-commands may nest.
 const NESTING: usize = 100;
@@ -275,11 +275,12 @@ pub(super) fn unreadable(path: &Word, e: &std::io::Error) -> Diagnostic {
     blame(path, Code::NO_FILE, format!("the file `{}` {reason}", path.text))
 }
 
-/// Reads a file into the sources, once per content; `None` if it is not there yet (`check` mode).
+/// Reads a file into the sources, once per content; `None` if its name is not known yet (`check` mode).
 fn load(path: &Word, sources: &mut Sources, files: &dyn Files) -> Result<Option<FileId>> {
     let text = match files.read(&path.text) {
         Ok(text) => text,
-        Err(_) if path.unknown || files.comes_later(&path.text) => return Ok(None),
+        Err(_) if path.unknown => return Ok(None),
+        Err(_) if files.comes_later(&path.text) => return Err(unseen(path.span, &path.text)),
         Err(e) => return Err(unreadable(path, &e).into()),
     };
     let mut k = 0;

@@ -219,6 +219,8 @@ pub struct Target {
     pub pattern: Pattern,
     /// Whether a growing file keeps what it held before.
     pub append: bool,
+    /// How tightly a packed file is packed, from 0 to 9; the usual level if not said.
+    pub level: Option<u32>,
     file: Option<BufWriter<File>>,
     started: bool,
 }
@@ -226,7 +228,7 @@ pub struct Target {
 impl Target {
     /// Nothing is opened before the first snapshot.
     pub fn new(pattern: Pattern) -> Self {
-        Self { pattern, append: false, file: None, started: false }
+        Self { pattern, append: false, level: None, file: None, started: false }
     }
 
     /// Whether the next snapshot opens a file.
@@ -241,7 +243,9 @@ impl Target {
         write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
     ) -> Result<()> {
         let path = self.pattern.at(step);
-        let packed = self.pattern.packed();
+        let usual = flate2::Compression::default();
+        let level = self.level.map_or(usual, flate2::Compression::new);
+        let packed = self.pattern.packed().then_some(level);
         let write = |to: &mut dyn Write| file::pack(to, packed, write);
         if self.pattern.many() {
             return file::replace(&path, write);

@@ -135,17 +135,15 @@ fn put(path: &Path, durably: bool, write: impl FnOnce(&mut dyn Write) -> std::io
     })
 }
 
-/// Writes plainly, or as one gzip member: a file of several members reads as one, and what a killed run has left of it
+/// Writes plainly, or as one gzip member packed at a level: a file of several members reads as one, and what a killed run has left of it
 /// reads up to the last whole one.
 pub fn pack(
     to: &mut dyn Write,
-    packed: bool,
+    level: Option<flate2::Compression>,
     write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
-    if !packed {
-        return write(to);
-    }
-    let mut packer = flate2::write::GzEncoder::new(to, flate2::Compression::default());
+    let Some(level) = level else { return write(to) };
+    let mut packer = flate2::write::GzEncoder::new(to, level);
     write(&mut packer)?;
     packer.finish().map(|_| ())
 }

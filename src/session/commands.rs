@@ -4,7 +4,7 @@ use super::{Session, refuse};
 use crate::diag::{Code, Result};
 use crate::graph::env::DeckEnv;
 use crate::graph::{ComputeNode, Role};
-use crate::lang::{Args, Command, Kind, RefKind, ValueRef, Vars, Word, substitute};
+use crate::lang::{Args, Command, Kind, RefKind, Substituted, ValueRef, Vars, Word, substitute_known};
 use crate::out::log::Echo;
 use crate::styles::compute::COMPUTES;
 use crate::styles::{BuildCx, Shape, Use, UseKind};
@@ -176,10 +176,11 @@ impl Session {
         let _ = universe;
         let checking = self.checking();
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking };
-        let text = substitute(&word.text, word.span, &self.vars, &mut env)?;
+        let Substituted { text, unknown } = substitute_known(&word.text, word.span, &self.vars, &mut env)?;
         if checking {
             if let Some(name) = file {
-                self.promise(&name.text, text, append);
+                let text = (!unknown && !word.unknown).then_some(text);
+                self.world.parts.promised.print(&name.text, text, append);
             }
             return Ok(());
         }
@@ -197,21 +198,12 @@ impl Session {
         Ok(())
     }
 
-    /// Keeps what a checked deck would have printed into a file, for the lines that read it.
-    pub(super) fn promise(&mut self, name: &str, text: String, append: bool) {
-        let promised = &mut self.world.parts.promised;
-        let before = match promised.remove(name) {
-            Some(Promise::Text(before)) if append => before,
-            _ => String::new(),
-        };
-        promised.insert(name.to_string(), Promise::Text(format!("{before}{text}\n")));
-    }
-
     fn log(&mut self, args: &mut Args) -> Result<()> {
         let word = args.expect("a file name or `none`")?;
         let append = args.eat("append");
         args.finish()?;
         if self.checking() {
+            self.world.parts.promised.keep(&word.text, Promise::Unseen);
             return Ok(());
         }
         match word.text.as_str() {

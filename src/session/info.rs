@@ -74,7 +74,7 @@ impl Session {
         let _ = write!(text, "{LINE}");
         if self.checking() {
             if let Target::File(word, append) = target {
-                self.promise(&word.text, text, append);
+                self.world.parts.promised.print(&word.text, Some(text), append);
             }
             return Ok(());
         }

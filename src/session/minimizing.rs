@@ -32,7 +32,7 @@ impl Session {
         }
         self.note_absent();
         if self.checking() {
-            self.graph.restarts.names().into_iter().for_each(|name| self.promise_restart(name));
+            self.promise_outputs();
             return Ok(());
         }
         self.say_notes()?;

@@ -24,6 +24,8 @@ impl Session {
         self.ready(cmd.span)?;
         self.check_run(cmd.span, false)?;
         if self.checking() {
+            rerun.reel.comes(&self.world)?;
+            self.promise_outputs();
             return Ok(());
         }
         self.say_notes()?;

@@ -1,7 +1,7 @@
 //! `write_restart` and `read_restart`: a session goes on in another run of the program.
 
 use super::{Session, refuse};
-use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
+use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span, unseen};
 use crate::graph::Role;
 use crate::graph::build::{Context, declare};
 use crate::graph::regions::place_all;
@@ -44,7 +44,16 @@ impl Session {
     /// In check mode: files that a line would have written, for the lines that read them.
     pub(super) fn promise_restart(&mut self, name: String) {
         let scene = Promise::Scene(Arc::new(self.world.clone()), self.graph.force_lines());
-        self.world.parts.promised.insert(name, scene);
+        self.world.parts.promised.keep(&name, scene);
+    }
+
+    /// In check mode: files that a run would have written.
+    pub(super) fn promise_outputs(&mut self) {
+        self.graph.restarts.names().into_iter().for_each(|name| self.promise_restart(name));
+        let promised = &mut self.world.parts.promised;
+        let fixes = self.graph.fixes.iter().filter_map(|f| f.fix.file()?.to_str());
+        let dumps = self.graph.dumps.iter().map(|d| d.file.as_str());
+        fixes.chain(dumps).for_each(|name| promised.keep(name, Promise::Unseen));
     }
 
     pub(super) fn read_restart(&mut self, cmd: &Command) -> Result<()> {
@@ -59,7 +68,7 @@ impl Session {
             .into());
         }
         let word = args.expect("a file name")?;
-        let name = pattern(&word.text).map_err(|e| e.at(word.span))?;
+        pattern(&word.text).map_err(|e| e.at(word.span))?;
         if let Some(key) = args.next() {
             if key.text != "remap" {
                 return Err(args.unknown(key, &["remap"]));
@@ -69,7 +78,7 @@ impl Session {
         }
         args.finish()?;
         let began = std::time::Instant::now();
-        let (path, saved) = match self.promised(name.text(), word.span)? {
+        let (path, saved) = match self.promised(word)? {
             Some(saved) => (PathBuf::from(&word.text), saved),
             None => {
                 let path = self.find(word)?;
@@ -87,11 +96,13 @@ impl Session {
     }
 
     /// In check mode: the scene that an earlier line would have written.
-    fn promised(&self, name: &str, span: Span) -> Result<Option<Saved>> {
+    fn promised(&self, word: &Word) -> Result<Option<Saved>> {
+        let (name, span) = (word.text.as_str(), word.span);
         if !self.checking() {
             return Ok(None);
         }
-        Ok(match self.world.parts.promise(name) {
+        let promised = &self.world.parts.promised;
+        Ok(match promised.get(name) {
             Some(Promise::Scene(world, pair)) => Some(Saved {
                 world: World { parts: Default::default(), ..World::clone(world) },
                 ran: false,
@@ -104,6 +115,8 @@ impl Session {
                     format!("the restart file `{name}` is none of perigrain: the deck prints text into it");
                 return refuse(Code::BAD_FILE, span, text);
             }
+            Some(Promise::Unseen) => return Err(unseen(span, name)),
+            None if promised.anything && self.find(word).is_err() => return Err(unseen(span, name)),
             None => None,
         })
     }

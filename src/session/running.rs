@@ -16,7 +16,7 @@ use crate::plan::{OpClass, Stage, StepPlan, When, explain};
 use crate::run::{Pace, verlet};
 use crate::styles::Reading;
 use crate::styles::fix::Minimizing;
-use crate::world::Halt;
+use crate::world::{Halt, Promise};
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::time::Instant;
@@ -39,7 +39,7 @@ impl Session {
         self.ready(cmd.span)?;
         self.check_run(cmd.span, args.steps > 0)?;
         if self.checking() {
-            self.graph.restarts.names().into_iter().for_each(|name| self.promise_restart(name));
+            self.promise_outputs();
             return Ok(());
         }
         self.say_notes()?;
@@ -59,7 +59,8 @@ impl Session {
             Some((every, commands)) => {
                 let mut left = args.steps;
                 let mut first = true;
-                while left > 0 {
+                // A run of no steps is one stretch, too.
+                while left > 0 || first {
                     let n = left.min(every);
                     left -= n;
                     // Runs of their own: `pre no` and `post no` leave out the setups and summaries in between.
@@ -93,6 +94,7 @@ impl Session {
                 "post" => out.post = args.flag("post")?,
                 "every" => {
                     let n = args.integer_from(1, "the interval of commands")?;
+                    args.clone().expect("a command in quotes, or NULL")?;
                     let words = args.rest();
                     let commands =
                         if words.len() == 1 && words[0].text == "NULL" { vec![] } else { words.to_vec() };
@@ -354,6 +356,8 @@ impl Session {
         let dump = dump?;
         self.record(cmd, Role::Act, None, uses.into_inner(), vec![]);
         if self.checking() {
+            let file = cmd.args.get(2).map_or("", |w| &w.text);
+            self.world.parts.promised.keep(file, Promise::Unseen);
             return Ok(());
         }
         self.world.spread_type_masses();

@@ -38,7 +38,7 @@ impl Session {
         }
         // a deck that is only looked at changes nothing
         if matches!(self.options.mode, Mode::Check | Mode::Plan) {
-            self.shelled = true;
+            self.world.parts.promised.anything = self.checking();
             return Ok(());
         }
         self.options.log.flush()?;

@@ -19,6 +19,7 @@ pub mod minimizer;
 pub mod order;
 pub mod particles;
 pub mod potentials;
+pub mod promises;
 pub mod rebuild;
 pub mod region;
 pub mod resume;
@@ -44,9 +45,10 @@ pub use images::Images;
 pub use lattice::Lattice;
 pub use minimizer::Minimizer;
 pub use particles::{AtomStyle, Own, Particles};
+pub use promises::{Promise, Promises};
 pub use rebuild::{Kept, Rebuild};
 pub use region::Region;
-pub use resume::{Promise, Resume, Said};
+pub use resume::{Resume, Said};
 pub use settings::{Compat, NeighborSettings, Newton, Respa, RunStyle, Settings};
 pub use slots::{Offers, Slot, SlotId, Slots};
 pub use tally::Tally;
@@ -132,8 +134,8 @@ pub struct Parts {
     pub plastic: Option<[f64; 5]>,
     /// What ops have to say about the deck; told when the run is over.
     pub notes: crate::diag::Diagnostics,
-    /// While a deck is only checked: files that its lines so far would have written, by name.
-    pub promised: BTreeMap<String, Promise>,
+    /// While a deck is only checked: files that its lines so far would have written.
+    pub promised: Promises,
     /// What came from a restart file and the deck may say again: `region/ID`, `material/ID`, and state of fixes and
     /// computes as `STYLE/ID`.
     pub restored: BTreeSet<String>,
@@ -159,18 +161,6 @@ pub enum RowValue {
     Whole(i64),
     /// Any other.
     Real(f64),
-}
-
-impl Parts {
-    /// The file of this name that a checked deck would have written; one written as `plate.*.data` may be any step's.
-    pub fn promise(&self, name: &str) -> Option<&Promise> {
-        let fits = |file: &str| {
-            file.split_once('*').is_some_and(|(a, b)| {
-                name.len() > a.len() + b.len() && name.starts_with(a) && name.ends_with(b)
-            })
-        };
-        self.promised.get(name).or_else(|| self.promised.iter().find(|(file, _)| fits(file)).map(|p| p.1))
-    }
 }
 
 impl World {

@@ -2,7 +2,6 @@
 
 use super::{Lattice, World};
 use crate::diag::Result;
-use std::sync::Arc;
 
 /// What a restart file said about its scene: as long as all of it still holds, its forces stand.
 #[derive(Clone, Debug, Default)]
@@ -24,15 +23,6 @@ pub struct Said {
     pub words: Vec<String>,
     /// The lattice.
     pub lattice: Lattice,
-}
-
-/// What a checked deck would have written into a file.
-#[derive(Clone, Debug)]
-pub enum Promise {
-    /// This text.
-    Text(String),
-    /// This scene, which holds no particles, and the lines of its pair style.
-    Scene(Arc<World>, Vec<Said>),
 }
 
 impl World {

@@ -97,6 +97,50 @@ fn packed_files_unpack_to_the_same_text() {
     }
 }
 
+/// The styles that end in `/gz`: the text of those without, packed as tightly as `compression_level` says.
+#[test]
+fn styles_that_pack_write_the_same_text() {
+    use std::io::Read;
+    let folder = tempfile::tempdir().unwrap();
+    let dumps = [
+        ("atom", "a", ""),
+        ("custom", "b.*", "id x vy"),
+        ("cfg", "c.*", "mass type xs ys zs vx"),
+        ("xyz", "d", ""),
+        ("local", "e.*", "index c_q[1] c_q[2]"),
+    ];
+    let mut deck = String::from(
+        "units lj\natom_style sphere\nlattice sc 1\nregion b block 0 6 0 6 0 6\ncreate_box 1 b\ncreate_atoms 1 box\n\
+         set group all diameter 1.1\nset group all density 1\npair_style granular\npair_coeff * * hooke 1e-3 0 tangential \
+         linear_nohistory 0 0\nvelocity all set 1 2 3\nfix 1 all nve/sphere\ncompute q all property/local patom1 patom2\n",
+    );
+    let mut line = |text: String| deck += &format!("{text}\n");
+    for (style, name, what) in dumps {
+        line(format!("dump {style} all {style} 2 ${{dir}}/{name}.txt {what}"));
+        for level in [-1, 0, 1, 9] {
+            line(format!("dump {style}{level} all {style}/gz 2 ${{dir}}/{name}.{level}.gz {what}"));
+            line(format!("dump_modify {style}{level} compression_level {level}"));
+        }
+    }
+    line("run 4".into());
+    let dir = folder.path().to_str().unwrap().to_string();
+    let options = Options { vars: vec![("dir".into(), vec![dir])], ..Options::default() };
+    Session::new(options).unwrap().run_text("in.packed", &deck).unwrap();
+    for (style, name, _) in dumps {
+        let name = name.replace('*', "4");
+        let plain = fs::read_to_string(folder.path().join(format!("{name}.txt"))).unwrap();
+        let sizes = [-1, 0, 1, 9].map(|level| {
+            let bytes = fs::read(folder.path().join(format!("{name}.{level}.gz"))).unwrap();
+            let mut text = String::new();
+            flate2::read::MultiGzDecoder::new(&bytes[..]).read_to_string(&mut text).unwrap();
+            assert_eq!(text, plain, "{style} {level}");
+            bytes.len()
+        });
+        let [usual, none, fast, tight] = sizes;
+        assert!(none > plain.len() && fast < none && usual < fast && tight < fast, "{style}: {sizes:?}");
+    }
+}
+
 #[test]
 fn check_writes_nothing() {
     let folder = tempfile::tempdir().unwrap();

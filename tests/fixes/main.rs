@@ -43,6 +43,11 @@ fn indenters_agree() {
 }
 
 #[test]
+fn cones_agree() {
+    agrees("cones");
+}
+
+#[test]
 fn adaptive_steps_agree() {
     agrees("steps");
 }

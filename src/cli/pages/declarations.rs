@@ -8,8 +8,8 @@ pub(super) const PAIR_STYLE: Entry = (
     Doc {
         syntax: "pair_style STYLE word …\npair_style none",
         summary: "Chooses the forces between particles.",
-        text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc pair_style peri/pmb`. A new \
-            `pair_style` forgets the coefficients of the old one. With `none`, or without the command, particles do not \
+        text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc pair_style peri/pmb`. Another \
+            style forgets the coefficients of the old one, and so does `hybrid`; the same style again keeps them. With `none`, or without the command, particles do not \
             feel each other; a run then draws a warning.",
         example: "pair_style peri/pmb\npair_coeff * * 1.6863e22 0.0030001 5.0e-4 0.25",
     },
@@ -26,6 +26,20 @@ pub(super) const PAIR_COEFF: Entry = (
             types must have coefficients, its own or mixed ones where the style can mix, when a run begins. With `hybrid` the \
             words begin with the name of the sub-style.",
         example: "pair_style peri/pmb\npair_coeff * * 1.6863e22 0.0030001 5.0e-4 0.25\npair_coeff 1 2*3 1.0e22 0.0030001 1.0e-4 0.0",
+    },
+);
+
+pub(super) const PAIR_MODIFY: Entry = (
+    "pair_modify",
+    Doc {
+        syntax: "pair_modify [pair STYLE] keyword value …",
+        summary: "Options of LAMMPS' pair styles; without effect here.",
+        text: "`mix geometric|arithmetic|sixthpower`, `shift yes|no`, `tail yes|no`, `table N`, `tabinner R`, \
+            `table/disp N`, `tabinner/disp R`, `neigh/trim yes|no`, `compute/tally yes|no`, `nofdotr` and `compute yes` are read \
+            for LAMMPS' sake, and a note says that they change nothing: no pair style here has a shift, a tail or a table, \
+            and granular styles mix in one way, as in LAMMPS. `pair STYLE` names a sub-style of `hybrid`. `compute no` and \
+            `special` would change forces; they are refused.",
+        example: "pair_modify shift yes mix geometric",
     },
 );
 
@@ -77,8 +91,8 @@ pub(super) const FIX: Entry = (
         summary: "Declares something that is done to particles in every step.",
         text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc fix nve`. The ID has \
             letters, digits and underscores. Within a stage of the step, fixes act in the order of their lines. The same \
-            ID with the same style and group replaces the old fix in its place; with another style or group it is \
-            refused. Values of a fix are `f_ID` and `f_ID[i]` in formulas, thermo output and dumps.",
+            ID with the same style replaces the old fix in its place, with a warning if the group is another one; with another \
+            style it is refused. Values of a fix are `f_ID` and `f_ID[i]` in formulas, thermo output and dumps.",
         example: "fix 1 all nve\nfix calm plate viscous 1.0e-3",
     },
 );

@@ -28,6 +28,7 @@ pub const COMMANDS: &[Entry] = &[
     language::QUIT,
     declarations::PAIR_STYLE,
     declarations::PAIR_COEFF,
+    declarations::PAIR_MODIFY,
     declarations::BOND_STYLE,
     declarations::BOND_COEFF,
     declarations::PERI_MODIFY,

@@ -3,13 +3,12 @@
 mod file;
 
 use super::common::{self, not_here};
+use super::data::text::find;
 use super::{Act, CommandStyle};
-use crate::diag::{Code, Diagnostic, Result, Source, fail};
+use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Word};
 use crate::styles::{ActCx, BuildCx, Doc, Style};
-use crate::world::{Promise, Template, World};
-use std::path::PathBuf;
-use std::sync::Arc;
+use crate::world::Template;
 
 /// The command.
 pub struct Molecule;
@@ -51,7 +50,6 @@ struct Asked {
 struct Reading {
     id: String,
     files: Vec<Asked>,
-    checking: bool,
 }
 
 impl CommandStyle for Molecule {
@@ -72,7 +70,7 @@ impl CommandStyle for Molecule {
             while keyword(a, &mut asked)? {}
             files.push(asked);
         }
-        Ok(Box::new(Reading { id, files, checking: cx.checking }))
+        Ok(Box::new(Reading { id, files }))
     }
 }
 
@@ -117,7 +115,7 @@ impl Act for Reading {
     fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
         let mut list = vec![];
         for asked in &self.files {
-            let text = find(cx.world, &asked.file, self.checking)?;
+            let text = find(cx.world, &asked.file, "molecule file")?;
             let (mut t, skipped) = file::read(&text.text).map_err(|e| e.within(&text))?;
             change(&mut t, asked)?;
             if skipped {
@@ -134,28 +132,6 @@ impl Act for Reading {
     fn needs_particles(&self) -> bool {
         false
     }
-}
-
-/// The file's text: in check mode perhaps one that an earlier line would have printed.
-fn find(w: &World, word: &Word, checking: bool) -> Result<Arc<Source>> {
-    let name = &word.text;
-    if let Some(Promise::Text(text)) = checking.then(|| w.parts.promise(name)).flatten() {
-        return Ok(Arc::new(Source { name: name.clone(), text: text.clone() }));
-    }
-    let mut trouble = None;
-    for path in [PathBuf::from(name), w.folder.join(name)] {
-        match super::data::text::load(&path) {
-            Ok(text) => return Ok(text),
-            Err(e) => drop(trouble.get_or_insert(e)),
-        }
-    }
-    let why = trouble.map_or(String::new(), |e| format!(": {e}"));
-    let d = Diagnostic::error(
-        Code::NO_FILE,
-        word.span,
-        format!("the molecule file `{name}` cannot be read{why}"),
-    );
-    Err(d.help("it is looked for in the working folder and beside the deck").into())
 }
 
 /// Offsets and scale.

@@ -2,7 +2,7 @@
 
 use super::common::{self, bad_keyword, id};
 use super::data::body::{DataFile, How};
-use super::data::text::load;
+use super::data::text::find;
 use super::data::words::{Ids, extra_types, ids, offsets, outside};
 use super::data::{Column, body};
 use super::{Act, CommandStyle};
@@ -12,7 +12,6 @@ use crate::math::cformat::general;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
 use crate::world::index::Index;
 use crate::world::{Domain, Particles, Promise, World, memory};
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The command.
@@ -204,27 +203,10 @@ enum Found {
 
 impl Reading {
     fn text(&self, world: &World) -> Result<Found> {
-        let name = &self.file.text;
-        match self.checking.then(|| world.parts.promise(name)).flatten() {
-            Some(Promise::Text(text)) => {
-                let source = Source { name: name.clone(), text: text.clone() };
-                return Ok(Found::File(Arc::new(source)));
-            }
-            Some(Promise::Scene(scene, _)) => return Ok(Found::Promised(scene.clone())),
-            None => {}
+        match world.parts.promised.get(&self.file.text) {
+            Some(Promise::Scene(scene, _)) => Ok(Found::Promised(scene.clone())),
+            _ => find(world, &self.file, "data file").map(Found::File),
         }
-        let beside = world.folder.join(name);
-        let mut trouble = None;
-        for path in [PathBuf::from(name), beside] {
-            match load(&path) {
-                Ok(text) => return Ok(Found::File(text)),
-                Err(e) => drop(trouble.get_or_insert(e)),
-            }
-        }
-        let why = trouble.map_or(String::new(), |e| format!(": {e}"));
-        let text = format!("the data file `{name}` cannot be read{why}");
-        let help = "it is looked for in the working folder and beside the deck";
-        Err(Diagnostic::error(Code::NO_FILE, self.file.span, text).help(help).into())
     }
 
     /// The box of a file that an earlier line of a checked deck would have written.

@@ -69,7 +69,7 @@ impl Act for Writing {
         let w = &mut *cx.world;
         if self.checking {
             let scene = Promise::Scene(Arc::new(w.clone()), vec![]);
-            w.parts.promised.insert(self.file.text().to_string(), scene);
+            w.parts.promised.keep(self.file.text(), scene);
             return Ok(());
         }
         w.spread_type_masses();

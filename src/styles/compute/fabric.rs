@@ -23,8 +23,8 @@ impl Style for Fabric {
             syntax: "compute ID group fabric type|radius contact|branch|force/normal|force/tangential … \
                      [type/include list1 list2] …",
             summary: "Tensors of the directions, lengths and forces of contacts.",
-            text: "Vector (intensive) of xx yy zz xy xz yz for each tensor named, in that order, over the pairs with both ends in \
-                   the group. With n the direction of a pair and r its distance, means ⟨⟩ over all N pairs:\n\n\
+            text: "Scalar (extensive): the number of pairs. Vector (intensive) of xx yy zz xy xz yz for each tensor named, in that order, over the \
+                   pairs with both ends in the group. With n the direction of a pair and r its distance, means ⟨⟩ over all N pairs:\n\n\
                    * `contact`: C = 15/2 (⟨n n⟩ − 1/3 I);\n\
                    * `branch`: 15/(2 tr D) (D − tr D/3 I) with D = ⟨r n n / (1 + n·C n)⟩;\n\
                    * `force/normal`: the same with the force f_n along n in the place of r;\n\
@@ -123,7 +123,7 @@ impl Declared {
 
 impl Compute for Declared {
     fn shape(&self) -> Shape {
-        Shape { vector: 6 * self.tensors.len(), ..Shape::default() }
+        Shape { scalar: true, scalar_extensive: true, vector: 6 * self.tensors.len(), ..Shape::default() }
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
@@ -138,6 +138,7 @@ impl Compute for Declared {
                     && (!me.touching || touches(w, p))
                     && me.has_types(kind(p.i), kind(p.j))
             });
+            out.scalar = pairs.len() as f64;
             out.vector = vector(&me.tensors, &pairs);
             Ok(())
         }))

@@ -178,16 +178,17 @@ pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
             return Ok(Getter::Own(*getter));
         }
         let style = match needs {
-            Needs::Sphere => "sphere",
-            Needs::Molecules | Needs::Linked => "bond",
-            _ => "peri",
+            Needs::Sphere => "atom_style sphere",
+            Needs::Molecules => "atom_style bond",
+            Needs::Linked => "bond_style bpm/peri",
+            _ => "atom_style peri",
         };
         return Err(Diagnostic::error(
             Code::INCOMPLETE,
             word.span,
             format!("the particles of this scene have no `{name}`"),
         )
-        .help(format!("`atom_style {style}`, alone or in a hybrid, has it"))
+        .help(format!("`{style}`, alone or in a hybrid, has it"))
         .into());
     }
     if let Some(column) = cx.world.columns.custom(name) {

@@ -20,7 +20,7 @@ impl Style for Slice {
             syntax: "compute ID group slice Nstart Nstop Nskip input …",
             summary: "Takes some elements of vectors.",
             text: "From each input the elements Nstart, Nstart + Nskip … below Nstop, counted from 1: as in LAMMPS 22Jul2025, \
-                   Nstop itself is not among them, except where it is the only one. Inputs are global vectors: `c_ID`, `f_ID`, `v_name` of a vector-style variable, \
+                   Nstop itself is not among them, except where it is the only one (LAMMPS lacks the last one where Nskip does not divide Nstop − Nstart, or crashes). Inputs are global vectors: `c_ID`, `f_ID`, `v_name` of a vector-style variable, \
                    or a column `c_ID[k]`, `f_ID[k]` of a global array. One input gives a vector, several an array with a \
                    column each. Whether values grow with the scene follows from the inputs. The group means nothing.",
             example: "compute diagonal all slice 1 4 1 c_thermo_press",

@@ -85,6 +85,8 @@ pub struct Base {
     pub style: &'static str,
     group: GroupId,
     append: bool,
+    /// How tightly files are packed (`compression_level`), for styles that always do.
+    pub level: Option<i64>,
     pad: usize,
     every: Option<i64>,
     rhythm: Rhythm,
@@ -140,6 +142,7 @@ impl Base {
             style,
             group: cx.group,
             append: false,
+            level: None,
             pad: 0,
             every: None,
             rhythm: Rhythm::Steps,
@@ -216,6 +219,7 @@ impl Base {
             let (rows, last) = base.rows(&frame, &tested, &data).map_err(|e| e.at(span))?;
             let mut state = base.state();
             (state.target.append, state.target.pattern.pad) = (base.append, base.pad);
+            state.target.level = base.level.and_then(|level| u32::try_from(level).ok());
             let shot = Shot { world, step: t.step, rows, data, state: &mut state };
             write(shot).map_err(|e| e.at(span))?;
             state.last = Some(t.step);

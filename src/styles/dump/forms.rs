@@ -70,47 +70,53 @@ impl Style for Cfg {
 
 impl DumpStyle for Xyz {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        let mut base = Base::new("xyz", args, cx, &[])?;
-        base.elements = (1..=cx.world.types).map(|k| k.to_string()).collect();
-        let mut columns = vec![Attribute::core("element", Core::Element)];
-        columns.extend((0..3).map(|k| Attribute::core(["x", "y", "z"][k], Core::X(k))));
-        Ok(Box::new(Text::new(base, Form::Xyz, Layout::Custom(columns))))
+        xyz(Base::new(self.name(), args, cx, &[])?, args, cx)
     }
 }
 
 impl DumpStyle for Yaml {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        let base = Base::new("yaml", args, cx, &[])?;
+        let base = Base::new(self.name(), args, cx, &[])?;
         Ok(Box::new(Text::new(base, Form::Yaml, Layout::Custom(attributes(args, cx)?))))
     }
 }
 
 impl DumpStyle for Cfg {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        let base = Base::new("cfg", args, cx, &[])?;
-        base.needs_star(args, cx)?;
-        let span = args.here();
-        let mut columns = attributes(args, cx)?;
-        let begins = |names: [&str; 5]| {
-            columns.len() >= 5 && columns.iter().zip(names).all(|(c, name)| c.word == name)
-        };
-        let unwrapped = begins(["mass", "type", "xsu", "ysu", "zsu"]);
-        if !unwrapped && !begins(["mass", "type", "xs", "ys", "zs"]) {
-            let text =
-                "the attributes of dump cfg begin with `mass type xs ys zs` or `mass type xsu ysu zsu`";
-            return Err(Diagnostic::error(Code::BAD_VALUE, span, text).into());
-        }
-        columns[1].source = Source::Core(Core::Element);
-        for c in &mut columns {
-            // As LAMMPS: no brackets in the names of auxiliary properties.
-            c.word = c.word.replace("][", "_").replace('[', "_").replace(']', "");
-        }
-        if unwrapped {
-            (0..3).for_each(|k| columns[2 + k].source = Source::Core(Core::Tenth(k)));
-        }
-        let form = Form::Cfg(if unwrapped { 10.0 } else { 1.0 });
-        let mut dump = Text::new(base, form, Layout::Custom(columns));
-        dump.default_format(0, "%f")?;
-        Ok(Box::new(dump))
+        cfg(Base::new(self.name(), args, cx, &[])?, args, cx)
     }
+}
+
+/// A dump of the style `xyz` into this file.
+pub(super) fn xyz(mut base: Base, _: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+    base.elements = (1..=cx.world.types).map(|k| k.to_string()).collect();
+    let mut columns = vec![Attribute::core("element", Core::Element)];
+    columns.extend((0..3).map(|k| Attribute::core(["x", "y", "z"][k], Core::X(k))));
+    Ok(Box::new(Text::new(base, Form::Xyz, Layout::Custom(columns))))
+}
+
+/// A dump of the style `cfg` into this file; its attributes follow.
+pub(super) fn cfg(base: Base, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+    base.needs_star(args, cx)?;
+    let span = args.here();
+    let mut columns = attributes(args, cx)?;
+    let begins =
+        |names: [&str; 5]| columns.len() >= 5 && columns.iter().zip(names).all(|(c, name)| c.word == name);
+    let unwrapped = begins(["mass", "type", "xsu", "ysu", "zsu"]);
+    if !unwrapped && !begins(["mass", "type", "xs", "ys", "zs"]) {
+        let text = "the attributes of dump cfg begin with `mass type xs ys zs` or `mass type xsu ysu zsu`";
+        return Err(Diagnostic::error(Code::BAD_VALUE, span, text).into());
+    }
+    columns[1].source = Source::Core(Core::Element);
+    for c in &mut columns {
+        // As LAMMPS: no brackets in the names of auxiliary properties.
+        c.word = c.word.replace("][", "_").replace('[', "_").replace(']', "");
+    }
+    if unwrapped {
+        (0..3).for_each(|k| columns[2 + k].source = Source::Core(Core::Tenth(k)));
+    }
+    let form = Form::Cfg(if unwrapped { 10.0 } else { 1.0 });
+    let mut dump = Text::new(base, form, Layout::Custom(columns));
+    dump.default_format(0, "%f")?;
+    Ok(Box::new(dump))
 }

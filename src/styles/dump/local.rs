@@ -54,43 +54,47 @@ struct Declared {
 
 impl DumpStyle for Local {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        let mut base = Base::new("local", args, cx, &[])?;
-        base.sort = Sort::Off;
-        let (mut columns, mut names) = (vec![], vec![]);
-        while let Some(word) = args.peek().filter(|w| w.text != "modify") {
-            args.next();
-            if word.text == "index" {
-                columns.push(Column::Index);
-                names.push(word.text.clone());
-                continue;
-            }
-            for word in cx.expand(word, Wants::Local)? {
-                columns.push(Column::Value(reference(&word, cx)?));
-                names.push(word.text.clone());
-            }
-        }
-        if !columns.iter().any(|c| matches!(c, Column::Value(_))) {
-            if columns.is_empty() {
-                args.expect("a local value such as index or c_ID")?;
-            }
-            return fail(
-                Code::MISSING_ARGUMENT,
-                args.here(),
-                "dump local needs a local value of a compute or fix: c_ID, c_ID[k], f_ID or f_ID[k]",
-            );
-        }
-        Ok(Box::new(Declared {
-            base,
-            columns,
-            names,
-            renamed: vec![],
-            formats: Formats::default(),
-            header: true,
-            label: "ENTRIES".into(),
-            time: false,
-            units: false,
-        }))
+        local(Base::new(self.name(), args, cx, &[])?, args, cx)
     }
+}
+
+/// A dump of the style `local` into this file; its values follow.
+pub(super) fn local(mut base: Base, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+    base.sort = Sort::Off;
+    let (mut columns, mut names) = (vec![], vec![]);
+    while let Some(word) = args.peek().filter(|w| w.text != "modify") {
+        args.next();
+        if word.text == "index" {
+            columns.push(Column::Index);
+            names.push(word.text.clone());
+            continue;
+        }
+        for word in cx.expand(word, Wants::Local)? {
+            columns.push(Column::Value(reference(&word, cx)?));
+            names.push(word.text.clone());
+        }
+    }
+    if !columns.iter().any(|c| matches!(c, Column::Value(_))) {
+        if columns.is_empty() {
+            args.expect("a local value such as index or c_ID")?;
+        }
+        return fail(
+            Code::MISSING_ARGUMENT,
+            args.here(),
+            "dump local needs a local value of a compute or fix: c_ID, c_ID[k], f_ID or f_ID[k]",
+        );
+    }
+    Ok(Box::new(Declared {
+        base,
+        columns,
+        names,
+        renamed: vec![],
+        formats: Formats::default(),
+        header: true,
+        label: "ENTRIES".into(),
+        time: false,
+        units: false,
+    }))
 }
 
 fn reference(word: &Word, cx: &BuildCx) -> Result<ValueRef> {

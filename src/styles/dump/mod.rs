@@ -5,6 +5,7 @@ mod base;
 mod forms;
 mod image;
 mod local;
+mod packed;
 mod picture;
 mod text;
 mod vtk;
@@ -58,11 +59,16 @@ pub trait Dump: Send {
 #[rustfmt::skip]
 pub const DUMPS: &[&dyn DumpStyle] = &[
     &text::Atom,
+    &packed::ATOM,
     &forms::Cfg,
+    &packed::CFG,
     &text::Custom,
+    &packed::CUSTOM,
     &image::Image,
     &local::Local,
+    &packed::LOCAL,
     &vtk::Vtk,
     &forms::Xyz,
+    &packed::XYZ,
     &forms::Yaml,
 ];

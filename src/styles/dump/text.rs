@@ -34,8 +34,8 @@ const PAGE: &str = "Attributes: `id type mass proc procp1`, positions `x y z`, a
     `balance buffer flush` and `types numeric` are read and without effect; `nfile fileper at sfactor tfactor precision \
     unwrap triclinic/general` are refused by name.\n\n\
     Rows are sorted by id unless told otherwise (LAMMPS: unsorted). A `*` in the file name becomes the step, and each \
-    snapshot then has a file of its own that appears only when it is complete. A name that ends in `.gz` is compressed; \
-    binary files are refused.";
+    snapshot then has a file of its own that appears only when it is complete. A name that ends in `.gz` is compressed \
+    (`dump custom/gz` and its kin also know `compression_level N`); binary files are refused.";
 
 impl Style for Atom {
     fn name(&self) -> &'static str {
@@ -69,17 +69,25 @@ impl Style for Custom {
 
 impl DumpStyle for Atom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        let base = Base::new("atom", args, cx, &[])?;
-        Ok(Box::new(Text::new(base, Form::Native, Layout::Atom { scaled: true, image: false })))
+        atom(Base::new(self.name(), args, cx, &[])?, args, cx)
     }
 }
 
 impl DumpStyle for Custom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        let base = Base::new("custom", args, cx, &[])?;
-        let attributes = attributes(args, cx)?;
-        Ok(Box::new(Text::new(base, Form::Native, Layout::Custom(attributes))))
+        custom(Base::new(self.name(), args, cx, &[])?, args, cx)
     }
+}
+
+/// A dump of the style `atom` into this file.
+pub(super) fn atom(base: Base, _: &mut Args, _: &BuildCx) -> Result<Box<dyn Dump>> {
+    Ok(Box::new(Text::new(base, Form::Native, Layout::Atom { scaled: true, image: false })))
+}
+
+/// A dump of the style `custom` into this file; its attributes follow.
+pub(super) fn custom(base: Base, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+    let attributes = attributes(args, cx)?;
+    Ok(Box::new(Text::new(base, Form::Native, Layout::Custom(attributes))))
 }
 
 /// The attributes of a dump.

@@ -16,6 +16,7 @@ use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, Flow, SealCx, Shape, Style, Wants};
 use crate::world::{GroupId, SlotId, World};
 use std::fmt::Write;
+use std::path::Path;
 
 /// The style.
 pub struct AveChunk;
@@ -334,6 +335,10 @@ impl Declared {
 }
 
 impl Fix for Declared {
+    fn file(&self) -> Option<&Path> {
+        self.output.file.as_ref().map(|(path, _)| path.as_path())
+    }
+
     fn counts_steps(&self) -> bool {
         true
     }

@@ -14,6 +14,7 @@ use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use crate::world::{GroupId, Slot, World};
 use std::fmt::Write;
+use std::path::Path;
 
 /// `fix ave/histo`.
 pub struct AveHisto;
@@ -315,6 +316,10 @@ impl Declared {
 }
 
 impl Fix for Declared {
+    fn file(&self) -> Option<&Path> {
+        self.output.file.as_ref().map(|(path, _)| path.as_path())
+    }
+
     fn declare(&self, w: &mut World) -> Result<()> {
         self.remove(w);
         self.schedule.declare(w, &self.key());

@@ -12,7 +12,7 @@ use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use crate::world::{SlotId, World};
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The style.
 pub struct AveTime;
@@ -293,6 +293,10 @@ fn offer(w: &mut World, slot: SlotId, step: i64, means: &[f64], cols: usize, vec
 }
 
 impl Fix for Declared {
+    fn file(&self) -> Option<&Path> {
+        self.output.file.as_ref().map(|(path, _)| path.as_path())
+    }
+
     fn counts_steps(&self) -> bool {
         true
     }

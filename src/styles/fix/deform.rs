@@ -38,7 +38,7 @@ impl Style for Deform {
                    particles with the box; `remap v` leaves them and gives particles that cross a periodic face the velocity \
                    of that face; with `none` nothing happens to them. Distances are in lattice spacings unless `units box`. \
                    A dimension with shrink-wrapped faces cannot be deformed, and none by two fixes. Peridynamic bonds \
-                   that cross a periodic face keep its length: such a run is refused. There are no tilted boxes here: `xy xz yz` and `flip` are refused.",
+                   that cross a periodic face keep its length: such a run is refused. There are no tilted boxes here: `xy xz yz` are refused, and `flip yes|no` is without effect.",
             example: "fix squeeze all deform 1 x scale 0.9999 remap x",
         }
     }
@@ -90,7 +90,11 @@ impl FixStyle for Deform {
                     any = true;
                 }
                 "xy" | "xz" | "yz" => return Err(not_here(word, "a tilt of the box")),
-                "flip" => return Err(not_here(word, "flips, which only a tilted box needs:")),
+                "flip" => {
+                    args.flag("flip")?;
+                    let text = "without effect: only a tilted box is ever flipped";
+                    cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, text));
+                }
                 "remap" => {
                     fix.remap = match args.choice("value of remap", &["x", "v", "none"])? {
                         "x" => Remap::Positions,

@@ -1,20 +1,22 @@
-//! fix indent: a sphere, cylinder or plane that repels particles.
+//! fix indent: a sphere, cylinder, cone or plane that repels particles.
+
+mod form;
 
 use super::{Fix, FixStyle, Minimizing};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Param, Word};
 use crate::plan::{Access, Op, Stage, When};
-use crate::styles::command::common::{axis, not_here, scales, units_lattice, variable_param};
+use crate::styles::command::common::{axis, scales, units_lattice, variable_param};
 use crate::styles::matter::{Chosen, change_forces, publish};
 use crate::styles::step_op::StepOp;
-use crate::styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
-use crate::world::region::across;
-use crate::world::{GroupId, World};
+use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
+use crate::world::GroupId;
+use form::{Form, check_ends};
 
 /// The style.
 pub struct Indent;
 
-const KEYWORDS: &[&str] = &["sphere", "cylinder", "plane", "side", "units"];
+const KEYWORDS: &[&str] = &["sphere", "cylinder", "cone", "plane", "side", "units"];
 
 impl Style for Indent {
     fn name(&self) -> &'static str {
@@ -22,28 +24,24 @@ impl Style for Indent {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group indent K sphere x y z R | cylinder dim c1 c2 R | plane dim pos lo|hi [side in|out] \
-                     [units lattice|box]",
-            summary: "Pushes particles out of a sphere, cylinder or half-space.",
+            syntax: "fix ID group indent K sphere x y z R | cylinder dim c1 c2 R | cone dim c1 c2 radlo radhi lo hi | \
+                     plane dim pos lo|hi [side in|out] [units lattice|box]",
+            summary: "Pushes particles out of a sphere, cylinder, cone or half-space.",
             text: "A particle at distance r < R from the sphere's centre or the cylinder's axis feels the force \
                    K (r − R)² away from it; `side in` keeps particles inside instead (r > R, force towards the centre). \
-                   `plane dim pos lo` pushes what is below pos upwards, `hi` what is above downwards. K is in \
+                   `cone` stands \
+                   between discs of the radii radlo and radhi at the places lo and hi on its axis, one of which may be a \
+                   point; the depth is that below the nearest face, end faces included, and the force is across it (LAMMPS 22Jul2025's \
+                   goes away from the cone's middle and its energies are negative: `-compat lammps`; with `side in` \
+                   and a point its forces are wrong or no numbers, which is not reproduced). `plane dim pos lo` pushes what is below pos upwards, `hi` what is above downwards. K is in \
                    force/distance² units; peridynamic particles in LAMMPS' convention take it as force density. Places \
                    and radius are numbers or `v_name` of an equal-style variable, evaluated each step; numbers are in \
-                   lattice spacings (the radius in those of x) unless `units box`; variables are not scaled. Across \
+                   lattice spacings (the radius in those of x, a cone's in those of its axis) unless `units box`; variables are not scaled. Across \
                    periodic faces the nearest image counts. Scalar (extensive): the energy Σ K/3 |r − R|³; `fix_modify \
                    ID energy yes` adds it to the potential energy. Vector of 3 (extensive): the force on the indenter.",
             example: "fix ball all indent 4.0e20 sphere 0.0 0.0 v_z 0.003 units box",
         }
     }
-}
-
-/// The indenter as the deck gives it; `T` is a parameter there and a reading during a run.
-#[derive(Clone, Copy)]
-enum Form<T> {
-    Sphere { center: [T; 3], radius: T },
-    Cylinder { axis: usize, center: [T; 2], radius: T },
-    Plane { axis: usize, place: T, high: bool },
 }
 
 impl FixStyle for Indent {
@@ -54,7 +52,6 @@ impl FixStyle for Indent {
             match word.text.as_str() {
                 "side" => inside = args.choice("side", &["in", "out"])? == "in",
                 "units" => lattice = units_lattice(args)?,
-                "cone" => return Err(not_here(word, "indenter")),
                 _ if form.is_some() && KEYWORDS.contains(&word.text.as_str()) => {
                     return fail(Code::CONFLICT, word.span, "an indenter has one shape; use a second fix");
                 }
@@ -63,10 +60,17 @@ impl FixStyle for Indent {
         }
         let Some(form) = form else {
             return Err(Diagnostic::error(Code::MISSING_ARGUMENT, args.here(), "the indenter has no shape")
-                .help("write `sphere x y z R`, `cylinder dim c1 c2 R` or `plane dim pos lo|hi`")
+                .help(
+                    "write `sphere x y z R`, `cylinder dim c1 c2 R`, `cone dim c1 c2 radlo radhi lo hi` or `plane dim pos \
+                     lo|hi`",
+                )
                 .into());
         };
-        let form = scaled(form, scales(cx.world, lattice));
+        if let (Form::Cone { .. }, true) = (&form, cx.world.settings.lammps()) {
+            let text = "compat lammps: a cone pushes away from its middle, with negative energies";
+            cx.note(Diagnostic::note(Code::COMPAT, cx.span, text));
+        }
+        let form = scaled(&form, scales(cx.world, lattice))?;
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, stiffness, form, inside }))
     }
 }
@@ -93,6 +97,19 @@ fn read_form(word: &Word, args: &mut Args, cx: &BuildCx) -> Result<Form<Param>> 
             let center = [param(args, "c1")?, param(args, "c2")?];
             Ok(Form::Cylinder { axis, center, radius: radius(args)? })
         }
+        "cone" => {
+            let axis = axis(args, "axis of the cone")?;
+            let center = [param(args, "c1")?, param(args, "c2")?];
+            let radii = [radius(args)?, radius(args)?];
+            let from = args.here();
+            let low = param(args, "the cone's lower end")?;
+            let span = from.to(args.here());
+            let ends = [low, param(args, "the cone's upper end")?];
+            if let [Param::Number(lo), Param::Number(hi)] = ends {
+                check_ends(lo, hi).map_err(|e| e.at(span))?;
+            }
+            Ok(Form::Cone { axis, center, radii, ends })
+        }
         "plane" => {
             let axis = axis(args, "direction of the plane")?;
             let place = param(args, "the plane's position")?;
@@ -103,23 +120,13 @@ fn read_form(word: &Word, args: &mut Args, cx: &BuildCx) -> Result<Form<Param>> 
 }
 
 /// Numbers become lengths of the box; variables stay.
-fn scaled(form: Form<Param>, scale: [f64; 3]) -> Form<Param> {
-    let by = |p: Param, s: f64| match p {
-        Param::Number(a) => Param::Number(a * s),
-        p => p,
-    };
-    match form {
-        Form::Sphere { center: [x, y, z], radius } => Form::Sphere {
-            center: [by(x, scale[0]), by(y, scale[1]), by(z, scale[2])],
-            radius: by(radius, scale[0]),
-        },
-        Form::Cylinder { axis, center: [a, b], radius } => {
-            let [d, e] = across(axis);
-            let center = [by(a, scale[d]), by(b, scale[e])];
-            Form::Cylinder { axis, center, radius: by(radius, scale[0]) }
-        }
-        Form::Plane { axis, place, high } => Form::Plane { axis, place: by(place, scale[axis]), high },
-    }
+fn scaled(form: &Form<Param>, scale: [f64; 3]) -> Result<Form<Param>> {
+    form.map(|p, axis| {
+        Ok(match p {
+            Param::Number(a) => Param::Number(a * scale[axis]),
+            p => p.clone(),
+        })
+    })
 }
 
 #[derive(Clone)]
@@ -131,98 +138,11 @@ struct Declared {
     inside: bool,
 }
 
-/// The indenter at one moment.
-#[derive(Clone, Copy)]
-enum Body {
-    /// Distances count along the axes with factor 1.
-    Round {
-        center: [f64; 3],
-        along: [f64; 3],
-        radius: f64,
-    },
-    Flat {
-        axis: usize,
-        place: f64,
-        high: bool,
-    },
-}
-
-impl Form<Reading> {
-    /// Where the indenter is now, wrapped into a periodic box.
-    fn now(&self, w: &World) -> Result<Body> {
-        let wrapped = |mut x: [f64; 3]| {
-            if let Some(d) = &w.domain {
-                d.wrap(&mut x, &mut [0; 3]);
-            }
-            x
-        };
-        let (center, along, radius) = match self {
-            Form::Plane { axis, place, high } => {
-                return Ok(Body::Flat { axis: *axis, place: place.get(w), high: *high });
-            }
-            Form::Sphere { center, radius } => (center.map(|c| c.get(w)), [1.0; 3], radius.get(w)),
-            Form::Cylinder { axis, center: [a, b], radius } => {
-                let [d, e] = across(*axis);
-                let (mut center, mut along) = (w.domain()?.lo, [1.0; 3]);
-                (center[d], center[e], along[*axis]) = (a.get(w), b.get(w), 0.0);
-                (center, along, radius.get(w))
-            }
-        };
-        if radius < 0.0 {
-            return fail(Code::BAD_VALUE, None, format!("the indenter's radius is negative: {radius}"));
-        }
-        Ok(Body::Round { center: wrapped(center), along, radius })
-    }
-}
-
-impl Body {
-    /// Force on a particle at `x` and its energy: K (r − R)² outwards (inwards for `inside`) and K/3 |r − R|³.
-    #[inline]
-    fn push(&self, w: &World, x: [f64; 3], k: f64, inside: bool) -> Option<([f64; 3], f64)> {
-        match *self {
-            Body::Flat { axis, place, high } => {
-                let sign = if high { 1.0 } else { -1.0 };
-                let depth = sign * (place - x[axis]);
-                if depth >= 0.0 {
-                    return None;
-                }
-                let mut f = [0.0; 3];
-                f[axis] = -sign * k * depth * depth;
-                Some((f, -(k / 3.0 * depth * depth * depth)))
-            }
-            Body::Round { center, along, radius } => {
-                let apart = std::array::from_fn(|d| along[d] * (x[d] - center[d]));
-                let d = w.domain.as_ref().map_or(apart, |b| b.minimum_image(apart));
-                let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-                let depth = if inside { radius - r } else { r - radius };
-                if depth >= 0.0 {
-                    return None;
-                }
-                let size = if inside { -k * depth * depth } else { k * depth * depth };
-                // Exactly at the centre no direction is away from it.
-                let force = if r > 0.0 { d.map(|d| d * size / r) } else { [0.0; 3] };
-                Some((force, -(k / 3.0 * depth * depth * depth)))
-            }
-        }
-    }
-}
-
 impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let span = cx.span();
         let chosen = Chosen::new(cx.world(), self.group, None, span)?;
-        let mut read = |p: &Param| cx.param(p, Stage::PostForce, &When::Always);
-        let form = match &self.form {
-            Form::Sphere { center: [x, y, z], radius } => {
-                Form::Sphere { center: [read(x)?, read(y)?, read(z)?], radius: read(radius)? }
-            }
-            Form::Cylinder { axis, center: [a, b], radius } => {
-                Form::Cylinder { axis: *axis, center: [read(a)?, read(b)?], radius: read(radius)? }
-            }
-            Form::Plane { axis, place, high } => {
-                Form::Plane { axis: *axis, place: read(place)?, high: *high }
-            }
-        };
+        let form = self.form.map(|p, _| cx.param(p, Stage::PostForce, &When::Always))?;
         let (k, inside) = (self.stiffness, self.inside);
         let slot = cx.slot(&format!("f_{}", self.id));
         let access = Access::new("x mask", "f");
@@ -303,6 +223,11 @@ mod tests {
         assert_eq!(force(&mut b, "6 plane z -1 hi units box").0, [0.0, 0.0, -24.0]);
         assert_eq!(force(&mut b, "6 plane z 3 hi units box").0, [0.0; 3]);
         assert_eq!(force(&mut b, "6 sphere 3 0 v_z 5 units box").0, [0.0; 3]);
+        // Cones that are cylinders with ends.
+        assert_eq!(force(&mut b, "6 cone z 0 0 5 5 -9 9 units box").0, [24.0, 0.0, 0.0]);
+        assert_eq!(force(&mut b, "6 cone z 0 0 1 1 -9 9 side in units box").0, [-24.0, 0.0, 0.0]);
+        assert_eq!(force(&mut b, "6 cone z 0 0 5 5 -3 9 units box").0, [24.0, 0.0, 0.0]);
+        assert_eq!(force(&mut b, "6 cone z 0 0 9 9 -1 9 units box").0, [0.0, 0.0, -24.0]);
         // In lattice spacings of 0.5.
         assert_eq!(force(&mut b, "6 sphere 0 0 2 10").0, [24.0, 0.0, 0.0]);
         // The box repeats after 20: the sphere's image at -18 is 5 away from x = -13 … and 2 deep from x = 3.
@@ -318,7 +243,9 @@ mod tests {
             "1",
             "1 sphere 0 0 0",
             "1 sphere 0 0 0 -1",
-            "1 cone x 0 0 1 2 3 4",
+            "1 cone x 0 0 1 2 3 3",
+            "1 cone x 0 0 1 -2 3 4",
+            "1 cone x 0 0 1 2 3",
             "1 plane w 0 lo",
             "1 plane x 0 up",
             "1 sphere 0 0 0 1 plane x 0 lo",

@@ -61,6 +61,7 @@ use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::{Args, ValueRef};
 use crate::plan::{Op, Rule};
 use crate::world::World;
+use std::path::Path;
 
 /// A fix style: one file, one line in `FIXES`.
 pub trait FixStyle: Style {
@@ -176,6 +177,11 @@ pub trait Fix: Send {
     /// How long the shortest contacts with it last, if it is a wall for grains; `said`: density and diameter in the
     /// deck, for a check that has no particles.
     fn contact_time(&self, _w: &World, _said: Option<(f64, f64)>) -> Option<f64> {
+        None
+    }
+
+    /// The file it writes during a run.
+    fn file(&self) -> Option<&Path> {
         None
     }
 

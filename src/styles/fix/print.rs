@@ -8,7 +8,7 @@ use crate::plan::{Access, Op, Stage, When};
 use crate::styles::step_op::StepOp;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
 use crate::world::World;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The style.
 pub struct Print;
@@ -111,6 +111,10 @@ struct Declared {
 }
 
 impl Fix for Declared {
+    fn file(&self) -> Option<&Path> {
+        self.file.as_ref().map(|(path, _)| path.as_path())
+    }
+
     fn declare(&self, _w: &mut World) -> Result<()> {
         match &self.file {
             Some((path, append)) if !self.checking => {

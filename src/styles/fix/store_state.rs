@@ -23,7 +23,7 @@ impl Style for StoreState {
             summary: "Keeps per-atom attributes and values as they were at one moment, or every N steps.",
             text: "Inputs: the attributes of `compute property/atom` (positions, velocities, forces, radius …), `c_ID`, \
                    `c_ID[k]`, `f_ID`, `f_ID[k]` with ranges such as `[*]`, and `v_name` of an atom-style variable. N = 0: once, \
-                   attributes when the fix is declared, values in the setup of the next run; N > 0: then, and at multiples \
+                   attributes when the fix is declared, values and properties (`i_NAME`, `d_NAME` …) in the setup of the next run; N > 0: then, and at multiples \
                    of N. `com yes`: `xu yu zu` are kept relative to the centre of mass of the group. Per-atom vector for one \
                    input, array for several; 0 for particles outside the group and those that come later.",
             example: "fix start all store/state 0 xu yu zu\ncompute far all reduce max f_start[1]",
@@ -84,6 +84,17 @@ struct Declared {
     relative: bool,
 }
 
+impl Input {
+    /// When this one is not kept: attributes are when the fix is declared, values and properties of fix property/atom in the
+    /// setup of a run.
+    fn left_out_at(&self) -> Which {
+        match self {
+            Input::Attribute(_, Getter::Own(_)) => Which::Values,
+            _ => Which::Attributes,
+        }
+    }
+}
+
 /// Which inputs are kept now.
 #[derive(Clone, Copy, PartialEq)]
 enum Which {
@@ -110,7 +121,7 @@ impl Declared {
             let name = self.column(k);
             let world = &*w;
             let list: Vec<f64> = match input {
-                Input::Attribute(name, getter) if which != Which::Values => {
+                Input::Attribute(name, getter) if which != input.left_out_at() => {
                     let less = match *name {
                         "xu" => center[0],
                         "yu" => center[1],
@@ -119,7 +130,7 @@ impl Declared {
                     };
                     (0..n).map(|i| getter.get(world, i) - less).collect()
                 }
-                Input::Value(_) if which != Which::Attributes => {
+                Input::Value(_) if which != input.left_out_at() => {
                     let Some(reading) = readings.get(k).copied().flatten() else { continue };
                     (0..n).map(|i| reading.atom(world, i)).collect()
                 }
@@ -163,14 +174,21 @@ impl Fix for Declared {
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let when = if self.every == 0 { When::First } else { When::First.or(When::Every(self.every)) };
-        let mut readings = vec![];
-        for input in &self.inputs {
+        let (mut me, mut readings) = (self.clone(), vec![]);
+        // What is stored once and for all may go.
+        let stored = self.every == 0 && cx.world().memo.contains_key(&self.filled());
+        for input in &mut me.inputs {
             readings.push(match input {
-                Input::Attribute(..) => None,
+                _ if stored => None,
+                Input::Attribute(_, getter) => {
+                    let span = cx.span();
+                    *getter = getter.present(cx.world(), span)?;
+                    None
+                }
                 Input::Value(r) => Some(cx.reading(r, Wants::PerAtom, Stage::EndOfStep, &when)?),
             });
         }
-        let (me, access) = (self.clone(), Access::new("slots x v f", "slots columns"));
+        let access = Access::new("slots x v f", "slots columns");
         let op =
             StepOp::new(format!("fix {} store/state", self.id), Stage::EndOfStep, access, move |w, t| {
                 if !t.setup {

@@ -1,8 +1,10 @@
 //! A data file as text: lines without comments, words with places, numbers.
 
-use crate::diag::{Code, Diagnostic, FileId, Result, Source, Span, fail};
+use crate::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Source, Span, fail, unseen};
+use crate::lang::Word;
+use crate::world::{Promise, World};
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Reads a file, unpacked when its name ends in `.gz`.
@@ -24,6 +26,49 @@ pub fn load(path: &Path) -> std::io::Result<Arc<Source>> {
     }
     let text = String::from_utf8(bytes).map_err(|_| odd("it is no text"))?;
     Ok(Arc::new(Source { name: path.display().to_string(), text }))
+}
+
+/// Finds a deck's file, which is a `what`, in the working folder or beside the deck, and reads it; in check mode perhaps one
+/// that an earlier line would have printed.
+///
+/// # Errors
+/// Files that cannot be read, or that only a run would write.
+pub fn find(w: &World, word: &Word, what: &str) -> Result<Arc<Source>> {
+    let (name, promised) = (&word.text, &w.parts.promised);
+    match promised.get(name) {
+        Some(Promise::Text(text)) => return Ok(Arc::new(Source { name: name.clone(), text: text.clone() })),
+        Some(_) => return Err(unseen(word.span, name)),
+        None => {}
+    }
+    let mut trouble = None;
+    for path in [PathBuf::from(name), w.folder.join(name)] {
+        match load(&path) {
+            Ok(text) => return Ok(text),
+            Err(e) => drop(trouble.get_or_insert(e)),
+        }
+    }
+    if promised.anything {
+        return Err(unseen(word.span, name));
+    }
+    let why = trouble.map_or(String::new(), |e| format!(": {e}"));
+    Err(absent(word, &format!("the {what} `{name}` cannot be read{why}")))
+}
+
+/// In check mode: the file `word` of a line that reads it in a run is there, or may be there by then.
+///
+/// # Errors
+/// It will not be.
+pub fn comes(w: &World, word: &Word, what: &str) -> Result<()> {
+    let name = &word.text;
+    if w.parts.promised.may_come(name) || Path::new(name).exists() || w.folder.join(name).exists() {
+        return Ok(());
+    }
+    Err(absent(word, &format!("the {what} `{name}` cannot be read: it is not there")))
+}
+
+fn absent(word: &Word, text: &str) -> Diagnostics {
+    let d = Diagnostic::error(Code::NO_FILE, word.span, text);
+    d.help("it is looked for in the working folder and beside the deck").into()
 }
 
 /// A line without its comment.

@@ -5,18 +5,15 @@ mod snapshot;
 
 use super::common::{bad_keyword, domain, on_particles};
 use super::data::dump::{self, Snapshot};
-use super::data::text::{Lines, load};
+use super::data::text::{Lines, comes, find};
 use super::{Act, CommandStyle};
-use crate::diag::{Code, Diagnostic, Result, Source, Span, fail};
+use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::{Args, Word};
 use crate::math::cformat::general;
 use crate::styles::{ActCx, BuildCx, Doc, Style};
-use crate::world::World;
 pub use reel::{Reel, Rerun};
 use snapshot::{enter, particles};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 /// The command.
 pub struct ReadDump;
@@ -83,6 +80,9 @@ impl CommandStyle for ReadDump {
         let at = a.here();
         let step = a.integer("the snapshot's step")?;
         let wish = Wish::read(a, cx)?;
+        if cx.checking {
+            comes(cx.world, &file, "dump")?;
+        }
         Ok(on_particles(vec![], move |cx| read(cx, &file, step, at, &wish)))
     }
 }
@@ -191,22 +191,8 @@ impl Wish {
 }
 
 /// The dump that a word names.
-fn open(file: &Word, w: &World) -> Result<Arc<Source>> {
-    let paths = [PathBuf::from(&file.text), w.folder.join(&file.text)];
-    let Some(text) = paths.iter().find_map(|p| load(p).ok()) else {
-        let why = load(&paths[0]).err().map_or(String::new(), |e| format!(": {e}"));
-        let d = Diagnostic::error(
-            Code::NO_FILE,
-            file.span,
-            format!("the dump `{}` cannot be read{why}", file.text),
-        );
-        return Err(d.help("it is looked for in the working folder and beside the deck").into());
-    };
-    Ok(text)
-}
-
 fn read(cx: &mut ActCx, file: &Word, step: i64, at: Span, wish: &Wish) -> Result<()> {
-    let text = open(file, cx.world)?;
+    let text = find(cx.world, file, "dump")?;
     let mut lines = Lines::new(&text.text);
     let outcome = (|| {
         let mut last = None;

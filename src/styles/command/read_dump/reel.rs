@@ -1,9 +1,9 @@
 //! Snapshots of several dumps one after the other, as `rerun` takes them.
 
 use super::super::data::dump;
-use super::super::data::text::Lines;
+use super::super::data::text::{Lines, comes, find};
+use super::Wish;
 use super::snapshot::{enter, particles};
-use super::{Wish, open};
 use crate::diag::{Code, Result, Source, fail};
 use crate::lang::{Args, Word};
 use crate::styles::BuildCx;
@@ -100,6 +100,14 @@ impl Rerun {
 }
 
 impl Reel {
+    /// In check mode: all dumps are there, or may be there by then.
+    ///
+    /// # Errors
+    /// One will not be.
+    pub fn comes(&self, w: &World) -> Result<()> {
+        self.files.as_slice().iter().try_for_each(|file| comes(w, file, "dump"))
+    }
+
     /// Puts the next snapshot into the world; `None` when there is none.
     ///
     /// # Errors
@@ -147,7 +155,7 @@ impl Reel {
             let (text, at) = match self.now.take() {
                 Some(now) => now,
                 None => match self.files.next() {
-                    Some(file) => (open(&file, w)?, 0),
+                    Some(file) => (find(w, &file, "dump")?, 0),
                     None => return Ok(None),
                 },
             };

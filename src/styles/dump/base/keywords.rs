@@ -32,6 +32,7 @@ pub const KEYWORDS: &[&str] = &[
 /// Keywords of LAMMPS that no style here understands, and why.
 const ELSEWHERE: &[(&str, &str)] = &[
     ("at", "is for dump styles that perigrain does not have"),
+    ("compression_level", "is for the styles atom/gz, custom/gz, cfg/gz, xyz/gz and local/gz"),
     ("fileper", "shares files among processes: there is one process here"),
     ("nfile", "shares files among processes: there is one process here"),
     ("sfactor", "is for dump xtc, which perigrain does not have"),
@@ -67,6 +68,14 @@ impl Base {
             "triclinic/general" if args.peek_text() == "no" => drop(args.next()),
             "refresh" => self.refresh = Some(refresh(args, cx)?),
             "skip" => self.skip = Some(number_variable(args, cx)?),
+            "compression_level" if self.level.is_some() => {
+                let span = args.here();
+                let level = args.integer("how tightly to pack")?;
+                if !(-1..=9).contains(&level) {
+                    return fail(Code::BAD_VALUE, span, format!("the level goes from -1 to 9, not {level}"));
+                }
+                self.level = Some(level);
+            }
             "balance" => {
                 args.flag("balance")?;
                 let text = "without effect: there is one process";

@@ -1,0 +1,89 @@
+//! `pair_modify`: options of LAMMPS' pair styles, of which those here have none.
+
+use super::build::{Context, Declared};
+use super::node::Graph;
+use crate::diag::{Code, Diagnostic, Result, fail};
+use crate::lang::Args;
+use crate::world::World;
+
+const KEYWORDS: [&str; 13] = [
+    "pair",
+    "mix",
+    "shift",
+    "tail",
+    "table",
+    "table/disp",
+    "tabinner",
+    "tabinner/disp",
+    "compute",
+    "nofdotr",
+    "neigh/trim",
+    "special",
+    "compute/tally",
+];
+
+/// `pair_modify keyword value …`: read whole, and said to be without effect.
+pub fn pair_modify(graph: &Graph, w: &World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    let Some(node) = &graph.pair else {
+        return fail(Code::WRONG_ORDER, args.name_span(), "pair_modify comes before any pair_style");
+    };
+    args.clone().expect("a keyword such as shift or mix")?;
+    if args.eat("pair") {
+        part(&node.pair.parts().iter().map(|p| p.name()).collect::<Vec<_>>(), args)?;
+    }
+    let (mut shift, mut tail) = (false, false);
+    while let Some(word) = args.next() {
+        match word.text.as_str() {
+            "mix" => {
+                args.choice("mixing rule", &["geometric", "arithmetic", "sixthpower"])?;
+            }
+            "shift" => shift = args.flag("shift")?,
+            "tail" => tail = args.flag("tail")?,
+            "table" | "table/disp" => {
+                args.integer_from(0, "the length of the table")?;
+            }
+            "tabinner" | "tabinner/disp" => {
+                args.number("where the table begins")?;
+            }
+            "neigh/trim" | "compute/tally" => {
+                args.flag(&word.text)?;
+            }
+            "nofdotr" => {}
+            "compute" => {
+                let span = args.here();
+                if !args.flag("compute")? {
+                    let d = Diagnostic::error(Code::NOT_SUPPORTED, span, "forces that are not computed");
+                    return Err(d.help("leave the style out, or write `pair_style none`").into());
+                }
+            }
+            "special" => {
+                let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, "weights for one sub-style alone");
+                return Err(d.help("`special_bonds` sets them for all").into());
+            }
+            _ => return Err(args.unknown(word, &KEYWORDS)),
+        }
+        if tail && (shift || w.settings.two_dimensional) {
+            let with = if shift { "`shift yes`" } else { "two dimensions" };
+            return fail(Code::CONFLICT, args.span(), format!("`tail yes` does not go with {with}"));
+        }
+    }
+    let text =
+        "without effect: no pair style here has a shift, a tail or a table, and each has one mixing rule";
+    cx.build(graph, w, "", crate::world::GroupId::ALL).note(Diagnostic::note(Code::NO_EFFECT, cx.span, text));
+    Ok(Declared::default())
+}
+
+/// The sub-style of a `hybrid` that the other words concern.
+fn part(parts: &[&str], args: &mut Args) -> Result<()> {
+    let word = args.expect("a sub-style")?;
+    if !parts.contains(&word.text.as_str()) {
+        let text = format!("`{}` is no sub-style of the pair style in force", word.text);
+        let d = Diagnostic::error(Code::UNKNOWN_NAME, word.span, text);
+        return Err(match parts {
+            [] => d.help("`pair` goes with `pair_style hybrid` only"),
+            _ => d.help(format!("there are {}", parts.join(" "))),
+        }
+        .into());
+    }
+    Ok(())
+}
