@@ -54,6 +54,52 @@ struct Came {
     most: f64,
 }
 
+/// A chunk in fours.
+struct Fours<'a> {
+    x: &'a mut [[Vec3; 4]],
+    v: &'a mut [[Vec3; 4]],
+    f: &'a mut [[Vec3; 4]],
+    omega: &'a mut [[Vec3; 4]],
+    torque: &'a mut [[Vec3; 4]],
+    radius: &'a [[f64; 4]],
+}
+
+impl Fours<'_> {
+    /// Four of them, to be looked at one by one.
+    #[inline(always)]
+    fn one<'a>(&'a mut self, k: usize, mask: &'a [u32; 4]) -> Chunk<'a> {
+        Chunk {
+            x: &mut self.x[k],
+            v: &mut self.v[k],
+            f: &mut self.f[k],
+            mask,
+            omega: self.omega.get_mut(k).map_or(&mut [][..], |four| &mut four[..]),
+            torque: self.torque.get_mut(k).map_or(&mut [][..], |four| &mut four[..]),
+            radius: self.radius.get(k).map_or(&[][..], |four| &four[..]),
+        }
+    }
+}
+
+/// What comes of fours, lane by lane.
+struct Sums<F> {
+    /// The largest v².
+    fastest: F,
+    /// Zero, but where a v² was no number.
+    wrong: F,
+    energy: F,
+}
+
+impl<F: Threes> Sums<F> {
+    /// # Safety
+    /// The processor must have what the form needs.
+    #[inline(always)]
+    unsafe fn new() -> Self {
+        // SAFETY: passed on.
+        let zero = unsafe { F::splat(0.0) };
+        Self { fastest: zero, wrong: zero, energy: zero }
+    }
+}
+
 impl Kick {
     /// A stretch, with what stands beside the motion: what came of a pull, of a hold and of the motion, with the bits that
     /// they have alone.
@@ -176,44 +222,85 @@ impl Kick {
         let mut came = Came::default();
         let rest = Chunk { x, v, f, mask, omega, torque, radius };
         self.each::<KICKS, DRIFT, SPIN>(rest, &masses(mask4.len()), beside, &mut came);
-        let a = beside.pull.map_or([0.0; 3], |pull| pull.a);
         let pulled = beside.pull.map_or(0, |pull| pull.bit);
-        // SAFETY (all below): the caller's promise; arrays of twelve and of four numbers.
-        let (zero, along) = unsafe { (F::splat(0.0), threes::repeated::<F>(a)) };
-        let (mut fastest, mut wrong, mut energy) = (zero, zero, zero);
-        for (k, (((x, v), f), mask)) in x4.iter_mut().zip(v4).zip(f4).zip(mask4).enumerate() {
-            let m = masses(k);
-            let (all, some) = (mask[0] & mask[1] & mask[2] & mask[3], mask[0] | mask[1] | mask[2] | mask[3]);
-            if all & self.bit == 0 || all & pulled != pulled || some & beside.held != 0 {
-                let omega = omega4.get_mut(k).map_or(&mut [][..], |four| &mut four[..]);
-                let torque = torque4.get_mut(k).map_or(&mut [][..], |four| &mut four[..]);
-                let radius = radius4.get(k).map_or(&[][..], |four| &four[..]);
-                let four = Chunk { x, v, f, mask, omega, torque, radius };
-                self.each::<KICKS, DRIFT, SPIN>(four, &m, beside, &mut came);
-                continue;
-            }
+        let same = |masks: &[u32]| {
+            let (all, some) = masks.iter().fold((u32::MAX, 0), |(all, some), m| (all & m, some | m));
+            all & self.bit != 0 && all & pulled == pulled && some & beside.held == 0
+        };
+        let mut fours = Fours { x: x4, v: v4, f: f4, omega: omega4, torque: torque4, radius: radius4 };
+        // SAFETY (all below): the caller's promise.
+        let mut sums = unsafe { Sums::<F>::new() };
+        if same(mask4.as_flattened()) {
             unsafe {
+                self.all::<F, KICKS, DRIFT, SPIN>(&mut fours, 0..mask4.len(), &masses, beside, &mut sums)
+            };
+        } else {
+            for (k, mask) in mask4.iter().enumerate() {
+                if same(mask) {
+                    unsafe {
+                        self.all::<F, KICKS, DRIFT, SPIN>(&mut fours, k..k + 1, &masses, beside, &mut sums)
+                    };
+                } else {
+                    self.each::<KICKS, DRIFT, SPIN>(fours.one(k, mask), &masses(k), beside, &mut came);
+                }
+            }
+        }
+        came.most = (sums.fastest + sums.wrong).numbers().into_iter().fold(came.most, faster);
+        came.energy += sums.energy.numbers().iter().sum::<f64>();
+        came
+    }
+
+    /// Particles of which the same is true, four at a time: these fours of a chunk.
+    ///
+    /// # Safety
+    /// The processor must have what the form needs.
+    #[inline(always)]
+    unsafe fn all<F: Threes, const KICKS: usize, const DRIFT: bool, const SPIN: bool>(
+        &self,
+        c: &mut Fours,
+        own: Range<usize>,
+        masses: &impl Fn(usize) -> [f64; 4],
+        beside: &Beside,
+        sums: &mut Sums<F>,
+    ) {
+        let first = own.start;
+        // Cut to one length, so that it is looked at once.
+        let (x, v, f) = (&mut c.x[own.clone()], &mut c.v[own.clone()], &mut c.f[own.clone()]);
+        let n = x.len();
+        let (v, f) = (&mut v[..n], &mut f[..n]);
+        let spinning = if SPIN { own.clone() } else { 0..0 };
+        let (omega, radius) = (&mut c.omega[spinning.clone()], &c.radius[spinning]);
+        let torque = if c.torque.is_empty() { &mut [][..] } else { &mut c.torque[own] };
+        let clears_torque = beside.clears && torque.len() == n;
+        let (pulls, a) = beside.pull.map_or((false, [0.0; 3]), |pull| (true, pull.a));
+        // SAFETY (all below): the caller's promise; arrays of twelve and of four numbers.
+        unsafe {
+            let (zero, along) = (F::splat(0.0), threes::repeated::<F>(a));
+            let (mut fastest, mut wrong, mut energy) = (sums.fastest, sums.wrong, sums.energy);
+            for k in 0..n {
+                let m = masses(first + k);
                 let m = F::load(m.as_ptr());
-                let (at, force) = (x.as_flattened_mut().as_mut_ptr(), f.as_flattened_mut().as_mut_ptr());
+                let at = x[k].as_flattened_mut().as_mut_ptr();
+                let force = f[k].as_flattened_mut().as_mut_ptr();
                 let mut push = threes::load::<F>(force);
-                if pulled != 0 {
+                if pulls {
                     let depth;
                     (push, depth) = pulled_four(push, threes::load(at), m, along, a);
                     energy = energy - depth;
                 }
                 if beside.clears {
                     threes::store([zero; 3], force);
-                } else if pulled != 0 {
+                } else if pulls {
                     threes::store(push, force);
                 }
-                let v = kicked::<F, KICKS>(v, push, F::splat(self.half) / m);
+                let v = kicked::<F, KICKS>(&mut v[k], push, F::splat(self.half) / m);
                 if SPIN {
-                    let r = F::load(radius4[k].as_ptr());
-                    let turn = threes::load::<F>(torque4[k].as_flattened().as_ptr());
-                    kicked::<F, KICKS>(&mut omega4[k], turn, F::splat(self.spin) / (r * r * m));
+                    let r = F::load(radius[k].as_ptr());
+                    let turn = threes::load::<F>(torque[k].as_flattened().as_ptr());
+                    kicked::<F, KICKS>(&mut omega[k], turn, F::splat(self.spin) / (r * r * m));
                 }
-                if beside.clears && k < torque4.len() {
-                    threes::store([zero; 3], torque4[k].as_flattened_mut().as_mut_ptr());
+                if clears_torque {
+                    threes::store([zero; 3], torque[k].as_flattened_mut().as_mut_ptr());
                 }
                 if DRIFT {
                     let [a, b, c] = threes::load::<F>(at);
@@ -225,10 +312,8 @@ impl Kick {
                     wrong = wrong + square * 0.0;
                 }
             }
+            (sums.fastest, sums.wrong, sums.energy) = (fastest, wrong, energy);
         }
-        came.most = (fastest + wrong).numbers().into_iter().fold(came.most, faster);
-        came.energy += energy.numbers().iter().sum::<f64>();
-        came
     }
 
     /// A few particles, one by one.
