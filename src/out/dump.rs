@@ -226,7 +226,7 @@ pub struct Target {
 }
 
 impl Target {
-    /// Nothing is opened before the first snapshot.
+    /// Nothing is opened yet.
     pub fn new(pattern: Pattern) -> Self {
         Self { pattern, append: false, level: None, file: None, started: false }
     }
@@ -236,6 +236,23 @@ impl Target {
         self.pattern.many() || !self.started
     }
 
+    /// Makes a growing file before its first snapshot: what an earlier run left in it is not taken for this run's.
+    pub fn begin(&mut self) -> Result<()> {
+        if self.pattern.many() || self.started || self.file.is_some() {
+            return Ok(());
+        }
+        let (path, packed) = (self.pattern.at(0), self.packed());
+        let file = self.file.insert(file::open(&path, self.append)?);
+        let made = file::pack(file, packed, |_| Ok(())).and_then(|()| file.flush());
+        made.map_err(|e| file::trouble("write", &path, &e).into())
+    }
+
+    /// How tightly the file is packed, if it is.
+    fn packed(&self) -> Option<flate2::Compression> {
+        let usual = flate2::Compression::default();
+        self.pattern.packed().then(|| self.level.map_or(usual, flate2::Compression::new))
+    }
+
     /// Writes one snapshot and hands it to the system. A file of its own appears whole or not at all.
     pub fn write(
         &mut self,
@@ -243,9 +260,7 @@ impl Target {
         write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
     ) -> Result<()> {
         let path = self.pattern.at(step);
-        let usual = flate2::Compression::default();
-        let level = self.level.map_or(usual, flate2::Compression::new);
-        let packed = self.pattern.packed().then_some(level);
+        let packed = self.packed();
         let write = |to: &mut dyn Write| file::pack(to, packed, write);
         if self.pattern.many() {
             return file::replace(&path, write);

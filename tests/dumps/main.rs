@@ -97,6 +97,30 @@ fn packed_files_unpack_to_the_same_text() {
     }
 }
 
+/// What an earlier run has left in a file is gone when a run begins, even if the first snapshot comes later or never.
+#[test]
+fn a_growing_file_begins_with_the_run() {
+    use std::io::Read;
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    ["late.txt", "late.gz", "more.txt"].iter().for_each(|name| fs::write(at(name), "stale").unwrap());
+    let deck = "units lj\nlattice sc 1\nregion b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\nmass 1 1\nfix 1 all nve\n\
+        reset_timestep 3\ndump 1 all custom 100 ${dir}/late.txt id\ndump 2 all custom 100 ${dir}/late.gz id\n\
+        dump 3 all custom 4 ${dir}/more.txt id\ndump_modify 3 append yes header no\ndump 4 all custom 100 ${dir}/none.*.txt id\n\
+        run 2\n";
+    let dir = folder.path().to_str().unwrap().to_string();
+    let options = Options { vars: vec![("dir".into(), vec![dir])], ..Options::default() };
+    Session::new(options).unwrap().run_text("in.late", deck).unwrap();
+    assert_eq!(fs::read_to_string(at("late.txt")).unwrap(), "");
+    let mut text = String::new();
+    flate2::read::MultiGzDecoder::new(fs::File::open(at("late.gz")).unwrap())
+        .read_to_string(&mut text)
+        .unwrap();
+    assert_eq!(text, "");
+    assert_eq!(fs::read_to_string(at("more.txt")).unwrap(), "stale1\n");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+}
+
 /// The styles that end in `/gz`: the text of those without, packed as tightly as `compression_level` says.
 #[test]
 fn styles_that_pack_write_the_same_text() {

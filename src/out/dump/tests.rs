@@ -157,6 +157,17 @@ fn targets() {
     let mut fresh = Target::new(pattern("a.dump"));
     fresh.write(1, |w| writeln!(w, "1")).unwrap();
     assert_eq!(read("a.dump"), "1\n");
+    let mut early = Target::new(pattern("a.dump"));
+    early.begin().unwrap();
+    assert_eq!(read("a.dump"), "", "what an earlier run has left");
+    early.begin().unwrap();
+    early.write(2, |w| writeln!(w, "2")).unwrap();
+    early.begin().unwrap();
+    assert_eq!(read("a.dump"), "2\n");
+    let mut behind = Target { append: true, ..Target::new(pattern("a.dump")) };
+    behind.begin().unwrap();
+    behind.write(3, |w| writeln!(w, "3")).unwrap();
+    assert_eq!(read("a.dump"), "2\n3\n");
     let mut many = Target::new(pattern("b.*.dump"));
     for step in [0, 5] {
         many.write(step, |w| writeln!(w, "{step}")).unwrap();

@@ -208,8 +208,10 @@ impl Base {
         };
         let base = self.clone();
         let act = move |w: &mut World, t: &Tick| {
-            if !base.due(w, t, every, &mut clock)? || skip.is_some_and(|s| s.get(w) != 0.0) {
-                return Ok(());
+            let due = base.due(w, t, every, &mut clock)?;
+            base.aim();
+            if !due || skip.is_some_and(|s| s.get(w) != 0.0) {
+                return if t.setup { base.state().target.begin().map_err(|e| e.at(span)) } else { Ok(()) };
             }
             let world = &*w;
             let domain = world.domain().map_err(|e| e.at(span))?;
@@ -218,8 +220,6 @@ impl Base {
             let data: Vec<Data<'_>> = shown.iter().map(|b| b.data(&frame)).collect();
             let (rows, last) = base.rows(&frame, &tested, &data).map_err(|e| e.at(span))?;
             let mut state = base.state();
-            (state.target.append, state.target.pattern.pad) = (base.append, base.pad);
-            state.target.level = base.level.and_then(|level| u32::try_from(level).ok());
             let shot = Shot { world, step: t.step, rows, data, state: &mut state };
             write(shot).map_err(|e| e.at(span))?;
             state.last = Some(t.step);
@@ -231,7 +231,16 @@ impl Base {
         };
         let name = format!("dump {} {}", self.id, self.style);
         let reads = "x v f image mask tag kind mass radius omega torque volume";
+        // A file is there from the first step on, as in LAMMPS.
+        let when = if self.state().target.pattern.many() { when } else { when.or(When::First) };
         Ok(StepOp::new(name, Stage::Output, Access::new(reads, ""), act).when(when).in_setup(true).boxed())
+    }
+
+    /// Tells the file what `dump_modify` asks of it.
+    fn aim(&self) {
+        let target = &mut self.state().target;
+        (target.append, target.pattern.pad) = (self.append, self.pad);
+        target.level = self.level.and_then(|level| u32::try_from(level).ok());
     }
 
     /// When snapshots may be due; whether they are is decided then.
