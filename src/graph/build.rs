@@ -122,7 +122,10 @@ pub(super) fn keep_line(graph: &mut Graph, w: &World, cmd: &Command) {
     match cmd.name.text.as_str() {
         "pair_style" | "pair_coeff" | "peri_modify" => {
             if let Some(node) = &mut graph.pair {
-                node.lines.push(Said { words, lattice: w.lattice.clone() });
+                let said = Said { words, lattice: w.lattice.clone() };
+                // A line said once more counts where it was said last.
+                node.lines.retain(|line| *line != said);
+                node.lines.push(said);
             }
         }
         "bond_style" | "bond_coeff" => {

@@ -28,6 +28,9 @@ pub fn pair_style(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context)
 /// Says the lines behind an earlier `pair_style` again, each with the lattice that was in force.
 fn restate(graph: &mut Graph, w: &mut World, old: &PairNode, cx: &Context) -> Result<()> {
     let lattice = w.lattice.clone();
+    // What there is to note has been noted.
+    let (notes, uses) = Default::default();
+    let cx = &Context { notes: &notes, uses: &uses, ..*cx };
     let outcome = old.lines.iter().filter(|said| said.words[0] != "pair_style").try_for_each(|said| {
         w.lattice = said.lattice.clone();
         let mut words = said.words.iter().map(|text| Word::new(text.as_str(), cx.span));
