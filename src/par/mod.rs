@@ -1,9 +1,10 @@
 //! Threads with the same bits for any number of them.
 //!
 //! Work is cut into parts by a rule that knows only the size of the problem, never the number of threads:
-//! [`for_rows`] and [`for_chunks`] where parts do not touch each other's data, [`two_colours`] where a part
-//! also writes into the next one, [`sum`] and [`reduce`] where parts are added up along a fixed tree. None of
-//! them allocates, and all run inline on one thread or when there is only one part.
+//! [`for_rows`], [`for_chunks`] and [`each`] where parts do not touch each other's data, [`two_colours`] and [`neighbours`] where a part
+//! also writes into the next one, [`sum`], [`reduce`] and [`best`] where parts are added up along a fixed tree. Who does which
+//! part may depend on the threads, the order of additions never does. All run inline on one thread or when there is only one
+//! part; [`both`] does two things beside each other.
 
 mod pool;
 mod split;

@@ -190,7 +190,7 @@ impl Wish {
     }
 }
 
-/// The dump that a word names.
+/// Reads the snapshot of a step, which the line names at `at`, into the scene.
 fn read(cx: &mut ActCx, file: &Word, step: i64, at: Span, wish: &Wish) -> Result<()> {
     let text = find(cx.world, file, "dump")?;
     let mut lines = Lines::new(&text.text);
