@@ -189,7 +189,7 @@ impl DeckEnv<'_> {
         let mut sealer = Sealer::new(self.w, self.graph, Arc::new(vars.clone()));
         sealer.at(span);
         let answer = ask(&mut sealer)?;
-        let plan = sealer.plan;
+        let mut plan = sealer.plan;
         let t = Tick::between_runs(&self.w.clock);
         let mut wanted = t.clone();
         plan.ask(&mut wanted);

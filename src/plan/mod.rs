@@ -1,5 +1,6 @@
 //! The step as data: ops with stages, reads, writes and times.
 
+mod ending;
 pub mod explain;
 pub mod guard;
 mod level;

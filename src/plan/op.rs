@@ -122,6 +122,25 @@ impl When {
         }
     }
 
+    /// The first step from `step` on at which it may act, in a run up to `last`: the end of time if there is none. Steps before
+    /// it are silent but for the setup and an early end of a run.
+    pub fn next(&self, step: i64, last: i64) -> i64 {
+        match self {
+            When::Always => step,
+            When::Every(n) if *n > 0 => step + (-step).rem_euclid(*n),
+            When::Last if step <= last => last,
+            When::Samples { every, repeat, freq } => {
+                let before = (-step).rem_euclid(*freq);
+                // The samples of an average begin so long before its step.
+                let begin = (repeat - 1) * every;
+                step + if before > begin { before - begin } else { before % every }
+            }
+            When::At(steps) => steps.get(steps.partition_point(|s| *s < step)).copied().unwrap_or(i64::MAX),
+            When::Any(list) => list.iter().map(|w| w.next(step, last)).min().unwrap_or(i64::MAX),
+            When::Every(_) | When::First | When::Last | When::Never => i64::MAX,
+        }
+    }
+
     /// The union of two.
     #[must_use]
     pub fn or(self, other: When) -> When {
@@ -348,5 +367,39 @@ pub trait Op: Send {
     /// Bytes of memory the op has touched per call, for `plan --measure`; 0 when unknown.
     fn bytes(&self, _w: &World) -> u64 {
         0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_next_step_is_the_first_that_fires() {
+        let every = When::Every(7);
+        let samples = When::Samples { every: 3, repeat: 4, freq: 20 };
+        let long = When::Samples { every: 5, repeat: 4, freq: 20 };
+        let at = When::At([-4, 0, 3, 90].into());
+        let any = When::Any(vec![every.clone(), When::First, at.clone(), When::Last]);
+        let last = 83;
+        let tick = |step: i64| Tick { step, last, ..Tick::between_runs(&crate::world::Clock::default()) };
+        for w in [
+            When::Always,
+            When::Every(0),
+            When::Never,
+            When::First,
+            When::Last,
+            every,
+            samples,
+            long,
+            at,
+            any,
+        ] {
+            for from in -30..100 {
+                // Beyond what is looked through here nothing but what comes again and again fires, and that has come before.
+                let found = (from..200).find(|&step| w.fires(&tick(step))).unwrap_or(i64::MAX);
+                assert_eq!(w.next(from, last), found, "{w:?} from {from}");
+            }
+        }
     }
 }

@@ -1,8 +1,11 @@
 //! Ops in the order of a step, with what was left out and why.
 
+use super::ending::Ending;
 use super::{Act, Gist, Guard, Level, Meter, Op, OpClass, Stage, Tick, Turns, When, take_turns};
 use crate::diag::{Diagnostics, Result, Span};
 use crate::world::World;
+use std::ops::Range;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// An op with its times and the command it came from.
@@ -61,15 +64,8 @@ pub struct LeftOut {
     pub why: String,
 }
 
-/// What follows the forces of a step.
-struct Ending {
-    /// Ops in order; behind the last kick what clears forces, if the next step begins there.
-    order: Vec<usize>,
-    /// The last kick, if the next step can begin there.
-    last: Option<usize>,
-    /// What clears forces then.
-    clears: Option<usize>,
-}
+/// So many particles are moved without looking at the clock.
+const FEW: usize = 200;
 
 /// The sealed step.
 #[derive(Default)]
@@ -93,7 +89,11 @@ pub struct StepPlan {
     /// The end of the last step has begun the present one.
     begun: bool,
     /// Whether nobody reads forces between the drift and the next ones; unknown at first.
-    unread: Option<bool>,
+    pub(super) unread: Option<bool>,
+    /// Steps in which only what acts in every step acts, in a run up to the step beside it.
+    pub(super) quiet: (Range<i64>, i64),
+    /// The ending of quiet steps before quiet steps.
+    pub(super) usual: Option<Arc<Ending>>,
 }
 
 impl StepPlan {
@@ -102,7 +102,7 @@ impl StepPlan {
         let stage = placed.op.stage();
         let at = self.ops.iter().position(|p| p.stage > stage).unwrap_or(self.ops.len());
         self.ops.insert(at, placed);
-        self.unread = None;
+        (self.unread, self.quiet, self.usual) = (None, Default::default(), None);
     }
 
     /// Tells every op what all of them write, now that they are known.
@@ -112,31 +112,39 @@ impl StepPlan {
     }
 
     /// Fills in which sums are asked for at this tick.
-    pub fn ask(&self, t: &mut Tick) {
-        let any = |list: &[When]| list.iter().any(|w| t.ending || w.fires(t));
+    pub fn ask(&mut self, t: &mut Tick) {
+        self.look_ahead(t);
+        let any = |list: &[When]| list.iter().any(|w| t.ending || self.fires(w, t));
         let (energy, virial, atoms) = (any(&self.energy), any(&self.virial), any(&self.atom_energy));
         let atom_virial = any(&self.atom_virial);
+        let reads = |p: &Placed| p.reads_contacts && (t.ending || self.fires(&p.when, t));
+        let contacts = atom_virial || self.ops.iter().any(reads);
         t.energy = energy || atoms;
         t.virial = virial || atom_virial;
         t.atom_energy = atoms;
         t.atom_virial = atom_virial;
-        let reads = |p: &Placed| p.reads_contacts && (t.ending || p.when.fires(t));
-        t.contacts = atom_virial || self.ops.iter().any(reads);
+        t.contacts = contacts;
     }
 
-    /// Runs the ops of some stages at this tick: those that act in its level of steps.
+    /// Runs the ops of some stages, which must be in order, at this tick: those that act in its level of steps.
     ///
     /// # Errors
     /// The first op's that fails, with the place of its command.
     pub fn run(&mut self, w: &mut World, t: &Tick, stages: &[Stage]) -> Result<()> {
+        let Some((first, end)) = stages.first().zip(stages.last()) else { return Ok(()) };
         let mut clock = None;
-        for p in &mut self.ops {
+        let from = self.ops.partition_point(|p| p.stage < *first);
+        for k in from..self.ops.len() {
+            let p = &self.ops[k];
+            if p.stage > *end {
+                break;
+            }
             if !stages.contains(&p.stage) || !p.level.acts(&t.phase) || (t.setup && !p.in_setup) {
                 continue;
             }
             let ends = t.ending && p.stage == Stage::Output && p.when != When::Never;
-            if ends || p.when.fires(t) {
-                p.timed(w, t, clock.get_or_insert_with(Instant::now), |op, w| op.run(w, t))?;
+            if ends || self.fires(&p.when, t) {
+                self.ops[k].timed(w, t, clock.get_or_insert_with(Instant::now), |op, w| op.run(w, t))?;
             }
         }
         Ok(())
@@ -191,26 +199,26 @@ impl StepPlan {
     /// are moved while they are in fast memory, if the op tells who has. Every particle sees the same as otherwise. `false` where
     /// that is not so, and nothing has been done.
     fn force_and_end(&mut self, w: &mut World, t: &Tick, more: &impl Fn(&World) -> bool) -> Result<bool> {
-        let forces = |p: &Placed| p.stage == Stage::Force && p.level.acts(&t.phase) && p.when.fires(t);
-        let mut adding = (0..self.ops.len()).filter(|&k| forces(&self.ops[k]));
-        let (Some(force), None) = (adding.next(), adding.next()) else { return Ok(false) };
-        let Ending { order, last, clears } = self.ending(t);
-        let last = last.filter(|_| more(w));
-        let acts = self.offers(w, t, &order, [last, clears]);
+        let ending = self.ending(t);
+        let Some(force) = ending.force else { return Ok(false) };
+        let (order, clears) = (&ending.order[..], ending.clears);
+        let last = ending.last.filter(|_| more(w));
+        let acts = self.offers(w, t, order, [last, clears]);
         let turns = Turns::new(&acts, w.n()).filter(|_| !acts.is_empty() && acts.len() == order.len());
         let Some(mut turns) = turns else { return Ok(false) };
         let (mut clock, mut moving) = (Instant::now(), Duration::ZERO);
         let p = &mut self.ops[force];
         let told = p.timed(w, t, &mut clock, |op, w| {
             op.run_telling(w, t, &mut |w, particles| {
-                let begin = Instant::now();
+                // To look at the clock takes longer than to move a few particles.
+                let begin = (particles.len() > FEW).then(Instant::now);
                 turns.ready(w, particles);
-                moving += begin.elapsed();
+                moving += begin.map_or(Duration::ZERO, |begin| begin.elapsed());
             })
         })?;
         p.meter.time = p.meter.time.saturating_sub(moving);
         let gists = if told { turns.finish() } else { take_turns(w, &acts) };
-        self.took_turns(w, t, (&order, last), gists, moving + clock.elapsed());
+        self.took_turns(w, t, (order, last), gists, moving + clock.elapsed());
         Ok(true)
     }
 
@@ -241,19 +249,6 @@ impl StepPlan {
         ops.iter().map_while(|&k| self.ops[k].op.on_stretches(w, t, goes_on(k))).collect()
     }
 
-    /// What follows the forces of this step.
-    fn ending(&mut self, t: &Tick) -> Ending {
-        let ends = |p: &Placed| {
-            let there = matches!(p.stage, Stage::PostForce | Stage::FinalIntegrate);
-            there && p.level.acts(&t.phase) && p.when.fires(t)
-        };
-        let mut order: Vec<usize> = (0..self.ops.len()).filter(|&k| ends(&self.ops[k])).collect();
-        let last = self.last_kick(t);
-        let clears = last.and_then(|_| self.clears_early());
-        order.extend(clears);
-        Ending { order, last, clears }
-    }
-
     /// Whether the step before has made the beginning of this one.
     pub fn goes_on(&mut self) -> bool {
         std::mem::take(&mut self.begun)
@@ -265,10 +260,11 @@ impl StepPlan {
     /// # Errors
     /// The first op's that fails.
     pub fn end(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
-        let Ending { order, last, clears } = self.ending(t);
+        let ending = self.ending(t);
+        let (order, clears) = (&ending.order[..], ending.clears);
         let (mut at, mut clock) = (0, Instant::now());
         while at < order.len() {
-            let last = last.filter(|_| self.begun || more(w));
+            let last = ending.last.filter(|_| self.begun || more(w));
             let acts = self.offers(w, t, &order[at..], [last, clears]);
             if acts.is_empty() {
                 let (k, p) = (order[at], &mut self.ops[order[at]]);
@@ -289,40 +285,6 @@ impl StepPlan {
             at += acts.len();
         }
         Ok(())
-    }
-
-    /// The op that clears forces, if nobody reads them between the beginning of a step and there.
-    fn clears_early(&mut self) -> Option<usize> {
-        let first = self.ops.iter().position(|p| p.stage >= Stage::PreForce)?;
-        let clears = self.ops[first].stage == Stage::PreForce && self.ops[first].when == When::Always;
-        let reads = |p: &Placed| {
-            let access = p.op.access();
-            p.stage > Stage::InitialIntegrate && (access.reads("f") || access.reads("torque"))
-        };
-        let before = &self.ops[..first];
-        let unread = *self.unread.get_or_insert_with(|| !before.iter().any(reads));
-        (clears && unread).then_some(first)
-    }
-
-    /// The op that ends the motion of this step if its fix alone moves particles and nobody looks before the next step.
-    fn last_kick(&self, t: &Tick) -> Option<usize> {
-        let fires = |p: &Placed| p.when.fires(t);
-        let acts = |p: &Placed, stage| p.stage == stage && p.level.acts(&t.phase);
-        let at = |stage| self.ops.iter().enumerate().filter(move |(_, p)| acts(p, stage));
-        let looks = |stage| at(stage).any(|(_, p)| fires(p));
-        let (mut first, mut second) = (at(Stage::InitialIntegrate), at(Stage::FinalIntegrate));
-        let (Some((_, a)), None, Some((k, b)), None) =
-            (first.next(), first.next(), second.next(), second.next())
-        else {
-            return None;
-        };
-        let one = a.from == b.from && a.when == When::Always && b.when == When::Always;
-        // The virial of constraints comes from what the first half of a step does to velocities. Short steps that others follow
-        // have the number of the long one, in which nobody looks at them.
-        let next = Tick { step: t.step + i64::from(t.phase.outermost()), ..t.clone() };
-        let asked = [&self.virial, &self.atom_virial].into_iter().flatten().any(|w| w.fires(&next));
-        let looks = t.phase.outermost() && (looks(Stage::EndOfStep) || looks(Stage::Output));
-        (one && !asked && !looks).then_some(k)
     }
 
     /// Makes ops of forces give what they hold of the scene back to the world; they take it up anew at their next step.

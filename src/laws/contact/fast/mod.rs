@@ -28,7 +28,7 @@ use crate::neigh::list::small;
 use crate::neigh::slabs::{Slabs, edges, shift_of};
 use crate::par;
 use crate::world::contacts::Contacts;
-use form::Form;
+pub use form::{Form, InLanes};
 use lists::{Short, Slab};
 use memory::Book;
 use stray::Strays;

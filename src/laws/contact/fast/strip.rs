@@ -10,6 +10,7 @@ use crate::math::lanes::{Lanes, place};
 use crate::math::pair::Pair;
 use crate::math::real::Real;
 use crate::math::vec3::{SIX, Vec3, scale};
+use std::mem::MaybeUninit;
 
 /// How many contacts go through each stage of the evaluation before the next stage begins. A processor looks ahead over some
 /// five hundred instructions: stages are so short that several groups of contacts are under way in each of them, and nobody
@@ -26,16 +27,44 @@ pub(super) struct Strip<V, const N: usize> {
     /// The others and their images.
     w: [u32; STRIP],
     /// x_i − x_j, by groups [length].
-    apart: [Vec3<V>; GROUPS],
-    geometry: [Geometry<V>; GROUPS],
+    apart: Room<Vec3<V>>,
+    geometry: Room<Geometry<V>>,
     /// Of two grains, where all have one radius.
     sizes: Option<Sizes<V>>,
     /// The reduced mass, where all have one mass.
     mass: Option<V>,
     /// On i [force].
-    force: [Outgoing<N>; GROUPS],
+    force: Room<Outgoing<N>>,
     /// On i and on j, each about its centre [force × length].
-    torque: [[Outgoing<N>; 2]; GROUPS],
+    torque: Room<[Outgoing<N>; 2]>,
+}
+
+/// Room for something of each group, not cleared: that would take longer than the contacts of a slab of few.
+struct Room<T>(MaybeUninit<[T; GROUPS]>);
+
+impl<T: Copy> Room<T> {
+    /// With nothing in it.
+    #[inline(always)]
+    fn new() -> Self {
+        Self(MaybeUninit::uninit())
+    }
+
+    /// # Safety
+    /// It must be one of the groups.
+    #[inline(always)]
+    unsafe fn put(&mut self, group: usize, value: T) {
+        debug_assert!(group < GROUPS);
+        // SAFETY: the caller's promise.
+        unsafe { self.0.as_mut_ptr().cast::<T>().add(group).write(value) }
+    }
+
+    /// # Safety
+    /// Something must have been put there.
+    #[inline(always)]
+    unsafe fn at(&self, group: usize) -> &T {
+        // SAFETY: the caller's promise.
+        unsafe { &*self.0.as_ptr().cast::<T>().add(group) }
+    }
 }
 
 /// Vectors in lanes as they go to memory: x and y together, of lanes 0, 2, 4 … and of lanes 1, 3, 5 …, and z.
@@ -46,13 +75,10 @@ struct Outgoing<const N: usize> {
 }
 
 impl<const N: usize> Outgoing<N> {
-    const ZERO: Self = Self { xy: [[0.0; N]; 2], z: [0.0; N] };
-
     #[inline(always)]
-    fn set<V: Lanes<N>>(&mut self, [x, y, z]: Vec3<V>) {
+    fn of<V: Lanes<N>>([x, y, z]: Vec3<V>) -> Self {
         let [even, odd] = V::pairs(x, y);
-        self.xy = [even.numbers(), odd.numbers()];
-        self.z = z.numbers();
+        Self { xy: [even.numbers(), odd.numbers()], z: z.numbers() }
     }
 
     #[inline(always)]
@@ -97,7 +123,7 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
     #[allow(clippy::manual_map)] // closures are not compiled for AVX
     pub unsafe fn new(alike: Alike) -> Self {
         // SAFETY: passed on.
-        let (zero, sizes, mass) = unsafe {
+        let (sizes, mass) = unsafe {
             let sizes = match alike.radius {
                 Some(radius) => Some(Sizes::of([V::all(radius); 2])),
                 None => None,
@@ -106,20 +132,18 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
                 Some(mass) => Some(reduced(V::all(mass), V::all(mass))),
                 None => None,
             };
-            (V::all(0.0), sizes, mass)
+            (sizes, mass)
         };
-        let geometry =
-            Geometry { normal: [zero; 3], overlap: zero, radii: [zero; 2], curvature: zero, mass: zero };
         Self {
             k: [0; STRIP],
             i: [0; STRIP],
             w: [0; STRIP],
-            apart: [[zero; 3]; GROUPS],
-            geometry: [geometry; GROUPS],
+            apart: Room::new(),
+            geometry: Room::new(),
             sizes,
             mass,
-            force: [Outgoing::ZERO; GROUPS],
-            torque: [[Outgoing::ZERO; 2]; GROUPS],
+            force: Room::new(),
+            torque: Room::new(),
         }
     }
 
@@ -195,8 +219,8 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
                 (mass, true) => beside_frozen(V::pick(m, i), V::pick(m, w), mass),
             };
             let g = geometry([x, y, z], &sizes, mass);
-            *self.apart.get_unchecked_mut(group) = [x, y, z];
-            *self.geometry.get_unchecked_mut(group) = g;
+            self.apart.put(group, [x, y, z]);
+            self.geometry.put(group, g);
             V::any(too_deep(&g))
         }
     }
@@ -244,12 +268,10 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
                 history[part] = V::choose(lasts, history[part], V::all(0.0));
             }
 
-            let g = self.geometry.get_unchecked(group);
+            let g = self.geometry.at(group);
             let wrench = law.contact(g, &own, &other, &mut history[..memory], cx.step);
-            self.force.get_unchecked_mut(group).set(wrench.force);
-            let [own, other] = self.torque.get_unchecked_mut(group);
-            own.set(wrench.torque_i);
-            other.set(wrench.torque_j);
+            self.force.put(group, Outgoing::of(wrench.force));
+            self.torque.put(group, [Outgoing::of(wrench.torque_i), Outgoing::of(wrench.torque_j)]);
             if !cx.store {
                 return;
             }
@@ -273,19 +295,20 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
         unsafe {
             let at = N * group + lane;
             let (i, j) = (*self.i.get_unchecked(at), place(*self.w.get_unchecked(at)) as u32);
-            self.force.get_unchecked(group).act::<V::Pair>(f, lane, i, j);
-            let [own, other] = self.torque.get_unchecked(group);
+            self.force.at(group).act::<V::Pair>(f, lane, i, j);
+            let [own, other] = self.torque.at(group);
             own.add::<V::Pair>(t, lane, i);
             other.add::<V::Pair>(t, lane, j);
         }
     }
 
-    /// Adds Σ d ⊗ F of the first contacts.
-    fn add_virial(&self, count: usize, sum: &mut [f64; 6]) {
+    /// Adds Σ d ⊗ F of the first contacts, which must have gone through all stages.
+    unsafe fn add_virial(&self, count: usize, sum: &mut [f64; 6]) {
         for at in 0..count {
             let (group, lane) = (at / N, at % N);
-            let d = self.apart[group].map(|d| d.numbers()[lane]);
-            let force = &self.force[group];
+            // SAFETY: the caller's promise.
+            let (d, force) = unsafe { (self.apart.at(group), self.force.at(group)) };
+            let d = d.map(|d| d.numbers()[lane]);
             let xy = &force.xy[lane % 2][lane / 2 * 2..];
             let f = [xy[0], xy[1], force.z[lane]];
             for (s, (a, b)) in sum.iter_mut().zip(SIX) {

@@ -146,9 +146,8 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
         (slab.virial, slab.deep, slab.touching) = ([0.0; 6], false, 0);
         let at = cx.places();
         let mut hits = [0; ROOM];
-        // SAFETY: passed on.
-        let mut strip = unsafe { Strip::<V, N>::new(cx.alike) };
         let (mut count, mut k, end) = (0, 0, slab.short.i.len());
+        let mut strip = None;
         loop {
             // By the same steps in all forms: where it stops, blocks of what holds end.
             while k < end && count + FILL <= ROOM {
@@ -168,8 +167,15 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
             let holding =
                 if cx.span > 0.0 { cx.holding::<W>(&slab.short, &mut hits[..ready]) } else { ready };
             slab.touching += holding;
-            // SAFETY: passed on.
-            unsafe { evaluate::<N, V, L, W>(cx, slab, &mut strip, &hits[..holding]) };
+            if holding > 0 {
+                // SAFETY: passed on. Not before something touches: room for contacts takes longer to clear than few pairs to test.
+                let strip = match &mut strip {
+                    Some(strip) => strip,
+                    none => none.insert(unsafe { Strip::<V, N>::new(cx.alike) }),
+                };
+                // SAFETY: passed on.
+                unsafe { evaluate::<N, V, L, W>(cx, slab, strip, &hits[..holding]) };
+            }
             if k == end {
                 break;
             }

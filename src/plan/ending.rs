@@ -1,0 +1,102 @@
+//! What acts in a step, without asking everybody in every step.
+
+use super::{Placed, Stage, StepPlan, Tick, When};
+use std::sync::Arc;
+
+/// Forces and what follows them in a step.
+pub struct Ending {
+    /// The op that adds forces, if it is one alone.
+    pub force: Option<usize>,
+    /// Ops in order; behind the last kick what clears forces, if the next step begins there.
+    pub order: Vec<usize>,
+    /// The last kick, if the next step can begin there.
+    pub last: Option<usize>,
+    /// What clears forces then.
+    pub clears: Option<usize>,
+}
+
+impl StepPlan {
+    /// Finds out until when only what acts in every step acts: to ask everybody in every step takes longer than the motion of a
+    /// few particles.
+    pub(super) fn look_ahead(&mut self, t: &Tick) {
+        if self.quiet.1 == t.last && self.quiet.0.contains(&t.step) {
+            return;
+        }
+        let sums = [&self.energy, &self.virial, &self.atom_energy, &self.atom_virial].into_iter().flatten();
+        let all = self.ops.iter().map(|p| &p.when).chain(sums).filter(|w| **w != When::Always);
+        let next = all.map(|w| w.next(t.step, t.last)).min().unwrap_or(i64::MAX);
+        self.quiet = (t.step..next, t.last);
+    }
+
+    /// Whether what acts at such steps acts at this tick.
+    pub(super) fn fires(&self, when: &When, t: &Tick) -> bool {
+        matches!(when, When::Always) || (!self.is_quiet(t) && when.fires(t))
+    }
+
+    /// Whether only what acts in every step acts at this tick.
+    fn is_quiet(&self, t: &Tick) -> bool {
+        !t.setup && self.quiet.1 == t.last && self.quiet.0.contains(&t.step)
+    }
+
+    /// Forces and what follows them in this step.
+    pub(super) fn ending(&mut self, t: &Tick) -> Arc<Ending> {
+        let next = Tick { step: t.step + 1, ..t.clone() };
+        let usual = t.phase.levels == 1 && self.is_quiet(t) && self.is_quiet(&next);
+        match &self.usual {
+            Some(ending) if usual => ending.clone(),
+            _ => {
+                let ending = Arc::new(self.find_ending(t));
+                self.usual = usual.then(|| ending.clone());
+                ending
+            }
+        }
+    }
+
+    fn find_ending(&mut self, t: &Tick) -> Ending {
+        let acts = |p: &Placed| p.level.acts(&t.phase) && self.fires(&p.when, t);
+        let of = |stages: &[Stage]| {
+            let all = self.ops.iter().enumerate();
+            all.filter(|(_, p)| stages.contains(&p.stage) && acts(p)).map(|(k, _)| k).collect::<Vec<_>>()
+        };
+        let (forces, mut order) = (of(&[Stage::Force]), of(&[Stage::PostForce, Stage::FinalIntegrate]));
+        let last = self.last_kick(t);
+        let clears = last.and_then(|_| self.clears_early());
+        order.extend(clears);
+        let force = if let [force] = forces[..] { Some(force) } else { None };
+        Ending { force, order, last, clears }
+    }
+
+    /// The op that clears forces, if nobody reads them between the beginning of a step and there.
+    fn clears_early(&mut self) -> Option<usize> {
+        let first = self.ops.iter().position(|p| p.stage >= Stage::PreForce)?;
+        let clears = self.ops[first].stage == Stage::PreForce && self.ops[first].when == When::Always;
+        let reads = |p: &Placed| {
+            let access = p.op.access();
+            p.stage > Stage::InitialIntegrate && (access.reads("f") || access.reads("torque"))
+        };
+        let before = &self.ops[..first];
+        let unread = *self.unread.get_or_insert_with(|| !before.iter().any(reads));
+        (clears && unread).then_some(first)
+    }
+
+    /// The op that ends the motion of this step if its fix alone moves particles and nobody looks before the next step.
+    fn last_kick(&self, t: &Tick) -> Option<usize> {
+        let fires = |p: &Placed| self.fires(&p.when, t);
+        let acts = |p: &Placed, stage| p.stage == stage && p.level.acts(&t.phase);
+        let at = |stage| self.ops.iter().enumerate().filter(move |(_, p)| acts(p, stage));
+        let looks = |stage| at(stage).any(|(_, p)| fires(p));
+        let (mut first, mut second) = (at(Stage::InitialIntegrate), at(Stage::FinalIntegrate));
+        let (Some((_, a)), None, Some((k, b)), None) =
+            (first.next(), first.next(), second.next(), second.next())
+        else {
+            return None;
+        };
+        let one = a.from == b.from && a.when == When::Always && b.when == When::Always;
+        // The virial of constraints comes from what the first half of a step does to velocities. Short steps that others follow
+        // have the number of the long one, in which nobody looks at them.
+        let next = Tick { step: t.step + i64::from(t.phase.outermost()), ..t.clone() };
+        let asked = [&self.virial, &self.atom_virial].into_iter().flatten().any(|w| self.fires(w, &next));
+        let looks = t.phase.outermost() && (looks(Stage::EndOfStep) || looks(Stage::Output));
+        (one && !asked && !looks).then_some(k)
+    }
+}
