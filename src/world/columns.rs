@@ -35,15 +35,23 @@ pub struct Columns {
     vectors: BTreeMap<String, Vec<[f64; 3]>>,
 }
 
+/// The column of this name; the name is copied only for a new one.
+fn of<'a, T>(columns: &'a mut BTreeMap<String, T>, name: &str, new: impl FnOnce() -> T) -> &'a mut T {
+    if !columns.contains_key(name) {
+        columns.insert(name.to_string(), new());
+    }
+    columns.get_mut(name).expect("it is there now")
+}
+
 impl Columns {
     /// The scalar column of this name, made of zeros for `n` particles if it is new.
     pub fn scalar(&mut self, name: &str, n: usize) -> &mut Vec<f64> {
-        self.scalars.entry(name.to_string()).or_insert_with(|| vec![0.0; n])
+        of(&mut self.scalars, name, || vec![0.0; n])
     }
 
     /// The vector column of this name, made of zeros for `n` particles if it is new.
     pub fn vector(&mut self, name: &str, n: usize) -> &mut Vec<[f64; 3]> {
-        self.vectors.entry(name.to_string()).or_insert_with(|| vec![[0.0; 3]; n])
+        of(&mut self.vectors, name, || vec![[0.0; 3]; n])
     }
 
     /// The full name of the column behind a deck's `i_NAME`, `d_NAME`, `i2_NAME[k]`, `d2_NAME[k]`, `temperature` or

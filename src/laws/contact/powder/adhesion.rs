@@ -68,7 +68,7 @@ impl Springs<'_> {
 
     /// The largest radius whose springs hold, from a larger one on; `None` where none holds.
     fn last(&self, from: f64, coarse: bool) -> Option<f64> {
-        let most = self.least_radius();
+        let most = least_radius(self.shape, self.energy);
         if self.misfit(most) < 0.0 {
             return None;
         }
@@ -88,18 +88,23 @@ impl Springs<'_> {
         }
         Some(a)
     }
+}
 
-    /// The radius at which a contact tears: where the misfit is largest, √(2πγ/(E_c a))/2 = (A/B) a/√(B²/4 − a²).
-    fn least_radius(&self) -> f64 {
-        let Ellipse { a: height, b: width } = *self.shape;
-        // e B² (B²/4 − a²) = 4 A² a³: the left side falls, the right one grows.
-        let left = self.energy * width * width;
-        let gap = |a: f64| 4.0 * height * height * a * a * a + left * (a * a - 0.25 * width * width);
-        let (mut low, mut high) = (0.0, 0.5 * width);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if gap(middle) < 0.0 { low = middle } else { high = middle }
+/// The radius at which a contact tears: where the misfit of springs is largest, √(2πγ/(E_c a))/2 = (A/B) a/√(B²/4 − a²), with
+/// `energy` 2πγ/E_c.
+pub fn least_radius(shape: &Ellipse, energy: f64) -> f64 {
+    let Ellipse { a: height, b: width } = *shape;
+    // 4 A² a³ + e B² (a² − B²/4) = 0. The left side grows ever faster: from above Newton's steps come down to the root; neither of
+    // its terms alone lets it be larger than where they begin.
+    let (cubic, square) = (4.0 * height * height, energy * width * width);
+    let rim = 0.25 * width * width;
+    let mut a = (square * rim / cubic).cbrt().min(0.5 * width);
+    for _ in 0..60 {
+        let next = a - (cubic * a * a * a + square * (a * a - rim)) / (a * (3.0 * cubic * a + 2.0 * square));
+        if next >= a || next.is_nan() {
+            break;
         }
-        low
+        a = next;
     }
+    a
 }

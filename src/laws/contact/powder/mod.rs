@@ -11,9 +11,9 @@ mod side;
 mod state;
 mod walls;
 
-pub use pairs::Meetings;
+pub use pairs::{Meetings, Sum};
 pub use side::{Pressed, Side};
-pub use state::{State, begin, of};
+pub use state::{State, begin, begun, of};
 pub use walls::{far_pushed, gather, press};
 
 /// What grains of such a powder are made of.

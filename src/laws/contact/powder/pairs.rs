@@ -1,6 +1,7 @@
 //! Contacts among the grains of a powder: depths on both sides, forces, what they mean for the grains.
 
-use super::side::{Side, WIDTH};
+use super::side::{PLASTIC, Side, WIDTH};
+use super::state::Grain;
 use super::{Manner, Material, PAIR, State, TOLD, screen};
 use crate::math::vec3::{SIX, Vec3};
 use crate::neigh::list::Pair;
@@ -14,7 +15,10 @@ pub struct Meetings {
     seen: Vec<Seen>,
     deeds: Vec<[Deed; 2]>,
     lines: Vec<screen::Line>,
+    screen: screen::Screen,
     open: Vec<f64>,
+    grains: Vec<Grain>,
+    sums: Vec<Sum>,
     spare: Vec<f64>,
 }
 
@@ -47,27 +51,47 @@ pub struct Deed {
     pub stress: f64,
 }
 
-impl Deed {
-    /// Adds it to grain `k`.
-    pub fn add(&self, s: &mut State, k: usize, n: Vec3) {
-        s.strain[k] += self.strain;
-        s.caps[k] += self.cap;
-        s.area[k] += self.area;
-        s.surface_change[k] += self.surface;
-        s.displaced[k] += self.displaced;
-        s.covered[k] += self.covered;
-        for (c, (a, b)) in s.stress.iter_mut().zip(SIX) {
-            c[k] += self.stress * n[a] * n[b];
+/// What all contacts of a grain mean for it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sum {
+    /// Of all that is the same in every direction; its `stress` is not used.
+    deed: Deed,
+    /// xx yy zz xy xz yz of −F b/V.
+    stress: [f64; 6],
+}
+
+impl Sum {
+    /// Adds what one contact with this normal means.
+    pub fn add(&mut self, deed: &Deed, n: Vec3) {
+        let own = &mut self.deed;
+        own.strain += deed.strain;
+        own.cap += deed.cap;
+        own.area += deed.area;
+        own.surface += deed.surface;
+        own.displaced += deed.displaced;
+        own.covered += deed.covered;
+        for (c, (a, b)) in self.stress.iter_mut().zip(SIX) {
+            *c += deed.stress * n[a] * n[b];
         }
+    }
+
+    /// Adds it to grain `k`.
+    pub fn give(&self, s: &mut State, k: usize) {
+        s.strain[k] += self.deed.strain;
+        s.caps[k] += self.deed.cap;
+        s.area[k] += self.deed.area;
+        s.surface_change[k] += self.deed.surface;
+        s.displaced[k] += self.deed.displaced;
+        s.covered[k] += self.deed.covered;
+        s.stress.iter_mut().zip(self.stress).for_each(|(c, stress)| c[k] += stress);
     }
 }
 
-/// Presses one side of grain `k` with a plane at depth `depth`, of which other grains leave the part `open`: the force
+/// Presses one side of grain `g` with a plane at depth `depth`, of which other grains leave the part `open`: the force
 /// with the bulk's part, the radius of contact for damping, what it means for the grain.
 pub fn side(
     m: &Material,
-    s: &State,
-    k: usize,
+    g: &Grain,
     radius: f64,
     depth: f64,
     side: &mut Side,
@@ -76,17 +100,17 @@ pub fn side(
 ) -> (f64, f64, Deed) {
     use std::f64::consts::PI;
     let before = *side;
-    side.go(depth, radius, s.first[k], s.confined(m, k));
+    side.go(depth, radius, g.first, g.mean);
     let pressed = side.press(m, radius, manner);
     let bulk = if side.squeezing > 0.0 {
-        m.bulk() * side.squeezing * s.area_before[k] / s.left_volume[k] * side.area
+        m.bulk() * side.squeezing * g.area_before / g.left_volume * side.area
     } else {
         0.0
     };
     let force = open * (pressed.force + bulk);
     let covered = open * 2.0 * PI * radius;
     side.area *= open;
-    let stress = -force * (s.first[k] - side.first_depth) / s.volume[k];
+    let stress = -force * (g.first - side.first_depth) / g.volume;
     side.strain = stress / (3.0 * m.bulk());
     let mut deed = Deed {
         strain: side.strain,
@@ -98,7 +122,7 @@ pub fn side(
     };
     if side.yielded && pressed.flows {
         let cap = open * PI * (2.0 * radius * depth - depth * depth);
-        let first = 4.0 / 3.0 * PI * s.first[k] * s.first[k] * s.first[k];
+        let first = 4.0 / 3.0 * PI * g.first * g.first * g.first;
         let grown = first * (side.strain - before.strain);
         deed.displaced = -grown - cap * (side.first_depth - before.first_depth);
         deed.covered = covered * depth;
@@ -142,7 +166,7 @@ impl Meetings {
                 }
             }
         }
-        screen::open(&self.lines, radius.len(), &mut self.open);
+        self.screen.open(&self.lines, radius.len(), &mut self.open);
         self.seen.iter_mut().zip(&self.open).for_each(|(c, open)| c.open = *open);
     }
 
@@ -160,7 +184,9 @@ impl Meetings {
         self.deeds.clear();
         self.deeds.resize(self.seen.len(), Default::default());
         let (rows, width) = told;
-        let state = &*s;
+        self.grains.clear();
+        self.grains.extend((0..radius.len()).map(|k| s.grain(m, k)));
+        let grains = &self.grains[..];
         let columns = (
             &mut self.deeds[..],
             par::Rows { data: &mut memory.history[..], width: PAIR },
@@ -171,19 +197,22 @@ impl Meetings {
             for (k, (deeds, seen)) in deeds.iter_mut().zip(seen).enumerate() {
                 let memory = &mut memory.data[k * PAIR..][..PAIR];
                 let told = &mut told.data[(k + 1) * width - TOLD..][..TOLD];
-                press(m, state, radius, seen, memory, told, deeds, manner);
+                press(m, grains, radius, seen, memory, told, deeds, manner);
             }
         });
+        self.sums.clear();
+        self.sums.resize(radius.len(), Sum::default());
         for (seen, [a, b]) in self.seen.iter().zip(&self.deeds) {
-            a.add(s, seen.pair.i as usize, seen.normal);
-            b.add(s, seen.pair.j as usize, seen.normal);
+            self.sums[seen.pair.i as usize].add(a, seen.normal);
+            self.sums[seen.pair.j as usize].add(b, seen.normal);
         }
+        self.sums.iter().enumerate().for_each(|(k, sum)| sum.give(s, k));
     }
 }
 
 fn press(
     m: &Material,
-    s: &State,
+    grains: &[Grain],
     radius: &[f64],
     seen: &Seen,
     memory: &mut [f64],
@@ -198,7 +227,7 @@ fn press(
     for (n, deed) in deeds.iter_mut().enumerate() {
         let own = &mut memory[n * WIDTH..][..WIDTH];
         let mut one = Side::read(own);
-        let (f, a, d) = side(m, s, ends[n], radii[n], depths[n], &mut one, seen.open, manner);
+        let (f, a, d) = side(m, &grains[ends[n]], radii[n], depths[n], &mut one, seen.open, manner);
         one.write(own);
         *deed = d;
         force += 0.5 * f;
@@ -222,7 +251,7 @@ fn split(overlap: f64, radii: [f64; 2], memory: &[f64]) -> [f64; 2] {
     if overlap >= largest {
         return cut(overlap);
     }
-    let plastic = [Side::read(memory).plastic, Side::read(&memory[WIDTH..]).plastic];
+    let plastic = [memory[PLASTIC], memory[WIDTH + PLASTIC]];
     let rest = plastic[0] + plastic[1];
     let part = (overlap - rest) / (largest - rest);
     let most = cut(largest);

@@ -4,6 +4,7 @@ use super::Material;
 use crate::world::World;
 use crate::world::columns::{Columns, PLASTIC_BEGUN, PLASTIC_COLUMNS};
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 /// Names of the columns, as LAMMPS' decks call them.
 const NAMES: [&str; 21] = [
@@ -37,6 +38,9 @@ const FRESH: f64 = 0.1;
 pub fn of(name: &str) -> String {
     format!("{PLASTIC_COLUMNS}d_{name}")
 }
+
+/// The full names of the columns, in the order of [`NAMES`].
+static FULL: LazyLock<[String; 21]> = LazyLock::new(|| NAMES.map(of));
 
 /// The columns of all grains.
 #[derive(Clone, Debug, Default)]
@@ -75,6 +79,21 @@ pub struct State {
     pub grown: Vec<f64>,
 }
 
+/// What contacts ask about a grain: see [`State`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Grain {
+    /// First radius.
+    pub first: f64,
+    /// Volume under the mean stress.
+    pub volume: f64,
+    /// Volume without what planes cut off.
+    pub left_volume: f64,
+    /// Area of contact in the step before.
+    pub area_before: f64,
+    /// How the bulk answers: the mean approach of its planes where too little of its surface is free.
+    pub mean: Option<f64>,
+}
+
 impl State {
     fn all(&mut self) -> [&mut Vec<f64>; 21] {
         let [xx, yy, zz, xy, xz, yz] = &mut self.stress;
@@ -106,8 +125,8 @@ impl State {
     /// Takes the columns out of the world; they are made where they are missing.
     pub fn take(columns: &mut Columns, n: usize) -> Self {
         let mut state = Self::default();
-        for (name, column) in NAMES.iter().zip(state.all()) {
-            *column = std::mem::take(columns.scalar(&of(name), n));
+        for (name, column) in FULL.iter().zip(state.all()) {
+            *column = std::mem::take(columns.scalar(name, n));
         }
         state
     }
@@ -115,16 +134,16 @@ impl State {
     /// Makes the columns.
     pub fn declare(w: &mut World) {
         let n = w.n();
-        for name in NAMES {
-            w.columns.scalar(&of(name), n);
+        for name in FULL.iter() {
+            w.columns.scalar(name, n);
         }
     }
 
     /// Puts them back.
     pub fn put(mut self, columns: &mut Columns) {
-        for (name, column) in NAMES.iter().zip(self.all()) {
+        for (name, column) in FULL.iter().zip(self.all()) {
             let n = column.len();
-            *columns.scalar(&of(name), n) = std::mem::take(column);
+            *columns.scalar(name, n) = std::mem::take(column);
         }
     }
 
@@ -174,10 +193,21 @@ impl State {
         sums.into_iter().chain(&mut self.stress).for_each(|c| c.fill(0.0));
     }
 
-    /// How the bulk of grain `k` answers: the mean approach of its planes where too little of its surface is free.
-    pub fn confined(&self, m: &Material, k: usize) -> Option<f64> {
-        (self.free[k] < m.confinement).then(|| self.mean[k])
+    /// What contacts ask about grain `k`.
+    pub fn grain(&self, m: &Material, k: usize) -> Grain {
+        Grain {
+            first: self.first[k],
+            volume: self.volume[k],
+            left_volume: self.left_volume[k],
+            area_before: self.area_before[k],
+            mean: (self.free[k] < m.confinement).then(|| self.mean[k]),
+        }
     }
+}
+
+/// Whether somebody has begun this step (`at` as for [`begin`]).
+pub fn begun(w: &World, at: (i64, bool)) -> bool {
+    !at.1 && w.memo.get(PLASTIC_BEGUN).is_some_and(|s| s[..] == [at.0 as f64])
 }
 
 /// Begins step `at.0` for all grains, unless somebody has done so in this step; in setup (`at.1`) grains are only measured.
@@ -186,7 +216,7 @@ pub fn begin(w: &mut World, at: (i64, bool), m: &Material) -> State {
     let n = w.n();
     let mut state = State::take(&mut w.columns, n);
     state.welcome(&w.particles.radius);
-    if !setup && w.memo.get(PLASTIC_BEGUN).is_none_or(|s| s[..] != [step]) {
+    if !setup && !begun(w, at) {
         state.begin(m, &mut w.particles.radius);
         w.memo.insert(PLASTIC_BEGUN.to_string(), vec![step]);
     }

@@ -112,3 +112,64 @@ fn a_side_survives_its_memory() {
     crate::world::contacts::turn_plastic(&mut both);
     assert_eq!((both[0], both[side::WIDTH], both[PAIR - 1]), (7.0, memory[0], 0.1));
 }
+
+/// The rule of [`screen::Screen`], grain by grain.
+fn open_one_by_one(lines: &[screen::Line], k: usize) -> f64 {
+    let line = lines[k];
+    // From grain `own` to grain `to`: direction and length of their contact.
+    let spoke = |own: u32, to: u32| {
+        lines.iter().find_map(|l| match l.ends {
+            [i, j] if (i, j) == (own, to) => Some((l.normal.map(|a| -a), l.length)),
+            [i, j] if (i, j) == (to, own) => Some((l.normal, l.length)),
+            _ => None,
+        })
+    };
+    let [i, j] = line.ends;
+    let closed = |between: u32| {
+        let Some(((from, near), (on, far))) = spoke(i, between).zip(spoke(between, j)) else { return 0.0 };
+        if near >= line.length || far >= line.length {
+            return 0.0;
+        }
+        let angle = (-crate::math::vec3::dot(from, on)).clamp(-1.0, 1.0).acos();
+        1.0 / (1.0 + (-50.0 * (angle / PI - 0.5)).exp())
+    };
+    (1.0 - (0..200).map(closed).sum::<f64>()).max(0.0)
+}
+
+#[test]
+fn grains_between_grains_close_their_contacts() {
+    // A heap of places that come again and again in the same order: some 10 neighbours each, more grains than bits of a word.
+    let place = |k: u32| [0.618, 0.755, 0.329].map(|a| 5.0 * (f64::from(k) * a).fract());
+    let mut lines = vec![];
+    for i in 0..200 {
+        for j in i + 1..200 {
+            let d = crate::math::vec3::sub(place(i), place(j));
+            let length = crate::math::vec3::length(d);
+            if length < 1.4 {
+                lines.push(screen::Line { ends: [i, j], normal: d.map(|a| a / length), length });
+            }
+        }
+    }
+    let mut open = vec![];
+    screen::Screen::default().open(&lines, 200, &mut open);
+    assert!(lines.len() > 1000 && open.iter().filter(|o| **o < 0.5).count() > 100);
+    for (k, open) in open.iter().enumerate() {
+        // The same terms in another order, a dozen at most.
+        assert!((open - open_one_by_one(&lines, k)).abs() < 1e-14, "{k}");
+    }
+}
+
+#[test]
+fn the_radius_at_which_a_contact_tears_solves_its_equation() {
+    for (a, b, energy) in
+        [(4.0, 2.0, 1e-6), (0.01, 0.3, 0.2), (1.0, 1.0, 1.0), (1e-4, 2e-5, 1e-12), (1e-6, 1.0, 10.0)]
+    {
+        let r = adhesion::least_radius(&Ellipse { a, b }, energy);
+        let (grows, falls) = (4.0 * a * a * r * r * r, energy * b * b * (0.25 * b * b - r * r));
+        // Where the radius is all but B/2 the right side is a difference of like numbers.
+        assert!(
+            r > 0.0 && r <= 0.5 * b && (grows - falls).abs() <= 1e-14 * (grows + energy * b.powi(4)),
+            "{a} {b} {energy}: {r}"
+        );
+    }
+}

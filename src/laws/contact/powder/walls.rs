@@ -38,7 +38,7 @@ pub fn press(
     manner: Manner,
 ) -> Deed {
     let mut one = Side::read(&memory[..WIDTH]);
-    let (force, a, deed) = side(m, s, k, radius, depth, &mut one, 1.0, manner);
+    let (force, a, deed) = side(m, &s.grain(m, k), radius, depth, &mut one, 1.0, manner);
     one.write(memory);
     let force = force * far_pushed(one.first_depth, s.first[k]);
     let damped = manner.damped(told[1], 0.5 * m.plane() * a);

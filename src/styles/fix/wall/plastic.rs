@@ -53,7 +53,10 @@ impl Plastic {
 
     /// Begins the step for all grains.
     pub fn begin(&self, w: &mut World, t: &Tick) {
-        powder::begin(w, (t.step, t.setup), &self.material).put(&mut w.columns);
+        let at = (t.step, t.setup);
+        if !powder::begun(w, at) {
+            powder::begin(w, at, &self.material).put(&mut w.columns);
+        }
     }
 
     /// Tells the grains how much nearer the wall comes.
@@ -86,16 +89,18 @@ impl Plastic {
         memory.carry(keys, WALL, &mut self.spare);
         let manner = Manner { lammps: w.settings.lammps(), setup: t.setup };
         let width = contacts.width;
-        let before = memory.history.clone();
+        let before = t.setup.then(|| memory.history.clone());
         let rows = memory.history.chunks_exact_mut(WALL).zip(contacts.history.chunks_exact_mut(width));
         for (c, (own, told)) in touching.iter().zip(rows) {
             let k = c.grain as usize;
             let radius = w.particles.radius[k];
             let (depth, told) = (radius - c.near.distance, &mut told[width - TOLD..]);
             let deed = powder::press(&self.material, &state, k, radius, depth, own, told, manner);
-            deed.add(&mut state, k, c.near.normal);
+            let mut sum = powder::Sum::default();
+            sum.add(&deed, c.near.normal);
+            sum.give(&mut state, k);
         }
-        if t.setup {
+        if let Some(before) = before {
             powder::undo(&before, &mut memory.history, WALL, manner.lammps);
         }
         let state = kept.unwrap_or(state);

@@ -143,7 +143,7 @@ impl Op for Powder {
         }
         let manner = Manner { lammps: w.settings.lammps(), setup: t.setup };
         let width = self.rules.memory();
-        let before = plastic.history.clone();
+        let before = t.setup.then(|| plastic.history.clone());
         let told = (&mut memory.history[..], width);
         self.meetings.press(&self.material, grains.radius, &mut state, &mut plastic, told, manner);
         let step = Advance { dt: t.dt, history: !t.setup };
@@ -156,7 +156,7 @@ impl Op for Powder {
             let part = self.sweep.virial(&w.particles.x, &period);
             add_virial(w, part);
         }
-        if t.setup {
+        if let Some(before) = before {
             undo(&before, &mut plastic.history, PAIR, manner.lammps);
         }
         let (memory, state) = match kept {
