@@ -52,7 +52,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
 }
 
 /// Fixes that remember the particles of their group, or ask for it in vain: LAMMPS lets no dynamic group have them.
-const FIXED_MEMBERS: [&str; 14] = [
+const FIXED_MEMBERS: [&str; 17] = [
     "adapt",
     "ave/atom",
     "drag",
@@ -67,6 +67,9 @@ const FIXED_MEMBERS: [&str; 14] = [
     "store/force",
     "store/state",
     "vector",
+    "wall/gran",
+    "wall/gran/region",
+    "wall/mesh",
 ];
 
 /// Reports fixes that cannot have a group whose members change.

@@ -1,10 +1,17 @@
 //! Contacts of spheres with walls: who touches where, what each contact remembers, what it does.
 
+mod together;
+
+use super::fast::{Form, MOST_MEMORY};
 use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
 use crate::math::vec3::{Vec3, add, cross, scale, sub};
 use crate::par;
 use crate::world::contacts::{Contacts, WallSpring};
 pub use crate::world::region::Near;
+use together::Together;
+
+/// Fewer contacts than these are evaluated one by one: lanes that repeat a contact are in vain.
+const FEW: usize = 3;
 
 /// Something spheres lean on.
 pub trait Wall: Sync {
@@ -122,6 +129,11 @@ impl WallSweep {
         par::each(
             (&mut self.wrenches[..], history, &self.touching[..]),
             |_, (wrenches, history, touching)| {
+                if touching.len() >= FEW && law.in_lanes() && width <= MOST_MEMORY {
+                    let together = Together { law, grains, touching, history: history.data, wrenches, step };
+                    // SAFETY: this processor has what its own form needs.
+                    return unsafe { Form::here().run(together) };
+                }
                 for (k, (w, t)) in wrenches.iter_mut().zip(touching).enumerate() {
                     let i = t.grain as usize;
                     let motion = Motion { velocity: grains.v[i], spin: grains.omega[i] };

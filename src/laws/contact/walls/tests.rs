@@ -1,7 +1,7 @@
 //! Walls: who is listed, who touches, what springs remember, what the wall feels.
 
 use super::*;
-use crate::laws::contact::{Damping, Friction, Granular, Model, Normal, Tangential};
+use crate::laws::contact::{Damping, Friction, Granular, Model, Normal, Rolling, Sds, Tangential};
 use crate::world::Compat;
 
 fn law(mu: f64) -> Granular {
@@ -119,4 +119,48 @@ fn a_tube_is_hollow_inside_and_turns() {
     // A grain too large for the tube counts as on a flat wall.
     assert_eq!(effective(3.0, -2.0), 3.0);
     assert!((effective(1.0, -2.0) - 2.0).abs() < 1e-15);
+}
+
+#[test]
+fn contacts_several_at_a_time_are_contacts_one_by_one() {
+    let tube = Tube { radius: 6.0, velocity: [0.3, 0.0, 2.0], spin: 3.0, lammps: false };
+    // Round the tube, deeper and deeper, spinning; a full group of eight, and some more.
+    let at = |k: usize| (0.5 * k as f64).sin_cos();
+    let places: Vec<Vec3> = (0..13).map(|k| [at(k).0 * 5.05, at(k).1 * 5.05, 0.1 * k as f64]).collect();
+    let mut s = Scene::new(&places, [0.2, -0.7, 0.1]);
+    (0..13).for_each(|k| s.omega[k] = [0.1 * k as f64, 1.0, -0.5]);
+    (0..13).for_each(|k| s.radius[k] = 1.0 + 0.003 * k as f64);
+    let jkr = Normal::Jkr { young: 1e6, eta: 0.1, poisson: 0.25, cohesion: 20.0 };
+    let soft = Normal::HertzMaterial { young: 1e6, eta: 0.3, poisson: 0.25 };
+    let hooke = Normal::Hooke { stiffness: 1e5, eta: 20.0 };
+    let springs = Tangential::new(Friction::Mindlin, None, 1.0, 0.5);
+    let linear = Tangential::new(Friction::LinearHistory, Some(1e4), 1.0, 0.5);
+    for (normal, damping, friction) in [
+        (soft, Damping::Tsuji, springs),
+        (jkr, Damping::Viscoelastic, springs),
+        (hooke, Damping::Velocity, linear),
+    ] {
+        let rolling = Rolling::Sds(Sds { stiffness: 1e3, damping: 0.1, mu: 0.2 });
+        let model = Model { rolling, ..Model::new(normal, damping, friction) };
+        let law = model.law(Compat::Perigrain);
+        let grains = s.grains();
+        let (mut sweep, mut memory) = (WallSweep::default(), Contacts::default());
+        sweep.list(&tube, &grains, &[1; 13], 1, &law, 0.5);
+        let mut alone = None;
+        for _ in 0..3 {
+            sweep.run(&tube, &grains, &law, &mut memory, STEP);
+            let width = law.memory();
+            let history = alone.get_or_insert_with(|| vec![0.0; 13 * width]);
+            assert_eq!(sweep.touching.len(), 13);
+            for (k, (touch, wrench)) in sweep.contacts().enumerate() {
+                let i = touch.grain as usize;
+                let own = Motion { velocity: s.v[i], spin: s.omega[i] };
+                let wall = Motion { velocity: touch.near.velocity, spin: [0.0; 3] };
+                let g = geometry(&touch.near, s.radius[i], s.radius[i]);
+                let expected = law.contact(&g, &own, &wall, &mut history[k * width..][..width], STEP);
+                assert_eq!(*wrench, expected, "{k}");
+            }
+            assert_eq!(memory.history, *history);
+        }
+    }
 }

@@ -6,7 +6,8 @@ use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::laws::contact::driver::DEEP;
 use crate::laws::contact::walls::{Spheres, WallSweep};
 use crate::laws::contact::{Advance, Granular};
-use crate::math::vec3::{scale, sub};
+use crate::math::vec3::{Vec3, length, scale, sub};
+use crate::par;
 use crate::plan::{Access, Op, Stage, Tick, When};
 use crate::styles::{Reading, SealCx};
 use crate::world::columns::{HEATFLOW, TEMPERATURE};
@@ -32,6 +33,8 @@ pub struct WallOp {
     generation: Option<u64>,
     /// How far the wall may have moved since.
     travelled: f64,
+    /// Where particles were then, and their radii; empty where rebuilds follow them.
+    anchors: Vec<(Vec3, f64)>,
     slot: SlotId,
     contacts: bool,
     /// Columns of local values.
@@ -95,6 +98,7 @@ impl WallOp {
             sweep: WallSweep::default(),
             generation: None,
             travelled: 0.0,
+            anchors: vec![],
             slot: cx.slot(&format!("f_{}", common.id)),
             contacts: common.contacts,
             local,
@@ -113,15 +117,20 @@ impl WallOp {
         // Only then no particle is ever farther than half a skin from where it was at the last rebuild.
         let followed = s.check && s.every == 1 && s.delay == 0 && !s.once;
         let fresh = self.generation == Some(w.rebuild.generation) && self.travelled <= 0.5 * s.skin;
-        if followed && fresh {
+        if fresh && (followed || stayed(grains, &self.anchors, s.skin)) {
             return;
         }
         let wall = self.surface.wall(w);
-        // Half a skin for the wall, and one for particles that have moved half a skin already and move half a skin back.
+        // Half a skin for the wall, and one for particles: those that have moved half a skin already may move half a skin back, and
+        // those whose anchors are known a whole one.
         let far = 1.5 * s.skin;
         self.sweep.list(&*wall, grains, &w.particles.mask, self.bit, &self.law, far);
         self.generation = Some(w.rebuild.generation);
         self.travelled = 0.0;
+        self.anchors.clear();
+        if !followed {
+            self.anchors.extend(grains.x.iter().copied().zip(grains.radius.iter().copied()));
+        }
     }
 
     /// Puts the wall where it is and finds who touches it.
@@ -210,6 +219,18 @@ impl WallOp {
             }
         }
     }
+}
+
+/// Whether no surface of a particle has come farther than `far` from where it was.
+fn stayed(grains: &Spheres, anchors: &[(Vec3, f64)], far: f64) -> bool {
+    let come = |range: std::ops::Range<usize>| {
+        let grown = |k: usize| {
+            let (from, radius) = anchors[k];
+            length(sub(grains.x[k], from)) + grains.radius[k] - radius
+        };
+        range.map(grown).fold(0.0, f64::max)
+    };
+    anchors.len() == grains.x.len() && par::reduce(anchors.len(), come, f64::max).unwrap_or(0.0) <= far
 }
 
 /// Takes out what the contacts of a wall remember.
