@@ -65,6 +65,24 @@ impl LatticeBody {
         Side { to, place, bits, behind: false, pair }
     }
 
+    /// The bonds ahead of a chunk along all stencil vectors, of which some live. `to`: where they lead.
+    fn sides_ahead(&self, chunk: usize, to: &[(i32, u32)], sides: &mut Vec<Side>) {
+        let entries = self.stencil.len();
+        let alive = &self.alive[chunk * entries..][..entries];
+        // Tables of a pair of types stand together: few pairs, and to divide for every bond would take longer than the bond.
+        let (mut first, mut pair) = (u32::MAX, 0);
+        for (e, (&(to, place), &bits)) in to.iter().zip(alive).enumerate() {
+            if bits == 0 {
+                continue;
+            }
+            let table = place - (e * CONSTANTS) as u32;
+            if table != first {
+                (first, pair) = (table, (table as usize / (CONSTANTS * entries)) as u16);
+            }
+            sides.push(Side { to, place, bits, behind: false, pair });
+        }
+    }
+
     /// Finds where bonds lead back to from a row's cells.
     fn owners(&self, slot: usize, behind: &mut Vec<Behind>) {
         let row = &self.rows[slot];
@@ -105,12 +123,9 @@ impl LatticeBody {
 
     /// Per cell of a chunk the smallest previous stretch, or LAMMPS' critical stretch. `scratch` knows the row.
     fn extremes<K: StretchKernels>(&self, chunk: usize, compat: bool, scratch: &mut Scratch) -> [f64; LANES] {
-        let entries = self.stencil.len();
         let Scratch { to, behind, sides, pairs, .. } = scratch;
         sides.clear();
-        let alive = &self.alive[chunk * entries..][..entries];
-        let living = to.iter().zip(alive).filter(|(_, bits)| **bits != 0);
-        sides.extend(living.map(|(to, bits)| self.side_ahead(*to, *bits)));
+        self.sides_ahead(chunk, to, sides);
         self.sides_behind(chunk, behind, sides);
         pairs.clear();
         for side in &*sides {

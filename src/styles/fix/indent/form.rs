@@ -130,6 +130,9 @@ fn way_out(p: [f64; 2], half: f64, radii: [f64; 2]) -> [f64; 2] {
     ways.into_iter().min_by(|a, b| square(a).total_cmp(&square(b))).unwrap_or_default()
 }
 
+/// By what part more than its square the square of a distance is beyond a length, whatever was rounded.
+const BEYOND: f64 = 1.0 + 1e-9;
+
 impl Body {
     /// Force on a particle at `x` and its energy: K (r − R)² outwards (inwards for `inside`) and K/3 |r − R|³.
     #[inline]
@@ -148,7 +151,12 @@ impl Body {
             Body::Round { center, along, radius } => {
                 let apart = std::array::from_fn(|d| along[d] * (x[d] - center[d]));
                 let d = w.domain.as_ref().map_or(apart, |b| b.minimum_image(apart));
-                let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+                let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                // Most are so far away that no root is needed to see it.
+                if !inside && square > BEYOND * radius * radius {
+                    return None;
+                }
+                let r = square.sqrt();
                 let depth = if inside { radius - r } else { r - radius };
                 if depth >= 0.0 {
                     return None;
