@@ -154,14 +154,17 @@ impl Revolved {
             v
         };
         let [r0, r1] = self.radius;
-        let here = r0 + (z - self.lo) * (r1 - r0) / (self.hi - self.lo);
-        let here = if r0 == r1 { r0 } else { here };
+        let here = if r0 == r1 { r0 } else { r0 + (z - self.lo) * (r1 - r0) / (self.hi - self.lo) };
         let on_mantle = self.on_mantle(r, z);
         let mantle = [r - on_mantle[0], z - on_mantle[1]];
         // Across the mantle, away from the axis.
-        let slope = [self.hi - self.lo, r0 - r1];
-        let size = slope[0].hypot(slope[1]);
-        let straight = if r0 == r1 { [1.0, 0.0] } else { [slope[0] / size, slope[1] / size] };
+        let straight = if r0 == r1 {
+            [1.0, 0.0]
+        } else {
+            let slope = [self.hi - self.lo, r0 - r1];
+            let size = slope[0].hypot(slope[1]);
+            [slope[0] / size, slope[1] / size]
+        };
         if r < here && z > self.lo && z < self.hi {
             if side == Side::Outer {
                 return;
