@@ -63,6 +63,16 @@ fn spheres_agree() {
 }
 
 #[test]
+fn walls_with_springs_agree() {
+    agrees("soft_walls");
+}
+
+#[test]
+fn walls_that_throw_back_agree() {
+    agrees("mirrors");
+}
+
+#[test]
 fn springs_lines_and_limits_agree() {
     agrees("holds");
 }

@@ -23,6 +23,7 @@ mod elapsed;
 mod enforce2d;
 mod evaporate;
 mod extremes;
+mod faces;
 mod freeze;
 mod gravity;
 mod halt;
@@ -54,6 +55,8 @@ mod vector;
 mod viscous;
 mod viscous_sphere;
 mod wall;
+mod wall_harmonic;
+mod wall_reflect;
 mod window;
 
 use super::{BuildCx, Motion, Pull, SealCx, Shape, Style};
@@ -269,6 +272,8 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &wall::gran::WallGran,
     &wall::region::WallGranRegion,
     &wall::mesh::WallMesh,
+    &wall_harmonic::WallHarmonic,
+    &wall_reflect::WallReflect,
 ];
 
 /// Takes the region after the keyword `region`.
