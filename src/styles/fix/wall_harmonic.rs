@@ -121,13 +121,10 @@ impl Sealed {
     fn now(&self, w: &World, span: Span) -> Result<Now<'_>> {
         let stiffness = self.stiffness.get(w);
         let values = [("epsilon", stiffness), ("sigma", self.size.get(w))];
-        for ((what, value), _) in
-            values.iter().zip(self.varies).filter(|((_, a), varies)| *varies && *a < 0.0)
-        {
-            let text = format!(
-                "{what} of the wall `{}` has become {value}: it must not be negative",
-                self.face.name()
-            );
+        let mut varying = values.iter().zip(self.varies).filter(|(_, varies)| *varies);
+        if let Some(((what, value), _)) = varying.find(|((_, value), _)| *value < 0.0) {
+            let face = self.face.name();
+            let text = format!("{what} of the wall `{face}` has become {value}: it must not be negative");
             return fail(Code::BAD_VALUE, span, text);
         }
         Ok(Now { face: &self.face, at: self.spot.get(w), stiffness, cutoff: self.cutoff })
@@ -139,7 +136,7 @@ impl Now<'_> {
     #[inline]
     fn push(&self, x: [f64; 3]) -> Option<(f64, f64)> {
         let r = self.face.depth(x, self.at);
-        (r < self.cutoff).then(|| (r, 2.0 * self.stiffness * (self.cutoff - r)))
+        (r < self.cutoff).then_some((r, 2.0 * self.stiffness * (self.cutoff - r)))
     }
 }
 
