@@ -57,6 +57,9 @@ pub use tally::Tally;
 pub use template::Template;
 pub use travel::{Seen, Travel};
 
+/// How names of `memo` end that hold the energy which a fix has taken from particles for a reservoir so far (`ecouple`).
+pub const COUPLED: &str = "/coupled";
+
 /// How names of columns end that hold the mass of the rigid body a particle belongs to, 0 for none.
 pub const CONTACT_MASS: &str = "/contact mass";
 

@@ -63,6 +63,11 @@ fn spheres_agree() {
 }
 
 #[test]
+fn baths_agree() {
+    agrees("bath");
+}
+
+#[test]
 fn walls_with_springs_agree() {
     agrees("soft_walls");
 }

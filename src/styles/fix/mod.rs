@@ -30,6 +30,7 @@ mod halt;
 mod heat_flow;
 mod indent;
 mod kick;
+mod langevin;
 mod lineforce;
 mod momentum;
 mod move_fix;
@@ -245,6 +246,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &halt::HaltFix,
     &heat_flow::HeatFlow,
     &indent::Indent,
+    &langevin::Langevin,
     &lineforce::LineForce,
     &momentum::Momentum,
     &move_fix::Move,
