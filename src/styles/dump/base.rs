@@ -189,6 +189,12 @@ impl Base {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Whether it has written snapshots into one file for all.
+    pub fn growing(&self) -> bool {
+        let state = self.state();
+        state.last.is_some() && !state.target.pattern.many()
+    }
+
     /// The interval that `dump_modify … every N` asked for.
     pub fn every(&self) -> Option<i64> {
         self.every

@@ -256,6 +256,10 @@ impl Dump for Text {
         self.base.every()
     }
 
+    fn growing(&self) -> bool {
+        self.base.growing()
+    }
+
     fn repeats_row(&self) -> bool {
         self.thermo
     }
