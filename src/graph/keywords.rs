@@ -1,6 +1,6 @@
 //! Thermo keywords: what each is computed from, and its value.
 
-use crate::world::{Clock, Slot, SlotId, World};
+use crate::world::{COUPLED, Clock, Slot, SlotId, World};
 
 /// What a keyword's value is computed from besides the world itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,6 +134,8 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
     let pe = || scalar(s.pe) * per_atom;
     // The tensor of the temperature compute holds Σ m v v in energy units: half its trace is the energy.
     let ke = || s.temp.map_or(0.0, |id| kinetic(w, w.slots.get(id))) * per_atom;
+    let taken = || w.memo.iter().filter(|(name, _)| name.ends_with(COUPLED)).filter_map(|(_, e)| e.first());
+    let coupled = || taken().sum::<f64>();
     let edges = |k: usize| w.domain.as_ref().map_or(0.0, |d| d.lengths()[k]);
     let lo = |k: usize| w.domain.as_ref().map_or(0.0, |d| d.lo[k]);
     let hi = |k: usize| w.domain.as_ref().map_or(0.0, |d| d.hi[k]);
@@ -142,7 +144,9 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
         "press" => scalar(s.press),
         "pe" => pe(),
         "ke" => ke(),
-        "etotal" | "econserve" => pe() + ke(),
+        "etotal" => pe() + ke(),
+        "ecouple" => coupled() * per_atom,
+        "econserve" => pe() + ke() + coupled() * per_atom,
         "evdwl" | "epair" => w.tally.pair * per_atom,
         "ebond" | "emol" => w.tally.bond * per_atom,
         "bonds" => w.bonds.len() as f64,

@@ -281,6 +281,10 @@ impl Names for Graph {
         self.fixes.iter().find(|f| f.fix.counts_steps()).map(|f| (f.id.as_str(), f.style))
     }
 
+    fn growing_dump(&self) -> Option<&str> {
+        self.dumps.iter().find(|d| d.dump.growing()).map(|d| d.id.as_str())
+    }
+
     fn pair_styles(&self) -> Vec<&'static str> {
         let Some(node) = &self.pair else { return vec![] };
         let parts = node.pair.parts();

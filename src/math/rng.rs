@@ -141,6 +141,20 @@ impl Marsaglia {
         stream
     }
 
+    /// Where the stream stands, as numbers that [`Self::resumed`] takes.
+    pub fn stand(&self) -> Vec<f64> {
+        let (a, b) = self.at;
+        let head = [a as f64, b as f64, self.weyl, self.spare.unwrap_or(f64::NAN)];
+        head.into_iter().chain(self.table).collect()
+    }
+
+    /// The stream that stood there; `None` if these numbers are no stream's.
+    pub fn resumed(stand: &[f64]) -> Option<Self> {
+        let (&[a, b, weyl, spare], table) = stand.split_first_chunk()?;
+        let at = ((a as usize).min(96), (b as usize).min(96));
+        Some(Self { table: table.try_into().ok()?, at, weyl, spare: (!spare.is_nan()).then_some(spare) })
+    }
+
     /// The next number, uniform in [0, 1).
     pub fn uniform(&mut self) -> f64 {
         let (a, b) = self.at;
@@ -235,6 +249,8 @@ mod tests {
         for oracle in [0.86995309591293302, 0.0104259252548218, 0.29356783628463701] {
             close(r.uniform(), oracle);
         }
+        assert_eq!(Marsaglia::resumed(&r.stand()), Some(r));
+        assert_eq!(Marsaglia::resumed(&[0.0; 100]), None);
         let mut r = Marsaglia::new(12345);
         for oracle in [-0.220607254486375, -0.47322402546230702, 1.1751740271174591] {
             close(r.gaussian(), oracle);

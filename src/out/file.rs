@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::diag::{Code, Diagnostic, Result, fail};
 
-/// Endings that LAMMPS writes compressed or binary and perigrain does not.
+/// Endings that LAMMPS writes compressed or binary and perigrain does not; some dumps are binary.
 const REFUSED_ENDINGS: &[&str] = &[".zst", ".bz2", ".xz", ".lz4", ".bin", ".lammpsbin"];
 
 /// A file name in which `*` stands for the step.
@@ -26,6 +26,19 @@ impl Pattern {
             return Err(d.help("write plain text or `.gz`").into());
         }
         Self::of_any_kind(text)
+    }
+
+    /// The name of a dump that several processes could share: `%` becomes the number of the only one here. Also binary files
+    /// where `binary` allows it.
+    ///
+    /// # Errors
+    /// As for [`Pattern::new`].
+    pub fn shared(text: &str, binary: bool) -> Result<Self> {
+        let text = text.replacen('%', "0", 1);
+        match binary && super::binary::ENDINGS.iter().any(|e| text.ends_with(e)) {
+            true => Self::of_any_kind(&text),
+            false => Self::new(&text),
+        }
     }
 
     /// As [`Pattern::new`], with any ending.
@@ -55,6 +68,11 @@ impl Pattern {
     /// Whether what is written is compressed (`.gz`).
     pub fn packed(&self) -> bool {
         self.text.ends_with(".gz")
+    }
+
+    /// Whether it is a binary dump.
+    pub fn binary(&self) -> bool {
+        super::binary::ENDINGS.iter().any(|e| self.text.ends_with(e))
     }
 
     /// Whether every snapshot gets a file of its own.
@@ -173,6 +191,10 @@ mod tests {
         for bad in ["", "a.%.b", "a.*.*", "d.zst", "x.bin"] {
             assert!(Pattern::new(bad).is_err(), "{bad}");
         }
+        // As LAMMPS 22Jul2025 on one process: the first `%` alone.
+        assert_eq!(Pattern::shared("a.%.*.bin", true).unwrap().at(5), PathBuf::from("a.0.5.bin"));
+        assert!(Pattern::shared("a.%.bin", false).is_err());
+        assert!(Pattern::shared("a.%.%", true).is_err());
     }
 
     #[test]

@@ -2,6 +2,7 @@
 //!
 //! This room formats and writes; it computes nothing about the physics and takes plain slices and closures.
 
+pub mod binary;
 pub mod dump;
 pub mod file;
 pub mod formats;

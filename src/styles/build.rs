@@ -132,6 +132,10 @@ pub trait Names {
     fn counting_fix(&self) -> Option<(&str, &'static str)> {
         None
     }
+    /// The first dump that has written snapshots into a file that goes on growing.
+    fn growing_dump(&self) -> Option<&str> {
+        None
+    }
     /// The pair style in force and its sub-styles.
     fn pair_styles(&self) -> Vec<&'static str> {
         vec![]

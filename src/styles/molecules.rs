@@ -176,11 +176,13 @@ impl Words {
     /// Templates that do not go with the scene, words that lack `mol`.
     pub fn finish(self, kind: u16, at: Span, cx: &BuildCx) -> Result<Option<Molecules>> {
         let Some((word, set)) = self.mol else {
-            let alone =
-                self.rigid.as_ref().map(|w| (w.span, "rigid")).or(self.orient.map(|o| (o.1, "orient")));
-            return match alone {
-                Some((span, what)) => {
-                    let d = Diagnostic::error(Code::INCOMPLETE, span, format!("`{what}` is for molecules"));
+            if let Some((_, span)) = self.orient {
+                let text = "without effect: `orient` is for molecules, and single particles are put in";
+                cx.note(Diagnostic::note(Code::NO_EFFECT, span, text));
+            }
+            return match &self.rigid {
+                Some(word) => {
+                    let d = Diagnostic::error(Code::INCOMPLETE, word.span, "`rigid` is for molecules");
                     Err(d.help("say with `mol TEMPLATE` which").into())
                 }
                 None if kind == 0 => {

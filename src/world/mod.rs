@@ -20,6 +20,7 @@ pub mod order;
 pub mod particles;
 pub mod potentials;
 pub mod promises;
+pub mod properties;
 pub mod rebuild;
 pub mod region;
 pub mod resume;
@@ -46,6 +47,7 @@ pub use lattice::Lattice;
 pub use minimizer::Minimizer;
 pub use particles::{AtomStyle, Own, Particles};
 pub use promises::{Promise, Promises};
+pub use properties::Properties;
 pub use rebuild::{Kept, Rebuild};
 pub use region::Region;
 pub use resume::{Resume, Said};
@@ -54,6 +56,9 @@ pub use slots::{Offers, Slot, SlotId, Slots};
 pub use tally::Tally;
 pub use template::Template;
 pub use travel::{Seen, Travel};
+
+/// How names of `memo` end that hold the energy which a fix has taken from particles for a reservoir so far (`ecouple`).
+pub const COUPLED: &str = "/coupled";
 
 /// How names of columns end that hold the mass of the rigid body a particle belongs to, 0 for none.
 pub const CONTACT_MASS: &str = "/contact mass";
@@ -107,6 +112,9 @@ pub struct World {
     pub wall_contacts: BTreeMap<String, contacts::Contacts>,
     /// Materials by ID.
     pub materials: BTreeMap<String, material::Material>,
+    /// What fixes property/atom give particles, in the order in which data files name it; the deck says it again after a restart.
+    #[serde(skip)]
+    pub properties: Vec<Properties>,
     /// What the deck's folder is, for files beside it.
     #[serde(skip)]
     pub folder: PathBuf,

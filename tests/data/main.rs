@@ -225,6 +225,111 @@ fn numbers_survive_a_file_to_the_last_bit() {
     }
 }
 
+/// What LAMMPS 22Jul2025 writes of three spheres with the properties of `OWN`, velocities left out.
+const WITH_PROPERTIES: &str = "\
+LAMMPS data file via write_data, version 22 Jul 2025, timestep = 0, units = si
+
+3 atoms
+1 atom types
+
+0 4 xlo xhi
+0 4 ylo yhi
+0 4 zlo zhi
+
+Atoms # sphere
+
+1 1 0.1 100 1 1 1 0 0 0
+2 1 0.1 100 3 1 1 0 0 0
+3 1 0.1 100 3 2 1 0 0 0
+
+p # i_a d_b i_c d_d mol
+
+1 0 333333.3333333334 0 0 -2.5 0 0 0
+2 3 0.1 0 7 0 0 1e-300 5
+3 0 0 0 0 0 0 0 0
+
+q # temperature heatflow
+
+1 0 0
+2 300.125 0
+3 0 0
+";
+
+const OWN: &str = "atom_style sphere\nfix p all property/atom i_a d_b i2_c 2 d2_d 3 mol\n\
+    fix q all property/atom temperature heatflow\nfix r all property/atom d_z writedata no\n";
+
+/// The property of the particles by id, as the deck's `words`.
+fn property(w: &World, words: &str) -> Vec<f64> {
+    let column = w.columns.get_scalar(&w.columns.custom(words).unwrap()).unwrap();
+    let mut rows: Vec<(u32, f64)> = w.particles.tag.iter().copied().zip(column.iter().copied()).collect();
+    rows.sort_by_key(|r| r.0);
+    rows.into_iter().map(|r| r.1).collect()
+}
+
+#[test]
+fn properties_of_fixes_come_from_lammps_files_and_survive_ours() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("x.data"), WITH_PROPERTIES).unwrap();
+    let read = "read_data DIR/x.data fix p NULL NULL fix q NULL q";
+    let again = "read_data DIR/y.data add append fix q NULL q fix p NULL p";
+    let deck = format!(
+        "units si\nboundary f f f\n{OWN}{read}\nwrite_data DIR/y.data\n{again}\nset atom 5 d_b 7.5\n\
+                        write_data DIR/z.data nofix\n"
+    );
+    let w = world(folder.path(), &deck);
+    assert_eq!(property(&w, "i_a"), [0.0, 3.0, 0.0, 0.0, 3.0, 0.0]);
+    assert_eq!(property(&w, "d_b"), [333333.3333333334, 0.1, 0.0, 333333.3333333334, 7.5, 0.0]);
+    assert_eq!(property(&w, "i2_c[2]"), [0.0, 7.0, 0.0, 0.0, 7.0, 0.0]);
+    assert_eq!(property(&w, "d2_d[1]"), [-2.5, 0.0, 0.0, -2.5, 0.0, 0.0]);
+    assert_eq!(property(&w, "d2_d[3]"), [0.0, 1e-300, 0.0, 0.0, 1e-300, 0.0]);
+    assert_eq!(property(&w, "temperature"), [0.0, 300.125, 0.0, 0.0, 300.125, 0.0]);
+    assert_eq!(w.particles.molecule, [0, 5, 0, 0, 5, 0]);
+    let sections = |text: &str| text.split_once("\np #").map(|(_, rest)| rest.to_string());
+    let text = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    // Headings, order and, but for the last digit of a number, bytes as LAMMPS writes them.
+    assert_eq!(sections(&text("y.data")), sections(WITH_PROPERTIES));
+    assert_eq!(sections(&text("z.data")), None);
+}
+
+#[test]
+fn mistakes_in_sections_of_fixes_are_shown_in_the_file() {
+    let with = |from: &str, to: &str| WITH_PROPERTIES.replacen(from, to, 1);
+    let cases = [
+        (with("3 0 0\n", "7 0 0\n"), 26, 1, "the section Atoms has no particle 7"),
+        (
+            with("3 0 0\n", "3 0\n"),
+            26,
+            1,
+            "an id and 2 values are needed here (temperature heatflow), not an id and 1",
+        ),
+        (with("3 0 0\n", ""), 22, 1, "the section q has 2 lines, the header promises 3"),
+        (with("2 3 0.1", "2 3.5 0.1"), 19, 3, "i_a must be a whole number"),
+        (with("-2.5 0 0 0", "-2.5 0 0 -1"), 18, 36, "molecules go from 0"),
+        (with("q #", "r #"), 22, 1, "`r` is no section"),
+    ];
+    for (text, line, column, message) in cases {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("x.data"), &text).unwrap();
+        let deck = format!("units si\nboundary f f f\n{OWN}read_data DIR/x.data fix p NULL p fix q NULL q\n");
+        let (session, outcome) = outcome(folder.path(), &deck, Mode::Run);
+        let d = outcome.expect_err(message).0.remove(0);
+        assert!(d.message.contains(message), "wanted {message:?}, got {:?}", d.message);
+        assert_eq!(session.sources.place(d.span.unwrap()), (line, column), "{message}");
+    }
+    for (line, message) in [
+        ("fix z NULL p", "there is no fix `z`"),
+        ("fix p NULL Velocities", "a section of data files by itself"),
+        ("fix p NULL", "is missing"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("x.data"), WITH_PROPERTIES).unwrap();
+        let deck = format!("boundary f f f\n{OWN}read_data DIR/x.data {line}\n");
+        let (_, outcome) = outcome(folder.path(), &deck, Mode::Run);
+        let d = outcome.expect_err(message).0.remove(0);
+        assert!(d.message.contains(message), "wanted {message:?}, got {:?}", d.message);
+    }
+}
+
 #[test]
 fn a_checked_deck_knows_files_it_would_write() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,7 +1,7 @@
 //! Text dumps against LAMMPS' own files, byte for byte.
 //!
 //! `golden/` holds what LAMMPS 22Jul2025 writes for `in.dumps` (`lmp -in in.dumps -var dir golden`), where `g.dump`
-//! began with the line `before`; `golden_forms/` and `golden_times/` the same for `in.forms` and `in.times`. Formats show at most eight digits: the last ones of a double depend on the order of
+//! began with the line `before`; `golden_forms/`, `golden_times/` and `golden_binary/` the same for `in.forms`, `in.times` and `in.binary`. Formats show at most eight digits: the last ones of a double depend on the order of
 //! additions into forces.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
@@ -70,6 +70,73 @@ fn same(ours: &BTreeMap<String, String>, theirs: &BTreeMap<String, String>) {
     for (name, text) in ours {
         assert_eq!(text, &theirs[name], "{name}");
     }
+}
+
+#[test]
+fn binary_dumps_are_the_same_bytes_and_are_read_again() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/dumps");
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().to_str().unwrap().to_string();
+    let options = || Options { vars: vec![("dir".into(), vec![dir.clone()])], ..Options::default() };
+    let deck = fs::read_to_string(here.join("in.binary")).unwrap();
+    let mut written = Session::new(options()).unwrap();
+    written.run_text("in.binary", &deck).unwrap();
+    let bytes = |folder: &Path| -> BTreeMap<String, Vec<u8>> {
+        let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap());
+        entries.map(|e| (e.file_name().into_string().unwrap(), fs::read(e.path()).unwrap())).collect()
+    };
+    let (ours, theirs) = (bytes(folder.path()), bytes(&here.join("golden_binary")));
+    assert_eq!(ours.keys().collect::<Vec<_>>(), theirs.keys().collect::<Vec<_>>());
+    for (name, file) in &ours {
+        assert!(file == &theirs[name], "{name}");
+    }
+    // The file that LAMMPS has written, from the state of the beginning.
+    let begin = deck.split("dump a").next().unwrap();
+    let golden = here.join("golden_binary");
+    let again = format!("{begin}read_dump {}/c.bin 4 y z vx ix iz\n", golden.display());
+    let mut read = Session::new(options()).unwrap();
+    read.run_text("again", &again).unwrap();
+    let (a, b) = (&written.world.particles, &read.world.particles);
+    assert_eq!((a.x[2][1], a.x[2][2], a.v[0][0]), (b.x[2][1], b.x[2][2], b.v[0][0]));
+    let rerun = format!("{begin}rerun {}/a.bin every 2 dump x y z\n", golden.display());
+    let mut shown = Session::new(options()).unwrap();
+    shown.run_text("rerun", &rerun).unwrap();
+    assert_eq!((shown.world.clock.step, shown.world.particles.x[1]), (4, a.x[1]));
+    let broken = ours["a.bin"][..200].to_vec();
+    fs::write(folder.path().join("broken.bin"), broken).unwrap();
+    let bad = format!("{begin}read_dump {dir}/broken.bin 0 x y z\n");
+    let message = Session::new(options()).unwrap().run_text("bad", &bad).unwrap_err().to_string();
+    assert!(message.contains("breaks off"), "{message}");
+}
+
+// A picture is the same in every kind of file, but for what JPEG takes off.
+#[test]
+fn pictures_of_every_kind_show_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().to_str().unwrap().to_string();
+    let options = Options { vars: vec![("dir".into(), vec![dir])], ..Options::default() };
+    let mut deck = String::from(
+        "atom_style sphere\nregion b block 0 4 0 4 0 4\ncreate_box 2 b\ncreate_atoms 1 single 1 1 1\n\
+         create_atoms 2 single 3 1 1\nset group all diameter 1.5\n",
+    );
+    for ending in ["png", "ppm", "jpg", "JPEG"] {
+        deck += &format!("write_dump all image ${{dir}}/p.{ending} type auto modify size 101 60\n");
+    }
+    Session::new(options).unwrap().run_text("in.pictures", &deck).unwrap();
+    let file = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    let ppm = file("p.ppm");
+    let head = b"P6\n101 60\n255\n";
+    assert_eq!((&ppm[..head.len()], ppm.len()), (&head[..], head.len() + 101 * 60 * 3));
+    let pixels = &ppm[head.len()..];
+    let mut png = png::Decoder::new(std::io::Cursor::new(file("p.png"))).read_info().unwrap();
+    let mut exact = vec![0; png.output_buffer_size().unwrap()];
+    png.next_frame(&mut exact).unwrap();
+    assert!(exact == pixels);
+    assert_eq!(file("p.jpg"), file("p.JPEG"));
+    let jpeg = zune_jpeg::JpegDecoder::new(std::io::Cursor::new(file("p.jpg"))).decode().unwrap();
+    let off: f64 = jpeg.iter().zip(pixels).map(|(a, b)| f64::from(a.abs_diff(*b))).sum();
+    // Smooth spheres on a plain ground: at this quality colours are off by less than 3 of 255 in the mean, most of it at their edges.
+    assert!(jpeg.len() == pixels.len() && off / (pixels.len() as f64) < 3.0, "{off}");
 }
 
 #[test]

@@ -63,6 +63,21 @@ fn spheres_agree() {
 }
 
 #[test]
+fn baths_agree() {
+    agrees("bath");
+}
+
+#[test]
+fn walls_with_springs_agree() {
+    agrees("soft_walls");
+}
+
+#[test]
+fn walls_that_throw_back_agree() {
+    agrees("mirrors");
+}
+
+#[test]
 fn springs_lines_and_limits_agree() {
     agrees("holds");
 }

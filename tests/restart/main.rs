@@ -67,6 +67,15 @@ const LEVELS_AGAIN: &str = "pair_style gran/hooke/history 5000.0 NULL 20.0 NULL 
     compute er all erotate/sphere\ncompute kept all reduce sum f_3[*]\nthermo_style custom step time ke c_er press c_kept[3]\n\
     thermo_modify format float %24.17g norm no\nthermo 5\n";
 
+/// The same pile in a bath whose stream goes on, between walls.
+const BATH_AGAIN: &str = "pair_style granular\npair_coeff * * hertz 5000.0 20.0 tangential mindlin 4000.0 0.7 0.5\n\
+    neighbor 0.1 bin\nneigh_modify every 1 delay 0 check yes\nfix 1 all nve/sphere\n\
+    variable t atom 2.0+0.1*x\nfix 2 all langevin v_t 0 0.5 48279 omega yes tally yes\n\
+    fix 3 all wall/reflect zlo 0.6 units box\nfix 4 all wall/harmonic zlo -0.2 50.0 0 1.5 units box\n\
+    fix_modify 4 energy yes virial yes\nfix own all property/atom d_own\ntimestep 0.002\n\
+    compute er all erotate/sphere\nthermo_style custom step time ke pe c_er press ecouple f_2 f_4[1]\n\
+    thermo_modify format float %24.17g norm no\nthermo 5\n";
+
 /// Plastic grains pressed between two planes: they grow, and remember each contact on both sides.
 const POWDER: &str = "units si\natom_style sphere\nboundary f f f\nregion world block -0.02 0.02 -0.02 0.02 -0.02 0.02 units box\n\
     create_box 1 world\ncreate_atoms 1 single 0 0 -0.0079 units box\ncreate_atoms 1 single 0.001 0 0.0019 units box\n\
@@ -137,7 +146,7 @@ const AVERAGES_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.00300
     f_h[4] f_h[3][2] c_ra[1] c_ra[2] c_rs[2]\n\
     thermo_modify format float %24.17g\nthermo 10\n";
 
-const SCENES: [Scene; 14] = [
+const SCENES: [Scene; 15] = [
     Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
     Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
     Scene { name: "lps", make: BLOCK, again: LPS_AGAIN, steps: 60, list: false },
@@ -146,6 +155,7 @@ const SCENES: [Scene; 14] = [
     Scene { name: "eps, list", make: BLOCK, again: EPS_AGAIN, steps: 40, list: true },
     Scene { name: "averages", make: BLOCK, again: AVERAGES_AGAIN, steps: 60, list: false },
     Scene { name: "pile", make: PILE, again: PILE_AGAIN, steps: 400, list: false },
+    Scene { name: "bath pile", make: PILE, again: BATH_AGAIN, steps: 400, list: false },
     Scene { name: "stiff pile", make: PILE, again: STIFF_AGAIN, steps: 200, list: false },
     Scene { name: "older pile", make: PILE, again: OLDER_AGAIN, steps: 200, list: false },
     Scene { name: "levels pile", make: PAIR_OF_PILES, again: LEVELS_AGAIN, steps: 200, list: false },

@@ -36,14 +36,14 @@ const COLUMNS: &str = "`one` is `step temp epair emol etotal press`, the default
     (seconds of this run), `tpcpu` (simulated time per second), `spcpu` (steps per second), `cpuremain` (seconds left), \
     `timeremain` (seconds left by `timer timeout`, 0 without), `part` (0);\n\
     - energy, over all particles: `pe` (potential, with that of fixes that were told so), `ke`, `etotal` (their sum), \
-    `econserve` (the same), `enthalpy` (etotal + press·vol), `evdwl` and `epair` (of the pair style);\n\
+    `ecouple` (taken by fixes langevin that tally it), `econserve` (etotal + ecouple), `enthalpy` (etotal + press·vol), `evdwl` and `epair` (of the pair style);\n\
     - `temp`, `press`, `pxx pyy pzz pxy pxz pyz`, by the computes `thermo_temp` and `thermo_press` or those `thermo_modify` \
     names;\n\
     - the scene: `atoms`, `vol`, `density`, box `lx ly lz xlo xhi ylo yhi zlo zhi cella cellb cellc cellalpha cellbeta \
     cellgamma` (angles 90), its edges `avecx avecy avecz bvecx bvecy bvecz cvecx cvecy cvecz`, `xy xz yz` (0), the spacings \
     of the lattice `xlat ylat zlat`, `fmax` (largest force component), `fnorm` (root of the sum of squared force \
     components), `nbuild` and `ndanger` (neighbour lists built, and built perhaps too late);\n\
-    - always 0 here, for LAMMPS' decks: `ecoul ebond eangle edihed eimp emol elong etail ecouple bonds angles \
+    - always 0 here, for LAMMPS' decks: `ecoul ebond eangle edihed eimp emol elong etail bonds angles \
     dihedrals impropers`;\n\
     - `c_ID`, `c_ID[i]`, `c_ID[i][j]` of a compute, `f_ID …` of a fix, `v_NAME` of an equal-style variable; `c_ID[*]` and \
     `c_ID[2*3]` stand for one column per element.\n\n\

@@ -1,8 +1,9 @@
-//! Pictures of spheres: depth, light and shade, colour maps with a legend, written as PNG.
+//! Pictures of spheres: depth, light and shade, colour maps with a legend, written as PNG, JPEG or PPM.
 
 mod camera;
 mod colour;
 mod glyphs;
+mod jpeg;
 mod overlay;
 mod raster;
 mod shade;
@@ -115,7 +116,44 @@ impl Frame {
     }
 }
 
+/// A kind of picture file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Exact and small.
+    Png,
+    /// Small, colours nearly as they were.
+    Jpeg,
+    /// Exact and plain.
+    Ppm,
+}
+
+/// Endings of names, and which kind of file they ask for.
+pub const ENDINGS: &[(&str, Kind)] = &[
+    (".png", Kind::Png),
+    (".PNG", Kind::Png),
+    (".jpg", Kind::Jpeg),
+    (".JPG", Kind::Jpeg),
+    (".jpeg", Kind::Jpeg),
+    (".JPEG", Kind::Jpeg),
+    (".ppm", Kind::Ppm),
+];
+
 impl Image {
+    /// The picture as a file of the kind that its name asks for; PNG by default.
+    pub fn file(&self, name: &str) -> std::io::Result<Vec<u8>> {
+        match ENDINGS.iter().find(|(ending, _)| name.ends_with(ending)).map(|(_, kind)| kind) {
+            Some(Kind::Jpeg) => Ok(jpeg::encode(self.width, self.height, &self.pixels)),
+            Some(Kind::Ppm) => Ok(self.ppm()),
+            _ => self.png(),
+        }
+    }
+
+    /// The picture as a binary PPM file.
+    fn ppm(&self) -> Vec<u8> {
+        let head = format!("P6\n{} {}\n255\n", self.width, self.height);
+        [head.as_bytes(), self.pixels.as_flattened()].concat()
+    }
+
     /// The picture as a PNG file.
     pub fn png(&self) -> std::io::Result<Vec<u8>> {
         let mut bytes = vec![];

@@ -2,6 +2,7 @@
 
 use super::common::{self, bad_keyword, id};
 use super::data::body::{DataFile, How};
+use super::data::properties::{Section, fill};
 use super::data::text::find;
 use super::data::words::{Ids, extra_types, ids, offsets, outside};
 use super::data::{Column, body};
@@ -17,7 +18,7 @@ use std::sync::Arc;
 /// The command.
 pub struct ReadData;
 
-const KEYWORDS: [&str; 9] = [
+const KEYWORDS: [&str; 10] = [
     "add",
     "offset",
     "shift",
@@ -27,9 +28,9 @@ const KEYWORDS: [&str; 9] = [
     "extra/special/per/atom",
     "group",
     "nocoeff",
-];
-const ELSEWHERE: [&str; 7] = [
     "fix",
+];
+const ELSEWHERE: [&str; 6] = [
     "extra/angle/types",
     "extra/dihedral/types",
     "extra/improper/types",
@@ -47,7 +48,7 @@ impl Style for ReadData {
         Doc {
             syntax: "read_data FILE [add append|merge|IDOFFSET] [offset TYPE BOND ANGLE DIHEDRAL IMPROPER] [shift X Y Z] \
                      [extra/atom/types N] [extra/bond/types N] [extra/bond/per/atom N] [extra/special/per/atom N] \
-                     [group ID] [nocoeff]",
+                     [group ID] [nocoeff] [fix ID HEADER SECTION]…",
             summary: "Reads box, particles, velocities, masses and coefficients from a LAMMPS data file.",
             text: "The file is LAMMPS' format, packed with gzip if its name ends in `.gz`; it is looked for in the working \
                    folder, then beside the deck. The header gives `N atoms`, `N atom types`, `xlo xhi`, `ylo yhi`, `zlo \
@@ -67,10 +68,11 @@ impl Style for ReadData {
                    last three numbers are for angles and the like), `shift` to places and to the file's box. \
                    Masses of types are skipped where particles in a hybrid with bonds have their own (LAMMPS writes zeros there). \
                    `extra/atom/types` and `extra/bond/types` leave room for more types, room per particle is not limited; `group` puts the particles into a group, new if there is \
-                   none; `nocoeff` skips coefficients. Where a comment names the style (`Atoms # sphere`), it must be the \
+                   none; `nocoeff` skips coefficients. `fix ID NULL SECTION` reads a section of that heading (`NULL`: the fix's ID) into the properties of a \
+                   fix property/atom: a line for each particle, its id and then the values in the order of the fix's line; a \
+                   file without the section leaves zeros. HEADER has no meaning. Where a comment names the style (`Atoms # sphere`), it must be the \
                    deck's; LAMMPS only warns. Ids that occur twice, lines beyond the promised number and particles outside \
-                   are refused in the file itself. Refused by name: angles and other topology, type labels, tilted boxes, \
-                   `fix`.",
+                   are refused in the file itself. Refused by name: angles and other topology, type labels, tilted boxes, sections of fixes that no `fix` names.",
             example: "write_data plate.data\nread_data plate.data add append shift 0.0 0.0 0.02",
         }
     }
@@ -87,6 +89,7 @@ struct Reading {
     extra_types: usize,
     group: Option<Word>,
     no_coeff: bool,
+    sections: Vec<Section>,
     checking: bool,
 }
 
@@ -103,6 +106,7 @@ impl CommandStyle for ReadData {
             extra_types: 0,
             group: None,
             no_coeff: false,
+            sections: vec![],
             checking: cx.checking,
         };
         let mut only_with_add = None;
@@ -133,6 +137,7 @@ impl CommandStyle for ReadData {
                     r.group = Some(word.clone());
                 }
                 "nocoeff" => r.no_coeff = true,
+                "fix" => r.sections.push(Section::read(a, cx)?),
                 _ => return Err(bad_keyword(a, word, &KEYWORDS, &ELSEWHERE)),
             }
         }
@@ -172,10 +177,12 @@ impl Act for Reading {
             bond_types: world.domain.is_some().then_some(world.bonds.types),
             bond_offset: self.bond_offset,
             extra_bond_types: self.extra_bond_types,
+            sections: &self.sections,
         };
         let outcome = body::read(&text.text, &how).and_then(|data| self.place(cx, data, &text.text));
         let mut data = outcome.map_err(|e| e.within(&text))?;
         self.enter(cx, &mut data)?;
+        self.miss_sections(cx, &data);
         let coeffs = std::mem::take(&mut data.coeffs);
         cx.then.extend(coeffs.into_iter().map(|line| (line, text.clone())));
         if !self.checking {
@@ -206,6 +213,15 @@ impl Reading {
         match world.parts.promised.get(&self.file.text) {
             Some(Promise::Scene(scene, _)) => Ok(Found::Promised(scene.clone())),
             _ => find(world, &self.file, "data file").map(Found::File),
+        }
+    }
+
+    /// Warns of sections that the file does not have.
+    fn miss_sections(&self, cx: &ActCx, data: &DataFile) {
+        let has = |k: usize| data.filled.iter().any(|f| f.section == k) || data.header.atoms == 0;
+        for (_, section) in self.sections.iter().enumerate().filter(|(k, _)| !has(*k)) {
+            let text = format!("the file has no section `{}`: these properties stay 0", section.name);
+            cx.notes.borrow_mut().push(Diagnostic::warning(Code::SUSPICIOUS, section.span, text));
         }
     }
 
@@ -322,6 +338,7 @@ impl Reading {
         }
         if !self.checking {
             let mut new = std::mem::take(&mut data.particles);
+            let first = w.n();
             finish(&mut new, bit);
             if w.particles.is_empty() {
                 w.particles = new;
@@ -330,6 +347,7 @@ impl Reading {
             }
             let n = w.n();
             w.columns.resize(n);
+            fill(w, &self.sections, &data.filled, first);
             data.bonds.drain(..).for_each(|(bond, _)| w.bonds.push(bond));
             w.bonds.find_special();
             // LAMMPS lets shrink-wrapped faces follow at once.

@@ -19,7 +19,7 @@ impl Style for ResetTimestep {
             syntax: "reset_timestep N [time T]",
             summary: "Sets the step counter; elapsed time becomes N times the step size, or T.",
             text: "The scene is left alone. N is a whole number from 0. Refused while a fix counts steps: `ave/atom`, `ave/chunk`, \
-                   `ave/time`, `dt/reset`, `pour` or `vector`.",
+                   `ave/time`, `dt/reset`, `pour` or `vector`; and while a dump has written snapshots into a file that goes on growing.",
             example: "reset_timestep 0",
         }
     }
@@ -38,6 +38,13 @@ impl CommandStyle for ResetTimestep {
         if let Some((id, style)) = cx.names.counting_fix() {
             let text = format!("the step cannot be reset while fix `{id}` ({style}) counts on it");
             let help = format!("put `unfix {id}` before this line, and the fix again after it");
+            return Err(Diagnostic::error(Code::CONFLICT, cx.span, text).help(help).into());
+        }
+        if let Some(id) = cx.names.growing_dump() {
+            let text = format!(
+                "the step cannot be reset while dump `{id}` goes on: its file would have steps twice"
+            );
+            let help = format!("put `undump {id}` before this line, and the dump again after it");
             return Err(Diagnostic::error(Code::CONFLICT, cx.span, text).help(help).into());
         }
         Ok(setting(move |cx| {

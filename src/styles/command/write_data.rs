@@ -26,7 +26,7 @@ impl Style for WriteData {
                    appears whole or not at all. Numbers are written in the shortest form that is read back to the same \
                    bits. Positions are wrapped and shrink-wrapped faces follow the particles first, as in LAMMPS. No \
                    pair style writes coefficients into data files (of those that are here LAMMPS writes those of `zero` alone): `pair` makes no difference; \
-                   `nocoeff` leaves out those of bonds. `nofix` and `nolabelmap` make no difference, as no fix adds a section and types have no labels. Peridynamic bonds, damage, contact history, forces and \
+                   `nocoeff` leaves out those of bonds. Each fix property/atom has a section of its own unless it says `writedata no` (`nofix`: none has). `nolabelmap` makes no difference, as types have no labels. Peridynamic bonds, damage, contact history, forces and \
                    the clock are not in a data file: write_restart has them. `types labels` and `triclinic/general` are \
                    refused.",
             example: "write_data plate.*.data nocoeff",
@@ -37,7 +37,7 @@ impl Style for WriteData {
 struct Writing {
     file: Pattern,
     span: Span,
-    coeffs: bool,
+    with: write::With,
     checking: bool,
 }
 
@@ -46,12 +46,13 @@ impl CommandStyle for WriteData {
         domain(cx)?;
         let word = a.expect("a file name")?;
         let file = Pattern::new(&word.text).map_err(|e| e.at(word.span))?;
-        let mut coeffs = true;
+        let mut with = write::With { coeffs: true, fixes: true };
         while let Some(key) = a.next() {
             match key.text.as_str() {
                 "pair" => drop(a.choice("value of pair", &["ii", "ij"])?),
-                "nocoeff" => coeffs = false,
-                "nofix" | "nolabelmap" => {}
+                "nocoeff" => with.coeffs = false,
+                "nofix" => with.fixes = false,
+                "nolabelmap" => {}
                 "types" => match a.peek() {
                     Some(w) if w.text == "labels" => return Err(not_here(w, "write_data types")),
                     _ => drop(a.choice("value of types", &["numeric"])?),
@@ -60,7 +61,7 @@ impl CommandStyle for WriteData {
                 _ => return Err(a.unknown(key, &["pair", "nocoeff", "nofix", "nolabelmap", "types"])),
             }
         }
-        Ok(Box::new(Writing { file, span: word.span, coeffs, checking: cx.checking }))
+        Ok(Box::new(Writing { file, span: word.span, with, checking: cx.checking }))
     }
 }
 
@@ -75,7 +76,7 @@ impl Act for Writing {
         w.spread_type_masses();
         settle(w);
         let path = self.file.at(w.clock.step);
-        replace(&path, |out| write::write(out, w, self.coeffs)).map_err(|e| e.at(self.span))
+        replace(&path, |out| write::write(out, w, self.with)).map_err(|e| e.at(self.span))
     }
 
     fn needs_particles(&self) -> bool {

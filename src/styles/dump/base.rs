@@ -84,6 +84,8 @@ pub struct Base {
     /// Its style.
     pub style: &'static str,
     group: GroupId,
+    /// Whether processes could share the files: `%` stands in the name.
+    shared: bool,
     append: bool,
     /// How tightly files are packed (`compression_level`), for styles that always do.
     pub level: Option<i64>,
@@ -119,11 +121,22 @@ pub struct Shot<'a> {
     pub state: &'a mut State,
 }
 
+/// Styles that can write LAMMPS' binary files.
+const BINARY: [&str; 2] = ["atom", "custom"];
+
+/// Further styles whose files may have `%` in their names, as in LAMMPS.
+const SHARED: [&str; 2] = ["cfg", "local"];
+
 impl Base {
     /// Reads the file name; `endings` are those the style can write (none: any).
     pub fn new(style: &'static str, args: &mut Args, cx: &BuildCx, endings: &[&str]) -> Result<Self> {
         let word = args.expect("the file name")?;
-        let pattern = Pattern::new(&word.text).map_err(|e| e.at(word.span))?;
+        let binary = BINARY.contains(&style);
+        let pattern = match binary || SHARED.contains(&style) {
+            true => Pattern::shared(&word.text, binary),
+            false => Pattern::new(&word.text),
+        }
+        .map_err(|e| e.at(word.span))?;
         if !endings.is_empty() && !endings.iter().any(|e| word.text.ends_with(e)) {
             let message = format!("dump {style} writes {} files, not `{}`", endings.join(" or "), word.text);
             let d = blame(word, Code::NOT_SUPPORTED, message);
@@ -141,6 +154,7 @@ impl Base {
             id: cx.id.to_string(),
             style,
             group: cx.group,
+            shared: word.text.contains('%'),
             append: false,
             level: None,
             pad: 0,
@@ -173,6 +187,12 @@ impl Base {
     /// What outlives a run.
     pub fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether it has written snapshots into one file for all.
+    pub fn growing(&self) -> bool {
+        let state = self.state();
+        state.last.is_some() && !state.target.pattern.many()
     }
 
     /// The interval that `dump_modify … every N` asked for.

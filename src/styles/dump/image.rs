@@ -1,4 +1,4 @@
-//! Dump `image`: pictures of the particles as PNG.
+//! Dump `image`: pictures of the particles.
 
 use super::attribute::{Attribute, Core, Source, attribute};
 use super::base::{Base, Shot, unknown};
@@ -8,7 +8,7 @@ use crate::diag::{Code, Result, fail};
 use crate::lang::Args;
 use crate::lang::args::{blame, parse_number};
 use crate::out::dump::Data;
-use crate::out::image::{Colour, Legend, Scene, by_kind, render};
+use crate::out::image::{Colour, ENDINGS, Legend, Scene, by_kind, render};
 use crate::plan::Op;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
 use crate::world::World;
@@ -46,11 +46,13 @@ const PAGE: &str = "`colour` is `type` or any attribute of `dump custom`, `diame
       `time yes|no` (the line below the picture), `box yes|no d`, \
       `backcolor C`, `backcolor2 C`, `boxcolor C` (lines and text), `shiny 0…1`, `ssao yes|no seed 0…1` (shade in gaps), \
       `depthcue yes|no 0…1`, `fsaa yes|no`, `atom yes`.\n\n\
-    `dump_modify … region ID` cuts, `thresh` hides, as for `dump custom`. Only PNG is written.";
+    `dump_modify … region ID` cuts, `thresh` hides, as for `dump custom`. The ending of the name says what is written: `.png`, `.jpg` or \
+    `.jpeg` (quality 85, as LAMMPS' pictures; there is nothing to choose there either), or `.ppm`; LAMMPS writes PPM under any other name, too.";
 
 impl DumpStyle for Image {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
-        let base = Base::new("image", args, cx, &[".png"])?;
+        let endings: Vec<&str> = ENDINGS.iter().map(|(ending, _)| *ending).collect();
+        let base = Base::new("image", args, cx, &endings)?;
         base.needs_star(args, cx)?;
         let word = args.expect("the colour: `type` or an attribute")?;
         let colour = match word.text.as_str() {
@@ -165,9 +167,9 @@ impl Declared {
             title: &self.options.title,
             caption: &caption,
         };
-        let png = render(&scene, &view, &self.options.look).png();
         let path = shot.state.target.pattern.at(shot.step);
-        crate::out::file::replace(&path, |to| to.write_all(&png?))
+        let file = render(&scene, &view, &self.options.look).file(&path.to_string_lossy());
+        crate::out::file::replace(&path, |to| to.write_all(&file?))
     }
 
     fn diameter(&self, w: &World, data: &[Data<'_>], i: usize) -> f64 {

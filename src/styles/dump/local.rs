@@ -205,6 +205,10 @@ impl Dump for Declared {
         self.base.every()
     }
 
+    fn growing(&self) -> bool {
+        self.base.growing()
+    }
+
     fn boxed(&self) -> Box<dyn Dump> {
         Box::new(self.clone())
     }

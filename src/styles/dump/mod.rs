@@ -46,6 +46,11 @@ pub trait Dump: Send {
         None
     }
 
+    /// Whether it has written snapshots into a file that goes on growing.
+    fn growing(&self) -> bool {
+        false
+    }
+
     /// Whether snapshots repeat the row of the step table, which must then be there before them.
     fn repeats_row(&self) -> bool {
         false

@@ -3,8 +3,9 @@
 use super::attribute::{Attribute, Core, expand};
 use super::base::{Base, Sort, column, unknown};
 use super::{Dump, DumpStyle};
-use crate::diag::{Code, Result, fail};
+use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Word};
+use crate::out::binary::Binary;
 use crate::out::dump::{Field, Snapshot};
 use crate::out::formats::{Formats, Kind};
 use crate::out::forms;
@@ -31,12 +32,14 @@ const PAGE: &str = "Attributes: `id type mass proc procp1`, positions `x y z`, a
     `thresh attribute < <= > >= == != |^ value|LAST` (several must all hold; LAST is the particle's value at the last \
     snapshot; `thresh none`). This style adds `colname N name`, `format line \"…\"`, `format int %d`, `format float %g`, \
     `format N %…` (one column), `format none`, `header yes|no`, `time yes|no` and `units yes|no` (further header lines). \
-    `balance buffer flush` and `types numeric` are read and without effect; `nfile fileper at sfactor tfactor precision \
+    `balance buffer flush` and `types numeric` are read and without effect; `at sfactor tfactor precision \
     unwrap triclinic/general` are refused by name.\n\n\
     Rows are sorted by id unless told otherwise (LAMMPS: unsorted). The file is made, or emptied, when the first run begins. \
     A `*` in the file name becomes the step, and each \
     snapshot then has a file of its own that appears only when it is complete. A name that ends in `.gz` is compressed \
-    (`dump custom/gz` and its kin also know `compression_level N`); binary files are refused.";
+    (`dump custom/gz` and its kin also know `compression_level N`). One that ends in `.bin` or `.lammpsbin` is LAMMPS' binary form, here and for `dump atom`, \
+    for which formats have no meaning; `read_dump` and `rerun` read it, too. A `%` in the name becomes the number of the process, \
+    0, as there is one; `nfile N` and `fileper N` then make no difference.";
 
 impl Style for Atom {
     fn name(&self) -> &'static str {
@@ -205,7 +208,7 @@ impl Dump for Text {
                 })
                 .collect();
             let target = &mut shot.state.target;
-            let fresh = target.is_fresh();
+            let (fresh, binary) = (target.is_fresh(), target.pattern.binary());
             let bounds = [0, 1, 2].map(|k| [domain.lo[k], domain.hi[k]]);
             let (step, rows, time) = (shot.step, &shot.rows, dump.time.then(|| w.clock.time()));
             let units = dump.units.then(|| w.settings.units.name());
@@ -217,6 +220,12 @@ impl Dump for Text {
                     let (boundary, header) = (letters.as_str(), dump.header);
                     let head = forms::Yaml { step, units, time, boundary, row, bounds, header };
                     head.write(to, rows, &fields)
+                }
+                Form::Native if binary => {
+                    let (header, boundary) = (dump.header, letters.as_str());
+                    let (magic, units) = (dump.magic(), units.filter(|_| fresh));
+                    let fields = &fields;
+                    Binary { magic, header, step, time, units, bounds, boundary, rows, fields }.write(to)
                 }
                 Form::Native => {
                     let units = units.filter(|_| fresh);
@@ -232,6 +241,10 @@ impl Dump for Text {
 
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
         while let Some(word) = args.next() {
+            if word.text == "format" && self.base.state().target.pattern.binary() {
+                let text = "without effect: binary dumps have numbers whole";
+                cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, text));
+            }
             if !self.base.modify(word, args, cx)? && !self.own(word, args)? {
                 return Err(unknown(word, args, self.own_keywords()));
             }
@@ -241,6 +254,10 @@ impl Dump for Text {
 
     fn every(&self) -> Option<i64> {
         self.base.every()
+    }
+
+    fn growing(&self) -> bool {
+        self.base.growing()
     }
 
     fn repeats_row(&self) -> bool {
@@ -272,6 +289,14 @@ impl Text {
     /// Another format for a column (from 0) than the usual one, until `dump_modify format` says more.
     pub(super) fn default_format(&mut self, column: usize, format: &str) -> Result<()> {
         self.formats.set_column(column, Kind::Float, format)
+    }
+
+    /// What binary files call the style.
+    fn magic(&self) -> &'static str {
+        match self.layout {
+            Layout::Atom { .. } => "DUMPATOM",
+            Layout::Custom(_) => "DUMPCUSTOM",
+        }
     }
 
     fn own_keywords(&self) -> &'static [&'static str] {

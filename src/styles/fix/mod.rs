@@ -23,12 +23,14 @@ mod elapsed;
 mod enforce2d;
 mod evaporate;
 mod extremes;
+mod faces;
 mod freeze;
 mod gravity;
 mod halt;
 mod heat_flow;
 mod indent;
 mod kick;
+mod langevin;
 mod lineforce;
 mod momentum;
 mod move_fix;
@@ -54,6 +56,8 @@ mod vector;
 mod viscous;
 mod viscous_sphere;
 mod wall;
+mod wall_harmonic;
+mod wall_reflect;
 mod window;
 
 use super::{BuildCx, Motion, Pull, SealCx, Shape, Style};
@@ -242,6 +246,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &halt::HaltFix,
     &heat_flow::HeatFlow,
     &indent::Indent,
+    &langevin::Langevin,
     &lineforce::LineForce,
     &momentum::Momentum,
     &move_fix::Move,
@@ -269,6 +274,8 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &wall::gran::WallGran,
     &wall::region::WallGranRegion,
     &wall::mesh::WallMesh,
+    &wall_harmonic::WallHarmonic,
+    &wall_reflect::WallReflect,
 ];
 
 /// Takes the region after the keyword `region`.

@@ -5,8 +5,9 @@ use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, Word};
 use crate::plan::Op;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
-use crate::world::World;
 use crate::world::columns::{HEATFLOW, TEMPERATURE};
+use crate::world::properties::MOLECULE;
+use crate::world::{Properties, World};
 
 /// The style.
 pub struct PropertyAtomFix;
@@ -23,8 +24,9 @@ impl Style for PropertyAtomFix {
                    are 0 at first, belong to all particles whatever the group, and are set by `set … d_NAME value` (or \
                    `d2_NAME[k]`). Read them with `compute property/atom`, in `dump custom`, `fix store/state` and in formulas \
                    (`d_NAME`, `d_NAME[7]`; without columns). `temperature` and `heatflow` are what granular contacts that conduct heat \
-                   read and write, and `fix heat/flow` integrates. `ghost` and `writedata` are read for LAMMPS' decks. `mol` gives \
-                   molecule IDs to particles whose style has none. LAMMPS' `q` and `rmass` are refused: atom styles say what particles have.",
+                   read and write, and `fix heat/flow` integrates. `mol` gives \
+                   molecule IDs to particles whose style has none. `write_data` writes them all into a section of the fix's name, \
+                   unless `writedata no`, and `read_data … fix ID NULL SECTION` reads it. `ghost` is read for LAMMPS' decks. LAMMPS' `q` and `rmass` are refused: atom styles say what particles have.",
             example: "fix mine all property/atom i_flag d_heat\nset group ball d_heat 3.5 i_flag 2\nvariable heat atom d_heat+1",
         }
     }
@@ -32,11 +34,12 @@ impl Style for PropertyAtomFix {
 
 impl FixStyle for PropertyAtomFix {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let (mut names, mut molecules): (Vec<String>, _) = (vec![], false);
+        let (mut names, mut written): (Vec<String>, _) = (vec![], true);
         while let Some(word) = args.next() {
             match word.text.as_str() {
-                "ghost" | "writedata" => {
-                    args.flag(&word.text)?;
+                "writedata" => written = args.flag("writedata")?,
+                "ghost" => {
+                    args.flag("ghost")?;
                     cx.note(Diagnostic::note(
                         Code::NO_EFFECT,
                         word.span,
@@ -44,8 +47,8 @@ impl FixStyle for PropertyAtomFix {
                     ));
                 }
                 "mol" => {
-                    no_molecules(word, cx, molecules)?;
-                    molecules = true;
+                    no_molecules(word, cx, names.iter().any(|name| name == MOLECULE))?;
+                    names.push(MOLECULE.to_string());
                 }
                 "q" | "rmass" => {
                     let text =
@@ -55,10 +58,10 @@ impl FixStyle for PropertyAtomFix {
                 _ => names.extend(columns(word, args, cx, &names)?),
             }
         }
-        if names.is_empty() && !molecules {
+        if names.is_empty() {
             args.expect("a name such as i_flag or d_heat")?;
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), names, molecules }))
+        Ok(Box::new(Declared(Properties { fix: cx.id.to_string(), names, written })))
     }
 }
 
@@ -129,20 +132,26 @@ fn free(word: &Word, cx: &BuildCx, before: &[String], key: &str) -> Result<()> {
 }
 
 #[derive(Clone)]
-struct Declared {
-    id: String,
-    names: Vec<String>,
-    /// Molecule IDs, too.
-    molecules: bool,
+struct Declared(Properties);
+
+impl Declared {
+    fn molecules(&self) -> bool {
+        self.0.names.iter().any(|name| name == MOLECULE)
+    }
+
+    fn columns(&self) -> impl Iterator<Item = String> {
+        (0..self.0.names.len()).filter_map(|k| self.0.column(k))
+    }
 }
 
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         let n = w.n();
-        for name in &self.names {
-            w.columns.scalar(&format!("property/atom/{}/{name}", self.id), n);
+        for column in self.columns() {
+            w.columns.scalar(&column, n);
         }
-        if self.molecules {
+        w.properties.push(self.0.clone());
+        if self.molecules() {
             w.particles.style.molecules = true;
             w.particles.molecule.resize(n, 0);
         }
@@ -150,11 +159,12 @@ impl Fix for Declared {
     }
 
     fn remove(&self, w: &mut World) {
-        if self.molecules {
+        if self.molecules() {
             w.particles.style.molecules = w.particles.style.bonded;
             w.particles.molecule.clear();
         }
-        self.names.iter().for_each(|name| w.columns.remove(&format!("property/atom/{}/{name}", self.id)));
+        w.properties.retain(|p| p.fix != self.0.fix);
+        self.columns().for_each(|column| w.columns.remove(&column));
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {

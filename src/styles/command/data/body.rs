@@ -2,6 +2,7 @@
 
 use super::header::{self, Header};
 use super::more::molecule_id;
+use super::properties::{Filled, Section};
 use super::text::{Line, Lines, not_here, number, whole};
 use super::{Column, columns};
 use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
@@ -11,7 +12,7 @@ use crate::world::{AtomStyle, Bond, Particles};
 
 /// What the deck says about reading.
 #[derive(Clone, Copy, Debug)]
-pub struct How {
+pub struct How<'a> {
     /// Which columns there are.
     pub style: AtomStyle,
     /// The number of types there will be.
@@ -28,6 +29,8 @@ pub struct How {
     pub bond_offset: u16,
     /// Bond types beyond those of the file.
     pub extra_bond_types: usize,
+    /// Sections of fixes.
+    pub sections: &'a [Section],
 }
 
 /// A data file that has been read.
@@ -53,6 +56,8 @@ pub struct DataFile {
     pub bond_types: usize,
     /// Bonds with ids as in the file, and the lines on which they stand.
     pub bonds: Vec<(Bond, u32)>,
+    /// What the sections of fixes say.
+    pub filled: Vec<Filled>,
 }
 
 impl DataFile {
@@ -65,7 +70,7 @@ impl DataFile {
 }
 
 /// Sections LAMMPS has besides.
-const ELSEWHERE: [&str; 20] = [
+pub(super) const ELSEWHERE: [&str; 20] = [
     "Angles",
     "Dihedrals",
     "Impropers",
@@ -88,14 +93,14 @@ const ELSEWHERE: [&str; 20] = [
     "AngleTorsion Coeffs",
 ];
 
-const SECTIONS: [&str; 7] =
+pub(super) const SECTIONS: [&str; 7] =
     ["Masses", "Atoms", "Velocities", "Bonds", "Pair Coeffs", "PairIJ Coeffs", "Bond Coeffs"];
 
 /// Reads a whole file.
 ///
 /// # Errors
 /// The first thing that is wrong, with its place in the text.
-pub fn read(text: &str, how: &How) -> Result<DataFile> {
+pub fn read<'a>(text: &'a str, how: &How<'a>) -> Result<DataFile> {
     let mut lines = Lines::new(text);
     let header = header::read(&mut lines)?;
     let types = how.types.unwrap_or(header.types + how.extra_types);
@@ -136,7 +141,7 @@ pub fn read(text: &str, how: &How) -> Result<DataFile> {
 /// A file being read.
 pub(super) struct Reader<'a> {
     lines: Lines<'a>,
-    pub(super) how: How,
+    pub(super) how: How<'a>,
     pub(super) data: DataFile,
 }
 
@@ -144,6 +149,7 @@ impl<'a> Reader<'a> {
     fn section(&mut self, name: &str, title: &Line<'a>) -> Result<()> {
         let refuse = |what: &str| Err(not_here(title.span(), what).into());
         match name {
+            _ if self.how.sections.iter().any(|s| s.name == name) => {}
             _ if !title.text.starts_with(|c: char| c.is_ascii_alphabetic()) => {
                 let text = "this line belongs to no section: there are more lines than the header promises";
                 return fail(Code::EXTRA_ARGUMENT, title.span(), text);
@@ -172,6 +178,9 @@ impl<'a> Reader<'a> {
             "Atoms" => self.atoms(title),
             "Velocities" => self.velocities(title),
             "Bonds" => self.bonds(title),
+            _ if let Some(k) = self.how.sections.iter().position(|s| s.name == name) => {
+                self.properties(k, title)
+            }
             "Bond Coeffs" => self.rows(name, title, self.data.header.bond_types, Self::bond_coeff),
             "Pair Coeffs" => self.rows(name, title, types, |r, line| r.coeff(line, 1)),
             _ => self.rows(name, title, types * (types + 1) / 2, |r, line| r.coeff(line, 2)),
@@ -187,7 +196,8 @@ impl<'a> Reader<'a> {
         mut take: impl FnMut(&mut Self, &Line<'a>) -> Result<()>,
     ) -> Result<()> {
         for have in 0..count {
-            match self.lines.peek().filter(|l| !l.is_blank() && !begins_section(l)) {
+            let of_fix = |l: &Line| self.how.sections.iter().any(|s| l.text.trim() == s.name);
+            match self.lines.peek().filter(|l| !l.is_blank() && !begins_section(l) && !of_fix(l)) {
                 Some(line) => take(self, &line)?,
                 None => {
                     let text = format!("the section {name} has {have} lines, the header promises {count}");
@@ -196,6 +206,7 @@ impl<'a> Reader<'a> {
                     let at = match name {
                         "Atoms" | "Velocities" => header.atoms_at,
                         "Bonds" => header.bonds_at,
+                        _ if self.how.sections.iter().any(|s| s.name == name) => header.atoms_at,
                         _ => None,
                     };
                     return Err(match at {

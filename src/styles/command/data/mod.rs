@@ -4,6 +4,7 @@ pub mod body;
 pub mod dump;
 pub mod header;
 mod more;
+pub mod properties;
 pub mod text;
 pub mod words;
 pub mod write;

@@ -2,12 +2,13 @@
 
 use crate::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Source, Span, fail, unseen};
 use crate::lang::Word;
+use crate::out::binary;
 use crate::world::{Promise, World};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Reads a file, unpacked when its name ends in `.gz`.
+/// Reads a file, unpacked when its name ends in `.gz`; binary dumps as text.
 ///
 /// # Errors
 /// Files that cannot be read, are no text, or are too large for places in them to be counted.
@@ -23,6 +24,10 @@ pub fn load(path: &Path) -> std::io::Result<Arc<Source>> {
     let odd = |text: &str| std::io::Error::new(std::io::ErrorKind::InvalidData, text);
     if bytes.len() > u32::MAX as usize - 1 {
         return Err(odd("it is larger than 4 GB"));
+    }
+    if binary::ENDINGS.iter().any(|e| path.to_string_lossy().ends_with(e)) {
+        let text = binary::as_text(&bytes)?;
+        return Ok(Arc::new(Source { name: format!("{}, as text", path.display()), text }));
     }
     let text = String::from_utf8(bytes).map_err(|_| odd("it is no text"))?;
     Ok(Arc::new(Source { name: path.display().to_string(), text }))

@@ -2,12 +2,21 @@
 
 use super::{Column, columns};
 use crate::math::cformat::shortest;
-use crate::world::{Particles, World};
+use crate::world::{Particles, Properties, World};
 use std::f64::consts::PI;
 use std::io::{Result, Write};
 
-/// Writes the whole scene as LAMMPS' write_data does, with coefficients of bonds or without.
-pub fn write(out: &mut dyn Write, w: &World, coeffs: bool) -> Result<()> {
+/// What a data file gets besides particles.
+#[derive(Clone, Copy, Debug)]
+pub struct With {
+    /// Coefficients of bonds.
+    pub coeffs: bool,
+    /// Sections of fixes.
+    pub fixes: bool,
+}
+
+/// Writes the whole scene as LAMMPS' write_data does.
+pub fn write(out: &mut dyn Write, w: &World, with: With) -> Result<()> {
     let units = w.settings.units.name();
     writeln!(
         out,
@@ -26,7 +35,7 @@ pub fn write(out: &mut dyn Write, w: &World, coeffs: bool) -> Result<()> {
         }
     }
     masses(out, w)?;
-    if coeffs {
+    if with.coeffs {
         bond_coeffs(out, w)?;
     }
     let p = &w.particles;
@@ -35,7 +44,27 @@ pub fn write(out: &mut dyn Write, w: &World, coeffs: bool) -> Result<()> {
     }
     atoms(out, p)?;
     velocities(out, p)?;
-    bonds(out, w)
+    bonds(out, w)?;
+    let written = w.properties.iter().filter(|p| with.fixes && p.written);
+    written.into_iter().try_for_each(|own| properties(out, w, own))
+}
+
+/// The section of a fix property/atom.
+fn properties(out: &mut dyn Write, w: &World, own: &Properties) -> Result<()> {
+    writeln!(out, "\n{} # {}\n", own.fix, own.heading())?;
+    let columns: Vec<_> =
+        (0..own.names.len()).map(|k| own.column(k).map(|name| w.columns.get_scalar(&name))).collect();
+    for (i, tag) in w.particles.tag.iter().enumerate() {
+        write!(out, "{tag}")?;
+        for column in &columns {
+            match column {
+                None => write!(out, " {}", w.particles.molecule.get(i).unwrap_or(&0))?,
+                Some(values) => write!(out, " {}", shortest(values.map_or(0.0, |v| v[i])))?,
+            }
+        }
+        writeln!(out)?;
+    }
+    Ok(())
 }
 
 fn bonds(out: &mut dyn Write, w: &World) -> Result<()> {

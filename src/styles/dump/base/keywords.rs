@@ -16,9 +16,11 @@ pub const KEYWORDS: &[&str] = &[
     "element",
     "every",
     "every/time",
+    "fileper",
     "first",
     "flush",
     "maxfiles",
+    "nfile",
     "pad",
     "pbc",
     "refresh",
@@ -33,8 +35,6 @@ pub const KEYWORDS: &[&str] = &[
 const ELSEWHERE: &[(&str, &str)] = &[
     ("at", "is for dump styles that perigrain does not have"),
     ("compression_level", "is for the styles atom/gz, custom/gz, cfg/gz, xyz/gz and local/gz"),
-    ("fileper", "shares files among processes: there is one process here"),
-    ("nfile", "shares files among processes: there is one process here"),
     ("sfactor", "is for dump xtc, which perigrain does not have"),
     ("tfactor", "is for dump xtc, which perigrain does not have"),
     ("precision", "is for dump xtc, which perigrain does not have"),
@@ -88,6 +88,7 @@ impl Base {
                     return Err(d.help("write `types numeric`, or name types with `element`").into());
                 }
             }
+            "fileper" | "nfile" => self.share(word, args, cx)?,
             "first" => self.first = args.flag("first")?,
             "pad" => self.pad = args.integer_from(0, "the number of digits")?.min(40) as usize,
             "region" => self.region = region(args, cx)?,
@@ -101,6 +102,18 @@ impl Base {
             _ => return Ok(false),
         }
         Ok(true)
+    }
+
+    /// `nfile N` or `fileper N`: one process has one file, whatever N.
+    fn share(&self, word: &Word, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        if !self.shared {
+            let text = format!("dump_modify {} needs a `%` in the dump's file name", word.text);
+            return fail(Code::CONFLICT, word.span, text);
+        }
+        args.integer_from(1, "the number of files or processes")?;
+        let text = "without effect: one process writes one file";
+        cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, text));
+        Ok(())
     }
 
     fn thresh(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
