@@ -3,7 +3,6 @@
 mod camera;
 mod colour;
 mod glyphs;
-mod jpeg;
 mod overlay;
 mod raster;
 mod shade;
@@ -116,6 +115,9 @@ impl Frame {
     }
 }
 
+/// Of JPEG files on the usual scale to 100, as of LAMMPS 22Jul2025's.
+const QUALITY: u8 = 85;
+
 /// A kind of picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -142,10 +144,26 @@ impl Image {
     /// The picture as a file of the kind that its name asks for; PNG by default.
     pub fn file(&self, name: &str) -> std::io::Result<Vec<u8>> {
         match ENDINGS.iter().find(|(ending, _)| name.ends_with(ending)).map(|(_, kind)| kind) {
-            Some(Kind::Jpeg) => Ok(jpeg::encode(self.width, self.height, &self.pixels)),
+            Some(Kind::Jpeg) => self.jpeg(),
             Some(Kind::Ppm) => Ok(self.ppm()),
             _ => self.png(),
         }
+    }
+
+    /// The picture as a JPEG file, all colours at full resolution.
+    ///
+    /// # Errors
+    /// More than 65,535 pixels along a side.
+    fn jpeg(&self) -> std::io::Result<Vec<u8>> {
+        let side = |n: usize| u16::try_from(n).map_err(std::io::Error::other);
+        let mut bytes = vec![];
+        let mut encoder = jpeg_encoder::Encoder::new(&mut bytes, QUALITY);
+        encoder.set_sampling_factor(jpeg_encoder::SamplingFactor::F_1_1);
+        let (width, height) = (side(self.width)?, side(self.height)?);
+        encoder
+            .encode(self.pixels.as_flattened(), width, height, jpeg_encoder::ColorType::Rgb)
+            .map_err(std::io::Error::other)?;
+        Ok(bytes)
     }
 
     /// The picture as a binary PPM file.
