@@ -52,6 +52,21 @@ fn chunks_agree() {
 }
 
 #[test]
+fn the_family_of_chunks_agrees() {
+    agrees("family");
+}
+
+#[test]
+fn temperatures_without_flows_agree() {
+    agrees("temperatures");
+}
+
+#[test]
+fn critical_stretches_agree() {
+    agrees("critical");
+}
+
+#[test]
 fn a_gas_agrees() {
     agrees("gas");
 }

@@ -40,7 +40,10 @@ mod slice;
 mod stress_atom;
 mod temp;
 pub(super) mod temp_flow;
+mod temp_profile;
+mod temp_region;
 mod temp_sphere;
+mod thermal;
 
 use super::{BuildCx, Flow, SealCx, Shape, Style};
 use crate::diag::{Code, Diagnostic, Result};
@@ -82,6 +85,11 @@ pub trait Compute: Send {
 
     /// Forgets what `declare` captured.
     fn remove(&self, _w: &mut World) {}
+
+    /// Whether it takes note of how the first run begins, even if nobody asks for it then.
+    fn begins(&self) -> bool {
+        false
+    }
 
     /// The op that takes the present state as a new beginning after a snapshot of a dump (`dump_modify refresh`), for
     /// computes that have one.
@@ -128,10 +136,19 @@ pub trait Compute: Send {
 #[rustfmt::skip]
 pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &bond_local::BondLocal,
+    &chunk::angmom::AngmomChunk,
     &chunk::atom::ChunkAtom,
     &chunk::com::ComChunk,
+    &chunk::first::MsdChunk,
+    &chunk::first::VacfChunk,
+    &chunk::gyration::GyrationChunk,
+    &chunk::inertia::InertiaChunk,
+    &chunk::omega::OmegaChunk,
     &chunk::property::PropertyChunk,
     &chunk::reduce::ReduceChunk,
+    &chunk::spread::SpreadAtom,
+    &chunk::temp::TempChunk,
+    &chunk::torque::TorqueChunk,
     &chunk::vcm::VcmChunk,
     &cluster_atom::AggregateAtom,
     &cluster_atom::ClusterAtom,
@@ -175,6 +192,8 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &temp_flow::TempCom,
     &temp_flow::TempPartial,
     &temp_flow::TempRamp,
+    &temp_profile::TempProfile,
+    &temp_region::TempRegion,
     &temp_sphere::TempSphere,
 ];
 
