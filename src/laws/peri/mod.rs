@@ -26,6 +26,6 @@ mod released;
 mod rows;
 mod single;
 mod state;
-mod stretches;
+pub mod stretches;
 mod stretching;
 mod tables;

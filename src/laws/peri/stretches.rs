@@ -2,8 +2,9 @@
 
 use super::breaking::{Bonds, banded};
 use super::families::periods;
+use crate::math::vec3::{length, sub};
 use crate::world::families::list::GROUP;
-use crate::world::families::{Families, PeriView};
+use crate::world::families::{Families, FamilyOptions, PeriView};
 
 impl Families {
     /// s0 = max (s00 − alpha s) over the bonds that each particle had before the last step broke some, s being their
@@ -53,6 +54,19 @@ impl Families {
         }
         show(all, &list.particle, &most);
     }
+}
+
+impl Families {
+    /// The length at the start of the bond between two particles.
+    pub fn first_length(&self, view: &PeriView, i: usize, j: usize) -> f64 {
+        let at = self.reference.as_deref().unwrap_or(view.x0);
+        length(view.bounds.nearest(sub(at[i], at[j])))
+    }
+}
+
+/// Whether a bond of the length `r`, at first `r0`, counts as unstretched.
+pub fn unstretched(r: f64, r0: f64, options: &FamilyOptions) -> bool {
+    2.0 * (r / r0 - 1.0).abs() < options.dead_band(r0)
 }
 
 /// Hands what sites have found to their particles.

@@ -1,6 +1,7 @@
 //! Computes: quantities read from the world, never changing it.
 
 mod bond_local;
+mod centro_atom;
 pub(super) mod chunk;
 mod cluster_atom;
 mod com;
@@ -18,6 +19,7 @@ mod fabric;
 mod family_values;
 mod fragments;
 mod global_atom;
+mod group_group;
 mod gyration;
 mod ke;
 mod ke_atom;
@@ -35,15 +37,20 @@ mod plasticity_atom;
 mod pressure;
 pub mod property_atom;
 mod property_local;
+mod rdf;
 pub mod reduce;
+mod rigid_energy;
+mod rigid_local;
 mod slice;
 mod stress_atom;
 mod temp;
+mod temp_deform;
 pub(super) mod temp_flow;
 mod temp_profile;
 mod temp_region;
 mod temp_sphere;
 mod thermal;
+mod vacf;
 
 use super::{BuildCx, Flow, SealCx, Shape, Style};
 use crate::diag::{Code, Diagnostic, Result};
@@ -136,6 +143,7 @@ pub trait Compute: Send {
 #[rustfmt::skip]
 pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &bond_local::BondLocal,
+    &centro_atom::CentroAtom,
     &chunk::angmom::AngmomChunk,
     &chunk::atom::ChunkAtom,
     &chunk::com::ComChunk,
@@ -167,6 +175,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &fabric::Fabric,
     &fragments::Fragments,
     &global_atom::GlobalAtom,
+    &group_group::GroupGroup,
     &gyration::Gyration,
     &ke::Ke,
     &ke_atom::KeAtom,
@@ -184,17 +193,23 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &pressure::Pressure,
     &property_atom::PropertyAtom,
     &property_local::PropertyLocal,
+    &rdf::Rdf,
     &reduce::Reduce,
     &reduce::ReduceRegion,
+    &rigid_energy::ErotateRigid,
+    &rigid_energy::KeRigid,
+    &rigid_local::RigidLocal,
     &slice::Slice,
     &stress_atom::StressAtom,
     &temp::Temp,
+    &temp_deform::TempDeform,
     &temp_flow::TempCom,
     &temp_flow::TempPartial,
     &temp_flow::TempRamp,
     &temp_profile::TempProfile,
     &temp_region::TempRegion,
     &temp_sphere::TempSphere,
+    &vacf::Vacf,
 ];
 
 /// Which terms of the potential energy count.

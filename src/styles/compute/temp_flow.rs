@@ -132,7 +132,7 @@ pub fn named(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
     let text = format!("compute `{}` takes no flow velocity away", r.name);
     let d = Diagnostic::error(Code::WRONG_KIND, r.span, text);
     Err(d
-        .help("computes temp/com, temp/partial, temp/profile, temp/ramp and temp/region take one away")
+        .help("computes temp/com, temp/deform, temp/partial, temp/profile, temp/ramp and temp/region take one away")
         .into())
 }
 

@@ -29,7 +29,7 @@ impl Style for TempSphere {
                    `dof rotate` nothing. 0 where no freedom is left. Vector of 6 \
                    (extensive): Σ (m v_a v_b + I ω_a ω_b) for xx yy zz xy xz yz, in energy units. Spheres are counted anew at \
                    each use (see `compute temp`).\n\n\
-                   `bias ID`: the flow that compute temp/com, temp/partial, temp/profile, temp/ramp or temp/region ID of the same group takes away from \
+                   `bias ID`: the flow that compute temp/com, temp/deform, temp/partial, temp/profile, temp/ramp or temp/region ID of the same group takes away from \
                    velocities does not count here either; a component that is taken away whole counts for no degree of freedom, nor do \
                    particles outside the region. `velocity … \
                    temp ID bias yes` then leaves this flow as it is, and compute pressure has the rest as its kinetic part.",

@@ -94,7 +94,7 @@ fn takes_flow_away(o: &Options, bias: Option<Span>, cx: &BuildCx) -> Result<()> 
         Some(_) => return Ok(()),
     };
     Err(d
-        .help("computes temp/com, temp/partial, temp/profile, temp/ramp and temp/region take one away")
+        .help("computes temp/com, temp/deform, temp/partial, temp/profile, temp/ramp and temp/region take one away")
         .into())
 }
 
