@@ -182,6 +182,17 @@ impl<'a> Sealer<'a> {
         Ok(slot)
     }
 
+    /// Has the computes that take note of how a run begins evaluated in its setup.
+    ///
+    /// # Errors
+    /// What they miss in the scene.
+    pub fn begin_computes(&mut self) -> Result<()> {
+        for node in self.graph.computes.iter().filter(|c| c.compute.begins()) {
+            self.compute(&node.id, node.span, Stage::Output, &When::First)?;
+        }
+        Ok(())
+    }
+
     /// Places what evaluates a variable or keyword into a slot. A compute that is asked again asks again for what it reads: that
     /// is not evaluated once more, but at these times too.
     fn evaluate(

@@ -194,6 +194,7 @@ impl Session {
             ledger::end(&mut s)?;
         }
         crate::graph::welcome::seal(&mut s);
+        s.begin_computes()?;
         // Elsewhere LAMMPS' order: dumps before the row.
         let row_first = self.graph.dumps.iter().any(|d| d.dump.repeats_row());
         if row_first {

@@ -45,6 +45,8 @@ pub struct Flow {
     pub group: GroupId,
     /// Components that are taken away whole.
     pub whole: [bool; 3],
+    /// Who is left out with all its freedom; nobody if empty.
+    pub apart: Vec<bool>,
 }
 
 /// The two motions of a body.

@@ -235,6 +235,17 @@ pub trait SealCx {
     /// # Errors
     /// What is missing in the scene.
     fn probes(&mut self) -> Result<Vec<Box<dyn Probe>>>;
+    /// Whom computes can ask about single pairs, as `probes` and where a solid can be asked.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn singles(&mut self) -> Result<Vec<Box<dyn Probe>>> {
+        self.probes()
+    }
+    /// The largest cutoff of forces of the pair style in force [length].
+    fn cutoff(&mut self) -> Option<f64> {
+        None
+    }
     /// Slots of fixes whose energy counts (`fix_modify ID energy yes`), for the potential energy.
     fn energy_fixes(&self) -> Vec<String>;
     /// Says what this scene does without, and why.

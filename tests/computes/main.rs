@@ -52,6 +52,42 @@ fn chunks_agree() {
 }
 
 #[test]
+fn the_family_of_chunks_agrees() {
+    agrees("family");
+}
+
+#[test]
+fn temperatures_without_flows_agree() {
+    agrees("temperatures");
+}
+
+#[test]
+fn critical_stretches_agree() {
+    agrees("critical");
+}
+
+#[test]
+fn groups_of_grains_agree() {
+    agrees("groups");
+}
+
+#[test]
+fn pairs_of_a_solid_agree() {
+    // A stretch is the small difference of two lengths: their rounding counts some hundred times in forces.
+    thermo::agrees("computes", "solid", 1e-11, |deck| run("solid", deck, true).1);
+}
+
+#[test]
+fn rigid_bodies_agree() {
+    agrees("rigids");
+}
+
+#[test]
+fn a_box_that_is_stretched_agrees() {
+    agrees("stretched");
+}
+
+#[test]
 fn a_gas_agrees() {
     agrees("gas");
 }

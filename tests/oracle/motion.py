@@ -109,11 +109,21 @@ def computes(r, flat, plain, classic, fixed):
         "ssf": ("fix ssf all store/force\ncompute ssg all reduce sum f_ssf[1] f_ssf[2]", ["c_ssg[*]"]),
         "fa": ("compute fa all fabric radius contact branch" if plain else "compute fa all com", ["c_fa[*]"]),
         "sl": ("variable vv vector [1,2,3]\ncompute sl all slice 1 3 2 v_vv", ["c_sl[1]"]),
+        "tn": (f"compute tn odd temp/region half\ncompute tm all temp/profile 1 1 {0 if flat else 1} xy {r.choice(['2 3', '1 2'])}\n"
+               "compute td all temp/deform\ncompute tz odd temp/sphere bias tn\ncompute tb all temp/sphere bias tm", ["c_tn", "c_tn[*]", "c_tm", "c_td[*]", "c_tz", "c_tb[*]"]),
+        "cq": ("compute ct all chunk/atom type nchunk once\ncompute ci odd inertia/chunk ct\ncompute cj all gyration/chunk ct\ncompute ck odd gyration/chunk ct tensor\n"
+               f"compute co all omega/chunk ct\ncompute cu odd torque/chunk ct\ncompute cx all temp/chunk ct temp {r.choice(['', 'adof 2 cdof 1'])}\n"
+               "compute cy all msd/chunk ct\ncompute cz odd vacf/chunk ct\ncompute cs odd chunk/spread/atom ct c_cj c_ci[*]\ncompute csr all reduce sum c_cs[*]",
+               ["c_ci[1][4]", "c_ci[2][3]", "c_cj[2]", "c_ck[1][2]", "c_co[2][3]", "c_cu[1][3]", "c_cx", "c_cx[2]", "c_cx[1][1]", "c_cy[1][4]", "c_cz[2][4]", "c_csr[*]"]),
+        "rd": (f"compute rd all rdf {r.choice([6, 11])} {r.choice(['', '1 2', '* 1 2 *'])} cutoff {r.choice([0.7, 1.0])}\ncompute re odd rdf 5\ncompute va odd vacf\ncompute ca odd centro/atom 4\ncompute cb2 all reduce sum c_ca",
+               ["c_rd[4][2]", "c_rd[6][3]", "c_re[5][1]", "c_re[5][3]", "c_va[*]", "c_cb2"]),
+        "gg": ("compute gg odd group/group few\ncompute gh few group/group all", ["c_gg[*]", "c_gh[*]"]),
         "vf": ("variable vf equal bound(all,xmax)+gyration(odd)+ke(few)+inertia(all,xy)+angmom(all,z)+omega(all,y)+torque(odd,x)", ["v_vf"]),
     }
     # LAMMPS' pair/local shortens the springs of style granular that slide.
     if not classic:
         kinds.pop("pl")
+        kinds.pop("gg")
     lines, columns = [], []
     for key in r.sample(sorted(kinds), r.randint(3, 9)):
         own, shown = kinds[key]

@@ -135,6 +135,8 @@ const AVERAGES_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.00300
     fix 1 all nve\ntimestep 5.0e-8\ncompute m all msd com yes\ncompute mav all msd\n\
     compute moved all displace/atom\ncompute far all reduce max c_moved[4]\n\
     compute slabs all chunk/atom bin/1d x lower 0.002 units box\n\
+    compute types all chunk/atom type nchunk once\ncompute mc all msd/chunk types\ncompute vc all vacf/chunk types\n\
+    compute vv all vacf\ncompute crit all property/atom s0\ncompute least all reduce min c_crit\n\
     fix t all ave/time 2 3 10 c_m[4] c_thermo_temp ave running\n\
     fix w all ave/time 5 2 10 c_m[4] c_far ave window 3\nfix tv all ave/time 2 5 10 c_thermo_press mode vector\n\
     fix c all ave/chunk 2 3 10 slabs vx density/number ave running\n\
@@ -143,7 +145,7 @@ const AVERAGES_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.00300
     compute ra all reduce sum f_a[1] f_a[2]\nfix keep all vector 4 c_m[4] c_far nmax 6\nfix s all store/state 15 x vx\n\
     compute rs all reduce sum f_s[1] f_s[2]\nvariable late equal f_keep[1][1]\n\
     thermo_style custom step pe c_m[4] c_mav[4] c_far f_t[1] f_t[2] f_w[1] f_w[2] f_tv[2] f_c[1][3] f_c[2][4] f_cw[2][3] f_h[1] \
-    f_h[4] f_h[3][2] c_ra[1] c_ra[2] c_rs[2]\n\
+    f_h[4] f_h[3][2] c_ra[1] c_ra[2] c_rs[2] c_mc[1][4] c_vc[1][4] c_vv[4] c_least\n\
     thermo_modify format float %24.17g\nthermo 10\n";
 
 const SCENES: [Scene; 15] = [

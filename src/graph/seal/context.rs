@@ -154,6 +154,14 @@ impl SealCx for Sealer<'_> {
         self.graph.pair.as_ref().map_or(Ok(vec![]), |node| node.pair.probes(self.world))
     }
 
+    fn singles(&mut self) -> Result<Vec<Box<dyn Probe>>> {
+        self.graph.pair.as_ref().map_or(Ok(vec![]), |node| node.pair.singles(self.world))
+    }
+
+    fn cutoff(&mut self) -> Option<f64> {
+        self.graph.pair.as_ref()?.pair.cutoff(self.world)
+    }
+
     fn energy_fixes(&self) -> Vec<String> {
         self.graph.fixes.iter().filter(|f| f.energy).map(|f| format!("f_{}", f.id)).collect()
     }

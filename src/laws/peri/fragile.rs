@@ -40,7 +40,7 @@ const CHUNKS_PER_PART: usize = 32;
 
 impl LatticeBody {
     /// Micromodulus, s00 and alpha of the bond between two cells.
-    fn pair(&self, i: usize, j: usize) -> [f64; 3] {
+    pub(super) fn pair(&self, i: usize, j: usize) -> [f64; 3] {
         let kind = |cell: usize| {
             let row = &self.rows[self.slot_of(cell)];
             if self.cell_kind.is_empty() {

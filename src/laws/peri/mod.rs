@@ -26,5 +26,6 @@ mod released;
 mod rows;
 mod single;
 mod state;
+pub mod stretches;
 mod stretching;
 mod tables;

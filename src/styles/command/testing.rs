@@ -42,7 +42,7 @@ impl Values for Table<'_> {
         Ok((0..w.n()).map(|i| f(w, i)).collect())
     }
     fn flow(&mut self, w: &mut World, _compute: &ValueRef) -> Result<Flow> {
-        Ok(Flow { taken: vec![[0.0; 3]; w.n()], group: GroupId::ALL, whole: [false; 3] })
+        Ok(Flow { taken: vec![[0.0; 3]; w.n()], group: GroupId::ALL, whole: [false; 3], apart: vec![] })
     }
     fn stop(&mut self, _w: &mut World, fix: &Word, _what: Motion) -> Result<()> {
         fail(crate::diag::Code::UNKNOWN_NAME, fix.span, "no such fix")

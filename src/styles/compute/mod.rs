@@ -1,6 +1,7 @@
 //! Computes: quantities read from the world, never changing it.
 
 mod bond_local;
+mod centro_atom;
 pub(super) mod chunk;
 mod cluster_atom;
 mod com;
@@ -18,6 +19,7 @@ mod fabric;
 mod family_values;
 mod fragments;
 mod global_atom;
+mod group_group;
 mod gyration;
 mod ke;
 mod ke_atom;
@@ -35,12 +37,20 @@ mod plasticity_atom;
 mod pressure;
 pub mod property_atom;
 mod property_local;
+mod rdf;
 pub mod reduce;
+mod rigid_energy;
+mod rigid_local;
 mod slice;
 mod stress_atom;
 mod temp;
+mod temp_deform;
 pub(super) mod temp_flow;
+mod temp_profile;
+mod temp_region;
 mod temp_sphere;
+mod thermal;
+mod vacf;
 
 use super::{BuildCx, Flow, SealCx, Shape, Style};
 use crate::diag::{Code, Diagnostic, Result};
@@ -82,6 +92,11 @@ pub trait Compute: Send {
 
     /// Forgets what `declare` captured.
     fn remove(&self, _w: &mut World) {}
+
+    /// Whether it takes note of how the first run begins, even if nobody asks for it then.
+    fn begins(&self) -> bool {
+        false
+    }
 
     /// The op that takes the present state as a new beginning after a snapshot of a dump (`dump_modify refresh`), for
     /// computes that have one.
@@ -128,10 +143,20 @@ pub trait Compute: Send {
 #[rustfmt::skip]
 pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &bond_local::BondLocal,
+    &centro_atom::CentroAtom,
+    &chunk::angmom::AngmomChunk,
     &chunk::atom::ChunkAtom,
     &chunk::com::ComChunk,
+    &chunk::first::MsdChunk,
+    &chunk::first::VacfChunk,
+    &chunk::gyration::GyrationChunk,
+    &chunk::inertia::InertiaChunk,
+    &chunk::omega::OmegaChunk,
     &chunk::property::PropertyChunk,
     &chunk::reduce::ReduceChunk,
+    &chunk::spread::SpreadAtom,
+    &chunk::temp::TempChunk,
+    &chunk::torque::TorqueChunk,
     &chunk::vcm::VcmChunk,
     &cluster_atom::AggregateAtom,
     &cluster_atom::ClusterAtom,
@@ -150,6 +175,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &fabric::Fabric,
     &fragments::Fragments,
     &global_atom::GlobalAtom,
+    &group_group::GroupGroup,
     &gyration::Gyration,
     &ke::Ke,
     &ke_atom::KeAtom,
@@ -167,15 +193,23 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &pressure::Pressure,
     &property_atom::PropertyAtom,
     &property_local::PropertyLocal,
+    &rdf::Rdf,
     &reduce::Reduce,
     &reduce::ReduceRegion,
+    &rigid_energy::ErotateRigid,
+    &rigid_energy::KeRigid,
+    &rigid_local::RigidLocal,
     &slice::Slice,
     &stress_atom::StressAtom,
     &temp::Temp,
+    &temp_deform::TempDeform,
     &temp_flow::TempCom,
     &temp_flow::TempPartial,
     &temp_flow::TempRamp,
+    &temp_profile::TempProfile,
+    &temp_region::TempRegion,
     &temp_sphere::TempSphere,
+    &vacf::Vacf,
 ];
 
 /// Which terms of the potential energy count.

@@ -33,8 +33,12 @@ impl Style for PairLocal {
                    the two types together, with zeros where spheres do not touch; `cutoff radius`: pairs closer than the sum of \
                    their radii. LAMMPS' first particle of a pair is that of its neighbour list, and its granular style shortens the \
                    springs of contacts that slide when this compute (or fabric) looks at them, which changes the run; \
-                   perigrain's computes change nothing. Peridynamic styles cannot be \
-                   asked about single pairs yet: their pairs are no rows.",
+                   perigrain's computes change nothing.\n\n\
+                   Of peridynamic styles `peri/pmb` alone can be asked, as in LAMMPS, by itself and without `peri_modify broken compress`: \
+                   pairs within the horizon, with the force on the first and the energy that its bond, if it lives, and short-range repulsion \
+                   have with the volume of the second (force and energy densities in LAMMPS' convention); under `-compat lammps` without bonds across \
+                   periodic faces, which LAMMPS forgets here. In a `hybrid` pairs of \
+                   peridynamic sub-styles are no rows.",
             example: "compute c all pair/local dist force p4 cutoff radius",
         }
     }
@@ -173,13 +177,13 @@ impl Compute for Declared {
 /// # Errors
 /// There is none.
 pub(super) fn answering(id: &str, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Probe>>> {
-    let probes = cx.probes()?;
+    let probes = cx.singles()?;
     if !probes.is_empty() {
         return Ok(probes);
     }
     let text = format!("compute {id}: no pair style of this scene can be asked about single pairs");
     Err(Diagnostic::error(Code::INCOMPLETE, cx.span(), text)
-        .help("granular pair styles can: `pair_style granular`, `gran/hooke/history` …")
+        .help("granular pair styles can, and `peri/pmb`: `pair_style granular`, `gran/hooke/history` …")
         .into())
 }
 

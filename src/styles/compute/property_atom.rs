@@ -11,7 +11,9 @@ use crate::styles::pair::peri::view;
 use crate::styles::step_op::{Wanted, fill};
 use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
 use crate::world::columns::{HEATFLOW, TEMPERATURE};
+use crate::world::index::Index;
 use crate::world::{AtomStyle, GroupId, SlotId, World};
+use std::borrow::Cow;
 
 /// The style.
 pub struct PropertyAtom;
@@ -27,8 +29,13 @@ impl Style for PropertyAtom {
             text: "Per-atom vector for one attribute, array for several; 0 outside the group. Attributes: `id type proc \
                    mass x y z`; `xs ys zs` as fractions of the box; `xu yu zu` unwrapped across periodic faces; `ix iy iz` \
                    image counts; `vx vy vz fx fy fz`; with atom_style sphere `radius diameter omegax omegay omegaz tqx \
-                   tqy tqz`; with atom_style peri `vfrac`, the volume; with molecules `mol`; with `bond_style bpm/peri` `s0`, the least critical stretch s00 − α smin of a particle's bonds, `smin`, their smallest stretch, and `lambda`, its plastic multiplier (0 without bonds). All in the deck's units. LAMMPS' other attributes \
-                   belong to atom styles that perigrain does not have and are refused, as is `s0` of other solids. `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`, `temperature`, `heatflow`: those of `fix property/atom`.",
+                   tqy tqz`; with atom_style peri `vfrac`, the volume, and `s0`; with molecules `mol` and `nbonds`, how many bonds are listed \
+                   with the particle (with its first end only, under `newton off` with both); with `bond_style bpm/peri` `s0`, the least critical stretch s00 − α smin of a particle's bonds, `smin`, their smallest stretch, and `lambda`, its plastic multiplier (0 without bonds). All in the deck's units. LAMMPS' other attributes \
+                   belong to atom styles that perigrain does not have and are refused. `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`, `temperature`, `heatflow`: those of `fix property/atom`.\n\n\
+                   `s0` of pair styles peri/… is LAMMPS' critical stretch: the largest s00 − α s of the bonds that a particle had before the \
+                   last step broke some, s being their stretches in that step. Under `-compat lammps` the next step breaks by it, else by \
+                   s00 − α s_min of each pair of types, which is the same where all pairs have one s00 and α. Without bonds, and before the first \
+                   step, it is the largest number there is (1.8·10³⁰⁸), as in LAMMPS.",
             example: "compute r all property/atom radius",
         }
     }
@@ -42,6 +49,7 @@ enum Needs {
     Peri,
     Molecules,
     Linked,
+    Breaking,
 }
 
 impl Needs {
@@ -52,6 +60,7 @@ impl Needs {
             Needs::Peri => style.peri,
             Needs::Molecules => style.molecules,
             Needs::Linked => style.bonded,
+            Needs::Breaking => style.peri || style.bonded,
         }
     }
 }
@@ -63,6 +72,8 @@ type Read = fn(&World, usize) -> f64;
 pub enum Getter {
     /// One that particles have by themselves.
     Own(Read),
+    /// One that is found for all particles together.
+    Whole(fn(&World) -> Vec<f64>),
     /// A column of fix property/atom.
     Column(String),
 }
@@ -77,61 +88,83 @@ impl Getter {
         w.columns.present(full).map(Getter::Column).ok_or_else(|| gone(full, span).into())
     }
 
-    /// The value of particle `i`.
-    pub fn get(&self, w: &World, i: usize) -> f64 {
+    /// What reads the present values.
+    pub fn now<'w>(&self, w: &'w World) -> Values<'w> {
         match self {
-            Getter::Own(read) => read(w, i),
-            Getter::Column(name) => w.columns.get_scalar(name).and_then(|c| c.get(i)).copied().unwrap_or(0.0),
+            Getter::Own(read) => Values::Own(w, *read),
+            Getter::Whole(find) => Values::Found(Cow::Owned(find(w))),
+            Getter::Column(name) => {
+                Values::Found(Cow::Borrowed(w.columns.get_scalar(name).unwrap_or_default()))
+            }
+        }
+    }
+}
+
+/// The values of an attribute at a moment.
+pub enum Values<'w> {
+    /// Read one by one.
+    Own(&'w World, Read),
+    /// All known.
+    Found(Cow<'w, [f64]>),
+}
+
+impl Values<'_> {
+    /// The value of particle `i`.
+    pub fn get(&self, i: usize) -> f64 {
+        match self {
+            Values::Own(w, read) => read(w, i),
+            Values::Found(all) => all.get(i).copied().unwrap_or(0.0),
         }
     }
 }
 
 /// Name, needs and value of every attribute.
-const ATTRIBUTES: &[(&str, Needs, Read)] = &[
-    ("id", Needs::Nothing, |w, i| f64::from(w.particles.tag[i])),
-    ("type", Needs::Nothing, |w, i| f64::from(w.particles.kind[i])),
-    ("proc", Needs::Nothing, |_, _| 0.0),
-    ("mass", Needs::Nothing, |w, i| Masses::of(w).get(i)),
-    ("x", Needs::Nothing, |w, i| w.particles.x[i][0]),
-    ("y", Needs::Nothing, |w, i| w.particles.x[i][1]),
-    ("z", Needs::Nothing, |w, i| w.particles.x[i][2]),
-    ("xs", Needs::Nothing, |w, i| scaled(w, i, 0)),
-    ("ys", Needs::Nothing, |w, i| scaled(w, i, 1)),
-    ("zs", Needs::Nothing, |w, i| scaled(w, i, 2)),
-    ("xu", Needs::Nothing, |w, i| unwrapped(w, i)[0]),
-    ("yu", Needs::Nothing, |w, i| unwrapped(w, i)[1]),
-    ("zu", Needs::Nothing, |w, i| unwrapped(w, i)[2]),
-    ("ix", Needs::Nothing, |w, i| f64::from(w.particles.image[i][0])),
-    ("iy", Needs::Nothing, |w, i| f64::from(w.particles.image[i][1])),
-    ("iz", Needs::Nothing, |w, i| f64::from(w.particles.image[i][2])),
-    ("vx", Needs::Nothing, |w, i| w.particles.v[i][0]),
-    ("vy", Needs::Nothing, |w, i| w.particles.v[i][1]),
-    ("vz", Needs::Nothing, |w, i| w.particles.v[i][2]),
-    ("fx", Needs::Nothing, |w, i| w.particles.f[i][0]),
-    ("fy", Needs::Nothing, |w, i| w.particles.f[i][1]),
-    ("fz", Needs::Nothing, |w, i| w.particles.f[i][2]),
-    ("radius", Needs::Sphere, |w, i| w.particles.radius[i]),
-    ("diameter", Needs::Sphere, |w, i| 2.0 * w.particles.radius[i]),
-    ("omegax", Needs::Sphere, |w, i| w.particles.omega[i][0]),
-    ("omegay", Needs::Sphere, |w, i| w.particles.omega[i][1]),
-    ("omegaz", Needs::Sphere, |w, i| w.particles.omega[i][2]),
-    ("tqx", Needs::Sphere, |w, i| w.particles.torque[i][0]),
-    ("tqy", Needs::Sphere, |w, i| w.particles.torque[i][1]),
-    ("tqz", Needs::Sphere, |w, i| w.particles.torque[i][2]),
-    ("vfrac", Needs::Peri, |w, i| w.particles.volume[i]),
-    ("s0", Needs::Linked, |w, i| strain(w, i).map_or(0.0, |s| s.critical)),
-    ("smin", Needs::Linked, |w, i| strain(w, i).map_or(0.0, |s| s.smallest)),
-    ("lambda", Needs::Linked, |w, i| w.families.as_ref().map_or(0.0, |f| f.plastic_strain(i))),
-    ("mol", Needs::Molecules, |w, i| f64::from(w.particles.molecule[i])),
+const ATTRIBUTES: &[(&str, Needs, Getter)] = &[
+    ("id", Needs::Nothing, Getter::Own(|w, i| f64::from(w.particles.tag[i]))),
+    ("type", Needs::Nothing, Getter::Own(|w, i| f64::from(w.particles.kind[i]))),
+    ("proc", Needs::Nothing, Getter::Own(|_, _| 0.0)),
+    ("mass", Needs::Nothing, Getter::Own(|w, i| Masses::of(w).get(i))),
+    ("x", Needs::Nothing, Getter::Own(|w, i| w.particles.x[i][0])),
+    ("y", Needs::Nothing, Getter::Own(|w, i| w.particles.x[i][1])),
+    ("z", Needs::Nothing, Getter::Own(|w, i| w.particles.x[i][2])),
+    ("xs", Needs::Nothing, Getter::Own(|w, i| scaled(w, i, 0))),
+    ("ys", Needs::Nothing, Getter::Own(|w, i| scaled(w, i, 1))),
+    ("zs", Needs::Nothing, Getter::Own(|w, i| scaled(w, i, 2))),
+    ("xu", Needs::Nothing, Getter::Own(|w, i| unwrapped(w, i)[0])),
+    ("yu", Needs::Nothing, Getter::Own(|w, i| unwrapped(w, i)[1])),
+    ("zu", Needs::Nothing, Getter::Own(|w, i| unwrapped(w, i)[2])),
+    ("ix", Needs::Nothing, Getter::Own(|w, i| f64::from(w.particles.image[i][0]))),
+    ("iy", Needs::Nothing, Getter::Own(|w, i| f64::from(w.particles.image[i][1]))),
+    ("iz", Needs::Nothing, Getter::Own(|w, i| f64::from(w.particles.image[i][2]))),
+    ("vx", Needs::Nothing, Getter::Own(|w, i| w.particles.v[i][0])),
+    ("vy", Needs::Nothing, Getter::Own(|w, i| w.particles.v[i][1])),
+    ("vz", Needs::Nothing, Getter::Own(|w, i| w.particles.v[i][2])),
+    ("fx", Needs::Nothing, Getter::Own(|w, i| w.particles.f[i][0])),
+    ("fy", Needs::Nothing, Getter::Own(|w, i| w.particles.f[i][1])),
+    ("fz", Needs::Nothing, Getter::Own(|w, i| w.particles.f[i][2])),
+    ("radius", Needs::Sphere, Getter::Own(|w, i| w.particles.radius[i])),
+    ("diameter", Needs::Sphere, Getter::Own(|w, i| 2.0 * w.particles.radius[i])),
+    ("omegax", Needs::Sphere, Getter::Own(|w, i| w.particles.omega[i][0])),
+    ("omegay", Needs::Sphere, Getter::Own(|w, i| w.particles.omega[i][1])),
+    ("omegaz", Needs::Sphere, Getter::Own(|w, i| w.particles.omega[i][2])),
+    ("tqx", Needs::Sphere, Getter::Own(|w, i| w.particles.torque[i][0])),
+    ("tqy", Needs::Sphere, Getter::Own(|w, i| w.particles.torque[i][1])),
+    ("tqz", Needs::Sphere, Getter::Own(|w, i| w.particles.torque[i][2])),
+    ("vfrac", Needs::Peri, Getter::Own(|w, i| w.particles.volume[i])),
+    ("s0", Needs::Breaking, Getter::Whole(critical)),
+    ("nbonds", Needs::Molecules, Getter::Whole(bonds_of)),
+    ("smin", Needs::Linked, Getter::Own(|w, i| strain(w, i).map_or(0.0, |s| s.smallest))),
+    ("lambda", Needs::Linked, Getter::Own(|w, i| w.families.as_ref().map_or(0.0, |f| f.plastic_strain(i)))),
+    ("mol", Needs::Molecules, Getter::Own(|w, i| f64::from(w.particles.molecule[i]))),
 ];
 
 /// LAMMPS' attributes of atom styles that perigrain does not have.
 const ELSEWHERE: &[&str] = &[
-    "q", "mux", "muy", "muz", "mu", "spx", "spy", "spz", "sp", "fmx", "fmy", "fmz", "nbonds", "angmomx",
-    "angmomy", "angmomz", "shapex", "shapey", "shapez", "quatw", "quati", "quatj", "quatk", "end1x", "end1y",
-    "end1z", "end2x", "end2y", "end2z", "corner1x", "corner1y", "corner1z", "corner2x", "corner2y",
-    "corner2z", "corner3x", "corner3y", "corner3z", "espin", "eradius", "ervel", "erforce", "rho", "drho",
-    "e", "de", "cv", "buckling",
+    "q", "mux", "muy", "muz", "mu", "spx", "spy", "spz", "sp", "fmx", "fmy", "fmz", "angmomx", "angmomy",
+    "angmomz", "shapex", "shapey", "shapez", "quatw", "quati", "quatj", "quatk", "end1x", "end1y", "end1z",
+    "end2x", "end2y", "end2z", "corner1x", "corner1y", "corner1z", "corner2x", "corner2y", "corner2z",
+    "corner3x", "corner3y", "corner3z", "espin", "eradius", "ervel", "erforce", "rho", "drho", "e", "de",
+    "cv", "buckling",
 ];
 
 /// The refusal of a property of fix property/atom that somebody reads and nobody has.
@@ -146,6 +179,28 @@ pub(in crate::styles) fn gone(full: &str, span: Span) -> Diagnostic {
 fn strain(w: &World, i: usize) -> Option<Strain> {
     let families = w.families.as_ref().filter(|f| !f.of_bonds.is_empty())?;
     families.strain(&view(w).ok()?, i)
+}
+
+/// The critical stretch of each particle.
+fn critical(w: &World) -> Vec<f64> {
+    let Some((families, view)) = w.families.as_ref().zip(view(w).ok()) else { return vec![f64::MAX; w.n()] };
+    if families.of_bonds.is_empty() {
+        return families.critical_stretches(&view);
+    }
+    (0..w.n()).map(|i| families.strain(&view, i).map_or(0.0, |s| s.critical)).collect()
+}
+
+/// How many bonds are listed with each particle.
+fn bonds_of(w: &World) -> Vec<f64> {
+    let tags = &w.particles.tag;
+    let (index, mut counts) = (Index::new(tags), vec![0.0; w.n()]);
+    let ends = if w.settings.newton.bond { 1 } else { 2 };
+    for bond in w.bonds.list.iter().filter(|b| b.kind != 0) {
+        for i in bond.ends[..ends].iter().filter_map(|t| index.find(*t, tags)) {
+            counts[i] += 1.0;
+        }
+    }
+    counts
 }
 
 fn scaled(w: &World, i: usize, d: usize) -> f64 {
@@ -175,12 +230,13 @@ pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
     let name = word.text.as_str();
     if let Some((_, needs, getter)) = ATTRIBUTES.iter().find(|a| a.0 == name) {
         if needs.met(cx.world.particles.style) {
-            return Ok(Getter::Own(*getter));
+            return Ok(getter.clone());
         }
         let style = match needs {
             Needs::Sphere => "atom_style sphere",
             Needs::Molecules => "atom_style bond",
             Needs::Linked => "bond_style bpm/peri",
+            Needs::Breaking => "atom_style peri` or `bond_style bpm/peri",
             _ => "atom_style peri",
         };
         return Err(Diagnostic::error(
@@ -239,10 +295,11 @@ impl Compute for Declared {
             let (bit, columns) = (group.bit(), getters.len());
             out.cols = columns;
             out.atom.resize(w.n() * columns, 0.0);
-            par::each(&mut out.atom[..], |start, values| {
-                for (k, value) in values.iter_mut().enumerate() {
+            let values: Vec<Values> = getters.iter().map(|g| g.now(w)).collect();
+            par::each(&mut out.atom[..], |start, all| {
+                for (k, value) in all.iter_mut().enumerate() {
                     let (i, column) = ((start + k) / columns, (start + k) % columns);
-                    *value = if w.particles.mask[i] & bit != 0 { getters[column].get(w, i) } else { 0.0 };
+                    *value = if w.particles.mask[i] & bit != 0 { values[column].get(i) } else { 0.0 };
                 }
             });
             Ok(())

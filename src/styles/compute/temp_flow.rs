@@ -1,16 +1,13 @@
 //! compute temp/com, temp/partial, temp/ramp: temperature of what is left when a flow is taken away.
 
-use super::temp::{Rules, offer};
+use super::thermal::{Streams, Taken, Thermal, dimension};
 use super::{Compute, ComputeStyle};
 use crate::diag::{Code, Diagnostic, Result, fail};
 use crate::lang::{Args, RefKind, ValueRef};
-use crate::math::vec3::{Vec3, sub};
-use crate::plan::{Op, Stage, When};
 use crate::styles::command::common::{axis, ramp, scales, units_lattice, velocity_axis};
-use crate::styles::matter::{Masses, check_masses, count, sum};
-use crate::styles::step_op::{Wanted, fill};
-use crate::styles::{BuildCx, Doc, Flow, SealCx, Shape, Style};
-use crate::world::{GroupId, SlotId, World};
+use crate::styles::matter::{Masses, count, sum};
+use crate::styles::{BuildCx, Doc, SealCx, Style};
+use crate::world::{GroupId, World};
 
 /// `compute temp/com`.
 pub struct TempCom;
@@ -118,7 +115,7 @@ impl ComputeStyle for TempRamp {
 
 fn declared(flow: Stream, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
     args.finish()?;
-    Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, flow, rules: Rules::default() }))
+    Ok(Box::new(Thermal::new(flow, cx)))
 }
 
 /// The temperature with a flow that the next word names (`bias ID`).
@@ -134,7 +131,9 @@ pub fn named(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
     }
     let text = format!("compute `{}` takes no flow velocity away", r.name);
     let d = Diagnostic::error(Code::WRONG_KIND, r.span, text);
-    Err(d.help("computes temp/com, temp/partial and temp/ramp take one away").into())
+    Err(d
+        .help("computes temp/com, temp/deform, temp/partial, temp/profile, temp/ramp and temp/region take one away")
+        .into())
 }
 
 /// The same at the beginning of a run.
@@ -163,28 +162,19 @@ pub fn of_group(r: &ValueRef, group: GroupId, cx: &mut dyn SealCx) -> Result<Box
     Ok(compute)
 }
 
-#[derive(Clone)]
-struct Declared {
-    id: String,
-    group: GroupId,
-    flow: Stream,
-    rules: Rules,
-}
-
-impl Declared {
-    /// The velocity that is taken away from each particle.
-    fn taken<'a>(&'a self, w: &'a World) -> impl Fn(usize) -> Vec3 + Sync + 'a {
+impl Streams for Stream {
+    fn taken<'a>(&'a self, w: &'a World, group: GroupId) -> Taken<'a> {
         let p = &w.particles;
         let mut drift = [0.0; 3];
-        if self.flow == Stream::Centre {
+        if *self == Stream::Centre {
             let masses = Masses::of(w);
-            let [x, y, z, m] = sum(&p.mask, self.group, |i| {
+            let [x, y, z, m] = sum(&p.mask, group, |i| {
                 let (m, v) = (masses.get(i), p.v[i]);
                 [v[0] * m, v[1] * m, v[2] * m, m]
             });
             drift = [x, y, z].map(|k| if m > 0.0 { k / m } else { 0.0 });
         }
-        move |i| match &self.flow {
+        Box::new(move |i| match self {
             Stream::Centre => drift,
             Stream::Others(counts) => std::array::from_fn(|d| if counts[d] { 0.0 } else { p.v[i][d] }),
             Stream::Ramp { along, by, axis, between } => {
@@ -192,58 +182,23 @@ impl Declared {
                 v[*along] = ramp(p.x[i][*axis], *between, *by);
                 v
             }
+        })
+    }
+
+    fn whole(&self) -> [bool; 3] {
+        match self {
+            Stream::Others(counts) => counts.map(|c| !c),
+            _ => [false; 3],
         }
     }
 
-    fn freedom(&self, w: &World) -> f64 {
-        let dimension = if w.settings.two_dimensional { 2.0 } else { 3.0 };
-        let counting = match &self.flow {
+    fn freedom(&self, w: &World, group: GroupId, extra: Option<f64>) -> f64 {
+        let dimension = dimension(w);
+        let counting = match self {
             Stream::Others(counts) => counts.iter().filter(|c| **c).count() as f64,
             _ => dimension,
         };
-        let extra = self.rules.extra.unwrap_or(dimension);
-        counting * count(w, self.group) as f64 - counting / dimension * extra
-    }
-}
-
-impl Compute for Declared {
-    fn shape(&self) -> Shape {
-        Shape { scalar: true, vector: 6, vector_extensive: true, flow: true, ..Shape::default() }
-    }
-
-    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let span = cx.span();
-        check_masses(cx.world(), span)?;
-        let me = self.clone();
-        let mut freedom = self.rules.freedom();
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x v mass mask", move |w, t, out| {
-            let (p, masses, taken) = (&w.particles, Masses::of(w), me.taken(w));
-            let tensor: [f64; 6] = sum(&p.mask, me.group, |i| {
-                let ([x, y, z], m) = (sub(p.v[i], taken(i)), masses.get(i));
-                [m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z]
-            });
-            let dof = freedom.now(w, t, me.freedom(w), out);
-            offer(w, out, tensor[0] + tensor[1] + tensor[2], tensor, dof);
-            Ok(())
-        }))
-    }
-
-    fn flow(&self, w: &World) -> Option<Flow> {
-        let (taken, mask, bit) = (self.taken(w), &w.particles.mask, self.group.bit());
-        let taken = (0..w.n()).map(|i| if mask[i] & bit != 0 { taken(i) } else { [0.0; 3] }).collect();
-        let whole = match &self.flow {
-            Stream::Others(counts) => counts.map(|c| !c),
-            _ => [false; 3],
-        };
-        Some(Flow { taken, group: self.group, whole })
-    }
-
-    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        self.rules.modify(args)
-    }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
+        counting * count(w, group) as f64 - counting / dimension * extra.unwrap_or(dimension)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::math::vec3::sub;
 use crate::plan::{Op, Stage, When};
 use crate::styles::matter::sum;
 use crate::styles::step_op::{Wanted, fill};
-use crate::styles::{BuildCx, Doc, SealCx, Shape, Style};
+use crate::styles::{BuildCx, Doc, Flow, SealCx, Shape, Style};
 use crate::world::{GroupId, SlotId, World};
 
 /// The style.
@@ -29,8 +29,9 @@ impl Style for TempSphere {
                    `dof rotate` nothing. 0 where no freedom is left. Vector of 6 \
                    (extensive): Σ (m v_a v_b + I ω_a ω_b) for xx yy zz xy xz yz, in energy units. Spheres are counted anew at \
                    each use (see `compute temp`).\n\n\
-                   `bias ID`: the flow that compute temp/com, temp/partial or temp/ramp ID of the same group takes away from \
-                   velocities does not count here either; a component that is taken away whole counts for no degree of freedom. `velocity … \
+                   `bias ID`: the flow that compute temp/com, temp/deform, temp/partial, temp/profile, temp/ramp or temp/region ID of the same group takes away from \
+                   velocities does not count here either; a component that is taken away whole counts for no degree of freedom, nor do \
+                   particles outside the region. `velocity … \
                    temp ID bias yes` then leaves this flow as it is, and compute pressure has the rest as its kinetic part.",
             example: "compute drift all temp/com\ncompute t all temp/sphere bias drift",
         }
@@ -65,13 +66,19 @@ struct Declared {
 }
 
 impl Declared {
-    /// `taken`: components of velocity that the flow takes away whole.
-    fn freedom(&self, w: &World, taken: f64) -> f64 {
+    /// `flow`: what is taken away; its whole components count for no degree of freedom, nor does who is left out.
+    fn freedom(&self, w: &World, flow: Option<&Flow>) -> f64 {
+        let taken = flow.map_or(0.0, |f| f.whole.iter().filter(|d| **d).count() as f64);
+        let apart = |i: usize| flow.is_some_and(|f| f.apart.get(i) == Some(&true));
         let flat = w.settings.two_dimensional;
         let (fly, spin) = if flat { (2.0 - taken, 1.0) } else { (3.0 - taken, 3.0) };
         let fly = if self.rotate { 0.0 } else { fly };
         let p = &w.particles;
-        let [count] = sum(&p.mask, self.group, |i| [if p.radius[i] > 0.0 { fly + spin } else { fly }]);
+        let [count] = sum(&p.mask, self.group, |i| match p.radius[i] > 0.0 {
+            _ if apart(i) => [0.0],
+            true => [fly + spin],
+            false => [fly],
+        });
         let centre = if flat { 2.0 } else { 3.0 };
         // LAMMPS takes the centre's motion off only where translation counts.
         count - self.rules.extra.unwrap_or(if self.rotate { 0.0 } else { centre })
@@ -103,9 +110,10 @@ impl Compute for Declared {
                 let pair = |a: usize, b: usize| fly * v[a] * v[b] + spin * o[a] * o[b];
                 [pair(0, 0), pair(1, 1), pair(2, 2), pair(0, 1), pair(0, 2), pair(1, 2)]
             });
-            let taken = flow.map_or(0.0, |f| f.whole.iter().filter(|d| **d).count() as f64);
-            let (twice, dof) =
-                (tensor[0] + tensor[1] + tensor[2], freedom.now(w, t, me.freedom(w, taken), out));
+            let present = me.freedom(w, flow.as_ref());
+            let anew = flow.is_some_and(|f| !f.apart.is_empty());
+            let dof = if anew { present } else { freedom.now(w, t, present, out) };
+            let twice = tensor[0] + tensor[1] + tensor[2];
             offer(w, out, twice, tensor, dof);
             Ok(())
         }))

@@ -199,11 +199,13 @@ impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         let Some(d) = &w.domain else { return Ok(()) };
         w.memo.insert(self.key(), [d.lo, d.hi].concat());
+        tell(w, &format!("{}{RATES}", self.key()), [[0.0; 3]; 2], self.remap);
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
         w.memo.remove(&self.key());
+        w.memo.remove(&format!("{}{RATES}", self.key()));
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -212,13 +214,16 @@ impl Fix for Declared {
         let when = when.or(When::First);
         let (remap, group) = (self.remap, self.group);
         let w = cx.world();
+        // Forces of the setup see the flow already; a variable's rate is known from the first change on.
+        let t = Tick::between_runs(&w.clock);
+        let (_, _, rate) = track::faces(&tracks, w, &t)?;
+        let stretch = format!("{}{RATES}", self.key());
+        tell(w, &stretch, track::streaming(&tracks, w, rate, true), remap);
         if remap == Remap::Velocities {
-            // Forces of the setup see the flow already; a variable's rate is known from the first change on.
-            let t = Tick::between_runs(&w.clock);
-            let (_, _, rate) = track::faces(&tracks, w, &t)?;
             w.domain.iter_mut().for_each(|d| d.flow = Some(Flow { rate, group }));
         }
-        Ok(vec![Box::new(Move { name: format!("fix {} deform", self.id), tracks, remap, group, when })])
+        let name = format!("fix {} deform", self.id);
+        Ok(vec![Box::new(Move { name, stretch, tracks, remap, group, when })])
     }
 
     fn deforms(&self) -> [bool; 3] {
@@ -230,9 +235,47 @@ impl Fix for Declared {
     }
 }
 
+/// What the name of the rates of a fix ends with.
+const RATES: &str = "/rates";
+
+/// Lets the world remember how fast lengths grow and lower faces move.
+fn tell(w: &mut World, key: &str, [rate, low]: [[f64; 3]; 2], remap: Remap) {
+    let remapped = f64::from(u8::from(remap == Remap::Positions));
+    let row = w.memo.entry(key.to_string()).or_default();
+    row.clear();
+    row.extend(rate.into_iter().chain(low).chain([remapped]));
+}
+
+/// How the box is deformed by all fixes deform.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stretching {
+    /// How fast each length grows [length/time].
+    pub rate: [f64; 3],
+    /// How fast each lower face moves [length/time].
+    pub low: [f64; 3],
+    /// Positions move with the box, and velocities do not.
+    pub remapped: bool,
+}
+
+/// How the box is deformed; `None` without a fix deform that has been in a run.
+pub fn stretching(w: &World) -> Option<Stretching> {
+    let told = w.memo.iter().filter(|(key, _)| key.starts_with("deform/") && key.ends_with(RATES));
+    told.map(|(_, row)| row).fold(None, |all, row| {
+        let mut s: Stretching = all.unwrap_or_default();
+        for d in 0..3 {
+            s.rate[d] += row.get(d).copied().unwrap_or(0.0);
+            s.low[d] += row.get(d + 3).copied().unwrap_or(0.0);
+        }
+        s.remapped |= row.get(6).is_some_and(|r| *r != 0.0);
+        Some(s)
+    })
+}
+
 /// Moves the faces.
 struct Move {
     name: String,
+    /// Under which name the world remembers the rates.
+    stretch: String,
     tracks: [Track; 3],
     remap: Remap,
     group: GroupId,
@@ -257,6 +300,7 @@ impl Op for Move {
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let (lo, hi, rate) = track::faces(&self.tracks, w, t)?;
+        tell(w, &self.stretch, track::streaming(&self.tracks, w, rate, t.setup), self.remap);
         if self.remap == Remap::Velocities
             && let Some(domain) = &mut w.domain
         {

@@ -6,6 +6,7 @@ mod motion;
 mod nve;
 mod pass;
 
+pub use bodies::{Body, bodies, body_column};
 pub use nve::{RigidNve, RigidNveSmall};
 
 use super::{Fix, FixStyle, no_option};

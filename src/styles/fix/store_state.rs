@@ -89,7 +89,7 @@ impl Input {
     /// setup of a run.
     fn left_out_at(&self) -> Which {
         match self {
-            Input::Attribute(_, Getter::Own(_)) => Which::Values,
+            Input::Attribute(_, Getter::Own(_) | Getter::Whole(_)) => Which::Values,
             _ => Which::Attributes,
         }
     }
@@ -128,7 +128,8 @@ impl Declared {
                         "zu" => center[2],
                         _ => 0.0,
                     };
-                    (0..n).map(|i| getter.get(world, i) - less).collect()
+                    let values = getter.now(world);
+                    (0..n).map(|i| values.get(i) - less).collect()
                 }
                 Input::Value(_) if which != input.left_out_at() => {
                     let Some(reading) = readings.get(k).copied().flatten() else { continue };

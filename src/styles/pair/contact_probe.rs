@@ -110,6 +110,22 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
         }
     }
 
+    fn cutoff(&self, w: &World) -> Option<f64> {
+        // With what contacts that hold span beyond touch.
+        let (spans, largest) = (reaching(&self.rules, &self.wanted, w), largest(w));
+        let types = 1..=w.types as u16;
+        let pairs = types.clone().flat_map(|a| types.clone().map(move |b| (a, b)));
+        let reach = pairs.filter_map(|(a, b)| {
+            let touch = largest[usize::from(a) - 1] + largest[usize::from(b) - 1];
+            spans.get(a, b).map(|reach| match reach {
+                Reach::Touch => touch,
+                Reach::Beyond(gap) => touch + gap,
+                Reach::Fixed(r) => r,
+            })
+        });
+        reach.reduce(f64::max)
+    }
+
     fn listed(&self, w: &World) -> Vec<[u32; 2]> {
         self.list(w).iter().map(|p| [p.i, p.j]).collect()
     }

@@ -174,6 +174,10 @@ impl Pair for Declared {
         Ok(self.probes_by_part(w)?.into_iter().flat_map(|(_, probes)| probes).collect())
     }
 
+    fn cutoff(&self, w: &World) -> Option<f64> {
+        (0..self.subs.len()).filter_map(|k| self.limited(k, w.types).cutoff(w)).reduce(f64::max)
+    }
+
     fn probes_by_part(&self, w: &World) -> Result<ByPart<dyn Probe>> {
         (0..self.subs.len()).map(|k| Ok((k, self.limited(k, w.types).probes(w)?))).collect()
     }

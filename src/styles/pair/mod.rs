@@ -77,6 +77,20 @@ pub trait Pair: Send {
         Ok(vec![])
     }
 
+    /// Whom computes can ask what single pairs do to each other: those of `probes`, and solids whose bonds depend on
+    /// nothing but their ends.
+    ///
+    /// # Errors
+    /// As `probes`.
+    fn singles(&self, w: &World) -> Result<Vec<Box<dyn Probe>>> {
+        self.probes(w)
+    }
+
+    /// The largest cutoff of its forces [length], as LAMMPS has it; `None` without any.
+    fn cutoff(&self, w: &World) -> Option<f64> {
+        self.probes(w).ok()?.iter().filter_map(|p| p.cutoff(w)).reduce(f64::max)
+    }
+
     /// The same by sub-style: its number, from 0, and whom to ask.
     ///
     /// # Errors

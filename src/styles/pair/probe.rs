@@ -103,6 +103,11 @@ pub trait Probe: Send {
     /// How many numbers of its own each pair has.
     fn own(&self) -> usize;
 
+    /// The largest distance up to which pairs are looked at [length].
+    fn cutoff(&self, _w: &World) -> Option<f64> {
+        None
+    }
+
     /// The pairs of its neighbour list, made when lists were last rebuilt, in the order of the two tags.
     fn listed(&self, w: &World) -> Vec<[u32; 2]>;
 

@@ -5,7 +5,8 @@ use crate::diag::Result;
 use crate::lang::Args;
 use crate::plan::Op;
 use crate::styles::{BuildCx, Doc, SealCx, Style};
-use std::collections::BTreeSet;
+use crate::world::World;
+use std::collections::BTreeMap;
 
 /// The style.
 pub struct ZeroStyle;
@@ -27,7 +28,7 @@ impl Style for ZeroStyle {
 
 impl PairStyle for ZeroStyle {
     fn build(&self, args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Pair>> {
-        args.positive("the cutoff")?;
+        let cutoff = args.positive("the cutoff")?;
         let mut any = false;
         while let Some(word) = args.next() {
             match word.text.as_str() {
@@ -36,7 +37,7 @@ impl PairStyle for ZeroStyle {
                 _ => return Err(args.unknown(word, &["nocoeff", "full"])),
             }
         }
-        Ok(Box::new(Zero { any, pairs: BTreeSet::new() }))
+        Ok(Box::new(Zero { any, cutoff, pairs: BTreeMap::new() }))
     }
 }
 
@@ -44,7 +45,10 @@ impl PairStyle for ZeroStyle {
 struct Zero {
     /// Whatever stands in `pair_coeff` is taken.
     any: bool,
-    pairs: BTreeSet<(u16, u16)>,
+    /// Of pairs of types that have none of their own.
+    cutoff: f64,
+    /// The cutoffs of pairs of types.
+    pairs: BTreeMap<(u16, u16), f64>,
 }
 
 impl Pair for Zero {
@@ -53,22 +57,27 @@ impl Pair for Zero {
     }
 
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        let mut cutoff = self.cutoff;
         if self.any {
             args.rest();
         } else if !args.is_empty() {
-            args.positive("the cutoff")?;
+            cutoff = args.positive("the cutoff")?;
         }
-        self.pairs.extend(pairs);
+        self.pairs.extend(pairs.iter().map(|p| (*p, cutoff)));
         Ok(())
     }
 
     fn covers(&self, i: u16, j: u16) -> bool {
-        let has = |a, b| self.pairs.contains(&(a, b));
+        let has = |a, b| self.pairs.contains_key(&(a, b));
         has(i, j) || (has(i, i) && has(j, j))
     }
 
     fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         Ok(vec![])
+    }
+
+    fn cutoff(&self, _w: &World) -> Option<f64> {
+        self.pairs.values().copied().reduce(f64::max)
     }
 
     fn boxed(&self) -> Box<dyn Pair> {

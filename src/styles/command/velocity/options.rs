@@ -93,7 +93,9 @@ fn takes_flow_away(o: &Options, bias: Option<Span>, cx: &BuildCx) -> Result<()> 
         }
         Some(_) => return Ok(()),
     };
-    Err(d.help("computes temp/com, temp/partial and temp/ramp take one away").into())
+    Err(d
+        .help("computes temp/com, temp/deform, temp/partial, temp/profile, temp/ramp and temp/region take one away")
+        .into())
 }
 
 /// The fix that a word names, if it is one of rigid bodies.

@@ -1,11 +1,20 @@
 //! Chunks: sets of particles that `compute chunk/atom` numbers, and what other styles read of them.
 
+pub mod angmom;
 mod assign;
 pub mod atom;
 mod bins;
 pub mod com;
+pub mod first;
+pub mod gyration;
+pub mod inertia;
+mod moments;
+pub mod omega;
 pub mod property;
 pub mod reduce;
+pub mod spread;
+pub mod temp;
+pub mod torque;
 pub mod vcm;
 mod words;
 

@@ -88,6 +88,24 @@ pub fn tracks(fix: &Declared, cx: &mut dyn SealCx, when: &When) -> Result<[Track
     Ok(start.map(|start| Track { start, way: ways.next().unwrap_or(Way::Still) }))
 }
 
+/// How fast lengths grow and lower faces move, as compute temp/deform asks for it. Under `compat lammps` it knows nothing of
+/// lengths that keep the volume, and before the first change of a run (`first`) of those alone that grow evenly.
+pub fn streaming(tracks: &[Track; 3], w: &World, rate: [f64; 3], first: bool) -> [[f64; 3]; 2] {
+    let clock = &w.clock;
+    let time = (clock.stop - clock.start) as f64 * clock.dt;
+    // Of all ways but those to given faces the middle stays.
+    let low = std::array::from_fn(|d| match &tracks[d].way {
+        Way::Linear([lo, _]) if time > 0.0 => (lo - tracks[d].start[0]) / time,
+        _ => -0.5 * rate[d],
+    });
+    let known = |d: usize| match tracks[d].way {
+        Way::Linear(_) => true,
+        Way::Volume { .. } => !w.settings.lammps(),
+        _ => !(first && w.settings.lammps()),
+    };
+    [rate, low].map(|v| std::array::from_fn(|d| if known(d) { v[d] } else { 0.0 }))
+}
+
 /// Lower faces, upper faces and rates of the lengths at a step.
 ///
 /// # Errors

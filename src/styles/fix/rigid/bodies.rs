@@ -81,10 +81,21 @@ impl Body {
     }
 }
 
+/// The bodies of the fix of this style and ID, as the world keeps them.
+pub fn bodies(w: &World, style: &str, id: &str) -> Vec<Body> {
+    let kept = w.memo.get(&format!("{style}/{id}/bodies"));
+    kept.map_or(vec![], |m| m.chunks_exact(WIDTH).map(Body::of).collect())
+}
+
+/// The column with the number of each particle's body, from 1; 0 for none.
+pub fn body_column(style: &str, id: &str) -> String {
+    format!("{style}/{id}/body")
+}
+
 impl Declared {
     /// The bodies as the world keeps them.
     pub fn load(&self, w: &World) -> Vec<Body> {
-        w.memo.get(&self.key("bodies")).map_or(vec![], |m| m.chunks_exact(WIDTH).map(Body::of).collect())
+        bodies(w, self.style, &self.id)
     }
 
     /// Puts the bodies back.

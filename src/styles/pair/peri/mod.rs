@@ -1,5 +1,6 @@
 //! Peridynamic pair styles: what they share. A style is its law, the words of its coefficients and its page.
 
+mod bond_probe;
 mod eps;
 mod force;
 mod horizon;
@@ -12,6 +13,7 @@ mod pmb;
 mod reunion;
 mod ves;
 
+use super::probe::Probe;
 use super::{Pair, TypePairs};
 use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::lang::Args;
@@ -22,6 +24,7 @@ use crate::world::families::{
     FamilyOptions, ForceUnit, Influence, Law, LawKind, Layout, Moduli, PmbCoeff, PmbTable, VolumeRule,
 };
 use crate::world::{Region, World};
+use bond_probe::BondProbe;
 pub use eps::PeriEps;
 use force::Force;
 pub use force::view;
@@ -371,6 +374,15 @@ impl Pair for Solid {
                 "compat lammps: one critical stretch per particle also across mixed types",
             ));
         }
+    }
+
+    fn singles(&self, _w: &World) -> Result<Vec<Box<dyn Probe>>> {
+        let plain = self.law.kind == LawKind::Pmb && !self.compress;
+        Ok(if plain { vec![Box::new(BondProbe)] } else { vec![] })
+    }
+
+    fn cutoff(&self, _w: &World) -> Option<f64> {
+        self.table.iter().map(|c| c.horizon).reduce(f64::max)
     }
 
     fn boxed(&self) -> Box<dyn Pair> {
