@@ -61,13 +61,13 @@ pub fn members(w: &World, s: &Surface) -> Vec<bool> {
 
 /// By the bonds that live.
 fn bonded(w: &World, families: &Families, of_solid: &[bool]) -> Vec<Around> {
-    let volume = &w.particles.volume;
+    let (volume, periods) = (&w.particles.volume, w.repeats());
     let of = |i: usize| {
         let mut a = Around::default();
-        for b in families.neighbours(i).into_iter().filter(|b| b.alive) {
+        for (b, length) in families.neighbours_apart(i, periods).into_iter().filter(|(b, _)| b.alive) {
             let j = b.partner as usize;
-            a.weight += b.r0 * b.r0 * volume[j];
-            if b.r0 < NEAREST * volume[i].cbrt() {
+            a.weight += length * length * volume[j];
+            if length < NEAREST * volume[i].cbrt() {
                 a.nearest.push(b.partner);
             }
         }

@@ -196,6 +196,11 @@ impl World {
         })
     }
 
+    /// The same, infinite where the box does not repeat.
+    pub fn repeats(&self) -> [f64; 3] {
+        self.periods().map(|length| if length > 0.0 { length } else { f64::INFINITY })
+    }
+
     /// Number of particles.
     pub fn n(&self) -> usize {
         self.particles.len()

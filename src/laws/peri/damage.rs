@@ -1,6 +1,7 @@
 //! What has become of families: damage, counts, partners, and what happens to them when particles are deleted.
 
 use crate::par;
+use crate::world::families::lattice::LatticeBody;
 use crate::world::families::list::ListBody;
 use crate::world::families::{Families, NearPair};
 
@@ -9,10 +10,26 @@ use crate::world::families::{Families, NearPair};
 pub struct Neighbour {
     /// The partner's index.
     pub partner: u32,
-    /// Length of the bond at the start.
-    pub r0: f64,
     /// Whether the bond still lives.
     pub alive: bool,
+}
+
+/// Where a bond stands.
+enum Link<'a> {
+    /// Along a stencil vector of a body.
+    Lattice(&'a LatticeBody, usize),
+    /// Between two records of the list.
+    List(&'a ListBody, [usize; 2]),
+}
+
+impl Link<'_> {
+    /// Length at the start, by the shortest way where the box repeats in these `periods` (infinite where it does not).
+    fn length(&self, periods: [f64; 3]) -> f64 {
+        match self {
+            Link::Lattice(body, e) => body.xi(*e).iter().map(|x| x * x).sum::<f64>().sqrt(),
+            Link::List(list, [i, j]) => list.z(false, *i, *j, periods).1,
+        }
+    }
 }
 
 impl Families {
@@ -61,8 +78,25 @@ impl Families {
         found
     }
 
+    /// The same with the lengths of bonds at the start; the box repeats in these `periods`, infinite where it does not.
+    pub fn neighbours_apart(&self, i: usize, periods: [f64; 3]) -> Vec<(Neighbour, f64)> {
+        let mut found = Vec::new();
+        self.each_apart(i, periods, |n, length| found.push((n, length)));
+        found.sort_unstable_by_key(|(n, _)| n.partner);
+        found
+    }
+
     /// Calls `f` for all partners of a particle.
     pub(super) fn each(&self, i: usize, mut f: impl FnMut(Neighbour)) {
+        self.walk(i, |n, _| f(n));
+    }
+
+    /// Calls `f` for all partners of a particle with the length of the bond at the start.
+    pub(super) fn each_apart(&self, i: usize, periods: [f64; 3], mut f: impl FnMut(Neighbour, f64)) {
+        self.walk(i, |n, link| f(n, link.length(periods)));
+    }
+
+    fn walk(&self, i: usize, mut f: impl FnMut(Neighbour, Link)) {
         let place = self.place.get(i).copied().unwrap_or(u32::MAX);
         if place == u32::MAX {
             return;
@@ -73,18 +107,16 @@ impl Families {
             body.around(cell, |other, owner, e| {
                 let partner = body.particle[other];
                 if partner != u32::MAX {
-                    let r0 = body.xi(e).iter().map(|x| x * x).sum::<f64>().sqrt();
-                    f(Neighbour { partner, r0, alive: body.lives(owner, e) });
+                    f(Neighbour { partner, alive: body.lives(owner, e) }, Link::Lattice(body, e));
                 }
             });
             return;
         }
-        let record = (place - self.list.first_place) as usize;
-        self.list.around(record, |other, b| {
-            let partner = self.list.particle[other];
+        let (list, record) = (&self.list, (place - self.list.first_place) as usize);
+        list.around(record, |other, b| {
+            let partner = list.particle[other];
             if partner != u32::MAX {
-                let (_, r0) = self.list.z(false, record, other, [f64::INFINITY; 3]);
-                f(Neighbour { partner, r0, alive: self.list.lives(b) });
+                f(Neighbour { partner, alive: list.lives(b) }, Link::List(list, [record, other]));
             }
         });
     }

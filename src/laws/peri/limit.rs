@@ -1,5 +1,6 @@
 //! How long a step peridynamic bodies stand: from the largest frequency of the scene as it is, and by two estimates.
 
+use super::families::periods;
 use crate::math::rng::ParkMiller;
 use crate::par;
 use crate::world::families::{Families, ForceUnit, PeriView};
@@ -49,13 +50,14 @@ impl Families {
     /// The step of Silling & Askari (2005), √(2 ρ/Σ c w V/|ξ|) over the bonds that live, about half the true limit; c is
     /// 18K/(πδ⁴) for state-based laws. `None` without bonds.
     pub fn silling_step(&self, view: &PeriView, density: &[f64], ftm2v: f64) -> Option<f64> {
+        let periods = periods(&view.bounds);
         let step = |i: usize| {
             let mut stiffness = 0.0;
-            self.each(i, |b| {
+            self.each_apart(i, periods, |b, length| {
                 let j = b.partner as usize;
                 let Some(p) = self.table.get(view.kind[i], view.kind[j]).filter(|_| b.alive) else { return };
-                let weight = self.options.volume.weight(b.r0, p.horizon, self.options.lattice_spacing);
-                stiffness += p.c * weight * view.volume[j] / b.r0;
+                let weight = self.options.volume.weight(length, p.horizon, self.options.lattice_spacing);
+                stiffness += p.c * weight * view.volume[j] / length;
             });
             (stiffness > 0.0).then(|| (2.0 * density[i] / (ftm2v * stiffness)).sqrt())
         };

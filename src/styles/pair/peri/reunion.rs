@@ -34,13 +34,13 @@ pub(super) fn check_spheres(style: &Solid, w: &World) -> Result<()> {
     let p = &w.particles;
     let radius = |i: usize| p.radius.get(i).copied().unwrap_or(0.0);
     for i in (0..p.len()).filter(|&i| outside(w, i)) {
-        let near = families.neighbours(i).into_iter();
+        let near = families.neighbours_apart(i, w.repeats()).into_iter();
         // Radii and lengths are both rounded from the deck's numbers: 1e-9 is no overlap.
-        let deep = near.filter(|b| b.alive).find(|b| {
+        let deep = near.filter(|(b, _)| b.alive).find(|(b, length)| {
             let j = b.partner as usize;
-            outside(w, j) && radius(i) + radius(j) > b.r0 * (1.0 + 1e-9)
+            outside(w, j) && radius(i) + radius(j) > length * (1.0 + 1e-9)
         });
-        let Some(b) = deep else { continue };
+        let Some((b, _)) = deep else { continue };
         let (one, other) = (p.tag[i], p.tag[b.partner as usize]);
         let text = format!(
             "the spheres of particles {one} and {other} overlap while they are bonded: they would be flung apart when the bond breaks"
