@@ -1,4 +1,4 @@
-//! LAMMPS' critical stretch of every particle, for whoever wants to see it.
+//! What single bonds and particles show of their stretches: LAMMPS' critical stretch, first lengths, the dead band.
 
 use super::breaking::{Bonds, banded};
 use super::families::periods;
@@ -54,9 +54,7 @@ impl Families {
         }
         show(all, &list.particle, &most);
     }
-}
 
-impl Families {
     /// The length at the start of the bond between two particles.
     pub fn first_length(&self, view: &PeriView, i: usize, j: usize) -> f64 {
         let at = self.reference.as_deref().unwrap_or(view.x0);

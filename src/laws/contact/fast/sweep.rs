@@ -168,7 +168,7 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
                 if cx.span > 0.0 { cx.holding::<W>(&slab.short, &mut hits[..ready]) } else { ready };
             slab.touching += holding;
             if holding > 0 {
-                // SAFETY: passed on. Not before something touches: room for contacts takes longer to clear than few pairs to test.
+                // SAFETY: passed on. Not before something touches: in loose scenes most slabs have no contact.
                 let strip = match &mut strip {
                     Some(strip) => strip,
                     none => none.insert(unsafe { Strip::<V, N>::new(cx.alike) }),

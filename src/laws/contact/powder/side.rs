@@ -93,7 +93,7 @@ fn segment(x: f64) -> f64 {
 }
 
 /// Up to here the series leaves less than 1e-17 of its sum.
-const SMALL: f64 = 0.0223;
+pub(super) const SMALL: f64 = 0.0223;
 
 /// The integral's series, x^(3/2) Σ 8 (−1)^k binom(1/2, k)/(k + 3/2) x^k.
 const SERIES: [f64; 10] = {

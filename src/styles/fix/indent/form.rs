@@ -130,7 +130,7 @@ fn way_out(p: [f64; 2], half: f64, radii: [f64; 2]) -> [f64; 2] {
     ways.into_iter().min_by(|a, b| square(a).total_cmp(&square(b))).unwrap_or_default()
 }
 
-/// By what part more than its square the square of a distance is beyond a length, whatever was rounded.
+/// Where the square of a distance is by this factor more than that of a length, the distance is longer, whatever was rounded.
 const BEYOND: f64 = 1.0 + 1e-9;
 
 impl Body {
