@@ -2,7 +2,8 @@
 
 use super::lanes::{Lanes, Portable};
 use super::pmb::closed;
-use crate::world::families::lattice::CONSTANTS;
+use super::wide;
+use crate::world::families::lattice::{CONSTANTS, Lead};
 
 /// Places in a table of constants of one stencil vector.
 pub mod constant {
@@ -50,8 +51,8 @@ pub struct Chunk<'a> {
     pub f: [*mut f64; 3],
     /// Alive bits of the chunk, one byte per stencil vector.
     pub alive: &'a [u8],
-    /// Per stencil vector: how many cells further the partner is, and the place of its constants.
-    pub to: &'a [(i32, u32)],
+    /// Where the bonds lead.
+    pub to: &'a [Lead],
     /// Constants.
     pub tables: &'a [f64],
     /// Per-cell data of bodies with mixed rows or various volumes.
@@ -79,7 +80,7 @@ pub const CELLS: usize = 8;
 /// Energy and the six components of the virial.
 pub const SUMS: usize = 7;
 
-/// Degree that stands for the closed form.
+/// Degree that stands for the closed form; higher ones are those of [`wide`].
 pub const CLOSED: usize = 8;
 
 /// Displacements of some neighbouring cells, from the chunk's cell `here` on.
@@ -208,16 +209,16 @@ pub unsafe fn force<
         let u = [place::<L>(&a.u, 0), place::<L>(&a.u, half as isize)];
         let mut sum = [[zero; 3]; 2];
         let (mut high, mut low) = (zero, zero);
-        let mut e = 0;
-        while e < a.to.len() {
-            let (to, constants) = *a.to.get_unchecked(e);
-            let bits = *a.alive.get_unchecked(e);
-            e += 1;
+        let mut lead = 0;
+        while lead < a.to.len() {
+            let Lead { to, table, e } = *a.to.get_unchecked(lead);
+            let bits = *a.alive.get_unchecked(e as usize);
+            lead += 1;
             if MASKED && bits == 0 {
                 continue;
             }
             let to = to as isize;
-            let c = a.tables.as_ptr().add(constants as usize);
+            let c = a.tables.as_ptr().add(table as usize);
             let mut v = 0;
             while v < CELLS / L::WIDTH {
                 let here = L::WIDTH * v;
@@ -226,6 +227,9 @@ pub unsafe fn force<
                 let factor = if DEGREE == CLOSED {
                     let z = b.q.mul(L::splat(*c.add(constant::INVERSE)));
                     z.mul(closed(z)).mul(L::splat(*c.add(constant::FACTOR)))
+                } else if DEGREE > CLOSED {
+                    let z = b.q.mul(L::splat(*c.add(constant::INVERSE)));
+                    z.mul(wide::share::<L, DEGREE>(z)).mul(L::splat(*c.add(constant::FACTOR)))
                 } else {
                     series::<L, DEGREE>(b.q, c)
                 };
@@ -262,15 +266,15 @@ pub unsafe fn sums<L: Lanes>(a: &Chunk) -> [[f64; CELLS]; SUMS] {
             let here = L::WIDTH * v;
             let u = place::<L>(&a.u, here as isize);
             let mut sum = [L::splat(0.0); SUMS];
-            let mut e = 0;
-            while e < a.to.len() {
-                let (to, constants) = *a.to.get_unchecked(e);
-                let bits = *a.alive.get_unchecked(e);
-                e += 1;
+            let mut lead = 0;
+            while lead < a.to.len() {
+                let Lead { to, table, e } = *a.to.get_unchecked(lead);
+                let bits = *a.alive.get_unchecked(e as usize);
+                lead += 1;
                 if bits == 0 {
                     continue;
                 }
-                let c = a.tables.as_ptr().add(constants as usize);
+                let c = a.tables.as_ptr().add(table as usize);
                 let b = bonds::<L, true>(&a.u, &u, here as isize + to as isize, c, bits >> here);
                 let z = b.q.mul(L::splat(*c.add(constant::INVERSE)));
                 let one = L::splat(1.0);
@@ -462,7 +466,7 @@ pub unsafe fn run<K: Kernels>(a: &Chunk, degree: usize, masked: bool, track: boo
         };
     }
     // SAFETY: the caller's promise.
-    unsafe { pick!(3 5 7) }
+    unsafe { pick!(3 5 7 10 16) }
 }
 
-const _: () = assert!(constant::ENERGY < CONSTANTS);
+const _: () = assert!(constant::ENERGY < CONSTANTS && wide::FAR == 10 && wide::FARTHEST == 16);

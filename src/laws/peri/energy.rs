@@ -8,7 +8,7 @@ use super::leads::partners;
 use super::list_kernel::{RowKernels, RowTask, dead};
 use super::pmb::stretch;
 use crate::par::{self, Shared};
-use crate::world::families::lattice::{LANES, LatticeBody, PAD};
+use crate::world::families::lattice::{LANES, LatticeBody, Lead, PAD};
 use crate::world::families::list::ListBody;
 use crate::world::families::{Families, FamilyOptions, ForceUnit, PeriTally, PeriView, Window};
 
@@ -123,7 +123,7 @@ pub(super) fn whole_rows(
 fn whole_row(
     body: &LatticeBody,
     slot: usize,
-    to: &[(i32, u32)],
+    to: &[Lead],
     of_chunk: impl Fn(usize, &Chunk) -> [[f64; CELLS]; SUMS],
 ) -> Sums {
     let (row, entries) = (&body.rows[slot], body.stencil.len());

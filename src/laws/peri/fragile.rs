@@ -6,7 +6,7 @@ use super::leads::partners;
 use super::pmb::stretch;
 use super::stretching::{Side, StretchKernels};
 use crate::par::{self, Shared};
-use crate::world::families::lattice::{CONSTANTS, LANES, LatticeBody, PAD};
+use crate::world::families::lattice::{CONSTANTS, LANES, LatticeBody, Lead, PAD};
 use crate::world::families::{Candidate, FamilyOptions, Measures};
 
 /// Where bonds lead back to from a row's cells, along one stencil vector.
@@ -26,10 +26,10 @@ struct Behind {
 /// Memory for one thread's rows.
 #[derive(Default)]
 struct Scratch {
-    meets: Vec<(i32, u32)>,
-    to: Vec<(i32, u32)>,
+    meets: Vec<Option<(i32, u32)>>,
+    to: Vec<Lead>,
     behind: Vec<Behind>,
-    over: Vec<(u16, u8)>,
+    over: Vec<(Lead, u8)>,
     sides: Vec<Side>,
     pairs: Vec<u16>,
     stretches: Vec<[f64; LANES]>,
@@ -60,26 +60,27 @@ impl LatticeBody {
     }
 
     /// The bonds ahead of a chunk along a stencil vector.
-    fn side_ahead(&self, (to, place): (i32, u32), bits: u8) -> Side {
-        let pair = (place as usize / CONSTANTS / self.stencil.len()) as u16;
-        Side { to, place, bits, behind: false, pair }
+    fn side_ahead(&self, Lead { to, table, .. }: Lead, bits: u8) -> Side {
+        let pair = (table as usize / CONSTANTS / self.stencil.len()) as u16;
+        Side { to, place: table, bits, behind: false, pair }
     }
 
     /// The bonds ahead of a chunk along all stencil vectors, of which some live. `to`: where they lead.
-    fn sides_ahead(&self, chunk: usize, to: &[(i32, u32)], sides: &mut Vec<Side>) {
+    fn sides_ahead(&self, chunk: usize, to: &[Lead], sides: &mut Vec<Side>) {
         let entries = self.stencil.len();
         let alive = &self.alive[chunk * entries..][..entries];
         // Tables of a pair of types stand together: few pairs, and to divide for every bond would take longer than the bond.
         let (mut first, mut pair) = (u32::MAX, 0);
-        for (e, (&(to, place), &bits)) in to.iter().zip(alive).enumerate() {
+        for &Lead { to, table, e } in to {
+            let bits = alive[e as usize];
             if bits == 0 {
                 continue;
             }
-            let table = place - (e * CONSTANTS) as u32;
-            if table != first {
-                (first, pair) = (table, (table as usize / (CONSTANTS * entries)) as u16);
+            let of_pair = table - e * CONSTANTS as u32;
+            if of_pair != first {
+                (first, pair) = (of_pair, (of_pair as usize / (CONSTANTS * entries)) as u16);
             }
-            sides.push(Side { to, place, bits, behind: false, pair });
+            sides.push(Side { to, place: table, bits, behind: false, pair });
         }
     }
 
@@ -173,7 +174,7 @@ impl LatticeBody {
             stretches.clear();
             // SAFETY: living bonds lead to cells of the body; kernels read at most seven cells further.
             unsafe { K::over(now, to, alive, &self.tables, f64::from(self.floor[chunk]), over) };
-            sides.extend(over.iter().map(|&(e, bits)| self.side_ahead(to[usize::from(e)], bits)));
+            sides.extend(over.iter().map(|&(lead, bits)| self.side_ahead(lead, bits)));
             // SAFETY: as above.
             unsafe { K::strained(now, before, sides, &self.tables, &self.pairs, stretches) };
             for (side, stretches) in sides.iter().zip(stretches.iter()).filter(|(side, _)| side.bits != 0) {

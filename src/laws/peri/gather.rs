@@ -145,7 +145,16 @@ fn range_of_change(now: &[f64], last: &[f64]) -> (f64, f64) {
             most[k] = greater(change, most[k]);
         }
     }
-    (least.into_iter().fold(f64::INFINITY, lesser), most.into_iter().fold(f64::NEG_INFINITY, greater))
+    // Halves at a time: one after the other each would wait for the one before.
+    let mut half = LANES / 2;
+    while half > 0 {
+        for k in 0..half {
+            least[k] = lesser(least[k], least[k + half]);
+            most[k] = greater(most[k], most[k + half]);
+        }
+        half /= 2;
+    }
+    (least[0], most[0])
 }
 
 /// The displacement among its periodic images that is nearest to the one before.

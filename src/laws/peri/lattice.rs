@@ -5,6 +5,7 @@ use super::leads::{ahead, find_leads, row_limit};
 use super::pmb::{UP_TO_3, UP_TO_5, UP_TO_7};
 use super::state::kernels::StateKernels;
 use super::state::lattice::States;
+use super::wide::{FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
 use crate::par::Shared;
 use crate::world::families::Window;
 use crate::world::families::lattice::{LANES, LatticeBody, PAD, PAGE, RowMotion, STAGGER, staggered};
@@ -19,6 +20,9 @@ pub struct Mode {
     /// Leave out what is at rest.
     pub skip: bool,
 }
+
+/// Any coordinate.
+pub(super) const EVERYWHERE: (i32, i32) = (i32::MIN, i32::MAX);
 
 /// Bits of [`LatticeBody::flagged`].
 pub const MAY_BREAK: u8 = 1;
@@ -164,14 +168,17 @@ impl<'a> Sweep<'a> {
         // SAFETY: a row belongs to one slab.
         let growth = unsafe { &mut self.growth.get(slot..slot + 1)[0] };
         let spread = self.states.as_ref().filter(|s| s.spread);
-        if spread.is_none_or(|s| s.kind.bond_based()) {
-            let motion = self.motion(slot);
+        let motion = spread.is_none_or(|s| s.kind.bond_based()).then(|| self.motion(slot));
+        if let Some(motion) = &motion {
             let range = [0, 1, 2].map(|k| (motion.most[k] - motion.least[k]).max(0.0) / body.spacing);
             let d = range.iter().map(|r| r * r).sum::<f64>().sqrt();
             // |z' - z| <= (|eta' - eta|/|xi|) (r + r')/|xi| with r < 1.007 |xi|, r' <= r + |eta' - eta|.
             *growth = d * (2.02 + d);
         }
-        let at = if spread.is_some() { self.reached(slot) } else { self.moved(slot) };
+        let at = match &motion {
+            Some(motion) if spread.is_none() => (motion.lo, motion.hi),
+            _ => self.reached(slot),
+        };
         let active = (at.0.saturating_sub(body.reach), at.1.saturating_add(body.reach));
         RowPlan { active, growth: *growth, limit: row_limit(body, slot) }
     }
@@ -182,18 +189,12 @@ impl<'a> Sweep<'a> {
         body.steps.iter().fold(motion[slot], |m, &step| m.with(&motion[ahead(body, slot, step)]))
     }
 
-    /// Where sites that a row's bonds join are not at rest.
-    fn moved(&self, slot: usize) -> (i32, i32) {
-        let (body, motion) = (self.body, &self.body.motion);
-        body.steps.iter().fold((motion[slot].lo, motion[slot].hi), |at, &step| {
-            let other = &motion[ahead(body, slot, step)];
-            (at.0.min(other.lo), at.1.max(other.hi))
-        })
-    }
-
     /// Where sites that a row's bonds join have dilatations.
     fn reached(&self, slot: usize) -> (i32, i32) {
         let (body, active) = (self.body, &self.body.state.active);
+        if active.is_empty() {
+            return EVERYWHERE;
+        }
         body.steps.iter().fold(active[slot], |at, &step| {
             let other = active[ahead(body, slot, step)];
             (at.0.min(other.0), at.1.max(other.1))
@@ -343,13 +344,16 @@ fn degree(bound: f64) -> usize {
         b if b < UP_TO_3 => 3,
         b if b < UP_TO_5 => 5,
         b if b < UP_TO_7 => 7,
+        b if b < UP_TO_FAR => FAR,
+        b if b < UP_TO_FARTHEST => FARTHEST,
         _ => chunk::CLOSED,
     }
 }
 
 /// The bound at which a chunk that was found at `z` is measured again.
 fn next_measure(z: f64) -> f64 {
-    [UP_TO_3, UP_TO_5, UP_TO_7].into_iter().find(|&edge| z < 0.95 * edge).unwrap_or(0.0)
+    let edges = [UP_TO_3, UP_TO_5, UP_TO_7, UP_TO_FAR, UP_TO_FARTHEST];
+    edges.into_iter().find(|&edge| z < 0.95 * edge).unwrap_or(0.0)
 }
 
 fn round_up(z: f64) -> f32 {

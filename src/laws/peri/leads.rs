@@ -1,6 +1,6 @@
 //! Where the bonds of a lattice's rows lead: found once, looked up in every step.
 
-use crate::world::families::lattice::{CONSTANTS, LANES, LatticeBody, Leads, MIXED};
+use crate::world::families::lattice::{CONSTANTS, LANES, LatticeBody, Lead, Leads, MIXED};
 
 /// The row slot that bonds with a row step lead to.
 pub(super) fn ahead(body: &LatticeBody, slot: usize, (across, up): (i32, usize)) -> usize {
@@ -31,13 +31,12 @@ pub(super) fn row_limit(body: &LatticeBody, slot: usize) -> (f64, f64) {
     limit
 }
 
-/// Finds for each stencil vector how many cells further it leads from a row's cells, and the place of its
-/// constants; `meets` is scratch.
+/// Finds where the bonds of a row's cells lead; `meets` is scratch.
 pub(super) fn partners(
     body: &LatticeBody,
     slot: usize,
-    meets: &mut Vec<(i32, u32)>,
-    to: &mut Vec<(i32, u32)>,
+    meets: &mut Vec<Option<(i32, u32)>>,
+    to: &mut Vec<Lead>,
 ) {
     meets.clear();
     partners_beside(body, slot, meets, to);
@@ -49,7 +48,7 @@ pub(super) fn find_leads(body: &mut LatticeBody) {
         return;
     }
     let (mut leads, mut meets, mut to) = (Leads::default(), vec![], vec![]);
-    leads.of_row.resize(body.rows.len(), 0);
+    leads.of_row.resize(body.rows.len(), (0, 0));
     let mut begin = 0;
     for slot in (0..body.rows.len()).filter(|&slot| body.rows[slot].len > 0) {
         partners_beside(body, slot, &mut meets, &mut to);
@@ -57,7 +56,7 @@ pub(super) fn find_leads(body: &mut LatticeBody) {
             begin = leads.to.len();
             leads.to.extend_from_slice(&to);
         }
-        leads.of_row[slot] = begin as u32;
+        leads.of_row[slot] = (begin as u32, leads.to.len() as u32);
     }
     let vacant = |cells: &[u32]| cells[LANES / 2..].iter().all(|&p| p == u32::MAX);
     leads.half = body.particle.chunks(LANES).map(vacant).collect();
@@ -67,22 +66,18 @@ pub(super) fn find_leads(body: &mut LatticeBody) {
 
 /// [`partners`] after another row of this body, or with no `meets`: where rows beside each other meet theirs alike, nothing
 /// has to be found anew.
-fn partners_beside(body: &LatticeBody, slot: usize, meets: &mut Vec<(i32, u32)>, to: &mut Vec<(i32, u32)>) {
+fn partners_beside(body: &LatticeBody, slot: usize, meets: &mut Vec<Option<(i32, u32)>>, to: &mut Vec<Lead>) {
     let known = meets.len() == body.steps.len();
-    meets.resize(body.steps.len(), (0, 0));
+    meets.resize(body.steps.len(), None);
     let row = &body.rows[slot];
     let various = !body.cell_kind.is_empty();
     let mut same = known;
     for (meets, &step) in meets.iter_mut().zip(&body.steps) {
         let (other, uniform) = meet(body, slot, step);
         let other = &body.rows[other];
-        if other.len == 0 {
-            // No bond leads there.
-            continue;
-        }
         let offset = other.start as i32 - row.start as i32 + row.lo - other.lo;
         let table = if various { 0 } else { uniform.unwrap_or(0) * body.stencil.len() };
-        let new = (offset, (table * CONSTANTS) as u32);
+        let new = (other.len > 0).then_some((offset, (table * CONSTANTS) as u32));
         same &= *meets == new;
         *meets = new;
     }
@@ -91,7 +86,8 @@ fn partners_beside(body: &LatticeBody, slot: usize, meets: &mut Vec<(i32, u32)>,
     }
     to.clear();
     for (e, (vector, &step)) in body.stencil.iter().zip(&body.step_of).enumerate() {
-        let (offset, table) = meets[usize::from(step)];
-        to.push((offset + vector[0], table + (e * CONSTANTS) as u32));
+        if let Some((offset, pair)) = meets[usize::from(step)] {
+            to.push(Lead { to: offset + vector[0], table: pair + (e * CONSTANTS) as u32, e: e as u32 });
+        }
     }
 }

@@ -6,6 +6,7 @@ use std::ptr::{null, null_mut};
 use super::lanes::{Lanes, Portable};
 use super::pmb::{SERIES, UP_TO_3, UP_TO_7, closed};
 use super::rows::{MOST, Rows};
+use super::wide::{self, FARTHEST, UP_TO_FARTHEST};
 use crate::world::families::FamilyOptions;
 use crate::world::families::list::{GROUP, ListBody, PairConstants};
 
@@ -295,12 +296,13 @@ unsafe fn pull<L: Lanes>(z: L, alive: L) -> L {
             return series::<L, 3>(z);
         }
         let hot = size.ge(L::splat(UP_TO_7)).keep(alive).bits();
+        let far = size.ge(L::splat(UP_TO_FARTHEST)).keep(alive).bits();
         let (first, rest) = (ONE_GROUP, !ONE_GROUP);
-        let low = by_heat(z, warm & first, hot & first);
+        let low = by_heat(z, warm & first, hot & first, far & first);
         if L::WIDTH == GROUP {
             return low;
         }
-        low.keep(L::mask(first)).add(by_heat(z, warm & rest, hot & rest).keep(L::mask(rest)))
+        low.keep(L::mask(first)).add(by_heat(z, warm & rest, hot & rest, far & rest).keep(L::mask(rest)))
     }
 }
 
@@ -308,12 +310,13 @@ unsafe fn pull<L: Lanes>(z: L, alive: L) -> L {
 const ONE_GROUP: u8 = (1 << GROUP) - 1;
 
 #[inline(always)]
-unsafe fn by_heat<L: Lanes>(z: L, warm: u8, hot: u8) -> L {
+unsafe fn by_heat<L: Lanes>(z: L, warm: u8, hot: u8, far: u8) -> L {
     // SAFETY: passed on to the caller.
     unsafe {
-        match (warm, hot) {
-            (0, _) => series::<L, 3>(z),
-            (_, 0) => series::<L, 7>(z),
+        match (warm, hot, far) {
+            (0, ..) => series::<L, 3>(z),
+            (_, 0, _) => series::<L, 7>(z),
+            (.., 0) => wide::share::<L, FARTHEST>(z),
             _ => closed(z),
         }
     }

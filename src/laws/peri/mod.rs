@@ -29,3 +29,4 @@ mod state;
 pub mod stretches;
 mod stretching;
 mod tables;
+mod wide;

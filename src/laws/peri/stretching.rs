@@ -4,6 +4,7 @@ use super::chunk::{CELLS, Plain, constant};
 #[cfg(target_arch = "x86_64")]
 use super::chunk::{Wide, Widest};
 use super::lanes::{Lanes, Portable};
+use crate::world::families::lattice::Lead;
 
 /// One bond of every cell of a chunk: to the partner ahead, or from the owner behind.
 #[derive(Clone, Copy, Debug)]
@@ -22,19 +23,19 @@ pub struct Side {
 
 /// The kernels of one instruction set.
 pub trait StretchKernels: Sync {
-    /// Appends the stencil vectors along which living bonds have a z of at least `floor`, and which cells' bonds
+    /// Appends the leads along which living bonds have a z of at least `floor`, and which cells' bonds
     /// have: stretches without the cost of a root.
     ///
     /// # Safety
     /// Where a byte of `alive` has bits, displacements `u` (at the chunk's first cell) must be readable at the
-    /// partners of all eight cells; `to` and `alive` are equally long; the processor must have the instruction set.
+    /// partners of all eight cells; the processor must have the instruction set.
     unsafe fn over(
         u: [*const f64; 3],
-        to: &[(i32, u32)],
+        to: &[Lead],
         alive: &[u8],
         tables: &[f64],
         floor: f64,
-        found: &mut Vec<(u16, u8)>,
+        found: &mut Vec<(Lead, u8)>,
     );
 
     /// Per cell the smallest z of its bonds of a pair of types, 0 for bonds inside the dead band; infinite where
@@ -97,20 +98,21 @@ unsafe fn stretch<L: Lanes>(u: [*const f64; 3], here: usize, side: &Side, tables
 #[inline(always)]
 unsafe fn over<L: Lanes>(
     u: [*const f64; 3],
-    to: &[(i32, u32)],
+    to: &[Lead],
     alive: &[u8],
     tables: &[f64],
     floor: f64,
-    found: &mut Vec<(u16, u8)>,
+    found: &mut Vec<(Lead, u8)>,
 ) {
     // SAFETY: the caller's promise; places lie within the tables.
     unsafe {
         let floor = L::splat(floor);
-        for (e, (&(to, place), &bits)) in to.iter().zip(alive).enumerate() {
+        for &Lead { to, table, e } in to {
+            let bits = alive[e as usize];
             if bits == 0 {
                 continue;
             }
-            let c = tables.as_ptr().add(place as usize);
+            let c = tables.as_ptr().add(table as usize);
             let inverse = L::splat(*c.add(constant::INVERSE));
             let (mut over, mut here) = (0, 0);
             while here < CELLS {
@@ -119,7 +121,7 @@ unsafe fn over<L: Lanes>(
                 here += L::WIDTH;
             }
             if over & bits != 0 {
-                found.push((e as u16, over & bits));
+                found.push((Lead { to, table, e }, over & bits));
             }
         }
     }
@@ -188,20 +190,20 @@ macro_rules! compiled_for {
         impl StretchKernels for $kernels {
             unsafe fn over(
                 u: [*const f64; 3],
-                to: &[(i32, u32)],
+                to: &[Lead],
                 alive: &[u8],
                 tables: &[f64],
                 floor: f64,
-                found: &mut Vec<(u16, u8)>,
+                found: &mut Vec<(Lead, u8)>,
             ) {
                 $(#[target_feature(enable = $features)])?
                 unsafe fn inner(
                     u: [*const f64; 3],
-                    to: &[(i32, u32)],
+                    to: &[Lead],
                     alive: &[u8],
                     tables: &[f64],
                     floor: f64,
-                    found: &mut Vec<(u16, u8)>,
+                    found: &mut Vec<(Lead, u8)>,
                 ) {
                     // SAFETY: the caller's promise.
                     unsafe { over::<$lanes>(u, to, alive, tables, floor, found) }

@@ -200,7 +200,16 @@ fn connect(
             }
         }
     }
-    for (chunk, bits) in body.alive.chunks(entries.max(1)).enumerate() {
-        body.intact[chunk] = bits.iter().all(|&b| b == u8::MAX);
+    for slot in 0..body.planes * body.width {
+        let row = body.rows[slot];
+        let leads = |e: &usize| {
+            let [_, across, up] = body.stencil[*e];
+            body.rows[(slot + up as usize * body.width).wrapping_add_signed(across as isize)].len > 0
+        };
+        let vectors: Vec<usize> = if row.len > 0 { (0..entries).filter(leads).collect() } else { vec![] };
+        for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
+            let whole = |&e: &usize| body.alive[chunk * entries + e] == u8::MAX;
+            body.intact[chunk] = vectors.iter().all(whole);
+        }
     }
 }

@@ -99,7 +99,7 @@ pub struct LatticeBody {
     pub particle: Vec<u32>,
     /// Alive bits: byte `chunk * stencil.len() + e`, bit = cell in the chunk.
     pub alive: Vec<u8>,
-    /// Whether every bond of every cell of a chunk lives.
+    /// Whether every cell of a chunk has a living bond along every stencil vector that leads to a row of the body.
     pub intact: Vec<bool>,
     /// Upper bounds of z = |xi + eta|^2/|xi|^2 - 1 over a chunk's bonds (tension), per chunk.
     pub tension: Vec<f32>,
@@ -148,14 +148,25 @@ pub struct LatticeBody {
     pub state: SiteState,
 }
 
+/// Where the bonds of a row's cells along one stencil vector lead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lead {
+    /// How many cells further.
+    pub to: i32,
+    /// The place of their table of constants.
+    pub table: u32,
+    /// The stencil vector.
+    pub e: u32,
+}
+
 /// Where bonds lead, found once for all steps.
 #[derive(Clone, Debug, Default)]
 pub struct Leads {
-    /// For each stencil vector how many cells further it leads, and the place of its constants: lists for rows, one after the
-    /// other. Rows beside each other that meet theirs alike share one.
-    pub to: Vec<(i32, u32)>,
-    /// Where the list of a row slot begins; empty where nothing has been found yet.
-    pub of_row: Vec<u32>,
+    /// Lists for rows, one after the other: only stencil vectors that lead to a row of the body, since to find out in every
+    /// step which have no bonds takes as long as many bonds do. Rows beside each other that meet theirs alike share one.
+    pub to: Vec<Lead>,
+    /// Where the list of a row slot begins and ends; empty where nothing has been found yet.
+    pub of_row: Vec<(u32, u32)>,
     /// Whether the second half of a chunk's cells is vacant.
     pub half: Vec<bool>,
 }
@@ -181,8 +192,9 @@ impl LatticeBody {
     }
 
     /// Where the bonds of a row lead; see [`Leads`].
-    pub fn leads_of(&self, slot: usize) -> &[(i32, u32)] {
-        &self.leads.to[self.leads.of_row[slot] as usize..][..self.stencil.len()]
+    pub fn leads_of(&self, slot: usize) -> &[Lead] {
+        let (begin, end) = self.leads.of_row[slot];
+        &self.leads.to[begin as usize..end as usize]
     }
 
     /// The row slot of a cell.
@@ -308,8 +320,8 @@ impl LatticeBody {
             + self.intact.len() * chunk
             + self.cell_kind.len()
             + self.measures.bytes()
-            + self.leads.to.len() * size_of::<(i32, u32)>()
-            + self.leads.of_row.len() * 4
+            + self.leads.to.len() * size_of::<Lead>()
+            + self.leads.of_row.len() * 8
             + self.state.bytes()
             + self.rows.len() * (size_of::<Row>() + size_of::<RowMotion>())
     }

@@ -4,8 +4,10 @@ mod energies;
 
 use super::super::chunk::{CELLS, CLOSED, Chunk, bonds, constant, extremes, give, place, series, take};
 use super::super::lanes::Lanes;
+use super::super::wide;
 use super::law::{BondLaw, Ends, Moment, Stretch, closed};
 use super::terms::Term;
+use crate::world::families::lattice::Lead;
 use crate::world::families::law::COLUMNS;
 pub use energies::{Looking, sums};
 
@@ -77,6 +79,12 @@ unsafe fn stretch<L: Lanes, const DEGREE: usize>((q, live): (L, L), c: *const f6
             let s = closed(q.mul(L::splat(*c.add(constant::INVERSE))));
             let stretch = s.s.keep(live);
             return Stretch { s: stretch, share: s.share.keep(live), inverse: s.inverse, before: stretch };
+        }
+        if DEGREE > CLOSED {
+            let z = q.mul(L::splat(*c.add(constant::INVERSE)));
+            let share = z.mul(wide::share::<L, DEGREE>(z)).keep(live);
+            let s = z.mul(wide::stretch::<L, DEGREE>(z)).keep(live);
+            return Stretch { s, share, inverse: L::splat(1.0).sub(share), before: s };
         }
         let share = series::<L, DEGREE>(q, c).keep(live);
         // s = p/(1 − p) for p = s/(1 + s): below the first term left out, p^(DEGREE + 2), is 1e-16 of p.
@@ -166,16 +174,16 @@ pub(super) unsafe fn pull<
         // A copy of its own: nothing that is stored can change it.
         let moment = *s.moment;
         let mut sum = [[zero; 3]; 2];
-        let mut e = 0;
-        while e < a.to.len() {
-            let (to, constants) = *a.to.get_unchecked(e);
-            let bits = *a.alive.get_unchecked(e);
-            let vector = e;
-            e += 1;
+        let mut lead = 0;
+        while lead < a.to.len() {
+            let Lead { to, table, e } = *a.to.get_unchecked(lead);
+            let vector = e as usize;
+            let bits = *a.alive.get_unchecked(vector);
+            lead += 1;
             if MASKED && bits == 0 {
                 continue;
             }
-            let c = a.tables.as_ptr().add(constants as usize);
+            let c = a.tables.as_ptr().add(table as usize);
             let mut v = 0;
             while v < vectors::<L>(HALF) {
                 let here = L::WIDTH * v;
@@ -254,22 +262,22 @@ pub(super) unsafe fn add_up<
         let own = [read::<L>(s, T::COLUMNS, 0), read::<L>(s, T::COLUMNS, half)];
         let known = T::MEMORY > 0 && *s.touched != 0;
         let mut sum = [L::splat(0.0); 2];
-        let mut e = 0;
-        while e < a.to.len() {
-            let (to, constants) = *a.to.get_unchecked(e);
-            let bits = *a.alive.get_unchecked(e);
-            let vector = e;
-            e += 1;
+        let mut lead = 0;
+        while lead < a.to.len() {
+            let Lead { to, table, e } = *a.to.get_unchecked(lead);
+            let vector = e as usize;
+            let bits = *a.alive.get_unchecked(vector);
+            lead += 1;
             if MASKED && bits == 0 {
                 continue;
             }
-            let c = a.tables.as_ptr().add(constants as usize);
+            let c = a.tables.as_ptr().add(table as usize);
             let mut v = 0;
             while v < vectors::<L>(HALF) {
                 let here = L::WIDTH * v;
                 let (other, bits) = (here as isize + to as isize, bits >> here);
                 let (q, live) = lengthened::<L, MASKED>(&a.u, &u[v], other, c, bits);
-                let (mut near, mut far) = if DEGREE != CLOSED && T::STRETCH {
+                let (mut near, mut far) = if DEGREE < CLOSED && T::STRETCH {
                     // The series is the term itself.
                     let term = series::<L, DEGREE>(q, c).keep(live);
                     (term, term)
@@ -312,8 +320,8 @@ unsafe fn term_of<L: Lanes, T: Term, const DEGREE: usize, const MASKED: bool>(
 ) -> (L, L) {
     // SAFETY: the caller's promise.
     unsafe {
-        let s_of = if DEGREE == CLOSED {
-            stretch::<L, CLOSED>((q, live), c)
+        let s_of = if DEGREE >= CLOSED {
+            stretch::<L, DEGREE>((q, live), c)
         } else {
             let s = series::<L, DEGREE>(q, c).keep(live).mul(L::splat(*c.add(FROM_TERM)));
             Stretch { s, share: s, inverse: s, before: s }

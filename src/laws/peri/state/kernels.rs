@@ -161,6 +161,8 @@ pub unsafe fn run<K: StateKernels, W: BondLaw>(
             (3, _, false, true) => pull!(3, true, false, false, true),
             (5, _, false, true) => pull!(5, true, false, false, true),
             (7, _, false, true) => pull!(7, true, false, false, true),
+            (10, _, false, true) => pull!(10, true, false, false, true),
+            (16, _, false, true) => pull!(16, true, false, false, true),
             (3, false, false, _) => pull!(3, false, false, false, false),
             (3, true, false, _) => pull!(3, true, false, false, false),
             (3, _, true, _) => pull!(3, true, true, false, false),
@@ -169,6 +171,9 @@ pub unsafe fn run<K: StateKernels, W: BondLaw>(
             (7, false, false, _) => pull!(7, false, false, false, false),
             (7, true, false, _) => pull!(7, true, false, false, false),
             (5 | 7, _, true, _) => pull!(7, true, true, false, false),
+            (10, _, false, _) => pull!(10, true, false, false, false),
+            (16, _, false, _) => pull!(16, true, false, false, false),
+            (10 | 16, _, true, _) => pull!(16, true, true, false, false),
             _ => pull!(CLOSED, true, true, false, false),
         }
     }
@@ -192,12 +197,16 @@ pub unsafe fn run_term<K: StateKernels, T: Term>(a: &Chunk, s: &Cells, degree: u
             (3, _, true) => add_up!(3, true, false, true),
             (5, _, true) => add_up!(5, true, false, true),
             (7, _, true) => add_up!(7, true, false, true),
+            (10, _, true) => add_up!(10, true, false, true),
+            (16, _, true) => add_up!(16, true, false, true),
             (3, false, _) => add_up!(3, false, false, false),
             (3, true, _) => add_up!(3, true, false, false),
             (5, false, _) => add_up!(5, false, false, false),
             (5, true, _) => add_up!(5, true, false, false),
             (7, false, _) => add_up!(7, false, false, false),
             (7, true, _) => add_up!(7, true, false, false),
+            (10, _, _) => add_up!(10, true, false, false),
+            (16, _, _) => add_up!(16, true, false, false),
             _ => add_up!(CLOSED, true, false, false),
         }
     }

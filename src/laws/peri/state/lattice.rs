@@ -8,7 +8,7 @@ use super::kernels::{StateKernels, run, run_term};
 use super::law::{Moment, of_law};
 use super::terms::{Dilatation, Norm, NormLammps, Term};
 use crate::par::Shared;
-use crate::world::families::lattice::{LANES, LatticeBody, PAD};
+use crate::world::families::lattice::{LANES, LatticeBody, PAD, Row, RowMotion};
 use crate::world::families::{LawKind, Window};
 
 /// What the sites and bonds of a body have under a state-based law, during one evaluation.
@@ -156,10 +156,23 @@ fn add_up<K: StateKernels, T: Term>(sweep: &Sweep, slab: usize, window: &mut Win
     }
 }
 
-/// Finds for each row the coordinates beyond which no site has a dilatation, or under a law with memory has ever had.
+/// Whether every chunk has a cell that is not at rest.
+fn all_move(body: &LatticeBody) -> bool {
+    let moves = |row: &Row, motion: &RowMotion| {
+        motion.lo < row.lo + LANES as i32 && motion.hi >= row.lo + row.len as i32 - LANES as i32
+    };
+    body.rows.iter().zip(&body.motion).all(|(row, motion)| row.len == 0 || moves(row, motion))
+}
+
+/// Finds for each row the coordinates beyond which no site has a dilatation, or under a law with memory has ever had; for no
+/// row where none is at rest.
 pub fn find_active(body: &mut LatticeBody, remembers: bool) {
     let mut active = std::mem::take(&mut body.state.active);
     active.clear();
+    if !remembers && all_move(body) {
+        body.state.active = active;
+        return;
+    }
     active.resize(body.rows.len(), (i32::MAX, i32::MIN));
     let mut join = |slot: usize, lo: i32, hi: i32| {
         active[slot] = (active[slot].0.min(lo), active[slot].1.max(hi));

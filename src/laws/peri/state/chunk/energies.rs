@@ -4,6 +4,7 @@ use super::super::super::chunk::{CELLS, CLOSED, Chunk, SUMS, bonds, constant, pl
 use super::super::super::lanes::Lanes;
 use super::super::law::{Angles, BondLaw, Ends};
 use super::{Cells, OMEGA, read, recall, stretch};
+use crate::world::families::lattice::Lead;
 
 /// What energies need besides.
 #[derive(Clone, Copy)]
@@ -52,16 +53,16 @@ pub unsafe fn sums<L: Lanes, W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -
             let last = place::<L>(&s.last, here as isize);
             let own = read::<L>(s, W::COLUMNS, here as isize);
             let mut sum = [L::splat(0.0); SUMS];
-            let mut e = 0;
-            while e < a.to.len() {
-                let (to, constants) = *a.to.get_unchecked(e);
-                let bits = *a.alive.get_unchecked(e) >> here;
-                let vector = e;
-                e += 1;
+            let mut lead = 0;
+            while lead < a.to.len() {
+                let Lead { to, table, e } = *a.to.get_unchecked(lead);
+                let vector = e as usize;
+                let bits = *a.alive.get_unchecked(vector) >> here;
+                lead += 1;
                 if bits == 0 {
                     continue;
                 }
-                let c = a.tables.as_ptr().add(constants as usize);
+                let c = a.tables.as_ptr().add(table as usize);
                 let other = here as isize + to as isize;
                 let b = bonds::<L, true>(&a.u, &u, other, c, bits);
                 let mut now = stretch::<L, CLOSED>((b.q, b.live), c);
@@ -82,7 +83,7 @@ pub unsafe fn sums<L: Lanes, W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -
                     (near, far) = (near.mul(ends[0][1]), far.mul(ends[1][1]));
                 }
                 let lives = L::mask(bits);
-                let term = L::splat(look.half * look.terms[constants as usize + constant::FACTOR]);
+                let term = L::splat(look.half * look.terms[table as usize + constant::FACTOR]);
                 let energy = near.add(far).mul(term).keep(lives);
                 let (near, far) = W::pull(&now, omega, &ends, &mut memory, s.moment);
                 let pull = near.add(far).mul(L::splat(-0.5 * *c.add(constant::FACTOR))).keep(lives);
