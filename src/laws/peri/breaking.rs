@@ -18,12 +18,14 @@ use crate::world::families::{Candidate, FamilyOptions, Measures};
 pub trait Bonds: Sync + Sized {
     /// How many sites are measured together.
     const GROUP: usize;
-    /// Finds bonds stretched beyond what their own previous stretch allows, in order.
+    /// Finds bonds stretched beyond what is sure to allow it, their own previous stretch or more, in order.
     fn candidates<K: StretchKernels>(&self, found: &mut Vec<Candidate>);
     /// Calls `f(previous stretch, s00, alpha)` for each living bond of a site.
     fn family(&self, site: u32, options: &FamilyOptions, f: impl FnMut(f64, f64, f64));
+    /// Gets ready for [`Bonds::candidates`].
+    fn prepare(&mut self) {}
     /// The smallest previous stretch of the families of all sites in `groups`, or LAMMPS' critical stretch.
-    fn measure<K: StretchKernels>(&self, groups: &[u32], options: &FamilyOptions, values: &mut [f64]);
+    fn measure<K: StretchKernels>(&mut self, groups: &[u32], options: &FamilyOptions, values: &mut [f64]);
     /// Sets whether the bonds that broke in the previous step live.
     fn revive(&mut self, lives: bool);
     /// Breaks bonds and remembers them as those of this step.
@@ -44,10 +46,13 @@ pub fn break_bonds<K: StretchKernels, B: Bonds>(
     spared: &dyn Fn(u32) -> bool,
 ) {
     found.clear();
+    body.prepare();
     body.candidates::<K>(found);
     found.retain(|c| !c.ends.iter().any(|site| spared(body.particle(*site))));
     if !found.is_empty() && (options.compat_lammps || found.iter().any(|c| c.alpha != 0.0)) {
         judge::<K, B>(body, options, found);
+    } else {
+        found.retain(|c| c.stretch > c.s00);
     }
     body.break_all(found);
 }
@@ -137,10 +142,11 @@ impl Bonds for Periodic<'_> {
         });
     }
 
-    fn measure<K: StretchKernels>(&self, groups: &[u32], options: &FamilyOptions, values: &mut [f64]) {
+    fn measure<K: StretchKernels>(&mut self, groups: &[u32], options: &FamilyOptions, values: &mut [f64]) {
+        let body = &*self;
         par::each((values, groups), |_, (values, groups)| {
             for (value, &site) in values.iter_mut().zip(groups) {
-                *value = measure(self, site, options);
+                *value = measure(body, site, options);
             }
         });
     }

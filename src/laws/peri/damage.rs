@@ -1,7 +1,7 @@
 //! What has become of families: damage, counts, partners, and what happens to them when particles are deleted.
 
-use crate::par;
-use crate::world::families::lattice::LatticeBody;
+use crate::par::{self, Shared};
+use crate::world::families::lattice::{LANES, LatticeBody, PAD};
 use crate::world::families::list::ListBody;
 use crate::world::families::{Families, NearPair};
 
@@ -35,27 +35,43 @@ impl Link<'_> {
 impl Families {
     /// The share of a particle's family (by volume) whose bonds are broken (Silling and Askari 2005, eq. 27).
     pub fn damage(&self, i: usize, volume: &[f64]) -> f64 {
-        let size = self.family_size.get(i).copied().unwrap_or(0);
-        if size == 0 || self.family_volume[i] == 0.0 || !self.hurt[i] {
-            return 0.0;
-        }
-        let (mut live, mut sum) = (0, 0.0);
-        self.each(i, |n| {
-            if n.alive {
-                live += 1;
-                sum += volume[n.partner as usize];
-            }
-        });
-        if live == size { 0.0 } else { 1.0 - sum / self.family_volume[i] }
+        self.damage_from(i, || {
+            let (mut live, mut sum) = (0, 0.0);
+            self.each(i, |n| {
+                if n.alive {
+                    live += 1;
+                    sum += volume[n.partner as usize];
+                }
+            });
+            (live, sum)
+        })
     }
 
     /// The damage of the particles `0..out.len()`.
     pub fn damage_all(&self, volume: &[f64], out: &mut [f64]) {
+        let damages = self.damages(volume);
         par::each(out, |start, out| {
             for (k, d) in out.iter_mut().enumerate() {
-                *d = self.damage(start + k, volume);
+                *d = damages.of(start + k);
             }
         });
+    }
+
+    /// The damage of many particles: where all of a body on a lattice are of one volume, their living bonds are counted first.
+    pub fn damages<'a>(&'a self, volume: &'a [f64]) -> Damages<'a> {
+        let hurt = self.hurt.contains(&true);
+        let counted = self.lattices.iter().map(|body| Counted::of(body, volume).filter(|_| hurt));
+        Damages { families: self, volume, counted: counted.collect() }
+    }
+
+    /// A particle's damage from what is found about its living bonds: their number, and the volume of their partners.
+    fn damage_from(&self, i: usize, found: impl FnOnce() -> (u16, f64)) -> f64 {
+        let size = self.family_size.get(i).copied().unwrap_or(0);
+        if size == 0 || self.family_volume[i] == 0.0 || !self.hurt[i] {
+            return 0.0;
+        }
+        let (live, sum) = found();
+        if live == size { 0.0 } else { 1.0 - sum / self.family_volume[i] }
     }
 
     /// Bonds at the start, each counted from both ends as LAMMPS prints them.
@@ -174,6 +190,86 @@ impl Families {
     }
 }
 
+/// See [`Families::damages`].
+pub struct Damages<'a> {
+    families: &'a Families,
+    volume: &'a [f64],
+    counted: Vec<Option<Counted>>,
+}
+
+impl Damages<'_> {
+    /// As [`Families::damage`], to the last bit.
+    pub fn of(&self, i: usize) -> f64 {
+        let f = self.families;
+        let place = f.place.get(i).copied().unwrap_or(u32::MAX);
+        let body = f.lattices.partition_point(|b| b.first_place + b.particle.len() as u32 <= place);
+        match self.counted.get(body) {
+            Some(Some(counted)) => f.damage_from(i, || {
+                let live = counted.live[(place - f.lattices[body].first_place) as usize];
+                (live, counted.sums[usize::from(live)])
+            }),
+            _ => f.damage(i, self.volume),
+        }
+    }
+}
+
+/// Living bonds of a body on a lattice whose particles are of one volume.
+struct Counted {
+    /// Of each cell.
+    live: Vec<u16>,
+    /// The volume of so many partners, added up one by one.
+    sums: Vec<f64>,
+}
+
+/// The bits of a byte as eight numbers.
+const SPREAD: [[u16; LANES]; 256] = {
+    let mut spread = [[0; LANES]; 256];
+    let mut k = 0;
+    while k < 256 * LANES {
+        spread[k / LANES][k % LANES] = ((k / LANES) >> (k % LANES) & 1) as u16;
+        k += 1;
+    }
+    spread
+};
+
+impl Counted {
+    fn of(body: &LatticeBody, volume: &[f64]) -> Option<Self> {
+        let mut all = body.particle.iter().filter(|&&p| p != u32::MAX).map(|&p| volume.get(p as usize));
+        let one = *all.next()??;
+        if !all.all(|v| v == Some(&one)) {
+            return None;
+        }
+        let (entries, cells) = (body.stencil.len(), body.particle.len());
+        let mut live = vec![0u16; cells + 2 * PAD];
+        let counts = Shared::new(&mut live);
+        par::two_colours(body.slabs(), |slab| {
+            let planes = slab * body.thickness..((slab + 1) * body.thickness).min(body.planes);
+            for slot in body.slot(planes.start, 0)..body.slot(planes.end, 0) {
+                let row = body.rows[slot];
+                for (e, &[along, across, up]) in body.stencil.iter().enumerate() {
+                    let other = (slot + up as usize * body.width).wrapping_add_signed(across as isize);
+                    let Some(other) = body.rows.get(other).filter(|other| other.len > 0) else { continue };
+                    let to = other.start as i32 - row.start as i32 + row.lo - other.lo + along;
+                    for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
+                        let bits = &SPREAD[usize::from(body.alive[chunk * entries + e])];
+                        let near = PAD + chunk * LANES;
+                        for at in [near, near.wrapping_add_signed(to as isize)] {
+                            // SAFETY: cells of this slab and of the next; PAD entries are more than a bond's reach.
+                            let counts = unsafe { counts.get(at..at + LANES) };
+                            counts.iter_mut().zip(bits).for_each(|(count, bit)| *count += bit);
+                        }
+                    }
+                }
+            }
+        });
+        live.drain(..PAD);
+        live.truncate(cells);
+        let mut sums = vec![0.0; 2 * entries + 1];
+        (1..sums.len()).for_each(|k| sums[k] = sums[k - 1] + one);
+        Some(Self { live, sums })
+    }
+}
+
 /// A column under new numbers.
 fn moved<T: Copy>(column: &[T], old_to_new: &[Option<u32>], n: usize, empty: T) -> Vec<T> {
     let mut out = vec![empty; n];
@@ -191,5 +287,34 @@ fn end_bonds(list: &mut ListBody, record: usize) {
     list.around(record, |_, b| ended.push(b));
     for b in ended {
         list.set(b, false);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::families::{Bounds, FamilyOptions, PeriView, PmbCoeff, PmbTable};
+
+    /// Damage of all particles of a brick with a cut and a hole is that of each looked at by itself, be all volumes alike or not.
+    #[test]
+    fn damage_of_many_is_that_of_each() {
+        let at = |i: i32| [f64::from(i % 11), f64::from(i / 11 % 6), f64::from(i / 66)];
+        let x: Vec<[f64; 3]> = (0..330).map(at).collect();
+        let mut table = PmbTable::new(1);
+        table.set(1, 1, PmbCoeff { c: 1.0, horizon: 2.1, s00: 1.0, alpha: 0.0 }).unwrap();
+        let bounds = Bounds { lo: [-20.0; 3], hi: [20.0; 3], periodic: [false; 3] };
+        let various: Vec<f64> = (0..330).map(|i| 0.1 + 0.001 * f64::from(i % 7)).collect();
+        for volume in [vec![0.1; 330], various] {
+            let view = PeriView { x: &x, x0: &x, kind: &[1; 330], volume: &volume, bounds, excluded: None };
+            let mut families = Families::build(&view, &table, FamilyOptions::new(1.0)).unwrap();
+            assert!(families.damages(&volume).counted.iter().all(Option::is_none), "nothing is hurt yet");
+            families.cut(&view, |a, b| (a[0] + 0.3 * a[1] - 5.2) * (b[0] + 0.3 * b[1] - 5.2) < 0.0);
+            families.lattices[0].vacate(130);
+            let mut all = vec![0.0; 330];
+            families.damage_all(&volume, &mut all);
+            let one: Vec<f64> = (0..330).map(|i| families.damage(i, &volume)).collect();
+            assert_eq!(all, one);
+            assert!(all.iter().filter(|d| **d > 0.0).count() > 50 && all.contains(&0.0));
+        }
     }
 }

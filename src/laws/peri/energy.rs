@@ -1,16 +1,13 @@
 //! Energy and virial of all bonds: asked for at some steps only, so a pass of its own.
 
-use std::sync::{Mutex, PoisonError};
-
 use super::chunk::{CELLS, Chunk, Kernels, SUMS};
 use super::contact::add;
-use super::leads::partners;
 use super::list_kernel::{RowKernels, RowTask, dead};
 use super::pmb::stretch;
 use crate::par::{self, Shared};
-use crate::world::families::lattice::{LANES, LatticeBody, Lead, PAD};
+use crate::world::families::lattice::{LANES, LatticeBody, PAD};
 use crate::world::families::list::ListBody;
-use crate::world::families::{Families, FamilyOptions, ForceUnit, PeriTally, PeriView, Window};
+use crate::world::families::{Families, FamilyOptions, ForceUnit, PeriTally, PeriView};
 
 /// Takes a bond: both ends with their energies, the pull on the first and the vector it acts along.
 type Add<'a> = dyn FnMut((usize, f64), (usize, f64), f64, [f64; 3]) + 'a;
@@ -36,7 +33,7 @@ pub fn tally<K: Kernels + RowKernels>(
             let newton = options.unit == ForceUnit::Newton;
             // SAFETY: live bonds lead to cells of the body; forces are not touched.
             let of_chunk = |_: usize, data: &Chunk| unsafe { K::sums(data) };
-            whole_rows(body, view, &families.scratch.windows, &mut rows, (false, newton), of_chunk);
+            whole_rows(body, view, &mut rows, (false, newton), of_chunk);
             collect(&rows, t);
             continue;
         }
@@ -91,7 +88,6 @@ pub(super) fn collect(rows: &[Sums], t: &mut PeriTally) {
 pub(super) fn whole_rows(
     body: &LatticeBody,
     view: &PeriView,
-    windows: &[Mutex<Window>],
     rows: &mut Vec<Sums>,
     (lacks, newton): (bool, bool),
     of_chunk: impl Fn(usize, &Chunk) -> [[f64; CELLS]; SUMS] + Sync,
@@ -104,14 +100,11 @@ pub(super) fn whole_rows(
     rows.resize(n, [0.0; 7]);
     let shared = Shared::new(rows);
     par::for_rows(n.div_ceil(ROWS), |part| {
-        let mut window = windows[par::slot() % windows.len()].lock().unwrap_or_else(PoisonError::into_inner);
-        let Window { meets, to, .. } = &mut *window;
         for slot in part * ROWS..n.min((part + 1) * ROWS) {
             if body.rows[slot].len == 0 {
                 continue;
             }
-            partners(body, slot, meets, to);
-            let mut row = whole_row(body, slot, to, &of_chunk);
+            let mut row = whole_row(body, slot, &of_chunk);
             row[0] *= scale[0];
             row[1..].iter_mut().for_each(|v| *v *= scale[1]);
             // SAFETY: each row belongs to one part.
@@ -123,7 +116,6 @@ pub(super) fn whole_rows(
 fn whole_row(
     body: &LatticeBody,
     slot: usize,
-    to: &[Lead],
     of_chunk: impl Fn(usize, &Chunk) -> [[f64; CELLS]; SUMS],
 ) -> Sums {
     let (row, entries) = (&body.rows[slot], body.stencil.len());
@@ -135,7 +127,7 @@ fn whole_row(
             u: [0, 1, 2].map(|k| unsafe { u.add(k * body.stride + PAD + chunk * LANES) }),
             f: [std::ptr::null_mut(); 3],
             alive: &body.alive[chunk * entries..][..entries],
-            to,
+            to: body.leads_of(slot),
             tables: &body.tables,
             various: None,
         };

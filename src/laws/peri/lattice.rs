@@ -172,8 +172,9 @@ impl<'a> Sweep<'a> {
         if let Some(motion) = &motion {
             let range = [0, 1, 2].map(|k| (motion.most[k] - motion.least[k]).max(0.0) / body.spacing);
             let d = range.iter().map(|r| r * r).sum::<f64>().sqrt();
-            // |z' - z| <= (|eta' - eta|/|xi|) (r + r')/|xi| with r < 1.007 |xi|, r' <= r + |eta' - eta|.
-            *growth = d * (2.02 + d);
+            // |z' - z| <= (|eta' - eta|/|xi|) (r + r')/|xi| with r' <= r + |eta' - eta|; bonds longer than those of the
+            // last polynomial are measured in every step.
+            *growth = d * (2.0 * (1.0 + UP_TO_FARTHEST).sqrt() + d);
         }
         let at = match &motion {
             Some(motion) if spread.is_none() => (motion.lo, motion.hi),
@@ -241,7 +242,9 @@ impl<'a> Sweep<'a> {
             let degree = degree(bound);
             let floor = least_critical(plan.limit, before);
             let fragile = self.mode.armed && self.mode.advance && high >= floor;
-            let track = !rest && (fragile || bound >= f64::from(measure[k]) || !self.mode.advance);
+            let squeezed = low >= -body.contact;
+            let due = fragile || squeezed || bound >= f64::from(measure[k]);
+            let track = !rest && (due || !self.mode.advance);
             let cell = chunk * LANES;
             let chunk_data = self.chunk((slot, cell), entries, window, (base, stride, first));
             // SAFETY: live bonds lead to cells of the body that the window covers; both have PAD cells around.

@@ -31,17 +31,6 @@ pub(super) fn row_limit(body: &LatticeBody, slot: usize) -> (f64, f64) {
     limit
 }
 
-/// Finds where the bonds of a row's cells lead; `meets` is scratch.
-pub(super) fn partners(
-    body: &LatticeBody,
-    slot: usize,
-    meets: &mut Vec<Option<(i32, u32)>>,
-    to: &mut Vec<Lead>,
-) {
-    meets.clear();
-    partners_beside(body, slot, meets, to);
-}
-
 /// Finds where the bonds of all rows lead, if that has not been found yet.
 pub(super) fn find_leads(body: &mut LatticeBody) {
     if body.leads.of_row.len() == body.rows.len() {
@@ -58,14 +47,17 @@ pub(super) fn find_leads(body: &mut LatticeBody) {
         }
         leads.of_row[slot] = (begin as u32, leads.to.len() as u32);
     }
+    for (slot, row) in body.rows.iter().enumerate() {
+        leads.slot.resize((row.start + row.len) as usize / LANES, slot as u32);
+    }
     let vacant = |cells: &[u32]| cells[LANES / 2..].iter().all(|&p| p == u32::MAX);
     leads.half = body.particle.chunks(LANES).map(vacant).collect();
     body.leads = leads;
     body.growth.resize(body.rows.len(), 0.0);
 }
 
-/// [`partners`] after another row of this body, or with no `meets`: where rows beside each other meet theirs alike, nothing
-/// has to be found anew.
+/// Finds where the bonds of a row's cells lead, after another row of this body or with no `meets`: where rows beside each other
+/// meet theirs alike, nothing has to be found anew.
 fn partners_beside(body: &LatticeBody, slot: usize, meets: &mut Vec<Option<(i32, u32)>>, to: &mut Vec<Lead>) {
     let known = meets.len() == body.steps.len();
     meets.resize(body.steps.len(), None);

@@ -1,7 +1,7 @@
 //! What the lattice kernels look up: constants of bonds, types of rows, data of cells.
 
 use super::chunk::constant;
-use crate::world::families::lattice::{CONSTANTS, LatticeBody, Leads, MIXED, PAD};
+use crate::world::families::lattice::{CONSTANTS, LatticeBody, Leads, MIXED, PAD, Slackest};
 use crate::world::families::{FamilyOptions, ForceUnit, Law, PeriView, PmbTable};
 
 /// Fills the tables of constants, row types and per-cell data from coefficients, types and volumes.
@@ -18,6 +18,7 @@ pub fn refresh(
         return;
     }
     body.leads = Leads::default();
+    body.slackest = Slackest::default();
     let first = some.clone().next().map_or(0.0, |p| view.volume[p as usize]);
     let mut various = some.clone().any(|p| view.volume[p as usize].to_bits() != first.to_bits());
     body.kinds.clear();

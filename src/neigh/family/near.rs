@@ -58,9 +58,12 @@ impl Families {
         self.near.allowed[part] = SKIN * lc;
         self.near.skin = SKIN * lc;
         let mut keep = |families: &Self, i: u32, j: u32| {
+            // Most pairs are too far apart.
+            if distance(view, i, j).0 >= range * range {
+                return;
+            }
             let same = families.body_of(i) == families.body_of(j) && families.body_of(i) != u32::MAX;
             if same == (part == 0)
-                && distance(view, i, j).0 < range * range
                 && families.table.get(view.kind[i as usize], view.kind[j as usize]).is_some()
                 && !(same && families.bonded(i, j))
             {

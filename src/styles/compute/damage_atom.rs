@@ -32,7 +32,10 @@ impl ComputeStyle for DamageAtom {
             name: self.name(),
             by: &["peri/pmb", "peri/pmb/plastic", "peri/lps", "peri/ves", "peri/eps"],
             reads: "families volume mask",
-            value: |w, f, i| f.damage(i, w.volumes()),
+            value: |w, f| {
+                let damages = f.damages(w.volumes());
+                Box::new(move |i| damages.of(i))
+            },
         };
         of_families(known, args, cx)
     }

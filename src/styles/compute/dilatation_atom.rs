@@ -31,7 +31,7 @@ impl ComputeStyle for DilatationAtom {
             name: self.name(),
             by: &["peri/lps", "peri/ves", "peri/eps"],
             reads: "families mask",
-            value: |_, f, i| f.dilatation(i),
+            value: |_, f| Box::new(|i| f.dilatation(i)),
         };
         of_families(known, args, cx)
     }

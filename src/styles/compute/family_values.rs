@@ -9,8 +9,8 @@ use crate::styles::{BuildCx, SealCx, Shape};
 use crate::world::families::Families;
 use crate::world::{GroupId, SlotId, World};
 
-/// What the families of a world know of the particle of an index.
-type Value = fn(&World, &Families, usize) -> f64;
+/// What the families of a world know of the particle of an index, after they have been looked at.
+type Value = for<'a> fn(&'a World, &'a Families) -> Box<dyn Fn(usize) -> f64 + Sync + 'a>;
 
 /// A value that families of some pair styles know.
 #[derive(Clone, Copy)]
@@ -66,7 +66,8 @@ impl Compute for Declared {
         self.is_known(cx)?;
         let (group, value) = (self.group, self.known.value);
         Ok(fill(&self.id, &Wanted { slot, stage, when }, self.known.reads, move |w, _, out| {
-            per_particle(w, group, out, |i| w.families.as_ref().map_or(0.0, |f| value(w, f, i)));
+            let value = w.families.as_ref().map(|f| value(w, f));
+            per_particle(w, group, out, |i| value.as_ref().map_or(0.0, |value| value(i)));
             Ok(())
         }))
     }

@@ -31,7 +31,7 @@ impl ComputeStyle for PlasticityAtom {
             name: self.name(),
             by: &["peri/eps"],
             reads: "families mask",
-            value: |_, f, i| f.plastic_strain(i),
+            value: |_, f| Box::new(|i| f.plastic_strain(i)),
         };
         of_families(known, args, cx)
     }

@@ -143,6 +143,9 @@ pub struct LatticeBody {
     /// Where bonds lead.
     #[serde(skip)]
     pub leads: Leads,
+    /// Bonds that were the least stretched ones of their cells' families.
+    #[serde(skip)]
+    pub slackest: Slackest,
     /// Under a state-based law: columns with [`PAD`] entries around those of the cells. Memory of bonds: number `k` of
     /// bond `e` of a chunk's eight cells from `((chunk * stencil.len() + e) * numbers + k) * LANES` on.
     pub state: SiteState,
@@ -167,8 +170,39 @@ pub struct Leads {
     pub to: Vec<Lead>,
     /// Where the list of a row slot begins and ends; empty where nothing has been found yet.
     pub of_row: Vec<(u32, u32)>,
+    /// The row slot of each chunk.
+    pub slot: Vec<u32>,
     /// Whether the second half of a chunk's cells is vacant.
     pub half: Vec<bool>,
+}
+
+/// The least stretched bond of a cell's family.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slack {
+    /// How many cells further the other end is.
+    pub to: i32,
+    /// The place of its constants; `u32::MAX` where none is known.
+    pub place: u32,
+    /// The stencil vector.
+    pub e: u16,
+    /// Whether the other end owns it.
+    pub behind: bool,
+}
+
+impl Slack {
+    /// None is known.
+    pub const NONE: Self = Self { to: 0, place: u32::MAX, e: 0, behind: false };
+}
+
+/// For each cell the bond that was the least stretched one of its family when that was looked at last. While it lives, the
+/// family has none more stretched as its least: mostly it is still the one, and nobody has to look at the others.
+#[derive(Clone, Debug, Default)]
+pub struct Slackest {
+    /// By cells; empty until families are looked at.
+    pub bond: Vec<Slack>,
+    /// No less than the least stretch of each cell's family in the step before, with [`PAD`] entries around; infinite
+    /// where nothing is known.
+    pub bound: Vec<f64>,
 }
 
 /// Unused cells around the cells of a body: kernels read beyond the ends of rows.
@@ -199,7 +233,8 @@ impl LatticeBody {
 
     /// The row slot of a cell.
     pub fn slot_of(&self, cell: usize) -> usize {
-        self.rows.partition_point(|r| r.start as usize <= cell) - 1
+        let known = self.leads.slot.get(cell / LANES).map(|slot| *slot as usize);
+        known.unwrap_or_else(|| self.rows.partition_point(|r| r.start as usize <= cell) - 1)
     }
 
     /// The slabs' number.
@@ -321,7 +356,10 @@ impl LatticeBody {
             + self.cell_kind.len()
             + self.measures.bytes()
             + self.leads.to.len() * size_of::<Lead>()
+            + self.slackest.bond.len() * size_of::<Slack>()
+            + self.slackest.bound.len() * 8
             + self.leads.of_row.len() * 8
+            + self.leads.slot.len() * 4
             + self.state.bytes()
             + self.rows.len() * (size_of::<Row>() + size_of::<RowMotion>())
     }

@@ -403,8 +403,4 @@ pub struct Candidate {
 pub struct Window {
     /// Forces of a slab and of what it reaches.
     pub force: Vec<f64>,
-    /// Which rows a row meets: how many cells further the same place is, and the place of constants.
-    pub meets: Vec<Option<(i32, u32)>>,
-    /// The same for each stencil vector.
-    pub to: Vec<lattice::Lead>,
 }

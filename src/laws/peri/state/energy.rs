@@ -1,7 +1,5 @@
 //! Energy and virial under state-based laws.
 
-use std::sync::Mutex;
-
 use super::super::energy::{Sums, collect, whole_rows};
 use super::super::single::Single;
 use super::kernels::StateKernels;
@@ -13,7 +11,7 @@ use crate::par::Shared;
 use crate::world::families::lattice::{LANES, LatticeBody, PAD};
 use crate::world::families::law::{COLUMNS, SiteState};
 use crate::world::families::list::ListBody;
-use crate::world::families::{Families, ForceUnit, LawKind, PeriTally, PeriView, Window};
+use crate::world::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
 
 /// One bond with all that its energy depends on.
 struct Bond<'a> {
@@ -89,14 +87,13 @@ fn lattice_rows<K: StateKernels>(
             touched: &touched,
             spread: false,
         };
-        let (body, windows): (&LatticeBody, &[Mutex<Window>]) =
-            (&families.lattices[body], &families.scratch.windows);
+        let body: &LatticeBody = &families.lattices[body];
         let of_chunk = |chunk: usize, data: &super::super::chunk::Chunk| {
             // SAFETY: live bonds lead to cells of the body, whose columns have PAD cells around.
             unsafe { states.sums::<K>(body, chunk, data, advanced) }
         };
         let newton = families.options.unit == ForceUnit::Newton;
-        whole_rows(body, view, windows, rows, (newton, newton), of_chunk);
+        whole_rows(body, view, rows, (newton, newton), of_chunk);
     }
     let state = &mut families.lattices[body].state;
     if earlier.is_empty() {
