@@ -130,12 +130,14 @@ pub fn repel(families: &Families, closer: [f64; 2], repulsion: &mut Repulsion) {
     }
     for body in &families.lattices {
         for (chunk, _) in body.flagged.iter().enumerate().filter(|(_, flag)| **flag & SQUEEZED != 0) {
-            let slot = body.slot_of(chunk * LANES);
-            for cell in chunk * LANES..(chunk + 1) * LANES {
-                for e in (0..body.stencil.len()).filter(|&e| body.lives(cell, e)) {
-                    if let Some(to) = body.ahead(slot, cell, e) {
-                        repulsion.pair(body.particle[cell], body.particle[to]);
-                    }
+            let alive = &body.alive[chunk * body.stencil.len()..][..body.stencil.len()];
+            for lead in body.leads_of(body.slot_of(chunk * LANES)) {
+                let mut bits = alive[lead.e as usize];
+                while bits != 0 {
+                    let cell = chunk * LANES + bits.trailing_zeros() as usize;
+                    bits &= bits - 1;
+                    let to = cell.wrapping_add_signed(lead.to as isize);
+                    repulsion.pair(body.particle[cell], body.particle[to]);
                 }
             }
         }
