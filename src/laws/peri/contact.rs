@@ -1,6 +1,7 @@
 //! Short-range repulsion: unbonded pairs that are near, and bonded ones that are squeezed.
 
 use super::lattice::SQUEEZED;
+use crate::math::vec3::length;
 use crate::world::families::lattice::LANES;
 use crate::world::families::{Families, FamilyOptions, ForceUnit, Influence, PeriTally, PeriView, PmbTable};
 
@@ -94,7 +95,6 @@ pub fn push_apart(families: &Families, repulsion: &mut Repulsion) {
         return;
     }
     let view = repulsion.view;
-    let reference = families.reference.as_deref().unwrap_or(view.x0);
     // State-based solids push with their short-range modulus, which has no shape.
     let states = !families.law.kind.bond_based();
     let shape = if states { Influence::One } else { families.law.influence };
@@ -104,9 +104,7 @@ pub fn push_apart(families: &Families, repulsion: &mut Repulsion) {
             if n.alive || j < i {
                 return;
             }
-            let xi = view.bounds.nearest([0, 1, 2].map(|k| reference[j][k] - reference[i][k]));
-            let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
-            repulsion.broken(i, j, length, shape);
+            repulsion.broken(i, j, length(families.first_bond(view, i, j)), shape);
         });
     }
 }

@@ -1,5 +1,6 @@
 //! Correspondence measures: deformation gradient, strain and stress of a particle from its living bonds.
 
+use crate::math::vec3::{length, sub};
 use crate::world::families::{Families, PeriView};
 
 /// A tensor, row by row.
@@ -14,14 +15,12 @@ impl Families {
     /// the living bonds (Silling et al. 2007; Hartmann et al. 2023, Eq. 26 and 27). `None` without three bonds in
     /// independent directions.
     pub fn gradient(&self, view: &PeriView, i: usize) -> Option<Tensor> {
-        let reference = self.reference.as_deref().unwrap_or(view.x0);
         let (mut shape, mut moved) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
         self.each(i, |n| {
             let j = n.partner as usize;
             let Some(pair) = self.table.get(view.kind[i], view.kind[j]).filter(|_| n.alive) else { return };
-            let difference = |x: &[[f64; 3]]| view.bounds.nearest([0, 1, 2].map(|k| x[j][k] - x[i][k]));
-            let (xi, y) = (difference(reference), difference(view.x));
-            let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let (xi, y) = (self.first_bond(view, i, j), view.bounds.nearest(sub(view.x[j], view.x[i])));
+            let length = length(xi);
             let volume = self.options.volume.weight(length, pair.horizon, self.options.lattice_spacing);
             let share = self.law.influence.of(length, pair.horizon) * volume * view.volume[j];
             for a in 0..3 {

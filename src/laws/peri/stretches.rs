@@ -2,7 +2,7 @@
 
 use super::breaking::{Bonds, banded};
 use super::families::periods;
-use crate::math::vec3::{length, sub};
+use crate::math::vec3::{Vec3, sub};
 use crate::world::families::list::GROUP;
 use crate::world::families::{Families, FamilyOptions, PeriView};
 
@@ -55,10 +55,10 @@ impl Families {
         show(all, &list.particle, &most);
     }
 
-    /// The length at the start of the bond between two particles.
-    pub fn first_length(&self, view: &PeriView, i: usize, j: usize) -> f64 {
+    /// The bond from particle `i` to particle `j` at the start, by the shortest way where the box repeats.
+    pub fn first_bond(&self, view: &PeriView, i: usize, j: usize) -> Vec3 {
         let at = self.reference.as_deref().unwrap_or(view.x0);
-        length(view.bounds.nearest(sub(at[i], at[j])))
+        view.bounds.nearest(sub(at[j], at[i]))
     }
 }
 

@@ -20,6 +20,9 @@ pub struct Record {
 /// Bonds that share one row of constants: four partners.
 pub const GROUP: usize = 4;
 
+/// No bond.
+pub const UNKNOWN: u32 = u32::MAX;
+
 /// Constants of a pair of local types.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PairConstants {
@@ -86,6 +89,13 @@ pub struct ListBody {
     /// Critical measures of families in the step before, by records.
     #[serde(skip)]
     pub measures: Measures,
+    /// The place in `partner` of the bond that was the least stretched one of each record's family when that was looked at
+    /// last, [`UNKNOWN`] before; empty until families are looked at. See [`Slackest`](super::lattice::Slackest).
+    #[serde(skip)]
+    pub slackest: Vec<u32>,
+    /// No less than the least stretch of each record's family in the step before; infinite where nothing is known.
+    #[serde(skip)]
+    pub bound: Vec<f64>,
     /// Under a state-based law: columns by records. Memory of bonds: number `k` of the bond at place `b` is
     /// `b * numbers + k`.
     pub state: SiteState,
@@ -142,6 +152,8 @@ impl ListBody {
         self.record.len() * (size_of::<Record>() + 24 + 4 + 1 + 4 + 4 + 4 + 1)
             + 4 * (self.partner.len() + self.back.len() + self.owner.len())
             + self.group_kind.len()
+            + 4 * self.slackest.len()
+            + 8 * self.bound.len()
             + self.measures.bytes()
             + self.state.bytes()
     }

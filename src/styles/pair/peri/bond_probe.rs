@@ -42,7 +42,7 @@ fn law(families: &Families, view: &PeriView, [i, j]: [usize; 2], r: f64, bonded:
         energy += 0.5 * k * (r - contact);
     }
     if bonded {
-        let r0 = families.first_length(view, i, j);
+        let r0 = length(families.first_bond(view, i, j));
         let longer = if unstretched(r, r0, options) { 0.0 } else { r - r0 };
         let weight = options.volume.weight(r0, coeff.horizon, options.lattice_spacing);
         let k = coeff.c * volume * weight * (longer / r0);
