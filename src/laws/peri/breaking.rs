@@ -4,8 +4,9 @@
 //! among the bonds a particle had in the previous step, those that broke in it included. Under `compat lammps`
 //! it breaks above min(s0_i, s0_j) with one s0 = max(s00 − alpha s) per particle, whatever the pair.
 //!
-//! Both measures are needed for few particles only. They are computed when a bond's stretch exceeds
-//! s00 − alpha times its own previous stretch: never less than the true limit, for a bond belongs to both families.
+//! Both measures are needed for few particles only: where a bond's stretch exceeds s00 − alpha m with an m that is sure to be
+//! no less than max(s_min,i, s_min,j). Its own previous stretch is one, for the bond belongs to both families; the previous
+//! stretches of the bonds that were the least ones of both families when these were looked at last are mostly a far better one.
 
 use super::lattice::MAY_BREAK;
 use super::pmb::stretch;

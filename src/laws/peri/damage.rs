@@ -60,7 +60,7 @@ impl Families {
     /// The damage of many particles: where all of a body on a lattice are of one volume, their living bonds are counted first.
     pub fn damages<'a>(&'a self, volume: &'a [f64]) -> Damages<'a> {
         let hurt = self.hurt.contains(&true);
-        let counted = self.lattices.iter().map(|body| Counted::of(body, volume).filter(|_| hurt));
+        let counted = self.lattices.iter().map(|body| hurt.then(|| Counted::of(body, volume)).flatten());
         Damages { families: self, volume, counted: counted.collect() }
     }
 
