@@ -296,13 +296,12 @@ unsafe fn pull<L: Lanes>(z: L, alive: L) -> L {
             return series::<L, 3>(z);
         }
         let hot = size.ge(L::splat(UP_TO_7)).keep(alive).bits();
-        let far = size.ge(L::splat(UP_TO_FARTHEST)).keep(alive).bits();
         let (first, rest) = (ONE_GROUP, !ONE_GROUP);
-        let low = by_heat(z, warm & first, hot & first, far & first);
+        let low = by_heat(z, warm & first, hot & first);
         if L::WIDTH == GROUP {
             return low;
         }
-        low.keep(L::mask(first)).add(by_heat(z, warm & rest, hot & rest, far & rest).keep(L::mask(rest)))
+        low.keep(L::mask(first)).add(by_heat(z, warm & rest, hot & rest).keep(L::mask(rest)))
     }
 }
 
@@ -310,13 +309,13 @@ unsafe fn pull<L: Lanes>(z: L, alive: L) -> L {
 const ONE_GROUP: u8 = (1 << GROUP) - 1;
 
 #[inline(always)]
-unsafe fn by_heat<L: Lanes>(z: L, warm: u8, hot: u8, far: u8) -> L {
+unsafe fn by_heat<L: Lanes>(z: L, warm: u8, hot: u8) -> L {
     // SAFETY: passed on to the caller.
     unsafe {
-        match (warm, hot, far) {
-            (0, ..) => series::<L, 3>(z),
-            (_, 0, _) => series::<L, 7>(z),
-            (.., 0) => wide::share::<L, FARTHEST>(z),
+        match (warm, hot) {
+            (0, _) => series::<L, 3>(z),
+            (_, 0) => series::<L, 7>(z),
+            _ if z.abs().ge(L::splat(UP_TO_FARTHEST)).bits() & hot == 0 => wide::share::<L, FARTHEST>(z),
             _ => closed(z),
         }
     }
