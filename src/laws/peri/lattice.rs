@@ -22,7 +22,7 @@ pub struct Mode {
 }
 
 /// Any coordinate.
-pub(super) const EVERYWHERE: (i32, i32) = (i32::MIN, i32::MAX);
+const EVERYWHERE: (i32, i32) = (i32::MIN, i32::MAX);
 
 /// Bits of [`LatticeBody::flagged`].
 pub const MAY_BREAK: u8 = 1;

@@ -38,7 +38,7 @@ pub struct Watched<'a> {
     pub alive: &'a [u8],
     /// Constants.
     pub tables: &'a [f64],
-    /// Constants of one pair of local types.
+    /// How many constants a pair of local types has.
     pub table: usize,
     /// Micromodulus, s00 and alpha of pairs.
     pub pairs: &'a [[f64; 3]],

@@ -165,8 +165,8 @@ pub struct Lead {
 /// Where bonds lead, found once for all steps.
 #[derive(Clone, Debug, Default)]
 pub struct Leads {
-    /// Lists for rows, one after the other: only stencil vectors that lead to a row of the body, since to find out in every
-    /// step which have no bonds takes as long as many bonds do. Rows beside each other that meet theirs alike share one.
+    /// Lists for rows, one after the other: only stencil vectors that lead to a row of the body. Rows beside each other that meet
+    /// theirs alike share one.
     pub to: Vec<Lead>,
     /// Where the list of a row slot begins and ends; empty where nothing has been found yet.
     pub of_row: Vec<(u32, u32)>,
@@ -195,7 +195,7 @@ impl Slack {
 }
 
 /// For each cell the bond that was the least stretched one of its family when that was looked at last. While it lives, the
-/// family has none more stretched as its least: mostly it is still the one, and nobody has to look at the others.
+/// family's least stretch is no more than its own: mostly enough to know that no bond breaks, without a look at the others.
 #[derive(Clone, Debug, Default)]
 pub struct Slackest {
     /// By cells; empty until families are looked at.
