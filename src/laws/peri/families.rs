@@ -234,11 +234,15 @@ impl Families {
         self.welcome(view);
         let period = periods(&view.bounds);
         let reference = self.reference.as_deref().unwrap_or(view.x0);
+        // Bonded particles that were put close to each other before families were built push each other from the start.
+        let repels = !self.options.no_repulsion;
         for body in &mut self.lattices {
+            let presses = repels && body.contact >= 0.0;
             // SAFETY: `force` has chosen kernels that the processor has.
-            unsafe { gather::<K>(body, view, reference) };
+            unsafe { gather::<K>(body, view, reference, presses) };
         }
-        let moved = list::gather(&mut self.list, view);
+        let presses = repels && self.list.contact >= 0.0;
+        let moved = list::gather(&mut self.list, view, presses);
         let states = self.law.kind.has_states();
         match states {
             true => self.sweep_states::<K>(view, f, (advance, tallied.is_some()), period),

@@ -7,11 +7,17 @@ use crate::par::{self, Shared};
 use crate::world::families::PeriView;
 use crate::world::families::lattice::{LANES, LatticeBody, PAD, RowMotion, greater, lesser};
 
-/// Gathers displacements from positions into `u[1]`, and what moved since `u[0]`.
+/// Gathers displacements from positions into `u[1]`, and what moved since `u[0]`. A body that `presses` even where nobody is
+/// displaced is nowhere at rest.
 ///
 /// # Safety
 /// The processor must have the kernels' instruction set.
-pub unsafe fn gather<K: GatherKernels>(body: &mut LatticeBody, view: &PeriView, reference: &[[f64; 3]]) {
+pub unsafe fn gather<K: GatherKernels>(
+    body: &mut LatticeBody,
+    view: &PeriView,
+    reference: &[[f64; 3]],
+    presses: bool,
+) {
     let [old, new] = &mut body.u;
     let (new, motion) = (Shared::new(new), Shared::new(&mut body.motion));
     let (rows, particle, stride, width) = (&body.rows, &body.particle, body.stride, body.width);
@@ -29,6 +35,9 @@ pub unsafe fn gather<K: GatherKernels>(body: &mut LatticeBody, view: &PeriView, 
             let task = Row { particle: &particle[cells], view, reference, u, last, lo: row.lo };
             // SAFETY: the caller's promise.
             *motion = unsafe { K::gather(task) };
+            if presses {
+                (motion.lo, motion.hi) = (row.lo, row.lo + row.len as i32 - 1);
+            }
         }
     });
 }
