@@ -1,4 +1,4 @@
-"""Random decks of bond-based solids whose scene is changed by hand before and between runs."""
+"""Random decks of solids whose scene is changed by hand before and between runs."""
 
 
 def displaced(r):
@@ -18,20 +18,29 @@ def displaced(r):
         deck.append(f"set group {r.choice(['low', 'left', 'middle'])} type {types}")
     # One volume: of two particles that repel each other LAMMPS takes that of whichever its list has second.
     deck += ["set group all density 2700", "set group all volume 1.0e-9"]
-    deck += [change(r) for _ in range(r.randint(0, 3))]
-    deck.append("pair_style peri/pmb")
+    style = r.choice(["pmb", "pmb", "lps", "ves", "eps"])
+    # LAMMPS weighs bonds of the others by places of creation; their critical stretches are unknown until the second run begins.
+    states = style != "pmb"
+    deck += [change(r, states) for _ in range(r.randint(0, 3))]
+    if states:
+        deck = [line for line in deck if not line.startswith("displace_atoms")]
+    deck.append(f"pair_style peri/{style}")
     horizon = r.choice([2.001, 2.5, 3.0001, 3.2])
+    # One law for all types: of two ends LAMMPS takes the dilatation and moduli of one for both.
+    moduli, relaxing = "6e10 2.4e10", f"{r.choice([0.3, 0.7])} {r.choice([1e-6, 1e-5])}"
+    ends = {"pmb": "", "lps": "", "ves": relaxing, "eps": "1e30"}
     for i in range(1, types + 1):
         for j in range(i, types + 1):
-            deck.append(f"pair_coeff {i} {j} {1.69e22 * r.choice([1, 1, 0.6]):g} {horizon * 0.001:.7f} "
-                        f"{r.choice([0.002, 0.01, 0.1])} {r.choice([0, 0, 0.25])}")
-    if r.random() < 0.2:
+            first = moduli if states else f"{1.69e22 * r.choice([1, 1, 0.6]):g}"
+            deck.append(f"pair_coeff {i} {j} {first} {horizon * 0.001:.7f} "
+                        f"{r.choice([0.002, 0.01, 0.1])} {r.choice([0, 0, 0.25])} {ends[style]}".rstrip())
+    if not states and r.random() < 0.2:
         deck.append(f"neigh_modify exclude group {r.choice(['low left', 'middle left', 'low low'])}")
     deck += [f"neighbor {r.choice([0.0003, 0.0007])} bin", "neigh_modify every 1 delay 0 check no",
              "fix 1 all nve", "compute dmg all damage/atom", "compute ds all reduce sum c_dmg",
              "compute mx all reduce max vx vy vz x y z",
              "thermo_style custom step atoms pe ke c_ds c_mx[*]", "thermo_modify norm no lost ignore format float %20.13g",
-             "timestep 5.0e-8", "thermo 10", f"run {r.choice([0, 1, 20])}"]
+             "timestep 5.0e-8", "thermo 10", *(["run 0", "run 1"] if states else [f"run {r.choice([0, 1, 20])}"])]
     for _ in range(r.randint(0, 3)):
         deck += [change(r, True) for _ in range(r.randint(0, 2))] + [f"run {r.choice([1, 10, 20])}"]
     return deck
