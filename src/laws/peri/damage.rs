@@ -1,5 +1,6 @@
 //! What has become of families: damage, counts, partners, and what happens to them when particles are deleted.
 
+use super::lattice::extent;
 use crate::par::{self, Shared};
 use crate::world::families::lattice::{LANES, LatticeBody, PAD};
 use crate::world::families::list::ListBody;
@@ -240,11 +241,13 @@ impl Counted {
             return None;
         }
         let (entries, cells) = (body.stencil.len(), body.particle.len());
-        let mut live = vec![0u16; cells + 2 * PAD];
+        let mut live = vec![0u16; cells];
         let counts = Shared::new(&mut live);
         par::two_colours(body.slabs(), |slab| {
-            let planes = slab * body.thickness..((slab + 1) * body.thickness).min(body.planes);
-            for slot in body.slot(planes.start, 0)..body.slot(planes.end, 0) {
+            let (own, first, last) = extent(body, slab);
+            // Eights reach into cells beyond a row's ends, which may be another slab's: counted aside, with entries around.
+            let mut aside = vec![0u16; last - first + 2 * PAD];
+            for slot in body.slot(own.start, 0)..body.slot(own.end, 0) {
                 let row = body.rows[slot];
                 for (e, &[along, across, up]) in body.stencil.iter().enumerate() {
                     let other = (slot + up as usize * body.width).wrapping_add_signed(across as isize);
@@ -252,18 +255,18 @@ impl Counted {
                     let to = other.start as i32 - row.start as i32 + row.lo - other.lo + along;
                     for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
                         let bits = &SPREAD[usize::from(body.alive[chunk * entries + e])];
-                        let near = PAD + chunk * LANES;
+                        let near = PAD + chunk * LANES - first;
                         for at in [near, near.wrapping_add_signed(to as isize)] {
-                            // SAFETY: cells of this slab and of the next; PAD entries are more than a bond's reach.
-                            let counts = unsafe { counts.get(at..at + LANES) };
+                            let counts = &mut aside[at..at + LANES];
                             counts.iter_mut().zip(bits).for_each(|(count, bit)| *count += bit);
                         }
                     }
                 }
             }
+            // SAFETY: cells of this slab and of those it reaches, which nobody else writes now.
+            let counts = unsafe { counts.get(first..last) };
+            counts.iter_mut().zip(&aside[PAD..]).for_each(|(count, more)| *count += more);
         });
-        live.drain(..PAD);
-        live.truncate(cells);
         let mut sums = vec![0.0; 2 * entries + 1];
         (1..sums.len()).for_each(|k| sums[k] = sums[k - 1] + one);
         Some(Self { live, sums })
