@@ -7,7 +7,7 @@ def displaced(r):
     types, apart = r.choice([1, 1, 2, 3]), r.choice([0, 0, 1.6, 4])
     deck = ["units si", "atom_style peri", "atom_modify map array", "boundary f f f", "lattice sc 0.001",
             "region w block -9 30 -9 30 -9 30", f"create_box {types} w",
-            f"region body block 0 {size[0]} 0 {size[1]} 0 {size[2]}", f"create_atoms 1 region body"]
+            *body(r, size), "create_atoms 1 region body"]
     if apart:
         at = size[2] + apart
         deck += [f"region second block 1 {size[0] - 1} 1 {size[1] - 1} {at} {at + 2}",
@@ -44,6 +44,18 @@ def displaced(r):
     for _ in range(r.randint(0, 3)):
         deck += [change(r, True) for _ in range(r.randint(0, 2))] + [f"run {r.choice([1, 10, 20])}"]
     return deck
+
+
+def body(r, size):
+    """The region of the first block, which may have a bar or a step beside it, or be round."""
+    x, y, z = size
+    block = f"block 0 {x} 0 {y} 0 {z}"
+    if r.random() < 0.5:
+        return [f"region body {block}"]
+    return r.choice([[f"region one {block}", f"region bar block 0 {r.choice([20, 29])} 0 {r.choice([0.5, 1.5])} {r.choice([0, z])} {z + 0.5}", "region body union 2 one bar"],
+                     [f"region one {block}", f"region step block 0 1.5 0 1.5 0 {z + 2}", "region body union 2 one step"],
+                     [f"region body sphere {x / 2} {y / 2} {z / 2} {r.choice([2.3, 3.1])}"], [f"region body cylinder x {y / 2} {z / 2} 2.2 0 {x + 9}"],
+                     [f"region body cone z {x / 2} {y / 2} 3.2 0.4 0 {z + 3}"]])
 
 
 def change(r, later=False):

@@ -254,7 +254,12 @@ impl Counted {
                     let Some(other) = body.rows.get(other).filter(|other| other.len > 0) else { continue };
                     let to = other.start as i32 - row.start as i32 + row.lo - other.lo + along;
                     for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
-                        let bits = &SPREAD[usize::from(body.alive[chunk * entries + e])];
+                        let bits = body.alive[chunk * entries + e];
+                        // Where no bond lives the other row may end long before.
+                        if bits == 0 {
+                            continue;
+                        }
+                        let bits = &SPREAD[usize::from(bits)];
                         let near = PAD + chunk * LANES - first;
                         for at in [near, near.wrapping_add_signed(to as isize)] {
                             let counts = &mut aside[at..at + LANES];
@@ -319,5 +324,25 @@ mod tests {
             assert_eq!(all, one);
             assert!(all.iter().filter(|d| **d > 0.0).count() > 50 && all.contains(&0.0));
         }
+    }
+
+    /// Rows beside each other may be of very different lengths: most cells of the long one have no bonds into the short one.
+    #[test]
+    fn damage_of_a_body_with_a_step() {
+        let plate = (0..600).map(|i| [f64::from(i % 200), f64::from(i / 200), 0.0]);
+        let x: Vec<[f64; 3]> =
+            plate.chain((0..9).map(|i| [f64::from(i % 3), f64::from(i / 3), 1.0])).collect();
+        let (kind, volume) = (vec![1; x.len()], vec![0.1; x.len()]);
+        let mut table = PmbTable::new(1);
+        table.set(1, 1, PmbCoeff { c: 1.0, horizon: 1.5, s00: 1.0, alpha: 0.0 }).unwrap();
+        let bounds = Bounds { lo: [-500.0; 3], hi: [500.0; 3], periodic: [false; 3] };
+        let view = PeriView { x: &x, x0: &x, kind: &kind, volume: &volume, bounds, excluded: None };
+        let mut families = Families::build(&view, &table, FamilyOptions::new(1.0)).unwrap();
+        families.cut(&view, |a, b| (a[0] - 1.5) * (b[0] - 1.5) < 0.0);
+        let mut all = vec![0.0; x.len()];
+        families.damage_all(&volume, &mut all);
+        let one: Vec<f64> = (0..x.len()).map(|i| families.damage(i, &volume)).collect();
+        assert_eq!(all, one);
+        assert!(all[0] == 0.0 && all[1] > 0.0 && all[608] > 0.0 && families.lattices.len() == 1);
     }
 }
