@@ -9,7 +9,8 @@ def displaced(r):
             "region w block -9 30 -9 30 -9 30", f"create_box {types} w",
             *body(r, size), "create_atoms 1 region body"]
     if apart:
-        at = size[2] + apart
+        # Above whatever shape the first has: particles at one place end as numbers that are none in LAMMPS.
+        at = size[2] + 3.5 + apart
         deck += [f"region second block 1 {size[0] - 1} 1 {size[1] - 1} {at} {at + 2}",
                  f"create_atoms {types} region second"]
     deck += ["region low block INF INF INF INF INF 1.2", "region left block INF 1.7 INF INF INF INF",

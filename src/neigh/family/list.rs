@@ -20,6 +20,10 @@ pub fn lay_out(
     let mut contact = f64::NEG_INFINITY;
     let found = |each: &mut dyn FnMut(u32, u32, Option<u8>)| {
         bonds(view, members.iter().copied(), table, options, |p, q, rsq, _| {
+            // Two at one place: a bond without a length has no stretch and no direction.
+            if rsq == 0.0 {
+                return;
+            }
             let range = options.contact_range(view, p, q);
             contact = contact.max(range * range / rsq - 1.0);
             each(p, q, None);

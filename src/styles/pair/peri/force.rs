@@ -143,6 +143,7 @@ impl Force {
                 let law = self.style.law.clone();
                 let families = Families::build_of(&view(w)?, &table, self.options, law)?;
                 self.tell_lone(w, &families);
+                self.tell_doubles(w, &families);
                 families
             }
         };
@@ -184,6 +185,31 @@ impl Force {
             Diagnostic::warning(Code::SUSPICIOUS, None, text)
                 .help(format!("the horizon is {horizon}: compare it with the distance of particles"))
                 .help("particles that shall only touch others need no peridynamic coefficients of their own"),
+        );
+    }
+
+    /// Warns of particles of solids that stand at the place of another one: bodies with such are on no lattice.
+    fn tell_doubles(&self, w: &mut World, families: &Families) {
+        let p = &w.particles;
+        let mut order: Vec<usize> =
+            families.list.particle.iter().filter(|p| **p != u32::MAX).map(|p| *p as usize).collect();
+        order.sort_unstable_by(|&a, &b| p.x[a].partial_cmp(&p.x[b]).unwrap_or(std::cmp::Ordering::Equal));
+        let double = |pair: &&[usize]| {
+            let (a, b) = (pair[0], pair[1]);
+            p.x[a] == p.x[b] && self.style.covers(p.kind[a], p.kind[b])
+        };
+        let mut all = order.windows(2).filter(double);
+        let Some(first) = all.next() else { return };
+        let (a, b, others) = (p.tag[first[0]], p.tag[first[1]], all.count());
+        let more = if others > 0 { format!(", and {others} more pairs,") } else { String::new() };
+        let text = format!(
+            "particles {} and {}{more} are at the same place: no bond joins them",
+            a.min(b),
+            a.max(b)
+        );
+        w.parts.notes.push(
+            Diagnostic::warning(Code::SUSPICIOUS, None, text)
+                .help("`delete_atoms overlap` takes away one of two such particles before the run"),
         );
     }
 
