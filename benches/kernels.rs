@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use perigrain::par;
-use perigrain::world::families::*;
+use perigrain::peri::families::*;
 
 struct Disc {
     x: Vec<[f64; 3]>,

@@ -22,17 +22,23 @@
 #![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod cli;
-pub mod diag;
 pub mod graph;
-pub mod lang;
-pub mod laws;
-pub mod math;
-pub mod neigh;
-pub mod out;
-pub mod par;
-pub mod plan;
-pub mod run;
 pub mod session;
-pub mod styles;
-pub mod units;
-pub mod world;
+
+pub use perigrain_base::{diag, math, par, units};
+pub use perigrain_lang as lang;
+pub use perigrain_out as out;
+pub use perigrain_peri as peri;
+pub use perigrain_plan as plan;
+pub use perigrain_world as world;
+
+/// Everything a deck can name, by kind.
+pub mod styles {
+    pub use perigrain_commands as command;
+    pub use perigrain_computes as compute;
+    pub use perigrain_dumps as dump;
+    pub use perigrain_fixes as fix;
+    pub use perigrain_pairs as pair;
+    pub use perigrain_pairs::bond;
+    pub use perigrain_styles::*;
+}

@@ -21,22 +21,22 @@ mod staggering;
 mod timer;
 mod unused;
 
-use crate::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Sources, Span, fail, nearest};
 use crate::graph::build::{Context, DECLARATIONS, declare};
 use crate::graph::env::{DeckEnv, DeckValues};
 pub use crate::graph::keywords::KEYWORDS as THERMO;
 use crate::graph::regions::place_now;
 use crate::graph::{Graph, Role};
-use crate::lang::{Command, Flow, Line, Script, Vars};
-use crate::out::log::Log;
-pub use crate::par::{set_threads, threads};
-use crate::plan::StepPlan;
-pub use crate::run::{Made, Watch};
-use crate::styles::ActCx;
-use crate::styles::command::COMMANDS;
-use crate::world::{Compat, GroupId, World};
 pub use commands::OWN;
 pub use interactive::{Heard, Known, Snapshot};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Sources, Span, fail, nearest};
+pub use perigrain_base::par::{set_threads, threads};
+use perigrain_commands::COMMANDS;
+use perigrain_lang::{Command, Flow, Line, Script, Vars};
+use perigrain_out::log::Log;
+use perigrain_plan::StepPlan;
+pub use perigrain_plan::run::{Made, Watch};
+use perigrain_styles::ActCx;
+use perigrain_world::{Compat, GroupId, World};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -321,7 +321,7 @@ impl Session {
         }
         for d in &self.notes.0[self.shown..] {
             let one = Diagnostics(vec![d.clone()]);
-            let text = crate::diag::render::plain(&one, &self.sources);
+            let text = perigrain_base::diag::render::plain(&one, &self.sources);
             self.options.log.line(text.trim_end())?;
         }
         self.shown = self.notes.0.len();
@@ -384,7 +384,7 @@ impl Session {
         Ok(())
     }
 
-    fn act(&mut self, cmd: &Command, style: &'static dyn crate::styles::CommandStyle) -> Result<()> {
+    fn act(&mut self, cmd: &Command, style: &'static dyn perigrain_styles::CommandStyle) -> Result<()> {
         let (notes, uses) = (RefCell::default(), RefCell::default());
         let cx = Context { span: cmd.span, checking: self.checking(), notes: &notes, uses: &uses };
         let (mut said, mut then) = (vec![], vec![]);
@@ -393,7 +393,7 @@ impl Session {
             let named = |name: &str| cmd.args.iter().any(|w| w.text == name);
             let checking = self.checking();
             place_now(&mut self.world, &self.graph, &vars, checking, named)?;
-            let mut args = crate::lang::Args::new(cmd);
+            let mut args = perigrain_lang::Args::new(cmd);
             let act = style.parse(&mut args, &cx.build(&self.graph, &self.world, "", GroupId::ALL))?;
             args.finish()?;
             let settles = act.settles().to_vec();

@@ -1,5 +1,4 @@
 //! `perigrain check`: all mistakes of a deck at once, in no time, and no warning where nothing is wrong.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 #[path = "checks/written.rs"]
 mod written;

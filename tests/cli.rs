@@ -1,5 +1,4 @@
 //! The program from outside: where the deck comes from, switches, exit codes, what is left behind.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 use std::fs;
 use std::io::Write;

@@ -1,6 +1,5 @@
 //! The manual on paper is the manual in the program; its decks work.
 //! `PERIGRAIN_BLESS=1 cargo test --test docs` writes the pages anew.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 use perigrain::cli::errors_page;
 use perigrain::cli::grammar::textmate;

@@ -1,5 +1,4 @@
 //! Every example, made small by `-var`, prints the numbers in its `expected.csv`.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -2,7 +2,6 @@
 //!
 //! `PERIGRAIN_FUZZ_SECONDS=300 cargo test --release --test fuzz_loop` takes that long for each target; by itself one second.
 //! What panics is left in the system's folder for temporary files, named in the report.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 #[path = "../fuzz/src/lib.rs"]
 mod bodies;

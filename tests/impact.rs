@@ -1,5 +1,4 @@
 //! Small bodies of `material`s: they move as those of LAMMPS' numbers, and take impacts without loss.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 use std::process::Command;
 

@@ -1,5 +1,4 @@
 //! The decks that LAMMPS has run before: the same numbers from perigrain, whatever the layout, the threads or the skipping.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 #[path = "lammps/artefacts.rs"]
 mod artefacts;

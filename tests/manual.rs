@@ -1,5 +1,4 @@
 //! Every example of the manual really runs in a small scene, and the pages tell what there is.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 use perigrain::cli::manual::{Page, pages};
 use perigrain::diag::render;

@@ -3,7 +3,7 @@
 use std::alloc::{GlobalAlloc, Layout as Request, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use perigrain::world::families::*;
+use perigrain::peri::families::*;
 
 /// Counts allocations.
 struct Counting;

@@ -1,5 +1,4 @@
 //! The interactive session, through a real terminal and through a pipe.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 use std::fs;
 use std::io::Write;

@@ -1,57 +1,56 @@
-//! The house rules that a machine can check: which room may import which, what each file opens with, how long it gets.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
+//! The house rules that a machine can check: which crate may know which, what each file opens with, how long it gets.
 
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Which room may import which; every room may also import `diag` and `math`, except `math` itself.
-/// Arrows point down: nothing listed here leads back up. `styles` may also see `WORDS`.
+/// Which crate may depend on which others of the house. Cargo refuses circles; this table refuses short cuts.
 const ARROWS: &[(&str, &[&str])] = &[
-    ("math", &[]),
-    ("diag", &[]),
-    ("units", &[]),
-    ("par", &[]),
-    ("lang", &["units"]),
-    ("world", &["par", "units"]),
-    ("neigh", &["world", "par"]),
-    ("laws", &["world", "neigh", "par"]),
-    ("plan", &["world", "par"]),
-    ("out", &["world", "par"]),
-    ("styles", &["laws", "plan", "neigh", "world", "out", "units", "par"]),
-    ("graph", &["styles", "plan", "world", "neigh", "out", "lang", "units", "par"]),
-    ("run", &["plan", "world", "par"]),
-    ("session", &["graph", "run", "plan", "lang", "world", "out", "par", "styles"]),
-    ("cli", &["session", "lang", "out", "styles"]),
+    ("base", &[]),
+    ("lang", &["base"]),
+    ("neigh", &["base"]),
+    ("peri", &["base"]),
+    ("world", &["base", "peri"]),
+    ("contact", &["base", "neigh", "peri", "world"]),
+    ("plan", &["base", "world"]),
+    ("out", &["base", "world"]),
+    ("styles", &["base", "lang", "neigh", "out", "peri", "plan", "world"]),
+    ("commands", &["base", "lang", "neigh", "out", "peri", "plan", "styles", "world"]),
+    ("pairs", &["base", "contact", "lang", "neigh", "peri", "plan", "styles", "world"]),
+    ("computes", &["base", "commands", "lang", "neigh", "peri", "plan", "styles", "world"]),
+    ("dumps", &["base", "computes", "lang", "out", "plan", "styles", "world"]),
+    (
+        "fixes",
+        &[
+            "base", "commands", "computes", "contact", "lang", "out", "pairs", "peri", "plan", "styles",
+            "world",
+        ],
+    ),
 ];
 
-/// What `styles` may see of `lang`: words and references as they stand in a deck, not how decks are read.
-const WORDS: &[&str] = &["args", "Args", "Command", "Word", "Param", "RefKind", "ValueRef", "parse_number"];
-
-/// Rooms that every room but `math` may import.
-const OPEN_TO_ALL: &[&str] = &["diag", "math"];
+/// Within the root package: the command graph knows no session, a session no program.
+const UPWARDS: &[(&str, &[&str])] = &[("graph", &["session", "cli"]), ("session", &["cli"])];
 
 /// Past this many lines a file is two files.
 const LONGEST: usize = 600;
 
+/// Past this many lines a crate is two crates.
+const LARGEST: usize = 25_000;
+
 #[test]
-fn rooms_import_downwards_only() {
+fn crates_know_only_what_the_table_says() {
     let mut wrong = String::new();
-    for file in rust_files("src") {
-        let Some(room) = room_of(&file) else { continue };
-        let Some((_, allowed)) = ARROWS.iter().find(|(name, _)| *name == room) else {
-            panic!("{} is in room `{room}`, which is not in the table of this test", file.display());
+    for name in crates() {
+        let Some((_, allowed)) = ARROWS.iter().find(|(known, _)| *known == name) else {
+            panic!("crates/{name} is not in the table of this test");
         };
-        let text = fs::read_to_string(&file).unwrap();
-        for (line, path) in imports(&text, depth_of(&file)) {
-            if !permitted(&room, allowed, &path) {
-                writeln!(
-                    wrong,
-                    "{}:{line}: `{room}` may not import `crate::{}`",
-                    file.display(),
-                    path.join("::")
-                )
-                .unwrap();
+        let manifest = fs::read_to_string(root().join("crates").join(&name).join("Cargo.toml")).unwrap();
+        let manifest: toml::Table = manifest.parse().unwrap();
+        for dependency in manifest["dependencies"].as_table().unwrap().keys() {
+            if let Some(other) = dependency.strip_prefix("perigrain-")
+                && !allowed.contains(&other)
+            {
+                writeln!(wrong, "crates/{name} may not know perigrain-{other}").unwrap();
             }
         }
     }
@@ -59,9 +58,48 @@ fn rooms_import_downwards_only() {
 }
 
 #[test]
+fn the_graph_knows_no_session_and_a_session_no_program() {
+    let mut wrong = String::new();
+    for (room, above) in UPWARDS {
+        for file in rust_files(&format!("src/{room}")) {
+            let text = fs::read_to_string(&file).unwrap();
+            let code = &text[..text.find("#[cfg(test)]\nmod ").unwrap_or(text.len())];
+            for up in above.iter().filter(|up| code.contains(&format!("crate::{up}"))) {
+                writeln!(wrong, "{}: `{room}` may not import `crate::{up}`", file.display()).unwrap();
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn no_crate_is_two_crates() {
+    for name in crates() {
+        let lines: usize = rust_files(&format!("crates/{name}/src"))
+            .iter()
+            .map(|file| fs::read_to_string(file).unwrap().lines().count())
+            .sum();
+        println!("{lines:6} crates/{name}");
+        assert!(lines <= LARGEST, "crates/{name} has {lines} lines");
+    }
+}
+
+#[test]
+fn no_inherent_method_of_the_world_outside_its_crate() {
+    // Rust refuses them; what is left to check is that nobody makes up for it with a trait of helpers.
+    for name in crates().iter().filter(|name| *name != "world") {
+        for file in rust_files(&format!("crates/{name}/src")) {
+            let text = fs::read_to_string(&file).unwrap();
+            let test = file.iter().any(|part| part == "tests");
+            assert!(test || !text.contains(" for World {"), "{} gives the world methods", file.display());
+        }
+    }
+}
+
+#[test]
 fn every_file_opens_with_one_sentence() {
     let mut wrong = String::new();
-    for folder in ["src", "tests", "benches"] {
+    for folder in ["src", "crates", "tests", "benches"] {
         for file in rust_files(folder) {
             let text = fs::read_to_string(&file).unwrap();
             let opening: Vec<&str> = text.lines().map_while(|l| l.strip_prefix("//! ")).collect();
@@ -76,8 +114,9 @@ fn every_file_opens_with_one_sentence() {
 #[test]
 fn no_file_is_two_files() {
     let mut wrong = String::new();
-    let mut lengths: Vec<(usize, PathBuf)> = rust_files("src")
+    let mut lengths: Vec<(usize, PathBuf)> = ["src", "crates"]
         .into_iter()
+        .flat_map(rust_files)
         .map(|file| (fs::read_to_string(&file).unwrap().lines().count(), file))
         .collect();
     lengths.sort();
@@ -97,7 +136,7 @@ fn no_file_is_two_files() {
 /// All Rust files below a folder of the package, sorted.
 fn rust_files(folder: &str) -> Vec<PathBuf> {
     let mut found = vec![];
-    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
+    let mut folders = vec![root().join(folder)];
     while let Some(dir) = folders.pop() {
         let Ok(entries) = fs::read_dir(&dir) else { continue };
         for path in entries.map(|e| e.unwrap().path()) {
@@ -112,130 +151,16 @@ fn rust_files(folder: &str) -> Vec<PathBuf> {
     found
 }
 
-/// The parts of a file's path below `src`.
-fn below_src(file: &Path) -> Vec<String> {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let below = file.strip_prefix(&src).unwrap();
-    below.with_extension("").iter().map(|p| p.to_string_lossy().into_owned()).collect()
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The room a file is in; `None` for the crate's own two doors, lib.rs and main.rs.
-fn room_of(file: &Path) -> Option<String> {
-    let parts = below_src(file);
-    (parts != ["lib"] && parts != ["main"]).then(|| parts[0].clone())
-}
-
-/// How many `super::` lead from a file's module to the crate root.
-fn depth_of(file: &Path) -> usize {
-    below_src(file).iter().filter(|p| *p != "mod").count()
-}
-
-fn permitted(room: &str, allowed: &[&str], path: &[String]) -> bool {
-    let target = path[0].as_str();
-    let words_only =
-        room == "styles" && target == "lang" && path.len() > 1 && WORDS.contains(&path[1].as_str());
-    target == room
-        || allowed.contains(&target)
-        || (room != "math" && OPEN_TO_ALL.contains(&target))
-        || words_only
-}
-
-/// Every path from the crate root that a file's code names, with its line; unit tests may look anywhere.
-fn imports(text: &str, depth: usize) -> Vec<(usize, Vec<String>)> {
-    let code = without_comments_and_strings(text);
-    let code = &code[..code.find("#[cfg(test)]\nmod ").unwrap_or(code.len())];
-    let mut found = vec![];
-    for (at, _) in code.match_indices("crate::") {
-        let starts_word = !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_');
-        if starts_word {
-            let line = code[..at].matches('\n').count() + 1;
-            let mut paths = vec![];
-            tree(&code[at + "crate::".len()..], &mut vec![], &mut paths);
-            found.extend(paths.into_iter().map(|p| (line, p)));
-        }
-    }
-    let climb = "super::".repeat(depth);
-    for (at, _) in code.match_indices(&climb) {
-        if !code[..at].ends_with("super::") && !code[at + climb.len()..].starts_with("super::") {
-            let line = code[..at].matches('\n').count() + 1;
-            let mut paths = vec![];
-            tree(&code[at + climb.len()..], &mut vec![], &mut paths);
-            found.extend(paths.into_iter().map(|p| (line, p)));
-        }
-    }
-    found
-}
-
-/// Reads a path or use-tree (`a::b`, `{a, b::{c, d}}`) and returns what is left after it.
-fn tree<'a>(text: &'a str, prefix: &mut Vec<String>, paths: &mut Vec<Vec<String>>) -> &'a str {
-    let text = text.trim_start();
-    if let Some(mut rest) = text.strip_prefix('{') {
-        loop {
-            rest = tree(rest, prefix, paths).trim_start();
-            if let Some(more) = rest.strip_prefix(',') {
-                rest = more.trim_start();
-            }
-            if let Some(after) = rest.strip_prefix('}') {
-                return after;
-            }
-            if rest.is_empty() {
-                return rest;
-            }
-        }
-    }
-    let end = text.find(|c: char| !c.is_alphanumeric() && c != '_' && c != '*').unwrap_or(text.len());
-    if end == 0 {
-        // Not a path: step over the character so that reading a tree always ends.
-        return text.get(1..).unwrap_or("");
-    }
-    prefix.push(text[..end].to_string());
-    let rest = match text[end..].strip_prefix("::") {
-        Some(more) => tree(more, prefix, paths),
-        None => {
-            paths.push(prefix.clone());
-            let rest = &text[end..];
-            match rest.trim_start().strip_prefix("as ") {
-                Some(alias) => {
-                    alias.trim_start().trim_start_matches(|c: char| c.is_alphanumeric() || c == '_')
-                }
-                None => rest,
-            }
-        }
-    };
-    prefix.pop();
-    rest
-}
-
-/// The text with comments, string and character literals blanked and line breaks kept.
-fn without_comments_and_strings(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    let mut chars = text.chars().peekable();
-    while let Some(c) = chars.next() {
-        match c {
-            '/' if chars.peek() == Some(&'/') => while chars.next_if(|&c| c != '\n').is_some() {},
-            '"' => {
-                while let Some(c) = chars.next() {
-                    match c {
-                        '\\' => drop(chars.next()),
-                        '"' => break,
-                        '\n' => out.push('\n'),
-                        _ => {}
-                    }
-                }
-            }
-            '\'' if chars.peek() == Some(&'"') => drop(chars.next()),
-            '\'' if chars.peek() == Some(&'\\') => drop((chars.next(), chars.next())),
-            c => out.push(c),
-        }
-    }
-    out
-}
-
-#[test]
-fn imports_are_found_however_they_are_written() {
-    let text = "use crate::{diag::{self, Span}, world as w};\nfn f() { crate::par::run(\"crate::no\") } // crate::no\n\
-                use super::super::neigh::list;\n#[cfg(test)]\nmod tests { use crate::no; }";
-    let found: Vec<String> =
-        imports(text, 2).iter().map(|(line, p)| format!("{line} {}", p.join("::"))).collect();
-    assert_eq!(found, ["1 diag::self", "1 diag::Span", "1 world", "2 par::run", "3 neigh::list"]);
+/// The names of the crates below `crates`, sorted.
+fn crates() -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(root().join("crates"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
 }

@@ -13,8 +13,6 @@
 //! `1-10` are the underlined columns, the rest is a part of the message; without columns no place is expected.
 //! `error` is found by `perigrain check` too, `run error` only while the deck runs, `check warning` by `check` alone (`tests/checks.rs`).
 
-#![allow(clippy::unwrap_used)] // a test fails by panicking
-
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;

@@ -1,5 +1,4 @@
 //! Steps of two lengths: with one short step the bits of plain ones, momentum kept, close to plain short steps, refusals.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 use std::process::Command;
 

@@ -1,6 +1,6 @@
 //! LAMMPS' command-line switches, read by hand because `-var name a b c` fits no option parser.
 
-use crate::diag::nearest;
+use perigrain_base::diag::nearest;
 use std::path::PathBuf;
 
 /// Where the deck comes from.

@@ -2,9 +2,9 @@
 
 use super::args::{Deck, Options};
 use super::{FAILED, OK, deck, show};
-use crate::diag::{Diagnostic, Diagnostics, Severity, Sources, Span};
-use crate::out::log::Log;
 use crate::session::{Mode, Session};
+use perigrain_base::diag::{Diagnostic, Diagnostics, Severity, Sources, Span};
+use perigrain_out::log::Log;
 use std::fmt::Write;
 
 /// Checks each deck by itself; the exit code is that of the worst.
@@ -129,7 +129,7 @@ pub fn each(options: &Options, decks: Vec<Deck>) -> Vec<Options> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diag::{Code, FileId};
+    use perigrain_base::diag::{Code, FileId};
 
     #[test]
     fn a_problem_is_an_object_with_its_place() {

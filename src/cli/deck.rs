@@ -3,10 +3,10 @@
 use super::args::{Deck, Options, Target};
 use super::progress::{self, Progress};
 use super::{FAILED, INTERRUPTED, OK};
-use crate::diag::{Code, Diagnostics, Result, Sources, fail, render};
-use crate::out::log::{Echo, Log};
-use crate::out::thermo::wall_time;
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
+use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail, render};
+use perigrain_out::log::{Echo, Log};
+use perigrain_out::thermo::wall_time;
 use std::io::{IsTerminal, LineWriter, Read, Write, stderr, stdin, stdout};
 use std::path::Path;
 use std::sync::atomic::Ordering;

@@ -1,7 +1,7 @@
 //! A TextMate grammar for editors, written from the tables of commands and styles.
 
 use super::manual::{Page, pages};
-use crate::lang::Script;
+use perigrain_lang::Script;
 use std::fmt::Write;
 
 /// The grammar as JSON, as VS Code and others read it.

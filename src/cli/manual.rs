@@ -2,14 +2,14 @@
 
 use super::args::Usage;
 use super::pages;
-use crate::diag::nearest;
-use crate::styles::bond::BONDS;
-use crate::styles::command::COMMANDS;
-use crate::styles::compute::COMPUTES;
-use crate::styles::dump::DUMPS;
-use crate::styles::fix::FIXES;
-use crate::styles::pair::PAIRS;
-use crate::styles::{Doc, Style};
+use perigrain_base::diag::nearest;
+use perigrain_commands::COMMANDS;
+use perigrain_computes::COMPUTES;
+use perigrain_dumps::DUMPS;
+use perigrain_fixes::FIXES;
+use perigrain_pairs::PAIRS;
+use perigrain_pairs::bond::BONDS;
+use perigrain_styles::{Doc, Style};
 use std::fmt::Write;
 
 /// One page: what it is about and where it belongs.

@@ -11,9 +11,9 @@ pub mod repl;
 pub mod syntax;
 pub mod tasks;
 
-use crate::diag::{CODES, Kind, nearest};
 use crate::session::Mode;
 use args::Usage;
+use perigrain_base::diag::{CODES, Kind, nearest};
 use std::process::ExitCode;
 use tasks::Task;
 

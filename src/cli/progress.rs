@@ -1,9 +1,9 @@
 //! The live line of a run: steps done, time, thermo columns, speed and time left on a terminal, nothing otherwise;
 //! the only user of indicatif.
 
-use crate::out::log::Log;
 use crate::session::Made;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use perigrain_out::log::Log;
 use std::io::{IsTerminal, Stderr, Write, stderr};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -127,7 +127,7 @@ pub fn colors_wanted() -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::out::rows::Row;
+    use perigrain_out::rows::Row;
 
     const MADE: Made = Made { done: 1, total: 10, step: 121, time: 1.21e-6, dt: 1e-8 };
 

@@ -2,13 +2,13 @@
 
 use super::build::DECLARATIONS;
 use super::node::Graph;
-use crate::diag::{Code, Diagnostic, Result, Span, nearest};
-use crate::lang::{Question, Value};
-use crate::styles::command::COMMANDS;
-use crate::styles::compute::COMPUTES;
-use crate::styles::fix::FIXES;
-use crate::styles::pair::PAIRS;
-use crate::world::{Newton, World};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, nearest};
+use perigrain_commands::COMMANDS;
+use perigrain_computes::COMPUTES;
+use perigrain_fixes::FIXES;
+use perigrain_lang::{Question, Value};
+use perigrain_pairs::PAIRS;
+use perigrain_world::{Newton, World};
 
 /// Commands of the session and of the cursor through the deck, which stand in no table.
 pub const SESSION_COMMANDS: [&str; 25] = [
@@ -81,7 +81,7 @@ pub fn setting(w: &World, checking: bool, name: &str) -> Option<Value> {
     let number = match name {
         "dimension" => flag(!w.settings.two_dimensional) + 2.0,
         "box_exist" => flag(w.domain.is_some()),
-        "nthreads" => crate::par::threads() as f64,
+        "nthreads" => perigrain_base::par::threads() as f64,
         "newton_pair" => flag(w.settings.newton.pair),
         "newton_bond" => flag(w.settings.newton.bond),
         "nlocal" | "nall" if checking => return Some(Value::Unknown),

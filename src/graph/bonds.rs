@@ -2,10 +2,10 @@
 
 use super::build::{Context, Declared, needs_box, style};
 use super::node::{BondNode, Graph};
-use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
-use crate::lang::Args;
-use crate::styles::bond::{BONDS, BondForce};
-use crate::world::{GroupId, World};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
+use perigrain_lang::Args;
+use perigrain_pairs::bond::{BONDS, BondForce};
+use perigrain_world::{GroupId, World};
 use std::collections::BTreeMap;
 
 /// `bond_style STYLE …`, `bond_style none`.

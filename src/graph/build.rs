@@ -3,12 +3,12 @@
 use super::node::{ComputeNode, FixNode, Graph};
 use super::pair_modify::pair_modify;
 use super::{bonds, dumps, elsewhere, pairs};
-use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
-use crate::lang::{Args, Command};
-use crate::styles::compute::COMPUTES;
-use crate::styles::fix::FIXES;
-use crate::styles::{BuildCx, Style, Use, UseKind};
-use crate::world::{GroupId, Said, World};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
+use perigrain_computes::COMPUTES;
+use perigrain_fixes::FIXES;
+use perigrain_lang::{Args, Command};
+use perigrain_styles::{BuildCx, Style, Use, UseKind};
+use perigrain_world::{GroupId, Said, World};
 
 /// The commands that declare.
 pub const DECLARATIONS: [&str; 20] = [
@@ -149,7 +149,7 @@ pub struct Context<'a> {
     /// `perigrain check`.
     pub checking: bool,
     /// Warnings and notes.
-    pub notes: &'a std::cell::RefCell<crate::diag::Diagnostics>,
+    pub notes: &'a std::cell::RefCell<perigrain_base::diag::Diagnostics>,
     /// Names used.
     pub uses: &'a std::cell::RefCell<Vec<Use>>,
 }
@@ -346,7 +346,7 @@ fn compute(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> R
 /// A slot of an earlier producer with this name must not be read as this one's.
 fn forget_values(w: &mut World, name: &str) {
     let slot = w.slots.id(name);
-    *w.slots.get_mut(slot) = crate::world::Slot { name: name.to_string(), ..Default::default() };
+    *w.slots.get_mut(slot) = perigrain_world::Slot { name: name.to_string(), ..Default::default() };
 }
 
 fn uncompute(graph: &mut Graph, w: &mut World, args: &mut Args) -> Result<Declared> {

@@ -2,10 +2,10 @@
 
 use super::build::{Context, Declared, find, needs_box, style};
 use super::node::{DumpNode, Graph};
-use crate::diag::{Code, Diagnostic, Result, Span, fail};
-use crate::lang::Args;
-use crate::styles::dump::DUMPS;
-use crate::world::{GroupId, World};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_dumps::DUMPS;
+use perigrain_lang::Args;
+use perigrain_world::{GroupId, World};
 
 /// The ID of a dump: any word, for nothing but its own commands names it.
 fn id_of<'a>(args: &mut Args<'a>) -> Result<(&'a str, Span)> {
@@ -73,7 +73,7 @@ pub fn once_dump(
     w: &World,
     args: &mut Args,
     cx: &Context,
-) -> Result<Box<dyn crate::styles::Dump>> {
+) -> Result<Box<dyn perigrain_styles::Dump>> {
     needs_box(w, args)?;
     let group_word = args.expect("the group to write")?;
     let group = cx.build(graph, w, "WRITE_DUMP", GroupId::ALL).group(group_word)?;

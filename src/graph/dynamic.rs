@@ -2,13 +2,13 @@
 
 use super::node::{FixNode, Graph};
 use super::seal::Sealer;
-use crate::diag::{Code, Diagnostic, Diagnostics, Result};
-use crate::lang::{RefKind, ValueRef};
-use crate::plan::{Access, Op, Stage, Tick, When};
-use crate::styles::step_op::StepOp;
-use crate::styles::surface::choose;
-use crate::styles::{Reading, SealCx};
-use crate::world::{Dynamic, GroupId, World};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
+use perigrain_lang::{RefKind, ValueRef};
+use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::surface::choose;
+use perigrain_styles::{Reading, SealCx};
+use perigrain_world::{Dynamic, GroupId, World};
 
 /// Adds the ops that choose the members of dynamic groups.
 ///

@@ -7,11 +7,11 @@ use super::node::Graph;
 use super::offered::{from_slot, of_particles, whole_vector};
 use super::regions;
 use super::seal::Sealer;
-use crate::diag::{Code, Diagnostic, Result, Span, fail};
-use crate::lang::{Clock, Env, Question, RefKind, Value, ValueRef, Vars, Word};
-use crate::plan::{Op, Stage, StepPlan, Tick, When};
-use crate::styles::{Flow, Motion, Reading, SealCx, Values};
-use crate::world::{SlotId, World};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Clock, Env, Question, RefKind, Value, ValueRef, Vars, Word};
+use perigrain_plan::{Op, Stage, StepPlan, Tick, When};
+use perigrain_styles::{Flow, Motion, Reading, SealCx, Values};
+use perigrain_world::{SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

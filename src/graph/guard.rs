@@ -1,9 +1,9 @@
 //! The guard over a run's energy: put into the plan with the steps it must look at.
 
 use super::seal::Sealer;
-use crate::diag::{Code, Diagnostic, Result};
-use crate::plan::{Energy, Guard, Stage, When};
-use crate::styles::{SealCx, ledger};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_plan::{Energy, Guard, Stage, When};
+use perigrain_styles::{SealCx, ledger};
 
 /// Puts the guard of `fix dt/guard` into the plan. It looks before anything is put out, so that nothing bad is.
 ///
@@ -31,7 +31,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
     let mut probes = s.probes()?;
     let log = s.log();
     let name = format!("fix {} dt/guard", node.id);
-    let look = Box::new(move |w: &crate::world::World| {
+    let look = Box::new(move |w: &perigrain_world::World| {
         let sheet = ledger::sheet(w, &mut probes)?;
         Ok(Energy { residual: sheet.residual(), held: sheet.held(), turnover: sheet.turnover() })
     });

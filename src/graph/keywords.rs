@@ -1,6 +1,6 @@
 //! Thermo keywords: what each is computed from, and its value.
 
-use crate::world::{COUPLED, Clock, Slot, SlotId, World};
+use perigrain_world::{COUPLED, Clock, Slot, SlotId, World};
 
 /// What a keyword's value is computed from besides the world itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -177,9 +177,10 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
         "pxz" => press(4),
         "pyz" => press(5),
         "fmax" => {
-            crate::par::max(w.n(), |i| w.particles.f[i].iter().fold(0.0, |m: f64, a| m.max(a.abs()))).max(0.0)
+            perigrain_base::par::max(w.n(), |i| w.particles.f[i].iter().fold(0.0, |m: f64, a| m.max(a.abs())))
+                .max(0.0)
         }
-        "fnorm" => crate::par::sum(w.n(), |i| w.particles.f[i].iter().map(|a| a * a).sum()).sqrt(),
+        "fnorm" => perigrain_base::par::sum(w.n(), |i| w.particles.f[i].iter().map(|a| a * a).sum()).sqrt(),
         "nbuild" => w.rebuild.builds as f64,
         "ndanger" => w.rebuild.dangerous as f64,
         _ => time_value(name, &w.clock),
@@ -209,6 +210,6 @@ fn volume(w: &World) -> f64 {
 }
 
 fn density(w: &World) -> f64 {
-    let mass = crate::par::sum(w.n(), |i| w.particles.mass[i]);
+    let mass = perigrain_base::par::sum(w.n(), |i| w.particles.mass[i]);
     w.settings.units.constants().mv2d * mass / volume(w)
 }

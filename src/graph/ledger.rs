@@ -2,11 +2,11 @@
 
 use super::node::FixNode;
 use super::seal::Sealer;
-use crate::diag::Result;
-use crate::plan::{Access, Op, Stage, When};
-use crate::styles::SealCx;
-use crate::styles::ledger::{self, Channel};
-use crate::styles::step_op::StepOp;
+use perigrain_base::diag::Result;
+use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_styles::SealCx;
+use perigrain_styles::ledger::{self, Channel};
+use perigrain_styles::step_op::StepOp;
 
 /// Whether somebody keeps the ledger.
 pub fn wanted(s: &Sealer) -> bool {

@@ -1,9 +1,9 @@
 //! Group functions of formulas: `count(all)`, `vcm(ball,x)`, `bound(all,zmax,box)` and their kin.
 
-use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
-use crate::par;
-use crate::world::World;
 use nalgebra::{Matrix3, Vector3};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
+use perigrain_base::par;
+use perigrain_world::World;
 
 /// The names of all group functions.
 pub const NAMES: [&str; 13] = [

@@ -2,12 +2,12 @@
 
 use super::restarts::Restarts;
 use super::thermo::Thermo;
-use crate::diag::{FileId, Span};
-use crate::lang::{RefKind, ValueRef};
-use crate::styles::bond::BondForce;
-use crate::styles::{Compute, Dump, Fix, Names, Pair, Shape, Use, UseKind};
-use crate::world::adapted::Coefficient;
-use crate::world::{GroupId, Said};
+use perigrain_base::diag::{FileId, Span};
+use perigrain_lang::{RefKind, ValueRef};
+use perigrain_pairs::bond::BondForce;
+use perigrain_styles::{Compute, Dump, Fix, Names, Pair, Shape, Use, UseKind};
+use perigrain_world::adapted::Coefficient;
+use perigrain_world::{GroupId, Said};
 use std::collections::BTreeMap;
 
 /// Which node.

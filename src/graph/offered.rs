@@ -1,8 +1,8 @@
 //! What the slots of computes and fixes offer to references in formulas.
 
-use crate::diag::{Code, Diagnostic, Result, fail};
-use crate::lang::{RefKind, Value, ValueRef};
-use crate::world::{SlotId, World};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::{RefKind, Value, ValueRef};
+use perigrain_world::{SlotId, World};
 
 /// What a slot offers to a reference in a formula.
 pub(super) fn from_slot(w: &World, slot: SlotId, r: &ValueRef) -> Result<Value> {

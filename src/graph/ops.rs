@@ -1,13 +1,13 @@
 //! Ops every plan begins with: reneighbouring at LAMMPS' times, and clearing forces.
 
 use super::spatial;
-use crate::diag::{Code, Diagnostic, Result};
-use crate::par;
-use crate::plan::{Access, Act, Gist, Level, Op, Stage, Tick};
-use crate::world::bonds::LostBond;
-use crate::world::columns::HEATFLOW;
-use crate::world::index::Index;
-use crate::world::{Domain, Extent, Kept, Particles, Seen, World};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::par;
+use perigrain_plan::{Access, Act, Gist, Level, Op, Stage, Tick};
+use perigrain_world::bonds::LostBond;
+use perigrain_world::columns::HEATFLOW;
+use perigrain_world::index::Index;
+use perigrain_world::{Domain, Extent, Kept, Particles, Seen, World};
 
 /// Wraps, shrinks, checks for lost particles and tells lists to rebuild, at LAMMPS' reneighbour times.
 pub struct Reneighbor {
@@ -115,7 +115,7 @@ fn farthest(w: &World, t: &Tick) -> Result<f64> {
     Err(not_finite(w, bad, t))
 }
 
-fn not_finite(w: &World, i: usize, t: &Tick) -> crate::diag::Diagnostics {
+fn not_finite(w: &World, i: usize, t: &Tick) -> perigrain_base::diag::Diagnostics {
     let p = &w.particles;
     Diagnostic::error(
         Code::NOT_FINITE,
@@ -201,7 +201,7 @@ fn warn_of_bonds(w: &mut World, t: &Tick) {
     }
 }
 
-fn too_far(w: &World, lost: &[usize], t: &Tick) -> crate::diag::Diagnostics {
+fn too_far(w: &World, lost: &[usize], t: &Tick) -> perigrain_base::diag::Diagnostics {
     let p = &w.particles;
     let tags: Vec<String> = lost.iter().take(5).map(|&i| p.tag[i].to_string()).collect();
     let i = lost[0];

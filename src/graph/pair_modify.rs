@@ -2,9 +2,9 @@
 
 use super::build::{Context, Declared};
 use super::node::Graph;
-use crate::diag::{Code, Diagnostic, Result, fail};
-use crate::lang::Args;
-use crate::world::World;
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::Args;
+use perigrain_world::World;
 
 const KEYWORDS: [&str; 13] = [
     "pair",
@@ -69,7 +69,11 @@ pub fn pair_modify(graph: &Graph, w: &World, args: &mut Args, cx: &Context) -> R
     }
     let text =
         "without effect: no pair style here has a shift, a tail or a table, and each has one mixing rule";
-    cx.build(graph, w, "", crate::world::GroupId::ALL).note(Diagnostic::note(Code::NO_EFFECT, cx.span, text));
+    cx.build(graph, w, "", perigrain_world::GroupId::ALL).note(Diagnostic::note(
+        Code::NO_EFFECT,
+        cx.span,
+        text,
+    ));
     Ok(Declared::default())
 }
 

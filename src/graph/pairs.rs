@@ -2,10 +2,10 @@
 
 use super::build::{Context, Declared, declare, keep_line, needs_box, style};
 use super::node::{Graph, PairNode};
-use crate::diag::{Code, Diagnostic, Result, fail};
-use crate::lang::{Args, Command, Word};
-use crate::styles::pair::PAIRS;
-use crate::world::{GroupId, World};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::{Args, Command, Word};
+use perigrain_pairs::PAIRS;
+use perigrain_world::{GroupId, World};
 
 /// `pair_style STYLE …`, `pair_style none`. The same style again keeps its coefficients, as in LAMMPS; a `hybrid` does not.
 pub fn pair_style(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) -> Result<Declared> {

@@ -3,12 +3,12 @@
 use super::env::DeckEnv;
 use super::node::Graph;
 use super::seal::Sealer;
-use crate::diag::{Code, Diagnostic, Result};
-use crate::lang::{RefKind, Value, ValueRef, Vars};
-use crate::plan::{Access, Level, Op, Stage, Tick, When};
-use crate::styles::{Reading, SealCx};
-use crate::world::region::Variable;
-use crate::world::{Region, World};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_lang::{RefKind, Value, ValueRef, Vars};
+use perigrain_plan::{Access, Level, Op, Stage, Tick, When};
+use perigrain_styles::{Reading, SealCx};
+use perigrain_world::region::Variable;
+use perigrain_world::{Region, World};
 
 /// The stages whose ops find moving regions in their present places.
 const STAGES: [Stage; 2] = [Stage::PreForce, Stage::Output];

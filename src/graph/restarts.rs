@@ -2,15 +2,15 @@
 
 use super::node::{FixNode, Graph};
 use super::seal::Sealer;
-use crate::diag::{Code, Diagnostic, Result, Span, fail};
-use crate::lang::{Args, ValueRef};
-use crate::out::file::Pattern;
-use crate::out::restart::{Saving, write};
-use crate::plan::{Access, Op, Stage, Tick, When};
-use crate::styles::{BuildCx, SealCx, Use, UseKind};
-use crate::world::adapted;
-use crate::world::columns::{LEVEL, PLASTIC_BEGUN, PLASTIC_COLUMNS};
-use crate::world::{Said, World};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Args, ValueRef};
+use perigrain_out::file::Pattern;
+use perigrain_out::restart::{Saving, write};
+use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_styles::{BuildCx, SealCx, Use, UseKind};
+use perigrain_world::adapted;
+use perigrain_world::columns::{LEVEL, PLASTIC_BEGUN, PLASTIC_COLUMNS};
+use perigrain_world::{Said, World};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -134,7 +134,7 @@ fn numbered(name: Pattern) -> Result<Pattern> {
 }
 
 /// The refusal of a keyword about files of several processes.
-pub fn one_process(span: Span, word: &str) -> crate::diag::Diagnostics {
+pub fn one_process(span: Span, word: &str) -> perigrain_base::diag::Diagnostics {
     let text = format!("`{word}` divides a restart file among processors: there is one process here");
     Diagnostic::error(Code::NOT_SUPPORTED, span, text).help("leave it out").into()
 }

@@ -1,13 +1,12 @@
 //! The op that prints a row of the step table.
 
-use crate::diag::{Code, Diagnostic, Result, Span};
-use crate::math::cformat::Value;
-use crate::out;
-use crate::out::log::Log;
-use crate::out::thermo::{Column, Kind, Layout, memory_line};
-use crate::plan::{Access, Op, Stage, Tick, When};
-use crate::styles::Reading;
-use crate::world::{RowValue, TableRow, World};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::math::cformat::Value;
+use perigrain_out::log::Log;
+use perigrain_out::thermo::{Column, Kind, Layout, memory_line};
+use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_styles::Reading;
+use perigrain_world::{RowValue, TableRow, World};
 use std::sync::Arc;
 
 /// Prints a row.
@@ -28,12 +27,12 @@ pub struct Row {
 
 impl Row {
     /// The row as numbers, per particle where it is printed so.
-    fn kept(&self, w: &World, t: &Tick) -> (Vec<String>, out::rows::Row) {
+    fn kept(&self, w: &World, t: &Tick) -> (Vec<String>, perigrain_out::rows::Row) {
         let columns = self.layout.columns.iter().map(|c| c.name.clone()).collect();
         let share = |c: &Column| if self.layout.norm && c.extensive { w.n().max(1) as f64 } else { 1.0 };
         let values =
             self.readings.iter().zip(&self.layout.columns).map(|(r, c)| r.get(w) / share(c)).collect();
-        (columns, out::rows::Row { step: t.step, time: w.clock.time(), values })
+        (columns, perigrain_out::rows::Row { step: t.step, time: w.clock.time(), values })
     }
 
     /// Refuses elements that vectors do not have as the run begins; where they go later, 0 is shown, as in LAMMPS.
@@ -77,7 +76,7 @@ impl Op for Row {
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if t.setup {
-            self.log.line(&memory_line(crate::world::memory::bytes(w)))?;
+            self.log.line(&memory_line(perigrain_world::memory::bytes(w)))?;
         }
         if t.setup {
             self.all_there(w, t)?;

@@ -3,11 +3,11 @@
 use super::env::RunEnv;
 use super::keywords::{self, Sources};
 use super::seal::Sealer;
-use crate::diag::{Code, Diagnostic, Result, Span, fail};
-use crate::lang::{Clock, Dep, Env, Expr, RefKind, Value, ValueRef, Vars, substitute};
-use crate::plan::{Stage, When};
-use crate::styles::{PlaceTest, SealCx, Text};
-use crate::world::{SlotId, World};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Clock, Dep, Env, Expr, RefKind, Value, ValueRef, Vars, substitute};
+use perigrain_plan::{Stage, When};
+use perigrain_styles::{PlaceTest, SealCx, Text};
+use perigrain_world::{SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -44,7 +44,7 @@ fn sources(
     for dep in needed {
         let (name, slot): (String, SlotId) = match dep {
             Dep::Keyword(k) => match s.keyword(&k, span, stage, when)? {
-                crate::styles::Reading::Scalar(slot) => (k, slot),
+                perigrain_styles::Reading::Scalar(slot) => (k, slot),
                 _ => continue,
             },
             Dep::Ref(r) => (r.to_string(), s.source(&r, stage, when)?),

@@ -6,12 +6,12 @@ use super::answers::Declared;
 use super::keywords::{self, Need, Sources};
 use super::node::Graph;
 use super::values::{Evaluate, Keyword, Once};
-use crate::diag::{Code, Result, Span, fail};
-use crate::lang::{Dep, RefKind, ValueRef, Vars};
-use crate::out::log::Log;
-use crate::plan::{Level, Op, Placed, Stage, StepPlan, When};
-use crate::styles::{Reading, SealCx, Shape};
-use crate::world::{SlotId, World};
+use perigrain_base::diag::{Code, Result, Span, fail};
+use perigrain_lang::{Dep, RefKind, ValueRef, Vars};
+use perigrain_out::log::Log;
+use perigrain_plan::{Level, Op, Placed, Stage, StepPlan, When};
+use perigrain_styles::{Reading, SealCx, Shape};
+use perigrain_world::{SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

@@ -1,9 +1,9 @@
 //! Grains in the order of space: neighbours near each other in memory while a run lasts, and for how many rebuilds their
 //! lists and this order last.
 
-use crate::neigh::slabs::{Slabs, edges};
-use crate::par;
-use crate::world::{Domain, Kept, World};
+use perigrain_base::par;
+use perigrain_neigh::slabs::{Slabs, edges};
+use perigrain_world::{Domain, Kept, World};
 use std::ops::Range;
 
 /// Fewer than these fit the fastest memory in any order.
@@ -49,7 +49,7 @@ struct Drift {
     near: f64,
     /// At most among all, along the axis of slabs [length].
     far: f64,
-    /// See [`Kept::turns`](crate::world::Kept::turns).
+    /// See [`Kept::turns`](perigrain_world::Kept::turns).
     turns: Vec<[i8; 3]>,
 }
 

@@ -4,14 +4,14 @@ use super::keywords;
 use super::ops::Lost;
 use super::row::Row;
 use super::seal::Sealer;
-use crate::diag::{Code, Diagnostic, Result, Span, fail, nearest};
-use crate::lang::{Args, RefKind, ValueRef, Word};
-use crate::out::log::Log;
-use crate::out::thermo::{Column, Layout, Line};
-use crate::plan::{Op, Stage, When};
-use crate::styles::{BuildCx, SealCx, Wants};
-use crate::world::bonds::LostBond;
-use crate::world::{Face, World};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
+use perigrain_lang::{Args, RefKind, ValueRef, Word};
+use perigrain_out::log::Log;
+use perigrain_out::thermo::{Column, Layout, Line};
+use perigrain_plan::{Op, Stage, When};
+use perigrain_styles::{BuildCx, SealCx, Wants};
+use perigrain_world::bonds::LostBond;
+use perigrain_world::{Face, World};
 
 /// What the step table shows and when.
 #[derive(Clone, Debug)]
@@ -345,7 +345,7 @@ fn columns(words: &[Word], cx: &BuildCx) -> Result<(Layout, Vec<Source>)> {
     Ok((Layout::new(list, Line::One), sources))
 }
 
-fn unknown(word: &Word) -> crate::diag::Diagnostics {
+fn unknown(word: &Word) -> perigrain_base::diag::Diagnostics {
     let known = keywords::KEYWORDS.iter().map(|(n, ..)| *n);
     let text = format!("thermo output has no column `{}`", word.text);
     let d = Diagnostic::error(Code::UNKNOWN_KEYWORD, word.span, text);

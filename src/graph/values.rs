@@ -3,10 +3,10 @@
 use super::answers::Declared;
 use super::env::RunEnv;
 use super::keywords::{self, Sources};
-use crate::diag::{Code, Result, Span, fail};
-use crate::lang::{Value, Vars};
-use crate::plan::{Access, Op, OpClass, Stage, Tick};
-use crate::world::{SlotId, World};
+use perigrain_base::diag::{Code, Result, Span, fail};
+use perigrain_lang::{Value, Vars};
+use perigrain_plan::{Access, Op, OpClass, Stage, Tick};
+use perigrain_world::{SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

@@ -1,11 +1,11 @@
 //! Virials of single particles, for steps at which somebody reads them.
 
 use super::seal::Sealer;
-use crate::diag::Result;
-use crate::plan::{Access, Op, Stage, Tick};
-use crate::styles::SealCx;
-use crate::styles::pair::probe::{Ask, Probe, look_all};
-use crate::world::{RunStyle, World};
+use perigrain_base::diag::Result;
+use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_styles::SealCx;
+use perigrain_styles::probe::{Ask, Probe, look_all};
+use perigrain_world::{RunStyle, World};
 
 /// Adds the op that asks pair styles for the virials of particles; after everything that may read them.
 ///

@@ -1,10 +1,10 @@
 //! Particles that join during a run: fixes and computes take note of where they begin.
 
 use super::seal::Sealer;
-use crate::diag::Result;
-use crate::plan::{Access, Op, Stage, Tick};
-use crate::styles::{Compute, Fix, SealCx};
-use crate::world::World;
+use perigrain_base::diag::Result;
+use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_styles::{Compute, Fix, SealCx};
+use perigrain_world::World;
 
 /// Adds the op, where some fix makes particles.
 pub fn seal(s: &mut Sealer) {

@@ -1,6 +1,6 @@
 //! Check mode reports causes, not their consequences: what a refused line would have provided is not missed again.
 
-use crate::diag::{Code, Diagnostic, Diagnostics};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics};
 use std::collections::BTreeSet;
 
 /// What refused lines would have provided.

@@ -1,11 +1,11 @@
 //! Checks across nodes before a run: errors where LAMMPS refuses, warnings where it would run all the same.
 
 use super::Session;
-use crate::diag::{Code, Diagnostic, Diagnostics, Label, Result, Span};
 use crate::graph::build::Context;
-use crate::lang::{Command, Script, Word};
-use crate::styles::{Pair, Use, UseKind};
-use crate::world::GroupId;
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Label, Result, Span};
+use perigrain_lang::{Command, Script, Word};
+use perigrain_styles::{Pair, Use, UseKind};
+use perigrain_world::GroupId;
 use std::cell::RefCell;
 
 /// Problems with words that came out of a variable say where that variable was defined.
@@ -41,7 +41,8 @@ impl Session {
         self.check_box(&mut found);
         self.check_variables(&mut found);
         crate::graph::dynamic::check(&self.graph, &self.world, &mut found);
-        let (errors, notes) = found.0.into_iter().partition(|d| d.severity == crate::diag::Severity::Error);
+        let (errors, notes) =
+            found.0.into_iter().partition(|d| d.severity == perigrain_base::diag::Severity::Error);
         for note in Vec::into_iter(notes) {
             self.note_once(note);
         }

@@ -1,14 +1,14 @@
 //! Commands about the session itself: print, log, echo, clear, compat.
 
 use super::{Session, refuse};
-use crate::diag::{Code, Result};
 use crate::graph::env::DeckEnv;
 use crate::graph::{ComputeNode, Role};
-use crate::lang::{Args, Command, Kind, RefKind, Substituted, ValueRef, Vars, Word, substitute_known};
-use crate::out::log::Echo;
-use crate::styles::compute::COMPUTES;
-use crate::styles::{BuildCx, Shape, Use, UseKind};
-use crate::world::{Compat, GroupId, Promise};
+use perigrain_base::diag::{Code, Result};
+use perigrain_computes::COMPUTES;
+use perigrain_lang::{Args, Command, Kind, RefKind, Substituted, ValueRef, Vars, Word, substitute_known};
+use perigrain_out::log::Echo;
+use perigrain_styles::{BuildCx, Shape, Use, UseKind};
+use perigrain_world::{Compat, GroupId, Promise};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -96,7 +96,7 @@ impl Session {
             ("thermo_pe", "pe", ""),
         ] {
             let Some(style) = COMPUTES.iter().find(|c| c.name() == style) else { continue };
-            let span = crate::diag::Span::default();
+            let span = perigrain_base::diag::Span::default();
             let words: Vec<Word> = rest.split_whitespace().map(|w| Word::new(w, span)).collect();
             let cmd = Command { name: Word::new("compute", span), args: words, span, text: String::new() };
             let (notes, uses) = (RefCell::default(), RefCell::default());
@@ -191,9 +191,9 @@ impl Session {
         if let Some(name) = file {
             use std::io::Write;
             let path = Path::new(&name.text);
-            let mut out = crate::out::file::open(path, append).map_err(|e| e.at(name.span))?;
+            let mut out = perigrain_out::file::open(path, append).map_err(|e| e.at(name.span))?;
             let failed = writeln!(out, "{text}").and_then(|()| out.flush());
-            failed.map_err(|e| crate::out::file::trouble("write", path, &e).at(name.span))?;
+            failed.map_err(|e| perigrain_out::file::trouble("write", path, &e).at(name.span))?;
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! The files a deck reads, and what `check` knows of those it would have written.
 
-use crate::lang::Files;
-use crate::world::{Promise, Promises};
+use perigrain_lang::Files;
+use perigrain_world::{Promise, Promises};
 
 /// Files as the system has them.
 pub(super) struct RealFiles<'a> {

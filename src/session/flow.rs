@@ -2,11 +2,11 @@
 
 use super::files::RealFiles;
 use super::{Session, commands};
-use crate::diag::Result;
 use crate::graph::env::DeckEnv;
 use crate::graph::{Node, Role};
-use crate::lang::{Command, Flow, Script};
-use crate::styles::{Use, UseKind};
+use perigrain_base::diag::Result;
+use perigrain_lang::{Command, Flow, Script};
+use perigrain_styles::{Use, UseKind};
 
 impl Session {
     pub(super) fn flow(&mut self, script: &mut Script, cmd: &Command) -> Result<Flow> {
@@ -22,7 +22,7 @@ impl Session {
         if flow == Flow::NotMine {
             return Ok(flow);
         }
-        let moved: &[crate::lang::Word] = match cmd.name.text.as_str() {
+        let moved: &[perigrain_lang::Word] = match cmd.name.text.as_str() {
             "variable" => &cmd.args[..1],
             "next" => &cmd.args,
             _ => &[],

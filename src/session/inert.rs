@@ -1,8 +1,8 @@
 //! Commands about processes and accelerators: read whole, said once to be without effect; and `partition`.
 
 use super::{Session, refuse};
-use crate::diag::{Code, Diagnostic, Result};
-use crate::lang::{Args, Command, Script};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_lang::{Args, Command, Script};
 
 const PACKAGES: [&str; 5] = ["gpu", "intel", "kokkos", "omp", "opt"];
 

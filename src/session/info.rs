@@ -1,16 +1,16 @@
 //! `info`: what the session holds, in LAMMPS' categories.
 
 use super::{Session, timer};
-use crate::diag::{Code, Diagnostic, Result};
 use crate::graph::answers::SESSION_COMMANDS;
 use crate::graph::build::DECLARATIONS;
-use crate::lang::{Args, Word};
-use crate::styles::bond::BONDS;
-use crate::styles::command::COMMANDS;
-use crate::styles::compute::COMPUTES;
-use crate::styles::dump::DUMPS;
-use crate::styles::fix::FIXES;
-use crate::styles::pair::PAIRS;
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_commands::COMMANDS;
+use perigrain_computes::COMPUTES;
+use perigrain_dumps::DUMPS;
+use perigrain_fixes::FIXES;
+use perigrain_lang::{Args, Word};
+use perigrain_pairs::PAIRS;
+use perigrain_pairs::bond::BONDS;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -84,9 +84,9 @@ impl Session {
             Target::File(word, append) => {
                 use std::io::Write;
                 let path = Path::new(&word.text);
-                let mut out = crate::out::file::open(path, append).map_err(|e| e.at(word.span))?;
+                let mut out = perigrain_out::file::open(path, append).map_err(|e| e.at(word.span))?;
                 let failed = writeln!(out, "{text}").and_then(|()| out.flush());
-                failed.map_err(|e| crate::out::file::trouble("write", path, &e).at(word.span))?;
+                failed.map_err(|e| perigrain_out::file::trouble("write", path, &e).at(word.span))?;
             }
         }
         Ok(())
@@ -105,7 +105,10 @@ impl Session {
                 self.bytes() as f64 / 1048576.0
             ),
             "communication" => {
-                format!("\nCommunication information:\nNprocs = 1,   Nthreads = {}\n", crate::par::threads())
+                format!(
+                    "\nCommunication information:\nNprocs = 1,   Nthreads = {}\n",
+                    perigrain_base::par::threads()
+                )
             }
             "system" => self.system_text(),
             "coeffs" => self.coeffs_text(),
@@ -239,7 +242,7 @@ fn category(word: &Word) -> Result<&'static str> {
     }
     let text = format!("`{}` is no category of info", word.text);
     let d = Diagnostic::error(Code::UNKNOWN_KEYWORD, word.span, text);
-    Err(match crate::diag::nearest(&word.text, CATEGORIES) {
+    Err(match perigrain_base::diag::nearest(&word.text, CATEGORIES) {
         Some(n) => d.help(format!("did you mean `{n}`?")),
         None => d.help(format!("out, or one of {}", CATEGORIES.join(" "))),
     }

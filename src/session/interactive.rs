@@ -1,12 +1,12 @@
 //! A session that is typed: one text after the other, looked at and taken back in between.
 
 use super::Session;
-use crate::diag::{Code, Diagnostic, Result, Span, fail};
 use crate::graph::env::DeckEnv;
 use crate::graph::{Graph, Role};
-use crate::lang::{Command, Expr, Script, Vars};
-use crate::plan::explain;
-use crate::world::World;
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Command, Expr, Script, Vars};
+use perigrain_plan::explain;
+use perigrain_world::World;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -156,7 +156,7 @@ impl Session {
 
     /// Bytes the scene takes.
     pub fn bytes(&self) -> u64 {
-        crate::world::memory::bytes(&self.world)
+        perigrain_world::memory::bytes(&self.world)
     }
 
     /// The names that exist.

@@ -1,6 +1,6 @@
 //! Variables that a deck defines behind the line that names them: fixes may, for they look at them in runs only.
 
-use crate::diag::Sources;
+use perigrain_base::diag::Sources;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 

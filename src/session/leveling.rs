@@ -1,8 +1,8 @@
 //! Steps of several lengths (`run_style respa`): what cannot act in them is refused, and levels without forces are told.
 
 use super::Session;
-use crate::diag::{Code, Diagnostic, Diagnostics, Span};
-use crate::world::{Respa, RunStyle};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Span};
+use perigrain_world::{Respa, RunStyle};
 
 impl Session {
     /// The levels of steps that the deck wants.

@@ -1,16 +1,16 @@
 //! `minimize`: the declarations sealed for a minimization, and what its log says.
 
 use super::{Mode, Session};
-use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::graph::Role;
-use crate::lang::{Args, Command};
-use crate::math::cformat::{Format, Value, general};
-use crate::plan::explain;
-use crate::run::minimize::{self, Goal, Stats};
-use crate::styles::fix::Minimizing;
-use crate::styles::matter::check_masses;
-use crate::world::minimizer::MinStyle;
-use crate::world::{Halt, NeighborSettings};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::math::cformat::{Format, Value, general};
+use perigrain_fixes::Minimizing;
+use perigrain_lang::{Args, Command};
+use perigrain_plan::explain;
+use perigrain_plan::run::minimize::{self, Goal, Stats};
+use perigrain_styles::matter::check_masses;
+use perigrain_world::minimizer::MinStyle;
+use perigrain_world::{Halt, NeighborSettings};
 use std::time::Instant;
 
 impl Session {
@@ -81,7 +81,7 @@ impl Session {
         }
         self.world.slots.invalidate();
         let normalized = self.graph.thermo.normalized(&self.world);
-        let read = |w: &crate::world::World| {
+        let read = |w: &perigrain_world::World| {
             let total = energy.map_or(0.0, |e| e.get(w));
             if normalized { total / w.n().max(1) as f64 } else { total }
         };

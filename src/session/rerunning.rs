@@ -1,14 +1,14 @@
 //! `rerun`: forces and output for the snapshots of dumps, without motion.
 
 use super::{Mode, Session};
-use crate::diag::Result;
 use crate::graph::Role;
 use crate::graph::build::Context;
-use crate::lang::{Args, Command};
-use crate::plan::explain;
-use crate::run::verlet;
-use crate::styles::command::read_dump::Rerun;
-use crate::world::GroupId;
+use perigrain_base::diag::Result;
+use perigrain_commands::read_dump::Rerun;
+use perigrain_lang::{Args, Command};
+use perigrain_plan::explain;
+use perigrain_plan::run::verlet;
+use perigrain_world::GroupId;
 use std::cell::RefCell;
 use std::time::Instant;
 

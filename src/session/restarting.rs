@@ -1,15 +1,15 @@
 //! `write_restart` and `read_restart`: a session goes on in another run of the program.
 
 use super::{Session, refuse};
-use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span, unseen};
 use crate::graph::Role;
 use crate::graph::build::{Context, declare};
 use crate::graph::regions::place_all;
 use crate::graph::restarts::{claimable, one_process, pattern, save};
-use crate::lang::{Args, Command, Word};
-use crate::math::cformat::general;
-use crate::out::restart::{Saved, fingerprint, read, resume};
-use crate::world::{Halt, Particles, Promise, Said, World};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, unseen};
+use perigrain_base::math::cformat::general;
+use perigrain_lang::{Args, Command, Word};
+use perigrain_out::restart::{Saved, fingerprint, read, resume};
+use perigrain_world::{Halt, Particles, Promise, Said, World};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,7 +1,6 @@
 //! `run` and `write_dump`: seal the declarations, step, say how it went.
 
 use super::{Mode, Session, refuse};
-use crate::diag::{Code, Diagnostic, Result, Span};
 use crate::graph::build::Context;
 use crate::graph::dumps::once_dump;
 use crate::graph::env::DeckEnv;
@@ -10,13 +9,14 @@ use crate::graph::ops::{ClearForces, Reneighbor};
 use crate::graph::seal::Sealer;
 use crate::graph::spatial;
 use crate::graph::{FixNode, Role};
-use crate::lang::{Args, Command, Script, Word};
-use crate::out::thermo::{Finish, Section};
-use crate::plan::{OpClass, Stage, StepPlan, When, explain};
-use crate::run::{Pace, verlet};
-use crate::styles::Reading;
-use crate::styles::fix::Minimizing;
-use crate::world::{Halt, Promise};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_fixes::Minimizing;
+use perigrain_lang::{Args, Command, Script, Word};
+use perigrain_out::thermo::{Finish, Section};
+use perigrain_plan::run::{Pace, verlet};
+use perigrain_plan::{OpClass, Stage, StepPlan, When, explain};
+use perigrain_styles::Reading;
+use perigrain_world::{Halt, Promise};
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::time::Instant;
@@ -319,13 +319,13 @@ impl Session {
             section("Output", OpClass::Output),
             section("Modify", OpClass::Modify),
         ];
-        let (neighbors, full) = crate::world::memory::neighbors(&self.world);
+        let (neighbors, full) = perigrain_world::memory::neighbors(&self.world);
         let finish = Finish {
             seconds: o.time.as_secs_f64(),
             cpu: o.cpu,
             steps: o.steps,
             atoms: self.world.n() as u64,
-            threads: crate::par::threads(),
+            threads: perigrain_base::par::threads(),
             units: self.world.settings.units.name(),
             time: o.steps as f64 * self.world.clock.dt,
             sections: if post { &sections } else { &[] },
@@ -341,7 +341,7 @@ impl Session {
         if post {
             let ops: Vec<(&str, f64, u64)> =
                 plan.ops.iter().map(|p| (p.op.name(), p.meter.time.as_secs_f64(), p.meter.calls)).collect();
-            log.line(crate::out::thermo::ops_table(&ops, finish.seconds).trim_end())?;
+            log.line(perigrain_out::thermo::ops_table(&ops, finish.seconds).trim_end())?;
         }
         if o.interrupted {
             log.line(&format!("Interrupted at step {}: all files are complete", self.world.clock.step))?;

@@ -1,8 +1,8 @@
 //! `shell`: folders, files, environment, and commands for the system's shell.
 
 use super::{Mode, Session};
-use crate::diag::{Code, Diagnostic, Result, Span, fail};
-use crate::lang::{Args, Command, Word};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Args, Command, Word};
 use std::path::Path;
 
 impl Session {

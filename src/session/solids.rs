@@ -1,7 +1,7 @@
 //! Checks of peridynamic solids against the rest of a deck: what cannot break but is asked about, what cannot turn.
 
 use super::Session;
-use crate::diag::{Code, Diagnostic, Diagnostics};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics};
 
 impl Session {
     /// Warns of damage that is asked for where no bond can break.

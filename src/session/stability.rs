@@ -1,9 +1,9 @@
 //! The longest time steps of peridynamic bodies and of contacts, compared with the deck's; overlaps that are too deep.
 
 use super::Session;
-use crate::diag::{Code, Diagnostic, Diagnostics, Result, Span};
-use crate::styles::Pair;
-use crate::world::RunStyle;
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
+use perigrain_styles::Pair;
+use perigrain_world::RunStyle;
 
 impl Session {
     /// A warning where the time step is beyond what the pair style can vouch for.

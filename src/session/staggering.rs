@@ -1,12 +1,12 @@
 //! How the steps of a run are made; steps of two lengths: who moves in which, and whether the scene suits them.
 
 use super::{Session, refuse};
-use crate::diag::{Code, Diagnostic, Result, Span};
-use crate::plan::Solids;
-use crate::run::Pace;
-use crate::run::levels::Levels;
-use crate::run::staggered::{Ratio, Staggered};
-use crate::world::{GroupId, RunStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_plan::Solids;
+use perigrain_plan::run::Pace;
+use perigrain_plan::run::levels::Levels;
+use perigrain_plan::run::staggered::{Ratio, Staggered};
+use perigrain_world::{GroupId, RunStyle};
 use std::sync::Arc;
 
 /// What part of the longest stable step `m auto` uses.

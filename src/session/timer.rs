@@ -1,8 +1,8 @@
 //! `timer`: how much is said about time, and the limit of time for runs.
 
 use super::{Session, refuse};
-use crate::diag::{Code, Result};
-use crate::lang::{Args, Word};
+use perigrain_base::diag::{Code, Result};
+use perigrain_lang::{Args, Word};
 use std::time::{Duration, Instant};
 
 /// What `timer` has said.
@@ -54,7 +54,7 @@ impl Session {
         settings.limit_every = every;
         if restart {
             settings.deadline = timer.limit.map(|l| Instant::now() + l);
-            self.world.clock.halt = crate::world::Halt::No;
+            self.world.clock.halt = perigrain_world::Halt::No;
         }
         if self.checking() {
             return Ok(());

@@ -1,6 +1,6 @@
 //! Variables and groups that a deck defines and never uses, found in its text.
 
-use crate::diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span, nearest};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span, nearest};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A word of letters, digits and underscores.

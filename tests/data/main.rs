@@ -1,5 +1,4 @@
 //! Data files: mistakes are shown where they stand in the file, numbers survive the way through a file to the last bit.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 use perigrain::diag::{Diagnostics, FileId};
 use perigrain::session::{Mode, Options, Session};

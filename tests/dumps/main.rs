@@ -3,7 +3,6 @@
 //! `golden/` holds what LAMMPS 22Jul2025 writes for `in.dumps` (`lmp -in in.dumps -var dir golden`), where `g.dump`
 //! began with the line `before`; `golden_forms/`, `golden_times/` and `golden_binary/` the same for `in.forms`, `in.times` and `in.binary`. Formats show at most eight digits: the last ones of a double depend on the order of
 //! additions into forces.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,7 +1,6 @@
 //! Fixes and computes in small decks against LAMMPS' numbers.
 //!
 //! `golden/NAME.txt` holds the thermo table that LAMMPS 22Jul2025 prints for `NAME.in`, 15 digits per number.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 #[path = "../common/thermo.rs"]
 mod thermo;

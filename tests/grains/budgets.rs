@@ -1,6 +1,6 @@
 //! Budgets over 10⁵ steps: energy of an elastic gas, momentum, angular momentum and loss of energy in a closed cloud.
 
-use crate::scene::Scene;
+use super::scene::Scene;
 use perigrain::math::vec3::{add, cross, dot, length, scale, sub};
 use std::f64::consts::PI;
 

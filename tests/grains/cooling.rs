@@ -1,6 +1,6 @@
 //! A gas of grains cools by Haff's law.
 
-use crate::scene::Scene;
+use super::scene::Scene;
 
 const N: usize = 343;
 

@@ -1,6 +1,6 @@
 //! A flow in which neighbours stay neighbours: lists of grains outlast rebuilds, and nothing else tells of it.
 
-use crate::scene::Scene;
+use super::scene::Scene;
 use perigrain::par;
 
 /// How fast the flow is: in 400 steps everybody goes once around the box.

@@ -1,6 +1,6 @@
 //! Central impacts: Chung & Ooi (2011), doi 10.1007/s10035-011-0277-0, tests 1 to 3, and what holds grains together.
 
-use crate::scene::{Scene, close, empty, hertz, law, mass, sphere};
+use super::scene::{Scene, close, empty, hertz, law, mass, sphere};
 use std::f64::consts::PI;
 
 /// Largest overlap and force, duration and velocity ratio of an impact along x or onto the plane z = 0.

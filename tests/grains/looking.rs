@@ -1,6 +1,6 @@
 //! Whether and when somebody looks changes nothing: steps that run into each other have the bits of steps made one by one.
 
-use crate::scene::Scene;
+use super::scene::Scene;
 
 const STEPS: i64 = 400;
 

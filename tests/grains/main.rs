@@ -1,5 +1,4 @@
 //! Grains against closed forms and published test cases, as decks: impacts, restitution, rolling, cooling, budgets.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 mod budgets;
 mod cooling;

@@ -1,7 +1,7 @@
 //! Oblique impacts: Chung & Ooi (2011), doi 10.1007/s10035-011-0277-0, tests 4 to 8, and Mindlin's spring against numbers
 //! of an independent integration.
 
-use crate::scene::{Scene, close, empty, hertz, law, mass, sphere};
+use super::scene::{Scene, close, empty, hertz, law, mass, sphere};
 
 /// What a sphere does after it has met a plane.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! What coefficient of restitution every damping model makes: the table of the manual's page.
 
-use crate::scene::{Scene, close, empty, law, mass, sphere};
+use super::scene::{Scene, close, empty, law, mass, sphere};
 use std::f64::consts::PI;
 
 /// e asked for, and got by a force δ^1.5 or δ with exact damping: 1, without the cut of attraction; with it, the same

@@ -1,6 +1,6 @@
 //! Spheres on a plane: from sliding to rolling, down an incline, and rolling and twisting to rest.
 
-use crate::scene::{Scene, close, empty, law, sphere};
+use super::scene::{Scene, close, empty, law, sphere};
 
 const R: f64 = 0.01;
 const G: f64 = 9.81;
@@ -8,7 +8,7 @@ const G: f64 = 9.81;
 /// A sphere that lies on z = 0 with its own weight's overlap, moving along x and spinning; gravity leans by `slope`.
 fn on_plane(model: &str, v: f64, omega: [f64; 3], slope: f64) -> Scene {
     // Weight m g = kn δ with kn = 1e5 N/m.
-    let weight = crate::scene::mass(R, 2500.0) * G * slope.cos();
+    let weight = super::scene::mass(R, 2500.0) * G * slope.cos();
     let z = R - weight / 1e5;
     let deck = empty(2.0, 1)
         + &sphere([1, 1], [-1.9, 0.0, z], [R, 2500.0], [v, 0.0, 0.0], omega)
@@ -72,7 +72,7 @@ fn rolling_and_twisting_come_to_rest() {
     scene.step(20_000);
     close("rolling", early - motion(&scene).0[0], 5.0 / 7.0 * 0.05 * G * 0.2, 1e-2);
 
-    let weight = crate::scene::mass(R, 2500.0) * G;
+    let weight = super::scene::mass(R, 2500.0) * G;
     let a = (R * weight / 1e5).sqrt();
     let cases = [
         ("twisting sds 1.0 1e-4 1e-4", 2.5 * 1e-4 * G / (R * R)),

@@ -1,5 +1,4 @@
 //! LAMMPS' own decks of peridynamics and of grains, from where Debian's package `lammps-examples` puts them; skipped where it is not installed.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 #[path = "../common/compare.rs"]
 mod compare;

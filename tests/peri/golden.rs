@@ -1,7 +1,7 @@
 //! LAMMPS' numbers (22Jul2025) for four decks, with its artefacts switched on.
 
 use super::scene::Scene;
-use perigrain::world::families::Layout;
+use perigrain::peri::families::Layout;
 
 /// A golden table: column names and rows.
 struct Table {

@@ -1,7 +1,7 @@
 //! All layouts against the textbook loop, and against themselves on several threads and without skipping.
 
 use perigrain::par;
-use perigrain::world::families::*;
+use perigrain::peri::families::*;
 
 use super::scene::Scene;
 use super::textbook::Textbook;

@@ -1,5 +1,4 @@
 //! Peridynamic families on raw arrays: golden numbers, layouts against each other, patch tests, determinism.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 mod endurance;
 mod golden;

@@ -1,6 +1,6 @@
 //! Scenes of the reference decks set up by hand, and a velocity-Verlet loop to move them.
 
-use perigrain::world::families::*;
+use perigrain::peri::families::*;
 
 /// Particles, families and a step size.
 #[derive(Clone)]

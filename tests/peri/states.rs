@@ -1,7 +1,7 @@
 //! State-based laws: against plain loops over both ends of every bond, patch tests, closed forms, layouts, bits.
 
 use perigrain::par;
-use perigrain::world::families::*;
+use perigrain::peri::families::*;
 
 use super::layouts::{impact, impact_of_types, periodic, rubble};
 use super::scene::Scene;

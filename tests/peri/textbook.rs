@@ -1,6 +1,6 @@
 //! The plain textbook loop: every bond from both ends, every pair tested for contact. The reference for all layouts.
 
-use perigrain::world::families::*;
+use perigrain::peri::families::*;
 
 /// Families as full lists.
 #[derive(Clone)]

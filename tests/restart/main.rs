@@ -1,5 +1,4 @@
 //! A run cut in two by a restart file has the bits of one run: bonds, contacts, fixes with state, in every layout.
-#![allow(clippy::unwrap_used)] // a test fails by panicking
 
 mod kill;
 mod refusals;

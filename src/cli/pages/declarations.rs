@@ -1,7 +1,7 @@
 //! Pages of the commands that declare: pair styles, fixes, computes, dumps, and their options.
 
 use super::Entry;
-use crate::styles::Doc;
+use perigrain_styles::Doc;
 
 pub(super) const PAIR_STYLE: Entry = (
     "pair_style",

@@ -1,7 +1,7 @@
 //! The page about formulas: operators, functions, and what they can see of a scene.
 
 use super::Entry;
-use crate::styles::Doc;
+use perigrain_styles::Doc;
 
 pub(super) const FORMULAS: Entry = (
     "formulas",

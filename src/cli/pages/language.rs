@@ -1,7 +1,7 @@
 //! Pages of the deck language: how a deck is written, variables, branches and loops.
 
 use super::Entry;
-use crate::styles::Doc;
+use perigrain_styles::Doc;
 
 pub(super) const DECKS: Entry = (
     "decks",

@@ -9,7 +9,7 @@ mod restart;
 mod session;
 mod thermo;
 
-use crate::styles::Doc;
+use perigrain_styles::Doc;
 
 /// A page's name and text.
 pub type Entry = (&'static str, Doc);

@@ -1,7 +1,7 @@
 //! The page about the program: its subcommands, switches and exit codes.
 
 use super::Entry;
-use crate::styles::Doc;
+use perigrain_styles::Doc;
 
 pub(super) const PERIGRAIN: Entry = (
     "perigrain",

@@ -1,7 +1,7 @@
 //! The page about the interactive session.
 
 use super::Entry;
-use crate::styles::Doc;
+use perigrain_styles::Doc;
 
 pub(super) const PROMPT: Entry = (
     "prompt",

@@ -1,7 +1,7 @@
 //! Pages of restart files, and of runs over what dumps hold.
 
 use super::Entry;
-use crate::styles::Doc;
+use perigrain_styles::Doc;
 
 pub(super) const RESTART: Entry = (
     "restart",

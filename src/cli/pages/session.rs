@@ -1,7 +1,7 @@
 //! Pages of the commands about the session: run, output, echo, modes.
 
 use super::Entry;
-use crate::styles::Doc;
+use perigrain_styles::Doc;
 
 pub(super) const RUN: Entry = (
     "run",

@@ -1,7 +1,7 @@
 //! Pages of the step table: thermo, thermo_style, thermo_modify.
 
 use super::Entry;
-use crate::styles::Doc;
+use perigrain_styles::Doc;
 
 pub(super) const THERMO: Entry = (
     "thermo",

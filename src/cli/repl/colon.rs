@@ -4,7 +4,7 @@ use super::knowing::COLON;
 use super::picture::{self, Ink};
 use super::plotting::{Curve, plot};
 use super::{Repl, colours, saving, slicing};
-use crate::diag::{nearest, render};
+use perigrain_base::diag::{nearest, render};
 use std::fmt::Write;
 
 /// Characters across and pixels down of a picture.

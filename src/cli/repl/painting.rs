@@ -1,7 +1,7 @@
 //! Colours for a line that is being typed: command, style, numbers, values, texts, comments.
 
 use super::knowing;
-use crate::lang::number::parse;
+use perigrain_lang::number::parse;
 use std::ops::Range;
 
 /// What a stretch of a line is.

@@ -2,8 +2,8 @@
 
 use super::picture::{Ink, Picture, Pixel, legend};
 use crate::cli::progress::short;
-use crate::out::image::Map;
 use crate::session::Session;
+use perigrain_out::image::Map;
 
 /// Characters across, and pixels (half characters) down, at most.
 const WIDTH: f64 = 72.0;
@@ -26,8 +26,9 @@ pub fn slice(words: &[&str], session: &mut Session, ink: Ink) -> Result<String, 
     let number = |w: &&str| w.parse::<f64>().ok().filter(|a| a.is_finite());
     let numbers: Vec<f64> = rest.iter().filter_map(number).collect();
     let (Some(&at), true) = (numbers.first(), numbers.len() == rest.len()) else { return Err(usage()) };
-    let values =
-        session.per_particle(formula).map_err(|e| crate::diag::render::plain(&e, &session.sources))?;
+    let values = session
+        .per_particle(formula)
+        .map_err(|e| perigrain_base::diag::render::plain(&e, &session.sources))?;
     let widths = session.widths();
     let places = &session.world.particles.x;
     let (u, v) = [(1, 2), (0, 2), (0, 1)][axis];

@@ -1,16 +1,16 @@
 //! What ops can ask for while a plan is made.
 
 use super::Sealer;
-use crate::diag::{Code, Result, Span, fail};
 use crate::graph::said;
-use crate::lang::{RefKind, ValueRef};
-use crate::out::log::Log;
-use crate::plan::{LeftOut, Level, Op, Stage, When};
-use crate::styles::bond::BondForce;
-use crate::styles::pair::probe::Probe;
-use crate::styles::{Compute, Names, PlaceTest, Pull, Reading, SealCx, Text, Wants};
-use crate::world::adapted::Coefficient;
-use crate::world::{SlotId, World};
+use perigrain_base::diag::{Code, Result, Span, fail};
+use perigrain_lang::{RefKind, ValueRef};
+use perigrain_out::log::Log;
+use perigrain_pairs::bond::BondForce;
+use perigrain_plan::{LeftOut, Level, Op, Stage, When};
+use perigrain_styles::probe::Probe;
+use perigrain_styles::{Compute, Names, PlaceTest, Pull, Reading, SealCx, Text, Wants};
+use perigrain_world::adapted::Coefficient;
+use perigrain_world::{SlotId, World};
 
 impl SealCx for Sealer<'_> {
     fn world(&mut self) -> &mut World {

@@ -1,0 +1,80 @@
+//! `boundary`: what the faces of the box do.
+
+use super::{Act, CommandStyle};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_lang::{Args, Word};
+use perigrain_styles::common::{before_box, setting};
+use perigrain_styles::{BuildCx, Doc, Style};
+use perigrain_world::{Boundary, Face};
+
+/// The command.
+pub struct BoundaryCommand;
+
+impl Style for BoundaryCommand {
+    fn name(&self) -> &'static str {
+        "boundary"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "boundary X Y Z",
+            summary: "Says what the faces of the box do: periodic, fixed or shrink-wrapped.",
+            text: "Each of X, Y, Z is one letter for both faces or two letters for the lower and the upper one: `p` \
+                   periodic (always both), `f` fixed, `s` shrink-wrapped, `m` shrink-wrapped but never inside the box \
+                   as created. Shrinking and wrapping happen when neighbour lists are rebuilt. Default: `p p p`.",
+            example: "boundary f fs p",
+        }
+    }
+}
+
+impl CommandStyle for BoundaryCommand {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        before_box(cx, "boundary")?;
+        let mut faces = [[Face::Periodic; 2]; 3];
+        for (pair, what) in faces.iter_mut().zip(["the faces in x", "the faces in y", "the faces in z"]) {
+            *pair = pair_of_faces(a.expect(what)?)?;
+        }
+        Ok(setting(move |cx| {
+            cx.world.settings.boundary = Boundary(faces);
+            Ok(())
+        }))
+    }
+}
+
+/// Reads one or two letters for the faces of a dimension.
+pub fn pair_of_faces(word: &Word) -> Result<[Face; 2]> {
+    let face = |c: char| match c {
+        'p' => Some(Face::Periodic),
+        'f' => Some(Face::Fixed),
+        's' => Some(Face::Shrink),
+        'm' => Some(Face::ShrinkMin),
+        _ => None,
+    };
+    let letters: Vec<Option<Face>> = word.text.chars().map(face).collect();
+    let pair = match letters.as_slice() {
+        [Some(both)] => [*both, *both],
+        [Some(lo), Some(hi)] => [*lo, *hi],
+        _ => {
+            let text = format!("`{}` is no boundary: one or two of the letters p f s m", word.text);
+            return fail(Code::BAD_VALUE, word.span, text);
+        }
+    };
+    if (pair[0] == Face::Periodic) != (pair[1] == Face::Periodic) {
+        return fail(Code::BAD_VALUE, word.span, "both faces of a dimension are periodic or neither is");
+    }
+    Ok(pair)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{refused, scene};
+
+    #[test]
+    fn one_or_two_letters() {
+        assert_eq!(scene("boundary f fs p").settings.boundary.letters(), "ff fs pp");
+        let empty = Default::default();
+        assert_eq!(refused(&empty, "boundary p pf f").0, "pf");
+        assert_eq!(refused(&empty, "boundary p q f").0, "q");
+        assert!(refused(&empty, "boundary p p").1.contains("the faces in z"));
+    }
+}

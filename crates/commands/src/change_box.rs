@@ -1,0 +1,293 @@
+//! `change_box`: size and faces of the box, particles along with it where asked.
+
+use super::boundary::pair_of_faces;
+use super::replicate::say_box;
+use super::{Act, CommandStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Args, Word};
+use perigrain_styles::common::{self, not_here, on_particles, scales, units_lattice};
+use perigrain_styles::near::bonds_allow;
+use perigrain_styles::{ActCx, BuildCx, Doc, Style};
+use perigrain_world::{Boundary, Domain, Face, GroupId};
+
+/// The command.
+pub struct ChangeBox;
+
+const KEYWORDS: [&str; 8] = ["x", "y", "z", "boundary", "ortho", "set", "remap", "units"];
+
+impl Style for ChangeBox {
+    fn name(&self) -> &'static str {
+        "change_box"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "change_box GROUP x|y|z final LO HI | x|y|z delta DLO DHI | x|y|z scale S | x|y|z volume | \
+                     boundary X Y Z | set | remap | ortho …  [units lattice|box]",
+            summary: "Changes size and faces of the box.",
+            text: "What is asked happens in order. `scale` and `volume` change an edge about its middle; `volume` keeps the \
+                   volume that the box had before the edge named just before it changed (two `volume` in a row share it). \
+                   Particles stay where they are unless `remap` is said: then those of the group move with the box, from \
+                   where it was at the start of the line, or at the last `set` or `remap`, to where it is now. `boundary` changes \
+                   what the faces do; image counts along a dimension that is no longer periodic become 0. At the end \
+                   shrink-wrapped faces follow the particles and periodic ones wrap them. Distances are in lattice \
+                   spacings unless `units box` is said. Triclinic boxes (`xy xz yz triclinic`) are refused.",
+            example: "change_box all x scale 1.01 y final -0.01 0.01 boundary f f f remap units box",
+        }
+    }
+}
+
+/// How an edge changes.
+#[derive(Clone, Copy)]
+enum Edge {
+    Final(f64, f64),
+    Delta(f64, f64),
+    Scale(f64),
+}
+
+/// One thing the line asks for.
+enum Step {
+    /// An edge, and the edges that keep the volume for it.
+    Edge {
+        d: usize,
+        how: Edge,
+        volume: Vec<usize>,
+    },
+    Boundary([[Face; 2]; 3]),
+    Ortho,
+    Set,
+    Remap,
+}
+
+impl CommandStyle for ChangeBox {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        common::domain(cx)?;
+        let group = cx.group(a.expect("a group")?)?;
+        let (mut steps, mut lattice) = (vec![], true);
+        let mut word = Some(a.expect("what to change")?);
+        while let Some(keyword) = word {
+            match keyword.text.as_str() {
+                "x" | "y" | "z" => edge(keyword, a, &mut steps)?,
+                "boundary" => {
+                    let mut faces = [[Face::Periodic; 2]; 3];
+                    for (pair, what) in faces.iter_mut().zip(["x", "y", "z"]) {
+                        *pair = pair_of_faces(a.expect(&format!("the faces in {what}"))?)?;
+                    }
+                    steps.push(Step::Boundary(faces));
+                }
+                "ortho" => steps.push(Step::Ortho),
+                "set" => steps.push(Step::Set),
+                "remap" => steps.push(Step::Remap),
+                "units" => lattice = units_lattice(a)?,
+                "xy" | "xz" | "yz" | "triclinic" => {
+                    return Err(not_here(keyword, "a triclinic box: change_box"));
+                }
+                _ => return Err(a.unknown(keyword, &KEYWORDS)),
+            }
+            word = a.next();
+        }
+        let scale = scales(cx.world, lattice);
+        let span = cx.span;
+        if let (true, [Step::Boundary(faces)]) = (cx.checking, steps.as_slice()) {
+            // A check has no particles for faces to follow, but later lines depend on what the faces are.
+            let faces = Boundary(*faces);
+            return Ok(common::setting(move |cx| {
+                if let Some(domain) = &mut cx.world.domain {
+                    common::check_flat(faces, (domain.lo[2], domain.hi[2]), domain.flat)?;
+                    domain.boundary = faces;
+                }
+                cx.world.settings.boundary = faces;
+                Ok(())
+            }));
+        }
+        Ok(on_particles(vec![], move |cx| change(cx, group, &steps, scale, span)))
+    }
+}
+
+fn edge(word: &Word, a: &mut Args, steps: &mut Vec<Step>) -> Result<()> {
+    let d = usize::from(word.text.as_bytes()[0] - b'x');
+    let style = a.choice("change", &["final", "delta", "scale", "volume"])?;
+    let how = match style {
+        "final" => Edge::Final(a.number("the lower face")?, a.number("the upper face")?),
+        "delta" => Edge::Delta(a.number("the shift")?, a.number("the shift")?),
+        "scale" => Edge::Scale(a.positive("the factor")?),
+        _ => {
+            return match steps.last_mut() {
+                Some(Step::Edge { d: first, volume, .. })
+                    if *first != d && !volume.contains(&d) && volume.len() < 2 =>
+                {
+                    volume.push(d);
+                    Ok(())
+                }
+                _ => {
+                    let text = "`volume` must follow a change of another edge";
+                    let diagnostic = Diagnostic::error(Code::CONFLICT, word.span, text);
+                    Err(diagnostic.help("write for example `x scale 1.1 y volume`").into())
+                }
+            };
+        }
+    };
+    steps.push(Step::Edge { d, how, volume: vec![] });
+    Ok(())
+}
+
+fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span: Span) -> Result<()> {
+    // LAMMPS lets shrink-wrapped faces follow the particles before it looks at the box.
+    common::settle(cx.world);
+    let mut domain = cx.world.domain()?.clone();
+    let mut saved = domain.clone();
+    let mut x = cx.world.particles.x.clone();
+    let mut boxes = vec![];
+    let mut unwound = [false; 3];
+    for step in steps {
+        match step {
+            Step::Edge { d, how, volume } => {
+                reshape(&mut domain, *d, *how, volume, scale[*d], span)?;
+                boxes.push(domain.clone());
+            }
+            Step::Boundary(faces) => {
+                common::check_flat(Boundary(*faces), (domain.lo[2], domain.hi[2]), domain.flat)?;
+                for (d, unwound) in unwound.iter_mut().enumerate() {
+                    *unwound |= domain.boundary.periodic(d) && faces[d][0] != Face::Periodic;
+                }
+                domain.boundary = Boundary(*faces);
+                refit(&mut domain);
+            }
+            Step::Ortho => boxes.push(domain.clone()),
+            Step::Set => saved = domain.clone(),
+            Step::Remap => {
+                let members = cx.world.particles.mask.iter().map(|m| m & group.bit() != 0);
+                for (x, _) in x.iter_mut().zip(members).filter(|(_, member)| *member) {
+                    *x = carried(*x, &saved, &domain);
+                }
+                // What has moved along does not move along again.
+                saved = domain.clone();
+            }
+        }
+    }
+    let before = cx.world.domain()?.lengths();
+    bonds_allow(cx.world, [0, 1, 2].map(|d| before[d] != domain.lengths()[d])).map_err(|e| e.at(span))?;
+    cx.say("Changing box ...");
+    for domain in boxes {
+        cx.world.domain = Some(domain);
+        say_box(cx)?;
+    }
+    unwind(cx, unwound);
+    // What is read into the box later finds these faces in force.
+    cx.world.settings.boundary = domain.boundary;
+    cx.world.domain = Some(domain);
+    cx.world.particles.x = x;
+    common::settle(cx.world);
+    cx.world.touch();
+    Ok(())
+}
+
+/// Image counts along dimensions that are periodic no more become 0.
+fn unwind(cx: &mut ActCx, unwound: [bool; 3]) {
+    if unwound == [false; 3] {
+        return;
+    }
+    let image = &mut cx.world.particles.image;
+    let mut lost = false;
+    for i in 0..cx.world.particles.x.len() {
+        let old = image[i];
+        let new = [0, 1, 2].map(|d| if unwound[d] { 0 } else { old[d] });
+        lost |= new != old;
+        image.set(i, new);
+    }
+    if lost {
+        let text = "image counts along dimensions that are no longer periodic have been set to 0";
+        cx.note(Diagnostic::note(Code::SUSPICIOUS, None, text));
+    }
+}
+
+/// Changes an edge, and those that keep the volume for it.
+fn reshape(domain: &mut Domain, d: usize, how: Edge, volume: &[usize], scale: f64, span: Span) -> Result<()> {
+    let before = domain.volume();
+    match how {
+        Edge::Final(lo, hi) => (domain.lo[d], domain.hi[d]) = (scale * lo, scale * hi),
+        Edge::Delta(lo, hi) => {
+            (domain.lo[d], domain.hi[d]) = (domain.lo[d] + scale * lo, domain.hi[d] + scale * hi)
+        }
+        Edge::Scale(factor) => about_middle(domain, d, factor),
+    }
+    check(domain, span)?;
+    refit(domain);
+    if volume.is_empty() {
+        return Ok(());
+    }
+    let factor = before / domain.volume();
+    let share = if volume.len() == 2 { factor.sqrt() } else { factor };
+    volume.iter().for_each(|&d| about_middle(domain, d, share));
+    check(domain, span)?;
+    refit(domain);
+    Ok(())
+}
+
+fn about_middle(domain: &mut Domain, d: usize, factor: f64) {
+    let middle = 0.5 * (domain.lo[d] + domain.hi[d]);
+    domain.lo[d] = middle + factor * (domain.lo[d] - middle);
+    domain.hi[d] = middle + factor * (domain.hi[d] - middle);
+}
+
+fn check(domain: &Domain, span: Span) -> Result<()> {
+    for (d, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let (lo, hi) = (domain.lo[d], domain.hi[d]);
+        if hi.partial_cmp(&lo) != Some(std::cmp::Ordering::Greater) || !(hi - lo).is_finite() {
+            return fail(Code::BAD_VALUE, span, format!("the box would run from {lo} to {hi} in {name}"));
+        }
+    }
+    common::check_flat(domain.boundary, (domain.lo[2], domain.hi[2]), domain.flat)
+}
+
+/// What LAMMPS does with every new box: the room beyond shrink-wrapped faces is measured anew and added.
+fn refit(domain: &mut Domain) {
+    let fresh = Domain::new(domain.lo, domain.hi, domain.boundary);
+    *domain = Domain { flat: domain.flat, ..fresh };
+    domain.open_shrinking_faces();
+}
+
+/// Where a place of one box is in another.
+fn carried(x: [f64; 3], from: &Domain, to: &Domain) -> [f64; 3] {
+    let (old, new) = (from.lengths(), to.lengths());
+    [0, 1, 2].map(|d| new[d] * ((x[d] - from.lo[d]) * (1.0 / old[d])) + to.lo[d])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{more, refused, scene};
+
+    #[test]
+    fn particles_move_with_the_box_when_asked() {
+        let mut w =
+            scene("units si\nregion b block 0 4 0 2 0 1\ncreate_box 1 b\ncreate_atoms 1 single 1 1 0.5");
+        more(&mut w, "change_box all x scale 2 y volume");
+        let domain = w.domain.clone().unwrap();
+        // By hand: x about 2 from -2 to 6; y halves about 1.
+        assert_eq!((domain.lo, domain.hi), ([-2.0, 0.5, 0.0], [6.0, 1.5, 1.0]));
+        assert_eq!(w.particles.x[0], [1.0, 1.0, 0.5]);
+        more(&mut w, "change_box all x final 0 4 remap");
+        // A fraction 3/8 of the way.
+        assert_eq!(w.particles.x[0], [1.5, 1.0, 0.5]);
+        // The second `remap` moves along y alone, half of the way as before.
+        more(&mut w, "change_box all x final 0 8 remap y final 0 3 remap");
+        assert_eq!(w.particles.x[0], [3.0, 1.5, 0.5]);
+    }
+
+    #[test]
+    fn blames_the_right_word() {
+        let w = scene("units si\nregion b block 0 4 0 2 0 1\ncreate_box 1 b");
+        for (line, word) in [
+            ("change_box all xy final 0.1", "xy"),
+            ("change_box all x volume", "x"),
+            ("change_box all x scale 2 x volume", "x"),
+            ("change_box all x scale -1", "-1"),
+            ("change_box all x final 4 0", "change_box all x final 4 0"),
+            ("change_box all boundary p pf p", "pf"),
+            ("change_box all x sclae 2", "sclae"),
+            ("change_box none x scale 2", "none"),
+        ] {
+            assert_eq!(refused(&w, line).0, word, "{line}");
+        }
+    }
+}

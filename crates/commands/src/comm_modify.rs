@@ -1,0 +1,90 @@
+//! `comm_modify`: what LAMMPS' processes tell each other; one process here.
+
+use super::{Act, CommandStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_lang::Args;
+use perigrain_styles::common::setting;
+use perigrain_styles::{BuildCx, Doc, Style};
+
+/// The command.
+pub struct CommModify;
+
+impl Style for CommModify {
+    fn name(&self) -> &'static str {
+        "comm_modify"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "comm_modify [vel yes|no] [cutoff R] [mode single|multi|multi/old] [group ID] [cutoff/multi TYPE R] [reduce/multi]",
+            summary: "Accepted for the sake of LAMMPS decks: one process has nothing to communicate.",
+            text: "All velocities are at hand, whatever `vel` says, and all particles, whatever their cutoffs.",
+            example: "comm_modify vel yes",
+        }
+    }
+}
+
+impl CommandStyle for CommModify {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        if a.is_empty() {
+            a.expect("a keyword such as vel or cutoff")?;
+        }
+        while let Some(word) = a.next() {
+            match word.text.as_str() {
+                "vel" => {
+                    a.flag("vel")?;
+                }
+                "cutoff" => {
+                    a.non_negative("the cutoff")?;
+                }
+                "mode" => {
+                    a.choice("mode", &["single", "multi", "multi/old"])?;
+                }
+                "group" => {
+                    cx.group(a.expect("a group")?)?;
+                }
+                "cutoff/multi" | "cutoff/multi/old" => {
+                    a.expect("a collection or type, or a range of them")?;
+                    a.number("the cutoff")?;
+                }
+                "reduce/multi" => {}
+                _ => {
+                    const KNOWN: [&str; 7] = [
+                        "vel",
+                        "cutoff",
+                        "mode",
+                        "group",
+                        "cutoff/multi",
+                        "cutoff/multi/old",
+                        "reduce/multi",
+                    ];
+                    return Err(a.unknown(word, &KNOWN));
+                }
+            }
+        }
+        let text = "comm_modify has no effect here: one process has nothing to communicate";
+        cx.note(Diagnostic::note(Code::NO_EFFECT, a.name_span(), text));
+        Ok(setting(|_| Ok(())))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{refused, scene};
+
+    #[test]
+    fn is_validated() {
+        scene(
+            "comm_modify vel yes cutoff 0.5 mode multi group all cutoff/multi 1*2 0.3\nnewton on off\nprocessors * 1 1 map xyz grid numa numa_nodes 0\ndimension 3",
+        );
+        let empty = Default::default();
+        assert_eq!(refused(&empty, "comm_modify velo yes").0, "velo");
+        assert_eq!(refused(&empty, "comm_modify mode many").0, "many");
+        assert_eq!(refused(&empty, "comm_modify group some").0, "some");
+        assert_eq!(refused(&empty, "newton maybe").0, "maybe");
+        assert_eq!(refused(&empty, "processors 2 0 1").0, "0");
+        assert_eq!(refused(&empty, "processors * * * map zz").0, "zz");
+        assert_eq!(refused(&empty, "processors * * * part 1 2 multiple").0, "part");
+        assert_eq!(refused(&empty, "dimension 4").0, "4");
+    }
+}

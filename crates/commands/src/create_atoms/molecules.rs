@@ -1,0 +1,79 @@
+//! `create_atoms … mol`: copies of a molecule template in place of single particles.
+
+use super::places::New;
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::math::body::{Quat, turn};
+use perigrain_base::math::rng::Marsaglia;
+use perigrain_lang::Args;
+use perigrain_styles::BuildCx;
+use perigrain_styles::common;
+use perigrain_styles::molecules::{self, any_turn, fits, named};
+use perigrain_world::template::Numbering;
+use perigrain_world::{Template, World};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// What `mol` and `rotate` ask for.
+pub struct Copies {
+    set: Arc<[Template]>,
+    seed: u32,
+    /// The turn of all copies; random where none is said.
+    pub turned: Option<Quat>,
+    span: Span,
+}
+
+/// Takes the words after `mol`.
+pub fn copies(a: &mut Args, cx: &BuildCx) -> Result<Copies> {
+    let word = a.expect("a molecule template")?;
+    let set = named(word, cx)?;
+    if set.len() > 1 {
+        let text = format!("only the first of the {} molecules of this template is used", set.len());
+        cx.note(Diagnostic::warning(Code::SUSPICIOUS, word.span, text));
+    }
+    let c = Copies { set, seed: common::marsaglia_seed(a)?, turned: None, span: word.span };
+    fits(c.template(), cx, c.span)?;
+    Ok(c)
+}
+
+/// Takes the words after `rotate`.
+pub fn rotate(a: &mut Args) -> Result<Quat> {
+    let angle = a.number("the angle [degrees]")?;
+    let span = a.here();
+    let axis = [a.number("the axis")?, a.number("the axis")?, a.number("the axis")?];
+    let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if length == 0.0 {
+        return fail(Code::BAD_VALUE, span, "the axis must not be zero");
+    }
+    Ok(turn(axis.map(|x| x / length), angle * PI / 180.0))
+}
+
+impl Copies {
+    fn template(&self) -> &Template {
+        &self.set[0]
+    }
+
+    /// Whether the types exist when `kind` is added to them.
+    pub fn check_types(&self, kind: u16, types: usize) -> Result<()> {
+        molecules::check_types(self.template(), kind, types, self.span)
+    }
+
+    /// Puts a copy at each of these places; their number of particles.
+    pub fn put(&self, w: &mut World, places: &[New], kind: u16) -> Result<usize> {
+        let t = self.template();
+        let flat = w.settings.two_dimensional;
+        let mut stream = Marsaglia::new(self.seed);
+        let mut numbers = Numbering::behind(w, kind);
+        let more = u32::try_from(places.len().saturating_mul(t.count)).ok();
+        if more.and_then(|n| numbers.tag.checked_add(n)).is_none() {
+            return fail(Code::TOO_LARGE, None, "more particles than there are ids");
+        }
+        for new in places {
+            let q = self.turned.unwrap_or_else(|| any_turn(|| stream.uniform(), flat, None));
+            w.insert_molecule(t, &t.turned(new.x, q), &mut numbers);
+        }
+        if !t.bonds.is_empty() {
+            w.bonds.find_special();
+        }
+        Ok(places.len() * t.count)
+    }
+}

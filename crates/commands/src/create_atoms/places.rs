@@ -1,0 +1,230 @@
+//! Where `create_atoms` puts particles: lattice sites, one place, random places, triangles of a surface.
+
+use super::mesh::Mesh;
+use super::subset::Subset;
+use perigrain_base::diag::Result;
+use perigrain_base::math::rng::ParkMiller;
+use perigrain_lang::ValueRef;
+use perigrain_styles::ActCx;
+use perigrain_world::{Domain, Region, World};
+use std::ops::ControlFlow;
+
+/// Where particles are made.
+pub enum Place {
+    /// On lattice sites, in a region where one is given.
+    Lattice {
+        /// Where.
+        region: Option<Region>,
+        /// Only some of the sites.
+        subset: Option<Subset>,
+    },
+    /// At one place.
+    Single {
+        /// Where.
+        x: [f64; 3],
+        /// Wrapped into a periodic box.
+        remap: bool,
+    },
+    /// At random places.
+    Random {
+        /// How many.
+        count: i64,
+        /// Of the random stream.
+        seed: u32,
+        /// Where.
+        region: Option<Region>,
+        /// Distance kept from all others; 0 for none.
+        overlap: f64,
+        /// Attempts for each.
+        tries: i64,
+    },
+    /// On the triangles of a surface.
+    Mesh(Mesh),
+}
+
+/// A particle to be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct New {
+    /// Its type.
+    pub kind: u16,
+    /// Where.
+    pub x: [f64; 3],
+    /// Its radius, where the way it is made gives one.
+    pub radius: Option<f64>,
+}
+
+/// The keywords `var` and `set`: a formula that decides about each place.
+pub struct Test {
+    /// The equal-style variable: not zero where a particle may be.
+    pub variable: ValueRef,
+    /// The internal-style variables that take x, y, z before.
+    pub sets: [Option<ValueRef>; 3],
+}
+
+impl Test {
+    fn holds(&self, cx: &mut ActCx, x: [f64; 3]) -> Result<bool> {
+        let sets: Vec<(&ValueRef, f64)> =
+            self.sets.iter().zip(x).filter_map(|(v, x)| v.as_ref().map(|v| (v, x))).collect();
+        Ok(cx.values.with_internal(cx.world, &self.variable, &sets)? != 0.0)
+    }
+}
+
+/// What decides about each new particle.
+pub struct Maker<'a> {
+    /// The box.
+    pub domain: &'a Domain,
+    /// The type of particles that have none of their own.
+    pub kind: u16,
+    /// The type of each point of the unit cell.
+    pub basis: &'a [u16],
+    /// `var` and `set`.
+    pub test: Option<&'a Test>,
+}
+
+impl Place {
+    /// The new particles in LAMMPS' order.
+    pub fn find(&self, cx: &mut ActCx, m: &Maker) -> Result<Vec<New>> {
+        match self {
+            Place::Lattice { region, subset } => {
+                let mut places = on_sites(cx.world, m, region.as_ref());
+                if m.test.is_some() {
+                    places = tested(cx, m, places)?;
+                }
+                match subset {
+                    Some(subset) => subset.of(places),
+                    None => Ok(places),
+                }
+            }
+            Place::Single { x, remap } => Ok(single(m, *x, *remap)),
+            Place::Random { count, seed, region, overlap, tries } => {
+                let bounds = bounds(m.domain, region.as_ref());
+                let random = Random { bounds, region: region.as_ref(), overlap: *overlap, tries: *tries };
+                random.places(cx, m, *count, *seed)
+            }
+            Place::Mesh(mesh) => Ok(mesh.places(m)),
+        }
+    }
+
+    /// About how many particles will be made: lattice cells times the share of sample points inside the region.
+    pub fn expected(&self, world: &World, domain: &Domain) -> f64 {
+        const SAMPLES: usize = 16;
+        let region = match self {
+            Place::Single { .. } | Place::Mesh(_) => return 1.0,
+            Place::Random { count, .. } => return *count as f64,
+            Place::Lattice { region, .. } => region.as_ref(),
+        };
+        let (lo, hi) = bounds(domain, region);
+        let at = |k: usize, d: usize| lo[d] + (hi[d] - lo[d]) * (k as f64 + 0.5) / SAMPLES as f64;
+        let inside = (0..SAMPLES.pow(3))
+            .map(|k| [at(k % SAMPLES, 0), at(k / SAMPLES % SAMPLES, 1), at(k / SAMPLES / SAMPLES, 2)])
+            .filter(|x| region.is_none_or(|r| r.contains(*x)))
+            .count();
+        world.lattice.site_bound(lo, hi) * inside as f64 / SAMPLES.pow(3) as f64
+    }
+}
+
+fn tested(cx: &mut ActCx, m: &Maker, places: Vec<New>) -> Result<Vec<New>> {
+    let Some(test) = m.test else { return Ok(places) };
+    let mut kept = vec![];
+    for new in places {
+        if test.holds(cx, new.x)? {
+            kept.push(new);
+        }
+    }
+    Ok(kept)
+}
+
+/// Sites of the lattice inside box and region.
+fn on_sites(world: &World, m: &Maker, region: Option<&Region>) -> Vec<New> {
+    let domain = m.domain;
+    let (mut lo, mut hi) = (domain.lo, domain.hi);
+    for d in (0..3).filter(|&d| domain.boundary.periodic(d)) {
+        let epsilon = 1e-6 * (domain.hi[d] - domain.lo[d]);
+        (lo[d], hi[d]) = (lo[d] - epsilon, hi[d] - 2.0 * epsilon);
+    }
+    let (first, last) = match region.and_then(Region::bounds) {
+        Some((a, b)) => ([0, 1, 2].map(|d| lo[d].max(a[d])), [0, 1, 2].map(|d| hi[d].min(b[d]))),
+        None => (lo, hi),
+    };
+    let mut places = vec![];
+    if (0..3).any(|d| first[d] > last[d]) {
+        return places;
+    }
+    let _ = world.lattice.sites(first, last, |k, x| {
+        let inside = (0..3).all(|d| x[d] >= lo[d] && x[d] < hi[d]);
+        if inside && region.is_none_or(|r| r.contains(x)) {
+            places.push(New { kind: m.basis[k], x, radius: None });
+        }
+        ControlFlow::<()>::Continue(())
+    });
+    places
+}
+
+fn single(m: &Maker, mut x: [f64; 3], remap: bool) -> Vec<New> {
+    if remap {
+        m.domain.wrap(&mut x, &mut [0; 3]);
+    }
+    if m.domain.holds(&x) { vec![New { kind: m.kind, x, radius: None }] } else { vec![] }
+}
+
+/// The part of the box that a region leaves.
+fn bounds(domain: &Domain, region: Option<&Region>) -> ([f64; 3], [f64; 3]) {
+    match region.and_then(Region::bounds) {
+        Some((a, b)) => {
+            ([0, 1, 2].map(|d| domain.lo[d].max(a[d])), [0, 1, 2].map(|d| domain.hi[d].min(b[d])))
+        }
+        None => (domain.lo, domain.hi),
+    }
+}
+
+struct Random<'a> {
+    bounds: ([f64; 3], [f64; 3]),
+    region: Option<&'a Region>,
+    overlap: f64,
+    tries: i64,
+}
+
+impl Random<'_> {
+    /// Draws places one by one; what finds none within the attempts is left out.
+    fn places(&self, cx: &mut ActCx, m: &Maker, count: i64, seed: u32) -> Result<Vec<New>> {
+        let mut stream = ParkMiller::new(seed);
+        stream.skip(30);
+        let mut places = vec![];
+        if (0..3).any(|d| self.bounds.0[d] > self.bounds.1[d]) {
+            return Ok(places);
+        }
+        for _ in 0..count {
+            for _ in 0..self.tries {
+                let x = self.draw(&mut stream, m.domain.flat);
+                if self.accepts(cx, m, &places, x)? {
+                    places.push(New { kind: m.kind, x, radius: None });
+                    break;
+                }
+            }
+        }
+        Ok(places)
+    }
+
+    fn draw(&self, stream: &mut ParkMiller, flat: bool) -> [f64; 3] {
+        let (lo, hi) = self.bounds;
+        let x = [0, 1, 2].map(|d| lo[d] + stream.uniform() * (hi[d] - lo[d]));
+        if flat { [x[0], x[1], 0.0] } else { x }
+    }
+
+    fn accepts(&self, cx: &mut ActCx, m: &Maker, new: &[New], x: [f64; 3]) -> Result<bool> {
+        if !self.region.is_none_or(|r| r.contains(x)) {
+            return Ok(false);
+        }
+        if let Some(test) = m.test
+            && !test.holds(cx, x)?
+        {
+            return Ok(false);
+        }
+        let far = |y: &[f64; 3]| {
+            let d = m.domain.minimum_image([x[0] - y[0], x[1] - y[1], x[2] - y[2]]);
+            d[0] * d[0] + d[1] * d[1] + d[2] * d[2] >= self.overlap * self.overlap
+        };
+        let mut old = cx.world.particles.x.iter().chain(new.iter().map(|n| &n.x));
+        Ok(self.overlap == 0.0 || old.all(far))
+    }
+}

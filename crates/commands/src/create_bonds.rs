@@ -1,0 +1,204 @@
+//! `create_bonds`: bonds between particles that are there.
+
+use super::{Act, CommandStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::Args;
+use perigrain_neigh::list::{Reach, View, Wanted, pairs};
+use perigrain_styles::common::{self, bad_keyword, bond_type, on_particles};
+use perigrain_styles::{ActCx, BuildCx, Doc, Style};
+use perigrain_world::index::Index;
+use perigrain_world::{Allowed, Bond, GroupId, World};
+
+/// The command.
+pub struct CreateBonds;
+
+impl Style for CreateBonds {
+    fn name(&self) -> &'static str {
+        "create_bonds"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "create_bonds many GROUP1 GROUP2 TYPE RMIN RMAX | single/bond TYPE ID1 ID2  [special yes|no]",
+            summary: "Makes bonds between particles.",
+            text: "`many`: a bond between each particle of one group and each of the other whose distance lies between RMIN and \
+                   RMAX, both included, except where `neigh_modify exclude` or the weights of `special_bonds` (0 for both kinds) \
+                   take the pair out of neighbour lists: so no pair is bonded twice, and the weight of bonded pairs must be 0. With \
+                   the default weights particles two or three bonds apart are left out, too. LAMMPS also needs a pair style that \
+                   reaches as far; perigrain does not. `single/bond`: one bond between two ids.\n\n\
+                   `special no` leaves open for now which pairs count as bonded: say `yes` with the last of many such lines. \
+                   `single/angle` and the like are refused.",
+            example: "units lj\natom_style bond\nlattice sc 1.0\nregion b block 0 4 0 4 0 4\n\
+                      create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nmass 1 1.0\n\
+                      create_bonds many all all 1 0.9 1.1\nprint \"$(bonds) bonds\"",
+        }
+    }
+}
+
+enum Choice {
+    Many { groups: [GroupId; 2], range: [f64; 2] },
+    Single { ids: [u32; 2], spans: [Span; 2] },
+}
+
+impl CommandStyle for CreateBonds {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        common::domain(cx)?;
+        if !cx.world.particles.style.bonded {
+            let text = format!("particles of atom_style {} have no bonds", cx.world.particles.style.name());
+            let d = Diagnostic::error(Code::CONFLICT, a.name_span(), text);
+            return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
+        }
+        let style = a.expect("many or single/bond")?;
+        let (kind, choice) = match style.text.as_str() {
+            "many" => many(a, cx)?,
+            "single/bond" => single(a, cx)?,
+            "single/angle" | "single/dihedral" | "single/improper" => {
+                return Err(common::not_here(style, "create_bonds"));
+            }
+            _ => {
+                return Err(common::unknown_style(style, "style of create_bonds", &["many", "single/bond"]));
+            }
+        };
+        let mut special = true;
+        while let Some(word) = a.next() {
+            let span = a.here();
+            match word.text.as_str() {
+                "special" => special = a.flag("special")?,
+                _ => return Err(bad_keyword(a, word, &["special"], &[])),
+            }
+            if !special && matches!(choice, Choice::Many { .. }) {
+                return fail(Code::CONFLICT, span, "`special no` goes with single/bond only");
+            }
+        }
+        Ok(on_particles(vec![], move |cx| create(cx, kind, &choice, special)))
+    }
+}
+
+fn many(a: &mut Args, cx: &BuildCx) -> Result<(u16, Choice)> {
+    let groups = [cx.group(a.expect("a group")?)?, cx.group(a.expect("a group")?)?];
+    let kind = bond_type(a, cx.world.bonds.types)?;
+    let least = a.non_negative("the smallest distance")?;
+    let span = a.here();
+    let most = a.non_negative("the largest distance")?;
+    if most < least {
+        return fail(
+            Code::BAD_VALUE,
+            span,
+            format!("the largest distance {most} is below the smallest, {least}"),
+        );
+    }
+    let weights = cx.world.bonds.weights;
+    if weights.lj[0] != 0.0 || weights.coul[0] != 0.0 {
+        let text = "create_bonds many needs `special_bonds` weights 0 for bonded pairs, or they would be bonded twice";
+        let d = Diagnostic::error(Code::CONFLICT, a.name_span(), text);
+        return Err(d.help("put `special_bonds lj/coul 0.0 1.0 1.0` before this line").into());
+    }
+    Ok((kind, Choice::Many { groups, range: [least, most] }))
+}
+
+fn single(a: &mut Args, cx: &BuildCx) -> Result<(u16, Choice)> {
+    let kind = bond_type(a, cx.world.bonds.types)?;
+    let (mut ids, mut spans) = ([0; 2], [Span::default(); 2]);
+    for (id, span) in ids.iter_mut().zip(&mut spans) {
+        *span = a.here();
+        let k = a.integer_from(1, "an id")?;
+        *id = u32::try_from(k)
+            .or_else(|_| fail(Code::BAD_VALUE, *span, format!("ids go from 1 to {}, not {k}", u32::MAX)))?;
+    }
+    if ids[0] == ids[1] {
+        return fail(Code::BAD_VALUE, spans[1], "a bond needs two different particles");
+    }
+    Ok((kind, Choice::Single { ids, spans }))
+}
+
+fn create(cx: &mut ActCx, kind: u16, choice: &Choice, special: bool) -> Result<()> {
+    let kind = i32::from(kind);
+    match choice {
+        Choice::Single { ids, spans } => {
+            let p = &cx.world.particles;
+            let index = Index::new(&p.tag);
+            if let Some(k) = (0..2).find(|&k| index.find(ids[k], &p.tag).is_none()) {
+                return fail(Code::UNKNOWN_NAME, spans[k], format!("there is no particle {}", ids[k]));
+            }
+            cx.world.bonds.push(Bond::new(kind, *ids));
+        }
+        Choice::Many { groups, range } => {
+            common::settle(cx.world);
+            let new = within(cx.world, *groups, *range);
+            let before = cx.world.bonds.len();
+            new.into_iter().for_each(|ends| cx.world.bonds.push(Bond::new(kind, ends)));
+            let now = cx.world.bonds.len();
+            cx.say(format!("Added {} bonds, new total = {now}", now - before));
+        }
+    }
+    if special {
+        cx.world.bonds.find_special();
+    }
+    cx.world.touch();
+    Ok(())
+}
+
+/// The pairs of ids to be bonded, ascending.
+fn within(w: &World, groups: [GroupId; 2], range: [f64; 2]) -> Vec<[u32; 2]> {
+    let p = &w.particles;
+    let mut wanted = Wanted::new(w.types);
+    for a in 1..=w.types as u16 {
+        // Both ends of the range count: the list's own test is open above.
+        (a..=w.types as u16).for_each(|b| wanted.set(a, b, Reach::Fixed(range[1] * (1.0 + 1e-12))));
+    }
+    let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
+    let is = |i: usize, g: GroupId| p.mask[i] & g.bit() != 0;
+    let weights = w.bonds.weights;
+    let barred: Vec<[u32; 2]> = w
+        .bonds
+        .apart(3)
+        .into_iter()
+        .filter(|(_, n)| weights.lj[usize::from(*n) - 1] == 0.0 && weights.coul[usize::from(*n) - 1] == 0.0)
+        .map(|(pair, _)| pair)
+        .collect();
+    let allowed = Allowed::excluded(w);
+    let tags = |i: usize, j: usize| [p.tag[i].min(p.tag[j]), p.tag[i].max(p.tag[j])];
+    let keep = |i: usize, j: usize| {
+        ((is(i, groups[0]) && is(j, groups[1])) || (is(j, groups[0]) && is(i, groups[1])))
+            && allowed.pair(i, j)
+            && barred.binary_search(&tags(i, j)).is_err()
+    };
+    let near = |d: [f64; 3]| {
+        let d2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        d2 >= range[0] * range[0] && d2 <= range[1] * range[1]
+    };
+    let found = pairs(&view, &wanted, 0.0, &keep);
+    let found = found.iter().filter(|q| q.i != q.j && near(view.difference(q)));
+    let mut list: Vec<[u32; 2]> = found.map(|q| tags(q.i as usize, q.j as usize)).collect();
+    // Of several images of one pair one bond is enough.
+    list.dedup();
+    list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{act, more, refused, scene};
+
+    // Oracle: the same lines in LAMMPS add 81 bonds, then none (bonded pairs are out of its lists), then 6.
+    #[test]
+    fn neighbours_on_a_lattice() {
+        let mut w = scene(
+            "units lj\natom_style bond\nlattice sc 1\nregion b block 0 3 0 3 0 3\ncreate_box 1 b bond/types 2",
+        );
+        more(&mut w, "create_atoms 1 box");
+        assert_eq!(
+            act(&mut w, "create_bonds many all all 1 0.9 1", &[]).unwrap(),
+            ["Added 81 bonds, new total = 81"]
+        );
+        assert_eq!(
+            act(&mut w, "create_bonds many all all 1 0.9 1", &[]).unwrap(),
+            ["Added 0 bonds, new total = 81"]
+        );
+        assert_eq!(refused(&w, "create_bonds many all all 3 0.9 1").0, "3");
+        assert_eq!(refused(&w, "create_bonds many all all 1 1.9 1").0, "1");
+        assert_eq!(refused(&w, "create_bonds single/bond 1 7 7").0, "7");
+        assert_eq!(refused(&w, "create_bonds single/angle 1 7 8 9").0, "single/angle");
+        more(&mut w, "special_bonds lj 0 1 1 coul 1 1 1");
+        assert_eq!(refused(&w, "create_bonds many all all 1 1.9 2").0, "create_bonds");
+    }
+}

@@ -1,0 +1,172 @@
+//! `create_box`: the simulation box and the number of types.
+
+use super::{Act, CommandStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::math::cformat::general;
+use perigrain_lang::Args;
+use perigrain_styles::common::{self, bad_keyword, setting};
+use perigrain_styles::{BuildCx, Doc, Style};
+use perigrain_world::region::{INFINITE, Shape};
+use perigrain_world::{Domain, Region};
+
+/// The command.
+pub struct CreateBox;
+
+const KEYWORDS: [&str; 3] = ["bond/types", "extra/bond/per/atom", "extra/special/per/atom"];
+
+/// Keywords LAMMPS has: room for angles and the like.
+const ELSEWHERE: [&str; 6] = [
+    "angle/types",
+    "dihedral/types",
+    "improper/types",
+    "extra/angle/per/atom",
+    "extra/dihedral/per/atom",
+    "extra/improper/per/atom",
+];
+
+impl Style for CreateBox {
+    fn name(&self) -> &'static str {
+        "create_box"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "create_box N REGION [bond/types N] [extra/bond/per/atom N] [extra/special/per/atom N]",
+            summary: "Creates the simulation box from a bounded region, for N particle types.",
+            text: "The box is the smallest one along the axes that holds the region, which must have finite bounds and \
+                   `side in`. Shrink-wrapped faces start 1e-4 of the edge length outside it, as in LAMMPS. `bond/types` \
+                   gives the number of bond types, for atom styles with bonds; room for bonds per particle is not limited, \
+                   `extra/…` only has to be said for LAMMPS.",
+            example: "create_box 3 world",
+        }
+    }
+}
+
+impl CommandStyle for CreateBox {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        if cx.world.domain.is_some() {
+            return fail(Code::WRONG_ORDER, a.name_span(), "the simulation box is defined already");
+        }
+        let span = a.here();
+        let types = a.integer_from(1, "the number of types")?;
+        if types > i64::from(u16::MAX) {
+            return fail(Code::BAD_VALUE, span, format!("at most {} types are possible", u16::MAX));
+        }
+        let word = a.expect("a region")?;
+        if word.text == "NULL" {
+            return Err(common::not_here(word, "a general triclinic box: create_box"));
+        }
+        let region = cx.region(word)?;
+        if matches!(region.shape, Shape::Prism { .. }) {
+            return Err(common::not_here(word, "a triclinic box: the prism"));
+        }
+        if cx.checking && region.motion.is_none() && region.follows() && !region.outside {
+            return Ok(guessed_box(region, types as usize, bond_types(a, cx)?));
+        }
+        if region.motion.is_some() || region.outside {
+            return fail(
+                Code::WRONG_KIND,
+                word.span,
+                "the box must be a bounded region at rest with `side in`",
+            );
+        }
+        let Some((lo, hi)) = region.shape.bounds() else {
+            return fail(Code::WRONG_KIND, word.span, "the box must be a bounded region with `side in`");
+        };
+        if (0..3).any(|d| {
+            hi[d].partial_cmp(&lo[d]) != Some(std::cmp::Ordering::Greater)
+                || lo[d].abs() >= INFINITE
+                || hi[d].abs() >= INFINITE
+        }) {
+            return fail(Code::BAD_VALUE, word.span, "the box must have finite edges longer than zero");
+        }
+        let bond_types = bond_types(a, cx)?;
+        let flat = cx.world.settings.two_dimensional;
+        common::check_flat(cx.world.settings.boundary, (lo[2], hi[2]), flat).map_err(|d| d.at(word.span))?;
+        Ok(setting(move |cx| {
+            let mut domain = Domain { flat, ..Domain::new(lo, hi, cx.world.settings.boundary) };
+            let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
+            cx.say(format!("Created orthogonal box = ({}) to ({})", text(domain.lo), text(domain.hi)));
+            cx.say("  1 by 1 by 1 MPI processor grid");
+            domain.open_shrinking_faces();
+            cx.world.domain = Some(domain);
+            cx.world.types = types as usize;
+            cx.world.bonds.types = bond_types;
+            cx.world.type_mass = vec![None; types as usize];
+            Ok(())
+        }))
+    }
+}
+
+/// While a deck is only checked: a box of some size where variables will say how large it is.
+fn guessed_box(region: &Region, types: usize, bond_types: usize) -> Box<dyn Act> {
+    let (mut lo, mut hi) = match &region.shape {
+        Shape::Block { lo, hi } => (*lo, *hi),
+        _ => ([f64::NAN; 3], [f64::NAN; 3]),
+    };
+    for d in 0..3 {
+        if lo[d].is_nan() {
+            lo[d] = if hi[d].is_nan() { -0.5 } else { hi[d] - 1.0 };
+        }
+        hi[d] = if hi[d] > lo[d] { hi[d] } else { lo[d] + 1.0 };
+    }
+    setting(move |cx| {
+        let flat = cx.world.settings.two_dimensional;
+        cx.world.domain = Some(Domain { flat, ..Domain::new(lo, hi, cx.world.settings.boundary) });
+        (cx.world.types, cx.world.bonds.types) = (types, bond_types);
+        cx.world.type_mass = vec![None; types];
+        Ok(())
+    })
+}
+
+/// Room for bonds: their types count, lists grow as they must.
+fn bond_types(a: &mut Args, cx: &BuildCx) -> Result<usize> {
+    let mut types = 0;
+    while let Some(word) = a.next() {
+        let span = a.here();
+        match word.text.as_str() {
+            "bond/types" => types = a.integer_from(0, "the number of bond types")?,
+            "extra/bond/per/atom" | "extra/special/per/atom" => {
+                a.integer_from(0, "the extra room")?;
+            }
+            _ => return Err(bad_keyword(a, word, &KEYWORDS, &ELSEWHERE)),
+        }
+        if !cx.world.particles.style.bonded {
+            let text = format!("particles of atom_style {} have no bonds", cx.world.particles.style.name());
+            let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+            return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
+        }
+        if types > i64::from(u16::MAX) {
+            return fail(Code::BAD_VALUE, span, format!("at most {} bond types are possible", u16::MAX));
+        }
+    }
+    Ok(types as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{act, refused, scene};
+
+    #[test]
+    fn box_is_lammps_box() {
+        let mut w = scene("units si\nlattice sc 0.5\nboundary s p f\nregion b block 0 4 0 3 0 3 units box");
+        let said = act(&mut w, "create_box 2 b", &[]).unwrap();
+        // Oracle: the same deck says this, and shows xlo = -0.0004 and xhi = 4.0004 afterwards.
+        assert_eq!(said[0], "Created orthogonal box = (0 0 0) to (4 3 3)");
+        let domain = w.domain.as_ref().unwrap();
+        assert_eq!((domain.lo, domain.hi), ([-0.0004, 0.0, 0.0], [4.0004, 3.0, 3.0]));
+        assert_eq!(w.type_mass.len(), 2);
+        assert_eq!(refused(&w, "create_box 2 b").0, "create_box");
+    }
+
+    #[test]
+    fn refuses_what_is_no_box() {
+        let w = scene(
+            "region s sphere 0 0 0 1 side out\nregion o block 0 1 0 1 0 1 side out\nregion f block 0 0 0 1 0 1",
+        );
+        for (region, blamed) in [("s", "s"), ("o", "o"), ("f", "f"), ("q", "q")] {
+            assert_eq!(refused(&w, &format!("create_box 1 {region}")).0, blamed);
+        }
+        assert_eq!(refused(&w, "create_box 0 f").0, "0");
+    }
+}

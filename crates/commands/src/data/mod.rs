@@ -1,0 +1,75 @@
+//! LAMMPS data files: which columns particles have in them, how they are read and written.
+
+pub mod body;
+pub mod dump;
+pub mod header;
+mod more;
+pub mod properties;
+pub mod text;
+pub mod words;
+pub mod write;
+
+use perigrain_world::{AtomStyle, Own};
+
+/// A column of the section Atoms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Column {
+    /// Identity.
+    Id,
+    /// Type.
+    Type,
+    /// A coordinate.
+    X(usize),
+    /// Twice the radius.
+    Diameter,
+    /// Mass over the volume of the sphere; the mass itself where there is no radius.
+    Density,
+    /// Volume of a peridynamic particle.
+    Volume,
+    /// Molecule ID.
+    Molecule,
+}
+
+impl Column {
+    /// What messages call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Column::Id => "the id",
+            Column::Type => "the type",
+            Column::X(0) => "x",
+            Column::X(1) => "y",
+            Column::X(_) => "z",
+            Column::Diameter => "the diameter",
+            Column::Density => "the density",
+            Column::Volume => "the volume",
+            Column::Molecule => "the molecule",
+        }
+    }
+}
+
+/// The columns of the section Atoms, image flags apart.
+pub fn columns(style: AtomStyle) -> Vec<Column> {
+    use Column::{Density, Diameter, Id, Molecule, Type, Volume, X};
+    let place = [X(0), X(1), X(2)];
+    if style.hybrid {
+        let own = style.own.iter().flatten().map(|own| match own {
+            Own::Molecule => Molecule,
+            Own::Diameter => Diameter,
+            Own::Density => Density,
+            Own::Volume => Volume,
+        });
+        return [Id, Type].into_iter().chain(place).chain(own).collect();
+    }
+    let molecule: &[Column] = if style.bonded { &[Molecule] } else { &[] };
+    let own: &[Column] = match (style.sphere, style.peri) {
+        (true, _) => &[Diameter, Density],
+        (false, true) => &[Volume, Density],
+        (false, false) => &[],
+    };
+    [&[Id], molecule, &[Type], own, &place].concat()
+}
+
+/// Numbers after the id in the section Velocities.
+pub fn velocity_columns(style: AtomStyle) -> usize {
+    if style.sphere { 6 } else { 3 }
+}

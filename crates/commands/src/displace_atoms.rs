@@ -1,0 +1,206 @@
+//! `displace_atoms`: moves particles once.
+
+use super::{Act, CommandStyle};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::math::rng::ParkMiller;
+use perigrain_base::math::vec3::length;
+use perigrain_lang::{Args, Param};
+use perigrain_styles::common::{
+    self, axis, bad_keyword, on_particles, scales, seed, units_lattice, unknown_style, variable_param,
+};
+use perigrain_styles::matter;
+use perigrain_styles::{ActCx, BuildCx, Doc, Style};
+use perigrain_world::GroupId;
+use perigrain_world::region::turned;
+
+/// The command.
+pub struct DisplaceAtoms;
+
+impl Style for DisplaceAtoms {
+    fn name(&self) -> &'static str {
+        "displace_atoms"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "displace_atoms GROUP move DX DY DZ | ramp x|y|z DLO DHI x|y|z CLO CHI | random DX DY DZ SEED | \
+                     rotate PX PY PZ RX RY RZ THETA  [units lattice|box]",
+            summary: "Moves the particles of a group once.",
+            text: "`move` takes numbers or variables. `ramp` moves by DLO where the coordinate is CLO, by DHI where it is \
+                   CHI, linearly between and constant beyond. `random` moves by up to ±DX, ±DY, ±DZ, each particle by \
+                   numbers that belong to its place, as in LAMMPS. `rotate` turns by THETA degrees about the axis through P \
+                   along R, particles unwrapped across periodic faces. Distances are in lattice spacings unless `units box` \
+                   is said. Afterwards particles are wrapped into the box and shrink-wrapped faces follow.",
+            example: "displace_atoms ball move 0 0 -0.001 units box",
+        }
+    }
+}
+
+enum Motion {
+    Shift([Param; 3]),
+    Ramp { along: usize, by: [f64; 2], axis: usize, between: [f64; 2] },
+    Random { by: [f64; 3], seed: u32 },
+    Rotate { point: [f64; 3], axis: [f64; 3], angle: f64 },
+}
+
+impl CommandStyle for DisplaceAtoms {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        common::domain(cx)?;
+        let group = cx.group(a.expect("a group")?)?;
+        let style = a.expect("move, ramp or random")?;
+        let motion = match style.text.as_str() {
+            "move" => {
+                let mut next = || {
+                    let p = variable_param(a, "the displacement")?;
+                    cx.param(&p, true).map(|()| p)
+                };
+                Motion::Shift([next()?, next()?, next()?])
+            }
+            "ramp" => Motion::Ramp {
+                along: axis(a, "direction of the displacement")?,
+                by: [a.number("the displacement")?, a.number("the displacement")?],
+                axis: axis(a, "axis of the ramp")?,
+                between: [a.number("the lower end")?, a.number("the upper end")?],
+            },
+            "random" => {
+                let by = [a.number("the range")?, a.number("the range")?, a.number("the range")?];
+                Motion::Random { by, seed: seed(a)? }
+            }
+            "rotate" => rotation(a)?,
+            _ => {
+                const KNOWN: [&str; 4] = ["move", "ramp", "random", "rotate"];
+                return Err(unknown_style(style, "style of displace_atoms", &KNOWN));
+            }
+        };
+        if cx.world.settings.two_dimensional && leaves_plane(&motion) {
+            let text = "displacements along z do not go with a flat scene (`dimension 2`)";
+            return fail(Code::CONFLICT, style.span, text);
+        }
+        let mut lattice = true;
+        while let Some(word) = a.next() {
+            match word.text.as_str() {
+                "units" => lattice = units_lattice(a)?,
+                _ => return Err(bad_keyword(a, word, &["units"], &[])),
+            }
+        }
+        let spacing = scales(cx.world, lattice);
+        Ok(on_particles(vec![], move |cx| {
+            cx.say("Displacing atoms ...");
+            displace(cx, group, &motion, spacing)?;
+            common::settle(cx.world);
+            cx.world.touch();
+            Ok(())
+        }))
+    }
+}
+
+fn rotation(a: &mut Args) -> Result<Motion> {
+    let mut triple =
+        |what: &str| -> Result<[f64; 3]> { Ok([a.number(what)?, a.number(what)?, a.number(what)?]) };
+    let point = triple("a point of the axis")?;
+    let axis = triple("the axis")?;
+    let span = a.here();
+    let angle = std::f64::consts::PI * a.number("the angle")? / 180.0;
+    if length(axis) == 0.0 {
+        return fail(Code::BAD_VALUE, span, "the axis of rotation has no direction");
+    }
+    Ok(Motion::Rotate { point, axis: axis.map(|x| x / length(axis)), angle })
+}
+
+/// Whether particles would leave the plane z = 0.
+fn leaves_plane(motion: &Motion) -> bool {
+    match motion {
+        Motion::Shift([.., z]) => *z != Param::Number(0.0),
+        Motion::Ramp { along, .. } => *along == 2,
+        Motion::Random { by, .. } => by[2] != 0.0,
+        Motion::Rotate { axis, .. } => axis[0] != 0.0 || axis[1] != 0.0,
+    }
+}
+
+fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, spacing: [f64; 3]) -> Result<()> {
+    let members: Vec<usize> =
+        (0..cx.world.n()).filter(|&i| cx.world.particles.mask[i] & group.bit() != 0).collect();
+    match motion {
+        Motion::Shift(params) => {
+            // One direction after the other: a variable for y sees the shift in x already, as in LAMMPS.
+            let before = cx.world.particles.x.clone();
+            for (d, param) in params.iter().enumerate() {
+                match cx.per_atom(param) {
+                    Ok(by) => members.iter().for_each(|&i| cx.world.particles.x[i][d] += spacing[d] * by[i]),
+                    Err(e) => {
+                        cx.world.particles.x = before;
+                        return Err(e);
+                    }
+                }
+            }
+        }
+        Motion::Ramp { along, by, axis, between } => {
+            let by = by.map(|b| spacing[*along] * b);
+            let between = between.map(|c| spacing[*axis] * c);
+            for &i in &members {
+                let x = &mut cx.world.particles.x[i];
+                x[*along] += common::ramp(x[*axis], between, by);
+            }
+        }
+        Motion::Random { by, seed } => {
+            let mut stream = ParkMiller::new(*seed);
+            for &i in &members {
+                let x = &mut cx.world.particles.x[i];
+                stream.reset_at(*seed, *x);
+                for d in 0..3 {
+                    x[d] += spacing[d] * by[d] * 2.0 * (stream.uniform() - 0.5);
+                }
+            }
+        }
+        Motion::Rotate { point, axis, angle } => {
+            let point = [0, 1, 2].map(|d| spacing[d] * point[d]);
+            for &i in &members {
+                cx.world.particles.x[i] =
+                    turned(matter::unwrapped(cx.world, i), point, *axis, (*angle).into());
+                cx.world.particles.image.set(i, [0; 3]);
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{more, refused, scene};
+    use perigrain_world::World;
+
+    fn bar() -> World {
+        let mut w = scene("units si\nboundary s p f\nlattice sc 0.5\nregion b block 0 4 0 3 0 3 units box");
+        more(&mut w, "create_box 2 b\ncreate_atoms 1 box");
+        w
+    }
+
+    // Oracle: the same lines in LAMMPS, %.17g.
+    #[test]
+    fn moves_wrap_and_shrink_like_lammps() {
+        let mut w = bar();
+        more(&mut w, "displace_atoms all move 0.1 0 0.2 units box");
+        let domain = w.domain.clone().unwrap();
+        assert_eq!((domain.lo[0], domain.hi[0]), (0.099600000000000008, 4.1003999999999996));
+        more(&mut w, "displace_atoms all random 0.1 0.02 0 332 units box");
+        assert_eq!(w.particles.x[0], [0.039815216995689656, 0.014870409311200681, 0.2]);
+        assert_eq!(w.particles.x[1], [0.53045676016735688, 2.9973536265535996, 0.2]);
+        assert_eq!(w.particles.image[1], [0, -1, 0]);
+        assert_eq!(w.particles.x[8], [4.1414832941915289, 0.0019450954077509675, 0.2]);
+    }
+
+    #[test]
+    fn ramps_are_linear_between_and_constant_beyond() {
+        let mut w = bar();
+        more(&mut w, "displace_atoms all ramp z 0 0.2 x 2 4");
+        // Spacing 0.5: moves by 0 at x ≤ 1, by 0.1 at x ≥ 2.
+        let z = |x: f64| w.particles.x.iter().find(|p| p[0] == x && p[2] < 0.3).unwrap()[2];
+        assert_eq!([z(0.0), z(1.0), z(1.5), z(2.0), z(4.0)], [0.0, 0.0, 0.05, 0.1, 0.1]);
+        assert_eq!(refused(&w, "displace_atoms all rotate 0 0 0 0 0 0 90").0, "90");
+        assert_eq!(refused(&w, "displace_atoms all ramp w 0 0.2 x 2 4").0, "w");
+        assert_eq!(
+            refused(&w, "displace_atoms all move 1 2").1,
+            "`displace_atoms` ends too early: the displacement is missing"
+        );
+    }
+}

@@ -1,0 +1,90 @@
+//! Commands that act on the world once, in order.
+
+mod atom_modify;
+mod atom_style;
+mod boundary;
+mod change_box;
+mod comm_modify;
+pub mod create_atoms;
+mod create_bonds;
+mod create_box;
+pub mod data;
+mod delete_atoms;
+mod delete_bonds;
+mod dimension;
+mod displace_atoms;
+mod group;
+mod lattice;
+mod mass;
+mod material;
+mod min_modify;
+mod min_style;
+mod molecule;
+pub mod momentum;
+mod neigh_modify;
+mod neighbor;
+mod newton;
+pub mod peri_crack;
+mod processors;
+mod read_data;
+pub mod read_dump;
+mod region;
+mod replicate;
+mod reset_atoms;
+mod reset_timestep;
+mod run_style;
+mod set;
+mod special_bonds;
+#[cfg(test)]
+mod surface_tests;
+#[cfg(test)]
+mod testing;
+mod timestep;
+mod units;
+mod velocity;
+mod write_data;
+
+pub use perigrain_styles::command::{Act, CommandStyle};
+
+/// Every command that acts.
+pub const COMMANDS: &[&dyn CommandStyle] = &[
+    &units::Units,
+    &dimension::Dimension,
+    &boundary::BoundaryCommand,
+    &atom_style::AtomStyleCommand,
+    &atom_modify::AtomModify,
+    &newton::Newton,
+    &processors::Processors,
+    &comm_modify::CommModify,
+    &lattice::LatticeCommand,
+    &region::RegionCommand,
+    &create_box::CreateBox,
+    &read_data::ReadData,
+    &read_dump::ReadDump,
+    &create_atoms::CreateAtoms,
+    &group::Group,
+    &set::Set,
+    &delete_atoms::DeleteAtoms,
+    &displace_atoms::DisplaceAtoms,
+    &velocity::Velocity,
+    &replicate::Replicate,
+    &change_box::ChangeBox,
+    &reset_atoms::ResetAtoms,
+    &reset_atoms::ResetAtomIds,
+    &reset_atoms::ResetMolIds,
+    &mass::Mass,
+    &material::MaterialStyle,
+    &peri_crack::PeriCrack,
+    &timestep::Timestep,
+    &reset_timestep::ResetTimestep,
+    &run_style::RunStyleCommand,
+    &neighbor::Neighbor,
+    &min_style::MinStyleCommand,
+    &min_modify::MinModify,
+    &neigh_modify::NeighModify,
+    &write_data::WriteData,
+    &create_bonds::CreateBonds,
+    &delete_bonds::DeleteBonds,
+    &special_bonds::SpecialBonds,
+    &molecule::Molecule,
+];

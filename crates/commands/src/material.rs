@@ -1,0 +1,287 @@
+//! `material`: engineering data under a name, for pair_coeff.
+
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Span, fail};
+use perigrain_lang::{Args, Word};
+use perigrain_styles::{Act, ActCx, BuildCx, CommandStyle, Doc, Style};
+use perigrain_world::material::{Material, Strength};
+use perigrain_world::potentials;
+
+/// The style.
+pub struct MaterialStyle;
+
+impl Style for MaterialStyle {
+    fn name(&self) -> &'static str {
+        "material"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "material ID E value nu value rho value [Gc value | s00 value] [alpha value]\n\
+                     material ID file NAME [E value] [nu value] [rho value] [Gc value | s00 value] [alpha value]",
+            summary: "Gives engineering data a name, so that pair_coeff can turn them into coefficients.",
+            text: "Young's modulus `E`, Poisson's ratio `nu` and density `rho` are needed; the fracture energy `Gc` or the \
+                critical stretch `s00` says when bonds break (without either they never do), and `alpha` how much \
+                compression strengthens them (0).\n\nNumbers in the line are in the deck's units. A file carries its own \
+                units and is converted (`units si cgs micro nano`). It is looked for beside the deck, in the working \
+                folder, then among the files built into perigrain: alumina.toml, brittle-plate.toml, \
+                impactor-steel.toml, laminate-impactor.toml, laminate-ply-1.toml to laminate-ply-4.toml, \
+                soda-lime-glass.toml, steel.toml. Values after the file's name replace the file's.",
+            example: "material plate file brittle-plate.toml Gc 50",
+        }
+    }
+}
+
+const KEYS: [&str; 6] = ["E", "nu", "rho", "Gc", "s00", "alpha"];
+
+impl CommandStyle for MaterialStyle {
+    fn parse(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        let id = args.expect("the material's ID")?;
+        let again = cx.world.parts.restored.contains(&format!("material/{}", id.text));
+        if cx.world.materials.contains_key(&id.text) && !again {
+            return fail(Code::DUPLICATE_NAME, id.span, format!("there already is a material `{}`", id.text));
+        }
+        let base =
+            if args.eat("file") { Some(from_file(args.expect("the file's name")?, cx)?) } else { None };
+        let material = read(args, base, &id.text)?;
+        Ok(Box::new(Define { id: id.text.clone(), material }))
+    }
+}
+
+/// Reads `key value …` over what a file said.
+fn read(args: &mut Args, base: Option<Material>, id: &str) -> Result<Material> {
+    let mut missing = if base.is_some() { vec![] } else { vec!["E", "nu", "rho"] };
+    let mut m = base.unwrap_or_else(|| blank(id));
+    let mut seen: Vec<&'static str> = vec![];
+    while let Some(word) = args.peek() {
+        if word.text == "syc" {
+            return Err(Diagnostic::error(
+                Code::NOT_SUPPORTED,
+                word.span,
+                "a material has no syc: the stretch at which bonds flow is said in pair_coeff",
+            )
+            .help("write `pair_style peri/pmb/plastic` and `pair_coeff … material ID horizon H syc V`")
+            .into());
+        }
+        let key = args.choice("material property", &KEYS)?;
+        if seen.contains(&key) {
+            return fail(Code::CONFLICT, word.span, format!("`{key}` is given twice"));
+        }
+        let rival = if key == "Gc" { "s00" } else { "Gc" };
+        if matches!(key, "Gc" | "s00") && seen.contains(&rival) {
+            let text = "Gc and s00 both say when a bond breaks: give one";
+            return fail(Code::CONFLICT, word.span, text);
+        }
+        seen.push(key);
+        missing.retain(|k| *k != key);
+        let at = args.here();
+        let unknown = args.peek().is_some_and(|w| w.unknown);
+        let value = args.number(key)?;
+        match key {
+            "E" => m.young = value,
+            "nu" => m.nu = value,
+            "rho" => m.density = value,
+            "Gc" => m.strength = Some(Strength::FractureEnergy(value)),
+            "s00" => m.strength = Some(Strength::Stretch(value)),
+            _ => m.alpha = value,
+        }
+        if let Some((_, why)) = m.implausible().filter(|(bad, _)| *bad == key && !unknown) {
+            return fail(Code::BAD_VALUE, at, why);
+        }
+    }
+    match missing.as_slice() {
+        [] => Ok(m),
+        keys => fail(
+            Code::MISSING_ARGUMENT,
+            args.span(),
+            format!("material `{id}` has no {}: E, nu and rho are needed", keys.join(", ")),
+        ),
+    }
+}
+
+/// A material about which nothing has been said; its numbers are harmless.
+fn blank(id: &str) -> Material {
+    Material {
+        name: id.to_owned(),
+        young: 1.0,
+        nu: 0.25,
+        density: 1.0,
+        strength: None,
+        alpha: 0.0,
+        source: String::new(),
+        date: String::new(),
+    }
+}
+
+/// The material of a file, in the deck's units.
+fn from_file(name: &Word, cx: &BuildCx) -> Result<Material> {
+    let units = cx.world.settings.units;
+    let Some(scale) = units.mechanical() else {
+        let text = format!("material files carry SI units, which `units {}` cannot express", units.name());
+        return Err(Diagnostic::error(Code::CONFLICT, name.span, text)
+            .help("use `units si`, `cgs`, `micro` or `nano`, or give the numbers in the line")
+            .into());
+    };
+    let found = potentials::find(&name.text, Some(&cx.world.folder)).map_err(|e| {
+        let d = Diagnostic::error(
+            Code::NO_FILE,
+            name.span,
+            format!("material file `{}` cannot be read: {e}", name.text),
+        );
+        match perigrain_base::diag::nearest(&name.text, potentials::EMBEDDED.iter().map(|f| f.0)) {
+            Some(n) => d.help(format!("did you mean `{n}`?")),
+            None => {
+                d.help("it is looked for beside the deck, in the working folder and among the built-in files")
+            }
+        }
+    })?;
+    let material =
+        Material::parse(&found.text, FileId::default()).map_err(|d| retell(d, &found, name.span))?;
+    Ok(material.in_units(scale))
+}
+
+/// Problems of a material file as problems of the word that named it: place and line go into the text.
+fn retell(problems: Diagnostics, file: &potentials::Found, word: Span) -> Diagnostics {
+    let tell = |mut d: Diagnostic| {
+        if let Some(s) = d.span {
+            let before = file.text.get(..s.start as usize).unwrap_or("");
+            let line = before.matches('\n').count();
+            let text = file.text.lines().nth(line).unwrap_or("").trim();
+            d.message = format!("{}:{}: {}", file.place, line + 1, d.message);
+            d.help.insert(0, format!("the line reads: {text}"));
+        }
+        d.span = Some(word);
+        d
+    };
+    Diagnostics(problems.0.into_iter().map(tell).collect())
+}
+
+/// A material about to enter the world.
+struct Define {
+    id: String,
+    material: Material,
+}
+
+impl Act for Define {
+    fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
+        cx.world.parts.restored.remove(&format!("material/{}", self.id));
+        cx.world.materials.insert(self.id, self.material);
+        Ok(())
+    }
+
+    fn needs_particles(&self) -> bool {
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_base::units::UnitSystem;
+    use perigrain_lang::Command;
+    use perigrain_styles::{Names, Shape, UseKind};
+    use perigrain_world::World;
+    use std::cell::RefCell;
+
+    struct Nothing;
+
+    impl Names for Nothing {
+        fn compute(&self, _: &str) -> Option<Shape> {
+            None
+        }
+        fn fix(&self, _: &str) -> Option<Shape> {
+            None
+        }
+        fn variable_shape(&self, _: &str) -> Option<perigrain_styles::Shape> {
+            None
+        }
+        fn all(&self, _: UseKind) -> Vec<String> {
+            vec![]
+        }
+    }
+
+    /// Reads `material` with these words in this world.
+    fn parse(world: &World, line: &str) -> Result<Material> {
+        let mut at = 0;
+        let mut words = line.split(' ').map(|w| {
+            at += w.len() + 1;
+            Word::new(w, Span::new(FileId(0), at - 1 - w.len(), at - 1))
+        });
+        let name = words.next().unwrap();
+        let span = Span::new(FileId(0), 0, line.len());
+        let command = Command { name, args: words.collect(), span, text: line.to_owned() };
+        let (notes, uses) = (RefCell::default(), RefCell::default());
+        let cx = BuildCx {
+            world,
+            names: &Nothing,
+            id: "",
+            group: perigrain_world::GroupId(0),
+            span,
+            checking: false,
+            notes: &notes,
+            uses: &uses,
+        };
+        let mut args = Args::new(&command);
+        args.next();
+        let base = if args.eat("file") { Some(from_file(args.expect("a file")?, &cx)?) } else { None };
+        read(&mut args, base, "m")
+    }
+
+    fn si() -> World {
+        let mut w = World::default();
+        w.settings.units = UnitSystem::Si;
+        w
+    }
+
+    #[test]
+    fn numbers_in_the_line() {
+        let m = parse(&si(), "material m E 7e10 nu 0.25 rho 2500 Gc 8 alpha 0.25").unwrap();
+        assert_eq!((m.young, m.nu, m.density, m.alpha), (7e10, 0.25, 2500.0, 0.25));
+        assert_eq!(m.strength, Some(Strength::FractureEnergy(8.0)));
+    }
+
+    #[test]
+    fn values_replace_those_of_the_file() {
+        let m = parse(&si(), "material m file brittle-plate.toml Gc 50").unwrap();
+        assert_eq!((m.young, m.strength), (22.35e9, Some(Strength::FractureEnergy(50.0))));
+        let m = parse(&si(), "material m file brittle-plate.toml s00 0.001").unwrap();
+        assert_eq!(m.strength, Some(Strength::Stretch(0.001)));
+    }
+
+    #[test]
+    fn files_speak_the_units_of_the_deck() {
+        let mut w = si();
+        w.settings.units = UnitSystem::Cgs;
+        let m = parse(&w, "material m file steel.toml").unwrap();
+        // 206 GPa = 2.06e12 dyn/cm², 7833 kg/m³ = 7.833 g/cm³.
+        assert!((m.young / 2.06e12 - 1.0).abs() < 1e-14 && (m.density / 7.833 - 1.0).abs() < 1e-14);
+        w.settings.units = UnitSystem::Lj;
+        assert!(parse(&w, "material m file steel.toml").is_err());
+    }
+
+    #[test]
+    fn mistakes_are_underlined() {
+        let wrong = |line: &str| {
+            let d = parse(&si(), line).unwrap_err().0.remove(0);
+            let s = d.span.unwrap();
+            (line[s.start as usize..s.end as usize].to_owned(), d.code)
+        };
+        let full = "material m E 1 nu 0.25 rho 1";
+        assert_eq!(wrong("material m E 1 nu 0.25 roh 1"), ("roh".into(), Code::UNKNOWN_KEYWORD));
+        assert_eq!(wrong("material m E 1 nu 0.7 rho 1"), ("0.7".into(), Code::BAD_VALUE));
+        assert_eq!(wrong("material m E 1 nu 0.2").1, Code::MISSING_ARGUMENT);
+        assert_eq!(wrong(&format!("{full} Gc 1 s00 1")), ("s00".into(), Code::CONFLICT));
+        assert_eq!(wrong(&format!("{full} E 2")), ("E".into(), Code::CONFLICT));
+        assert_eq!(wrong(&format!("{full} syc -1")), ("syc".into(), Code::NOT_SUPPORTED));
+        assert_eq!(wrong("material m file stel.toml"), ("stel.toml".into(), Code::NO_FILE));
+    }
+
+    #[test]
+    fn a_wrong_file_is_told_by_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("mine.toml"), "name = 'x'\nsource = 'y'\nG_c = 3\n").unwrap();
+        let mut w = si();
+        w.folder = folder.path().to_owned();
+        let d = parse(&w, "material m file mine.toml").unwrap_err().0.remove(0);
+        assert!(d.message.contains("mine.toml:3: "), "{}", d.message);
+    }
+}

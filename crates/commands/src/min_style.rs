@@ -1,0 +1,48 @@
+//! `min_style`: the algorithm of `minimize`.
+
+use super::{Act, CommandStyle};
+use perigrain_base::diag::Result;
+use perigrain_lang::Args;
+use perigrain_styles::common::{choice_or_refuse, setting};
+use perigrain_styles::{BuildCx, Doc, Style};
+use perigrain_world::Minimizer;
+use perigrain_world::minimizer::MinStyle;
+
+/// The command.
+pub struct MinStyleCommand;
+
+impl Style for MinStyleCommand {
+    fn name(&self) -> &'static str {
+        "min_style"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "min_style cg|sd|fire|quickmin",
+            summary: "Chooses the algorithm of `minimize`.",
+            text: "- `cg` (the default): conjugate gradients of Polak and Ribière with line searches. Needs energies that \
+                   belong to the forces.\n\
+                   - `sd`: steepest descent with the same line searches.\n\
+                   - `fire`: damped motion with an adaptive time step (Bitzek et al., Phys. Rev. Lett. 97, 170201; Guénolé \
+                   et al., Comput. Mater. Sci. 175, 109584). It looks at forces alone and so serves grains, whose contact \
+                   laws count no energy; it begins with the deck's `timestep` and masses.\n\
+                   - `quickmin`: damped motion with the deck's `timestep` that keeps of its velocity only what points along the \
+                   forces (Sheppard et al., J. Chem. Phys. 128, 134106). Looks at forces alone too.\n\n\
+                   `min_modify` sets their numbers; `min_style` puts all of them back to their defaults, as in LAMMPS. LAMMPS' other styles are refused by name.",
+            example: "min_style fire",
+        }
+    }
+}
+
+impl CommandStyle for MinStyleCommand {
+    fn parse(&self, a: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Act>> {
+        let known = MinStyle::ALL.map(|(name, _)| name);
+        let elsewhere = ["hftn", "fire/old", "spin", "spin/cg", "spin/lbfgs"];
+        let name = choice_or_refuse(a, "minimization style", &known, &elsewhere)?;
+        let style = MinStyle::ALL.iter().find(|(n, _)| *n == name).map_or(MinStyle::Cg, |(_, s)| *s);
+        Ok(setting(move |cx| {
+            cx.world.settings.minimizer = Minimizer { style, ..Minimizer::default() };
+            Ok(())
+        }))
+    }
+}

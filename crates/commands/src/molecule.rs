@@ -1,0 +1,169 @@
+//! `molecule`: templates of molecules and clumps from files.
+
+mod file;
+
+use super::data::text::find;
+use super::{Act, CommandStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::{Args, Word};
+use perigrain_styles::common::{self, not_here};
+use perigrain_styles::{ActCx, BuildCx, Doc, Style};
+use perigrain_world::Template;
+
+/// The command.
+pub struct Molecule;
+
+impl Style for Molecule {
+    fn name(&self) -> &'static str {
+        "molecule"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "molecule ID FILE [toff T] [boff B] [offset T B A D I] [scale S] [FILE …] …",
+            summary: "Reads templates of molecules and clumps of spheres from files.",
+            text: "Each file describes one molecule: a title line, then `N atoms`, `N bonds` and, if wanted, `M mass`, `X Y Z com`, \
+                   `XX YY ZZ XY XZ YZ inertia`, then sections, each with a blank line after its name and one line per particle or \
+                   bond: Coords (`number x y z`), Types (`number type`), Molecules (`number molecule`), Diameters, Masses, Bonds (`number type \
+                   a b`). Files are looked for in the working folder, then beside the deck.\n\n\
+                   `toff` and `boff` add to the types of particles and bonds of the file before them, `offset` gives both and \
+                   three numbers for angles and the like; `scale` multiplies coordinates, diameters and `com` by S, masses by S³, \
+                   `inertia` by S⁵. Which pairs count as bonded follows from the bonds: Special Bond Counts and Special Bonds are \
+                   read past, with a note. Charges, dipoles, angles, bodies, fragments and SHAKE data are refused. A restart file \
+                   does not hold templates, as in LAMMPS.",
+            example: "print \"\"\"Two touching spheres\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 0.0009 0 0\n\nTypes\n\n1 2\n2 2\n\nDiameters\n\n\
+                      1 0.001\n2 0.001\n\"\"\" file pair.txt screen no\nmolecule pair pair.txt\n\
+                      create_atoms 0 single 0 0 0.006 mol pair 4928 units box",
+        }
+    }
+}
+
+/// A file and what its keywords say.
+#[derive(Clone)]
+struct Asked {
+    file: Word,
+    kind: u16,
+    bond: u16,
+    scale: f64,
+}
+
+struct Reading {
+    id: String,
+    files: Vec<Asked>,
+}
+
+impl CommandStyle for Molecule {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        let word = a.expect("the ID of a template")?;
+        let id = common::id(word, "the template's ID")?;
+        if cx.world.templates.contains_key(&id) {
+            let text = format!("there is a molecule template `{id}` already");
+            return fail(Code::DUPLICATE_NAME, word.span, text);
+        }
+        let mut files: Vec<Asked> = vec![];
+        while files.is_empty() || !a.is_empty() {
+            let file = a.expect("a file name")?.clone();
+            if file.text.ends_with(".json") {
+                return Err(not_here(&file, "a molecule file in JSON:"));
+            }
+            let mut asked = Asked { file, kind: 0, bond: 0, scale: 1.0 };
+            while keyword(a, &mut asked)? {}
+            files.push(asked);
+        }
+        Ok(Box::new(Reading { id, files }))
+    }
+}
+
+/// Takes a keyword of the file before it; `false` if another file follows.
+fn keyword(a: &mut Args, asked: &mut Asked) -> Result<bool> {
+    let offset = |a: &mut Args, what: &str| -> Result<u16> {
+        let span = a.here();
+        let k = a.integer_from(0, what)?;
+        u16::try_from(k).or_else(|_| fail(Code::BAD_VALUE, span, format!("there are no {k} types")))
+    };
+    match a.peek_text() {
+        "toff" => {
+            a.next();
+            asked.kind = offset(a, "the offset of types")?;
+        }
+        "boff" => {
+            a.next();
+            asked.bond = offset(a, "the offset of bond types")?;
+        }
+        "aoff" | "doff" | "ioff" => {
+            a.next();
+            offset(a, "the offset")?;
+        }
+        "offset" => {
+            a.next();
+            asked.kind = offset(a, "the offset of types")?;
+            asked.bond = offset(a, "the offset of bond types")?;
+            for what in ["angle", "dihedral", "improper"] {
+                offset(a, &format!("the offset of {what} types"))?;
+            }
+        }
+        "scale" => {
+            a.next();
+            asked.scale = a.positive("the scale")?;
+        }
+        _ => return Ok(false),
+    }
+    Ok(true)
+}
+
+impl Act for Reading {
+    fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
+        let mut list = vec![];
+        for asked in &self.files {
+            let text = find(cx.world, &asked.file, "molecule file")?;
+            let (mut t, skipped) = file::read(&text.text).map_err(|e| e.within(&text))?;
+            change(&mut t, asked)?;
+            if skipped {
+                let note = "without effect: which pairs count as bonded follows from the bonds, not from Special Bonds";
+                cx.note(Diagnostic::note(Code::NO_EFFECT, asked.file.span, note));
+            }
+            tell(cx, &self.id, &t);
+            list.push(t);
+        }
+        cx.world.templates.insert(self.id, list.into());
+        Ok(())
+    }
+
+    fn needs_particles(&self) -> bool {
+        false
+    }
+}
+
+/// Offsets and scale.
+fn change(t: &mut Template, asked: &Asked) -> Result<()> {
+    let s = asked.scale;
+    for kind in &mut t.kinds {
+        let Some(sum) = kind.checked_add(asked.kind) else {
+            return fail(Code::BAD_VALUE, asked.file.span, "a type is beyond 65535 with its offset");
+        };
+        *kind = sum;
+    }
+    for (kind, _) in &mut t.bonds {
+        *kind = kind.saturating_add(asked.bond);
+    }
+    t.places.iter_mut().chain(&mut t.com).flatten().for_each(|x| *x *= s);
+    t.radii.iter_mut().for_each(|r| *r *= s);
+    t.masses.iter_mut().chain(&mut t.mass).for_each(|m| *m *= s * s * s);
+    t.inertia.iter_mut().flatten().for_each(|i| *i *= s * s * s * s * s);
+    Ok(())
+}
+
+fn tell(cx: &mut ActCx, id: &str, t: &Template) {
+    let kinds = t.kinds.iter().max().copied().unwrap_or(0);
+    let bonds = t.bonds.iter().map(|b| b.0).max().unwrap_or(0);
+    cx.say(format!("Read molecule template {id}:"));
+    cx.say(t.title.clone());
+    cx.say(format!("  {} molecules", t.last_molecule()));
+    cx.say("  0 fragments");
+    cx.say("  0 bodies");
+    cx.say(format!("  {} atoms with max type {kinds}", t.count));
+    cx.say(format!("  {} bonds with max type {bonds}", t.bonds.len()));
+    for what in ["angles", "dihedrals", "impropers"] {
+        cx.say(format!("  0 {what} with max type 0"));
+    }
+}

@@ -1,0 +1,38 @@
+//! `neighbor`: the skin of neighbour lists.
+
+use super::{Act, CommandStyle};
+use perigrain_base::diag::Result;
+use perigrain_lang::Args;
+use perigrain_styles::common::{choice_or_refuse, setting};
+use perigrain_styles::{BuildCx, Doc, Style};
+
+/// The command.
+pub struct Neighbor;
+
+impl Style for Neighbor {
+    fn name(&self) -> &'static str {
+        "neighbor"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "neighbor SKIN bin|nsq|multi",
+            summary: "Sets the extra reach of neighbour lists [length].",
+            text: "Lists are rebuilt when a particle has moved half the skin (see `neigh_modify`). How they are built is \
+                   perigrain's business: all words give the same lists, which search each size of particle by \
+                   itself where sizes differ; `multi/old` is refused.",
+            example: "neighbor 0.5 bin",
+        }
+    }
+}
+
+impl CommandStyle for Neighbor {
+    fn parse(&self, a: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Act>> {
+        let skin = a.non_negative("the skin")?;
+        choice_or_refuse(a, "way of building lists", &["bin", "nsq", "multi"], &["multi/old"])?;
+        Ok(setting(move |cx| {
+            cx.world.settings.neighbor.skin = skin;
+            Ok(())
+        }))
+    }
+}

@@ -1,0 +1,100 @@
+//! `peri_crack`: cuts peridynamic bonds before or between runs.
+
+use super::{Act, CommandStyle};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_lang::Args;
+use perigrain_styles::common::{scales, units_lattice};
+use perigrain_styles::peri_view::view;
+use perigrain_styles::{ActCx, BuildCx, Doc, Style};
+use perigrain_world::Crack;
+
+/// The command.
+pub struct PeriCrack;
+
+impl Style for PeriCrack {
+    fn name(&self) -> &'static str {
+        "peri_crack"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "peri_crack plane px py pz nx ny nz [region ID] [units lattice|box]\nperi_crack region ID",
+            summary: "Cuts bonds: a notch or crack without taking particles away.",
+            text: "`plane` cuts every bond that crosses the plane through (px py pz) with the normal (nx ny nz), with \
+                   `region` only where the bond meets the plane inside that region. `region` alone cuts every bond that \
+                   passes through the region. Before the first run the crack waits until the families are built, then and \
+                   between runs particles count where they are. Cut bonds are broken bonds: they count as damage, their ends \
+                   repel each other when close, and nothing heals them. A crack that meets no bond is an error. \
+                   `units` concerns the point of the plane (lattice, as elsewhere).",
+            example: "region slit block INF 0.002 INF INF INF INF units box\n\
+                      peri_crack plane 0 0.0015 0 0 1 0 region slit units box",
+        }
+    }
+}
+
+impl CommandStyle for PeriCrack {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        if !cx.world.particles.style.peri {
+            return fail(
+                Code::WRONG_ORDER,
+                a.name_span(),
+                "peri_crack needs particles with bonds: `atom_style peri`",
+            );
+        }
+        let words: Vec<&str> = (0..).map_while(|k| a.peek_at(k)).map(|w| w.text.as_str()).collect();
+        let line = format!("peri_crack {}", words.join(" "));
+        let mut crack = Crack { plane: None, region: None, line };
+        if a.choice("what cuts", &["plane", "region"])? == "region" {
+            crack.region = Some(cx.region(a.expect("a region")?)?.clone());
+        } else {
+            let mut point = [0.0; 3];
+            for x in &mut point {
+                *x = a.number("a coordinate of the plane's point")?;
+            }
+            let at = a.here();
+            let mut normal = [0.0; 3];
+            for n in &mut normal {
+                *n = a.number("a component of the plane's normal")?;
+            }
+            if normal == [0.0; 3] {
+                return fail(Code::BAD_VALUE, at, "the normal of the plane must not be zero");
+            }
+            let mut lattice = true;
+            while let Some(word) = a.next() {
+                match word.text.as_str() {
+                    "region" => crack.region = Some(cx.region(a.expect("a region")?)?.clone()),
+                    "units" => lattice = units_lattice(a)?,
+                    _ => return Err(a.unknown(word, &["region", "units"])),
+                }
+            }
+            let scale = scales(cx.world, lattice);
+            crack.plane = Some(([0, 1, 2].map(|k| point[k] * scale[k]), normal));
+        }
+        Ok(Box::new(Cut { crack }))
+    }
+}
+
+struct Cut {
+    crack: Crack,
+}
+
+impl Act for Cut {
+    fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
+        let w = &mut *cx.world;
+        let Some(mut families) = w.families.take() else {
+            w.cracks.push(self.crack);
+            w.touch();
+            return Ok(());
+        };
+        let cut = view(w).map(|view| families.cut(&view, |a, b| self.crack.cuts(a, b)));
+        w.families = Some(families);
+        match cut? {
+            0 => Err(Crack::missed(&self.crack).into()),
+            n => {
+                w.touch();
+                cx.say(format!("{n} bonds cut"));
+                Ok(())
+            }
+        }
+    }
+}

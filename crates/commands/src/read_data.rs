@@ -1,0 +1,390 @@
+//! `read_data`: box, particles, velocities, masses and coefficients from a LAMMPS data file.
+
+use super::data::body::{DataFile, How};
+use super::data::properties::{Section, fill};
+use super::data::text::find;
+use super::data::words::{Ids, extra_types, ids, offsets, outside};
+use super::data::{Column, body};
+use super::{Act, CommandStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, Source, fail};
+use perigrain_base::math::cformat::general;
+use perigrain_lang::{Args, Word};
+use perigrain_styles::common::{self, bad_keyword, id};
+use perigrain_styles::{ActCx, BuildCx, Doc, Style};
+use perigrain_world::index::Index;
+use perigrain_world::{Domain, Particles, Promise, World, memory};
+use std::sync::Arc;
+
+/// The command.
+pub struct ReadData;
+
+const KEYWORDS: [&str; 10] = [
+    "add",
+    "offset",
+    "shift",
+    "extra/atom/types",
+    "extra/bond/types",
+    "extra/bond/per/atom",
+    "extra/special/per/atom",
+    "group",
+    "nocoeff",
+    "fix",
+];
+const ELSEWHERE: [&str; 6] = [
+    "extra/angle/types",
+    "extra/dihedral/types",
+    "extra/improper/types",
+    "extra/angle/per/atom",
+    "extra/dihedral/per/atom",
+    "extra/improper/per/atom",
+];
+
+impl Style for ReadData {
+    fn name(&self) -> &'static str {
+        "read_data"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "read_data FILE [add append|merge|IDOFFSET] [offset TYPE BOND ANGLE DIHEDRAL IMPROPER] [shift X Y Z] \
+                     [extra/atom/types N] [extra/bond/types N] [extra/bond/per/atom N] [extra/special/per/atom N] \
+                     [group ID] [nocoeff] [fix ID HEADER SECTION]…",
+            summary: "Reads box, particles, velocities, masses and coefficients from a LAMMPS data file.",
+            text: "The file is LAMMPS' format, packed with gzip if its name ends in `.gz`; it is looked for in the working \
+                   folder, then beside the deck. The header gives `N atoms`, `N atom types`, `xlo xhi`, `ylo yhi`, `zlo \
+                   zhi`, for atom styles with bonds also `N bonds` and `N bond types`; sections are Masses, Atoms, Velocities, Bonds \
+                   (number, type, two ids), Pair Coeffs, PairIJ Coeffs and Bond Coeffs. Columns of Atoms: `id type \
+                   x y z` (atomic), `id type diameter density x y z` (sphere), `id type volume density x y z` (peri), \
+                   `id molecule type x y z` (bond, molecular), `id molecule type diameter density x y z` (bpm/sphere), `id \
+                   type x y z` and then the columns of each style in the order of its name (hybrid; what two have stands \
+                   once), all with three image flags at the end or none. Velocities: `id vx vy vz`, with spheres also `wx \
+                   wy wz`. The density of a sphere becomes the mass 4/3 π r³ ρ; without a radius it is the mass. The \
+                   place at creation of peridynamic particles is the place in the file: families are built anew, and \
+                   damage and contact history are not in a data file (write_restart has them).\n\n\
+                   Positions are wrapped along periodic dimensions; elsewhere they must be inside the box, which is opened \
+                   by 1e-4 of its edge at shrink-wrapped faces, which then follow the particles. Image flags of other dimensions become 0, with a warning.\n\n\
+                   `add` brings particles into an existing box, which grows to hold the file's: `append` puts the ids \
+                   behind the largest one, a number is added to each, `merge` keeps them. `offset` adds to types and bond types (the \
+                   last three numbers are for angles and the like), `shift` to places and to the file's box. \
+                   Masses of types are skipped where particles in a hybrid with bonds have their own (LAMMPS writes zeros there). \
+                   `extra/atom/types` and `extra/bond/types` leave room for more types, room per particle is not limited; `group` puts the particles into a group, new if there is \
+                   none; `nocoeff` skips coefficients. `fix ID NULL SECTION` reads a section of that heading (`NULL`: the fix's ID) into the properties of a \
+                   fix property/atom: a line for each particle, its id and then the values in the order of the fix's line; a \
+                   file without the section leaves zeros. HEADER has no meaning. Where a comment names the style (`Atoms # sphere`), it must be the \
+                   deck's; LAMMPS only warns. Ids that occur twice, lines beyond the promised number and particles outside \
+                   are refused in the file itself. Refused by name: angles and other topology, type labels, tilted boxes, sections of fixes that no `fix` names.",
+            example: "write_data plate.data\nread_data plate.data add append shift 0.0 0.0 0.02",
+        }
+    }
+}
+
+/// What a line asks for.
+struct Reading {
+    file: Word,
+    ids: Ids,
+    type_offset: u16,
+    bond_offset: u16,
+    extra_bond_types: usize,
+    shift: [f64; 3],
+    extra_types: usize,
+    group: Option<Word>,
+    no_coeff: bool,
+    sections: Vec<Section>,
+    checking: bool,
+}
+
+impl CommandStyle for ReadData {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        let file = a.expect("a file name")?.clone();
+        let mut r = Reading {
+            file,
+            ids: Ids::First,
+            type_offset: 0,
+            bond_offset: 0,
+            extra_bond_types: 0,
+            shift: [0.0; 3],
+            extra_types: 0,
+            group: None,
+            no_coeff: false,
+            sections: vec![],
+            checking: cx.checking,
+        };
+        let mut only_with_add = None;
+        while let Some(word) = a.next() {
+            match word.text.as_str() {
+                "add" => r.ids = ids(a)?,
+                "offset" => {
+                    only_with_add.get_or_insert(word);
+                    (r.type_offset, r.bond_offset) = offsets(a)?;
+                }
+                "shift" => {
+                    only_with_add.get_or_insert(word);
+                    for s in &mut r.shift {
+                        *s = a.number("a component of the shift")?;
+                    }
+                }
+                "extra/bond/types" => r.extra_bond_types = extra_types(a)?,
+                // Lists grow as they must.
+                "extra/bond/per/atom" | "extra/special/per/atom" => {
+                    a.integer_from(0, "the extra room")?;
+                }
+                "extra/atom/types" => {
+                    r.extra_types = extra_types(a)?;
+                }
+                "group" => {
+                    let word = a.expect("a group")?;
+                    id(word, "the group")?;
+                    r.group = Some(word.clone());
+                }
+                "nocoeff" => r.no_coeff = true,
+                "fix" => r.sections.push(Section::read(a, cx)?),
+                _ => return Err(bad_keyword(a, word, &KEYWORDS, &ELSEWHERE)),
+            }
+        }
+        let first = matches!(r.ids, Ids::First);
+        match (first, cx.world.domain.is_some(), only_with_add) {
+            (true, true, _) => Err(Diagnostic::error(
+                Code::WRONG_ORDER,
+                a.name_span(),
+                "the simulation box is defined already",
+            )
+            .help("write `add append`, `add merge` or `add N` to bring more particles into it")
+            .into()),
+            (false, false, _) => fail(Code::WRONG_ORDER, a.name_span(), "`add` needs a box to add to"),
+            (true, false, Some(word)) => {
+                fail(Code::CONFLICT, word.span, format!("`{}` goes only with `add`", word.text))
+            }
+            _ => Ok(Box::new(r)),
+        }
+    }
+}
+
+impl Act for Reading {
+    fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
+        let began = std::time::Instant::now();
+        let text = match self.text(cx.world)? {
+            Found::File(text) => text,
+            Found::Promised(scene) => return self.promised(cx, &scene),
+        };
+        cx.say("Reading data file ...");
+        let world = &*cx.world;
+        let how = How {
+            style: world.particles.style,
+            types: world.domain.is_some().then_some(world.types),
+            type_offset: self.type_offset,
+            extra_types: self.extra_types,
+            no_coeff: self.no_coeff,
+            bond_types: world.domain.is_some().then_some(world.bonds.types),
+            bond_offset: self.bond_offset,
+            extra_bond_types: self.extra_bond_types,
+            sections: &self.sections,
+        };
+        let outcome = body::read(&text.text, &how).and_then(|data| self.place(cx, data, &text.text));
+        let mut data = outcome.map_err(|e| e.within(&text))?;
+        self.enter(cx, &mut data)?;
+        self.miss_sections(cx, &data);
+        let coeffs = std::mem::take(&mut data.coeffs);
+        cx.then.extend(coeffs.into_iter().map(|line| (line, text.clone())));
+        if !self.checking {
+            cx.say(format!("  read_data CPU = {:.3} seconds", began.elapsed().as_secs_f64()));
+        }
+        Ok(())
+    }
+
+    /// `perigrain check` reads the file, too, but keeps no particles.
+    fn needs_particles(&self) -> bool {
+        false
+    }
+
+    fn settles(&self) -> Vec<&'static str> {
+        vec!["particles", "volume", "density", "mass", "diameter"]
+    }
+}
+
+/// Where the file's content is.
+enum Found {
+    File(Arc<Source>),
+    /// Check mode: an earlier line would have written it.
+    Promised(Arc<World>),
+}
+
+impl Reading {
+    fn text(&self, world: &World) -> Result<Found> {
+        match world.parts.promised.get(&self.file.text) {
+            Some(Promise::Scene(scene, _)) => Ok(Found::Promised(scene.clone())),
+            _ => find(world, &self.file, "data file").map(Found::File),
+        }
+    }
+
+    /// Warns of sections that the file does not have.
+    fn miss_sections(&self, cx: &ActCx, data: &DataFile) {
+        let has = |k: usize| data.filled.iter().any(|f| f.section == k) || data.header.atoms == 0;
+        for (_, section) in self.sections.iter().enumerate().filter(|(k, _)| !has(*k)) {
+            let text = format!("the file has no section `{}`: these properties stay 0", section.name);
+            cx.notes.borrow_mut().push(Diagnostic::warning(Code::SUSPICIOUS, section.span, text));
+        }
+    }
+
+    /// The box of a file that an earlier line of a checked deck would have written.
+    fn promised(&self, cx: &mut ActCx, scene: &World) -> Result<()> {
+        let Some(domain) = &scene.domain else { return Ok(()) };
+        let boundary = cx.world.settings.boundary;
+        cx.world.domain = Some(Domain { boundary, ..domain.clone() });
+        cx.world.types = cx.world.types.max(scene.types + self.extra_types);
+        cx.world.type_mass = scene.type_mass.clone();
+        cx.world.type_mass.resize(cx.world.types, None);
+        cx.world.bonds.types = scene.bonds.types + self.extra_bond_types;
+        self.group(cx).map(|_| ())
+    }
+
+    /// Ids, places and images as they will be in the world; the file's box grows into the present one.
+    fn place(&self, cx: &mut ActCx, mut data: DataFile, text: &str) -> Result<DataFile> {
+        let world = &*cx.world;
+        let domain = self.domain(world, &data);
+        let periodic = domain.periodic();
+        let mut p = std::mem::take(&mut data.particles);
+        data.particles.style = p.style;
+        let span = |k: usize, column: Column| data.span(text, k, column);
+        let add = match self.ids {
+            Ids::First | Ids::Merge => 0,
+            Ids::Append => world.particles.last_tag(),
+            Ids::Offset(k) => k,
+        };
+        let mut flags = false;
+        for k in 0..p.len() {
+            let Some(tag) = p.tag[k].checked_add(add) else {
+                let text = format!("the id {} plus {add} is beyond {}", p.tag[k], u32::MAX);
+                return fail(Code::TOO_LARGE, span(k, Column::Id), text);
+            };
+            p.tag[k] = tag;
+            let mut image = p.image[k];
+            for d in 0..3 {
+                p.x[k][d] += self.shift[d];
+                if !periodic[d] && std::mem::take(&mut image[d]) != 0 {
+                    flags = true;
+                }
+            }
+            domain.wrap(&mut p.x[k], &mut image);
+            p.image.set(k, image);
+            if let Some(d) = (0..3).find(|&d| !(p.x[k][d] >= domain.lo[d] && p.x[k][d] < domain.hi[d])) {
+                return Err(outside(&domain, d, &p.x[k], span(k, Column::X(d)), p.tag[k]));
+            }
+        }
+        if !world.particles.is_empty() {
+            let index = Index::new(&world.particles.tag);
+            if let Some(k) = (0..p.len()).find(|&k| index.find(p.tag[k], &world.particles.tag).is_some()) {
+                let text = format!("there is a particle {} already", p.tag[k]);
+                let d = Diagnostic::error(Code::DUPLICATE_NAME, span(k, Column::Id), text);
+                return Err(d.help("`add append` gives new ids").into());
+            }
+        }
+        if flags {
+            let text = "image flags along dimensions that are not periodic were set to 0";
+            cx.note(Diagnostic::warning(Code::SUSPICIOUS, None, text));
+        }
+        if data.idle_masses {
+            let text = "the section Masses has no effect: every particle has its own mass";
+            cx.note(Diagnostic::note(Code::NO_EFFECT, self.file.span, text));
+        }
+        data.particles = p;
+        for (bond, _) in &mut data.bonds {
+            bond.ends = bond.ends.map(|tag| tag.saturating_add(add));
+        }
+        Ok(data)
+    }
+
+    /// The box afterwards.
+    fn domain(&self, world: &World, data: &DataFile) -> Domain {
+        let mut lo: [f64; 3] = std::array::from_fn(|d| data.header.lo[d] + self.shift[d]);
+        let mut hi: [f64; 3] = std::array::from_fn(|d| data.header.hi[d] + self.shift[d]);
+        if let Some(old) = &world.domain {
+            for d in 0..3 {
+                (lo[d], hi[d]) = (lo[d].min(old.lo[d]), hi[d].max(old.hi[d]));
+            }
+        }
+        let flat = world.settings.two_dimensional;
+        let mut domain = Domain { flat, ..Domain::new(lo, hi, world.settings.boundary) };
+        domain.open_shrinking_faces();
+        domain
+    }
+
+    /// The group the particles join, new if there is none.
+    fn group(&self, cx: &mut ActCx) -> Result<u32> {
+        let Some(word) = &self.group else { return Ok(0) };
+        match cx.world.groups.find_or_add(&word.text) {
+            Some(id) => Ok(id.bit()),
+            None => fail(Code::TOO_LARGE, word.span, "there are 32 groups already"),
+        }
+    }
+
+    /// Puts everything into the world.
+    fn enter(&self, cx: &mut ActCx, data: &mut DataFile) -> Result<()> {
+        let count = data.particles.len();
+        if let Some(line) = memory::forecast(cx.world, count as f64)? {
+            cx.say(line);
+        }
+        let domain = self.domain(cx.world, data);
+        let faces = (domain.lo[2], domain.hi[2]);
+        common::check_flat(domain.boundary, faces, domain.flat).map_err(|e| e.at(self.file.span))?;
+        let bit = self.group(cx)?;
+        self.tell(cx, data, &domain);
+        let w = &mut *cx.world;
+        w.domain = Some(domain);
+        w.types = data.types;
+        w.type_mass.resize(data.types, None);
+        w.bonds.types = data.bond_types;
+        for &(kind, mass) in &data.masses {
+            w.type_mass[usize::from(kind) - 1] = Some(mass);
+        }
+        if !self.checking {
+            let mut new = std::mem::take(&mut data.particles);
+            let first = w.n();
+            finish(&mut new, bit);
+            if w.particles.is_empty() {
+                w.particles = new;
+            } else {
+                w.particles.append(new);
+            }
+            let n = w.n();
+            w.columns.resize(n);
+            fill(w, &self.sections, &data.filled, first);
+            data.bonds.drain(..).for_each(|(bond, _)| w.bonds.push(bond));
+            w.bonds.find_special();
+            // LAMMPS lets shrink-wrapped faces follow at once.
+            common::settle(w);
+        }
+        w.spread_type_masses();
+        w.touch();
+        Ok(())
+    }
+
+    fn tell(&self, cx: &mut ActCx, data: &DataFile, domain: &Domain) {
+        let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
+        cx.say(format!("  orthogonal box = ({}) to ({})", text(domain.min_lo), text(domain.min_hi)));
+        cx.say("  1 by 1 by 1 MPI processor grid");
+        let count = data.particles.len();
+        cx.say("  reading atoms ...");
+        cx.say(format!("  {count} atoms"));
+        if data.velocities {
+            cx.say("  reading velocities ...");
+            cx.say(format!("  {count} velocities"));
+        }
+        if !data.bonds.is_empty() {
+            cx.say("  reading bonds ...");
+            cx.say(format!("  {} bonds", data.bonds.len()));
+        }
+    }
+}
+
+/// Masses from densities, places at creation, group bits.
+fn finish(p: &mut Particles, bit: u32) {
+    p.mask.iter_mut().for_each(|m| *m |= bit);
+    if p.style.peri {
+        p.x0.clone_from(&p.x);
+    }
+    if p.style.own_mass() {
+        let density = p.density.clone();
+        let all: Vec<usize> = (0..p.len()).collect();
+        common::masses_from_density(p, &all, &density);
+    }
+}

@@ -1,0 +1,201 @@
+//! Snapshots of several dumps one after the other, as `rerun` takes them.
+
+use super::super::data::dump;
+use super::super::data::text::{Lines, comes, find};
+use super::Wish;
+use super::snapshot::{enter, particles};
+use perigrain_base::diag::{Code, Result, Source, fail};
+use perigrain_lang::{Args, Word};
+use perigrain_styles::BuildCx;
+use perigrain_world::World;
+use std::sync::Arc;
+
+/// Snapshots of several dumps one after the other, as `rerun` takes them.
+pub struct Reel {
+    files: std::vec::IntoIter<Word>,
+    /// The file that is being read, and where its next snapshot begins.
+    now: Option<(Arc<Source>, usize)>,
+    /// The snapshot that comes next, once one has been taken.
+    ahead: Option<Place>,
+    /// No snapshot before this step.
+    pub first: i64,
+    /// None after this one.
+    pub last: i64,
+    every: i64,
+    skip: i64,
+    /// None may be behind this step.
+    stop: i64,
+    wish: Wish,
+    /// Step of the last snapshot found.
+    step: Option<i64>,
+    /// Snapshots since one could have been taken.
+    passed: i64,
+}
+
+/// Where a snapshot begins.
+struct Place {
+    text: Arc<Source>,
+    at: usize,
+    step: i64,
+}
+
+/// A snapshot that is in the world.
+pub struct Shown {
+    /// Its step.
+    pub step: i64,
+    /// Whether none follows.
+    pub last: bool,
+}
+
+/// A `rerun` line.
+pub struct Rerun {
+    /// The snapshots.
+    pub reel: Reel,
+    /// Where ramps begin.
+    pub start: Option<i64>,
+    /// Where ramps end.
+    pub stop: Option<i64>,
+    /// Whether tables of time follow.
+    pub post: bool,
+}
+
+impl Rerun {
+    /// Reads the words of `rerun`.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    pub fn read(a: &mut Args, cx: &BuildCx) -> Result<Self> {
+        const KEYS: [&str; 8] = ["first", "last", "every", "skip", "start", "stop", "post", "dump"];
+        let mut files = vec![a.expect("a dump to read")?.clone()];
+        while let Some(word) = a.peek().filter(|w| !KEYS.contains(&w.text.as_str())) {
+            files.push(word.clone());
+            a.next();
+        }
+        let (mut first, mut last, mut every, mut skip) = (0, i64::MAX, 0, 1);
+        let (mut start, mut stop, mut post) = (None, None, false);
+        let wish = loop {
+            match a.expect("the keyword `dump` with the fields to read")?.text.as_str() {
+                "first" => first = a.integer_from(0, "the first step")?,
+                "last" => last = a.integer_from(0, "the last step")?,
+                "every" => every = a.integer_from(0, "the interval of snapshots")?,
+                "skip" => skip = a.integer_from(1, "the number of snapshots for one that is read")?,
+                "start" => start = Some(a.integer_from(0, "the first step of ramps")?),
+                "stop" => stop = Some(a.integer_from(0, "the last step of ramps")?),
+                "post" => post = a.flag("post")?,
+                _ => break Wish::read(a, cx)?,
+            }
+        };
+        if last < first {
+            return fail(
+                Code::BAD_VALUE,
+                a.span(),
+                format!("`last` must not be before `first`: {last} is before {first}"),
+            );
+        }
+        let (files, end) = (files.into_iter(), stop.unwrap_or(i64::MAX));
+        let (now, ahead, step, passed) = (None, None, None, 0);
+        let reel = Reel { files, now, ahead, first, last, every, skip, stop: end, wish, step, passed };
+        Ok(Self { reel, start, stop, post })
+    }
+}
+
+impl Reel {
+    /// In check mode: all dumps are there, or may be there by then.
+    ///
+    /// # Errors
+    /// One will not be.
+    pub fn comes(&self, w: &World) -> Result<()> {
+        self.files.as_slice().iter().try_for_each(|file| comes(w, file, "dump"))
+    }
+
+    /// Puts the next snapshot into the world; `None` when there is none.
+    ///
+    /// # Errors
+    /// Dumps that cannot be read, or hold no snapshot that is wanted, or one behind the end of ramps.
+    pub fn next(&mut self, w: &mut World) -> Result<Option<Shown>> {
+        let place = match self.ahead.take() {
+            Some(place) => Some(place),
+            None if self.step.is_some() => None,
+            None => Some(self.first_of_all(w)?),
+        };
+        let Some(Place { text, at, step }) = place else { return Ok(None) };
+        if step > self.stop {
+            let text = format!("the snapshot of step {step} is behind `stop`, which is {}", self.stop);
+            return fail(Code::BAD_VALUE, self.wish.span, text);
+        }
+        self.show(&text, at, w).map_err(|e| e.within(&text))?;
+        // The clock belongs to the snapshot whatever `timestep` says.
+        w.clock.reset(step);
+        self.ahead = self.find(w)?;
+        Ok(Some(Shown { step, last: self.ahead.is_none() }))
+    }
+
+    /// Puts the snapshot that begins at a place of a file into the world.
+    fn show(&self, text: &Source, at: usize, w: &mut World) -> Result<()> {
+        let Some(s) = dump::next(&mut Lines::at(&text.text, at))? else { return Ok(()) };
+        let list = particles(&s, &self.wish, w)?;
+        enter(w, &s, &list, &self.wish);
+        Ok(())
+    }
+
+    fn first_of_all(&mut self, w: &World) -> Result<Place> {
+        let Some(place) = self.find(w)? else {
+            let text = match self.last {
+                i64::MAX => format!("the dumps have no snapshot from step {} on", self.first),
+                last => format!("the dumps have no snapshot between the steps {} and {last}", self.first),
+            };
+            return fail(Code::BAD_VALUE, self.wish.span, text);
+        };
+        Ok(place)
+    }
+
+    /// Where the next wanted snapshot begins.
+    fn find(&mut self, w: &World) -> Result<Option<Place>> {
+        loop {
+            let (text, at) = match self.now.take() {
+                Some(now) => now,
+                None => match self.files.next() {
+                    Some(file) => (find(w, &file, "dump")?, 0),
+                    None => return Ok(None),
+                },
+            };
+            let mut lines = Lines::at(&text.text, at);
+            let found = self.advance(&mut lines, w.settings.lammps()).map_err(|e| e.within(&text))?;
+            if let Some((at, step)) = found {
+                self.now = Some((text.clone(), lines.position()));
+                return Ok(Some(Place { text, at, step }));
+            }
+        }
+    }
+
+    /// The next wanted snapshot of one file: where it begins, and its step. LAMMPS asks the first one only for `first`.
+    fn advance(&mut self, lines: &mut Lines, lammps: bool) -> Result<Option<(usize, i64)>> {
+        loop {
+            let at = lines.position();
+            let Some(s) = dump::next(lines)? else { return Ok(None) };
+            if s.step > self.last && !(lammps && self.step.is_none() && s.step >= self.first) {
+                self.files = vec![].into_iter();
+                return Ok(None);
+            }
+            if s.step >= self.first && self.wants(s.step) {
+                self.step = Some(s.step);
+                return Ok(Some((at, s.step)));
+            }
+        }
+    }
+
+    /// Whether a snapshot not before `first` is wanted: the first one, then one in `skip` of those that go on in time, if it is
+    /// a multiple of `every`.
+    fn wants(&mut self, step: i64) -> bool {
+        let Some(before) = self.step else { return true };
+        if step <= before {
+            return false;
+        }
+        self.passed += 1;
+        if self.passed < self.skip {
+            return false;
+        }
+        self.passed = 0;
+        self.every == 0 || step % self.every == 0
+    }
+}

@@ -1,0 +1,185 @@
+//! `run_style respa`: levels of steps within each other, in LAMMPS' words.
+
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Args, Word};
+use perigrain_world::{Respa, RunStyle};
+
+const KEYWORDS: [&str; 10] =
+    ["bond", "angle", "dihedral", "improper", "pair", "inner", "middle", "outer", "hybrid", "kspace"];
+
+/// Forces that LAMMPS orders: none may act in shorter steps than the one before.
+const ORDER: [&str; 6] = ["bond", "angle", "dihedral", "improper", "pair", "kspace"];
+
+/// What a line says of levels, from 0; `None` where it says nothing.
+#[derive(Default)]
+struct Said {
+    levels: [Option<(usize, Span)>; 6],
+    subs: Option<(Vec<usize>, Span)>,
+}
+
+/// Reads what follows `respa`; also gives the lines that tell which forces act where.
+///
+/// # Errors
+/// Every mistake in the line.
+pub fn read(a: &mut Args) -> Result<(RunStyle, Vec<String>)> {
+    let count = a.integer_from(1, "the number of levels")? as usize;
+    let loops = (1..count)
+        .map(|k| a.integer_from(1, &format!("how many steps of level {k} fill one of level {}", k + 1)))
+        .collect::<Result<Vec<i64>>>()?;
+    let mut said = Said::default();
+    while let Some(word) = a.next() {
+        match word.text.as_str() {
+            "inner" | "middle" | "outer" => return Err(not_split(word)),
+            "hybrid" => {
+                let mut subs = vec![];
+                while subs.is_empty() || a.peek().is_some_and(|w| w.text.parse::<i64>().is_ok()) {
+                    subs.push(level(a, count, "the level of a sub-style")?.0);
+                }
+                said.subs = Some((subs, word.span));
+            }
+            other => match ORDER.iter().position(|name| *name == other) {
+                Some(k) => {
+                    said.levels[k] = Some(level(a, count, &format!("the level of {other} forces"))?);
+                }
+                None => return Err(a.unknown(word, &KEYWORDS)),
+            },
+        }
+    }
+    said.settle(loops)
+}
+
+/// Takes a level, from 1.
+fn level(a: &mut Args, count: usize, what: &str) -> Result<(usize, Span)> {
+    let span = a.here();
+    let level = a.integer_from(1, &format!("{what}, from 1"))? as usize;
+    if level > count {
+        let text = format!("there are {count} levels, and this is number {level}");
+        return Err(Diagnostic::error(Code::BAD_VALUE, span, text)
+            .help("LAMMPS takes such a level and leaves the forces out")
+            .into());
+    }
+    Ok((level - 1, span))
+}
+
+/// The refusal of a pair style cut up by distance.
+fn not_split(word: &Word) -> perigrain_base::diag::Diagnostics {
+    let text = format!("`{}` cuts pair forces up by distance, which no pair style here does", word.text);
+    Diagnostic::error(Code::NOT_SUPPORTED, word.span, text)
+        .help("give the pair style one level (`pair M`), or each sub-style of hybrid its own (`hybrid M1 M2 …`)")
+        .help("LAMMPS refuses it for its granular and peridynamic styles too")
+        .into()
+}
+
+impl Said {
+    /// LAMMPS' choices where nothing is said, and its order.
+    fn settle(self, loops: Vec<i64>) -> Result<(RunStyle, Vec<String>)> {
+        let outermost = loops.len();
+        if let (Some((_, span)), Some(_)) = (&self.subs, self.levels[4]) {
+            return fail(Code::CONFLICT, *span, "`pair` and `hybrid` exclude each other");
+        }
+        let subs = self.subs.as_ref().map(|(list, _)| list.clone());
+        let mut levels = [0; 6];
+        for k in 0..6 {
+            let before = if k == 0 { 0 } else { levels[k - 1] };
+            levels[k] = match (self.levels[k], ORDER[k], &subs) {
+                (Some((level, _)), ..) => level,
+                // Kspace belongs to the slowest sub-style then.
+                (None, "pair", Some(list)) => list.iter().copied().max().unwrap_or(outermost),
+                (None, "pair", None) => outermost,
+                (None, ..) => before,
+            };
+            let bound = !matches!((ORDER[k], &subs), ("pair" | "kspace", Some(_)));
+            if let (true, true, Some(span)) = (bound, levels[k] < before, self.blame(k)) {
+                let text = format!(
+                    "{} forces at level {} would act in shorter steps than {} forces at level {}",
+                    ORDER[k],
+                    levels[k] + 1,
+                    ORDER[k - 1],
+                    before + 1
+                );
+                return Err(Diagnostic::error(Code::CONFLICT, span, text)
+                    .help(format!("LAMMPS' order from short steps to long ones: {}", ORDER.join(", ")))
+                    .into());
+            }
+        }
+        let said = told(&levels, subs.as_deref(), outermost);
+        if outermost == 0 {
+            return Ok((RunStyle::Verlet, said));
+        }
+        Ok((RunStyle::Respa(Respa { loops, bond: levels[0], pair: levels[4], subs }), said))
+    }
+
+    /// The word that is to blame where force `k` stands below the one before.
+    fn blame(&self, k: usize) -> Option<Span> {
+        self.levels[..=k].iter().rev().flatten().map(|(_, span)| *span).next()
+    }
+}
+
+/// LAMMPS' lines about its levels.
+fn told(levels: &[usize; 6], subs: Option<&[usize]>, outermost: usize) -> Vec<String> {
+    let mut lines = vec!["Respa levels:".to_string()];
+    for level in 0..=outermost {
+        let mut line = format!("  {} =", level + 1);
+        for (name, at) in ORDER.iter().zip(levels) {
+            match (*name, subs) {
+                ("pair", Some(list)) => {
+                    let here = (1..).zip(list).filter(|(_, at)| **at == level);
+                    here.for_each(|(k, _): (usize, _)| line += &format!(" hybrid-{k}"));
+                }
+                _ if *at == level => line += &format!(" {name}"),
+                _ => {}
+            }
+        }
+        lines.push(line);
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::refused;
+    use perigrain_world::World;
+
+    fn read(words: &str) -> RunStyle {
+        super::super::tests::read(&format!("respa {words}"))
+    }
+
+    #[test]
+    fn forces_that_are_not_named_stand_where_lammps_puts_them() {
+        let respa = |loops: &[i64], bond, pair, subs: Option<&[usize]>| {
+            let (loops, subs) = (loops.to_vec(), subs.map(<[usize]>::to_vec));
+            RunStyle::Respa(Respa { loops, bond, pair, subs })
+        };
+        assert_eq!(read("1"), RunStyle::Verlet);
+        assert_eq!(read("1 bond 1 pair 1"), RunStyle::Verlet);
+        assert_eq!(read("2 8"), respa(&[8], 0, 1, None));
+        assert_eq!(read("3 4 2 pair 2"), respa(&[4, 2], 0, 1, None));
+        assert_eq!(read("4 2 2 2 bond 1 dihedral 2 pair 3 kspace 4"), respa(&[2, 2, 2], 0, 2, None));
+        assert_eq!(read("3 4 2 bond 1 hybrid 2 2 1 kspace 3"), respa(&[4, 2], 0, 1, Some(&[1, 1, 0])));
+        assert_eq!(read("2 5 hybrid 1 2"), respa(&[5], 0, 1, Some(&[0, 1])));
+    }
+
+    #[test]
+    fn mistakes_are_refused_at_their_word() {
+        for (words, word) in [
+            ("0", "0"),
+            ("2", "2"),
+            ("2 0", "0"),
+            ("3 2 pair 1", "pair"),
+            ("2 4 pair 3", "3"),
+            ("2 4 pair 0", "0"),
+            ("2 4 hybrid", "hybrid"),
+            ("2 4 hybrid 1 2 3", "3"),
+            ("2 4 hybrid 1 2 pair 2", "hybrid"),
+            ("2 4 bond 2 pair 1", "1"),
+            ("2 4 angle 2 bond 1 dihedral 1", "1"),
+            ("2 4 kspace 1", "1"),
+            ("2 4 inner 1 4 5 outer 2", "inner"),
+            ("2 4 pairs 1", "pairs"),
+        ] {
+            let (found, _) = refused(&World::default(), &format!("run_style respa {words}"));
+            assert_eq!(found, word, "{words}");
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! `write_data`: the scene as a LAMMPS data file.
+
+use super::data::write;
+use super::{Act, CommandStyle};
+use perigrain_base::diag::{Result, Span};
+use perigrain_lang::Args;
+use perigrain_out::file::{Pattern, replace};
+use perigrain_styles::common::{domain, not_here, settle};
+use perigrain_styles::{ActCx, BuildCx, Doc, Style};
+use perigrain_world::Promise;
+use std::sync::Arc;
+
+/// The command.
+pub struct WriteData;
+
+impl Style for WriteData {
+    fn name(&self) -> &'static str {
+        "write_data"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "write_data FILE [pair ii|ij] [nocoeff] [nofix] [nolabelmap]",
+            summary: "Writes box, particles, velocities and masses as a LAMMPS data file.",
+            text: "A `*` in the name becomes the step. The file has LAMMPS' sections and columns (see read_data) and \
+                   appears whole or not at all. Numbers are written in the shortest form that is read back to the same \
+                   bits. Positions are wrapped and shrink-wrapped faces follow the particles first, as in LAMMPS. No \
+                   pair style writes coefficients into data files (of those that are here LAMMPS writes those of `zero` alone): `pair` makes no difference; \
+                   `nocoeff` leaves out those of bonds. Each fix property/atom has a section of its own unless it says `writedata no` (`nofix`: none has). `nolabelmap` makes no difference, as types have no labels. Peridynamic bonds, damage, contact history, forces and \
+                   the clock are not in a data file: write_restart has them. `types labels` and `triclinic/general` are \
+                   refused.",
+            example: "write_data plate.*.data nocoeff",
+        }
+    }
+}
+
+struct Writing {
+    file: Pattern,
+    span: Span,
+    with: write::With,
+    checking: bool,
+}
+
+impl CommandStyle for WriteData {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        domain(cx)?;
+        let word = a.expect("a file name")?;
+        let file = Pattern::new(&word.text).map_err(|e| e.at(word.span))?;
+        let mut with = write::With { coeffs: true, fixes: true };
+        while let Some(key) = a.next() {
+            match key.text.as_str() {
+                "pair" => drop(a.choice("value of pair", &["ii", "ij"])?),
+                "nocoeff" => with.coeffs = false,
+                "nofix" => with.fixes = false,
+                "nolabelmap" => {}
+                "types" => match a.peek() {
+                    Some(w) if w.text == "labels" => return Err(not_here(w, "write_data types")),
+                    _ => drop(a.choice("value of types", &["numeric"])?),
+                },
+                "triclinic/general" => return Err(not_here(key, "keyword of write_data")),
+                _ => return Err(a.unknown(key, &["pair", "nocoeff", "nofix", "nolabelmap", "types"])),
+            }
+        }
+        Ok(Box::new(Writing { file, span: word.span, with, checking: cx.checking }))
+    }
+}
+
+impl Act for Writing {
+    fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
+        let w = &mut *cx.world;
+        if self.checking {
+            let scene = Promise::Scene(Arc::new(w.clone()), vec![]);
+            w.parts.promised.keep(self.file.text(), scene);
+            return Ok(());
+        }
+        w.spread_type_masses();
+        settle(w);
+        let path = self.file.at(w.clock.step);
+        replace(&path, |out| write::write(out, w, self.with)).map_err(|e| e.at(self.span))
+    }
+
+    fn needs_particles(&self) -> bool {
+        false
+    }
+}

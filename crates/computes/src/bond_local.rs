@@ -1,0 +1,195 @@
+//! compute bond/local: lengths, energies and forces of bonds.
+
+use super::{Compute, ComputeStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::math::vec3::{Vec3, dot, sub};
+use perigrain_lang::Args;
+use perigrain_plan::{Op, Stage, When};
+use perigrain_styles::matter::Masses;
+use perigrain_styles::near::bonds_within;
+use perigrain_styles::pull::{Pull, Stretched, apart};
+use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::index::Index;
+use perigrain_world::{GroupId, SlotId};
+
+/// The style.
+pub struct BondLocal;
+
+impl Style for BondLocal {
+    fn name(&self) -> &'static str {
+        "bond/local"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group bond/local dist|dx|dy|dz|engpot|force|fx|fy|fz|engvib|engrot|engtrans|omega|velvib …",
+            summary: "Lengths, energies, forces and relative motion of bonds.",
+            text: "Local vector for one value, array for several; a row for each bond with both ends in the group, in the order \
+                   of compute property/local. `dist`: length, `dx dy dz` its components from the second end to the first; \
+                   `engpot force fx fy fz`: energy and force of the bond (0 while it is turned off; negative pulls the ends \
+                   together); of the ends' motion against their centre of mass: `engvib` kinetic energy along the bond, `engrot` \
+                   across it, `velvib` the speed of lengthening, `omega` angular velocity; `engtrans`: kinetic energy of the \
+                   centre. Energies and forces are not told of `bond_style bpm/peri`, whose bonds depend on more than their ends.",
+            example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
+                      create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\n\
+                      create_bonds single/bond 1 1 2\nbond_style harmonic\nbond_coeff 1 50.0 1.0\nfix 1 all nve\n\
+                      compute l all bond/local dist force\ncompute m all reduce max c_l[1] c_l[2] inputs local\n\
+                      thermo_style custom step c_m[*]\nrun 10",
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Value {
+    Dist,
+    D(usize),
+    EngPot,
+    Force,
+    F(usize),
+    EngVib,
+    EngRot,
+    EngTrans,
+    Omega,
+    VelVib,
+}
+
+const VALUES: [(&str, Value); 14] = [
+    ("dist", Value::Dist),
+    ("dx", Value::D(0)),
+    ("dy", Value::D(1)),
+    ("dz", Value::D(2)),
+    ("engpot", Value::EngPot),
+    ("force", Value::Force),
+    ("fx", Value::F(0)),
+    ("fy", Value::F(1)),
+    ("fz", Value::F(2)),
+    ("engvib", Value::EngVib),
+    ("engrot", Value::EngRot),
+    ("engtrans", Value::EngTrans),
+    ("omega", Value::Omega),
+    ("velvib", Value::VelVib),
+];
+
+impl Value {
+    /// Whether it needs a bond style.
+    fn of_force(self) -> bool {
+        matches!(self, Value::EngPot | Value::Force | Value::F(_))
+    }
+}
+
+impl ComputeStyle for BondLocal {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        if !cx.world.particles.style.bonded {
+            let d = Diagnostic::error(
+                Code::INCOMPLETE,
+                cx.span,
+                "compute bond/local needs an atom style with bonds",
+            );
+            return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
+        }
+        let names: Vec<&'static str> = VALUES.iter().map(|v| v.0).collect();
+        let mut values = vec![];
+        while values.is_empty() || !args.is_empty() {
+            if let Some(word) = args.peek().filter(|w| w.text.starts_with("v_") || w.text == "set") {
+                let text = format!("`{}`: variables of the length are not in perigrain", word.text);
+                return fail(Code::NOT_SUPPORTED, word.span, text);
+            }
+            let name = args.choice("value of bonds", &names)?;
+            values.extend(VALUES.iter().find(|v| v.0 == name).map(|v| v.1));
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, values }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    values: Vec<Value>,
+}
+
+/// A bond as its ends are and move.
+struct Row {
+    d: Vec3,
+    pull: Pull,
+    mass: [f64; 2],
+    v: [Vec3; 2],
+    /// Energy units per mass × velocity².
+    mvv2e: f64,
+}
+
+impl Row {
+    fn get(&self, value: Value) -> f64 {
+        let [a, b] = self.mass;
+        let total = a + b;
+        let r = norm(self.d);
+        let relative = sub(self.v[0], self.v[1]);
+        let along = dot(relative, self.d) / r;
+        let reduced = a * b / total;
+        let across2 = (dot(relative, relative) - along * along).max(0.0);
+        match value {
+            Value::Dist => r,
+            Value::D(k) => self.d[k],
+            Value::EngPot => self.pull.energy,
+            Value::Force => r * self.pull.force_per_length,
+            Value::F(k) => self.d[k] * self.pull.force_per_length,
+            Value::EngVib => 0.5 * self.mvv2e * reduced * along * along,
+            Value::EngRot => 0.5 * self.mvv2e * reduced * across2,
+            Value::EngTrans => {
+                let c: Vec3 = std::array::from_fn(|k| (a * self.v[0][k] + b * self.v[1][k]) / total);
+                0.5 * self.mvv2e * total * dot(c, c)
+            }
+            Value::Omega => across2.sqrt() / r,
+            Value::VelVib => along,
+        }
+    }
+}
+
+fn norm(a: Vec3) -> f64 {
+    dot(a, a).sqrt()
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        Shape { local: self.values.len(), ..Shape::default() }
+    }
+
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let me = self.clone();
+        let style = cx.bonds();
+        let span = cx.span();
+        let needed = self.values.iter().any(|v| v.of_force());
+        if needed && style.is_none() {
+            return fail(Code::INCOMPLETE, span, "energies and forces of bonds need a bond_style");
+        }
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x v bonds mask", move |w, _, out| {
+            let p = &w.particles;
+            let (index, lengths, masses) = (Index::new(&p.tag), w.periods(), Masses::of(w));
+            let mvv2e = w.settings.units.constants().mvv2e;
+            out.local_cols = me.values.len();
+            out.local.clear();
+            for bond in bonds_within(w, me.group) {
+                let [Some(a), Some(b)] = bond.ends.map(|t| index.find(t, &p.tag)) else { continue };
+                let d = apart(w, &lengths, [a, b]);
+                let mut pull = Pull::default();
+                if let (true, true, Some(style)) = (needed, bond.is_on(), &style) {
+                    let v = sub(p.v[a], p.v[b]);
+                    let now = Stretched { kind: bond.kind as u16, d, v, rest: bond.length };
+                    let Some(found) = style.single(w, &now) else {
+                        let text =
+                            format!("the force of bond_style {} is not of its two ends alone", style.name());
+                        return fail(Code::CONFLICT, span, text);
+                    };
+                    pull = found;
+                }
+                let row = Row { d, pull, mass: [masses.get(a), masses.get(b)], v: [p.v[a], p.v[b]], mvv2e };
+                out.local.extend(me.values.iter().map(|v| row.get(*v)));
+            }
+            Ok(())
+        }))
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,36 @@
+//! compute angmom/chunk: angular momentum of each chunk.
+
+use super::ChunkRef;
+use super::moments::Rows;
+use crate::{Compute, ComputeStyle};
+use perigrain_base::diag::Result;
+use perigrain_lang::Args;
+use perigrain_styles::{BuildCx, Doc, Style};
+
+/// The style.
+pub struct AngmomChunk;
+
+impl Style for AngmomChunk {
+    fn name(&self) -> &'static str {
+        "angmom/chunk"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group angmom/chunk chunkID",
+            summary: "Angular momentum of each chunk about its centre of mass.",
+            text: "Global array (intensive) of Nchunk rows and 3 columns: Σ m r × v over the particles of the chunk that are in the \
+                   group, with r from their centre of mass and positions unwrapped across periodic faces, in mass distance velocity \
+                   units. The spin of spheres is left out, as in LAMMPS. chunkID names a `compute chunk/atom`.",
+            example: "compute cc all chunk/atom type\ncompute l all angmom/chunk cc",
+        }
+    }
+}
+
+impl ComputeStyle for AngmomChunk {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let chunks = ChunkRef::read(args, cx)?;
+        args.finish()?;
+        let (id, group) = (cx.id.to_string(), cx.group);
+        Ok(Box::new(Rows { id, group, chunks, columns: 3, of: |_, m| m.angular_momentum().concat() }))
+    }
+}

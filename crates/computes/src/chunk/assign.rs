@@ -1,0 +1,354 @@
+//! How many chunks there are, and which particle belongs to which.
+
+use super::bins::{Layers, Shells};
+use super::words::{Discard, Ids, Spec, What};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_styles::Reading;
+use perigrain_world::{Domain, Region, Slot, World};
+
+/// What has been found out once and stays until chunks are counted anew.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Layout {
+    /// Number of chunks.
+    pub n: usize,
+    /// Layers of bins.
+    pub layers: [Layers; 3],
+    /// Centre, inner and outer radius of shells.
+    pub shells: [f64; 5],
+    /// Original numbers in use, sorted, under `compress`.
+    pub used: Vec<f64>,
+}
+
+impl Layout {
+    /// As numbers, for the world to keep.
+    fn pack(&self) -> Vec<f64> {
+        let mut out = vec![self.n as f64];
+        out.extend(self.layers.iter().flat_map(|l| [l.lo, l.count as f64]));
+        out.extend(self.shells);
+        out.extend(&self.used);
+        out
+    }
+
+    /// Shells where they were when chunks were counted.
+    fn of(&self, s: &Shells) -> Shells {
+        let [x, y, z, lo, hi] = self.shells;
+        Shells { center: [x, y, z], lo, hi, ..*s }
+    }
+
+    fn unpack(a: &[f64]) -> Option<Self> {
+        let (head, used) = a.split_at_checked(12)?;
+        let layer = |k: usize| Layers { lo: head[1 + 2 * k], count: head[2 + 2 * k] as usize };
+        let shells = *head.last_chunk()?;
+        Some(Self { n: head[0] as usize, layers: [0, 1, 2].map(layer), shells, used: used.to_vec() })
+    }
+}
+
+/// The window in which a fix that averages chunks holds their number: its first step and its last, or none.
+type Lock = Option<(i64, Option<i64>)>;
+
+/// Names of what the world keeps for a `compute chunk/atom`.
+pub fn key(id: &str) -> String {
+    format!("compute {id} chunks")
+}
+
+/// Name of a window in which their number is held.
+fn lock_key(id: &str) -> String {
+    format!("compute {id} window")
+}
+
+/// Holds the number of chunks of a `compute chunk/atom` from a step on while an average is made, to its last step or for good.
+///
+/// # Errors
+/// Another fix that holds it for other steps.
+pub fn hold(w: &mut World, id: &str, step: i64, last: Option<i64>, span: Span) -> Result<()> {
+    let mut window = vec![step as f64];
+    window.extend(last.map(|last| last as f64));
+    if let Some(old) = w.memo.get(&lock_key(id)) {
+        let open = old.get(1).is_none_or(|last| *last >= step as f64);
+        if open && old.len() == 1 && last.is_none() {
+            return Ok(());
+        }
+        if open && *old != window {
+            let text = format!("another fix holds the chunks of compute {id} for other steps");
+            return Err(Diagnostic::error(Code::CONFLICT, span, text)
+                .help("give each of them a compute chunk/atom of its own, or the same steps")
+                .into());
+        }
+    }
+    w.memo.insert(lock_key(id), window);
+    Ok(())
+}
+
+/// Holds them no longer.
+pub fn let_go(w: &mut World, id: &str) {
+    w.memo.remove(&lock_key(id));
+}
+
+fn lock(w: &World, id: &str, step: i64) -> Lock {
+    let held = w.memo.get(&lock_key(id))?;
+    let (first, last) = (*held.first()? as i64, held.get(1).map(|a| *a as i64));
+    (step >= first && last.is_none_or(|l| step <= l)).then_some((first, last))
+}
+
+/// One use of a compute chunk/atom.
+pub struct Task<'a> {
+    /// Its line.
+    pub spec: &'a Spec,
+    /// The region, if particles must be inside one.
+    pub region: Option<&'a Region>,
+    /// The values that number particles, if those do.
+    pub value: Option<&'a Reading>,
+    /// The line's place.
+    pub span: Span,
+}
+
+impl Task<'_> {
+    /// Numbers particles into `out`; what must stay is kept in the world.
+    pub fn run(&self, w: &mut World, step: i64, out: &mut Slot) -> Result<()> {
+        let spec = self.spec;
+        let old = w.memo.get(&key(&spec.id)).and_then(|a| Layout::unpack(a));
+        let lock = lock(w, &spec.id, step);
+        let numbered = w.columns.get_scalar(&key(&spec.id)).is_some();
+        let keep = numbered
+            && match spec.ids {
+                Ids::Once => true,
+                Ids::Window => lock.is_some_and(|(first, _)| step > first),
+                Ids::Every => false,
+            };
+        let raw = self.raw(w, old.as_ref().filter(|_| lock.is_some() || spec.once))?;
+        let layout = match old {
+            Some(old) if lock.is_some() || spec.once => old,
+            _ => {
+                let new = self.count(w, &raw)?;
+                w.memo.insert(key(&spec.id), new.pack());
+                new
+            }
+        };
+        // Under bins a new layout may have come with this use.
+        let raw = if self.binned() { self.raw(w, Some(&layout))? } else { raw };
+        out.cols = 1;
+        out.atom.clear();
+        match w.columns.get_scalar(&key(&spec.id)).filter(|_| keep) {
+            Some(kept) => out.atom.extend_from_slice(kept),
+            None => out.atom.extend(raw.iter().map(|&a| self.number(a, &layout))),
+        }
+        if spec.ids != Ids::Every && !keep {
+            let n = w.n();
+            w.columns.scalar(&key(&spec.id), n).clone_from(&out.atom);
+        }
+        self.describe(w, &layout, out)
+    }
+
+    fn binned(&self) -> bool {
+        !matches!(self.spec.what, What::Type | What::Value(_))
+    }
+
+    /// The number of each particle before compression, limit and discarding; NaN for those that have none.
+    fn raw(&self, w: &World, layout: Option<&Layout>) -> Result<Vec<f64>> {
+        let d = w.domain()?;
+        let found;
+        let layout = match layout {
+            Some(l) => l,
+            None => {
+                found = self.bins(d)?;
+                &found
+            }
+        };
+        let p = &w.particles;
+        let bit = self.spec.group.bit();
+        let one = |i: usize| {
+            if p.mask[i] & bit == 0 || self.region.is_some_and(|r| !r.contains(p.x[i])) {
+                return f64::NAN;
+            }
+            let bin = match &self.spec.what {
+                What::Type => return f64::from(p.kind[i]),
+                What::Value(_) => return self.value.map_or(0.0, |v| whole(v.atom(w, i))),
+                _ => self.bin(d, layout, p.x[i], w.settings.lammps()),
+            };
+            bin.map_or(f64::NAN, |b| b as f64 + 1.0)
+        };
+        Ok((0..w.n()).map(one).collect())
+    }
+
+    /// Bins of the present box.
+    fn bins(&self, d: &Domain) -> Result<Layout> {
+        let mut layers = [Layers::default(); 3];
+        let axes = match &self.spec.what {
+            What::Bins(axes) => axes.as_slice(),
+            What::Cylinder(axis, _) => std::slice::from_ref(axis),
+            _ => &[],
+        };
+        for (l, a) in layers.iter_mut().zip(axes) {
+            *l = match a.layers(d, self.spec.reduced) {
+                Some(l) => l,
+                None => return fail(Code::BAD_VALUE, self.span, "no bin lies inside these bounds"),
+            };
+        }
+        let mut shells = [0.0; 5];
+        if let What::Sphere(s) | What::Cylinder(_, s) = &self.spec.what {
+            let s = s.in_box(d, self.spec.reduced);
+            shells = [s.center[0], s.center[1], s.center[2], s.lo, s.hi];
+        }
+        Ok(Layout { layers, shells, ..Layout::default() })
+    }
+
+    /// The bin of a place, counted from 0.
+    fn bin(&self, d: &Domain, layout: &Layout, x: [f64; 3], lammps: bool) -> Option<usize> {
+        let along = |k: usize| {
+            let (lo, hi) = (d.lo[k], d.hi[k]);
+            let mut a = x[k];
+            if d.boundary.periodic(k) {
+                if a < lo {
+                    a += hi - lo;
+                }
+                if a >= hi {
+                    a -= hi - lo;
+                }
+            }
+            if self.spec.reduced { (a - lo) * (1.0 / (hi - lo)) } else { a }
+        };
+        let (spec, layers) = (self.spec, &layout.layers);
+        match &spec.what {
+            What::Bins(axes) => {
+                let mut bin = 0;
+                for (a, l) in axes.iter().zip(layers) {
+                    bin = bin * l.count + a.layer(l, along(a.dim), spec.discard, lammps)?;
+                }
+                Some(bin)
+            }
+            What::Sphere(s) => layout.of(s).shell(d, x, spec.pbc, spec.discard),
+            What::Cylinder(a, s) => {
+                let axial = a.layer(&layers[0], along(a.dim), spec.discard, lammps)?;
+                let ring = layout.of(s).shell(d, x, spec.pbc, spec.discard)?;
+                Some(ring * layers[0].count + axial)
+            }
+            _ => None,
+        }
+    }
+
+    /// The number of chunks, and with `compress` those in use.
+    fn count(&self, w: &World, raw: &[f64]) -> Result<Layout> {
+        let spec = self.spec;
+        let d = w.domain()?;
+        let bins = self.bins(d)?;
+        let layers = bins.layers;
+        let all: usize = match &spec.what {
+            What::Type => w.types,
+            What::Value(_) => raw.iter().fold(1.0, |a: f64, b| a.max(*b)) as usize,
+            What::Bins(axes) => layers[..axes.len()].iter().map(|l| l.count).product(),
+            What::Sphere(s) => s.count,
+            What::Cylinder(_, s) => layers[0].count * s.count,
+        };
+        if all > MOST && !spec.compress {
+            let text =
+                format!("{all} chunks are too many: `compress yes` leaves out those without particles");
+            return fail(Code::BAD_VALUE, self.span, text);
+        }
+        let mut used = vec![];
+        if spec.compress {
+            used.extend(raw.iter().map(|&a| self.limited(a)).filter(|a| !a.is_nan()));
+            used.sort_by(f64::total_cmp);
+            used.dedup();
+        }
+        let mut n = if spec.compress { used.len() } else { all };
+        if let Some(l) = spec.limit {
+            n = if l.exact { l.n } else { n.min(l.n) };
+        }
+        Ok(Layout { n, used, ..bins })
+    }
+
+    /// What `limit` before `compress` leaves of a number.
+    fn limited(&self, raw: f64) -> f64 {
+        match self.spec.limit {
+            Some(l) if l.first && raw > l.n as f64 => {
+                if self.spec.discard == Discard::No {
+                    l.n as f64
+                } else {
+                    f64::NAN
+                }
+            }
+            _ => raw,
+        }
+    }
+
+    /// A particle's chunk from 1, 0 for none.
+    fn number(&self, raw: f64, layout: &Layout) -> f64 {
+        if raw.is_nan() {
+            return 0.0;
+        }
+        let n = layout.n as f64;
+        let outside = if self.spec.discard == Discard::No { n } else { 0.0 };
+        let number = if self.spec.compress {
+            match layout.used.binary_search_by(|u| u.total_cmp(&self.limited(raw))) {
+                Ok(k) => k as f64 + 1.0,
+                // A bin that was empty when the chunks were counted is no chunk, and no other one has it.
+                Err(_) if self.binned() => return 0.0,
+                Err(_) => outside,
+            }
+        } else {
+            raw
+        };
+        if number < 1.0 || number > n { outside } else { number }
+    }
+
+    /// Number, volume and coordinates of every chunk.
+    fn describe(&self, w: &World, layout: &Layout, out: &mut Slot) -> Result<()> {
+        let d = w.domain()?;
+        out.inner.clear();
+        for k in 0..layout.n {
+            let id =
+                layout.used.get(k).copied().unwrap_or(if self.spec.compress { 0.0 } else { k as f64 + 1.0 });
+            out.inner.push(id);
+            self.place(d, layout, (id - 1.0).max(0.0) as usize, &mut out.inner);
+        }
+        Ok(())
+    }
+
+    /// Volume and coordinates of a bin, counted from 0.
+    fn place(&self, d: &Domain, layout: &Layout, bin: usize, out: &mut Vec<f64>) {
+        let lengths = d.lengths();
+        let extent = |k: usize, delta: f64| if self.spec.reduced { delta * lengths[k] } else { delta };
+        let center = |l: &Layers, k: usize, delta: f64| l.lo + (k as f64 + 0.5) * delta;
+        let radius = |s: &Shells, k: usize| s.lo + (k as f64 + 0.5) * s.delta();
+        let ends = |s: &Shells, k: usize| (s.lo + k as f64 * s.delta(), s.lo + (k as f64 + 1.0) * s.delta());
+        match &self.spec.what {
+            What::Bins(axes) => {
+                let mut volume = 1.0;
+                axes.iter().for_each(|a| volume *= extent(a.dim, a.delta));
+                (0..3).filter(|k| axes.iter().all(|a| a.dim != *k)).for_each(|k| volume *= lengths[k]);
+                out.push(volume);
+                let mut rest = bin;
+                let mut places = vec![];
+                for (a, l) in axes.iter().zip(&layout.layers).rev() {
+                    places.push(center(l, rest % l.count.max(1), a.delta));
+                    rest /= l.count.max(1);
+                }
+                out.extend(places.iter().rev());
+            }
+            What::Sphere(s) => {
+                let s = layout.of(s);
+                let (lo, hi) = ends(&s, bin);
+                out.push(4.0 / 3.0 * std::f64::consts::PI * (hi * hi * hi - lo * lo * lo));
+                out.push(radius(&s, bin));
+            }
+            What::Cylinder(a, s) => {
+                let s = layout.of(s);
+                let l = &layout.layers[0];
+                let (ring, axial) = (bin / l.count.max(1), bin % l.count.max(1));
+                let (lo, hi) = ends(&s, ring);
+                out.push(extent(a.dim, a.delta) * std::f64::consts::PI * (hi * hi - lo * lo));
+                out.push(radius(&s, ring));
+                out.push(center(l, axial, a.delta));
+            }
+            _ => out.push(d.volume()),
+        }
+    }
+}
+
+/// A value as the number of a chunk: rounded towards zero, no NaN, no negative zero.
+fn whole(a: f64) -> f64 {
+    if a.is_nan() { 0.0 } else { a.trunc() + 0.0 }
+}
+
+/// More chunks than this are a mistake (a particle id without `compress`, say).
+const MOST: usize = 100_000_000;

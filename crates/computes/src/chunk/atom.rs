@@ -1,0 +1,150 @@
+//! compute chunk/atom: numbers particles by bins of space, type or any value.
+
+use super::assign::{Task, key};
+use super::words::{Spec, What};
+use crate::{Compute, ComputeStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::Args;
+use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Chunking, Doc, SealCx, Shape, Style, Wants};
+use perigrain_world::{SlotId, World};
+
+/// The style.
+pub struct ChunkAtom;
+
+impl Style for ChunkAtom {
+    fn name(&self) -> &'static str {
+        "chunk/atom"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group chunk/atom bin/1d|bin/2d|bin/3d|bin/sphere|bin/cylinder|type|c_ID|f_ID|v_name … [keyword value …]",
+            summary: "Numbers particles into chunks, for computes and fixes that work chunk by chunk.",
+            text: "Per-atom vector: the chunk of each particle from 1 to Nchunk, 0 for none.\n\n\
+                   - `bin/1d dim origin delta`, `bin/2d` and `bin/3d` with two or three of these: layers of thickness \
+                   `delta` along x, y or z in both directions from `origin` (`lower center upper` of what they cover, or a \
+                   coordinate). The last axis given varies fastest.\n\
+                   - `bin/sphere x y z rmin rmax n`: n shells. `bin/cylinder dim origin delta c1 c2 rmin rmax n`: layers \
+                   along an axis, varying fastest, times n rings.\n\
+                   - `type`; `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`, `v_name`: a value per particle, rounded towards zero. \
+                   With `compress yes` particles whose value is below 1 form chunks like all others, as in \
+                   LAMMPS; else they are outside all chunks.\n\n\
+                   Keywords: `region ID`; `nchunk once|every` counts chunks at the first or at every use (once for types, \
+                   and for bins where the box cannot change); `limit 0` or `limit N max|exact`; `ids once|nfreq|every`: \
+                   when particles are numbered, `nfreq` at the first step of a window of `fix ave/chunk`; `compress yes` \
+                   leaves out numbers without particles; `discard yes|no|mixed`: whether those outside all chunks belong \
+                   to none or to the nearest (`mixed`: to the nearest where bins end at the box); `bound dim lo hi` for \
+                   layers; `pbc yes`: minimum image distances for spheres and cylinders; `units box|lattice|reduced` \
+                   (lattice). A `fix ave/chunk`, or a `fix ave/time` of rows of chunks, holds their number during its windows. `molecule` is refused: \
+                   particles have none. Under `-compat lammps` `mixed` drops what is above the last layer \
+                   also where layers end at the box, as LAMMPS 22Jul2025 does. LAMMPS 22Jul2025 ignores or crashes on `limit` together with `compress`; here it \
+                   does what LAMMPS' manual says.",
+            example: "compute cc all chunk/atom bin/1d z lower 0.1 units reduced",
+        }
+    }
+}
+
+impl ComputeStyle for ChunkAtom {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let spec = Spec::read(args, cx)?;
+        if cx.world.settings.lammps() && spec.drops_above() {
+            let text = "compat lammps: what is above the last layer belongs to no chunk";
+            cx.note(Diagnostic::note(Code::COMPAT, cx.span, text));
+        }
+        Ok(Box::new(Declared(spec)))
+    }
+}
+
+#[derive(Clone)]
+struct Declared(Spec);
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        let Spec { compress: compressed, once: fixed, .. } = self.0;
+        let chunks = Chunking { coordinates: self.0.coordinates(), compressed, fixed };
+        Shape { atom: Some(1), chunks: Some(chunks), ..Shape::default() }
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.remove(w);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.memo.remove(&key(&self.0.id));
+        w.columns.remove(&key(&self.0.id));
+    }
+
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let (spec, span) = (self.0.clone(), cx.span());
+        let value = match &spec.what {
+            What::Value(r) => Some(cx.reading(r, Wants::PerAtom, stage, when)?),
+            _ => None,
+        };
+        let access = Access::new("x mask type box", "");
+        let op = StepOp::new(format!("compute {}", spec.id), stage, access, move |w: &mut World, t| {
+            let region = match &spec.region {
+                None => None,
+                Some(name) => match w.regions.get(name).cloned() {
+                    Some(r) => Some(r),
+                    None => {
+                        return fail(
+                            Code::UNKNOWN_NAME,
+                            span,
+                            format!("there is no region `{name}` any more"),
+                        );
+                    }
+                },
+            };
+            let mut out = w.slots.take(slot);
+            let task = Task { spec: &spec, region: region.as_ref(), value: value.as_ref(), span };
+            let outcome = task.run(w, t.step, &mut out);
+            w.slots.put(slot, out, t.step);
+            outcome
+        });
+        Ok(op.when(when.clone()).in_setup(true).boxed())
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    fn numbers(words: &str) -> Vec<f64> {
+        let mut b =
+            Bench::new(AtomStyle::default(), &[[-9.0; 3], [0.5, 2.0, 1.0], [7.0, 2.0, 0.0], [0.0; 3]]);
+        b.atom.insert("seven".into(), vec![7.9, -3.0, 40.0, 7.0]);
+        let c = b.compute(&ChunkAtom, words).unwrap();
+        b.evaluate(&*c).unwrap().atom.clone()
+    }
+
+    #[test]
+    fn values_are_limited_and_compressed() {
+        assert_eq!(numbers("v_seven"), [7.0, 0.0, 40.0, 7.0]);
+        assert_eq!(numbers("v_seven limit 10 max"), [7.0, 0.0, 0.0, 7.0]);
+        assert_eq!(numbers("v_seven limit 10 max discard no"), [7.0, 10.0, 10.0, 7.0]);
+        // As LAMMPS 22Jul2025: compression makes a chunk of what is below 1, too.
+        assert_eq!(numbers("v_seven compress yes"), [2.0, 1.0, 3.0, 2.0]);
+        assert_eq!(numbers("v_seven limit 10 max compress yes discard no"), [2.0, 1.0, 3.0, 2.0]);
+        assert_eq!(numbers("v_seven limit 10 max compress yes"), [2.0, 1.0, 0.0, 2.0]);
+        assert_eq!(numbers("v_seven compress yes limit 2 max"), [2.0, 1.0, 0.0, 2.0]);
+        assert_eq!(numbers("type"), [1.0; 4]);
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let b = Bench::new(AtomStyle::default(), &[]);
+        let bad = "|molecule|bin/1d|bin/1d w lower 1|bin/1d x lower 0|bin/1d x low 1|bin/2d x lower 1 x lower 1|type foo|\
+                   bin/sphere 0 0 0 2 1 3|type limit 3|type discard mixed|c_no|type region no|type bound x 1|type ids never";
+        for words in bad.split('|') {
+            assert!(b.compute(&ChunkAtom, words).is_err(), "{words}");
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! compute inertia/chunk: inertia tensor of each chunk.
+
+use super::ChunkRef;
+use super::moments::Rows;
+use crate::{Compute, ComputeStyle};
+use perigrain_base::diag::Result;
+use perigrain_lang::Args;
+use perigrain_styles::{BuildCx, Doc, Style};
+
+/// The style.
+pub struct InertiaChunk;
+
+impl Style for InertiaChunk {
+    fn name(&self) -> &'static str {
+        "inertia/chunk"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group inertia/chunk chunkID",
+            summary: "Inertia tensor of each chunk.",
+            text: "Global array (intensive) of Nchunk rows and 6 columns xx, yy, zz, xy, yz, xz: Σ m (r² δ_ab − r_a r_b) over the \
+                   particles of the chunk that are in the group, with r from their centre of mass and positions unwrapped across \
+                   periodic faces, in mass distance² units. Particles count as points, as in LAMMPS: what spheres have by themselves \
+                   is left out. chunkID names a `compute chunk/atom`.",
+            example: "compute cc all chunk/atom type\ncompute i all inertia/chunk cc",
+        }
+    }
+}
+
+impl ComputeStyle for InertiaChunk {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let chunks = ChunkRef::read(args, cx)?;
+        args.finish()?;
+        let (id, group) = (cx.id.to_string(), cx.group);
+        Ok(Box::new(Rows { id, group, chunks, columns: 6, of: |_, m| m.inertia().concat() }))
+    }
+}

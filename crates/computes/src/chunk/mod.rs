@@ -1,0 +1,142 @@
+//! Chunks: sets of particles that `compute chunk/atom` numbers, and what other styles read of them.
+
+pub mod angmom;
+mod assign;
+pub mod atom;
+mod bins;
+pub mod com;
+pub mod first;
+pub mod gyration;
+pub mod inertia;
+mod moments;
+pub mod omega;
+pub mod property;
+pub mod reduce;
+pub mod spread;
+pub mod temp;
+pub mod torque;
+pub mod vcm;
+mod words;
+
+pub use assign::{hold, let_go};
+
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_lang::{Args, RefKind, ValueRef};
+use perigrain_plan::{Stage, When};
+use perigrain_styles::{BuildCx, Chunking, SealCx, Wants};
+use perigrain_world::{Slot, SlotId, World};
+
+/// A `compute chunk/atom` that another style names.
+#[derive(Clone, Debug)]
+pub struct ChunkRef {
+    /// Its ID.
+    pub id: String,
+    /// What its chunks have.
+    pub kind: Chunking,
+    span: Span,
+}
+
+impl ChunkRef {
+    /// Takes the ID of a `compute chunk/atom`.
+    ///
+    /// # Errors
+    /// An unknown compute, or one that makes no chunks.
+    pub fn read(args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let word = args.expect("the ID of a compute chunk/atom")?;
+        let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
+        if let Some(shape) = cx.shape(&r) {
+            cx.uses(perigrain_styles::UseKind::Compute, &r.name);
+            if let Some(kind) = shape.chunks {
+                return Ok(Self { id: r.name, kind, span: word.span });
+            }
+            let text = format!("compute `{}` makes no chunks", r.name);
+            return Err(Diagnostic::error(Code::WRONG_KIND, word.span, text)
+                .help("name a `compute … chunk/atom`")
+                .into());
+        }
+        cx.reading(&r, Wants::PerAtom)?;
+        Ok(Self { id: r.name, kind: Chunking::default(), span: word.span })
+    }
+
+    /// The slot with the chunks, fresh whenever `when` fires.
+    ///
+    /// # Errors
+    /// As `SealCx::value`.
+    pub fn seal(&self, cx: &mut dyn SealCx, stage: Stage, when: &When) -> Result<SlotId> {
+        let r = ValueRef { kind: RefKind::Compute, name: self.id.clone(), index: vec![], span: self.span };
+        cx.reading(&r, Wants::PerAtom, stage, when)?;
+        Ok(cx.slot(&format!("c_{}", self.id)))
+    }
+}
+
+/// What stands before the coordinates of a chunk in the slot: its original number and its volume.
+const HEAD: usize = 2;
+
+/// The chunks of the present step.
+#[derive(Clone, Copy)]
+pub struct Chunks<'a> {
+    slot: &'a Slot,
+    stride: usize,
+}
+
+impl<'a> Chunks<'a> {
+    /// The chunks in the slot of a `compute chunk/atom`.
+    pub fn of(w: &'a World, slot: SlotId, kind: Chunking) -> Self {
+        Self { slot: w.slots.get(slot), stride: HEAD + kind.coordinates }
+    }
+
+    /// How many chunks there are.
+    pub fn count(&self) -> usize {
+        self.slot.inner.len() / self.stride
+    }
+
+    /// The chunk of a particle, counted from 0.
+    pub fn chunk(&self, i: usize) -> Option<usize> {
+        let id = self.slot.atom.get(i).copied().unwrap_or(0.0);
+        if id >= 1.0 && id <= self.count() as f64 { Some(id as usize - 1) } else { None }
+    }
+
+    /// The number a chunk had before `compress`.
+    pub fn original(&self, k: usize) -> f64 {
+        self.slot.inner[k * self.stride]
+    }
+
+    /// The volume of a chunk's bin, or of the box.
+    pub fn volume(&self, k: usize) -> f64 {
+        self.slot.inner[k * self.stride + 1]
+    }
+
+    /// A coordinate of a chunk's bin.
+    pub fn coordinate(&self, k: usize, d: usize) -> f64 {
+        self.slot.inner[k * self.stride + HEAD + d]
+    }
+}
+
+/// Of whose chunks the rows of a compute are, where their number may change: who averages them holds it.
+fn varying(chunks: SlotId, kind: Chunking) -> Option<SlotId> {
+    (!kind.fixed).then_some(chunks)
+}
+
+/// The ID of the `compute chunk/atom` of whose chunks a value has a row each, where their number may change.
+pub fn behind(w: &World, value: &ValueRef) -> Option<String> {
+    let slot = w.slots.get(w.slots.find(&format!("{}_{}", value.kind.letter(), value.name))?);
+    w.slots.get(slot.chunks?).name.strip_prefix("c_").map(String::from)
+}
+
+/// Adds `term(i)` up by chunk over the particles of a group: rows of `N` numbers. In storage order, so that the sums
+/// are the same for any number of threads.
+pub fn sums<const N: usize>(
+    w: &World,
+    group: perigrain_world::GroupId,
+    chunks: &Chunks,
+    term: impl Fn(usize) -> [f64; N],
+) -> Vec<[f64; N]> {
+    let mut rows = vec![[0.0; N]; chunks.count()];
+    for i in (0..w.n()).filter(|&i| w.particles.mask[i] & group.bit() != 0) {
+        if let Some(k) = chunks.chunk(i) {
+            let t = term(i);
+            (0..N).for_each(|d| rows[k][d] += t[d]);
+        }
+    }
+    rows
+}

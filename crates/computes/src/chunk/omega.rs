@@ -1,0 +1,46 @@
+//! compute omega/chunk: angular velocity of each chunk.
+
+use super::ChunkRef;
+use super::moments::{Members, Rows};
+use crate::{Compute, ComputeStyle};
+use perigrain_base::diag::Result;
+use perigrain_commands::momentum::rotation;
+use perigrain_lang::Args;
+use perigrain_styles::{BuildCx, Doc, Style};
+use perigrain_world::World;
+
+/// The style.
+pub struct OmegaChunk;
+
+impl Style for OmegaChunk {
+    fn name(&self) -> &'static str {
+        "omega/chunk"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group omega/chunk chunkID",
+            summary: "Angular velocity of each chunk.",
+            text: "Global array (intensive) of Nchunk rows and 3 columns: the ω with I ω = L, I and L being the chunk's inertia tensor \
+                   and angular momentum (compute inertia/chunk, angmom/chunk), in radians per time. About axes whose moment is \
+                   smaller than a millionth of the largest nothing turns where det I is below 10⁻⁶, as in LAMMPS: chunks of one particle \
+                   and about the line through two. chunkID names a `compute chunk/atom`.",
+            example: "compute cc all chunk/atom type\ncompute w all omega/chunk cc",
+        }
+    }
+}
+
+impl ComputeStyle for OmegaChunk {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let chunks = ChunkRef::read(args, cx)?;
+        args.finish()?;
+        let (id, group) = (cx.id.to_string(), cx.group);
+        Ok(Box::new(Rows { id, group, chunks, columns: 3, of: omega }))
+    }
+}
+
+fn omega(_w: &World, m: &Members) -> Vec<f64> {
+    let turning = m.inertia().into_iter().zip(m.angular_momentum());
+    let all =
+        turning.map(|([xx, yy, zz, xy, yz, xz], l)| rotation([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], l));
+    all.flatten().collect()
+}

@@ -1,0 +1,141 @@
+//! compute displace/atom: how far each particle has come since the compute was declared.
+
+use super::{Compute, ComputeStyle, origin};
+use perigrain_base::diag::Result;
+use perigrain_base::par;
+use perigrain_lang::{Args, RefKind, ValueRef};
+use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_styles::matter::unwrapped;
+use perigrain_styles::step_op::{StepOp, Wanted, fill};
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
+use perigrain_world::{GroupId, SlotId, World};
+
+/// The style.
+pub struct DisplaceAtom;
+
+impl Style for DisplaceAtom {
+    fn name(&self) -> &'static str {
+        "displace/atom"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group displace/atom [refresh name]",
+            summary: "Displacement of each particle since the compute was declared.",
+            text: "Per-atom array of 4 columns in distance units: dx, dy, dz and their length, with positions unwrapped \
+                   across periodic faces; 0 outside the group. Particles made later start where they are at the next run \
+                   or use. `refresh name` names an atom-style variable: after each snapshot of a dump with \
+                   `dump_modify dump-ID refresh c_ID`, the particles for which it is not zero start anew where they are, \
+                   so that `dump_modify thresh` can show a particle each time that it has come some way.",
+            example: "compute u all displace/atom",
+        }
+    }
+}
+
+impl ComputeStyle for DisplaceAtom {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let mut refresh = None;
+        while let Some(word) = args.next() {
+            if word.text != "refresh" {
+                return Err(args.unknown(word, &["refresh"]));
+            }
+            let name = args.expect("the name of an atom-style variable")?;
+            let r =
+                ValueRef { kind: RefKind::Variable, name: name.text.clone(), index: vec![], span: name.span };
+            cx.reading(&r, Wants::PerAtom)?;
+            refresh = Some(r);
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, refresh }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    refresh: Option<ValueRef>,
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        Shape { atom: Some(4), ..Shape::default() }
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        origin::capture(w, &self.id, [0.0; 3]);
+        Ok(())
+    }
+
+    fn welcome(&self, w: &mut World) {
+        origin::welcome(w, &self.id, [0.0; 3]);
+    }
+
+    fn remove(&self, w: &mut World) {
+        origin::forget(w, &self.id);
+    }
+
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        self.welcome(cx.world());
+        let (id, group) = (self.id.clone(), self.group);
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x image mask", move |w, _, out| {
+            let (bit, start) = (group.bit(), origin::places(w, &id));
+            out.cols = 4;
+            out.atom.resize(4 * w.n(), 0.0);
+            par::each(out.atom.as_chunks_mut::<4>().0, |first, rows| {
+                for (k, row) in rows.iter_mut().enumerate() {
+                    let i = first + k;
+                    *row = [0.0; 4];
+                    if w.particles.mask[i] & bit != 0 {
+                        let x = unwrapped(w, i);
+                        let d: [f64; 3] = std::array::from_fn(|k| x[k] - start[i][k]);
+                        *row = [d[0], d[1], d[2], (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()];
+                    }
+                }
+            });
+            Ok(())
+        }))
+    }
+
+    fn refresh(&self, cx: &mut dyn SealCx, stage: Stage, when: &When) -> Result<Option<Box<dyn Op>>> {
+        let Some(r) = &self.refresh else { return Ok(None) };
+        let reading = cx.reading(r, Wants::PerAtom, stage, when)?;
+        let (id, group) = (self.id.clone(), self.group);
+        let name = format!("compute {id} refresh");
+        let op = StepOp::new(name, stage, Access::new("x image mask", ""), move |w: &mut World, _| {
+            let chosen = |i: &usize| w.particles.mask[*i] & group.bit() != 0 && reading.atom(w, *i) != 0.0;
+            let new: Vec<(usize, [f64; 3])> =
+                (0..w.n()).filter(chosen).map(|i| (i, unwrapped(w, i))).collect();
+            let places = origin::places_mut(w, &id);
+            new.into_iter().for_each(|(i, x)| places[i] = x);
+            Ok(())
+        });
+        Ok(Some(op.when(when.clone()).in_setup(true).boxed()))
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn displacements_across_faces_and_of_newcomers() {
+        let mut b = Bench::new(AtomStyle::default(), &[[9.0, 0.0, 0.0], [1.0; 3]]);
+        let c = b.compute(&DisplaceAtom, "").unwrap();
+        c.declare(&mut b.world).unwrap();
+        // Through the periodic face of a box 20 wide: 2 along x, 1 along z.
+        b.world.particles.x[0] = [-9.0, 0.0, 1.0];
+        b.world.particles.image[0] = [1, 0, 0];
+        b.world.particles.mask[1] = 0;
+        b.world.particles.push(3, 1, [5.0; 3]);
+        let slot = b.evaluate(&*c).unwrap();
+        assert_eq!(slot.atom, [2.0, 0.0, 1.0, 5f64.sqrt(), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        c.remove(&mut b.world);
+        assert!(origin::places(&b.world, "c").is_empty());
+        assert!(b.compute(&DisplaceAtom, "fresh v").is_err());
+    }
+}

@@ -1,0 +1,144 @@
+//! compute dt/critical: the longest stable steps of solids and of grains.
+
+use super::{Compute, ComputeStyle};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_lang::Args;
+use perigrain_plan::{Op, Stage, When};
+use perigrain_styles::critical::{self, Estimate};
+use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::{GroupId, SlotId, World};
+
+/// The style.
+pub struct DtCritical;
+
+impl Style for DtCritical {
+    fn name(&self) -> &'static str {
+        "dt/critical"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID all dt/critical [pd cfl|silling|exact] [dem particle|none] [safety S]",
+            summary: "The longest stable time steps of peridynamic solids and of grains in contact.",
+            text: "Global vector of three: the step of the solids, that of the grains, and m, the whole number of times the \
+                   shorter fits into the longer (at least 1); scalar: the shorter of the two. Steps are in time units and \
+                   times S (0.8 unless given); a side that the scene does not have, and grains while nothing touches, have \
+                   the step `inf`.\n\n\
+                   `pd`: `cfl` is h/√(K/ρ) with h = V^(1/3) (Hartmann et al. 2022, equations 41 and 42), `silling` \
+                   √(2 ρ/Σ c w V/|ξ|) over the bonds that live (Silling & Askari 2005), `exact` 2/ω of the scene as it is: ω² \
+                   is the largest eigenvalue of M⁻¹K, K being the derivative of the forces at the present positions, with \
+                   the bonds that still live, any material, volumes and layout. It is found by Lanczos' method (power \
+                   iteration that keeps its vectors) and costs some 50 to 200 force evaluations each time it is read. What \
+                   holds particles fast makes the true limit longer still; dashpots make it shorter.\n\n\
+                   `dem particle`: the least √(m/k) and √(I/k_r) over all that touch, k from the normal and tangential \
+                   stiffness of its contacts with others as they are now (Hartmann et al., equation 43). Two free grains \
+                   would stand 1.4 times, a held one 2 times that. Contacts with walls count too; those of hybrid \
+                   particles count here, with their mass.",
+            example: "compute dtc all dt/critical pd silling safety 1.0",
+        }
+    }
+}
+
+impl ComputeStyle for DtCritical {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        if cx.group != GroupId::ALL {
+            return fail(Code::BAD_VALUE, cx.span, "compute dt/critical must use the group `all`");
+        }
+        let mut me = Declared { id: cx.id.to_string(), how: Estimate::Cfl, grains: true, safety: 0.8 };
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "pd" => me.how = Estimate::read(args)?,
+                "dem" => {
+                    me.grains =
+                        args.choice("estimate of the grains' step", &["particle", "none"])? == "particle"
+                }
+                "safety" => me.safety = args.positive("the part of the limit")?,
+                _ => return Err(args.unknown(word, &["pd", "dem", "safety"])),
+            }
+        }
+        Ok(Box::new(me))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    how: Estimate,
+    grains: bool,
+    safety: f64,
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, vector: 3, ..Shape::default() }
+    }
+
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let mut probes = if self.grains { cx.probes()? } else { vec![] };
+        let (how, safety, counts) = (self.how, self.safety, self.grains);
+        let reads = "x v radius mass type volume families contacts";
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
+            let solids = safety * critical::solids(w, how)?;
+            let grains = if counts { safety * critical::grains(w, &mut probes)? } else { f64::INFINITY };
+            let (short, long) = (solids.min(grains), solids.max(grains));
+            let fits = if long.is_finite() { (long / short).floor().max(1.0) } else { 1.0 };
+            out.scalar = short;
+            out.vector = vec![solids, grains, fits];
+            Ok(())
+        }))
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        if self.grains {
+            critical::ask_walls(w);
+        }
+        Ok(())
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_peri::families::{
+        Bounds, Families, FamilyOptions, ForceUnit, PeriView, PmbCoeff, PmbTable,
+    };
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn two_bonded_particles() {
+        let places = [[0.0; 3], [1.0, 0.0, 0.0]];
+        let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &places);
+        b.world.particles.volume = vec![1.0, 3.0];
+        b.world.particles.mass = vec![2.0, 6.0];
+        let mut table = PmbTable::new(1);
+        table.set(1, 1, PmbCoeff { c: 5.0, horizon: 1.2, s00: 1.0, alpha: 0.0 }).unwrap();
+        let p = &b.world.particles;
+        let bounds = Bounds { lo: [-10.0; 3], hi: [10.0; 3], periodic: [false; 3] };
+        let view = PeriView { x: &p.x, x0: &p.x0, kind: &p.kind, volume: &p.volume, bounds, excluded: None };
+        let options = FamilyOptions { unit: ForceUnit::Newton, ..FamilyOptions::new(1.0) };
+        // |ξ| = 1 is within half a spacing of the horizon: weight (1.2 + 0.5 − 1)/1 = 0.7.
+        b.world.families = Some(Families::build(&view, &table, options).unwrap());
+        let value = |b: &mut Bench, words: &str| {
+            let c = b.compute(&DtCritical, words).unwrap();
+            b.evaluate(&*c).unwrap().vector.clone()
+        };
+        // k = c w V_i V_j/|ξ| = 10.5; ω² = k (1/2 + 1/6) = 7.
+        let exact = value(&mut b, "pd exact safety 1");
+        assert!((exact[0] - 2.0 / 7f64.sqrt()).abs() < 1e-6, "{exact:?}"); // differences: 1e-6
+        assert_eq!(exact[1..], [f64::INFINITY, 1.0]);
+        // ρ = 2; the first particle's sum is 5 · 0.7 · 3 = 10.5.
+        let silling = value(&mut b, "pd silling safety 0.5")[0];
+        assert!((silling - 0.5 * (4.0 / 10.5f64).sqrt()).abs() < 1e-15, "{silling}");
+        // K = π c δ⁴/18, h = 1.
+        let bulk = std::f64::consts::PI * 5.0 * 1.2f64.powi(4) / 18.0;
+        assert!((value(&mut b, "safety 1")[0] - (2.0 / bulk).sqrt()).abs() < 1e-15);
+        for words in ["pd best", "safety 0", "dem", "n 3"] {
+            assert!(b.compute(&DtCritical, words).is_err(), "{words}");
+        }
+    }
+}

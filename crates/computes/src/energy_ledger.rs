@@ -1,0 +1,98 @@
+//! compute energy/ledger: where the energy of a scene is and where it goes.
+
+use super::{Compute, ComputeStyle};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_lang::Args;
+use perigrain_plan::{Op, Stage, When};
+use perigrain_styles::ledger;
+use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::{GroupId, SlotId, World};
+
+/// The style.
+pub struct EnergyLedger;
+
+impl Style for EnergyLedger {
+    fn name(&self) -> &'static str {
+        "energy/ledger"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID all energy/ledger",
+            summary: "Energy by channel: what the scene holds, what has become heat and cracks, what came in, what is missing.",
+            text: "Global vector, in energy units (joules in `units si`), true energies whatever forces are called: 1 kinetic, 2 \
+                   rotational, 3 strain of all bonds, 4 elastic energy of contacts between particles (normal and tangential \
+                   springs), 5 taken up by dashpots along the normal, 6 by friction and everything else across it, 7 set free \
+                   by peridynamic bonds where they broke, 8 work of walls on particles, 9 of gravity, 10 of all else that a \
+                   deck imposes (other fixes, driven particles), 11 the residual, 12 … the strain of the bonds of each type, and last \
+                   the heat of bonds that relax or flow (peri/ves, peri/eps, peri/pmb/plastic). \
+                   Scalar: the residual.\n\n\
+                   residual = 1 + 2 + 3 + 4 + 5 + 6 + 7 + last − 8 − 9 − 10 less its value when the run began: 0 if energy is kept. \
+                   In an elastic scene it falls with the square of the time step; dashpots, friction and bonds that break leave \
+                   errors of first order. 5 to 10 are sums since the first run with a ledger, by the trapezoidal rule over the \
+                   powers at every step; 3 and 12 … are tallied at the steps at which somebody reads them. What a deck changes \
+                   between runs does not count. Walls give back in 8 what they store; springs of rolling and twisting count \
+                   as friction. The heat of bonds is 2/τ times the energy of relaxing springs, and for plastic bonds what they lose when they \
+                   flow, of first order in the step; under `compat lammps`, whose forces of such bonds have no energy, it is in \
+                   the residual.\n\n\
+                   Contacts are evaluated a second time in each step, so that a bed of grains takes up to twice as long, and so do \
+                   solids that relax or flow.",
+            example: "compute e all energy/ledger",
+        }
+    }
+}
+
+impl ComputeStyle for EnergyLedger {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        args.finish()?;
+        if cx.group != GroupId::ALL {
+            return fail(Code::BAD_VALUE, cx.span, "compute energy/ledger must use the group `all`");
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), types: cx.world.types }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    types: usize,
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        Shape {
+            scalar: true,
+            scalar_extensive: true,
+            vector: 12 + self.types,
+            vector_extensive: true,
+            ..Shape::default()
+        }
+    }
+
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        cx.ask_energy(when);
+        cx.ask_atom_energy(when);
+        let mut probes = cx.probes()?;
+        let reads = "x v omega radius mass type families contacts tally";
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
+            let sheet = ledger::sheet(w, &mut probes)?;
+            out.scalar = sheet.residual();
+            out.vector.clear();
+            out.vector.extend(sheet.channels);
+            out.vector.push(out.scalar);
+            out.vector.extend(&sheet.strain);
+            out.vector.push(sheet.heat);
+            Ok(())
+        }))
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        // The next run's setup opens the book.
+        w.touch();
+        Ok(())
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}

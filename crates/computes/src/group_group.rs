@@ -1,0 +1,149 @@
+//! compute group/group: energy and force between two groups.
+
+use super::pair_local::answering;
+use super::{Compute, ComputeStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_lang::Args;
+use perigrain_plan::{Op, Stage, When};
+use perigrain_styles::probe::{Ask, Interaction, look_all};
+use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::{GroupId, SlotId, World};
+
+/// The style.
+pub struct GroupGroup;
+
+impl Style for GroupGroup {
+    fn name(&self) -> &'static str {
+        "group/group"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group group/group group2 [pair yes|no] [molecule off|inter|intra] [kspace no] [boundary yes|no]",
+            summary: "Energy and force between two groups.",
+            text: "Scalar and vector of 3 (both extensive): the energy of all pairs with one end in the group and the other in group2, and \
+                   the force on the ends in the group, in energy and force units. Pairs are those of compute pair/local with the \
+                   same numbers: of granular styles only the force along the line of centres counts, and there is no energy, as in \
+                   LAMMPS. A pair both of whose ends are in both groups counts once and has no force. `molecule inter` takes pairs of different molecules \
+                   only, `intra` those of the same; `pair no` leaves nothing. Without electric forces `kspace yes` is refused and `boundary` \
+                   changes nothing. Bonds of bond styles do not count. Where no pair style can be asked about single pairs the line is refused, as \
+                   in LAMMPS: `peri/lps`, `peri/ves`, `peri/eps`.",
+            example: "compute push all group/group all",
+        }
+    }
+}
+
+/// Which pairs count by their molecules.
+#[derive(Clone, Copy, PartialEq)]
+enum Molecules {
+    Any,
+    Different,
+    Same,
+}
+
+impl ComputeStyle for GroupGroup {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let other = cx.group(args.expect("the second group")?)?;
+        let (mut pair, mut molecules) = (true, Molecules::Any);
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "pair" => pair = args.flag("pair")?,
+                "kspace" => {
+                    if args.flag("kspace")? {
+                        let text =
+                            "there are no electric forces in perigrain: `kspace yes` has nothing to add";
+                        let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
+                        return Err(d.help("leave `kspace` out").into());
+                    }
+                }
+                "boundary" => drop(args.flag("boundary")?),
+                "molecule" => {
+                    molecules = match args.choice("value of molecule", &["off", "inter", "intra"])? {
+                        "inter" => Molecules::Different,
+                        "intra" => Molecules::Same,
+                        _ => Molecules::Any,
+                    };
+                    if molecules != Molecules::Any && !cx.world.particles.style.molecules {
+                        let text = "particles of this atom_style belong to no molecules";
+                        let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+                        return Err(d.help("`fix ID all property/atom mol` gives them molecule IDs").into());
+                    }
+                }
+                _ => return Err(args.unknown(word, &["pair", "kspace", "boundary", "molecule"])),
+            }
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, other, pair, molecules }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    other: GroupId,
+    pair: bool,
+    molecules: Molecules,
+}
+
+impl Declared {
+    fn counts(&self, w: &World, p: &Interaction) -> bool {
+        let molecule = |i: u32| w.particles.molecule[i as usize];
+        match self.molecules {
+            Molecules::Any => true,
+            Molecules::Different => molecule(p.i) != molecule(p.j),
+            Molecules::Same => molecule(p.i) == molecule(p.j),
+        }
+    }
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, scalar_extensive: true, vector: 3, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let mut probes = answering(&self.id, cx)?;
+        let me = self.clone();
+        let reads = "x v omega radius mass type mask contacts";
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
+            let pairs = if me.pair { look_all(&mut probes, w, Ask::Acting)? } else { vec![] };
+            let is = |i: u32, g: GroupId| w.particles.mask[i as usize] & g.bit() != 0;
+            let (mut energy, mut force) = (0.0, [0.0; 3]);
+            for p in pairs.iter().filter(|p| me.counts(w, p)) {
+                let ahead = is(p.i, me.group) && is(p.j, me.other);
+                let back = is(p.j, me.group) && is(p.i, me.other);
+                if !ahead && !back {
+                    continue;
+                }
+                energy += p.energy;
+                let sign = f64::from(u8::from(ahead)) - f64::from(u8::from(back));
+                let along = sign * p.central() / p.distance();
+                (0..3).for_each(|d| force[d] += along * p.d[d]);
+            }
+            (out.scalar, out.vector) = (energy, force.to_vec());
+            Ok(())
+        }))
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn words() {
+        let b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
+        for words in ["", "nobody", "all kspace yes", "all molecule inter", "all pair maybe", "all tail yes"]
+        {
+            assert!(b.compute(&GroupGroup, words).is_err(), "{words}");
+        }
+        let c = b.compute(&GroupGroup, "all pair yes kspace no boundary no molecule off").unwrap();
+        assert_eq!((c.shape().scalar_extensive, c.shape().vector), (true, 3));
+    }
+}

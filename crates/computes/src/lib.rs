@@ -1,0 +1,180 @@
+//! Computes: quantities read from the world, never changing it.
+
+mod bond_local;
+mod centro_atom;
+pub mod chunk;
+mod cluster_atom;
+mod com;
+mod contact_atom;
+mod coord_atom;
+mod crack;
+mod damage_atom;
+mod dilatation_atom;
+mod displace_atom;
+mod dt_critical;
+mod energy_ledger;
+mod erotate_sphere;
+mod erotate_sphere_atom;
+mod fabric;
+mod family_values;
+mod fragments;
+mod global_atom;
+mod group_group;
+mod gyration;
+mod ke;
+mod ke_atom;
+mod momentum;
+mod msd;
+mod origin;
+mod pair;
+mod pair_local;
+mod pe;
+mod pe_atom;
+mod peri_energy_atom;
+mod peri_measures;
+mod plasticity_atom;
+mod pressure;
+pub mod property_atom;
+mod property_local;
+mod rdf;
+pub mod reduce;
+mod rigid_energy;
+mod rigid_local;
+mod slice;
+mod stress_atom;
+mod temp;
+mod temp_deform;
+pub mod temp_flow;
+mod temp_profile;
+mod temp_region;
+mod temp_sphere;
+mod thermal;
+mod vacf;
+
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_lang::Args;
+use perigrain_styles::BuildCx;
+pub use perigrain_styles::compute::{Compute, ComputeStyle};
+use perigrain_world::columns::VOLUME_PROPERTY;
+
+/// Every compute style.
+#[rustfmt::skip]
+pub const COMPUTES: &[&dyn ComputeStyle] = &[
+    &bond_local::BondLocal,
+    &centro_atom::CentroAtom,
+    &chunk::angmom::AngmomChunk,
+    &chunk::atom::ChunkAtom,
+    &chunk::com::ComChunk,
+    &chunk::first::MsdChunk,
+    &chunk::first::VacfChunk,
+    &chunk::gyration::GyrationChunk,
+    &chunk::inertia::InertiaChunk,
+    &chunk::omega::OmegaChunk,
+    &chunk::property::PropertyChunk,
+    &chunk::reduce::ReduceChunk,
+    &chunk::spread::SpreadAtom,
+    &chunk::temp::TempChunk,
+    &chunk::torque::TorqueChunk,
+    &chunk::vcm::VcmChunk,
+    &cluster_atom::AggregateAtom,
+    &cluster_atom::ClusterAtom,
+    &cluster_atom::FragmentAtom,
+    &com::Com,
+    &contact_atom::ContactAtom,
+    &coord_atom::CoordAtom,
+    &crack::CrackTip,
+    &damage_atom::DamageAtom,
+    &dilatation_atom::DilatationAtom,
+    &displace_atom::DisplaceAtom,
+    &dt_critical::DtCritical,
+    &energy_ledger::EnergyLedger,
+    &erotate_sphere::ErotateSphere,
+    &erotate_sphere_atom::ErotateSphereAtom,
+    &fabric::Fabric,
+    &fragments::Fragments,
+    &global_atom::GlobalAtom,
+    &group_group::GroupGroup,
+    &gyration::Gyration,
+    &ke::Ke,
+    &ke_atom::KeAtom,
+    &momentum::Momentum,
+    &msd::Msd,
+    &pair::PairEnergy,
+    &pair_local::PairLocal,
+    &pe::Pe,
+    &pe_atom::PeAtom,
+    &peri_energy_atom::PeriEnergyAtom,
+    &peri_measures::CauchyAtom,
+    &peri_measures::DefgradAtom,
+    &peri_measures::StrainAtom,
+    &plasticity_atom::PlasticityAtom,
+    &pressure::Pressure,
+    &property_atom::PropertyAtom,
+    &property_local::PropertyLocal,
+    &rdf::Rdf,
+    &reduce::Reduce,
+    &reduce::ReduceRegion,
+    &rigid_energy::ErotateRigid,
+    &rigid_energy::KeRigid,
+    &rigid_local::RigidLocal,
+    &slice::Slice,
+    &stress_atom::StressAtom,
+    &temp::Temp,
+    &temp_deform::TempDeform,
+    &temp_flow::TempCom,
+    &temp_flow::TempPartial,
+    &temp_flow::TempRamp,
+    &temp_profile::TempProfile,
+    &temp_region::TempRegion,
+    &temp_sphere::TempSphere,
+    &vacf::Vacf,
+];
+
+/// Which terms of the potential energy count.
+#[derive(Clone, Copy)]
+struct Terms {
+    pair: bool,
+    bond: bool,
+    fix: bool,
+}
+
+/// Refuses what needs radii where particles have none.
+fn need_spheres(what: &str, cx: &BuildCx) -> Result<()> {
+    if cx.world.particles.style.sphere {
+        return Ok(());
+    }
+    Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, format!("{what} needs spheres"))
+        .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
+        .into())
+}
+
+/// Refuses what needs families where particles cannot have any.
+fn need_bonds(what: &str, cx: &BuildCx) -> Result<()> {
+    let w = cx.world;
+    if w.particles.style.peri || (w.particles.style.bonded && w.columns.custom(VOLUME_PROPERTY).is_some()) {
+        return Ok(());
+    }
+    Err(Diagnostic::error(
+        Code::WRONG_ORDER,
+        cx.span,
+        format!("{what} needs particles with peridynamic bonds"),
+    )
+    .help("put `atom_style peri` (or `hybrid sphere peri`) at the top of the deck")
+    .into())
+}
+
+/// Keywords of `pe` and `pe/atom`. Terms of styles that perigrain does not have are known and contribute nothing.
+fn energy_terms(args: &mut Args) -> Result<Terms> {
+    let all = args.is_empty();
+    let mut terms = Terms { pair: all, bond: all, fix: all };
+    while !args.is_empty() {
+        let known = ["pair", "bond", "angle", "dihedral", "improper", "kspace", "fix"];
+        match args.choice("term of the potential energy", &known)? {
+            "pair" => terms.pair = true,
+            "bond" => terms.bond = true,
+            "fix" => terms.fix = true,
+            _ => {}
+        }
+    }
+    Ok(terms)
+}

@@ -1,0 +1,228 @@
+//! compute pair/local: distance, energy and forces of every pair of particles that acts.
+
+use super::{Compute, ComputeStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::{Args, Word};
+use perigrain_plan::{Op, Stage, When};
+use perigrain_styles::probe::{Ask, Interaction, OWN, Probe, look_all};
+use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::{GroupId, SlotId, World};
+
+/// The style.
+pub struct PairLocal;
+
+impl Style for PairLocal {
+    fn name(&self) -> &'static str {
+        "pair/local"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group pair/local dist|dx|dy|dz|eng|force|fx|fy|fz|p1|p2|… … [cutoff type|radius]",
+            summary: "Distance, force and more of every pair of particles.",
+            text: "Local vector for one value, array for several; a row for each pair with both ends in the group, in the order of \
+                   compute property/local: the particle of smaller id is the first. `dist`: distance; `dx dy dz`: x_1 − x_2; \
+                   `force`: force along the line of centres, positive where it pushes apart; `fx fy fz`: that force on the first; \
+                   `eng`: energy of the pair, 0 for granular styles as in LAMMPS.\n\n\
+                   `p1` … are the pair style's own. `granular` has 12: the tangential force on the first (1–3) and its size (4), \
+                   the rolling force (5–7) and its size (8), the twisting torque (9), x_1 − x_2 (10–12); with `normal mdr` a 13th, the mean of the areas of contact of both sides. `gran/…` have 10: the \
+                   tangential force (1–3) and its size (4), the relative velocity along the line of centres (5–7) and across \
+                   it (8–10). Forces are those at the present positions and velocities; history is what the contact remembers of \
+                   the last step.\n\n\
+                   `cutoff type` (the default): pairs within the cutoff of their types, for granular styles the largest radii of \
+                   the two types together, with zeros where spheres do not touch; `cutoff radius`: pairs closer than the sum of \
+                   their radii. LAMMPS' first particle of a pair is that of its neighbour list, and its granular style shortens the \
+                   springs of contacts that slide when this compute (or fabric) looks at them, which changes the run; \
+                   perigrain's computes change nothing.\n\n\
+                   Of peridynamic styles `peri/pmb` alone can be asked, as in LAMMPS, by itself and without `peri_modify broken compress`: \
+                   pairs within the horizon, with the force on the first and the energy that its bond, if it lives, and short-range repulsion \
+                   have with the volume of the second (force and energy densities in LAMMPS' convention); under `-compat lammps` without bonds across \
+                   periodic faces, which LAMMPS forgets here. In a `hybrid` pairs of \
+                   peridynamic sub-styles are no rows.",
+            example: "compute c all pair/local dist force p4 cutoff radius",
+        }
+    }
+}
+
+/// What a column shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Value {
+    Distance,
+    Along(usize),
+    Energy,
+    Force,
+    ForceAlong(usize),
+    Own(usize),
+}
+
+impl Value {
+    fn of(self, p: &Interaction) -> f64 {
+        match self {
+            Value::Distance => p.distance(),
+            Value::Along(k) => p.d[k],
+            Value::Energy => p.energy,
+            // What does not touch has the force 0, not −0.
+            Value::Force => p.central() + 0.0,
+            Value::ForceAlong(k) => p.central() * p.d[k] / p.distance() + 0.0,
+            Value::Own(k) => p.own[k],
+        }
+    }
+}
+
+const VALUES: [(&str, Value); 9] = [
+    ("dist", Value::Distance),
+    ("dx", Value::Along(0)),
+    ("dy", Value::Along(1)),
+    ("dz", Value::Along(2)),
+    ("eng", Value::Energy),
+    ("force", Value::Force),
+    ("fx", Value::ForceAlong(0)),
+    ("fy", Value::ForceAlong(1)),
+    ("fz", Value::ForceAlong(2)),
+];
+
+fn value(word: &Word, args: &Args) -> Result<Value> {
+    if let Some((_, v)) = VALUES.iter().find(|v| v.0 == word.text) {
+        return Ok(*v);
+    }
+    match word.text.strip_prefix('p').and_then(|n| n.parse::<usize>().ok()) {
+        Some(n) if (1..=OWN).contains(&n) => Ok(Value::Own(n - 1)),
+        Some(n) => {
+            let text = format!("no pair style has a value `p{n}`: they end at p{OWN}");
+            fail(Code::BAD_VALUE, word.span, text)
+        }
+        None => {
+            let known: Vec<&'static str> = VALUES.iter().map(|v| v.0).chain(["p1", "cutoff"]).collect();
+            Err(args.unknown(word, &known))
+        }
+    }
+}
+
+impl ComputeStyle for PairLocal {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let mut values = vec![];
+        while let Some(word) = args.peek().filter(|w| w.text != "cutoff") {
+            args.next();
+            values.push(value(word, args)?);
+        }
+        if values.is_empty() {
+            args.expect("a value, as `dist`")?;
+            return fail(Code::MISSING_ARGUMENT, args.here(), "a value is missing before `cutoff`");
+        }
+        let mut touching = false;
+        if args.eat("cutoff") {
+            touching = args.choice("cutoff", &["type", "radius"])? == "radius";
+        }
+        args.finish()?;
+        if touching {
+            super::need_spheres("`cutoff radius`", cx)?;
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, values, touching }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    values: Vec<Value>,
+    /// `cutoff radius`.
+    touching: bool,
+}
+
+impl Declared {
+    /// Checks that some style knows as many numbers of its own as are asked for.
+    fn check(&self, probes: &[Box<dyn Probe>], cx: &dyn SealCx) -> Result<()> {
+        let most = probes.iter().map(|p| p.own()).max().unwrap_or(0);
+        let asked = self.values.iter().filter_map(|v| if let Value::Own(k) = v { Some(k + 1) } else { None });
+        match asked.max() {
+            Some(p) if p > most => {
+                let names: Vec<&str> = probes.iter().map(|p| p.name()).collect();
+                let text = format!("compute {}: pair style {} ends at p{most}", self.id, names.join(", "));
+                fail(Code::BAD_VALUE, cx.span(), text)
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        Shape { local: self.values.len(), ..Shape::default() }
+    }
+
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let mut probes = answering(&self.id, cx)?;
+        self.check(&probes, cx)?;
+        let me = self.clone();
+        let reads = "x v omega radius mass type mask contacts";
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
+            let pairs = look_all(&mut probes, w, Ask::idle(!me.touching))?;
+            out.local_cols = me.values.len();
+            out.local.clear();
+            for p in pairs.iter().filter(|p| of_group(w, me.group, p) && (!me.touching || touches(w, p))) {
+                out.local.extend(me.values.iter().map(|v| v.of(p)));
+            }
+            Ok(())
+        }))
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}
+
+/// The pair styles that can be asked about single pairs.
+///
+/// # Errors
+/// There is none.
+pub(super) fn answering(id: &str, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Probe>>> {
+    let probes = cx.singles()?;
+    if !probes.is_empty() {
+        return Ok(probes);
+    }
+    let text = format!("compute {id}: no pair style of this scene can be asked about single pairs");
+    Err(Diagnostic::error(Code::INCOMPLETE, cx.span(), text)
+        .help("granular pair styles can, and `peri/pmb`: `pair_style granular`, `gran/hooke/history` …")
+        .into())
+}
+
+/// Whether both ends belong to a group.
+pub(super) fn of_group(w: &World, group: GroupId, p: &Interaction) -> bool {
+    [p.i, p.j].iter().all(|&i| w.particles.mask[i as usize] & group.bit() != 0)
+}
+
+/// Whether two spheres touch; cohesion may also act across a gap.
+pub(super) fn touches(w: &World, p: &Interaction) -> bool {
+    let radius = |i: u32| w.particles.radius[i as usize];
+    let sum = radius(p.i) + radius(p.j);
+    p.d.iter().map(|x| x * x).sum::<f64>() < sum * sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn words() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
+        for words in [
+            "",
+            "cutoff type",
+            "dist p0",
+            "dist p14",
+            "distance",
+            "dist cutoff radius",
+            "dist cutoff",
+            "dist cutoff type 3",
+        ] {
+            assert!(b.compute(&PairLocal, words).is_err(), "{words}");
+        }
+        let c = b.compute(&PairLocal, "dist dx fy p12 cutoff type").unwrap();
+        assert_eq!(c.shape().local, 4);
+        // No pair style.
+        assert!(b.evaluate(&*c).is_err());
+    }
+}

@@ -1,0 +1,95 @@
+//! compute pe/atom: potential energy of each particle.
+
+use super::{Compute, ComputeStyle, Terms, energy_terms};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_lang::Args;
+use perigrain_plan::{Op, Stage, When};
+use perigrain_styles::step_op::{Wanted, fill, per_particle};
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::{GroupId, SlotId};
+
+/// The style.
+pub struct PeAtom;
+
+impl Style for PeAtom {
+    fn name(&self) -> &'static str {
+        "pe/atom"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group pe/atom [pair fix bond angle dihedral improper kspace …]",
+            summary: "Potential energy of each particle.",
+            text: "Per-atom vector, in energy units (energy density for peridynamic particles in LAMMPS' convention): \
+                   half of the energy of each pair goes to either particle. No fix of perigrain tallies energies per \
+                   particle, so `fix` adds nothing; 0 outside the group.",
+            example: "compute w all pe/atom",
+        }
+    }
+}
+
+impl ComputeStyle for PeAtom {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let terms = energy_terms(args)?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, terms }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    terms: Terms,
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        Shape { atom: Some(1), ..Shape::default() }
+    }
+
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let (group, Terms { pair, bond, .. }) = (self.group, self.terms);
+        if pair || bond {
+            cx.ask_atom_energy(when);
+        }
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, "tally mask", move |w, t, out| {
+            let tally = &w.tally;
+            if (pair || bond)
+                && (tally.step.is_some_and(|s| s != t.step) || (tally.step.is_some() && !tally.with_atoms))
+            {
+                return fail(
+                    Code::WRONG_ORDER,
+                    None,
+                    format!("energies per particle are not known at step {}", t.step),
+                );
+            }
+            let of = |yes: bool, list: &[f64], i: usize| {
+                if yes { list.get(i).copied().unwrap_or(0.0) } else { 0.0 }
+            };
+            per_particle(w, group, out, |i| of(pair, &tally.atom, i) + of(bond, &tally.bond_atom, i));
+            Ok(())
+        }))
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn shares_of_pairs() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
+        b.world.tally.clear(0, false, true, 2);
+        b.world.tally.atom = vec![1.5, 2.5];
+        b.world.particles.mask[0] = 0;
+        let c = b.compute(&PeAtom, "").unwrap();
+        assert_eq!(b.evaluate(&*c).unwrap().atom, [0.0, 2.5]);
+        b.world.tally.clear(0, false, false, 2);
+        assert!(b.evaluate(&*c).is_err());
+    }
+}

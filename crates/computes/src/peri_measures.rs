@@ -1,0 +1,236 @@
+//! Computes peri/defgrad/atom, peri/strain/atom and peri/stress/atom: how peridynamic families are deformed.
+
+use super::{Compute, ComputeStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail, nearest};
+use perigrain_base::par;
+use perigrain_lang::Args;
+use perigrain_peri::kinematics::{Tensor, determinant, green_lagrange, neo_hooke, von_mises};
+use perigrain_peri::moduli::Elastic;
+use perigrain_plan::{Op, Stage, When};
+use perigrain_styles::peri_view::view;
+use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, UseKind};
+use perigrain_world::{GroupId, SlotId};
+
+/// `compute … peri/defgrad/atom`.
+pub struct DefgradAtom;
+
+/// `compute … peri/strain/atom`.
+pub struct StrainAtom;
+
+/// `compute … peri/stress/atom`.
+pub struct CauchyAtom;
+
+impl Style for DefgradAtom {
+    fn name(&self) -> &'static str {
+        "peri/defgrad/atom"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group peri/defgrad/atom",
+            summary: "Deformation gradient of each peridynamic particle, from its unbroken bonds.",
+            text: "Per-atom array of 10 columns: F_xx F_xy F_xz F_yx … F_zz, and J = det F, without dimension. \
+                   F = (Σ ω w Y⊗ξ V_j) K⁻¹ with K = Σ ω w ξ⊗ξ V_j over the unbroken bonds, ξ a bond at the first run and Y \
+                   the same bond now (Silling et al. 2007; Hartmann et al. 2023, equations 26 and 27); the influence ω is that of \
+                   the pair style. Exact for every family when the body deforms evenly, at surfaces too. All columns are 0, J \
+                   among them, where no three bonds have independent directions (one layer of particles, torn families), \
+                   before the first run, for particles without a family, and outside the group.",
+            example: "compute F all peri/defgrad/atom",
+        }
+    }
+}
+
+impl Style for StrainAtom {
+    fn name(&self) -> &'static str {
+        "peri/strain/atom"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group peri/strain/atom",
+            summary: "Green–Lagrange strain of each peridynamic particle.",
+            text: "Per-atom array of 6 columns xx yy zz xy xz yz: E = ½(FᵀF − 1), without dimension, F as that of compute \
+                   peri/defgrad/atom; rotations have no strain. Shear components are half the change of angle. 0 where there is \
+                   no F.",
+            example: "compute E all peri/strain/atom",
+        }
+    }
+}
+
+impl Style for CauchyAtom {
+    fn name(&self) -> &'static str {
+        "peri/stress/atom"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group peri/stress/atom neohooke E nu\ncompute ID group peri/stress/atom neohooke material ID",
+            summary: "Cauchy stress of each peridynamic particle, as of a Neo-Hooke solid that is deformed alike.",
+            text: "Per-atom array of 8 columns: σ_xx yy zz xy xz yz and von Mises' equivalent stress in pressure units, and \
+                   J = det F. σ = (G/J)(FFᵀ − 1) + (λ/2J)(J² − 1)1 with F as that of compute peri/defgrad/atom and K, G, \
+                   λ = K − 2G/3 of Young's modulus `E` and Poisson's ratio `nu`, or of a `material` (Hartmann et al. 2023, equations \
+                   28 to 30). A picture of the strain in terms of stress: forces come from the pair style, which knows nothing \
+                   of it. 0 where there is no F, and but for J where J is not positive.",
+            example: "compute S all peri/stress/atom neohooke 1.0e5 0.48",
+        }
+    }
+}
+
+impl ComputeStyle for DefgradAtom {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        declared(Measure::Gradient, args, cx)
+    }
+}
+
+impl ComputeStyle for StrainAtom {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        declared(Measure::Strain, args, cx)
+    }
+}
+
+impl ComputeStyle for CauchyAtom {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        args.choice("material law of the stress", &["neohooke"])?;
+        let solid = match args.eat("material") {
+            true => of_material(args, cx)?,
+            false => {
+                let young = args.positive("Young's modulus E")?;
+                let at = args.here();
+                let nu = args.number("Poisson's ratio nu")?;
+                if !(nu > -1.0 && nu < 0.5) {
+                    return fail(Code::BAD_VALUE, at, "nu must lie between -1 and 0.5");
+                }
+                Elastic { young, nu }
+            }
+        };
+        declared(Measure::Stress { bulk: solid.bulk(), shear: solid.shear() }, args, cx)
+    }
+}
+
+/// The solid of `material ID`.
+fn of_material(args: &mut Args, cx: &BuildCx) -> Result<Elastic> {
+    let id = args.expect("the material's ID")?;
+    let Some(m) = cx.world.materials.get(&id.text) else {
+        let known = cx.world.materials.keys().map(String::as_str);
+        let text = format!("there is no material `{}`", id.text);
+        let d = Diagnostic::error(Code::UNKNOWN_MATERIAL, id.span, text);
+        return Err(match nearest(&id.text, known) {
+            Some(n) => d.help(format!("did you mean `{n}`?")),
+            None => d.help("define it before this line with `material ID …`"),
+        }
+        .into());
+    };
+    cx.uses(UseKind::Material, &id.text);
+    Ok(Elastic { young: m.young, nu: m.nu })
+}
+
+fn declared(measure: Measure, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+    args.finish()?;
+    super::need_bonds(measure.name(), cx)?;
+    Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, measure }))
+}
+
+/// What is made of a deformation gradient.
+#[derive(Clone, Copy)]
+enum Measure {
+    Gradient,
+    Strain,
+    Stress { bulk: f64, shear: f64 },
+}
+
+impl Measure {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Gradient => "peri/defgrad/atom",
+            Self::Strain => "peri/strain/atom",
+            Self::Stress { .. } => "peri/stress/atom",
+        }
+    }
+
+    fn columns(self) -> usize {
+        match self {
+            Self::Gradient => 10,
+            Self::Strain => 6,
+            Self::Stress { .. } => 8,
+        }
+    }
+
+    /// Fills a row of zeros.
+    fn put(self, f: &Tensor, row: &mut [f64]) {
+        match self {
+            Self::Gradient => {
+                row[..9].copy_from_slice(f.as_flattened());
+                row[9] = determinant(f);
+            }
+            Self::Strain => row.copy_from_slice(&green_lagrange(f)),
+            Self::Stress { bulk, shear } => {
+                row[7] = determinant(f);
+                if let Some(stress) = neo_hooke(f, bulk, shear) {
+                    row[..6].copy_from_slice(&stress);
+                    row[6] = von_mises(&stress);
+                }
+            }
+        }
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    measure: Measure,
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        Shape { atom: Some(self.measure.columns()), ..Shape::default() }
+    }
+
+    fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let (bit, measure, width) = (self.group.bit(), self.measure, self.measure.columns());
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x families volume mask", move |w, _, out| {
+            out.cols = width;
+            out.atom.clear();
+            out.atom.resize(width * w.n(), 0.0);
+            let Some(families) = &w.families else { return Ok(()) };
+            let view = view(w)?;
+            let rows = par::Rows { data: &mut out.atom[..], width };
+            par::each((rows, &w.particles.mask[..]), |start, (rows, mask)| {
+                for (k, (row, mask)) in rows.data.chunks_exact_mut(width).zip(mask).enumerate() {
+                    if let (true, Some(f)) = (mask & bit != 0, families.gradient(&view, start + k)) {
+                        measure.put(&f, row);
+                    }
+                }
+            });
+            Ok(())
+        }))
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    // Closed forms are in laws::peri::kinematics, decks in tests/scripts/good/peri_measures.in.
+    #[test]
+    fn nothing_before_the_first_run_and_mistakes() {
+        let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &[[0.0; 3]; 2]);
+        for (style, words, columns) in [
+            (&DefgradAtom as &dyn ComputeStyle, "", 10),
+            (&StrainAtom, "", 6),
+            (&CauchyAtom, "neohooke 1e5 0.48", 8),
+        ] {
+            let c = b.compute(style, words).unwrap();
+            assert_eq!(b.evaluate(&*c).unwrap().atom, vec![0.0; 2 * columns]);
+            let bare = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
+            assert!(bare.compute(style, words).is_err());
+        }
+        for words in ["", "hooke 1 0.2", "neohooke 1e5 0.5", "neohooke -1 0.2", "neohooke material none"] {
+            assert!(b.compute(&CauchyAtom, words).is_err(), "{words}");
+        }
+    }
+}

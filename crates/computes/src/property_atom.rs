@@ -1,0 +1,345 @@
+//! compute property/atom: the particles' own attributes as values.
+
+use super::{Compute, ComputeStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
+use perigrain_base::par;
+use perigrain_lang::{Args, Word};
+use perigrain_peri::linked::Strain;
+use perigrain_plan::{Op, Stage, When};
+use perigrain_styles::matter::{Masses, unwrapped};
+use perigrain_styles::peri_view::view;
+use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
+use perigrain_world::index::Index;
+use perigrain_world::{AtomStyle, GroupId, SlotId, World};
+use std::borrow::Cow;
+
+/// The style.
+pub struct PropertyAtom;
+
+impl Style for PropertyAtom {
+    fn name(&self) -> &'static str {
+        "property/atom"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group property/atom attribute …",
+            summary: "Attributes of each particle.",
+            text: "Per-atom vector for one attribute, array for several; 0 outside the group. Attributes: `id type proc \
+                   mass x y z`; `xs ys zs` as fractions of the box; `xu yu zu` unwrapped across periodic faces; `ix iy iz` \
+                   image counts; `vx vy vz fx fy fz`; with atom_style sphere `radius diameter omegax omegay omegaz tqx \
+                   tqy tqz`; with atom_style peri `vfrac`, the volume, and `s0`; with molecules `mol` and `nbonds`, how many bonds are listed \
+                   with the particle (with its first end only, under `newton off` with both); with `bond_style bpm/peri` `s0`, the least critical stretch s00 − α smin of a particle's bonds, `smin`, their smallest stretch, and `lambda`, its plastic multiplier (0 without bonds). All in the deck's units. LAMMPS' other attributes \
+                   belong to atom styles that perigrain does not have and are refused. `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`, `temperature`, `heatflow`: those of `fix property/atom`.\n\n\
+                   `s0` of pair styles peri/… is LAMMPS' critical stretch: the largest s00 − α s of the bonds that a particle had before the \
+                   last step broke some, s being their stretches in that step. Under `-compat lammps` the next step breaks by it, else by \
+                   s00 − α s_min of each pair of types, which is the same where all pairs have one s00 and α. Without bonds, and before the first \
+                   step, it is the largest number there is (1.8·10³⁰⁸), as in LAMMPS.",
+            example: "compute r all property/atom radius",
+        }
+    }
+}
+
+/// Which columns an attribute needs.
+#[derive(Clone, Copy, PartialEq)]
+enum Needs {
+    Nothing,
+    Sphere,
+    Peri,
+    Molecules,
+    Linked,
+    Breaking,
+}
+
+impl Needs {
+    fn met(self, style: AtomStyle) -> bool {
+        match self {
+            Needs::Nothing => true,
+            Needs::Sphere => style.sphere,
+            Needs::Peri => style.peri,
+            Needs::Molecules => style.molecules,
+            Needs::Linked => style.bonded,
+            Needs::Breaking => style.peri || style.bonded,
+        }
+    }
+}
+
+type Read = fn(&World, usize) -> f64;
+
+/// Reads an attribute of a particle.
+#[derive(Clone)]
+pub enum Getter {
+    /// One that particles have by themselves.
+    Own(Read),
+    /// One that is found for all particles together.
+    Whole(fn(&World) -> Vec<f64>),
+    /// A column of fix property/atom.
+    Column(String),
+}
+
+impl Getter {
+    /// What it reads now that a run begins: the fix of a property may have gone.
+    ///
+    /// # Errors
+    /// Nobody has the property any more.
+    pub fn present(&self, w: &World, span: Span) -> Result<Self> {
+        let Getter::Column(full) = self else { return Ok(self.clone()) };
+        w.columns.present(full).map(Getter::Column).ok_or_else(|| gone(full, span).into())
+    }
+
+    /// What reads the present values.
+    pub fn now<'w>(&self, w: &'w World) -> Values<'w> {
+        match self {
+            Getter::Own(read) => Values::Own(w, *read),
+            Getter::Whole(find) => Values::Found(Cow::Owned(find(w))),
+            Getter::Column(name) => {
+                Values::Found(Cow::Borrowed(w.columns.get_scalar(name).unwrap_or_default()))
+            }
+        }
+    }
+}
+
+/// The values of an attribute at a moment.
+pub enum Values<'w> {
+    /// Read one by one.
+    Own(&'w World, Read),
+    /// All known.
+    Found(Cow<'w, [f64]>),
+}
+
+impl Values<'_> {
+    /// The value of particle `i`.
+    pub fn get(&self, i: usize) -> f64 {
+        match self {
+            Values::Own(w, read) => read(w, i),
+            Values::Found(all) => all.get(i).copied().unwrap_or(0.0),
+        }
+    }
+}
+
+/// Name, needs and value of every attribute.
+const ATTRIBUTES: &[(&str, Needs, Getter)] = &[
+    ("id", Needs::Nothing, Getter::Own(|w, i| f64::from(w.particles.tag[i]))),
+    ("type", Needs::Nothing, Getter::Own(|w, i| f64::from(w.particles.kind[i]))),
+    ("proc", Needs::Nothing, Getter::Own(|_, _| 0.0)),
+    ("mass", Needs::Nothing, Getter::Own(|w, i| Masses::of(w).get(i))),
+    ("x", Needs::Nothing, Getter::Own(|w, i| w.particles.x[i][0])),
+    ("y", Needs::Nothing, Getter::Own(|w, i| w.particles.x[i][1])),
+    ("z", Needs::Nothing, Getter::Own(|w, i| w.particles.x[i][2])),
+    ("xs", Needs::Nothing, Getter::Own(|w, i| scaled(w, i, 0))),
+    ("ys", Needs::Nothing, Getter::Own(|w, i| scaled(w, i, 1))),
+    ("zs", Needs::Nothing, Getter::Own(|w, i| scaled(w, i, 2))),
+    ("xu", Needs::Nothing, Getter::Own(|w, i| unwrapped(w, i)[0])),
+    ("yu", Needs::Nothing, Getter::Own(|w, i| unwrapped(w, i)[1])),
+    ("zu", Needs::Nothing, Getter::Own(|w, i| unwrapped(w, i)[2])),
+    ("ix", Needs::Nothing, Getter::Own(|w, i| f64::from(w.particles.image[i][0]))),
+    ("iy", Needs::Nothing, Getter::Own(|w, i| f64::from(w.particles.image[i][1]))),
+    ("iz", Needs::Nothing, Getter::Own(|w, i| f64::from(w.particles.image[i][2]))),
+    ("vx", Needs::Nothing, Getter::Own(|w, i| w.particles.v[i][0])),
+    ("vy", Needs::Nothing, Getter::Own(|w, i| w.particles.v[i][1])),
+    ("vz", Needs::Nothing, Getter::Own(|w, i| w.particles.v[i][2])),
+    ("fx", Needs::Nothing, Getter::Own(|w, i| w.particles.f[i][0])),
+    ("fy", Needs::Nothing, Getter::Own(|w, i| w.particles.f[i][1])),
+    ("fz", Needs::Nothing, Getter::Own(|w, i| w.particles.f[i][2])),
+    ("radius", Needs::Sphere, Getter::Own(|w, i| w.particles.radius[i])),
+    ("diameter", Needs::Sphere, Getter::Own(|w, i| 2.0 * w.particles.radius[i])),
+    ("omegax", Needs::Sphere, Getter::Own(|w, i| w.particles.omega[i][0])),
+    ("omegay", Needs::Sphere, Getter::Own(|w, i| w.particles.omega[i][1])),
+    ("omegaz", Needs::Sphere, Getter::Own(|w, i| w.particles.omega[i][2])),
+    ("tqx", Needs::Sphere, Getter::Own(|w, i| w.particles.torque[i][0])),
+    ("tqy", Needs::Sphere, Getter::Own(|w, i| w.particles.torque[i][1])),
+    ("tqz", Needs::Sphere, Getter::Own(|w, i| w.particles.torque[i][2])),
+    ("vfrac", Needs::Peri, Getter::Own(|w, i| w.particles.volume[i])),
+    ("s0", Needs::Breaking, Getter::Whole(critical)),
+    ("nbonds", Needs::Molecules, Getter::Whole(bonds_of)),
+    ("smin", Needs::Linked, Getter::Own(|w, i| strain(w, i).map_or(0.0, |s| s.smallest))),
+    ("lambda", Needs::Linked, Getter::Own(|w, i| w.families.as_ref().map_or(0.0, |f| f.plastic_strain(i)))),
+    ("mol", Needs::Molecules, Getter::Own(|w, i| f64::from(w.particles.molecule[i]))),
+];
+
+/// LAMMPS' attributes of atom styles that perigrain does not have.
+const ELSEWHERE: &[&str] = &[
+    "q", "mux", "muy", "muz", "mu", "spx", "spy", "spz", "sp", "fmx", "fmy", "fmz", "angmomx", "angmomy",
+    "angmomz", "shapex", "shapey", "shapez", "quatw", "quati", "quatj", "quatk", "end1x", "end1y", "end1z",
+    "end2x", "end2y", "end2z", "corner1x", "corner1y", "corner1z", "corner2x", "corner2y", "corner2z",
+    "corner3x", "corner3y", "corner3z", "espin", "eradius", "ervel", "erforce", "rho", "drho", "e", "de",
+    "cv", "buckling",
+];
+
+/// The refusal of a property of fix property/atom that somebody reads and nobody has.
+pub fn gone(full: &str, span: Span) -> Diagnostic {
+    let key = full.splitn(4, '/').nth(3).unwrap_or(full);
+    let name = key.split('/').next().unwrap_or(key);
+    let text = format!("the particles have no `{name}` any more: its fix property/atom is gone");
+    Diagnostic::error(Code::INCOMPLETE, span, text).help("leave out the `unfix`, or what reads the property")
+}
+
+/// How strained the bonds of a particle are under `bond_style bpm/peri`.
+fn strain(w: &World, i: usize) -> Option<Strain> {
+    let families = w.families.as_ref().filter(|f| !f.of_bonds.is_empty())?;
+    families.strain(&view(w).ok()?, i)
+}
+
+/// The critical stretch of each particle.
+fn critical(w: &World) -> Vec<f64> {
+    let Some((families, view)) = w.families.as_ref().zip(view(w).ok()) else { return vec![f64::MAX; w.n()] };
+    if families.of_bonds.is_empty() {
+        return families.critical_stretches(&view);
+    }
+    (0..w.n()).map(|i| families.strain(&view, i).map_or(0.0, |s| s.critical)).collect()
+}
+
+/// How many bonds are listed with each particle.
+fn bonds_of(w: &World) -> Vec<f64> {
+    let tags = &w.particles.tag;
+    let (index, mut counts) = (Index::new(tags), vec![0.0; w.n()]);
+    let ends = if w.settings.newton.bond { 1 } else { 2 };
+    for bond in w.bonds.list.iter().filter(|b| b.kind != 0) {
+        for i in bond.ends[..ends].iter().filter_map(|t| index.find(*t, tags)) {
+            counts[i] += 1.0;
+        }
+    }
+    counts
+}
+
+fn scaled(w: &World, i: usize, d: usize) -> f64 {
+    w.domain.as_ref().map_or(0.0, |b| (w.particles.x[i][d] - b.lo[d]) / (b.hi[d] - b.lo[d]))
+}
+
+impl ComputeStyle for PropertyAtom {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let mut getters = vec![read_attribute(args.expect("an attribute, as `radius`")?, cx)?];
+        while let Some(word) = args.next() {
+            getters.push(read_attribute(word, cx)?);
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, span: cx.span, getters }))
+    }
+}
+
+/// The attribute's own name, if there is one.
+pub fn find_attribute(name: &str) -> Option<&'static str> {
+    ATTRIBUTES.iter().map(|a| a.0).find(|a| *a == name)
+}
+
+/// What reads the attribute that a word names.
+///
+/// # Errors
+/// Unknown attributes, and those that these particles do not have.
+pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
+    let name = word.text.as_str();
+    if let Some((_, needs, getter)) = ATTRIBUTES.iter().find(|a| a.0 == name) {
+        if needs.met(cx.world.particles.style) {
+            return Ok(getter.clone());
+        }
+        let style = match needs {
+            Needs::Sphere => "atom_style sphere",
+            Needs::Molecules => "atom_style bond",
+            Needs::Linked => "bond_style bpm/peri",
+            Needs::Breaking => "atom_style peri` or `bond_style bpm/peri",
+            _ => "atom_style peri",
+        };
+        return Err(Diagnostic::error(
+            Code::INCOMPLETE,
+            word.span,
+            format!("the particles of this scene have no `{name}`"),
+        )
+        .help(format!("`{style}`, alone or in a hybrid, has it"))
+        .into());
+    }
+    if let Some(column) = cx.world.columns.custom(name) {
+        return Ok(Getter::Column(column));
+    }
+    if ["i_", "d_", "i2_", "d2_"].iter().any(|p| name.starts_with(p)) {
+        let d = Diagnostic::error(Code::UNKNOWN_NAME, word.span, format!("there is no property `{name}`"));
+        return Err(d
+            .help("`fix ID all property/atom NAME` makes one; of several columns say which, as `d2_x[1]`")
+            .into());
+    }
+    if [TEMPERATURE, HEATFLOW].contains(&name) {
+        let text = format!("the particles of this scene have no `{name}`");
+        let d = Diagnostic::error(Code::INCOMPLETE, word.span, text);
+        return Err(d.help(format!("`fix ID all property/atom {name}` gives them one")).into());
+    }
+    if ELSEWHERE.contains(&name) {
+        return fail(Code::NOT_SUPPORTED, word.span, format!("the attribute `{name}` is not in perigrain"));
+    }
+    let d =
+        Diagnostic::error(Code::UNKNOWN_KEYWORD, word.span, format!("`{name}` is no attribute of particles"));
+    let known = ATTRIBUTES.iter().map(|a| a.0);
+    Err(match nearest(name, known.clone()) {
+        Some(n) => d.help(format!("did you mean `{n}`?")),
+        None => d.help(format!("attributes: {}", known.collect::<Vec<_>>().join(" "))),
+    }
+    .into())
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    span: Span,
+    getters: Vec<Getter>,
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        Shape { atom: Some(self.getters.len()), ..Shape::default() }
+    }
+
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let w = &*cx.world();
+        let getters: Result<Vec<Getter>> = self.getters.iter().map(|g| g.present(w, self.span)).collect();
+        let (group, getters) = (self.group, getters?);
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, "particles", move |w, _, out| {
+            let (bit, columns) = (group.bit(), getters.len());
+            out.cols = columns;
+            out.atom.resize(w.n() * columns, 0.0);
+            let values: Vec<Values> = getters.iter().map(|g| g.now(w)).collect();
+            par::each(&mut out.atom[..], |start, all| {
+                for (k, value) in all.iter_mut().enumerate() {
+                    let (i, column) = ((start + k) / columns, (start + k) % columns);
+                    *value = if w.particles.mask[i] & bit != 0 { values[column].get(i) } else { 0.0 };
+                }
+            });
+            Ok(())
+        }))
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+
+    #[test]
+    fn attributes_of_all_kinds() {
+        let style = AtomStyle { sphere: true, peri: true, hybrid: true, ..AtomStyle::default() };
+        let mut b = Bench::new(style, &[[1.0, 5.0, -10.0], [0.0; 3]]);
+        b.world.particles.image[0] = [1, 0, -1];
+        b.world.particles.volume[0] = 0.125;
+        b.world.particles.mask[1] = 0;
+        let c = b.compute(&PropertyAtom, "id xs ys zs xu zu iz mass diameter vfrac").unwrap();
+        let slot = b.evaluate(&*c).unwrap();
+        assert_eq!(slot.cols, 10);
+        // The box reaches from -10 to 10; mass 2 and radius 0.5 are the bench's.
+        assert_eq!(slot.atom[..10], [1.0, 0.55, 0.75, 0.0, 21.0, -30.0, -1.0, 2.0, 1.0, 0.125]);
+        assert_eq!(slot.atom[10..], [0.0; 10]);
+    }
+
+    #[test]
+    fn what_is_missing_is_named() {
+        let b = Bench::new(AtomStyle::default(), &[]);
+        let code = |words: &str| b.compute(&PropertyAtom, words).err().unwrap().0[0].code;
+        assert_eq!(code(""), Code::MISSING_ARGUMENT);
+        assert_eq!(code("x radius"), Code::INCOMPLETE);
+        assert_eq!(code("vfrac"), Code::INCOMPLETE);
+        assert_eq!((code("mol"), code("quatw")), (Code::INCOMPLETE, Code::NOT_SUPPORTED));
+        assert_eq!(code("d_mine"), Code::UNKNOWN_NAME);
+        assert_eq!(code("radus"), Code::UNKNOWN_KEYWORD);
+    }
+}

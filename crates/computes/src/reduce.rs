@@ -1,0 +1,388 @@
+//! Computes reduce and reduce/region: one number from one value per particle: a sum, an extreme, a mean.
+
+use super::{Compute, ComputeStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::par;
+use perigrain_lang::{Args, RefKind, ValueRef, Word};
+use perigrain_plan::{Op, Stage, When};
+use perigrain_styles::matter::Chosen;
+use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
+use perigrain_world::{GroupId, SlotId, World};
+
+/// `compute … reduce`.
+pub struct Reduce;
+
+/// `compute … reduce/region`.
+pub struct ReduceRegion;
+
+impl Style for Reduce {
+    fn name(&self) -> &'static str {
+        "reduce"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group reduce sum|min|max|ave|sumsq|avesq|sumabs|aveabs|minabs|maxabs input … \
+                     [replace i j] [inputs peratom|local]",
+            summary: "Sums, extremes and means of per-atom or local values over the group.",
+            text: "Inputs: `x y z vx vy vz fx fy fz`, `c_ID`, `c_ID[k]`, `c_ID[*]`, `f_ID`, `f_ID[k]`, and `v_name` of an \
+                   atom-style variable. One input gives a scalar, several a vector; sums are extensive, all else \
+                   intensive. For an empty group: 0, but 1e20 for `min` and `minabs` and −1e20 for `max`. NaNs never \
+                   are extremes. `replace i j` (modes `min` and `max`) gives, in place of the i-th result, the i-th \
+                   input's value where the j-th input has its extreme. `inputs local` reads local values instead \
+                   (`compute property/local` …), of which all count, whatever the group. LAMMPS 22Jul2025 gives 1e20 for every `minabs` and, where there are \
+                   several inputs, does not divide `aveabs` by the number of particles; perigrain does so only under \
+                   `-compat lammps`. LAMMPS' `sumabs` of several inputs is unset memory; perigrain's is the sum.",
+            example: "compute worst all reduce max c_dmg",
+        }
+    }
+}
+
+/// What is done with the values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mode {
+    Sum,
+    Min,
+    Max,
+    Ave,
+    SumSquares,
+    AveSquares,
+    SumAbs,
+    AveAbs,
+    MinAbs,
+    MaxAbs,
+}
+
+const MODES: &[&str] =
+    &["sum", "min", "max", "ave", "sumsq", "avesq", "sumabs", "aveabs", "minabs", "maxabs"];
+
+/// What LAMMPS says of the extreme of nothing.
+pub const BIG: f64 = 1e20;
+
+impl Mode {
+    fn named(name: &str) -> Self {
+        use Mode::*;
+        let all = [Sum, Min, Max, Ave, SumSquares, AveSquares, SumAbs, AveAbs, MinAbs, MaxAbs];
+        all[MODES.iter().position(|m| *m == name).unwrap_or(0)]
+    }
+
+    /// What one value contributes.
+    fn term(self, a: f64) -> f64 {
+        match self {
+            Mode::SumSquares | Mode::AveSquares => a * a,
+            Mode::SumAbs | Mode::AveAbs | Mode::MinAbs | Mode::MaxAbs => a.abs(),
+            _ => a,
+        }
+    }
+
+    /// The result of no values, and how two are joined.
+    fn fold(self) -> (f64, fn(f64, f64) -> f64) {
+        match self {
+            Mode::Min | Mode::MinAbs => (f64::INFINITY, f64::min),
+            Mode::Max => (f64::NEG_INFINITY, f64::max),
+            Mode::MaxAbs => (0.0, f64::max),
+            _ => (0.0, |a, b| a + b),
+        }
+    }
+
+    fn extensive(self) -> bool {
+        matches!(self, Mode::Sum | Mode::SumSquares | Mode::SumAbs)
+    }
+
+    /// The result from what all values together gave and their number.
+    fn finish(self, folded: f64, count: usize, artefact: Artefact) -> f64 {
+        match self {
+            Mode::MinAbs if artefact.lammps => BIG,
+            Mode::AveAbs if artefact.lammps && artefact.several => folded,
+            Mode::Min | Mode::MinAbs if count == 0 => BIG,
+            Mode::Max if count == 0 => -BIG,
+            Mode::Ave | Mode::AveSquares | Mode::AveAbs if count > 0 => folded / count as f64,
+            _ => folded,
+        }
+    }
+}
+
+/// What decides whether LAMMPS 22Jul2025 goes wrong.
+#[derive(Clone, Copy)]
+struct Artefact {
+    /// Its numbers are wanted.
+    lammps: bool,
+    /// There are several inputs.
+    several: bool,
+}
+
+/// A per-particle value.
+#[derive(Clone, Debug)]
+enum Input {
+    /// Component (0 to 2) of position, velocity or force.
+    Column(Column, usize),
+    /// A compute's, fix's or variable's.
+    Value(ValueRef),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Column {
+    Position,
+    Velocity,
+    Force,
+}
+
+impl Column {
+    fn of(self, w: &World) -> &[[f64; 3]] {
+        match self {
+            Column::Position => &w.particles.x,
+            Column::Velocity => &w.particles.v,
+            Column::Force => &w.particles.f,
+        }
+    }
+}
+
+impl Style for ReduceRegion {
+    fn name(&self) -> &'static str {
+        "reduce/region"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group reduce/region region-ID sum|min|max|… input … [replace i j]",
+            summary: "As compute reduce, for particles that are in a region at that moment.",
+            text: "Modes, inputs and results are those of compute reduce; a particle counts while it is in the group and inside \
+                   the region.",
+            example: "compute deep all reduce/region half max vz",
+        }
+    }
+}
+
+impl ComputeStyle for Reduce {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        Ok(Box::new(Declared::read(None, args, cx)?))
+    }
+}
+
+impl ComputeStyle for ReduceRegion {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let word = args.expect("a region")?;
+        cx.region(word)?;
+        Ok(Box::new(Declared::read(Some(word.text.clone()), args, cx)?))
+    }
+}
+
+/// The words before the keywords `replace` and `inputs`, and those keywords.
+fn split<'a>(args: &mut Args<'a>) -> Vec<&'a Word> {
+    let mut words = vec![];
+    while let Some(word) = args.peek().filter(|w| !matches!(w.text.as_str(), "replace" | "inputs")) {
+        args.next();
+        words.push(word);
+    }
+    words
+}
+
+/// `replace i j`, counted from 0.
+fn read_replace(mode: Mode, inputs: usize, args: &mut Args) -> Result<[usize; 2]> {
+    let span = args.here();
+    let mut pair = [0; 2];
+    for k in &mut pair {
+        let (span, n) = (args.here(), args.integer_from(1, "the number of an input")? as usize);
+        if n > inputs {
+            return fail(Code::BAD_VALUE, span, format!("there are {inputs} inputs, not {n}"));
+        }
+        *k = n - 1;
+    }
+    if !matches!(mode, Mode::Min | Mode::Max) {
+        return fail(Code::CONFLICT, span, "`replace` needs the mode `min` or `max`");
+    }
+    if pair[0] == pair[1] {
+        return fail(Code::BAD_VALUE, span, "`replace` needs two different inputs");
+    }
+    Ok(pair)
+}
+
+fn read_input(word: &Word, local: bool, cx: &BuildCx, inputs: &mut Vec<Input>) -> Result<()> {
+    let text = word.text.as_str();
+    let columns = [("", Column::Position), ("v", Column::Velocity), ("f", Column::Force)];
+    for (prefix, column) in columns {
+        if let Some(d) = ["x", "y", "z"].iter().position(|d| text.strip_prefix(prefix) == Some(d)) {
+            if local {
+                let text = format!("`{text}` is a value per particle: leave `inputs local` out");
+                return fail(Code::CONFLICT, word.span, text);
+            }
+            inputs.push(Input::Column(column, d));
+            return Ok(());
+        }
+    }
+    let wants = if local { Wants::Local } else { Wants::PerAtom };
+    for word in cx.expand(word, wants)? {
+        match ValueRef::parse(&word.text, word.span)? {
+            Some(r) if !matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom) => {
+                cx.reading(&r, wants)?;
+                inputs.push(Input::Value(r));
+            }
+            _ => {
+                return Err(Diagnostic::error(
+                    Code::UNKNOWN_KEYWORD,
+                    word.span,
+                    format!("`{}` is no input of compute reduce", word.text),
+                )
+                .help("inputs are x y z vx vy vz fx fy fz, c_ID, c_ID[k], f_ID, f_ID[k] and v_name")
+                .into());
+            }
+        }
+    }
+    Ok(())
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    region: Option<String>,
+    mode: Mode,
+    inputs: Vec<Input>,
+    local: bool,
+    /// Which result is replaced, and where whose extreme is.
+    replace: Vec<[usize; 2]>,
+}
+
+impl Declared {
+    fn read(region: Option<String>, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let mode = Mode::named(args.choice("mode of compute reduce", MODES)?);
+        let words = split(args);
+        // `inputs` decides how the words before it are read.
+        let kind = (0..args.len()).find(|k| args.peek_at(*k).is_some_and(|w| w.text == "inputs"));
+        let kind = kind.and_then(|k| args.peek_at(k + 1)).map_or("", |w| w.text.as_str());
+        let local = kind == "local";
+        let mut inputs = vec![];
+        for word in words {
+            read_input(word, local, cx, &mut inputs)?;
+        }
+        if inputs.is_empty() {
+            args.expect("at least one input, as `vx` or `c_ID`")?;
+            return fail(Code::MISSING_ARGUMENT, cx.span, "at least one input is missing, as `vx` or `c_ID`");
+        }
+        let mut replace = vec![];
+        while !args.is_empty() {
+            let span = args.here();
+            match args.choice("keyword of compute reduce", &["replace", "inputs"])? {
+                "replace" => replace.push(read_replace(mode, inputs.len(), args)?),
+                _ => {
+                    args.choice("kind of inputs", &["peratom", "local"])?;
+                    if local && region.is_some() {
+                        return fail(
+                            Code::CONFLICT,
+                            span,
+                            "local values are in no region: use compute reduce",
+                        );
+                    }
+                }
+            }
+        }
+        let touched = mode == Mode::MinAbs || (mode == Mode::AveAbs && inputs.len() > 1);
+        if touched && cx.world.settings.lammps() {
+            let text = "compat lammps: `minabs` is 1e20, and `aveabs` of several inputs is a sum";
+            cx.note(Diagnostic::note(Code::COMPAT, cx.span, text));
+        }
+        Ok(Self { id: cx.id.to_string(), group: cx.group, region, mode, inputs, local, replace })
+    }
+}
+
+/// An input as it is read during a run.
+enum Source {
+    Column(Column, usize),
+    Reading(Reading),
+}
+
+impl Source {
+    fn value(&self, w: &World, i: usize) -> f64 {
+        match self {
+            Source::Column(c, d) => c.of(w)[i][*d],
+            Source::Reading(r) => r.atom(w, i),
+        }
+    }
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        let (several, extensive) = (self.inputs.len() > 1, self.mode.extensive());
+        Shape {
+            scalar: !several,
+            vector: if several { self.inputs.len() } else { 0 },
+            scalar_extensive: extensive,
+            vector_extensive: extensive,
+            ..Shape::default()
+        }
+    }
+
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let (mode, local, replace, span) = (self.mode, self.local, self.replace.clone(), cx.span());
+        let wants = if local { Wants::Local } else { Wants::PerAtom };
+        let mut sources = vec![];
+        for input in &self.inputs {
+            sources.push(match input {
+                Input::Column(c, d) => Source::Column(*c, *d),
+                Input::Value(r) => Source::Reading(cx.reading(r, wants, stage, when)?),
+            });
+        }
+        let (group, region) = (self.group, self.region.clone());
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x v f mask", move |w, _, out| {
+            let chosen = Chosen::new(w, group, region.as_deref(), span)?;
+            let chosen = chosen.now(w);
+            let p = &w.particles;
+            let has = |i: usize| chosen.has(p.mask[i], p.x[i]);
+            let artefact = Artefact { lammps: w.settings.lammps(), several: sources.len() > 1 };
+            let mut places = vec![None; sources.len()];
+            out.vector.clear();
+            for (k, source) in sources.iter().enumerate() {
+                let sought = replace.iter().any(|[_, j]| *j == k);
+                let (folded, n) = match source {
+                    Source::Reading(r) if local => {
+                        let list = r.list(w);
+                        let folded = fold(list.len(), mode, |_| true, |i| list[i]);
+                        places[k] = (0..list.len()).find(|&i| sought && list[i] == folded);
+                        (folded, list.len())
+                    }
+                    _ => {
+                        let folded = fold(w.n(), mode, has, |i| source.value(w, i));
+                        places[k] = (0..w.n()).find(|&i| sought && has(i) && source.value(w, i) == folded);
+                        (
+                            folded,
+                            par::reduce(w.n(), |r| r.filter(|&i| has(i)).count(), |a, b| a + b).unwrap_or(0),
+                        )
+                    }
+                };
+                out.vector.push(mode.finish(folded, n, artefact));
+            }
+            for [i, j] in &replace {
+                if let Some(at) = places[*j] {
+                    out.vector[*i] = match &sources[*i] {
+                        Source::Reading(r) if local => r.list(w).get(at).copied().unwrap_or(0.0),
+                        source => source.value(w, at),
+                    };
+                }
+            }
+            if let [one] = out.vector[..] {
+                out.scalar = one;
+                out.vector.clear();
+            }
+            Ok(())
+        }))
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}
+
+fn fold(
+    n: usize,
+    mode: Mode,
+    has: impl Fn(usize) -> bool + Sync,
+    value: impl Fn(usize) -> f64 + Sync,
+) -> f64 {
+    let (none, join) = mode.fold();
+    let chunk = |range: std::ops::Range<usize>| {
+        range.filter(|&i| has(i)).fold(none, |a, i| join(a, mode.term(value(i))))
+    };
+    par::reduce(n, chunk, join).unwrap_or(none)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,214 @@
+//! compute rigid/local: what is known of each rigid body.
+
+use super::rigid_energy::RigidFix;
+use super::{Compute, ComputeStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::math::body::{axes, from_axes};
+use perigrain_base::math::vec3::{Vec3, dot, scale, sub};
+use perigrain_lang::Args;
+use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_styles::matter::unwrapped;
+use perigrain_styles::rigid_bodies::{Body, bodies, body_column};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::{GroupId, SlotId, World};
+
+/// The style.
+pub struct RigidLocal;
+
+impl Style for RigidLocal {
+    fn name(&self) -> &'static str {
+        "rigid/local"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group rigid/local fix-ID attribute …",
+            summary: "Attributes of each rigid body.",
+            text: "Local vector for one attribute, array for several; a row for each body of this `fix rigid/small` or `rigid/nve/small` whose \
+                   owner is in the group, in the order of the bodies. The owner is the particle nearest to the middle of the box around the \
+                   body's particles when a run first finds it (of several the one with the least ID). Attributes, in the deck's \
+                   units: `id`, of the owner; `mol`, its molecule ID; `mass`; `x y z`, the centre, wrapped into the box as of the last rebuild of neighbour \
+                   lists, `xu yu zu` unwrapped, `ix iy iz` the image counts between them; `vx vy vz`; `fx fy fz`; `omegax omegay \
+                   omegaz`; `angmomx angmomy angmomz`; `quatw quati quatj quatk`; `tqx tqy tqz`; `inertiax inertiay inertiaz`, the principal \
+                   moments, ascending; the sides that their axes point to, and with them the quaternion, may be others than in LAMMPS. No rows before bodies are set up, when a run begins. LAMMPS' rows stand in the order of owners in memory.",
+            example: "unfix motion\nset group plate diameter 0.0\nfix mine all property/atom mol\nset group plate mol 1\n\
+                      fix body plate rigid/small molecule\ncompute b all rigid/local body mass x y z",
+        }
+    }
+}
+
+/// Body, id of its owner, lengths of the periodic dimensions.
+type Read = fn(&Body, [f64; 2], Vec3) -> f64;
+
+const ATTRIBUTES: &[(&str, Read)] = &[
+    ("id", |_, owner, _| owner[0]),
+    ("mol", |_, owner, _| owner[1]),
+    ("mass", |b, _, _| b.mass),
+    ("x", |b, _, l| b.x[0] - b.image[0] * l[0]),
+    ("y", |b, _, l| b.x[1] - b.image[1] * l[1]),
+    ("z", |b, _, l| b.x[2] - b.image[2] * l[2]),
+    ("xu", |b, _, _| b.x[0]),
+    ("yu", |b, _, _| b.x[1]),
+    ("zu", |b, _, _| b.x[2]),
+    ("ix", |b, _, _| b.image[0]),
+    ("iy", |b, _, _| b.image[1]),
+    ("iz", |b, _, _| b.image[2]),
+    ("vx", |b, _, _| b.v[0]),
+    ("vy", |b, _, _| b.v[1]),
+    ("vz", |b, _, _| b.v[2]),
+    ("fx", |b, _, _| b.force[0]),
+    ("fy", |b, _, _| b.force[1]),
+    ("fz", |b, _, _| b.force[2]),
+    ("omegax", |b, _, _| b.omega[0]),
+    ("omegay", |b, _, _| b.omega[1]),
+    ("omegaz", |b, _, _| b.omega[2]),
+    ("angmomx", |b, _, _| b.momentum[0]),
+    ("angmomy", |b, _, _| b.momentum[1]),
+    ("angmomz", |b, _, _| b.momentum[2]),
+    ("quatw", |b, _, _| b.q[0]),
+    ("quati", |b, _, _| b.q[1]),
+    ("quatj", |b, _, _| b.q[2]),
+    ("quatk", |b, _, _| b.q[3]),
+    ("tqx", |b, _, _| b.torque[0]),
+    ("tqy", |b, _, _| b.torque[1]),
+    ("tqz", |b, _, _| b.torque[2]),
+    ("inertiax", |b, _, _| b.moments[0]),
+    ("inertiay", |b, _, _| b.moments[1]),
+    ("inertiaz", |b, _, _| b.moments[2]),
+];
+
+impl ComputeStyle for RigidLocal {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        let at = args.here();
+        let fix = RigidFix::read(args, cx)?;
+        if !fix.style.ends_with("/small") {
+            let text = format!("fix `{}` (style {}) is not of style rigid/small", fix.id, fix.style);
+            let d = Diagnostic::error(Code::WRONG_KIND, at, text);
+            return Err(d.help("its array says the same of its bodies").into());
+        }
+        let names: Vec<&'static str> = ATTRIBUTES.iter().map(|a| a.0).collect();
+        let mut list = vec![];
+        while list.is_empty() || !args.is_empty() {
+            let name = args.choice("attribute of a rigid body", &names)?;
+            list.extend(ATTRIBUTES.iter().filter(|a| a.0 == name).map(|a| a.1));
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, fix, list }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    fix: RigidFix,
+    list: Vec<Read>,
+}
+
+impl Declared {
+    /// Under which name the world remembers the ids of owners.
+    fn key(&self) -> String {
+        format!("compute {} owners", self.id)
+    }
+
+    /// Chooses owners of the bodies from number `known` on.
+    fn owners(&self, w: &World, known: usize, count: usize) -> Vec<f64> {
+        let of = w.columns.get_scalar(&body_column(self.fix.style, &self.fix.id)).unwrap_or_default();
+        let mut boxes = vec![([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]); count];
+        let members = || (0..w.n()).filter_map(|i| Some((i, (*of.get(i)? as usize).checked_sub(1 + known)?)));
+        for (i, k) in members().filter(|(_, k)| *k < count) {
+            let (x, (lo, hi)) = (unwrapped(w, i), &mut boxes[k]);
+            (0..3).for_each(|d| (lo[d], hi[d]) = (lo[d].min(x[d]), hi[d].max(x[d])));
+        }
+        let mut nearest = vec![(f64::INFINITY, u32::MAX); count];
+        for (i, k) in members().filter(|(_, k)| *k < count) {
+            let (lo, hi) = boxes[k];
+            let d = sub(unwrapped(w, i), std::array::from_fn(|d| 0.5 * (lo[d] + hi[d])));
+            let own = (dot(d, d), w.particles.tag[i]);
+            if own < nearest[k] {
+                nearest[k] = own;
+            }
+        }
+        nearest.into_iter().map(|(_, tag)| f64::from(tag)).collect()
+    }
+
+    fn rows(&self, w: &World, owners: &[f64], bodies: &[Body]) -> Vec<f64> {
+        let (p, index) = (&w.particles, perigrain_world::index::Index::new(&w.particles.tag));
+        let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
+        let mut rows = vec![];
+        for (body, owner) in bodies.iter().zip(owners) {
+            let Some(i) = index.find(*owner as u32, &p.tag) else { continue };
+            if p.mask[i] & self.group.bit() != 0 {
+                let molecule = p.molecule.get(i).map_or(0.0, |m| f64::from(*m));
+                rows.extend(self.list.iter().map(|read| read(body, [*owner, molecule], lengths)));
+            }
+        }
+        rows
+    }
+}
+
+/// The body with its principal moments in LAMMPS' order.
+fn ascending(body: Body) -> Body {
+    let [a, b, c] = body.moments;
+    if a <= c {
+        return body;
+    }
+    let [x, y, z] = axes(body.q);
+    Body { moments: [c, b, a], q: from_axes([z, y, scale(-1.0, x)]), ..body }
+}
+
+impl Compute for Declared {
+    fn shape(&self) -> Shape {
+        Shape { local: self.list.len(), ..Shape::default() }
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.remove(w);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.memo.remove(&self.key());
+    }
+
+    fn begins(&self) -> bool {
+        true
+    }
+
+    fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let me = self.clone();
+        let name = format!("compute {}", self.id);
+        let op = StepOp::new(name, stage, Access::new("x image mask bodies", ""), move |w: &mut World, t| {
+            let bodies: Vec<Body> = bodies(w, me.fix.style, &me.fix.id).into_iter().map(ascending).collect();
+            let mut owners = w.memo.remove(&me.key()).unwrap_or_default();
+            owners.truncate(bodies.len());
+            owners.extend(me.owners(w, owners.len(), bodies.len() - owners.len()));
+            let rows = me.rows(w, &owners, &bodies);
+            w.memo.insert(me.key(), owners);
+            let out = w.slots.get_mut(slot);
+            (out.step, out.local, out.local_cols) = (Some(t.step), rows, me.list.len());
+            Ok(())
+        });
+        Ok(op.when(when.clone()).in_setup(true).boxed())
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_ascend_and_axes_follow() {
+        let q = from_axes([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
+        let body = ascending(Body { moments: [3.0, 2.0, 1.0], q, ..Body::default() });
+        assert_eq!(body.moments, [1.0, 2.0, 3.0]);
+        let close = |a: Vec3, b: Vec3| dot(sub(a, b), sub(a, b)) < 1e-28;
+        let [x, y, z] = axes(body.q);
+        // The axis of the moment 1 comes first, that of 3 last, and they are right-handed.
+        assert!(close(x, [0.0, 0.0, 1.0]) && close(y, [-1.0, 0.0, 0.0]) && close(z, [0.0, -1.0, 0.0]));
+        assert_eq!(ascending(Body { moments: [1.0, 2.0, 2.0], ..body }).q, body.q);
+    }
+}

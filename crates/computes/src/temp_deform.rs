@@ -1,0 +1,73 @@
+//! compute temp/deform: temperature of the group without the flow of a box that is deformed.
+
+use super::thermal::{Streams, Taken, Thermal, dimension};
+use super::{Compute, ComputeStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_lang::Args;
+use perigrain_styles::matter::count;
+use perigrain_styles::stretching::{Stretching, stretching};
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::{GroupId, World};
+
+/// The style.
+pub struct TempDeform;
+
+impl Style for TempDeform {
+    fn name(&self) -> &'static str {
+        "temp/deform"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "compute ID group temp/deform",
+            summary: "Temperature of the group without the flow of a box that `fix deform` stretches.",
+            text: "As `compute temp`, of velocities from which that of a point is taken away which goes with the box: of the lower face \
+                   plus the rate of the length times how far up the particle is, in the dimensions that `fix deform` changes. It means something \
+                   where particles do flow so: with `remap v`, or `none`. With `remap x` positions move and velocities do not: \
+                   a warning says so, as it does where there is no fix deform. Under `-compat lammps` `volume` counts for nothing, and `trate`, `wiggle` and `variable` only \
+                   from the first change of a run on, as in LAMMPS.",
+            example: "compute t all temp/deform",
+        }
+    }
+}
+
+impl ComputeStyle for TempDeform {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        args.finish()?;
+        Ok(Box::new(Thermal::new(WithTheBox, cx)))
+    }
+}
+
+/// What goes with the box.
+#[derive(Clone)]
+struct WithTheBox;
+
+impl Streams for WithTheBox {
+    fn taken<'a>(&'a self, w: &'a World, _group: GroupId) -> Taken<'a> {
+        let Stretching { rate, low, .. } = stretching(w).unwrap_or_default();
+        let (from, lengths) = w.domain.as_ref().map_or(([0.0; 3], [1.0; 3]), |d| (d.lo, d.lengths()));
+        let inverse = lengths.map(|l| 1.0 / l);
+        let x = &w.particles.x;
+        Box::new(move |i| std::array::from_fn(|d| rate[d] * ((x[i][d] - from[d]) * inverse[d]) + low[d]))
+    }
+
+    fn freedom(&self, w: &World, group: GroupId, extra: Option<f64>) -> f64 {
+        dimension(w) * count(w, group) as f64 - extra.unwrap_or(dimension(w))
+    }
+
+    fn check(&self, cx: &mut dyn SealCx) -> Result<()> {
+        let text = match stretching(cx.world()) {
+            None => "no fix deform is there: compute temp/deform takes nothing away",
+            Some(s) if s.remapped => {
+                "fix deform moves positions (remap x): velocities have no flow for compute temp/deform to take away"
+            }
+            _ => return Ok(()),
+        };
+        let at = cx.span();
+        let notes = &mut cx.world().parts.notes;
+        // Once in a run, whoever asks.
+        if notes.0.iter().all(|n| n.message != text) {
+            notes.push(Diagnostic::warning(Code::SUSPICIOUS, at, text));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,147 @@
+//! Temperatures of what is left of velocities when a flow is taken away, whatever the flow.
+
+use super::Compute;
+use super::temp::{Rules, offer};
+use perigrain_base::diag::Result;
+use perigrain_base::math::vec3::{Vec3, sub};
+use perigrain_lang::Args;
+use perigrain_plan::{Op, Stage, When};
+use perigrain_styles::matter::{Masses, check_masses, sum};
+use perigrain_styles::step_op::{Wanted, fill};
+use perigrain_styles::{BuildCx, Flow, SealCx, Shape};
+use perigrain_world::{GroupId, SlotId, World};
+
+/// The velocity that is taken away from a particle of the group.
+pub type Taken<'a> = Box<dyn Fn(usize) -> Vec3 + Sync + 'a>;
+
+/// A flow that a temperature takes away.
+pub trait Streams: Clone + Send + Sync + 'static {
+    /// What is taken away from each particle now.
+    fn taken<'a>(&'a self, w: &'a World, group: GroupId) -> Taken<'a>;
+
+    /// Degrees of freedom that are left; `extra`: how many are taken off, where the deck says so.
+    fn freedom(&self, w: &World, group: GroupId, extra: Option<f64>) -> f64;
+
+    /// Components that are taken away whole.
+    fn whole(&self) -> [bool; 3] {
+        [false; 3]
+    }
+
+    /// Who is left out with all its freedom; nobody if empty.
+    fn apart(&self, _w: &World) -> Vec<bool> {
+        vec![]
+    }
+
+    /// Whether degrees of freedom change with every step, so that they are counted anew also where LAMMPS counts others once.
+    fn counts_anew(&self) -> bool {
+        false
+    }
+
+    /// How many bins there are, if the numbers and temperatures of particles in bins are offered instead of a tensor.
+    fn bins(&self) -> usize {
+        0
+    }
+
+    /// The bin of a particle.
+    fn bin(&self, _w: &World, _i: usize) -> usize {
+        0
+    }
+
+    /// Of the degrees of freedom of a bin with `n` of all particles what is left; `extra` as in `freedom`.
+    fn freedom_of_bin(&self, _w: &World, _n: f64, _all: f64, _extra: Option<f64>) -> f64 {
+        0.0
+    }
+
+    /// Checks what the flow depends on, when a run begins.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn check(&self, _cx: &mut dyn SealCx) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// 2 or 3.
+pub fn dimension(w: &World) -> f64 {
+    if w.settings.two_dimensional { 2.0 } else { 3.0 }
+}
+
+/// A temperature without a flow.
+#[derive(Clone)]
+pub struct Thermal<S> {
+    id: String,
+    group: GroupId,
+    flow: S,
+    rules: Rules,
+}
+
+impl<S: Streams> Thermal<S> {
+    /// As the line says.
+    pub fn new(flow: S, cx: &BuildCx) -> Self {
+        Self { id: cx.id.to_string(), group: cx.group, flow, rules: Rules::default() }
+    }
+
+    /// Number of particles and temperature of each bin.
+    fn by_bin(&self, w: &World, taken: &Taken) -> Vec<f64> {
+        let (p, masses, bit) = (&w.particles, Masses::of(w), self.group.bit());
+        let mut rows = vec![[0.0; 2]; self.flow.bins()];
+        for i in (0..w.n()).filter(|&i| p.mask[i] & bit != 0) {
+            let ([x, y, z], row) = (sub(p.v[i], taken(i)), &mut rows[self.flow.bin(w, i)]);
+            row[0] += 1.0;
+            row[1] += masses.get(i) * (x * x + y * y + z * z);
+        }
+        let (c, all) = (w.settings.units.constants(), rows.iter().map(|r| r[0]).sum());
+        let temperature = |n: f64, twice: f64| {
+            let dof = self.flow.freedom_of_bin(w, n, all, self.rules.extra);
+            if dof > 0.0 { twice * (c.mvv2e / (dof * c.boltz)) } else { 0.0 }
+        };
+        rows.into_iter().flat_map(|[n, twice]| [n, temperature(n, twice)]).collect()
+    }
+}
+
+impl<S: Streams> Compute for Thermal<S> {
+    fn shape(&self) -> Shape {
+        let shape = Shape { scalar: true, flow: true, ..Shape::default() };
+        match self.flow.bins() {
+            0 => Shape { vector: 6, vector_extensive: true, ..shape },
+            rows => Shape { array: 2, array_rows: rows, ..shape },
+        }
+    }
+
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let span = cx.span();
+        check_masses(cx.world(), span)?;
+        self.flow.check(cx)?;
+        let me = self.clone();
+        let mut freedom = self.rules.freedom();
+        let reads = "x v mass mask regions box";
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, t, out| {
+            let (p, masses, taken) = (&w.particles, Masses::of(w), me.flow.taken(w, me.group));
+            let tensor: [f64; 6] = sum(&p.mask, me.group, |i| {
+                let ([x, y, z], m) = (sub(p.v[i], taken(i)), masses.get(i));
+                [m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z]
+            });
+            let present = me.flow.freedom(w, me.group, me.rules.extra);
+            let dof = if me.flow.counts_anew() { present } else { freedom.now(w, t, present, out) };
+            offer(w, out, tensor[0] + tensor[1] + tensor[2], tensor, dof);
+            if me.flow.bins() > 0 {
+                (out.array, out.array_cols) = (me.by_bin(w, &taken), 2);
+            }
+            Ok(())
+        }))
+    }
+
+    fn flow(&self, w: &World) -> Option<Flow> {
+        let (taken, mask, bit) = (self.flow.taken(w, self.group), &w.particles.mask, self.group.bit());
+        let taken = (0..w.n()).map(|i| if mask[i] & bit != 0 { taken(i) } else { [0.0; 3] }).collect();
+        Some(Flow { taken, group: self.group, whole: self.flow.whole(), apart: self.flow.apart(w) })
+    }
+
+    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        self.rules.modify(args)
+    }
+
+    fn boxed(&self) -> Box<dyn Compute> {
+        Box::new(self.clone())
+    }
+}

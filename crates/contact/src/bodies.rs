@@ -1,0 +1,19 @@
+//! Which peridynamic solid each particle belongs to.
+
+use super::driver::NO_BODY;
+use perigrain_base::math::forest::{find, join};
+use perigrain_peri::families::Families;
+
+/// The solid of each of `n` particles: the smallest index among all that bonds connected at the start, broken ones
+/// included; `NO_BODY` for particles that never had a bond.
+pub fn solids(families: &Families, n: usize) -> Vec<u32> {
+    let mut root: Vec<u32> = (0..n as u32).collect();
+    let mut bonded = vec![false; n];
+    for (i, has_bonds) in bonded.iter_mut().enumerate() {
+        for bond in families.neighbours(i) {
+            *has_bonds = true;
+            join(&mut root, i as u32, bond.partner);
+        }
+    }
+    (0..n as u32).map(|i| if bonded[i as usize] { find(&mut root, i) } else { NO_BODY }).collect()
+}

@@ -1,0 +1,453 @@
+//! The loop over contacts: who touches, what each remembers, what each does, added up in a fixed order.
+
+use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
+use perigrain_base::math::vec3::{SIX, Vec3, add, sub};
+use perigrain_base::par;
+use perigrain_neigh::list::{Pair, difference};
+use perigrain_world::Travel;
+use perigrain_world::contacts::Contacts;
+use perigrain_world::domain::Flow;
+
+/// Among how many simultaneous contacts a force is shared out (Walayat et al., eq. 14 and 19, made
+/// momentum-conserving: every contact's force and its reaction are divided by the same N).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Average {
+    /// N = 1: forces add up.
+    #[default]
+    None,
+    /// N = the larger of the two particles' numbers of contacts.
+    Particle,
+    /// N = the number of contacts between the two bodies; a body is a grain or a peridynamic solid.
+    Body,
+}
+
+/// The effective radius R̄ of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Curvature {
+    /// R_i R_j / (R_i + R_j).
+    #[default]
+    Both,
+    /// The grain's radius where it meets a peridynamic solid, whose surface counts as flat.
+    Impactor,
+}
+
+/// What contacts of one pair of types obey.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rule<L> {
+    /// The law.
+    pub law: L,
+    /// Sharing.
+    pub average: Average,
+    /// Effective radius.
+    pub curvature: Curvature,
+}
+
+/// Rules by pair of types (from 1), symmetric.
+#[derive(Clone, Debug)]
+pub struct Rules<L> {
+    types: usize,
+    table: Vec<Option<Rule<L>>>,
+}
+
+impl<L: Copy> Rules<L> {
+    /// No rules yet.
+    pub fn new(types: usize) -> Self {
+        Self { types, table: vec![None; types * types] }
+    }
+
+    /// Sets the rule of two types.
+    pub fn set(&mut self, a: u16, b: u16, rule: Rule<L>) {
+        let (a, b) = (usize::from(a) - 1, usize::from(b) - 1);
+        self.table[a * self.types + b] = Some(rule);
+        self.table[b * self.types + a] = Some(rule);
+    }
+
+    /// The rule of two types.
+    #[inline]
+    pub fn get(&self, a: u16, b: u16) -> Option<&Rule<L>> {
+        self.table[(usize::from(a) - 1) * self.types + usize::from(b) - 1].as_ref()
+    }
+
+    /// How many numbers a contact remembers at most.
+    pub fn memory(&self) -> usize
+    where
+        L: ContactLaw,
+    {
+        self.table.iter().flatten().map(|r| r.law.memory()).max().unwrap_or(0)
+    }
+
+    /// The rules by which contacts are looked at once more ([`ContactLaw::again`]).
+    #[must_use]
+    pub fn again(&self, setup: bool) -> Self
+    where
+        L: ContactLaw,
+    {
+        let again = |rule: &Rule<L>| Rule { law: rule.law.again(setup), ..*rule };
+        Self { types: self.types, table: self.table.iter().map(|r| r.as_ref().map(again)).collect() }
+    }
+
+    /// Whether some rule is of this kind.
+    pub fn any(&self, is: impl Fn(&Rule<L>) -> bool) -> bool {
+        self.table.iter().flatten().any(is)
+    }
+}
+
+/// The particles as contacts see them: columns of equal length.
+#[derive(Clone, Copy)]
+pub struct Grains<'a> {
+    /// Positions [length].
+    pub x: &'a [Vec3],
+    /// Velocities [length/time].
+    pub v: &'a [Vec3],
+    /// Angular velocities [1/time].
+    pub omega: &'a [Vec3],
+    /// Radii [length].
+    pub radius: &'a [f64],
+    /// Masses.
+    pub mass: &'a [f64],
+    /// Types, from 1.
+    pub kind: &'a [u16],
+    /// Identities.
+    pub tag: &'a [u32],
+    /// Edge lengths of the box; zero where it does not repeat.
+    pub period: [f64; 3],
+    /// How the box grows, and groups by particle, where images move with it.
+    pub flow: Option<(Flow, &'a [u32])>,
+    /// The solid each particle belongs to, `NO_BODY` for grains; may be empty where no rule asks.
+    pub body: &'a [u32],
+    /// Particles that nothing moves, of infinite mass to others; may be empty.
+    pub frozen: &'a [bool],
+    /// How far they may have gone.
+    pub travel: Travel,
+}
+
+/// The body of a particle that belongs to no solid.
+pub const NO_BODY: u32 = u32::MAX;
+
+impl Grains<'_> {
+    fn body(&self, i: u32) -> u32 {
+        self.body.get(i as usize).copied().unwrap_or(NO_BODY)
+    }
+
+    /// A name for the body of particle `i`, unlike all others: solids first, then grains.
+    fn body_name(&self, i: u32) -> u64 {
+        match self.body(i) {
+            NO_BODY => (1 << 32) + u64::from(i),
+            solid => u64::from(solid),
+        }
+    }
+
+    fn motion(&self, i: u32) -> Motion {
+        Motion { velocity: self.v[i as usize], spin: self.omega[i as usize] }
+    }
+
+    /// The motion of the second particle's image, which a growing box carries along.
+    fn image_motion(&self, p: &Pair) -> Motion {
+        let mut motion = self.motion(p.j);
+        if let Some((flow, mask)) = &self.flow
+            && mask[p.j as usize] & flow.group.bit() != 0
+        {
+            (0..3).for_each(|d| motion.velocity[d] += f64::from(p.shift[d]) * flow.rate[d]);
+        }
+        motion
+    }
+
+    /// Whether the two touch, or would still hold together if they had touched (`gaps`: some law lets them).
+    #[inline]
+    fn meeting<L: ContactLaw>(&self, p: &Pair, rules: &Rules<L>, gaps: bool) -> Meeting {
+        let d = difference(self.x, &self.period, p);
+        let [ri, rj] = [p.i, p.j].map(|k| self.radius[k as usize]);
+        let (square, sum) = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2], ri + rj);
+        if square < sum * sum {
+            let deep = sum - DEEP * ri.min(rj);
+            return if square < deep * deep { Meeting::Deep } else { Meeting::Touch };
+        }
+        if !gaps {
+            return Meeting::Apart;
+        }
+        let rule = rules.get(self.kind[p.i as usize], self.kind[p.j as usize]);
+        let far = sum + rule.map_or(0.0, |r| r.law.gap(ri * rj / sum));
+        if square < far * far { Meeting::Near } else { Meeting::Apart }
+    }
+
+    fn geometry<L>(&self, p: &Pair, rule: &Rule<L>) -> Option<Geometry> {
+        let (i, j) = (p.i as usize, p.j as usize);
+        let d = difference(self.x, &self.period, p);
+        let (radii, masses) = ([self.radius[i], self.radius[j]], [self.mass[i], self.mass[j]]);
+        // Who is asked about touches, or has touched and still holds.
+        let mut g = Geometry::of_spheres(d, radii, masses, f64::INFINITY)?;
+        if let [true, _] | [_, true] = [i, j].map(|k| self.frozen.get(k) == Some(&true)) {
+            g.mass = if self.frozen[j] { masses[0] } else { masses[1] };
+        }
+        if rule.curvature == Curvature::Both {
+            return Some(g);
+        }
+        match (self.body(p.i) == NO_BODY, self.body(p.j) == NO_BODY) {
+            (true, false) => Some(g.with_curvature(g.radii[0])),
+            (false, true) => Some(g.with_curvature(g.radii[1])),
+            _ => Some(g),
+        }
+    }
+}
+
+/// How close two grains are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Meeting {
+    #[default]
+    Apart,
+    /// Beyond touch, but within what an existing contact spans.
+    Near,
+    Touch,
+    /// Overlapping by more than `DEEP` of the smaller radius.
+    Deep,
+}
+
+/// Overlap over the smaller radius beyond which laws of contact mean little.
+pub const DEEP: f64 = 0.1;
+
+/// One contact of an evaluation.
+pub struct Seen<'a, L> {
+    /// Who touches.
+    pub pair: &'a Pair,
+    /// By which law.
+    pub law: &'a L,
+    /// How.
+    pub geometry: Geometry,
+    /// What the contact remembers.
+    pub history: &'a [f64],
+    /// What it does, its share taken.
+    pub wrench: &'a Wrench,
+    /// The part of the law's force that counts.
+    pub share: f64,
+}
+
+/// One evaluation of all contacts; keeps its room from step to step.
+#[derive(Clone, Debug, Default)]
+pub struct Sweep {
+    flags: Vec<Meeting>,
+    touching: Vec<Pair>,
+    keys: Vec<[u32; 2]>,
+    shares: Vec<f64>,
+    counts: Vec<u32>,
+    names: Vec<[u64; 2]>,
+    wrenches: Vec<Wrench>,
+    deep: Option<Pair>,
+    spare: Vec<f64>,
+}
+
+impl Sweep {
+    /// Evaluates the contacts among the pairs of `list`; `memory` follows: contacts that ended are forgotten.
+    pub fn run<L: ContactLaw>(
+        &mut self,
+        list: &[Pair],
+        grains: &Grains,
+        rules: &Rules<L>,
+        memory: &mut Contacts,
+        step: Advance,
+    ) {
+        self.meet(list, grains, rules, memory);
+        self.act(grains, rules, memory, step);
+    }
+
+    /// Finds the contacts among the pairs of `list`, the first half of [`Sweep::run`].
+    pub fn meet<L: ContactLaw>(
+        &mut self,
+        list: &[Pair],
+        grains: &Grains,
+        rules: &Rules<L>,
+        memory: &mut Contacts,
+    ) {
+        self.find(list, grains, rules, memory);
+        memory.carry(&self.keys, rules.memory(), &mut self.spare);
+    }
+
+    /// Evaluates the contacts that were found, the second half.
+    pub fn act<L: ContactLaw>(
+        &mut self,
+        grains: &Grains,
+        rules: &Rules<L>,
+        memory: &mut Contacts,
+        step: Advance,
+    ) {
+        let width = rules.memory();
+        self.share(grains, rules);
+        self.wrenches.clear();
+        self.wrenches.resize(self.touching.len(), Wrench::default());
+        let history = par::Rows { data: &mut memory.history[..], width };
+        let columns = (&mut self.wrenches[..], history, &self.touching[..], &self.shares[..]);
+        par::each(columns, |_, (wrenches, history, pairs, shares)| {
+            for (k, ((w, p), share)) in wrenches.iter_mut().zip(pairs).zip(shares).enumerate() {
+                let (a, b) = (grains.kind[p.i as usize], grains.kind[p.j as usize]);
+                let Some(rule) = rules.get(a, b) else { continue };
+                let Some(g) = grains.geometry(p, rule) else { continue };
+                let remembered = &mut history.data[k * width..][..width];
+                *w = rule.law.contact(&g, &grains.motion(p.i), &grains.image_motion(p), remembered, step);
+                if *share != 1.0 {
+                    *w = w.scaled(*share);
+                }
+            }
+        });
+    }
+
+    /// Number of contacts of the last evaluation.
+    pub fn len(&self) -> usize {
+        self.touching.len()
+    }
+
+    /// The first pair of the last evaluation that overlaps by more than [`DEEP`] of the smaller radius: its ids and
+    /// that part.
+    pub fn deep(&self, grains: &Grains) -> Option<([u32; 2], f64)> {
+        let p = self.deep?;
+        let [ri, rj] = [p.i, p.j].map(|k| grains.radius[k as usize]);
+        let d = difference(grains.x, &grains.period, &p);
+        let part = (ri + rj - perigrain_base::math::vec3::length(d)) / ri.min(rj);
+        Some(([p.i, p.j].map(|k| grains.tag[k as usize]), part))
+    }
+
+    /// Whether nothing touched.
+    pub fn is_empty(&self) -> bool {
+        self.touching.is_empty()
+    }
+
+    /// The pairs that touch, and the tags of each.
+    pub fn touching(&self) -> (&[Pair], &[[u32; 2]]) {
+        (&self.touching, &self.keys)
+    }
+
+    /// The contacts of the last evaluation and what each does.
+    pub fn contacts(&self) -> impl Iterator<Item = (&Pair, &Wrench)> {
+        self.touching.iter().zip(&self.wrenches)
+    }
+
+    /// The same with geometry, law and memory, which must be that of the last evaluation.
+    pub fn each<L: ContactLaw>(
+        &self,
+        grains: &Grains,
+        rules: &Rules<L>,
+        memory: &Contacts,
+        mut act: impl FnMut(Seen<'_, L>),
+    ) {
+        for (k, (pair, wrench)) in self.contacts().enumerate() {
+            let rule = rules.get(grains.kind[pair.i as usize], grains.kind[pair.j as usize]);
+            let Some((rule, g)) = rule.and_then(|r| Some((r, grains.geometry(pair, r)?))) else { continue };
+            let history = memory.history.get(k * memory.width..(k + 1) * memory.width).unwrap_or(&[]);
+            act(Seen { pair, law: &rule.law, geometry: g, history, wrench, share: self.shares[k] });
+        }
+    }
+
+    /// Adds forces and torques to their particles, in the order of the list.
+    pub fn scatter(&self, f: &mut [Vec3], torque: &mut [Vec3]) {
+        for (p, w) in self.touching.iter().zip(&self.wrenches) {
+            let (i, j) = (p.i as usize, p.j as usize);
+            f[i] = add(f[i], w.force);
+            f[j] = sub(f[j], w.force);
+            torque[i] = add(torque[i], w.torque_i);
+            torque[j] = add(torque[j], w.torque_j);
+        }
+    }
+
+    /// Adds the heat that flows through the contacts to `flow`, from the temperatures of all particles.
+    pub fn conduct<L: ContactLaw>(
+        &self,
+        grains: &Grains,
+        rules: &Rules<L>,
+        temperature: &[f64],
+        flow: &mut [f64],
+    ) {
+        for p in &self.touching {
+            let (i, j) = (p.i as usize, p.j as usize);
+            let Some(rule) = rules.get(grains.kind[i], grains.kind[j]) else { continue };
+            let Some(g) = grains.geometry(p, rule) else { continue };
+            let Some(conductance) = rule.law.conductance(&g) else { continue };
+            let into = conductance * (temperature[j] - temperature[i]);
+            flow[i] += into;
+            flow[j] -= into;
+        }
+    }
+
+    /// Virial Σ d ⊗ F over contacts: xx yy zz xy xz yz.
+    pub fn virial(&self, x: &[Vec3], period: &[f64; 3]) -> [f64; 6] {
+        let mut sum = [0.0; 6];
+        for (p, w) in self.touching.iter().zip(&self.wrenches) {
+            let (d, f) = (difference(x, period, p), w.force);
+            for (s, (a, b)) in sum.iter_mut().zip(SIX) {
+                *s += d[a] * f[b];
+            }
+        }
+        sum
+    }
+
+    fn find<L: ContactLaw>(&mut self, list: &[Pair], grains: &Grains, rules: &Rules<L>, memory: &Contacts) {
+        let gaps = rules.any(|r| r.law.gap(1.0) > 0.0);
+        self.flags.clear();
+        self.flags.resize(list.len(), Meeting::Apart);
+        par::each((&mut self.flags[..], list), |_, (flags, list)| {
+            for (flag, p) in flags.iter_mut().zip(list) {
+                *flag = grains.meeting(p, rules, gaps);
+            }
+        });
+        let tags = |p: &Pair| [grains.tag[p.i as usize], grains.tag[p.j as usize]];
+        self.touching.clear();
+        self.keys.clear();
+        self.deep = None;
+        for (p, meeting) in list.iter().zip(&self.flags) {
+            let holds = match meeting {
+                Meeting::Apart => false,
+                Meeting::Near => memory.get(tags(p)).is_some(),
+                Meeting::Touch => true,
+                Meeting::Deep => {
+                    self.deep.get_or_insert(*p);
+                    true
+                }
+            };
+            if holds {
+                self.touching.push(*p);
+                self.keys.push(tags(p));
+            }
+        }
+    }
+
+    /// 1/N for every contact.
+    fn share<L: Copy>(&mut self, grains: &Grains, rules: &Rules<L>) {
+        self.shares.clear();
+        self.shares.resize(self.touching.len(), 1.0);
+        let average = |p: &Pair| {
+            rules
+                .get(grains.kind[p.i as usize], grains.kind[p.j as usize])
+                .map_or(Average::None, |r| r.average)
+        };
+        if rules.any(|r| r.average == Average::Particle) {
+            self.counts.clear();
+            self.counts.resize(grains.x.len(), 0);
+            for p in &self.touching {
+                self.counts[p.i as usize] += 1;
+                self.counts[p.j as usize] += 1;
+            }
+            for (s, p) in self.shares.iter_mut().zip(&self.touching) {
+                if average(p) == Average::Particle {
+                    *s = 1.0 / f64::from(self.counts[p.i as usize].max(self.counts[p.j as usize]));
+                }
+            }
+        }
+        if rules.any(|r| r.average == Average::Body) {
+            let name = |p: &Pair| {
+                let (a, b) = (grains.body_name(p.i), grains.body_name(p.j));
+                [a.min(b), a.max(b)]
+            };
+            self.names.clear();
+            self.names.extend(self.touching.iter().map(name));
+            self.names.sort_unstable();
+            for (s, p) in self.shares.iter_mut().zip(&self.touching) {
+                if average(p) == Average::Body {
+                    let key = name(p);
+                    let first = self.names.partition_point(|n| *n < key);
+                    let past = self.names.partition_point(|n| *n <= key);
+                    *s = 1.0 / (past - first) as f64;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,183 @@
+//! What contacts remember, carried from list to list and to and from the world.
+
+use super::Fast;
+use super::lists::Short;
+use crate::ContactLaw;
+use perigrain_base::math::lanes::place;
+use perigrain_world::contacts::{Contacts, mirror};
+use std::ops::Range;
+
+/// Contacts by the index of the grain with the smaller tag, seen from that grain.
+#[derive(Clone, Debug)]
+pub struct Book {
+    start: Vec<u32>,
+    partner: Vec<u32>,
+    width: usize,
+    history: Vec<f64>,
+}
+
+impl Book {
+    /// What the contact of two grains remembers, the one of the smaller tag first.
+    #[inline]
+    pub fn get(&self, first: u32, second: u32) -> Option<&[f64]> {
+        let of: Range<usize> = self.start[first as usize] as usize..self.start[first as usize + 1] as usize;
+        let k = of.start + self.partner[of].iter().position(|p| *p == second)?;
+        Some(&self.history[k * self.width..][..self.width])
+    }
+}
+
+/// Where each tag stands.
+enum Places {
+    /// By tag; `u32::MAX` where there is none.
+    Table(Vec<u32>),
+    /// Tag and index, sorted.
+    List(Vec<[u32; 2]>),
+}
+
+impl Places {
+    fn new(tag: &[u32]) -> Self {
+        let last = tag.iter().copied().max().unwrap_or(0) as usize;
+        if last > 8 * tag.len() + 1024 {
+            let mut list: Vec<[u32; 2]> = tag.iter().zip(0..).map(|(t, k)| [*t, k]).collect();
+            list.sort_unstable();
+            return Self::List(list);
+        }
+        let mut table = vec![u32::MAX; last + 1];
+        tag.iter().zip(0..).for_each(|(t, k)| table[*t as usize] = k);
+        Self::Table(table)
+    }
+
+    fn of(&self, tag: u32) -> Option<u32> {
+        match self {
+            Self::Table(t) => t.get(tag as usize).copied().filter(|k| *k != u32::MAX),
+            Self::List(list) => list.binary_search_by_key(&tag, |[t, _]| *t).ok().map(|k| list[k][1]),
+        }
+    }
+}
+
+impl<L: ContactLaw> Fast<L> {
+    /// The contacts of the last evaluation and the known ones, for grains that stand in this order now.
+    pub(super) fn remember(&self, tag: &[u32], known: Option<&Contacts>) -> Book {
+        let places = Places::new(tag);
+        let width = self.width - 1;
+        let mut start = vec![0; tag.len() + 1];
+        let both = |a: u32, b: u32| places.of(a).zip(places.of(b));
+        self.each_live(|[a, b], _| {
+            if let Some((p, _)) = both(a, b) {
+                start[p as usize] += 1;
+            }
+        });
+        for &[a, b] in known.iter().flat_map(|c| &c.keys) {
+            if let Some((p, _)) = both(a, b) {
+                start[p as usize] += 1;
+            }
+        }
+        let mut sum = 0;
+        for s in &mut start {
+            sum += *s;
+            *s = sum;
+        }
+        let (mut partner, mut history) = (vec![0; sum as usize], vec![0.0; sum as usize * width]);
+        let mut put = |[a, b]: [u32; 2], h: &[f64]| {
+            if let Some((p, q)) = both(a, b) {
+                // Filled from behind: each start ends up at its first contact.
+                start[p as usize] -= 1;
+                let k = start[p as usize] as usize;
+                partner[k] = q;
+                let kept = width.min(h.len());
+                history[k * width..][..kept].copy_from_slice(&h[..kept]);
+            }
+        };
+        if let Some(c) = known {
+            for (k, key) in c.keys.iter().enumerate().rev() {
+                put(*key, &c.history[k * c.width..][..c.width]);
+            }
+        }
+        self.each_live(&mut put);
+        Book { start, partner, width, history }
+    }
+
+    /// Calls `f` with the tags of both grains, the smaller first, and what their contact remembers.
+    fn each_live(&self, mut f: impl FnMut([u32; 2], &[f64])) {
+        let memory = self.width - 1;
+        let mut turned = [0.0; super::MOST_MEMORY];
+        for list in &self.lists {
+            let short = &list.short;
+            for k in (0..short.i.len()).filter(|k| short.history[(k + 1) * self.width - 1] == self.now) {
+                let (i, j) = (short.i[k] as usize, place(short.w[k]));
+                let h = &short.history[k * self.width..][..memory];
+                if self.tag[i] <= self.tag[j] {
+                    f([self.tag[i], self.tag[j]], h);
+                } else {
+                    turned[..memory].copy_from_slice(h);
+                    mirror(&mut turned[..memory]);
+                    f([self.tag[j], self.tag[i]], &turned[..memory]);
+                }
+            }
+        }
+    }
+
+    /// Writes what the book holds of a pair of grains into the row of a short list: what is remembered and the step.
+    pub(super) fn look_up(&self, book: &Book, i: u32, w: u32, row: &mut [f64]) {
+        let j = place(w) as u32;
+        let memory = self.width - 1;
+        row.fill(0.0);
+        row[memory] = -1.0;
+        let first = self.tag[i as usize] <= self.tag[j as usize];
+        let found = if first { book.get(i, j) } else { book.get(j, i) };
+        if let Some(h) = found {
+            row[..memory].copy_from_slice(h);
+            row[memory] = self.now;
+            if !first {
+                mirror(&mut row[..memory]);
+            }
+        }
+    }
+
+    /// The contacts of the last evaluation that remembered, as the world keeps them.
+    pub fn contacts(&self) -> Contacts {
+        let (memory, width) = (self.laws.memory(), self.width);
+        let is_live = |s: &Short, k: usize| s.history[(k + 1) * width - 1] == self.now;
+        let live = |s: &Short| (0..s.i.len()).filter(|&k| is_live(s, k)).count();
+        let count = self.lists.iter().map(|l| live(&l.short)).sum();
+        // Keys with the number of the pair, counted through all lists.
+        let mut entries = Vec::with_capacity(count);
+        let mut first = vec![0];
+        for short in self.lists.iter().map(|l| &l.short) {
+            let before = first[first.len() - 1];
+            for k in (0..short.i.len()).filter(|&k| is_live(short, k)) {
+                let (p, q) = self.tags(short, k);
+                entries.push(([p.min(q), p.max(q)], before + k as u32));
+            }
+            first.push(before + short.i.len() as u32);
+        }
+        entries.sort_unstable();
+        let mut history = Vec::with_capacity(count * memory);
+        for (_, number) in &entries {
+            let slab = first.partition_point(|f| f <= number) - 1;
+            let (short, k) = (&self.lists[slab].short, (number - first[slab]) as usize);
+            let from = history.len();
+            history.extend_from_slice(&short.history[k * width..][..memory]);
+            let (p, q) = self.tags(short, k);
+            if p > q {
+                mirror(&mut history[from..]);
+            }
+        }
+        let mut keys: Vec<[u32; 2]> = entries.into_iter().map(|(key, _)| key).collect();
+        keys.shrink_to_fit();
+        Contacts { keys, width: memory, history }
+    }
+
+    /// The identities of a pair of a short list.
+    fn tags(&self, short: &Short, k: usize) -> (u32, u32) {
+        (self.tag[short.i[k] as usize], self.tag[place(short.w[k])])
+    }
+
+    /// Gives everything back but what contacts remember, which [`Fast::contacts`] can still tell.
+    pub fn keep_contacts(&mut self) {
+        self.lists.iter_mut().for_each(|l| l.long = Default::default());
+        self.spare = vec![];
+        self.strays.forget();
+        self.strays_of_large.forget();
+    }
+}

@@ -1,0 +1,331 @@
+//! Contacts of many grains: spatial order, short lists, several contacts at a time; the same numbers as the plain driver.
+//!
+//! Grains are sorted into slabs of cells ([`Slabs`]); the world does well to stand in that order. Each slab has a list of the
+//! pairs within the skin, and of those a shorter list of pairs within a thin second skin, which holds what contacts remember.
+//! Where sizes differ much, slabs are as thick as small grains reach, and pairs with large ones have lists of their own.
+//! A step tests the distances of the short list and evaluates the law for four or eight pairs at a time ([`form`]), stage by
+//! stage ([`strip`]); slabs in two colours keep the order of additions for any number of threads.
+
+mod deep;
+mod form;
+mod lists;
+mod memory;
+mod near;
+mod piecewise;
+mod stray;
+mod strip;
+mod sweep;
+mod turned;
+mod uneven;
+mod warmth;
+
+use super::driver::Grains;
+use super::{Advance, ContactLaw};
+pub use form::{Form, InLanes};
+use lists::{Short, Slab};
+use memory::Book;
+use perigrain_base::math::four::has_avx2;
+use perigrain_base::math::lanes::PLACE_BITS;
+use perigrain_base::math::vec3::Vec3;
+use perigrain_base::par;
+use perigrain_neigh::list::small;
+use perigrain_neigh::slabs::{Slabs, edges, shift_of};
+use perigrain_world::contacts::Contacts;
+use stray::Strays;
+
+/// How many numbers at most a contact of the fast loop remembers.
+pub const MOST_MEMORY: usize = 7;
+/// How many grains at most: a place and an image share 32 bits.
+pub const MOST_GRAINS: usize = (1 << PLACE_BITS) - 1;
+/// The second skin in units of the first.
+const THIN: f64 = 0.15;
+/// The image of what fills lists up, and how far it is away: so far that squares are infinite.
+const NOWHERE: u32 = 31;
+const FAR: f64 = 1e200;
+/// No law.
+const NONE: u8 = u8::MAX;
+
+/// Which law holds between which types.
+#[derive(Clone, Debug)]
+pub struct Laws<L> {
+    distinct: Vec<L>,
+    types: usize,
+    which: Vec<u8>,
+}
+
+impl<L: ContactLaw + PartialEq> Laws<L> {
+    /// A table from `law(a, b)` for types from 1, symmetric; `None` where there are too many different laws.
+    pub fn new(types: usize, law: impl Fn(u16, u16) -> Option<L>) -> Option<Self> {
+        let mut t = Self { distinct: vec![], types, which: vec![] };
+        for a in 1..=types as u16 {
+            for b in 1..=types as u16 {
+                let Some(law) = law(a, b) else {
+                    t.which.push(NONE);
+                    continue;
+                };
+                let at = t.distinct.iter().position(|l| *l == law).unwrap_or_else(|| {
+                    t.distinct.push(law);
+                    t.distinct.len() - 1
+                });
+                t.which.push(u8::try_from(at).ok().filter(|at| *at < NONE)?);
+            }
+        }
+        Some(t)
+    }
+
+    /// The laws, each once.
+    pub fn distinct(&self) -> &[L] {
+        &self.distinct
+    }
+}
+
+/// Room that radii growing under a list leave for what contacts of them span.
+const AMPLE: f64 = 1.25;
+
+impl<L: ContactLaw> Laws<L> {
+    /// How far apart the surfaces of grains of up to this radius can be and still hold together [length].
+    pub fn span(&self, largest: f64) -> f64 {
+        // Spans grow with the effective radius, which is at most half of the larger one.
+        let gaps = self.distinct.iter().map(|law| law.gap(0.5 * largest));
+        AMPLE * gaps.fold(0.0, f64::max)
+    }
+
+    #[inline]
+    fn which(&self, a: u16, b: u16) -> u8 {
+        self.which[(usize::from(a) - 1) * self.types + usize::from(b) - 1]
+    }
+
+    /// How many numbers a contact remembers at most.
+    pub fn memory(&self) -> usize {
+        self.distinct.iter().map(ContactLaw::memory).max().unwrap_or(0)
+    }
+}
+
+/// The box as lists see it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Lower corner [length].
+    pub lo: [f64; 3],
+    /// Edge lengths; zero where the box does not repeat.
+    pub period: [f64; 3],
+    /// How far beyond touching the lists reach [length].
+    pub reach: f64,
+    /// How far beyond touching lists reach that are made at every rebuild [length].
+    pub skin: f64,
+}
+
+/// What all grains have in common: nobody looks it up for each of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Alike {
+    radius: Option<f64>,
+    /// Where some are frozen, the mass without its sign.
+    mass: Option<f64>,
+}
+
+/// The number that all of a list are, if they are the same.
+fn one_of_all(list: &[f64]) -> Option<f64> {
+    let (first, rest) = list.split_first()?;
+    rest.iter().all(|a| a == first).then_some(*first)
+}
+
+/// Lists and contacts of all grains.
+#[derive(Clone, Debug)]
+pub struct Fast<L> {
+    laws: Laws<L>,
+    form: Form,
+    /// Identities of the grains when the lists were made.
+    tag: Vec<u32>,
+    /// Who has strayed from where short lists were made.
+    strays: Strays,
+    /// The same for lists of pairs with large grains.
+    strays_of_large: Strays,
+    /// Masses with a minus sign where frozen, if some are.
+    signed: Vec<f64>,
+    /// What all grains have in common.
+    alike: Alike,
+    /// How many periods grains have been moved since lists were made.
+    turns: Vec<[i8; 3]>,
+    /// Those of slabs, then those of pairs with large grains.
+    lists: Vec<Slab>,
+    /// How far a grain is shifted in each image, and 0; very far for what fills lists up.
+    shifts: [[f64; 4]; 32],
+    /// The second skin [length].
+    thin: f64,
+    /// How far apart surfaces of grains that stick together can be [length].
+    span: f64,
+    /// Whether long lists are younger than short ones.
+    stale: bool,
+    /// Number of the present step among those that remember; contacts of the last one carry it.
+    now: f64,
+    /// Numbers per pair in the short list: what is remembered and the step it was.
+    width: usize,
+    /// What contacts remembered before the lists were made anew.
+    book: Option<Book>,
+    /// Of the pairs that were the first to overlap too far, the one of smallest ids, and by which part of its radius.
+    pub deep: Option<([u32; 2], f64)>,
+    /// Room for new short lists.
+    spare: Vec<Short>,
+}
+
+impl<L: ContactLaw> Fast<L> {
+    /// Without grains.
+    pub fn new(laws: Laws<L>) -> Self {
+        let width = if laws.memory() <= 3 { 4 } else { 8 };
+        Self {
+            laws,
+            form: Form::here(),
+            tag: vec![],
+            strays: Strays::default(),
+            strays_of_large: Strays::default(),
+            signed: vec![],
+            alike: Alike::default(),
+            turns: vec![],
+            lists: vec![],
+            shifts: [[0.0; 4]; 32],
+            thin: 0.0,
+            span: 0.0,
+            stale: true,
+            now: 0.0,
+            width,
+            book: None,
+            deep: None,
+            spare: vec![],
+        }
+    }
+
+    /// Forgets grains and contacts.
+    pub fn clear(&mut self) {
+        *self = Self::new(self.laws.clone());
+    }
+
+    /// How far apart the surfaces of grains of up to this radius can be and still hold together [length].
+    pub fn span(&self, largest: f64) -> f64 {
+        self.laws.span(largest)
+    }
+
+    /// Number of grains the lists were made for.
+    pub fn len(&self) -> usize {
+        self.tag.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.tag.is_empty()
+    }
+
+    /// Makes all lists anew from these positions (wrapped into the box; who is elsewhere by now, see [`Fast::turn`]), pairs for
+    /// which `keep(i, j)`. Contacts of the last evaluation keep what they remember; `known` are taken in addition. An evaluation
+    /// must follow.
+    pub fn rebuild(
+        &mut self,
+        grains: &Grains,
+        frame: &Frame,
+        known: Option<&Contacts>,
+        keep: &(impl Fn(usize, usize) -> bool + Sync),
+    ) {
+        let largest = par::best(grains.radius, 0.0, f64::max);
+        self.span = self.laws.span(largest);
+        let reach = frame.reach + self.span;
+        let [edge, far] = edges(grains.radius, reach);
+        let sort = || {
+            let mut slabs = Slabs::default();
+            slabs.sort(grains.x, grains.tag, [edge, far], &frame.lo, &frame.period);
+            slabs
+        };
+        let remember = || self.remember(grains.tag, known);
+        // Work of one thread each.
+        let large =
+            || if edge == far { vec![] } else { self.find_large(grains, (frame.period, reach), keep) };
+        let ((slabs, book), large) = par::both(|| par::both(sort, remember), large);
+        // The book has what they knew: room for what is made now.
+        self.lists.iter_mut().for_each(|l| l.short = Short::default());
+        self.spare = vec![];
+        self.strays.forget();
+        self.strays_of_large.forget();
+        self.turns = vec![];
+        self.tag.clear();
+        self.tag.extend_from_slice(grains.tag);
+        for (image, shift) in self.shifts.iter_mut().take(27).enumerate() {
+            let s = shift_of(image as u32);
+            (0..3).for_each(|d| shift[d] = s[d] * frame.period[d]);
+        }
+        self.shifts[NOWHERE as usize][0] = FAR;
+        self.thin = THIN * frame.skin;
+        if edge == far {
+            self.make_long(grains, &slabs, reach, keep);
+        } else {
+            let small = small(grains.radius);
+            let both_small = |i: usize, j: usize| grains.radius[i] < small && grains.radius[j] < small;
+            self.make_long(grains, &slabs, reach, &|i, j| both_small(i, j) && keep(i, j));
+            self.add_large(&large, &slabs);
+        }
+        self.lists.iter_mut().for_each(|list| list.long.fill_up());
+        self.strays.divide(&slabs);
+        self.book = Some(book);
+        self.stale = true;
+    }
+
+    /// Evaluates all contacts for the grains' present state and adds forces and torques to `f` and `torque`. With `store`
+    /// contacts remember, else nothing is changed but forces. With `virial` returns Σ d ⊗ F: xx yy zz xy xz yz.
+    pub fn run(
+        &mut self,
+        grains: &Grains,
+        [f, torque]: [&mut [Vec3]; 2],
+        step: Advance,
+        store: bool,
+        virial: bool,
+    ) -> [f64; 6] {
+        self.begin(grains);
+        self.sweep(grains, [f, torque], step, (store, virial), None);
+        if self.deep.is_none() && self.lists.iter().any(|l| l.deep) {
+            self.deep = self.find_deep(grains, &self.lists);
+        }
+        self.now += if store { 1.0 } else { 0.0 };
+        let mut total = [0.0; 6];
+        for slab in self.lists.iter().filter(|_| virial) {
+            (0..6).for_each(|k| total[k] += slab.virial[k]);
+        }
+        total
+    }
+
+    /// Makes short lists where they are due.
+    pub(super) fn begin(&mut self, grains: &Grains) {
+        let stale = std::mem::take(&mut self.stale);
+        let mut strayed = self.strays.strayed(grains, self.thin, stale);
+        let of_large = self.strays_of_large.strayed(grains, self.thin, stale);
+        strayed.extend(of_large.into_iter().map(|k| self.strays.lists() + k));
+        self.make_short(grains, &strayed);
+    }
+
+    /// Calls `f` for lists of these weights in two rounds, for those of slabs and then for those of large grains: a list may write to
+    /// its slab and the next one.
+    fn each_list(&self, weights: &[usize], f: impl Fn(usize) + Sync) {
+        let first = self.strays.lists();
+        par::neighbours(&weights[..first], &f);
+        par::two_colours(self.strays_of_large.lists(), |k| f(first + k));
+    }
+
+    /// Takes up who is frozen and who is alike: after a [`Fast::rebuild`], and when masses, radii or who is frozen may have
+    /// changed.
+    pub fn weigh(&mut self, grains: &Grains) {
+        self.alike = Alike { radius: one_of_all(grains.radius), mass: one_of_all(grains.mass) };
+        let known = if grains.frozen.is_empty() { 0 } else { self.tag.len() };
+        self.signed.resize(known, 0.0);
+        if known > 0 {
+            par::each((&mut self.signed[..], grains.mass, grains.frozen), |_, (signed, mass, frozen)| {
+                for ((signed, m), frozen) in signed.iter_mut().zip(mass).zip(frozen) {
+                    *signed = if *frozen { -m } else { *m };
+                }
+            });
+        }
+    }
+
+    /// Pairs in long lists and in short ones.
+    pub fn pairs(&self) -> [usize; 2] {
+        let sum = |f: fn(&Slab) -> usize| self.lists.iter().map(f).sum();
+        [sum(|s| s.long.i.len()), sum(|s| s.short.i.len())]
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,158 @@
+//! Which pairs of a list are near each other, several at a time.
+
+use super::form::{Form, InLanes};
+use super::lists::FILL;
+use crate::driver::Grains;
+use perigrain_base::math::lanes::{Lanes, PLACE_BITS, place};
+use perigrain_base::math::vec3::Vec3;
+use perigrain_neigh::slabs::Run;
+
+/// Adds the numbers of those pairs of a list, filled up, to `out` whose surfaces are nearer than `reach`, in order.
+///
+/// # Safety
+/// List entries must be grains; the processor must have what the form needs.
+pub unsafe fn near(
+    form: Form,
+    grains: &Grains,
+    shifts: &[[f64; 4]; 32],
+    list: [&[u32]; 2],
+    reach: f64,
+    out: &mut Vec<u32>,
+) {
+    let at = Places::new(grains, shifts);
+    // SAFETY: passed on.
+    unsafe { form.run(Near { at, list, reach, out }) }
+}
+
+/// The loop of [`near`].
+struct Near<'a> {
+    at: Places<'a>,
+    list: [&'a [u32]; 2],
+    reach: f64,
+    out: &'a mut Vec<u32>,
+}
+
+impl InLanes for Near<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
+        let Self { at, list: [i, w], reach, out } = self;
+        for k in (0..i.len()).step_by(N) {
+            if out.capacity() - out.len() < N {
+                out.reserve(N);
+            }
+            // SAFETY: lists are filled up; entries are grains. There is room for all lanes; those that are no hits are behind
+            // the end.
+            unsafe {
+                let hits = at.closer::<N, V, false>(i.as_ptr().add(k), w.as_ptr().add(k), reach);
+                let count = V::put(hits, k as u32, out.as_mut_ptr().add(out.len()));
+                out.set_len(out.len() + count);
+            }
+        }
+    }
+}
+
+/// Grains in the order of places, coordinate by coordinate.
+pub(super) struct InOrder {
+    x: [Vec<f64>; 3],
+    radius: Vec<f64>,
+}
+
+impl InOrder {
+    /// Copies the grains in this order.
+    pub fn new(grains: &Grains, order: &[u32]) -> Self {
+        // What is read beyond the end is not used.
+        let pick = |of: &dyn Fn(usize) -> f64| {
+            let mut list = Vec::with_capacity(order.len() + FILL);
+            list.extend(order.iter().map(|&i| of(i as usize)));
+            list.extend([0.0; FILL]);
+            list
+        };
+        let x = [0, 1, 2].map(|d| pick(&|i| grains.x[i][d]));
+        Self { x, radius: pick(&|i| grains.radius[i]) }
+    }
+
+    /// Calls `hit` with those places of a run, shifted, whose surfaces are nearer than `skin` to that of place `i`, in order.
+    ///
+    /// # Safety
+    /// They must be places; the processor must have what the form needs.
+    #[inline(always)]
+    pub unsafe fn near<const N: usize, V: Lanes<N>>(
+        &self,
+        i: usize,
+        run: &Run,
+        shift: &[f64; 4],
+        skin: f64,
+        mut hit: impl FnMut(usize),
+    ) {
+        let (x, y, z, r) = (self.x[0].as_ptr(), self.x[1].as_ptr(), self.x[2].as_ptr(), self.radius.as_ptr());
+        let mut hits = [0; FILL];
+        for from in (run.from as usize..run.to as usize).step_by(N) {
+            // SAFETY: behind the last place there is room for whole lanes, and in `hits` for all of them.
+            let count = unsafe {
+                let dx = V::all(*x.add(i)) - (V::of(x.add(from).cast::<[f64; N]>().read()) + shift[0]);
+                let dy = V::all(*y.add(i)) - (V::of(y.add(from).cast::<[f64; N]>().read()) + shift[1]);
+                let dz = V::all(*z.add(i)) - (V::of(z.add(from).cast::<[f64; N]>().read()) + shift[2]);
+                let reach = V::all(*r.add(i)) + V::of(r.add(from).cast::<[f64; N]>().read()) + skin;
+                let near = (reach * reach).above(dx * dx + dy * dy + dz * dz);
+                V::put(near, from as u32, hits.as_mut_ptr())
+            };
+            // Behind the run others stand.
+            for k in hits[..count].iter().take_while(|k| **k < run.to) {
+                hit(*k as usize);
+            }
+        }
+    }
+}
+
+/// Where grains are.
+#[derive(Clone, Copy)]
+pub(super) struct Places<'a> {
+    /// Positions.
+    pub x: &'a [Vec3],
+    /// Radii.
+    pub radius: &'a [f64],
+    /// The radius of all, if it is the same.
+    pub alike: Option<f64>,
+    /// How far each image is shifted.
+    pub shifts: &'a [[f64; 4]; 32],
+}
+
+impl<'a> Places<'a> {
+    /// Those of these grains.
+    pub fn new(grains: &Grains<'a>, shifts: &'a [[f64; 4]; 32]) -> Self {
+        Self { x: grains.x, radius: grains.radius, alike: None, shifts }
+    }
+
+    /// Which of some pairs have surfaces nearer than `extra`; `ALIKE`: all have one radius, and it is known.
+    ///
+    /// # Safety
+    /// As many entries as there are lanes must be grains; the processor must have what the form needs.
+    #[inline(always)]
+    pub unsafe fn closer<const N: usize, V: Lanes<N>, const ALIKE: bool>(
+        &self,
+        i: *const u32,
+        w: *const u32,
+        extra: f64,
+    ) -> V::Mask {
+        // SAFETY: passed on.
+        unsafe {
+            let [x, y, z] = V::apart(self.x.as_ptr(), i, w, self.shifts);
+            let r = self.radius.as_ptr();
+            let radii = match self.alike {
+                Some(r) if ALIKE => V::all(r + r),
+                _ => V::pick(r, i) + V::pick(r, w),
+            };
+            let reach = radii + extra;
+            (reach * reach).above(x * x + y * y + z * z)
+        }
+    }
+
+    /// x_i − x_j of one pair [length], with the bits of [`Lanes::apart`].
+    #[inline(always)]
+    pub fn between(&self, i: usize, w: u32) -> Vec3 {
+        let (a, b, s) = (self.x[i], self.x[place(w)], self.shifts[(w >> PLACE_BITS) as usize]);
+        [a[0] - (b[0] + s[0]), a[1] - (b[1] + s[1]), a[2] - (b[2] + s[2])]
+    }
+}

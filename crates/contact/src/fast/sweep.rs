@@ -1,0 +1,284 @@
+//! The inner loop of a step: which pairs of short lists touch, and their contacts, strip by strip.
+
+use super::form::InLanes;
+use super::lists::{FILL, Short, Slab, weights};
+use super::near::Places;
+use super::strip::{STRIP, Strip, one};
+use super::{Alike, Fast, Laws, NONE};
+use crate::driver::Grains;
+use crate::{Advance, ContactLaw, Loop};
+use perigrain_base::math::four::Four;
+use perigrain_base::math::lanes::{Lanes, place};
+use perigrain_base::math::vec3::Vec3;
+use perigrain_base::par;
+use std::ops::Range;
+
+/// Hits that laws are evaluated for at a time where there are several laws: part of the order of additions.
+const BLOCK: usize = 64;
+/// Room for hits: some blocks and what a test may put behind them.
+const ROOM: usize = 4 * BLOCK;
+
+/// What the loops read and where they write.
+pub(super) struct Cx<'a, L> {
+    pub laws: &'a Laws<L>,
+    pub x: &'a [Vec3],
+    pub v: &'a [Vec3],
+    pub omega: &'a [Vec3],
+    pub radius: &'a [f64],
+    pub mass: &'a [f64],
+    /// What all have in common.
+    pub alike: Alike,
+    pub kind: &'a [u16],
+    pub shifts: &'a [[f64; 4]; 32],
+    pub force: par::Shared<'a, Vec3>,
+    pub torque: par::Shared<'a, Vec3>,
+    pub step: Advance,
+    pub now: f64,
+    pub store: bool,
+    pub virial: bool,
+    /// Whether some grains are frozen.
+    pub frozen: bool,
+    /// How far apart surfaces of grains that stick together can be [length].
+    pub span: f64,
+}
+
+impl<L> Cx<'_, L> {
+    /// Where grains are.
+    pub fn places(&self) -> Places<'_> {
+        Places { x: self.x, radius: self.radius, alike: self.alike.radius, shifts: self.shifts }
+    }
+}
+
+impl<L: ContactLaw> Cx<'_, L> {
+    /// Puts those hits first that touch, or have touched in the last step and still hold together; how many they are.
+    fn holding<const W: usize>(&self, short: &Short, hits: &mut [u32]) -> usize {
+        let mut count = 0;
+        for at in 0..hits.len() {
+            let k = hits[at];
+            hits[count] = k;
+            count += usize::from(self.holds::<W>(short, k as usize));
+        }
+        count
+    }
+
+    fn holds<const W: usize>(&self, short: &Short, k: usize) -> bool {
+        let (i, w) = (short.i[k] as usize, short.w[k]);
+        let (j, d) = (place(w), self.places().between(i, w));
+        let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        let (ri, rj) = (self.radius[i], self.radius[j]);
+        let sum = ri + rj;
+        if square < sum * sum {
+            return true;
+        }
+        if short.history[(k + 1) * W - 1] != self.now {
+            return false;
+        }
+        let law = self.laws.distinct.get(usize::from(self.laws.which(self.kind[i], self.kind[j])));
+        let far = sum + law.map_or(0.0, |law| law.gap(ri * rj / sum));
+        square < far * far
+    }
+}
+
+impl<L: ContactLaw> Fast<L> {
+    /// Adds up the forces of all contacts, or of those of one list.
+    pub(super) fn sweep(
+        &mut self,
+        grains: &Grains,
+        [f, torque]: [&mut [Vec3]; 2],
+        step: Advance,
+        (store, virial): (bool, bool),
+        only: Option<usize>,
+    ) {
+        let (width, form) = (self.width, self.form);
+        let mut lists = std::mem::take(&mut self.lists);
+        let weights = if only.is_none() { weights(&lists) } else { vec![] };
+        let slabs = par::Shared::new(&mut lists);
+        let cx = Cx {
+            laws: &self.laws,
+            x: grains.x,
+            v: grains.v,
+            omega: grains.omega,
+            radius: grains.radius,
+            mass: if self.signed.is_empty() { grains.mass } else { &self.signed },
+            alike: self.alike,
+            kind: grains.kind,
+            shifts: &self.shifts,
+            force: par::Shared::new(f),
+            torque: par::Shared::new(torque),
+            step,
+            now: self.now,
+            store,
+            virial,
+            frozen: !self.signed.is_empty(),
+            span: self.span,
+        };
+        let contacts = |k: usize| {
+            // SAFETY: each part writes its own slab, and forces of grains in it and the next one, which each_list keeps
+            // apart; list entries are grains; AVX only where there is AVX.
+            unsafe {
+                let slab = &mut slabs.get(k..k + 1)[0];
+                match width {
+                    4 => form.run(Contacts::<L, 4> { cx: &cx, slab }),
+                    _ => form.run(Contacts::<L, 8> { cx: &cx, slab }),
+                }
+            }
+        };
+        match only {
+            None => self.each_list(&weights, contacts),
+            Some(k) => contacts(k),
+        }
+        self.lists = lists;
+    }
+}
+
+/// All contacts of a slab, which remember `W` − 1 numbers at most.
+struct Contacts<'a, 'b, L, const W: usize> {
+    cx: &'a Cx<'b, L>,
+    slab: &'a mut Slab,
+}
+
+impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
+    type Out = ();
+
+    #[inline(always)]
+    unsafe fn run<const N: usize, V: Lanes<N>>(self) {
+        let Self { cx, slab } = self;
+        (slab.virial, slab.deep, slab.touching) = ([0.0; 6], false, 0);
+        let at = cx.places();
+        let mut hits = [0; ROOM];
+        let (mut count, mut k, end) = (0, 0, slab.short.i.len());
+        let mut strip = None;
+        loop {
+            // By the same steps in all forms: where it stops, blocks of what holds end.
+            while k < end && count + FILL <= ROOM {
+                let sure = (end - k).min((ROOM - count) / FILL * FILL);
+                let pairs = Hits { short: &slab.short, at: &at, span: cx.span, hits: &mut hits, count };
+                // SAFETY: lists are filled up; entries are grains. There is room for so many.
+                count = unsafe {
+                    match at.alike {
+                        Some(_) => pairs.of::<N, V, true>(k..k + sure),
+                        None => pairs.of::<N, V, false>(k..k + sure),
+                    }
+                };
+                k += sure;
+            }
+            let ready = if k == end { count } else { count - count % BLOCK };
+            // What holds is moved to the front of what is ready; the rest stays where it is.
+            let holding =
+                if cx.span > 0.0 { cx.holding::<W>(&slab.short, &mut hits[..ready]) } else { ready };
+            slab.touching += holding;
+            if holding > 0 {
+                // SAFETY: passed on. Not before something touches: in loose scenes most slabs have no contact.
+                let strip = match &mut strip {
+                    Some(strip) => strip,
+                    none => none.insert(unsafe { Strip::<V, N>::new(cx.alike) }),
+                };
+                // SAFETY: passed on.
+                unsafe { evaluate::<N, V, L, W>(cx, slab, strip, &hits[..holding]) };
+            }
+            if k == end {
+                break;
+            }
+            hits.copy_within(ready..count, 0);
+            count -= ready;
+        }
+    }
+}
+
+/// What touches, behind what is known to touch.
+struct Hits<'a, 'b> {
+    short: &'a Short,
+    at: &'a Places<'b>,
+    span: f64,
+    hits: &'a mut [u32; ROOM],
+    count: usize,
+}
+
+impl Hits<'_, '_> {
+    /// Tests some pairs of the short list; how many touch by then.
+    ///
+    /// # Safety
+    /// The range must hold whole groups of pairs of the list, for which there must be room; for `ALIKE` see [`Places::closer`].
+    #[inline(always)]
+    unsafe fn of<const N: usize, V: Lanes<N>, const ALIKE: bool>(self, pairs: Range<usize>) -> usize {
+        let Self { short, at, span, hits, mut count } = self;
+        for k in pairs.step_by(N) {
+            // SAFETY: passed on. There is room for all lanes; the next ones overwrite what stands past `count`.
+            unsafe {
+                let (i, w) = (short.i.as_ptr().add(k), short.w.as_ptr().add(k));
+                let near = at.closer::<N, V, ALIKE>(i, w, span);
+                count += V::put(near, k as u32, hits.as_mut_ptr().add(count));
+            }
+        }
+        count
+    }
+}
+
+/// The contacts of these hits.
+#[inline(always)]
+unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
+    cx: &Cx<L>,
+    slab: &mut Slab,
+    strip: &mut Strip<V, N>,
+    hits: &[u32],
+) {
+    // SAFETY: passed on.
+    unsafe {
+        if let [law] = &cx.laws.distinct[..] {
+            return of_law::<N, V, L, W>(cx, law, slab, strip, hits);
+        }
+        let mut own = [0; BLOCK];
+        for block in hits.chunks(BLOCK) {
+            for (number, law) in cx.laws.distinct.iter().enumerate() {
+                let mut count = 0;
+                for &k in block {
+                    let (i, w) = (slab.short.i[k as usize], slab.short.w[k as usize]);
+                    let which = cx.laws.which(cx.kind[i as usize], cx.kind[place(w)]);
+                    own[count] = k;
+                    count += usize::from(which != NONE && usize::from(which) == number);
+                }
+                of_law::<N, V, L, W>(cx, law, slab, strip, &own[..count]);
+            }
+        }
+    }
+}
+
+/// Contacts of one law: several at a time or, where the law wants that, one by one.
+#[inline(always)]
+unsafe fn of_law<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
+    cx: &Cx<L>,
+    law: &L,
+    slab: &mut Slab,
+    strip: &mut Strip<V, N>,
+    hits: &[u32],
+) {
+    // SAFETY: passed on.
+    unsafe {
+        if !law.in_lanes() {
+            for k in hits {
+                one::<L, W>(cx, law, slab, *k as usize);
+            }
+            return;
+        }
+        let many = Many::<N, V, L, W> { cx, slab, strip, hits };
+        if W == 4 && V::Row::FAST { law.within(many) } else { many.run(law) }
+    }
+}
+
+/// The loop over contacts of one law, several at a time.
+struct Many<'a, 'b, const N: usize, V, L, const W: usize> {
+    cx: &'a Cx<'b, L>,
+    slab: &'a mut Slab,
+    strip: &'a mut Strip<V, N>,
+    hits: &'a [u32],
+}
+
+impl<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize> Loop<L> for Many<'_, '_, N, V, L, W> {
+    #[inline(always)]
+    fn run(self, law: &L) {
+        for pairs in self.hits.chunks(STRIP) {
+            // SAFETY: hits are pairs of the list, and their entries grains.
+            unsafe { self.strip.run::<L, W>(self.cx, law, self.slab, pairs) };
+        }
+    }
+}

@@ -1,0 +1,360 @@
+//! The granular law: normal, damping, tangential, rolling and twisting models, mixed for a pair of types.
+
+use super::elastic::{Elastic, Form, Push};
+use super::powder;
+use super::slider::Look;
+use super::tangential::{Drag, Friction, Spring};
+use super::turning::{Rolling, Twisting};
+use super::{
+    Advance, ContactLaw, Damping, Geometry, Heat, Loop, Motion, Normal, Stored, Tangential, Wrench,
+    split_velocity,
+};
+use perigrain_base::math::real::Real;
+use perigrain_base::math::vec3::{add, cross, scale, sub};
+use perigrain_world::Compat;
+
+/// Where the tangential force takes hold of the spheres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Arm {
+    /// In the middle of the overlap: R − δ/2.
+    #[default]
+    Middle,
+    /// At the full radius, as `pair_style gran/*` has it.
+    Radius,
+}
+
+/// What a deck says about contacts of one pair of types.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Model {
+    /// Along the normal.
+    pub normal: Normal,
+    /// Dissipation along the normal.
+    pub damping: Damping,
+    /// Across the normal.
+    pub tangential: Tangential,
+    /// Against rolling.
+    pub rolling: Rolling,
+    /// Against twisting.
+    pub twisting: Twisting,
+    /// Conduction of heat.
+    pub heat: Heat,
+    /// `limit_damping`: the normal force never pulls.
+    pub limit_damping: bool,
+    /// Lever arms of the tangential force.
+    pub arm: Arm,
+}
+
+/// Two models of different kinds cannot be mixed: which words differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unmixable(pub &'static str, pub &'static str);
+
+/// The numbers of `pair_style gran/*` and `fix wall/gran hooke|hooke/history|hertz/history`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Classic {
+    /// Normal and tangential stiffness [force/length; pressure for `hertz`].
+    pub stiffness: [f64; 2],
+    /// Normal and tangential damping [1/time; 1/(time length) for `hertz`].
+    pub gamma: [f64; 2],
+    /// Coefficient of friction.
+    pub mu: f64,
+    /// Whether the normal force never pulls.
+    pub limit_damping: bool,
+}
+
+impl Model {
+    /// A model that resists neither rolling nor twisting.
+    pub fn new(normal: Normal, damping: Damping, tangential: Tangential) -> Self {
+        Self {
+            normal,
+            damping,
+            tangential,
+            rolling: Rolling::None,
+            twisting: Twisting::None,
+            heat: Heat::None,
+            limit_damping: false,
+            arm: Arm::Middle,
+        }
+    }
+
+    /// `hooke`, `hooke/history` or `hertz/history` of the older styles: mass-proportional damping, springs projected
+    /// into the tangent plane, full lever arms.
+    pub fn classic(hertz: bool, history: bool, c: &Classic) -> Self {
+        let [stiffness, kt] = c.stiffness;
+        let [eta, gamma_t] = c.gamma;
+        let (normal, damping, spring) = if hertz {
+            (Normal::Hertz { stiffness, eta }, Damping::Viscoelastic, Friction::MindlinClassic)
+        } else {
+            (Normal::Hooke { stiffness, eta }, Damping::MassVelocity, Friction::LinearHistoryClassic)
+        };
+        let kind = if history { spring } else { Friction::LinearNohistory };
+        let tangential = Tangential { kind, stiffness: Some(kt), drag: Drag::Own(gamma_t), mu: c.mu };
+        Self { limit_damping: c.limit_damping, arm: Arm::Radius, ..Self::new(normal, damping, tangential) }
+    }
+
+    /// The law for a pair of types whose model was given.
+    pub fn law(&self, compat: Compat) -> Granular {
+        self.pair(self, false, compat)
+    }
+
+    /// The law for a pair of types of which only the like pairs were given, by LAMMPS' rules: geometric means,
+    /// moduli as E* and G*, `limit_damping` if either has it.
+    ///
+    /// # Errors
+    /// When the models are not of one kind.
+    pub fn mixed(&self, other: &Model, compat: Compat) -> Result<Granular, Unmixable> {
+        for (a, b) in self.names().into_iter().zip(other.names()) {
+            if a != b {
+                return Err(Unmixable(a, b));
+            }
+        }
+        Ok(self.pair(other, true, compat))
+    }
+
+    fn names(&self) -> [&'static str; 6] {
+        let m = self;
+        [
+            m.normal.name(),
+            m.damping.name(),
+            m.tangential.name(),
+            m.rolling.name(),
+            m.twisting.name(),
+            m.heat.name(),
+        ]
+    }
+
+    fn pair(&self, other: &Model, mixed: bool, compat: Compat) -> Granular {
+        let eta = super::normal::geometric(self.normal.eta(), other.normal.eta());
+        let eta = self.damping.constant(eta, self.normal.linear(), compat);
+        let normals = [&self.normal, &other.normal];
+        let elastic = self.normal.elastic(&other.normal);
+        let twisting = self.twisting.mixed(&other.twisting);
+        let spring = self.tangential.spring(&other.tangential, normals, eta, mixed, compat);
+        let by_radius = !matches!(elastic.form, Form::None | Form::Hooke)
+            || self.damping == Damping::Viscoelastic
+            || spring.by_radius()
+            || twisting == Twisting::Marshall;
+        Granular {
+            elastic,
+            damping: self.damping,
+            damping_constant: eta,
+            limit_damping: self.limit_damping || other.limit_damping,
+            spring,
+            rolling: self.rolling.mixed(&other.rolling),
+            twisting,
+            heat: self.heat.mixed(&other.heat),
+            arm: self.arm,
+            by_radius,
+            compat,
+        }
+    }
+}
+
+/// The granular contact law of one pair of types (LAMMPS' `pair_style granular`, `gran/*` and walls), F on i from j:
+/// F = (F_n − η v_n) n + F_t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Granular {
+    /// Along the normal.
+    pub elastic: Elastic,
+    /// How η is made.
+    pub damping: Damping,
+    /// Its constant.
+    pub damping_constant: f64,
+    /// Whether the normal force never pulls.
+    pub limit_damping: bool,
+    /// Across the normal.
+    pub spring: Spring,
+    /// Against rolling.
+    pub rolling: Rolling,
+    /// Against twisting.
+    pub twisting: Twisting,
+    /// Conduction of heat.
+    pub heat: Heat,
+    /// Lever arms of the tangential force.
+    pub arm: Arm,
+    /// Whether some part asks for the radius of the contact.
+    by_radius: bool,
+    /// Whose faults it has.
+    compat: Compat,
+}
+
+impl ContactLaw for Granular {
+    /// The tangential spring of i against j, then the rolling displacement, then the angle of twisting.
+    #[inline(always)]
+    fn memory(&self) -> usize {
+        self.before_told() + self.told()
+    }
+
+    fn in_lanes(&self) -> bool {
+        self.elastic.form != Form::Mdr
+    }
+
+    fn gap(&self, curvature: f64) -> f64 {
+        self.elastic.gap(curvature)
+    }
+
+    fn conductance(&self, g: &Geometry) -> Option<f64> {
+        (self.heat != Heat::None).then(|| self.heat.conductance(self.elastic.radius(g)))
+    }
+
+    fn springs(&self, g: &Geometry) -> [f64; 2] {
+        [self.elastic.tangent(g).max(0.0), self.spring.present(self.elastic.radius(g))]
+    }
+
+    fn stored(&self, g: &Geometry, history: &[f64]) -> Stored {
+        if self.elastic.form == Form::Mdr {
+            let push = history.get(self.before_told()).copied().unwrap_or(0.0);
+            let a = self.elastic.radius(g);
+            return Stored { push, normal: 0.0, across: self.spring.energy(a, history) };
+        }
+        let a = self.elastic.radius(g);
+        let push = self.elastic.push(g, a).force;
+        Stored { push, normal: self.elastic.energy(g), across: self.spring.energy(a, history) }
+    }
+
+    #[inline(always)]
+    fn contact<R: Real>(
+        &self,
+        g: &Geometry<R>,
+        i: &Motion<R>,
+        j: &Motion<R>,
+        history: &mut [R],
+        step: Advance,
+    ) -> Wrench<R> {
+        let zero = g.overlap.like(0.0);
+        let a = if self.by_radius { self.elastic.radius(g) } else { zero };
+        let mut push = self.elastic.push(g, a);
+        if self.elastic.form == Form::Mdr {
+            let told = &history[self.before_told()..];
+            push = Push { force: told[0], secant: told[1], pull_off: zero };
+        }
+        let form = self.damping.form(a, push.secant, g.mass);
+
+        let (v_n, v_across) = split_velocity(g, i, j);
+        let mut normal_force = push.force - form * self.damping_constant * v_n;
+        if self.limit_damping {
+            normal_force = normal_force.most(zero);
+        }
+        // Friction of grains that stick together counts from where they would let go (Thornton 1991).
+        let sticky = matches!(self.elastic.form, Form::Dmt | Form::Jkr);
+        let carried = if sticky { push.force + push.pull_off * 2.0 } else { normal_force }.abs();
+
+        // Slip of the two surfaces: v_t − (R_i ω_i + R_j ω_j) × n, full radii as in LAMMPS.
+        let spin = add(scale(g.radii[0], i.spin), scale(g.radii[1], j.spin));
+        let slip = sub(v_across, cross(spin, g.normal));
+        let (own, rest) = history.split_at_mut(self.before_turning());
+        let friction = self.spring.force(g.normal, a, form, slip, carried, own, step);
+
+        let lever = cross(friction, g.normal);
+        let mut w = Wrench {
+            force: add(scale(normal_force, g.normal), friction),
+            torque_i: scale(self.arm(g, 0), lever),
+            torque_j: scale(self.arm(g, 1), lever),
+        };
+        if self.rolling.memory() + self.twisting.memory() > 0 {
+            self.turn(g, i, j, [a, form, carried], rest, step, &mut w);
+        }
+        w
+    }
+
+    fn again(&self, setup: bool) -> Self {
+        Self { spring: self.spring.again(setup), ..*self }
+    }
+
+    #[inline(always)]
+    fn within(&self, work: impl Loop<Self>) {
+        use {Damping::*, Form::*, Friction::*};
+        if let Some(law) = self.known(Hertz, Viscoelastic, MindlinClassic, Arm::Radius) {
+            return work.run(&law);
+        }
+        if let Some(law) = self.known(Hooke, MassVelocity, LinearHistoryClassic, Arm::Radius) {
+            return work.run(&law);
+        }
+        if let Some(law) = self.known(Hertz, Tsuji, Mindlin, Arm::Middle) {
+            return work.run(&law);
+        }
+        work.run(self);
+    }
+}
+
+impl Granular {
+    /// Itself, where it has this form and no resistance to rolling and twisting; the form is then known to the compiler.
+    #[inline(always)]
+    fn known(&self, form: Form, damping: Damping, kind: Friction, arm: Arm) -> Option<Self> {
+        let plain = self.rolling == Rolling::None && self.twisting == Twisting::None;
+        let same = self.elastic.form == form
+            && self.damping == damping
+            && self.spring.kind == kind
+            && self.arm == arm
+            && self.spring.look == Look::First;
+        (same && plain).then_some(Self {
+            elastic: Elastic { form, ..self.elastic },
+            damping,
+            spring: Spring { kind, look: Look::First, ..self.spring },
+            rolling: Rolling::None,
+            twisting: Twisting::None,
+            arm,
+            by_radius: kind.by_radius() || form == Form::Hertz,
+            ..*self
+        })
+    }
+
+    /// How far from the centre of i (0) or j (1) the tangential force acts.
+    #[inline(always)]
+    fn arm<R: Real>(&self, g: &Geometry<R>, k: usize) -> R {
+        match self.arm {
+            Arm::Middle => g.radii[k] - g.overlap * 0.5,
+            Arm::Radius => g.radii[k],
+        }
+    }
+
+    /// How many numbers stand before those that plastic grains are told.
+    #[inline(always)]
+    fn before_told(&self) -> usize {
+        let own = self.before_turning() + self.rolling.memory() + self.twisting.memory();
+        // The first three are mirrored.
+        if self.elastic.form == Form::Mdr { own.max(3) } else { own }
+    }
+
+    /// How many numbers plastic grains are told.
+    #[inline(always)]
+    fn told(&self) -> usize {
+        if self.elastic.form == Form::Mdr { powder::TOLD } else { 0 }
+    }
+
+    /// How many numbers stand before those of rolling and twisting, which are the same seen from j: at least the
+    /// three that are not.
+    #[inline(always)]
+    fn before_turning(&self) -> usize {
+        let own = self.spring.memory();
+        if self.rolling.memory() + self.twisting.memory() > 0 { own.max(3) } else { own }
+    }
+
+    /// Adds the torques against rolling and twisting.
+    #[inline(always)]
+    fn turn<R: Real>(
+        &self,
+        g: &Geometry<R>,
+        i: &Motion<R>,
+        j: &Motion<R>,
+        [a, form, carried]: [R; 3],
+        history: &mut [R],
+        step: Advance,
+        w: &mut Wrench<R>,
+    ) {
+        let omega = sub(i.spin, j.spin);
+        let (roll, rest) = history.split_at_mut(self.rolling.memory());
+        if self.rolling != Rolling::None {
+            let torque = self.rolling.torque(g, omega, carried, roll, step);
+            w.torque_i = add(w.torque_i, torque);
+            w.torque_j = sub(w.torque_j, torque);
+        }
+        if let Some(angle) = rest.first_mut().filter(|_| self.twisting != Twisting::None) {
+            let about = perigrain_base::math::vec3::dot(omega, g.normal);
+            let size =
+                self.twisting.torque(&self.spring, [a, form], about, carried, angle, step, self.compat);
+            let torque = scale(size, g.normal);
+            w.torque_i = add(w.torque_i, torque);
+            w.torque_j = sub(w.torque_j, torque);
+        }
+    }
+}

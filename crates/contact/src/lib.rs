@@ -1,0 +1,200 @@
+//! Contact of spheres: what two touching grains (or a grain and a wall) do to each other.
+//!
+//! A law is a pure function of local data: [`Geometry`] of the contact, the [`Motion`] of both sides and
+//! the contact's history give a [`Wrench`]. Pair and wall drivers call the same laws.
+
+pub mod bodies;
+pub mod damping;
+pub mod driver;
+pub mod elastic;
+pub mod fast;
+pub mod heat;
+pub mod law;
+pub mod mesh;
+pub mod normal;
+pub mod powder;
+pub mod slider;
+pub mod tangential;
+pub mod turning;
+pub mod walls;
+
+pub use damping::Damping;
+pub use heat::Heat;
+pub use law::{Arm, Classic, Granular, Model, Unmixable};
+pub use normal::Normal;
+pub use tangential::{Drag, Friction, Tangential};
+pub use turning::{Rolling, Sds, Twisting};
+
+use perigrain_base::math::real::Real;
+use perigrain_base::math::vec3::{Vec3, sub};
+
+/// Where and how two spheres i and j touch; a wall is a j of radius 0 and infinite mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Geometry<R = f64> {
+    /// Unit vector from j to i.
+    pub normal: Vec3<R>,
+    /// Depth R_i + R_j − |x_i − x_j| [length]; negative only where an existing contact still holds (cohesion).
+    pub overlap: R,
+    /// Radii of i and j [length].
+    pub radii: [R; 2],
+    /// Effective radius R̄, by default R_i R_j / (R_i + R_j) [length].
+    pub curvature: R,
+    /// Effective mass m̄ = m_i m_j / (m_i + m_j) [mass].
+    pub mass: R,
+}
+
+impl Geometry {
+    /// The contact of two spheres with centres `d` = x_i − x_j apart; `None` when they are further apart than
+    /// their radii and `gap` (what an existing cohesive contact spans) together.
+    #[inline]
+    pub fn of_spheres(d: Vec3, radii: [f64; 2], masses: [f64; 2], gap: f64) -> Option<Self> {
+        let [ri, rj] = radii;
+        let sum = ri + rj;
+        let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        if square >= (sum + gap) * (sum + gap) {
+            return None;
+        }
+        let distance = square.sqrt();
+        Some(Self {
+            normal: perigrain_base::math::vec3::scale(1.0 / distance, d),
+            overlap: sum - distance,
+            radii,
+            curvature: ri * rj / sum,
+            mass: masses[0] * masses[1] / (masses[0] + masses[1]),
+        })
+    }
+
+    /// The same contact with another effective radius, for instance that of a sphere on a flat body.
+    #[must_use]
+    pub fn with_curvature(self, curvature: f64) -> Self {
+        Self { curvature, ..self }
+    }
+}
+
+/// How one side of a contact moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion<R = f64> {
+    /// Velocity of the centre (of a wall: of its surface at the contact) [length/time].
+    pub velocity: Vec3<R>,
+    /// Angular velocity [1/time]; zero for peridynamic particles and walls.
+    pub spin: Vec3<R>,
+}
+
+/// The part of a step that contact history sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Advance {
+    /// Step size [time].
+    pub dt: f64,
+    /// Whether history moves on: no in the setup of a run, where forces are only evaluated.
+    pub history: bool,
+}
+
+/// What a contact does: `force` on i (its opposite on j) and the torques on both.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench<R = f64> {
+    /// Force on i [force].
+    pub force: Vec3<R>,
+    /// Torque on i about its centre.
+    pub torque_i: Vec3<R>,
+    /// Torque on j about its centre.
+    pub torque_j: Vec3<R>,
+}
+
+/// The conservative side of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stored {
+    /// Elastic and cohesive force along the normal, without damping [force].
+    pub push: f64,
+    /// Work that this force can give back [energy].
+    pub normal: f64,
+    /// Energy of the tangential spring [energy].
+    pub across: f64,
+}
+
+impl Wrench {
+    /// The same contact shared among several: every part times `s`.
+    #[must_use]
+    pub fn scaled(self, s: f64) -> Self {
+        use perigrain_base::math::vec3::scale;
+        Self {
+            force: scale(s, self.force),
+            torque_i: scale(s, self.torque_i),
+            torque_j: scale(s, self.torque_j),
+        }
+    }
+}
+
+/// A law of contact between spheres, written once for one contact and for lanes of contacts.
+pub trait ContactLaw: Copy + Sync {
+    /// How many numbers a contact remembers while it lasts; a contact that begins remembers zeros. Seen from j the
+    /// first three are negative, the others the same (`world::contacts::mirror`).
+    fn memory(&self) -> usize;
+
+    /// Whether `contact` may be asked for several lanes at once; else it is asked for single contacts only.
+    fn in_lanes(&self) -> bool {
+        true
+    }
+
+    /// How far apart the surfaces may be before an existing contact ends (cohesion) [length].
+    fn gap(&self, _curvature: f64) -> f64 {
+        0.0
+    }
+
+    /// Heat that flows from the warmer to the colder side, over the difference of temperatures
+    /// [energy/(time temperature)]; `None` where the law knows no heat.
+    fn conductance(&self, _g: &Geometry) -> Option<f64> {
+        None
+    }
+
+    /// Stiffness of the contact along and across the normal as it is now, dF/dδ and k_t [force/length].
+    fn springs(&self, _g: &Geometry) -> [f64; 2] {
+        [0.0; 2]
+    }
+
+    /// What the contact holds, given what it remembers.
+    fn stored(&self, _g: &Geometry, _history: &[f64]) -> Stored {
+        Stored::default()
+    }
+
+    /// Force and torques of one contact; `history`, [`ContactLaw::memory`] numbers, moves on with it.
+    fn contact<R: Real>(
+        &self,
+        g: &Geometry<R>,
+        i: &Motion<R>,
+        j: &Motion<R>,
+        history: &mut [R],
+        step: Advance,
+    ) -> Wrench<R>;
+
+    /// The law that gives a contact the force of its last evaluation once more, from the history that this one left
+    /// behind; `setup`: the evaluation was that of a run's setup.
+    #[must_use]
+    fn again(&self, _setup: bool) -> Self {
+        *self
+    }
+
+    /// Hands the law to a loop. A law of many forms does so in one place for each frequent form, where the form is
+    /// written out: the loop is then compiled without the others.
+    #[inline(always)]
+    fn within(&self, work: impl Loop<Self>) {
+        work.run(self);
+    }
+}
+
+/// A loop over contacts of one law.
+pub trait Loop<L> {
+    /// Runs it.
+    fn run(self, law: &L);
+}
+
+/// Relative velocity of i against j, split along and across the normal.
+#[inline(always)]
+fn split_velocity<R: Real>(g: &Geometry<R>, i: &Motion<R>, j: &Motion<R>) -> (R, Vec3<R>) {
+    use perigrain_base::math::vec3::{dot, scale};
+    let relative = sub(i.velocity, j.velocity);
+    let along = dot(relative, g.normal);
+    (along, sub(relative, scale(along, g.normal)))
+}
+
+#[cfg(test)]
+mod tests;

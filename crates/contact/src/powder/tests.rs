@@ -1,0 +1,175 @@
+//! Plastic grains against closed forms.
+
+use super::side::Ellipse;
+use super::*;
+use std::f64::consts::PI;
+
+const SOFT: Material =
+    Material { young: 1e6, poisson: 0.3, yield_stress: 1e4, cohesion: 0.0, confinement: 0.0 };
+
+/// The forces while a plane goes through these depths of a sphere of radius 1.
+fn forces(m: &Material, depths: impl Iterator<Item = f64>) -> Vec<(Side, Pressed)> {
+    let mut side = Side::default();
+    let press = |d: f64| {
+        side.go(d, 1.0, 1.0, None);
+        let pressed = side.press(m, 1.0, Manner::default());
+        (side, pressed)
+    };
+    depths.map(press).collect()
+}
+
+fn there_and_back(most: f64) -> impl Iterator<Item = f64> {
+    (1..=400).chain((0..400).rev()).map(move |k| most * f64::from(k) / 400.0)
+}
+
+#[test]
+fn a_grain_that_never_yields_is_hertz_at_small_depths() {
+    let m = Material { yield_stress: 1e12, ..SOFT };
+    for d in [1e-6, 1e-5, 1e-4] {
+        let force = forces(&m, [d].into_iter())[0].1.force;
+        let hertz = 4.0 / 3.0 * m.plane() * d.powf(1.5);
+        // The ellipse of height 2R and width 2R departs from Hertz' parabola by 3δ/(40 R).
+        let off = force / hertz - 1.0;
+        assert!((off + 0.075 * d).abs() < 0.01 * d + 1e-14, "{d}: {off}");
+    }
+}
+
+#[test]
+fn first_loading_beyond_yield_is_hardness_times_area() {
+    for (side, p) in forces(&SOFT, (1..60).map(|k| 0.005 * f64::from(k))).into_iter().skip(1) {
+        let d = side.depth;
+        let area = PI * (2.0 * d - d * d) + side.offset;
+        let expected = SOFT.hardness(d, 1.0) * area;
+        // The ellipse is pressed flat: acos(-1) and a root of 0, some ulp.
+        assert!(side.yielded && (p.force / expected - 1.0).abs() < 1e-13, "{} {expected}", p.force);
+        assert!((side.area / area - 1.0).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn no_cycle_gains_energy() {
+    for cohesion in [0.0, 1.0, 5.0] {
+        let m = Material { cohesion, ..SOFT };
+        let path = forces(&m, there_and_back(0.05));
+        let (mut spent, mut before) = (0.0, (0.0, 0.0));
+        for (side, p) in &path {
+            spent += 0.5 * (p.force + before.1) * (side.depth - before.0);
+            before = (side.depth, p.force);
+        }
+        let most = path.iter().map(|(_, p)| p.force).fold(0.0, f64::max);
+        // It flows: of the work, about half of largest force times depth, most is lost.
+        assert!(spent > 0.3 * most * 0.05, "{cohesion}: {spent}");
+        let gain = path.windows(2).skip(400).any(|w| w[1].1.force > w[0].1.force && w[0].1.force > 0.0);
+        assert!(!gain, "a force grows while its plane goes back");
+    }
+}
+
+#[test]
+fn unloading_and_loading_again_go_the_same_way() {
+    let way = (1..=100).chain((20..100).rev()).chain(21..=100).map(|k| 5e-4 * f64::from(k));
+    let path = forces(&SOFT, way);
+    for k in 21..100_usize {
+        let (down, up) = (path[199 - k].1.force, path[k + 159].1.force);
+        assert!((down - up).abs() <= 1e-12 * down.abs().max(1.0), "{k}: {down} {up}");
+    }
+}
+
+#[test]
+fn adhesion_of_elastic_grains_is_that_of_johnson_kendall_and_roberts() {
+    let m = Material { yield_stress: 1e12, cohesion: 1.0, ..SOFT };
+    // Loading to 0.02 and back by small steps.
+    let path = forces(&m, there_and_back(0.02));
+    for (side, p) in path.iter().skip(640).filter(|(s, p)| s.stuck > 0.0 && p.force != 0.0) {
+        // JKR: F = 4 E a³/(3R) − √(8π γ E a³), δ = a²/R − √(2π γ a/E); small a beside R.
+        let (a, e) = (side.stuck, m.plane());
+        let force = 4.0 / 3.0 * e * a * a * a - (8.0 * PI * m.cohesion * e).sqrt() * a.powf(1.5);
+        let depth = a * a - (2.0 * PI * m.cohesion * a / e).sqrt();
+        // Parabola against ellipse: relative errors of order (a/R)².
+        let scale = 4.0 / 3.0 * e * a * a * a;
+        assert!((p.force - force).abs() < a * a * scale, "{} {force}", p.force);
+        assert!((side.depth - depth).abs() < a * a * a * a, "{} {depth}", side.depth);
+    }
+}
+
+#[test]
+fn the_ellipse_is_smooth_where_its_series_begins() {
+    let shape = Ellipse { a: 4.0, b: 2.0 };
+    // Slopes on both sides agree as far as differences of 1e-6 can tell.
+    let x = 4.0 * super::side::SMALL;
+    let at = |d: f64| shape.force(1.0, d);
+    let [low, high] = [[x - 2e-6, x - 1e-6], [x + 1e-6, x + 2e-6]].map(|[a, b]| (at(b) - at(a)) / (b - a));
+    assert!((low / high - 1.0).abs() < 1e-4, "{low} {high}");
+    assert!((at(x * (1.0 - 1e-15)) / at(x * (1.0 + 1e-15)) - 1.0).abs() < 1e-13);
+}
+
+#[test]
+fn a_side_survives_its_memory() {
+    let (side, _) = *forces(&SOFT, there_and_back(0.03)).get(500).unwrap();
+    let mut memory = [0.0; side::WIDTH];
+    side.write(&mut memory);
+    assert_eq!(Side::read(&memory), side);
+    let mut both: Vec<f64> = memory.iter().copied().chain([7.0; side::WIDTH]).chain([0.1]).collect();
+    perigrain_world::contacts::turn_plastic(&mut both);
+    assert_eq!((both[0], both[side::WIDTH], both[PAIR - 1]), (7.0, memory[0], 0.1));
+}
+
+/// The rule of [`screen::Screen`], grain by grain.
+fn open_one_by_one(lines: &[screen::Line], k: usize) -> f64 {
+    let line = lines[k];
+    // From grain `own` to grain `to`: direction and length of their contact.
+    let spoke = |own: u32, to: u32| {
+        lines.iter().find_map(|l| match l.ends {
+            [i, j] if (i, j) == (own, to) => Some((l.normal.map(|a| -a), l.length)),
+            [i, j] if (i, j) == (to, own) => Some((l.normal, l.length)),
+            _ => None,
+        })
+    };
+    let [i, j] = line.ends;
+    let closed = |between: u32| {
+        let Some(((from, near), (on, far))) = spoke(i, between).zip(spoke(between, j)) else { return 0.0 };
+        if near >= line.length || far >= line.length {
+            return 0.0;
+        }
+        let angle = (-perigrain_base::math::vec3::dot(from, on)).clamp(-1.0, 1.0).acos();
+        1.0 / (1.0 + (-50.0 * (angle / PI - 0.5)).exp())
+    };
+    (1.0 - (0..200).map(closed).sum::<f64>()).max(0.0)
+}
+
+#[test]
+fn grains_between_grains_close_their_contacts() {
+    // A heap of places that come again and again in the same order: some 10 neighbours each, more grains than bits of a word.
+    let place = |k: u32| [0.618, 0.755, 0.329].map(|a| 5.0 * (f64::from(k) * a).fract());
+    let mut lines = vec![];
+    for i in 0..200 {
+        for j in i + 1..200 {
+            let d = perigrain_base::math::vec3::sub(place(i), place(j));
+            let length = perigrain_base::math::vec3::length(d);
+            if length < 1.4 {
+                lines.push(screen::Line { ends: [i, j], normal: d.map(|a| a / length), length });
+            }
+        }
+    }
+    let mut open = vec![];
+    screen::Screen::default().open(&lines, 200, &mut open);
+    assert!(lines.len() > 1000 && open.iter().filter(|o| **o < 0.5).count() > 100);
+    for (k, open) in open.iter().enumerate() {
+        // The same terms in another order, a dozen at most.
+        assert!((open - open_one_by_one(&lines, k)).abs() < 1e-14, "{k}");
+    }
+}
+
+#[test]
+fn the_radius_at_which_a_contact_tears_solves_its_equation() {
+    for (a, b, energy) in
+        [(4.0, 2.0, 1e-6), (0.01, 0.3, 0.2), (1.0, 1.0, 1.0), (1e-4, 2e-5, 1e-12), (1e-6, 1.0, 10.0)]
+    {
+        let r = adhesion::least_radius(&Ellipse { a, b }, energy);
+        let (grows, falls) = (4.0 * a * a * r * r * r, energy * b * b * (0.25 * b * b - r * r));
+        // Where the radius is all but B/2 the right side is a difference of like numbers.
+        assert!(
+            r > 0.0 && r <= 0.5 * b && (grows - falls).abs() <= 1e-14 * (grows + energy * b.powi(4)),
+            "{a} {b} {energy}: {r}"
+        );
+    }
+}

@@ -1,0 +1,282 @@
+//! Friction across the normal: the models decks name and their constants for one pair of types.
+
+use super::normal::{effective_shear, effective_young, geometric};
+use super::slider::{Look, Memory, Slider};
+use super::{Advance, Normal};
+use perigrain_base::math::real::Real;
+use perigrain_base::math::vec3::{Vec3, length, scale};
+use perigrain_world::Compat;
+
+/// The kinds of friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Friction {
+    /// `none`: smooth spheres.
+    None,
+    /// `linear_nohistory`: F_t = −η_t v_t.
+    LinearNohistory,
+    /// `linear_history`: F_t = −k_t ξ − η_t v_t.
+    LinearHistory,
+    /// `linear_history_classic`: the same, ξ projected into the tangent plane as by `pair_style gran/hooke/history`.
+    LinearHistoryClassic,
+    /// `mindlin`: F_t = −k_t a ξ − η_t v_t.
+    Mindlin,
+    /// `mindlin_classic`: the same, ξ projected as by `pair_style gran/hertz/history`.
+    MindlinClassic,
+    /// `mindlin/force`: the force is remembered, dF_t = −k_t a v_t dt.
+    MindlinForce,
+    /// `mindlin_rescale`: as `mindlin`; ξ shrinks with the contact radius (Thornton et al. 2013, eq. 18b).
+    MindlinRescale,
+    /// `mindlin_rescale/force`: as `mindlin/force`; the force shrinks with the contact radius.
+    MindlinRescaleForce,
+}
+
+impl Friction {
+    /// All of them.
+    pub const ALL: [Friction; 9] = [
+        Friction::None,
+        Friction::LinearNohistory,
+        Friction::LinearHistory,
+        Friction::LinearHistoryClassic,
+        Friction::Mindlin,
+        Friction::MindlinClassic,
+        Friction::MindlinForce,
+        Friction::MindlinRescale,
+        Friction::MindlinRescaleForce,
+    ];
+
+    /// The word decks use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Friction::None => "none",
+            Friction::LinearNohistory => "linear_nohistory",
+            Friction::LinearHistory => "linear_history",
+            Friction::LinearHistoryClassic => "linear_history_classic",
+            Friction::Mindlin => "mindlin",
+            Friction::MindlinClassic => "mindlin_classic",
+            Friction::MindlinForce => "mindlin/force",
+            Friction::MindlinRescale => "mindlin_rescale",
+            Friction::MindlinRescaleForce => "mindlin_rescale/force",
+        }
+    }
+
+    /// Whether k_t is multiplied by the contact radius.
+    #[inline(always)]
+    pub fn by_radius(self) -> bool {
+        !matches!(
+            self,
+            Friction::None
+                | Friction::LinearNohistory
+                | Friction::LinearHistory
+                | Friction::LinearHistoryClassic
+        )
+    }
+
+    /// Whether k_t may follow from the material (`NULL`).
+    pub fn takes_material(self) -> bool {
+        self.by_radius() && self != Friction::MindlinClassic
+    }
+
+    #[inline(always)]
+    fn rescales(self) -> bool {
+        matches!(self, Friction::MindlinRescale | Friction::MindlinRescaleForce)
+    }
+
+    fn memory(self) -> Memory {
+        match self {
+            Friction::LinearHistoryClassic | Friction::MindlinClassic => Memory::Projected,
+            Friction::MindlinForce | Friction::MindlinRescaleForce => Memory::Force,
+            _ => Memory::Displacement,
+        }
+    }
+}
+
+/// Damping across the normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drag {
+    /// η_t = x_gamma η_n.
+    Times(f64),
+    /// η_t from a constant of its own, in the form of the normal damping (`pair_style gran/*`).
+    Own(f64),
+}
+
+/// A tangential model with the coefficients a deck gives it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tangential {
+    /// Its kind.
+    pub kind: Friction,
+    /// k_t [pressure, or force/length for linear models]; `None` (NULL): 8 G* from the normal model's material.
+    pub stiffness: Option<f64>,
+    /// Tangential damping.
+    pub drag: Drag,
+    /// Coefficient of friction.
+    pub mu: f64,
+}
+
+impl Tangential {
+    /// Smooth spheres.
+    pub const SMOOTH: Tangential =
+        Tangential { kind: Friction::None, stiffness: Some(0.0), drag: Drag::Times(0.0), mu: 0.0 };
+
+    /// The usual coefficients of this kind of friction.
+    pub fn new(kind: Friction, stiffness: Option<f64>, x_gamma: f64, mu: f64) -> Self {
+        Self { kind, stiffness, drag: Drag::Times(x_gamma), mu }
+    }
+
+    /// The word decks use.
+    pub fn name(&self) -> &'static str {
+        self.kind.name()
+    }
+
+    /// The spring between grains of two types whose normal damping has the constant `eta`: coefficients mix
+    /// geometrically, G* as Mindlin's theory wants. LAMMPS 22Jul2025 takes E* of the pair for both moduli of a mixed
+    /// pair and √(ν_i ν_j) for both ratios, against its own manual, which `mixed` and `compat` together reproduce.
+    pub fn spring(
+        &self,
+        other: &Tangential,
+        normals: [&Normal; 2],
+        eta: f64,
+        mixed: bool,
+        compat: Compat,
+    ) -> Spring {
+        let stiffness = match (self.stiffness, other.stiffness) {
+            (Some(k1), Some(k2)) => geometric(k1, k2),
+            _ => 8.0 * shear(normals, mixed && compat == Compat::Lammps),
+        };
+        let damping = match (self.drag, other.drag) {
+            (Drag::Times(x), Drag::Times(y)) => geometric(x, y) * eta,
+            (Drag::Own(a), Drag::Own(b)) => geometric(a, b),
+            (Drag::Own(a), Drag::Times(_)) | (Drag::Times(_), Drag::Own(a)) => a,
+        };
+        let classic = matches!(self.kind, Friction::LinearHistoryClassic | Friction::MindlinClassic);
+        let loose = compat == Compat::Lammps && classic && matches!(self.drag, Drag::Times(_));
+        Spring {
+            kind: self.kind,
+            stiffness,
+            damping,
+            mu: geometric(self.mu, other.mu),
+            loose,
+            look: Look::First,
+        }
+    }
+}
+
+/// G* of two materials; zero for normal models without one (decks that ask for it are refused).
+fn shear(normals: [&Normal; 2], artefact: bool) -> f64 {
+    let [Some((e1, nu1)), Some((e2, nu2))] = normals.map(Normal::material) else { return 0.0 };
+    if artefact {
+        let (e, nu) = (effective_young([e1, e2], [nu1, nu2]), geometric(nu1, nu2));
+        return effective_shear([e, e], [nu, nu]);
+    }
+    effective_shear([e1, e2], [nu1, nu2])
+}
+
+/// Friction with a slider, ready for contacts of one pair of types.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring {
+    /// Its kind.
+    pub kind: Friction,
+    /// k_t [pressure, or force/length for linear models].
+    pub stiffness: f64,
+    /// Constant of the tangential damping, in the form of the normal one.
+    pub damping: f64,
+    /// Coefficient of friction.
+    pub mu: f64,
+    /// LAMMPS 22Jul2025's `…_classic` springs of granular models and walls: the contact radius stiffens
+    /// `linear_history_classic` too, and is forgotten where a spring that slides is shortened.
+    pub loose: bool,
+    /// Whether a contact is looked at once more.
+    pub look: Look,
+}
+
+impl Spring {
+    /// Whether its stiffness grows with the radius of the contact.
+    #[inline(always)]
+    pub fn by_radius(&self) -> bool {
+        self.kind.by_radius() || self.loose
+    }
+
+    /// How many numbers it remembers: a displacement or force and, to shrink it, the contact radius.
+    #[inline(always)]
+    pub fn memory(&self) -> usize {
+        match self.kind {
+            Friction::None | Friction::LinearNohistory => 0,
+            kind if kind.rescales() => 4,
+            _ => 3,
+        }
+    }
+
+    /// The spring that gives the force of its last evaluation once more, from what this one left behind.
+    #[must_use]
+    pub fn again(&self, setup: bool) -> Self {
+        // All others give the same force twice.
+        let look = if self.loose { Look::Again { setup } } else { Look::First };
+        Self { look, ..*self }
+    }
+
+    /// k_t of a contact of radius `a` [force/length]; 0 of friction without springs.
+    pub fn present(&self, a: f64) -> f64 {
+        match self.kind {
+            Friction::None | Friction::LinearNohistory => 0.0,
+            _ if self.by_radius() => self.stiffness * a,
+            _ => self.stiffness,
+        }
+    }
+
+    /// The energy of a spring that remembers `history`: ½ k_t ξ², or F²/(2 k_t) where a force is remembered.
+    pub fn energy(&self, a: f64, history: &[f64]) -> f64 {
+        let stiffness = self.present(a);
+        let [x, y, z, ..] = *history else { return 0.0 };
+        let square = x * x + y * y + z * z;
+        match self.kind.memory() {
+            Memory::Force if stiffness > 0.0 => 0.5 * square / stiffness,
+            Memory::Force => 0.0,
+            _ => 0.5 * stiffness * square,
+        }
+    }
+
+    /// The tangential force on i, at most `mu` times `carried`, the normal force that counts for friction; `a`: radius
+    /// of the contact, `form`: the normal damping over its constant, `v`: slip velocity.
+    #[inline(always)]
+    pub fn force<R: Real>(
+        &self,
+        n: Vec3<R>,
+        a: R,
+        form: R,
+        v: Vec3<R>,
+        carried: R,
+        history: &mut [R],
+        step: Advance,
+    ) -> Vec3<R> {
+        let limit = carried * self.mu;
+        let damping = form * self.damping;
+        let stiffness = if self.by_radius() { a * self.stiffness } else { a.like(self.stiffness) };
+        match self.kind {
+            Friction::None => [a.like(0.0); 3],
+            Friction::LinearNohistory => {
+                let speed = length(v);
+                let size = limit.least(damping * speed);
+                let factor = R::choose(speed.above(a.like(0.0)), size / speed, a.like(0.0));
+                scale(-factor, v)
+            }
+            kind => {
+                let mut xi = [history[0], history[1], history[2]];
+                if kind.rescales() {
+                    let shrinks = history[3].above(a);
+                    xi = scale(R::choose(shrinks, a / history[3], a.like(1.0)), xi);
+                    // Where LAMMPS stores what it computes in a setup, it forgets that the spring has shrunk, which shrinks again.
+                    if step.history {
+                        history[3] = a;
+                    }
+                }
+                let slack = if self.loose { a.like(self.stiffness) } else { stiffness };
+                let slider = Slider { n, stiffness, slack, damping, limit, v };
+                if let Look::Again { setup } = self.look {
+                    return slider.again(xi, setup);
+                }
+                let force = slider.force(&mut xi, kind.memory(), step);
+                history[..3].copy_from_slice(&xi);
+                force
+            }
+        }
+    }
+}

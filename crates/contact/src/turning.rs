@@ -1,0 +1,175 @@
+//! Resistance to rolling and twisting: a spring, a dashpot and a slider for the difference of spins.
+
+use super::normal::geometric;
+use super::slider::{Memory, Slider};
+use super::tangential::Spring;
+use super::{Advance, Geometry};
+use perigrain_base::math::real::Real;
+use perigrain_base::math::vec3::{Vec3, cross, scale};
+use perigrain_world::Compat;
+
+/// The three coefficients of a spring-dashpot-slider.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sds {
+    /// Stiffness [force/length; torque for twisting].
+    pub stiffness: f64,
+    /// Damping [mass/time; torque·time for twisting].
+    pub damping: f64,
+    /// Coefficient of friction [–; length for twisting].
+    pub mu: f64,
+}
+
+impl Sds {
+    fn mixed(&self, other: &Sds) -> Sds {
+        Sds {
+            stiffness: geometric(self.stiffness, other.stiffness),
+            damping: geometric(self.damping, other.damping),
+            mu: geometric(self.mu, other.mu),
+        }
+    }
+}
+
+/// Resistance to rolling (Luding 2008): a pseudo-force between the surfaces that only makes torques.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Rolling {
+    /// `none`.
+    #[default]
+    None,
+    /// `sds k gamma mu`.
+    Sds(Sds),
+}
+
+impl Rolling {
+    /// The word decks use.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Rolling::None => "none",
+            Rolling::Sds(_) => "sds",
+        }
+    }
+
+    /// For a pair of types with models of one kind.
+    pub fn mixed(&self, other: &Rolling) -> Rolling {
+        match (self, other) {
+            (Rolling::Sds(a), Rolling::Sds(b)) => Rolling::Sds(a.mixed(b)),
+            _ => Rolling::None,
+        }
+    }
+
+    /// How many numbers it remembers: the rolling displacement.
+    #[inline(always)]
+    pub fn memory(&self) -> usize {
+        if *self == Rolling::None { 0 } else { 3 }
+    }
+
+    /// The torque on i against the rolling velocity R̄ ω × n (Wang et al. 2015), ω the difference of spins, at most
+    /// `mu` times the normal force `carried` at the arm R̄; its opposite acts on j.
+    #[inline(always)]
+    pub fn torque<R: Real>(
+        &self,
+        g: &Geometry<R>,
+        omega: Vec3<R>,
+        carried: R,
+        history: &mut [R],
+        step: Advance,
+    ) -> Vec3<R> {
+        let Rolling::Sds(c) = self else { return [carried.like(0.0); 3] };
+        let like = |x: f64| carried.like(x);
+        let v = scale(g.curvature, cross(omega, g.normal));
+        let slider = Slider {
+            n: g.normal,
+            stiffness: like(c.stiffness),
+            slack: like(c.stiffness),
+            damping: like(c.damping),
+            limit: carried * c.mu,
+            v,
+        };
+        let mut xi = [history[0], history[1], history[2]];
+        let force = slider.force(&mut xi, Memory::Displacement, step);
+        // Not even LAMMPS, whose setup shortens the spring of friction, does so with this one.
+        if step.history {
+            history[..3].copy_from_slice(&xi);
+        }
+        scale(g.curvature, cross(g.normal, force))
+    }
+}
+
+/// Resistance to twisting about the normal.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Twisting {
+    /// `none`.
+    #[default]
+    None,
+    /// `sds k gamma mu`.
+    Sds(Sds),
+    /// `marshall` (Marshall 2009): k_t a²/2, η_t a²/2 and (2/3) a μ from the tangential model.
+    Marshall,
+}
+
+impl Twisting {
+    /// The word decks use.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Twisting::None => "none",
+            Twisting::Sds(_) => "sds",
+            Twisting::Marshall => "marshall",
+        }
+    }
+
+    /// For a pair of types with models of one kind.
+    pub fn mixed(&self, other: &Twisting) -> Twisting {
+        match (self, other) {
+            (Twisting::Sds(a), Twisting::Sds(b)) => Twisting::Sds(a.mixed(b)),
+            _ => *self,
+        }
+    }
+
+    /// How many numbers it remembers: the angle.
+    #[inline(always)]
+    pub fn memory(&self) -> usize {
+        usize::from(*self != Twisting::None)
+    }
+
+    /// The torque about the normal on i, against the twisting velocity `omega` about it, at most a friction
+    /// coefficient times the normal force `carried`; `a`: radius of the contact, `form`: the normal damping over its
+    /// constant.
+    ///
+    /// LAMMPS 22Jul2025 gives a sliding twist the direction of the velocity even where the spring pushes the other
+    /// way, which `compat` reproduces.
+    #[inline(always)]
+    pub fn torque<R: Real>(
+        &self,
+        spring: &Spring,
+        [a, form]: [R; 2],
+        omega: R,
+        carried: R,
+        angle: &mut R,
+        step: Advance,
+        compat: Compat,
+    ) -> R {
+        let (zero, one) = (a.like(0.0), a.like(1.0));
+        let [stiffness, damping, limit] = match self {
+            Twisting::None => return zero,
+            Twisting::Sds(c) => [zero.like(c.stiffness), zero.like(c.damping), carried * c.mu],
+            Twisting::Marshall => {
+                let half = a * a * 0.5;
+                [
+                    half * spring.stiffness,
+                    half * (form * spring.damping),
+                    a * (2.0 / 3.0 * spring.mu) * carried,
+                ]
+            }
+        };
+        if step.history {
+            *angle = *angle + omega * step.dt;
+        }
+        let trial = -(stiffness * *angle) - damping * omega;
+        let slides = trial.abs().above(limit);
+        let ask = if compat == Compat::Lammps { -omega } else { trial };
+        let sign = R::choose(ask.above(zero), one, R::choose(zero.above(ask), -one, zero));
+        let sliding = limit * sign;
+        let carried = -(sliding + damping * omega) / stiffness;
+        *angle = R::choose(R::both(slides, stiffness.above(zero)), carried, *angle);
+        R::choose(slides, sliding, trial)
+    }
+}

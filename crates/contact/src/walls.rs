@@ -1,0 +1,386 @@
+//! Contacts of spheres with walls: who touches where, what each contact remembers, what it does.
+
+mod together;
+
+use super::fast::{Form, MOST_MEMORY};
+use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
+use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
+use perigrain_base::par;
+use perigrain_world::contacts::{Contacts, WallSpring};
+pub use perigrain_world::region::Near;
+use together::Together;
+
+/// Fewer contacts than these are evaluated one by one: lanes that repeat a contact are in vain.
+const FEW: usize = 3;
+
+/// Something spheres lean on.
+pub trait Wall: Sync {
+    /// Whether a sphere at `x` may come nearer than `reach` to the wall, from whatever side; generous where that is
+    /// not easily told. `spare` is room.
+    fn close(&self, x: Vec3, reach: f64, spare: &mut Vec<Near>) -> bool;
+
+    /// Finds the places of the wall nearer than `reach` to `x`, at most one for each of its parts.
+    fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>);
+
+    /// Whether a sticky sphere that touched there holds on until it is torn off.
+    fn holds(&self, _near: &Near) -> bool {
+        true
+    }
+
+    /// Whether a contact with part `to` may go on with the springs of one with part `from` that ends.
+    fn passes(&self, _from: u32, _to: u32) -> bool {
+        false
+    }
+}
+
+/// The particles as walls see them: columns of equal length.
+#[derive(Clone, Copy)]
+pub struct Spheres<'a> {
+    /// Positions [length].
+    pub x: &'a [Vec3],
+    /// Velocities [length/time].
+    pub v: &'a [Vec3],
+    /// Angular velocities [1/time].
+    pub omega: &'a [Vec3],
+    /// Radii [length].
+    pub radius: &'a [f64],
+    /// Masses.
+    pub mass: &'a [f64],
+    /// Identities.
+    pub tag: &'a [u32],
+}
+
+/// A sphere that touches a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Which particle.
+    pub grain: u32,
+    /// Where.
+    pub near: Near,
+}
+
+/// One evaluation of all contacts with a wall; keeps its room from step to step.
+#[derive(Clone, Debug, Default)]
+pub struct WallSweep {
+    /// Particles that may come near the wall, by their tags.
+    list: Vec<u32>,
+    touching: Vec<Touch>,
+    keys: Vec<[u32; 2]>,
+    wrenches: Vec<Wrench>,
+    /// Heat into the particles, contact by contact.
+    heat: Vec<f64>,
+    spare: Vec<f64>,
+    near: Vec<Near>,
+}
+
+impl WallSweep {
+    /// Lists the particles with a bit of `group` that may come within `skin` of touching the wall.
+    pub fn list<L: ContactLaw>(
+        &mut self,
+        wall: &dyn Wall,
+        grains: &Spheres,
+        mask: &[u32],
+        group: u32,
+        law: &L,
+        skin: f64,
+    ) {
+        let some = |range: std::ops::Range<usize>| {
+            let mut spare = vec![];
+            let member = |i: &usize| mask[*i] & group != 0;
+            let near = |i: &usize| {
+                let radius = grains.radius[*i];
+                wall.close(grains.x[*i], radius + law.gap(radius) + skin, &mut spare)
+            };
+            range.filter(member).filter(near).map(|i| i as u32).collect::<Vec<u32>>()
+        };
+        self.list = par::reduce(grains.x.len(), some, join).unwrap_or_default();
+        self.list.sort_unstable_by_key(|i| grains.tag[*i as usize]);
+    }
+
+    /// Evaluates the contacts among the listed particles; `memory` follows: contacts that ended are forgotten.
+    pub fn run<L: ContactLaw>(
+        &mut self,
+        wall: &dyn Wall,
+        grains: &Spheres,
+        law: &L,
+        memory: &mut Contacts,
+        step: Advance,
+    ) {
+        self.meet(wall, grains, law, memory);
+        self.act(grains, law, memory, step);
+    }
+
+    /// Finds the contacts among the listed particles, the first half of [`WallSweep::run`].
+    pub fn meet<L: ContactLaw>(&mut self, wall: &dyn Wall, grains: &Spheres, law: &L, memory: &mut Contacts) {
+        self.find(wall, grains, law, memory);
+        let width = law.memory();
+        self.keys.clear();
+        self.keys.extend(self.touching.iter().map(|t| [grains.tag[t.grain as usize], t.near.part]));
+        self.hand_over(wall, memory);
+        memory.carry(&self.keys, width, &mut self.spare);
+    }
+
+    /// Evaluates the contacts that were found, the second half.
+    pub fn act<L: ContactLaw>(&mut self, grains: &Spheres, law: &L, memory: &mut Contacts, step: Advance) {
+        let width = law.memory();
+        self.wrenches.clear();
+        self.wrenches.resize(self.touching.len(), Wrench::default());
+        let history = par::Rows { data: &mut memory.history[..], width };
+        par::each(
+            (&mut self.wrenches[..], history, &self.touching[..]),
+            |_, (wrenches, history, touching)| {
+                if touching.len() >= FEW && law.in_lanes() && width <= MOST_MEMORY {
+                    let together = Together { law, grains, touching, history: history.data, wrenches, step };
+                    // SAFETY: this processor has what its own form needs.
+                    return unsafe { Form::here().run(together) };
+                }
+                for (k, (w, t)) in wrenches.iter_mut().zip(touching).enumerate() {
+                    let i = t.grain as usize;
+                    let motion = Motion { velocity: grains.v[i], spin: grains.omega[i] };
+                    let wall = Motion { velocity: t.near.velocity, spin: [0.0; 3] };
+                    let geometry = geometry(&t.near, grains.radius[i], grains.mass[i]);
+                    *w =
+                        law.contact(&geometry, &motion, &wall, &mut history.data[k * width..][..width], step);
+                }
+            },
+        );
+    }
+
+    fn find<L: ContactLaw>(&mut self, wall: &dyn Wall, grains: &Spheres, law: &L, memory: &Contacts) {
+        let list = &self.list[..];
+        let find = |range: std::ops::Range<usize>, touching: &mut Vec<Touch>, near: &mut Vec<Near>| {
+            for &grain in &list[range] {
+                let i = grain as usize;
+                let radius = grains.radius[i];
+                near.clear();
+                // Hollow walls have larger effective radii, so that cohesion may reach farther than on flat ones.
+                wall.near(grains.x[i], radius + 2.0 * law.gap(radius), near);
+                near.sort_by_key(|n| n.part);
+                let touches = |n: &&Near| {
+                    n.distance < radius
+                        || (wall.holds(n)
+                            && n.distance < radius + law.gap(effective(radius, n.radius))
+                            && memory.get([grains.tag[i], n.part]).is_some())
+                };
+                touching.extend(near.iter().filter(touches).map(|n| Touch { grain, near: *n }));
+            }
+        };
+        self.touching.clear();
+        if list.len() <= par::CHUNK {
+            return find(0..list.len(), &mut self.touching, &mut self.near);
+        }
+        let some = |range| {
+            let mut touching = vec![];
+            find(range, &mut touching, &mut vec![]);
+            touching
+        };
+        self.touching = par::reduce(list.len(), some, join).unwrap_or_default();
+    }
+
+    /// Gives contacts that begin the springs of contacts of the same particle that end, where the wall lets them pass.
+    fn hand_over(&self, wall: &dyn Wall, memory: &mut Contacts) {
+        if memory.keys == self.keys {
+            return;
+        }
+        for key in &self.keys {
+            let [tag, part] = *key;
+            if memory.keys.binary_search(key).is_ok() {
+                continue;
+            }
+            let from = memory.keys.partition_point(|k| k[0] < tag);
+            let to = memory.keys.partition_point(|k| k[0] <= tag);
+            let ends = |old: &[u32; 2]| self.keys.binary_search(old).is_err() && wall.passes(old[1], part);
+            let Some(at) = memory.keys[from..to].iter().position(ends).map(|k| from + k) else { continue };
+            memory.keys[at][1] = part;
+            // Into its place among the particle's contacts.
+            let mut at = at;
+            while at > from && memory.keys[at - 1] > memory.keys[at] {
+                swap(memory, at - 1);
+                at -= 1;
+            }
+            while at + 1 < to && memory.keys[at] > memory.keys[at + 1] {
+                swap(memory, at);
+                at += 1;
+            }
+        }
+    }
+
+    /// Adds forces and torques to the particles; what the wall feels: force, and torque about `center`.
+    pub fn scatter(&self, f: &mut [Vec3], torque: &mut [Vec3], x: &[Vec3], center: Vec3) -> [f64; 6] {
+        let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+        for (t, w) in self.contacts() {
+            let i = t.grain as usize;
+            f[i] = add(f[i], w.force);
+            torque[i] = add(torque[i], w.torque_i);
+            force = sub(force, w.force);
+            moment = sub(moment, add(w.torque_i, cross(sub(x[i], center), w.force)));
+        }
+        [force[0], force[1], force[2], moment[0], moment[1], moment[2]]
+    }
+
+    /// Adds the heat that a wall of this temperature gives to the particles to `flow`: what it loses in all.
+    pub fn conduct<L: ContactLaw>(
+        &mut self,
+        grains: &Spheres,
+        law: &L,
+        wall: f64,
+        temperature: &[f64],
+        flow: &mut [f64],
+    ) -> f64 {
+        self.heat.clear();
+        for t in &self.touching {
+            let i = t.grain as usize;
+            let conductance = law.conductance(&geometry(&t.near, grains.radius[i], grains.mass[i]));
+            let into = conductance.unwrap_or(0.0) * (wall - temperature[i]);
+            flow[i] += into;
+            self.heat.push(into);
+        }
+        self.heat.iter().sum()
+    }
+
+    /// The heat that contact `k` of the last evaluation gave to its particle.
+    pub fn heat(&self, k: usize) -> f64 {
+        self.heat.get(k).copied().unwrap_or(0.0)
+    }
+
+    /// The contacts of the last evaluation and what they do.
+    pub fn contacts(&self) -> impl Iterator<Item = (&Touch, &Wrench)> {
+        self.touching.iter().zip(&self.wrenches)
+    }
+
+    /// The springs of the contacts of the last evaluation.
+    pub fn springs<L: ContactLaw>(&self, grains: &Spheres, law: &L) -> Vec<WallSpring> {
+        let spring = |t: &Touch| {
+            let i = t.grain as usize;
+            let g = geometry(&t.near, grains.radius[i], grains.mass[i]);
+            let (tag, arm) = (grains.tag[i], t.near.distance);
+            WallSpring { tag, normal: g.normal, stiffness: law.springs(&g), arm }
+        };
+        self.touching.iter().map(spring).collect()
+    }
+
+    /// The contacts that were found, and their keys.
+    pub fn touching(&self) -> (&[Touch], &[[u32; 2]]) {
+        (&self.touching, &self.keys)
+    }
+
+    /// How many particles are looked at in each step.
+    pub fn listed(&self) -> usize {
+        self.list.len()
+    }
+}
+
+/// Lets contact `at` and the next one change places.
+fn swap(memory: &mut Contacts, at: usize) {
+    memory.keys.swap(at, at + 1);
+    let width = memory.width;
+    let (first, second) = memory.history[at * width..][..2 * width].split_at_mut(width);
+    first.swap_with_slice(second);
+}
+
+fn join<T>(mut a: Vec<T>, mut b: Vec<T>) -> Vec<T> {
+    a.append(&mut b);
+    a
+}
+
+/// R̄ of a sphere on a wall with this radius of curvature: R where the wall is flat, or too hollow for the sphere.
+fn effective(radius: f64, wall: f64) -> f64 {
+    if wall == 0.0 {
+        return radius;
+    }
+    let curvature = radius * wall / (radius + wall);
+    if curvature > 0.0 && curvature.is_finite() { curvature } else { radius }
+}
+
+/// The contact as laws see it: the wall is a sphere of radius 0 and infinite mass.
+fn geometry(near: &Near, radius: f64, mass: f64) -> Geometry {
+    Geometry {
+        normal: near.normal,
+        overlap: radius - near.distance,
+        radii: [radius, 0.0],
+        curvature: effective(radius, near.radius),
+        mass,
+    }
+}
+
+/// Planes across one axis, facing each other: part 0 the lower, part 1 the upper one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Planes {
+    /// The axis, 0 to 2.
+    pub axis: usize,
+    /// Where they are.
+    pub lo: Option<f64>,
+    /// Where they are.
+    pub hi: Option<f64>,
+    /// How they move.
+    pub velocity: Vec3,
+    /// Of two planes only the nearer one acts, as LAMMPS has it.
+    pub nearer: bool,
+}
+
+impl Wall for Planes {
+    fn close(&self, x: Vec3, reach: f64, _spare: &mut Vec<Near>) -> bool {
+        let near = |plane: Option<f64>| plane.is_some_and(|p| (x[self.axis] - p).abs() < reach);
+        near(self.lo) || near(self.hi)
+    }
+
+    fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
+        let height = |plane: Option<f64>, sign: f64| plane.map(|p| sign * (x[self.axis] - p));
+        let sides = [height(self.lo, 1.0), height(self.hi, -1.0)];
+        let hidden = match sides {
+            [Some(lo), Some(hi)] if self.nearer => Some(usize::from(lo < hi)),
+            _ => None,
+        };
+        for (part, sign) in [1.0, -1.0].into_iter().enumerate().filter(|(part, _)| hidden != Some(*part)) {
+            let Some(height) = sides[part] else { continue };
+            let mut normal = [0.0; 3];
+            // What is beyond the plane is pushed on, as from its other side (LAMMPS).
+            normal[self.axis] = if height < 0.0 { -sign } else { sign };
+            let (distance, part) = (height.abs(), part as u32);
+            if distance < reach {
+                out.push(Near { part, normal, distance, radius: 0.0, velocity: self.velocity });
+            }
+        }
+    }
+}
+
+/// An endless cylinder about the z axis, felt from both sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tube {
+    /// Its radius.
+    pub radius: f64,
+    /// How it moves as a whole.
+    pub velocity: Vec3,
+    /// Speed of its surface about the axis: clockwise seen from above where positive.
+    pub spin: f64,
+    /// Sticky spheres hold on from outside only, as LAMMPS has it.
+    pub lammps: bool,
+}
+
+impl Wall for Tube {
+    fn close(&self, x: Vec3, reach: f64, _spare: &mut Vec<Near>) -> bool {
+        (x[0].hypot(x[1]) - self.radius).abs() < reach
+    }
+
+    fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
+        let r = (x[0] * x[0] + x[1] * x[1]).sqrt();
+        let depth = self.radius - r;
+        let away = if r > 0.0 { [x[0] / r, x[1] / r, 0.0] } else { [1.0, 0.0, 0.0] };
+        if depth.abs() < reach {
+            out.push(Near {
+                part: 0,
+                normal: scale(if depth >= 0.0 { -1.0 } else { 1.0 }, away),
+                distance: depth.abs(),
+                radius: if depth > 0.0 { -2.0 * self.radius } else { 2.0 * self.radius },
+                velocity: add(self.velocity, [self.spin * away[1], -self.spin * away[0], 0.0]),
+            });
+        }
+    }
+
+    fn holds(&self, near: &Near) -> bool {
+        !self.lammps || near.radius > 0.0
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,375 @@
+//! What all dumps share: which particles, in which order, when, and into which file.
+
+mod clock;
+mod keywords;
+
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::attribute::{Attribute, Bound, Frame};
+use clock::Clock;
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::args::blame;
+use perigrain_lang::{Args, ValueRef};
+use perigrain_out::dump::{Data, Target, sort_rows};
+use perigrain_out::file::{Pattern, trouble};
+use perigrain_out::image::View;
+use perigrain_out::vtu::Series;
+use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, SealCx, Wants};
+
+pub use keywords::{column, unknown};
+use perigrain_world::{Domain, GroupId, World};
+
+/// What outlives a run: open files and what belongs to them.
+#[derive(Debug)]
+pub struct State {
+    /// The file or files.
+    pub target: Target,
+    /// The latest step written.
+    pub last: Option<i64>,
+    /// The list of snapshots of a `vtk` dump.
+    pub series: Option<Series>,
+    /// The view that an `image` dump keeps.
+    pub view: Option<View>,
+    /// The next time to write at, for `every/time`.
+    next_time: Option<f64>,
+    /// Files of single snapshots that still exist, for `maxfiles`.
+    kept: VecDeque<PathBuf>,
+}
+
+/// The order of rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sort {
+    /// As stored.
+    Off,
+    /// By id.
+    Id,
+    /// By a column, counted from 0.
+    Column(usize, bool),
+}
+
+/// `thresh attribute operator value`.
+#[derive(Clone, Debug)]
+pub struct Threshold {
+    attribute: Attribute,
+    compare: fn(f64, f64) -> bool,
+    /// `None`: the particle's value at the last snapshot (`LAST`).
+    value: Option<f64>,
+}
+
+/// A threshold whose attribute has been found: left side, comparison, right side.
+type Test<T> = (T, fn(f64, f64) -> bool, Option<f64>);
+
+/// When snapshots are made, where that is not at multiples of the dump's interval.
+#[derive(Clone, Debug)]
+enum Rhythm {
+    /// The interval of the dump.
+    Steps,
+    /// At steps that a variable names.
+    Named(ValueRef),
+    /// At multiples of a time.
+    Time(f64),
+    /// At times that a variable names.
+    NamedTime(ValueRef),
+}
+
+/// What all dumps share.
+#[derive(Clone, Debug)]
+pub struct Base {
+    /// The dump's ID.
+    pub id: String,
+    /// Its style.
+    pub style: &'static str,
+    group: GroupId,
+    /// Whether processes could share the files: `%` stands in the name.
+    shared: bool,
+    append: bool,
+    /// How tightly files are packed (`compression_level`), for styles that always do.
+    pub level: Option<i64>,
+    pad: usize,
+    every: Option<i64>,
+    rhythm: Rhythm,
+    delay: i64,
+    first: bool,
+    pbc: bool,
+    maxfiles: Option<usize>,
+    skip: Option<ValueRef>,
+    refresh: Option<String>,
+    /// Names of types.
+    pub elements: Vec<String>,
+    region: Option<String>,
+    thresholds: Vec<Threshold>,
+    /// Order of rows.
+    pub sort: Sort,
+    state: Arc<Mutex<State>>,
+}
+
+/// What a style gets to write: a world at rest.
+pub struct Shot<'a> {
+    /// The world.
+    pub world: &'a World,
+    /// The present step.
+    pub step: i64,
+    /// Particle indices in order.
+    pub rows: Vec<u32>,
+    /// The style's attributes.
+    pub data: Vec<Data<'a>>,
+    /// What outlives the run.
+    pub state: &'a mut State,
+}
+
+/// Styles that can write LAMMPS' binary files.
+const BINARY: [&str; 2] = ["atom", "custom"];
+
+/// Further styles whose files may have `%` in their names, as in LAMMPS.
+const SHARED: [&str; 2] = ["cfg", "local"];
+
+impl Base {
+    /// Reads the file name; `endings` are those the style can write (none: any).
+    pub fn new(style: &'static str, args: &mut Args, cx: &BuildCx, endings: &[&str]) -> Result<Self> {
+        let word = args.expect("the file name")?;
+        let binary = BINARY.contains(&style);
+        let pattern = match binary || SHARED.contains(&style) {
+            true => Pattern::shared(&word.text, binary),
+            false => Pattern::new(&word.text),
+        }
+        .map_err(|e| e.at(word.span))?;
+        if !endings.is_empty() && !endings.iter().any(|e| word.text.ends_with(e)) {
+            let message = format!("dump {style} writes {} files, not `{}`", endings.join(" or "), word.text);
+            let d = blame(word, Code::NOT_SUPPORTED, message);
+            return Err(d.help(format!("let the name end in {}", endings[0])).into());
+        }
+        let state = State {
+            target: Target::new(pattern),
+            last: None,
+            series: None,
+            view: None,
+            next_time: None,
+            kept: VecDeque::new(),
+        };
+        Ok(Self {
+            id: cx.id.to_string(),
+            style,
+            group: cx.group,
+            shared: word.text.contains('%'),
+            append: false,
+            level: None,
+            pad: 0,
+            every: None,
+            rhythm: Rhythm::Steps,
+            delay: i64::MIN,
+            first: false,
+            pbc: false,
+            maxfiles: None,
+            skip: None,
+            refresh: None,
+            elements: vec!["C".to_string(); cx.world.types],
+            region: None,
+            thresholds: vec![],
+            sort: Sort::Id,
+            state: Arc::new(Mutex::new(state)),
+        })
+    }
+
+    /// Refuses a name without `*` where every snapshot is a file of its own; `write_dump` needs none.
+    pub fn needs_star(&self, args: &Args, cx: &BuildCx) -> Result<()> {
+        if self.state().target.pattern.many() || cx.id == "WRITE_DUMP" {
+            return Ok(());
+        }
+        let message = format!("dump {} writes one file per snapshot", self.style);
+        let d = Diagnostic::error(Code::BAD_VALUE, args.here(), message);
+        Err(d.help("put a `*` into the file name: it becomes the step").into())
+    }
+
+    /// What outlives a run.
+    pub fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether it has written snapshots into one file for all.
+    pub fn growing(&self) -> bool {
+        let state = self.state();
+        state.last.is_some() && !state.target.pattern.many()
+    }
+
+    /// The interval that `dump_modify … every N` asked for.
+    pub fn every(&self) -> Option<i64> {
+        self.every
+    }
+
+    /// The op: at its times it selects and sorts particles and lets the style write them.
+    pub fn seal(
+        &self,
+        cx: &mut dyn SealCx,
+        every: i64,
+        attributes: &[Attribute],
+        mut write: impl FnMut(Shot<'_>) -> Result<()> + Send + 'static,
+    ) -> Result<Box<dyn Op>> {
+        let when = self.when(cx, every)?;
+        let mut clock = self.clock(cx)?;
+        let bind = |a: &Attribute, cx: &mut dyn SealCx| a.bind(cx, &when);
+        let shown = attributes.iter().map(|a| bind(a, cx)).collect::<Result<Vec<_>>>()?;
+        let tested = self
+            .thresholds
+            .iter()
+            .map(|t| Ok((bind(&t.attribute, cx)?, t.compare, t.value)))
+            .collect::<Result<Vec<_>>>()?;
+        let skip = match &self.skip {
+            Some(r) => Some(cx.reading(r, Wants::Number, Stage::Output, &when)?),
+            None => None,
+        };
+        let span = cx.span();
+        let mut refresh = match &self.refresh {
+            Some(id) => cx.refresh(id, Stage::Output, &when)?,
+            None => None,
+        };
+        let base = self.clone();
+        let act = move |w: &mut World, t: &Tick| {
+            let due = base.due(w, t, every, &mut clock)?;
+            base.aim();
+            if !due || skip.is_some_and(|s| s.get(w) != 0.0) {
+                return if t.setup { base.state().target.begin().map_err(|e| e.at(span)) } else { Ok(()) };
+            }
+            let world = &*w;
+            let domain = world.domain().map_err(|e| e.at(span))?;
+            let wrapped = base.pbc.then(|| wrapped(world, domain));
+            let frame = Frame { world, domain, wrapped: wrapped.as_deref(), elements: &base.elements };
+            let data: Vec<Data<'_>> = shown.iter().map(|b| b.data(&frame)).collect();
+            let (rows, last) = base.rows(&frame, &tested, &data).map_err(|e| e.at(span))?;
+            let mut state = base.state();
+            let shot = Shot { world, step: t.step, rows, data, state: &mut state };
+            write(shot).map_err(|e| e.at(span))?;
+            state.last = Some(t.step);
+            base.keep_few(&mut state, t.step)?;
+            drop(state);
+            let n = w.n();
+            last.into_iter().for_each(|(key, values)| *w.columns.scalar(&key, n) = values);
+            refresh.as_mut().map_or(Ok(()), |op| op.run(w, t))
+        };
+        let name = format!("dump {} {}", self.id, self.style);
+        let reads = "x v f image mask tag kind mass radius omega torque volume";
+        // A file is there from the first step on, as in LAMMPS.
+        let when = if self.state().target.pattern.many() { when } else { when.or(When::First) };
+        Ok(StepOp::new(name, Stage::Output, Access::new(reads, ""), act).when(when).in_setup(true).boxed())
+    }
+
+    /// Tells the file what `dump_modify` asks of it.
+    fn aim(&self) {
+        let target = &mut self.state().target;
+        (target.append, target.pattern.pad) = (self.append, self.pad);
+        target.level = self.level.and_then(|level| u32::try_from(level).ok());
+    }
+
+    /// When snapshots may be due; whether they are is decided then.
+    pub fn when(&self, cx: &mut dyn SealCx, every: i64) -> Result<When> {
+        let when = match (&self.rhythm, every) {
+            (_, 0) | (Rhythm::Time(_) | Rhythm::NamedTime(_), _) => return Ok(When::Always),
+            (Rhythm::Named(r), _) => cx.steps(r)?,
+            (Rhythm::Steps, n) => When::Every(n),
+        };
+        Ok(if self.first { when.or(When::First) } else { when })
+    }
+
+    /// What gives the next time from the present one, for `every/time`.
+    fn clock(&self, cx: &mut dyn SealCx) -> Result<Option<Clock>> {
+        Ok(match &self.rhythm {
+            Rhythm::Steps | Rhythm::Named(_) => None,
+            Rhythm::Time(every) => Some(Clock::Multiples(*every)),
+            Rhythm::NamedTime(r) => {
+                let text = format!("$({r}:%.17g)");
+                Some(Clock::Asked(cx.text(&text, r.span, Stage::Output, &When::Always)?, r.clone()))
+            }
+        })
+    }
+
+    /// Whether this step is to be written: not twice, and the first step only if asked or a multiple.
+    fn due(&self, w: &mut World, t: &Tick, every: i64, clock: &mut Option<Clock>) -> Result<bool> {
+        if every == 0 {
+            return Ok(true);
+        }
+        let mut state = self.state();
+        if t.ending {
+            return Ok(t.step >= self.delay && state.last != Some(t.step));
+        }
+        if let Some(clock) = clock {
+            return Ok(clock.strikes(&mut state, w, t, self.first)? && t.step >= self.delay);
+        }
+        let regular = match self.rhythm {
+            Rhythm::Steps => t.step % every == 0,
+            _ => !t.setup,
+        };
+        if t.step < self.delay {
+            return Ok(false);
+        }
+        if t.setup && !regular {
+            return Ok(self.first && state.last.is_none());
+        }
+        Ok(regular && state.last != Some(t.step))
+    }
+
+    /// Deletes the oldest files beyond `maxfiles`.
+    fn keep_few(&self, state: &mut State, step: i64) -> Result<()> {
+        let Some(most) = self.maxfiles.filter(|_| state.target.pattern.many()) else { return Ok(()) };
+        let path = state.target.pattern.at(step);
+        state.kept.push_back(path);
+        while state.kept.len() > most {
+            if let Some(old) = state.kept.pop_front() {
+                std::fs::remove_file(&old).map_err(|e| trouble("delete", &old, &e))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Particles that pass, in order, and the values that `LAST` will compare with next time.
+    fn rows(&self, frame: &Frame<'_>, tested: &[Test<Bound>], data: &[Data<'_>]) -> Result<(Vec<u32>, Last)> {
+        let w = frame.world;
+        let region = match &self.region {
+            None => None,
+            Some(name) => match w.regions.get(name) {
+                Some(region) => Some(region),
+                None => return fail(Code::UNKNOWN_REGION, None, format!("region `{name}` is gone")),
+            },
+        };
+        let (bit, p) = (self.group.bit(), &w.particles);
+        let tests: Vec<Test<Data<'_>>> =
+            tested.iter().map(|(b, compare, value)| (b.data(frame), *compare, *value)).collect();
+        let key = |k: usize| format!("dump {} last {k}", self.id);
+        let before: Vec<Option<&[f64]>> = (0..tests.len()).map(|k| w.columns.get_scalar(&key(k))).collect();
+        let passes = |i: usize| {
+            let holds = |(k, (data, compare, value)): (usize, &Test<Data<'_>>)| {
+                let value = value.or_else(|| before[k].and_then(|b| b.get(i).copied()));
+                value.is_some_and(|v| compare(data.number(i), v))
+            };
+            p.mask[i] & bit != 0
+                && region.is_none_or(|r| r.contains(p.x[i]))
+                && tests.iter().enumerate().all(holds)
+        };
+        let mut rows: Vec<u32> = (0..w.n()).filter(|&i| passes(i)).map(|i| i as u32).collect();
+        match self.sort {
+            Sort::Off => {}
+            Sort::Column(k, descending) if k < data.len() => sort_rows(&mut rows, &data[k], descending),
+            _ => sort_rows(&mut rows, &Data::int(|i| i64::from(p.tag[i])), false),
+        }
+        let against_last = tests.iter().enumerate().filter(|(_, t)| t.2.is_none());
+        let last = against_last.map(|(k, t)| (key(k), (0..w.n()).map(|i| t.0.number(i)).collect())).collect();
+        Ok((rows, last))
+    }
+}
+
+/// Values of this snapshot for the next one, by the name of their column.
+type Last = Vec<(String, Vec<f64>)>;
+
+/// Places and box crossings wrapped into the box.
+fn wrapped(w: &World, domain: &Domain) -> Vec<([f64; 3], [i32; 3])> {
+    let p = &w.particles;
+    (0..w.n())
+        .map(|i| {
+            let (mut x, mut image) = (p.x[i], p.image[i]);
+            domain.wrap(&mut x, &mut image);
+            (x, image)
+        })
+        .collect()
+}

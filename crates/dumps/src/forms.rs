@@ -1,0 +1,122 @@
+//! Dumps `xyz`, `yaml` and `cfg`: the particles of `dump custom` in other forms.
+
+use super::attribute::{Attribute, Core, Source};
+use super::base::Base;
+use super::text::{Form, Layout, Text, attributes};
+use super::{Dump, DumpStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_lang::Args;
+use perigrain_styles::{BuildCx, Doc, Style};
+
+/// `dump … xyz`.
+pub struct Xyz;
+
+/// `dump … yaml`.
+pub struct Yaml;
+
+/// `dump … cfg`.
+pub struct Cfg;
+
+impl Style for Xyz {
+    fn name(&self) -> &'static str {
+        "xyz"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "dump ID group xyz N file",
+            summary: "Writes the group's particles every N steps as an XYZ file.",
+            text: "Each snapshot is the number of particles, a line of comment with the step, and a row `name x y z` per \
+                   particle. The name is the type's number unless `dump_modify ID element A B …` names types. \
+                   `dump_modify` understands what all dumps do (see `dump custom`), `format line \"%s %g %g %g\"` and \
+                   `time yes` (the time in the comment). Rows are sorted by id unless told otherwise.",
+            example: "dump 1 all xyz 100 grains.xyz",
+        }
+    }
+}
+
+impl Style for Yaml {
+    fn name(&self) -> &'static str {
+        "yaml"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "dump ID group yaml N file attribute …",
+            summary: "Writes chosen attributes of the group's particles every N steps as YAML documents.",
+            text: "Attributes and `dump_modify` are those of `dump custom`; each snapshot is a YAML document that any YAML \
+                   reader takes. `dump_modify ID thermo yes` puts the row of the step table into snapshots of steps that have \
+                   one, each number with all its digits and under its usual name. In the first snapshot of a second run \
+                   LAMMPS repeats the last run's row; here it is that run's own.",
+            example: "dump 1 all yaml 100 flow.yaml id type x y z",
+        }
+    }
+}
+
+impl Style for Cfg {
+    fn name(&self) -> &'static str {
+        "cfg"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "dump ID group cfg N file mass type xs|xsu ys|ysu zs|zsu attribute …",
+            summary: "Writes the group's particles every N steps in the extended CFG format of AtomEye, one file each.",
+            text: "The file name needs a `*`. The first five attributes are `mass type xs ys zs` or `mass type xsu ysu zsu`; \
+                   all others of `dump custom` may follow as auxiliary properties. Types are written by name: `C` unless \
+                   `dump_modify ID element A B …` names them. With unwrapped positions the cell is ten times larger, as \
+                   in LAMMPS. `dump_modify` understands what all dumps do (see `dump custom`), and `format`.",
+            example: "dump 1 all cfg 100 flow.*.cfg mass type xs ys zs vx",
+        }
+    }
+}
+
+impl DumpStyle for Xyz {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+        xyz(Base::new(self.name(), args, cx, &[])?, args, cx)
+    }
+}
+
+impl DumpStyle for Yaml {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+        let base = Base::new(self.name(), args, cx, &[])?;
+        Ok(Box::new(Text::new(base, Form::Yaml, Layout::Custom(attributes(args, cx)?))))
+    }
+}
+
+impl DumpStyle for Cfg {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+        cfg(Base::new(self.name(), args, cx, &[])?, args, cx)
+    }
+}
+
+/// A dump of the style `xyz` into this file.
+pub(super) fn xyz(mut base: Base, _: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+    base.elements = (1..=cx.world.types).map(|k| k.to_string()).collect();
+    let mut columns = vec![Attribute::core("element", Core::Element)];
+    columns.extend((0..3).map(|k| Attribute::core(["x", "y", "z"][k], Core::X(k))));
+    Ok(Box::new(Text::new(base, Form::Xyz, Layout::Custom(columns))))
+}
+
+/// A dump of the style `cfg` into this file; its attributes follow.
+pub(super) fn cfg(base: Base, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+    base.needs_star(args, cx)?;
+    let span = args.here();
+    let mut columns = attributes(args, cx)?;
+    let begins =
+        |names: [&str; 5]| columns.len() >= 5 && columns.iter().zip(names).all(|(c, name)| c.word == name);
+    let unwrapped = begins(["mass", "type", "xsu", "ysu", "zsu"]);
+    if !unwrapped && !begins(["mass", "type", "xs", "ys", "zs"]) {
+        let text = "the attributes of dump cfg begin with `mass type xs ys zs` or `mass type xsu ysu zsu`";
+        return Err(Diagnostic::error(Code::BAD_VALUE, span, text).into());
+    }
+    columns[1].source = Source::Core(Core::Element);
+    for c in &mut columns {
+        // As LAMMPS: no brackets in the names of auxiliary properties.
+        c.word = c.word.replace("][", "_").replace('[', "_").replace(']', "");
+    }
+    if unwrapped {
+        (0..3).for_each(|k| columns[2 + k].source = Source::Core(Core::Tenth(k)));
+    }
+    let form = Form::Cfg(if unwrapped { 10.0 } else { 1.0 });
+    let mut dump = Text::new(base, form, Layout::Custom(columns));
+    dump.default_format(0, "%f")?;
+    Ok(Box::new(dump))
+}

@@ -1,0 +1,216 @@
+//! Dump `image`: pictures of the particles.
+
+use super::attribute::{Attribute, Core, Source, attribute};
+use super::base::{Base, Shot, unknown};
+use super::picture::{self, Options};
+use super::{Dump, DumpStyle};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_lang::Args;
+use perigrain_lang::args::{blame, parse_number};
+use perigrain_out::dump::Data;
+use perigrain_out::image::{Colour, ENDINGS, Legend, Scene, by_kind, render};
+use perigrain_plan::Op;
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::World;
+
+/// The style.
+pub struct Image;
+
+impl Style for Image {
+    fn name(&self) -> &'static str {
+        "image"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "dump ID group image N file.*.png colour diameter keyword value …",
+            summary: "Draws the group's particles as shaded spheres every N steps.",
+            text: PAGE,
+            example: "dump cut all image 200 cut_*.png c_damage auto view 70 -60 map damage range 0 1\n\
+                      dump_modify cut region half title \"brittle plate\"",
+        }
+    }
+}
+
+/// The page.
+const PAGE: &str = "`colour` is `type` or any attribute of `dump custom`, `diameter` is a number [length], `type`, an \
+    attribute, or `auto`: the diameter of spheres, the edge of a peridynamic particle's cube of volume times √2 (so \
+    that no light falls through a body), else 1.\n\n\
+    Keywords, here and in `dump_modify`:\n\n\
+    * `size W H` pixels (1280 960), `view theta phi` degrees from the z axis and around it (60 30), `up x y z`, `zoom f`, \
+      `perspective degrees` (0: orthographic), `center s x y z` as fractions of the box, `frame first|each|box`: what the \
+      picture shows when no centre is given: what was drawn first (kept), what is drawn each time, or the box;\n\
+    * `map NAME` (damage viridis plasma inferno coolwarm grey), `range lo hi` (numbers, `min`, `max`), \
+      `acolor TYPE COLOUR` (a fixed colour for a type, also beside values), `adiam d` (here) or `adiam TYPE d` (in \
+      `dump_modify`), colours by name or `\"#rrggbb\"` (in quotes: `#` starts a comment);\n\
+    * `legend yes|no|text`, `title text` (in quotes, or with `_` for blanks where variables are to be put in), \
+      `time yes|no` (the line below the picture), `box yes|no d`, \
+      `backcolor C`, `backcolor2 C`, `boxcolor C` (lines and text), `shiny 0…1`, `ssao yes|no seed 0…1` (shade in gaps), \
+      `depthcue yes|no 0…1`, `fsaa yes|no`, `atom yes`.\n\n\
+    `dump_modify … region ID` cuts, `thresh` hides, as for `dump custom`. The ending of the name says what is written: `.png`, `.jpg` or \
+    `.jpeg` (quality 85, as LAMMPS' pictures; there is nothing to choose there either), or `.ppm`; LAMMPS writes PPM under any other name, too.";
+
+impl DumpStyle for Image {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
+        let endings: Vec<&str> = ENDINGS.iter().map(|(ending, _)| *ending).collect();
+        let base = Base::new("image", args, cx, &endings)?;
+        base.needs_star(args, cx)?;
+        let word = args.expect("the colour: `type` or an attribute")?;
+        let colour = match word.text.as_str() {
+            "element" => return Err(blame(word, Code::NOT_SUPPORTED, "colours by element").into()),
+            _ => attribute(word, cx)?,
+        };
+        let word = args.expect("the diameter: a number, `auto`, `type` or an attribute")?;
+        let size = match word.text.as_str() {
+            "element" => return Err(blame(word, Code::NOT_SUPPORTED, "diameters by element").into()),
+            "auto" => Size::Auto,
+            "type" => Size::ByType,
+            text if text.starts_with(|c: char| c.is_ascii_digit() || c == '.') => {
+                Size::Number(positive(parse_number(word, "the diameter")?, word)?)
+            }
+            _ => Size::Attribute(attribute(word, cx)?),
+        };
+        let mut dump = Declared { base, colour, size, options: Options::default() };
+        while let Some(word) = args.peek().filter(|w| w.text != "modify") {
+            args.next();
+            if !dump.options.read(word, args, cx, false)? {
+                return Err(args.unknown(word, picture::KEYWORDS));
+            }
+        }
+        Ok(Box::new(dump))
+    }
+}
+
+fn positive(d: f64, word: &perigrain_lang::Word) -> Result<f64> {
+    if d > 0.0 { Ok(d) } else { fail(Code::BAD_VALUE, word.span, "a diameter must be greater than zero") }
+}
+
+/// The diameter of a sphere. Cubes of a body, and spheres as wide as their cube, are drawn as wide as their diagonal, so
+/// that no light falls through the body.
+fn auto_diameter(w: &World, i: usize) -> f64 {
+    const OVERLAP: f64 = std::f64::consts::SQRT_2;
+    let p = &w.particles;
+    let edge = if p.style.peri { p.volume[i].cbrt() } else { 0.0 };
+    match (p.style.sphere, p.style.peri) {
+        (true, _) if (2.0 * p.radius[i] - edge).abs() <= 0.01 * edge => OVERLAP * edge,
+        (true, _) => 2.0 * p.radius[i],
+        (false, true) => OVERLAP * edge,
+        (false, false) => 1.0,
+    }
+}
+
+/// How large spheres are drawn.
+#[derive(Clone, Debug)]
+enum Size {
+    Auto,
+    ByType,
+    Number(f64),
+    Attribute(Attribute),
+}
+
+#[derive(Clone, Debug)]
+struct Declared {
+    base: Base,
+    colour: Attribute,
+    size: Size,
+    options: Options,
+}
+
+impl Dump for Declared {
+    fn op(&self, cx: &mut dyn SealCx, every: i64) -> Result<Box<dyn Op>> {
+        let mut attributes = vec![self.colour.clone()];
+        if let Size::Attribute(a) = &self.size {
+            attributes.push(a.clone());
+        }
+        let dump = self.clone();
+        self.base.seal(cx, every, &attributes, move |shot| dump.draw(shot))
+    }
+
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        while let Some(word) = args.next() {
+            if !self.base.modify(word, args, cx)? && !self.options.read(word, args, cx, true)? {
+                return Err(unknown(word, args, picture::KEYWORDS));
+            }
+            if picture::MOVES.contains(&word.text.as_str()) {
+                self.base.state().view = None;
+            }
+        }
+        Ok(())
+    }
+
+    fn every(&self) -> Option<i64> {
+        self.base.every()
+    }
+
+    fn boxed(&self) -> Box<dyn Dump> {
+        Box::new(self.clone())
+    }
+}
+
+impl Declared {
+    fn draw(&self, shot: Shot<'_>) -> Result<()> {
+        let w = shot.world;
+        let domain = w.domain()?;
+        let rows: Vec<usize> = shot.rows.iter().map(|&i| i as usize).collect();
+        let positions: Vec<[f64; 3]> = rows.iter().map(|&i| w.particles.x[i]).collect();
+        let radii: Vec<f64> = rows.iter().map(|&i| 0.5 * self.diameter(w, &shot.data, i)).collect();
+        let (colours, legend) = self.paint(w, &rows, &shot.data[0]);
+        let spheres = || positions.iter().copied().zip(radii.iter().copied());
+        let view = self.options.view(domain, spheres, &mut shot.state.view);
+        let lines = if self.options.box_edges { picture::edges(domain) } else { vec![] };
+        let caption = if self.options.time { picture::time_line(w) } else { String::new() };
+        let scene = Scene {
+            positions: &positions,
+            radii: &radii,
+            colours: &colours,
+            lines: &lines,
+            legend: legend.as_ref(),
+            title: &self.options.title,
+            caption: &caption,
+        };
+        let path = shot.state.target.pattern.at(shot.step);
+        let file = render(&scene, &view, &self.options.look).file(&path.to_string_lossy());
+        perigrain_out::file::replace(&path, |to| to.write_all(&file?))
+    }
+
+    fn diameter(&self, w: &World, data: &[Data<'_>], i: usize) -> f64 {
+        let p = &w.particles;
+        let kind = p.kind[i];
+        if let Some((_, d)) = self.options.diameters.iter().rev().find(|(k, _)| *k == kind) {
+            return *d;
+        }
+        if let Some(d) = self.options.diameter {
+            return d;
+        }
+        match &self.size {
+            Size::Number(d) => *d,
+            Size::ByType => 1.0,
+            Size::Attribute(_) => data[1].number(i),
+            Size::Auto => auto_diameter(w, i),
+        }
+    }
+
+    /// Colours of the rows and what explains them.
+    fn paint(&self, w: &World, rows: &[usize], data: &Data<'_>) -> (Vec<Colour>, Option<Legend>) {
+        let o = &self.options;
+        let fixed = |i: usize| {
+            let kind = w.particles.kind[i];
+            o.colours.iter().rev().find(|(k, _)| *k == kind).map(|(_, c)| *c)
+        };
+        if self.colour.source == Source::Core(Core::Kind) {
+            let of = |i: usize| fixed(i).unwrap_or_else(|| by_kind(w.particles.kind[i] as usize));
+            let colours = rows.iter().map(|&i| of(i)).collect();
+            let first = |k: u16| rows.iter().find(|&&i| w.particles.kind[i] == k);
+            let named = |k: u16| first(k).map(|&i| (of(i), format!("type {k}")));
+            let entries: Vec<_> = (1..=w.types as u16).filter_map(named).collect();
+            let title = o.legend_title(&self.colour.word);
+            let shown = o.legend && (entries.len() > 1 || o.legend_text.is_some());
+            return (colours, shown.then_some(Legend::Names { title, entries }));
+        }
+        let shown = rows.iter().filter(|&&i| fixed(i).is_none()).map(|&i| data.number(i));
+        let range = o.range_of(shown);
+        let colours =
+            rows.iter().map(|&i| fixed(i).unwrap_or_else(|| o.map.of(data.number(i), range))).collect();
+        let title = o.legend_title(&self.colour.word);
+        (colours, o.legend.then_some(Legend::Scale { title, map: o.map, range }))
+    }
+}

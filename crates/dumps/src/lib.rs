@@ -1,0 +1,31 @@
+//! Dumps: snapshots of particles in files.
+
+mod attribute;
+mod base;
+mod forms;
+mod image;
+mod local;
+mod packed;
+mod picture;
+mod text;
+mod vtk;
+
+pub use perigrain_styles::dump::{Dump, DumpStyle};
+
+/// Every dump style.
+#[rustfmt::skip]
+pub const DUMPS: &[&dyn DumpStyle] = &[
+    &text::Atom,
+    &packed::ATOM,
+    &forms::Cfg,
+    &packed::CFG,
+    &text::Custom,
+    &packed::CUSTOM,
+    &image::Image,
+    &local::Local,
+    &packed::LOCAL,
+    &vtk::Vtk,
+    &forms::Xyz,
+    &packed::XYZ,
+    &forms::Yaml,
+];

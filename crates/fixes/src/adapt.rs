@@ -1,0 +1,330 @@
+//! fix adapt: sizes of spheres and coefficients of forces that follow variables.
+
+mod coefficients;
+
+use super::window::forget;
+use super::{Fix, FixStyle};
+use coefficients::Follows;
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::{Args, RefKind, ValueRef};
+use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
+use perigrain_world::{GroupId, World};
+use std::f64::consts::PI;
+
+/// The style.
+pub struct Adapt;
+
+impl Style for Adapt {
+    fn name(&self) -> &'static str {
+        "adapt"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group adapt N atom diameter|diameter/disc v_name | pair STYLE COEFFICIENT I J v_name | \
+                     bond STYLE COEFFICIENT I v_name … [scale yes|no] [reset yes|no] [mass yes|no]",
+            summary: "Lets the diameter of spheres or coefficients of forces follow variables during a run.",
+            text: "The equal-style variables are evaluated in the setup of a run and at multiples of N (N = 0: in the setup only). \
+                   Several changes can be written one after another; of `atom`, one.\n\n\
+                   `atom`: the value becomes the diameter of every particle of the group, or with `scale yes` a factor on the \
+                   diameter it had at first (each change multiplies the present one by the new factor over the last). `mass yes` (default, as LAMMPS 22Jul2025 does) keeps the density, \
+                   of a disc with `diameter/disc`; `mass no` keeps the mass. Neighbour lists are made anew before particles have grown by a quarter of the skin \
+                   (LAMMPS' are not, nor under `compat lammps`: there the skin must be as wide as what they grow by). After `reset yes` LAMMPS' masses are wrong in the next run; \
+                   perigrain's are those of before.\n\n\
+                   `pair`, `bond`: the value becomes the coefficient of these types, or with `scale yes` a factor on what it was when the run \
+                   began. There are `k r0` of bond style harmonic (as in LAMMPS), and in addition `s00 alpha` of all peridynamic styles, `c` of \
+                   the bond-based ones, and `k gamma` of pair style bpm/spring; a sub-style of `hybrid` is named by its own name. A new \
+                   `pair_coeff` or `bond_coeff` ends what a fix has made of its coefficients.\n\n\
+                   `reset yes`: what was changed is put back at the end of each run. `kspace` and `atom charge` are refused: there is \
+                   nothing of the kind here.",
+            example: "variable d equal ramp(0.001,0.0011)\nfix swell ball adapt 1 atom diameter v_d reset yes",
+        }
+    }
+}
+
+impl FixStyle for Adapt {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let every = args.integer_from(0, "the number of steps N")?;
+        let mut fix = Declared {
+            id: cx.id.to_string(),
+            group: cx.group,
+            every,
+            size: None,
+            follows: vec![],
+            scale: false,
+            reset: false,
+            mass: true,
+        };
+        attribute(&mut fix, args, cx)?;
+        while ATTRIBUTES.contains(&args.peek_text()) {
+            attribute(&mut fix, args, cx)?;
+        }
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "scale" => fix.scale = args.flag("scale")?,
+                "reset" => fix.reset = args.flag("reset")?,
+                "mass" => fix.mass = args.flag("mass")?,
+                _ => return Err(args.unknown(word, &["scale", "reset", "mass"])),
+            }
+        }
+        Ok(Box::new(fix))
+    }
+}
+
+/// What LAMMPS' fix changes.
+const ATTRIBUTES: [&str; 7] = ["atom", "pair", "bond", "angle", "dihedral", "improper", "kspace"];
+
+/// Reads one change.
+fn attribute(fix: &mut Declared, args: &mut Args, cx: &BuildCx) -> Result<()> {
+    let span = args.here();
+    match args.choice("attribute", &ATTRIBUTES)? {
+        "atom" if fix.size.is_some() => {
+            fail(Code::CONFLICT, span, "this fix changes the diameter already: use another fix")
+        }
+        "atom" => {
+            fix.size = Some(size(args, cx)?);
+            Ok(())
+        }
+        kind @ ("pair" | "bond") => {
+            fix.follows.push(coefficients::read(kind == "bond", args, cx)?);
+            Ok(())
+        }
+        other => {
+            let text = format!("no style in perigrain has a parameter that `{other}` could change");
+            let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
+            Err(d
+                .help("fix adapt changes `atom diameter`, and coefficients of `pair` and `bond` styles")
+                .into())
+        }
+    }
+}
+
+fn size(args: &mut Args, cx: &BuildCx) -> Result<Size> {
+    let span = args.here();
+    let what = args.choice("property of particles", &["diameter", "diameter/disc", "charge"])?;
+    if what == "charge" {
+        return fail(Code::NOT_SUPPORTED, span, "particles have no charge in perigrain");
+    }
+    if !cx.world.particles.style.sphere {
+        let d = Diagnostic::error(Code::CONFLICT, span, "the particles of this scene have no diameter");
+        return Err(d.help("`atom_style sphere`, alone or in a hybrid, has it").into());
+    }
+    Ok(Size { variable: variable(args, cx)?, disc: what == "diameter/disc" })
+}
+
+/// The diameter of particles.
+#[derive(Clone)]
+struct Size {
+    variable: ValueRef,
+    /// Particles are discs.
+    disc: bool,
+}
+
+fn variable(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
+    let word = args.expect("the variable v_name")?;
+    match ValueRef::parse(&word.text, word.span)? {
+        Some(r) if r.kind == RefKind::Variable => {
+            cx.value(&r, false)?;
+            Ok(r)
+        }
+        _ => fail(Code::WRONG_KIND, word.span, format!("a variable v_name is needed, not `{}`", word.text)),
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    every: i64,
+    size: Option<Size>,
+    follows: Vec<Follows>,
+    scale: bool,
+    reset: bool,
+    mass: bool,
+}
+
+impl Declared {
+    /// Where the factor of the last change is remembered.
+    fn factor(&self) -> String {
+        format!("adapt/{}/factor", self.id)
+    }
+
+    /// Names of the columns that hold radii and masses before a run.
+    fn columns(&self) -> [String; 2] {
+        ["radius", "mass"].map(|what| format!("adapt/{}/{what}", self.id))
+    }
+}
+
+impl Size {
+    /// Space that a particle of this radius fills: an area for discs.
+    fn space(&self, r: f64) -> f64 {
+        if self.disc { PI * r * r } else { 4.0 * PI / 3.0 * r * r * r }
+    }
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        w.memo.insert(self.factor(), vec![1.0]);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        forget(w, &format!("adapt/{}", self.id));
+        self.columns().iter().for_each(|c| w.columns.remove(c));
+    }
+
+    fn welcome(&self, w: &mut World) {
+        let [radius, mass] = self.columns();
+        if !w.memo.contains_key(&radius) {
+            return;
+        }
+        let n = w.n();
+        let mut kept = std::mem::take(w.columns.scalar(&radius, n));
+        let mut masses = std::mem::take(w.columns.scalar(&mass, n));
+        for (i, (radius, mass)) in kept.iter_mut().zip(&mut masses).enumerate() {
+            if *mass == 0.0 {
+                (*radius, *mass) = (w.particles.radius[i], w.particles.mass[i]);
+            }
+        }
+        *w.columns.scalar(&radius, n) = kept;
+        *w.columns.scalar(&mass, n) = masses;
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let when = if self.every == 0 { When::First } else { When::First.or(When::Every(self.every)) };
+        let mut ops: Vec<Box<dyn Op>> = vec![];
+        if let Some(size) = &self.size {
+            let value = cx.value(&size.variable, Stage::PreForce, &when)?;
+            let (name, when, size) = (format!("fix {} adapt", self.id), when.clone(), size.clone());
+            ops.push(Box::new(Change { name, fix: self.clone(), when, size, value }));
+        }
+        for follows in &self.follows {
+            ops.push(follows.op(&self.id, &when, self.scale, self.reset, cx)?);
+        }
+        Ok(ops)
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+/// Gives the particles their present size, and the old one back at the end.
+struct Change {
+    name: String,
+    fix: Declared,
+    when: When,
+    size: Size,
+    value: Reading,
+}
+
+impl Op for Change {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn stage(&self) -> Stage {
+        Stage::PreForce
+    }
+    fn access(&self) -> Access {
+        Access::new("slots mask", "radius mass columns")
+    }
+    fn when(&self) -> When {
+        self.when.clone()
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if t.unchanged {
+            return Ok(());
+        }
+        let (value, fix, n) = (self.value.get(w), &self.fix, w.n());
+        if !(value > 0.0 && value.is_finite()) {
+            let variable = &self.size.variable;
+            let text = format!("`{variable}` is {value} at step {}: no size of particles", t.step);
+            return fail(Code::BAD_VALUE, variable.span, text);
+        }
+        let [radius, mass] = fix.columns();
+        if t.setup && fix.reset && !w.memo.contains_key(&radius) {
+            let (radii, masses) = (w.particles.radius.clone(), w.particles.mass.clone());
+            *w.columns.scalar(&radius, n) = radii;
+            *w.columns.scalar(&mass, n) = masses;
+            w.memo.insert(radius, vec![]);
+        }
+        let before = w.memo.insert(fix.factor(), vec![value]).and_then(|m| m.first().copied()).unwrap_or(1.0);
+        let (p, mut most) = (&mut w.particles, 0.0_f64);
+        for i in (0..n).filter(|&i| p.mask[i] & fix.group.bit() != 0) {
+            let new = if fix.scale { p.radius[i] * (value / before) } else { 0.5 * value };
+            if fix.mass && p.radius[i] > 0.0 {
+                let density = p.mass[i] / self.size.space(p.radius[i]);
+                p.mass[i] = density * self.size.space(new);
+            }
+            most = most.max(new - p.radius[i]);
+            p.radius[i] = new;
+        }
+        if fix.every > 0 && !w.settings.lammps() {
+            w.rebuild.grow(most, w.settings.neighbor.skin);
+        }
+        Ok(())
+    }
+    fn finish(&mut self, w: &mut World) -> Result<()> {
+        let [radius, mass] = self.fix.columns();
+        if w.memo.remove(&radius).is_none() {
+            return Ok(());
+        }
+        let n = w.n();
+        let (radii, masses) = (w.columns.scalar(&radius, n).clone(), w.columns.scalar(&mass, n).clone());
+        (w.particles.radius, w.particles.mass) = (radii, masses);
+        w.columns.remove(&radius);
+        w.columns.remove(&mass);
+        w.memo.insert(self.fix.factor(), vec![1.0]);
+        w.touch();
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    // A diameter of 3 instead of 1: 27 times the mass; the other particle is in no group.
+    #[test]
+    fn sizes_follow_and_come_back() {
+        let style = AtomStyle { sphere: true, sphere_mass: true, ..AtomStyle::default() };
+        let mut b = Bench::new(style, &[[0.0; 3], [5.0; 3]]);
+        b.world.particles.mass = vec![2.0; 2];
+        b.world.particles.mask[1] = 0;
+        b.equal.insert("d".into(), 3.0);
+        for (words, radius, mass) in [
+            ("1 atom diameter v_d reset yes", 1.5, 54.0),
+            ("1 atom diameter/disc v_d scale yes mass no reset yes", 1.5, 2.0),
+        ] {
+            let fix = b.fix(&Adapt, words).unwrap();
+            fix.declare(&mut b.world).unwrap();
+            let mut ops = b.seal(&*fix).unwrap();
+            let t = Tick { setup: true, ..b.tick() };
+            ops[0].run(&mut b.world, &t).unwrap();
+            assert_eq!(b.world.particles.radius, [radius, 0.5], "{words}");
+            assert!((b.world.particles.mass[0] - mass).abs() < 1e-13, "{words}");
+            ops[0].finish(&mut b.world).unwrap();
+            assert_eq!((b.world.particles.radius[0], b.world.particles.mass[0]), (0.5, 2.0));
+            fix.remove(&mut b.world);
+            assert!(b.world.columns.names().is_empty() && b.world.memo.is_empty());
+        }
+        b.equal.insert("d".into(), -1.0);
+        let fix = b.fix(&Adapt, "0 atom diameter v_d").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        assert!(b.stage(&mut ops, Stage::PreForce).is_err());
+        for words in [
+            "-1 atom diameter v_d",
+            "1",
+            "1 atom diameter 3",
+            "1 atom diameter v_no",
+            "1 atom charge v_d",
+            "1 pair lj/cut epsilon 1 1 v_d",
+            "1 atom diameter v_d scale maybe",
+            "1 atom diameter v_d foo",
+        ] {
+            assert!(b.fix(&Adapt, words).is_err(), "{words}");
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Coefficients of pair and bond styles that follow a variable.
+
+use super::variable;
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::{Args, ValueRef, Word};
+use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_styles::{BuildCx, Reading, SealCx};
+use perigrain_world::World;
+use perigrain_world::adapted::Coefficient;
+
+/// `pair STYLE PARAMETER I J v_name` or `bond STYLE PARAMETER I v_name`.
+#[derive(Clone)]
+pub struct Follows {
+    coefficients: Vec<Coefficient>,
+    variable: ValueRef,
+    style: Word,
+}
+
+/// Reads the words behind `pair` or `bond`.
+pub fn read(bond: bool, args: &mut Args, cx: &BuildCx) -> Result<Follows> {
+    let what = if bond { "bond" } else { "pair" };
+    let style = args.expect(&format!("a {what} style"))?;
+    let Some(known) = cx.names.coefficients(bond, &style.text) else {
+        let text = format!("`{}` is no {what} style in force", style.text);
+        let d = Diagnostic::error(Code::UNKNOWN_STYLE, style.span, text);
+        return Err(d.help(format!("put its {what}_style line before this one")).into());
+    };
+    if known.is_empty() {
+        let text = format!("{what} style {} has no coefficient that fix adapt could change", style.text);
+        let d = Diagnostic::error(Code::NOT_SUPPORTED, style.span, text);
+        return Err(d
+            .help("peri/pmb, other peri styles, bpm/spring and bond style harmonic have some")
+            .into());
+    }
+    let name = args.expect("a coefficient")?;
+    if !known.contains(&name.text.as_str()) {
+        let text = format!("{what} style {} has no coefficient `{}` to change", style.text, name.text);
+        let d = Diagnostic::error(Code::UNKNOWN_NAME, name.span, text);
+        return Err(d.help(format!("it has {}", known.join(", "))).into());
+    }
+    let span = args.here();
+    let types = if bond { cx.world.bonds.types } else { cx.world.types };
+    let first = args.type_range(types)?;
+    let second = if bond { first } else { args.type_range(types)? };
+    let all = (first.0..=first.1).flat_map(|i| (second.0.max(i)..=second.1).map(move |j| (i, j)));
+    let own = all.filter(|(i, j)| !bond || i == j);
+    let coefficients: Vec<Coefficient> = own
+        .map(|types| Coefficient { bond, style: style.text.clone(), name: name.text.clone(), types })
+        .collect();
+    if coefficients.is_empty() {
+        let d = Diagnostic::error(Code::BAD_VALUE, span, "these types name no pair i ≤ j");
+        return Err(d.help("write the smaller type first").into());
+    }
+    Ok(Follows { coefficients, variable: variable(args, cx)?, style: style.clone() })
+}
+
+impl Follows {
+    /// The op that gives the coefficients their present values.
+    pub fn op(
+        &self,
+        id: &str,
+        when: &When,
+        scale: bool,
+        reset: bool,
+        cx: &mut dyn SealCx,
+    ) -> Result<Box<dyn Op>> {
+        let value = cx.value(&self.variable, Stage::PreForce, when)?;
+        let mut before = vec![];
+        for of in &self.coefficients {
+            let Some(said) = cx.coefficient(of) else {
+                let ((i, j), what) = (of.types, if of.bond { "bond" } else { "pair" });
+                let text = format!("{what} style {} has no coefficients for types {i} {j}", of.style);
+                return fail(Code::INCOMPLETE, self.style.span, text);
+            };
+            before.push(Before::of(cx.world(), id, of, said));
+        }
+        Ok(Box::new(Change {
+            name: format!("fix {id} adapt"),
+            id: id.to_string(),
+            follows: self.clone(),
+            when: when.clone(),
+            value,
+            scale,
+            reset,
+            before,
+        }))
+    }
+}
+
+/// Gives the coefficients their present values, and the old ones back at the end.
+struct Change {
+    name: String,
+    id: String,
+    follows: Follows,
+    when: When,
+    value: Reading,
+    scale: bool,
+    reset: bool,
+    before: Vec<Before>,
+}
+
+/// A coefficient as it was when the run began.
+struct Before {
+    value: f64,
+    /// A fix had made it.
+    adapted: bool,
+}
+
+impl Before {
+    /// That of a run that a restart file interrupted, or what is in force.
+    fn of(w: &World, id: &str, of: &Coefficient, said: f64) -> Self {
+        match (w.memo.get(&of.kept_by(id)).map(Vec::as_slice), w.adapted(of)) {
+            (Some(&[value, adapted]), _) => Before { value, adapted: adapted != 0.0 },
+            (_, now) => Before { value: now.unwrap_or(said), adapted: now.is_some() },
+        }
+    }
+}
+
+impl Op for Change {
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn stage(&self) -> Stage {
+        Stage::PreForce
+    }
+    fn access(&self) -> Access {
+        Access::new("slots", "coefficients")
+    }
+    fn when(&self) -> When {
+        self.when.clone()
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if t.unchanged {
+            return Ok(());
+        }
+        let value = self.value.get(w);
+        for (of, before) in self.follows.coefficients.iter().zip(&self.before) {
+            let new = if self.scale { before.value * value } else { value };
+            // What a coefficient cannot be is a matter of its style; these no coefficient can.
+            if !new.is_finite() || (new < 0.0 && !of.bond) {
+                let (text, variable) = (format!("{new} at step {}", t.step), &self.follows.variable);
+                let text = format!("`{variable}` makes `{}` of {} {text}", of.name, of.style);
+                return fail(Code::BAD_VALUE, variable.span, text);
+            }
+            w.memo.insert(of.kept_by(&self.id), vec![before.value, f64::from(u8::from(before.adapted))]);
+            w.adapt(of, Some(new));
+        }
+        Ok(())
+    }
+    fn finish(&mut self, w: &mut World) -> Result<()> {
+        for of in &self.follows.coefficients {
+            w.memo.remove(&of.kept_by(&self.id));
+        }
+        if !self.reset {
+            return Ok(());
+        }
+        for (of, before) in self.follows.coefficients.iter().zip(&self.before) {
+            w.adapt(of, before.adapted.then_some(before.value));
+        }
+        w.touch();
+        Ok(())
+    }
+}

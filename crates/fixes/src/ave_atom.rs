@@ -1,0 +1,230 @@
+//! fix ave/atom: averages of per-atom values over time.
+
+use super::window::{Schedule, forget};
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Result, fail};
+use perigrain_base::par;
+use perigrain_lang::{Args, ValueRef, Word};
+use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
+use perigrain_world::{GroupId, Slot, World};
+
+/// The style.
+pub struct AveAtom;
+
+impl Style for AveAtom {
+    fn name(&self) -> &'static str {
+        "ave/atom"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group ave/atom Nevery Nrepeat Nfreq value …",
+            summary: "Averages per-atom values over time for each particle of the group.",
+            text: "Values: `x y z vx vy vz fx fy fz`, `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]` with ranges such as `[*]`, and \
+                   `v_name` of an atom-style variable. At every multiple of Nfreq the average of Nrepeat samples, Nevery \
+                   steps apart, the last of them at that step, is offered as `f_ID` (one value) or `f_ID[k]` (several). 0 \
+                   for particles outside the group and before the first average.",
+            example: "fix mean all ave/atom 1 2 2 vx vy c_dmg",
+        }
+    }
+}
+
+/// A per-atom value as an input.
+#[derive(Clone)]
+pub enum Input {
+    /// Component (0 to 2) of position, velocity or force.
+    Column(char, usize),
+    /// A compute's, fix's or variable's.
+    Value(ValueRef),
+}
+
+impl Input {
+    /// One of the words `x` … `fz`.
+    pub fn attribute(word: &str) -> Option<Self> {
+        let (kind, axis) = match word.as_bytes() {
+            [axis] => ('x', axis),
+            [b'v', axis] => ('v', axis),
+            [b'f', axis] => ('f', axis),
+            _ => return None,
+        };
+        matches!(axis, b'x'..=b'z').then(|| Input::Column(kind, usize::from(axis - b'x')))
+    }
+
+    /// Plans it.
+    ///
+    /// # Errors
+    /// As `SealCx::reading`.
+    pub fn source(&self, cx: &mut dyn SealCx, wants: Wants, stage: Stage, when: &When) -> Result<Source> {
+        match self {
+            Input::Column(kind, d) => Ok(Source::Column(*kind, *d)),
+            Input::Value(r) => cx.reading(r, wants, stage, when).map(Source::Reading),
+        }
+    }
+}
+
+/// Where an input is found in a step.
+#[derive(Clone, Copy)]
+pub enum Source {
+    /// As in [`Input::Column`].
+    Column(char, usize),
+    /// In a slot.
+    Reading(Reading),
+}
+
+impl Source {
+    /// The value of particle `i`.
+    pub fn atom(&self, w: &World, i: usize) -> f64 {
+        match self {
+            Source::Column('x', d) => w.particles.x[i][*d],
+            Source::Column('v', d) => w.particles.v[i][*d],
+            Source::Column(_, d) => w.particles.f[i][*d],
+            Source::Reading(r) => r.atom(w, i),
+        }
+    }
+}
+
+impl FixStyle for AveAtom {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let schedule = Schedule::read(args)?;
+        let mut inputs = vec![];
+        args.peek()
+            .map_or_else(|| args.clone().expect("a value such as vx or c_ID").map(drop), |_| Ok(()))?;
+        while let Some(word) = args.next() {
+            match Input::attribute(&word.text) {
+                Some(input) => inputs.push(input),
+                None => {
+                    for word in cx.expand(word, Wants::PerAtom)? {
+                        inputs.push(Input::Value(reference(&word, schedule.every, cx)?));
+                    }
+                }
+            }
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, schedule, inputs }))
+    }
+}
+
+fn reference(word: &Word, every: i64, cx: &BuildCx) -> Result<ValueRef> {
+    let Some(r) = ValueRef::parse(&word.text, word.span)? else {
+        let text = format!("`{}` is no per-atom value: x … fz, c_ID, f_ID or v_name is expected", word.text);
+        return fail(perigrain_base::diag::Code::WRONG_KIND, word.span, text);
+    };
+    cx.value(&r, true)?;
+    super::compatible(&r, &cx.shape(&r).unwrap_or_default(), every, "Nevery")?;
+    Ok(r)
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    schedule: Schedule,
+    inputs: Vec<Input>,
+}
+
+impl Declared {
+    fn key(&self) -> String {
+        format!("ave/atom/{}", self.id)
+    }
+
+    /// The column of the sums of one value.
+    fn column(&self, k: usize) -> String {
+        format!("{}/{k}", self.key())
+    }
+}
+
+impl Fix for Declared {
+    fn counts_steps(&self) -> bool {
+        true
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.remove(w);
+        self.schedule.declare(w, &self.key());
+        let (name, cols) = (format!("f_{}", self.id), self.inputs.len());
+        let slot = w.slots.id(&name);
+        let step = Some(w.clock.step);
+        *w.slots.get_mut(slot) = Slot { name, step, cols, atom: vec![0.0; w.n() * cols], ..Slot::default() };
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        forget(w, &self.key());
+        (0..self.inputs.len()).for_each(|k| w.columns.remove(&self.column(k)));
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let when = self.schedule.when();
+        let mut sources = vec![];
+        for input in &self.inputs {
+            sources.push(input.source(cx, Wants::PerAtom, Stage::EndOfStep, &when)?);
+        }
+        let (me, key, slot) = (self.clone(), self.key(), cx.slot(&format!("f_{}", self.id)));
+        let access = Access::new("slots x v f mask", "slots memo columns");
+        let op = StepOp::new(format!("fix {} ave/atom", self.id), Stage::EndOfStep, access, move |w, t| {
+            let Some(due) = me.schedule.due(w, &key, t.step) else { return Ok(()) };
+            let (n, cols, bit) = (w.n(), sources.len(), me.group.bit());
+            let mut means = vec![0.0; if due.last { n * cols } else { 0 }];
+            for (k, source) in sources.iter().enumerate() {
+                let name = me.column(k);
+                let mut sums = std::mem::take(w.columns.scalar(&name, n));
+                let world = &*w;
+                par::each((&mut sums[..], &world.particles.mask[..]), |start, (sums, mask)| {
+                    for (i, (sum, mask)) in sums.iter_mut().zip(mask).enumerate() {
+                        let before = if due.first { 0.0 } else { *sum };
+                        let inside = mask & bit != 0;
+                        *sum = if inside { before + source.atom(world, start + i) } else { 0.0 };
+                    }
+                });
+                for (mean, sum) in means.iter_mut().skip(k).step_by(cols).zip(&sums) {
+                    *mean = sum / me.schedule.repeat as f64;
+                }
+                *w.columns.scalar(&name, n) = sums;
+            }
+            if due.last {
+                let out = w.slots.get_mut(slot);
+                (out.step, out.atom, out.cols) = (Some(t.step), means, cols);
+            }
+            Ok(())
+        });
+        Ok(vec![op.when(when).in_setup(true).boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { atom: Some(self.inputs.len()), every: self.schedule.freq, ..Shape::default() }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn means_of_two_samples() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0; 3]]);
+        b.world.particles.mask[1] = 0;
+        b.atom.insert("a".into(), vec![3.0, 4.0]);
+        let fix = b.fix(&AveAtom, "1 2 2 vy v_a").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        for step in 1..5 {
+            b.world.clock.step = step;
+            b.world.particles.v = vec![[0.0, step as f64, 0.0]; 2];
+            b.stage(&mut ops, Stage::EndOfStep).unwrap();
+            let wanted = [0.0, 0.0, 1.5, 1.5, 3.5][step as usize];
+            assert_eq!(b.slot_of("f_f").atom[0], wanted, "step {step}");
+        }
+        assert_eq!(b.slot_of("f_f").atom, [3.5, 3.0, 0.0, 0.0]);
+        fix.remove(&mut b.world);
+        assert!(b.world.memo.is_empty() && b.world.columns.get_scalar("ave/atom/f/0").is_none());
+        for words in ["1 2", "1 2 2", "1 2 2 vq", "1 3 2 vx", "2 1 3 vx", "1 1 1 c_t"] {
+            assert!(b.fix(&AveAtom, words).is_err(), "{words}");
+        }
+    }
+}

@@ -1,0 +1,414 @@
+//! fix ave/chunk: values per particle, summed by chunk and averaged over time.
+
+use super::ave_atom::{Input, Source};
+use super::ave_time::{Output, number_format};
+use super::window::{Ave, Averager, Due, Schedule, forget};
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::math::cformat::{Format, Value, general, shortest};
+use perigrain_base::math::vec3::sub;
+use perigrain_computes::chunk::{ChunkRef, Chunks, hold, let_go};
+use perigrain_computes::temp_flow;
+use perigrain_lang::{Args, RefKind, ValueRef, Word};
+use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_styles::matter::{Masses, check_masses};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, Flow, SealCx, Shape, Style, Wants};
+use perigrain_world::{GroupId, SlotId, World};
+use std::fmt::Write;
+use std::path::Path;
+
+/// The style.
+pub struct AveChunk;
+
+impl Style for AveChunk {
+    fn name(&self) -> &'static str {
+        "ave/chunk"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group ave/chunk Nevery Nrepeat Nfreq chunkID value … [keyword value …]",
+            summary: "Averages values per particle by chunk and over time and writes them to a file.",
+            text: "chunkID names a `compute chunk/atom`. Values: `vx vy vz fx fy fz`, `density/number`, `density/mass` (per \
+                   volume of the bin, or of the box), `temp`, `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]` with ranges such as `[*]`, \
+                   and `v_name`. At every multiple of Nfreq the average of Nrepeat samples, Nevery steps apart, the last of \
+                   them at that step, is offered and written. Only particles of the group count.\n\n\
+                   `norm all|sample|none`: the sum over all samples by the number of all particles in them, the mean of the \
+                   samples' own means, or of their sums. `ave one|running|window M`: each average for itself, the mean of all \
+                   so far, or of the last M. `adof` (3, or 2 in flat scenes) and `cdof` (0): degrees of freedom per particle \
+                   and per chunk for `temp`. `file name`, `append name`, `overwrite` (needs `ave running`), `format %g`, \
+                   `title1 title2 title3`. `bias ID`: the flow that a temperature takes away (compute temp/com, temp/partial, temp/ramp) does not count in `temp`.\n\n\
+                   During the samples of an average the number of chunks stays as it is; with `ave running` and `window` for \
+                   good. Global array (intensive): a row per chunk with its original number where the compute compresses, \
+                   the coordinates of its bin, the number of particles and the values; 0 before the first average.",
+            example: "compute layers all chunk/atom bin/1d z lower 0.001 units box\n\
+                      fix profile all ave/chunk 1 5 10 layers vz density/number file profile.txt",
+        }
+    }
+}
+
+/// What is summed over the particles of a chunk.
+#[derive(Clone)]
+enum What {
+    Input(Input),
+    /// Of numbers, or of masses.
+    Density(bool),
+    Temperature,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Norm {
+    All,
+    Sample,
+    None,
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    group_name: String,
+    schedule: Schedule,
+    chunks: ChunkRef,
+    values: Vec<What>,
+    names: Vec<String>,
+    norm: Norm,
+    ave: Ave,
+    adof: Option<f64>,
+    cdof: f64,
+    /// The temperature whose flow does not count.
+    bias: Option<ValueRef>,
+    output: Output,
+    format: Format,
+    checking: bool,
+}
+
+const KEYWORDS: &[&str] = &[
+    "norm",
+    "ave",
+    "bias",
+    "adof",
+    "cdof",
+    "file",
+    "append",
+    "overwrite",
+    "format",
+    "title1",
+    "title2",
+    "title3",
+];
+
+impl FixStyle for AveChunk {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let schedule = Schedule::read(args)?;
+        let chunks = ChunkRef::read(args, cx)?;
+        let mut fix = Declared {
+            id: cx.id.to_string(),
+            group: cx.group,
+            group_name: cx.world.groups.name(cx.group).to_string(),
+            schedule,
+            chunks,
+            values: vec![],
+            names: vec![],
+            norm: Norm::All,
+            ave: Ave::One,
+            adof: None,
+            cdof: 0.0,
+            bias: None,
+            output: Output::default(),
+            format: Format::parse(" %g").unwrap_or_default(),
+            checking: cx.checking,
+        };
+        while let Some(word) = args.peek().filter(|w| !KEYWORDS.contains(&w.text.as_str())) {
+            args.next();
+            fix.take(word, args, cx)?;
+        }
+        if fix.values.is_empty() {
+            args.clone().expect("a value such as vx or c_ID")?;
+            return fail(Code::MISSING_ARGUMENT, args.here(), "a value such as vx or c_ID is missing");
+        }
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "norm" => {
+                    fix.norm = match args.choice("kind of norm", &["all", "sample", "none"])? {
+                        "all" => Norm::All,
+                        "sample" => Norm::Sample,
+                        _ => Norm::None,
+                    }
+                }
+                "ave" => fix.ave = Ave::read(args)?,
+                "adof" => fix.adof = Some(args.number("degrees of freedom per particle")?),
+                "cdof" => fix.cdof = args.number("degrees of freedom per chunk")?,
+                "format" => fix.format = number_format(args)?,
+                "bias" => fix.bias = Some(temp_flow::named(args, cx)?),
+                other if fix.output.read(other, args)? => {}
+                _ => return Err(args.unknown(word, KEYWORDS)),
+            }
+        }
+        fix.output.check(fix.ave, cx)?;
+        Ok(Box::new(fix))
+    }
+}
+
+/// Sums of one step: a row per chunk of the number of particles and the sums of values.
+struct Sample {
+    rows: Vec<f64>,
+    volumes: Vec<f64>,
+}
+
+impl Declared {
+    fn key(&self) -> String {
+        format!("ave/chunk/{}", self.id)
+    }
+
+    /// Adds a value.
+    fn take(&mut self, word: &Word, args: &Args, cx: &BuildCx) -> Result<()> {
+        let plain = match word.text.as_str() {
+            "density/number" => Some(What::Density(false)),
+            "density/mass" => Some(What::Density(true)),
+            "temp" => Some(What::Temperature),
+            text if !text.starts_with(['x', 'y', 'z']) => Input::attribute(text).map(What::Input),
+            _ => None,
+        };
+        if let Some(what) = plain {
+            self.values.push(what);
+            self.names.push(word.text.clone());
+            return Ok(());
+        }
+        for word in cx.expand(word, Wants::PerAtom)? {
+            let known = |r: &ValueRef| !matches!(r.kind, RefKind::ComputeAtom | RefKind::FixAtom);
+            let Some(r) = ValueRef::parse(&word.text, word.span)?.filter(known) else {
+                if KEYWORDS.iter().any(|k| perigrain_base::diag::nearest(&word.text, [*k]).is_some()) {
+                    return Err(args.unknown(&word, KEYWORDS));
+                }
+                let text = format!("`{}` is no value of fix ave/chunk", word.text);
+                return Err(Diagnostic::error(Code::UNKNOWN_KEYWORD, word.span, text)
+                    .help("values are vx vy vz fx fy fz density/number density/mass temp, c_ID, f_ID and v_name")
+                    .into());
+            };
+            cx.reading(&r, Wants::PerAtom)?;
+            super::compatible(&r, &cx.shape(&r).unwrap_or_default(), self.schedule.every, "Nevery")?;
+            self.names.push(word.text.clone());
+            self.values.push(What::Input(Input::Value(r)));
+        }
+        Ok(())
+    }
+
+    fn weighs(&self) -> bool {
+        self.values.iter().any(|v| matches!(v, What::Temperature | What::Density(true)))
+    }
+
+    fn titles(&self) -> Vec<String> {
+        let mut third = "# Chunk".to_string();
+        if self.chunks.kind.compressed {
+            third.push_str(" OrigID");
+        }
+        (1..=self.chunks.kind.coordinates).for_each(|k| third.push_str(&format!(" Coord{k}")));
+        third.push_str(" Ncount");
+        self.names.iter().for_each(|n| third.push_str(&format!(" {n}")));
+        vec![
+            format!("# Chunk-averaged data for fix {} and group {}", self.id, self.group_name),
+            "# Timestep Number-of-chunks Total-count".into(),
+            third,
+        ]
+    }
+
+    /// Sums over the particles of each chunk now, in storage order.
+    fn sample(&self, w: &World, sources: &[Option<Source>], flow: Option<&Flow>, chunks: &Chunks) -> Sample {
+        let width = 1 + self.values.len();
+        let mut rows = vec![0.0; width * chunks.count()];
+        let (masses, p) = (Masses::of(w), &w.particles);
+        for i in (0..w.n()).filter(|&i| p.mask[i] & self.group.bit() != 0) {
+            let Some(k) = chunks.chunk(i) else { continue };
+            let row = &mut rows[k * width..(k + 1) * width];
+            row[0] += 1.0;
+            for ((what, source), sum) in self.values.iter().zip(sources).zip(&mut row[1..]) {
+                *sum += match what {
+                    What::Input(_) => source.map_or(0.0, |s| s.atom(w, i)),
+                    What::Density(false) => 1.0,
+                    What::Density(true) => masses.get(i),
+                    What::Temperature => {
+                        let [x, y, z] = flow.map_or(p.v[i], |f| sub(p.v[i], f.taken[i]));
+                        (x * x + y * y + z * z) * masses.get(i)
+                    }
+                };
+            }
+        }
+        Sample { rows, volumes: (0..chunks.count()).map(|k| chunks.volume(k)).collect() }
+    }
+
+    /// The value that sums of `samples` samples stand for.
+    fn value(&self, w: &World, what: &What, sum: f64, count: f64, volume: f64, samples: f64) -> f64 {
+        let units = w.settings.units.constants();
+        let adof = self.adof.unwrap_or(if w.settings.two_dimensional { 2.0 } else { 3.0 });
+        match what {
+            What::Temperature => units.mvv2e * sum / ((samples * self.cdof + adof * count) * units.boltz),
+            What::Density(mass) => {
+                let per_volume = sum / samples / volume;
+                if *mass { per_volume * units.mv2d } else { per_volume }
+            }
+            What::Input(_) if self.norm == Norm::None => sum,
+            What::Input(_) => sum / count,
+        }
+    }
+
+    /// Turns sums of a row into values; rows without particles stay as they are.
+    fn settle(&self, w: &World, rows: &mut [f64], volumes: &[f64], samples: f64) {
+        let width = 1 + self.values.len();
+        for (row, volume) in rows.chunks_exact_mut(width).zip(volumes) {
+            let count = row[0];
+            if count > 0.0 {
+                for (what, sum) in self.values.iter().zip(&mut row[1..]) {
+                    *sum = self.value(w, what, *sum, count, *volume, samples);
+                }
+            }
+        }
+    }
+
+    /// Adds a sample; after the last one of an average, its rows.
+    fn add(&self, w: &mut World, sample: Sample, due: Due) -> Option<Vec<f64>> {
+        let name = format!("{}/many", self.key());
+        let mut many = w.memo.remove(&name).unwrap_or_default();
+        let Sample { mut rows, volumes } = sample;
+        if due.first || many.len() != rows.len() {
+            many = vec![0.0; rows.len()];
+        }
+        if self.norm != Norm::All {
+            self.settle(w, &mut rows, &volumes, 1.0);
+        }
+        many.iter_mut().zip(&rows).for_each(|(sum, a)| *sum += a);
+        if !due.last {
+            w.memo.insert(name, many);
+            return None;
+        }
+        let (width, repeat) = (1 + self.values.len(), self.schedule.repeat as f64);
+        match self.norm {
+            Norm::All => {
+                self.settle(w, &mut many, &volumes, repeat);
+                many.iter_mut().step_by(width).for_each(|count| *count /= repeat);
+            }
+            _ => many.iter_mut().for_each(|a| *a /= repeat),
+        }
+        Some(many)
+    }
+
+    /// What comes before the number of particles in a row.
+    fn lead(&self, chunks: &Chunks, k: usize) -> Vec<f64> {
+        let kind = self.chunks.kind;
+        let mut lead = vec![];
+        if kind.compressed {
+            lead.push(chunks.original(k));
+        }
+        lead.extend((0..kind.coordinates).map(|d| chunks.coordinate(k, d)));
+        lead
+    }
+
+    /// Offers an average, and gives its block in the file.
+    fn publish(&self, w: &mut World, t: &Tick, at: [SlotId; 2], total: &[f64], times: f64) -> String {
+        let [slot, chunk_slot] = at;
+        let width = 1 + self.values.len();
+        let mut array = vec![];
+        let rows = total.len() / width;
+        let count: f64 = total.iter().step_by(width).sum();
+        let mut text = format!("{} {rows} {}\n", t.step, shortest(count));
+        let chunks = Chunks::of(w, chunk_slot, self.chunks.kind);
+        for (k, row) in total.chunks_exact(width).enumerate() {
+            let lead = self.lead(&chunks, k);
+            let _ = write!(text, "  {}", k + 1);
+            for a in lead.iter().chain([&(row[0] / times)]) {
+                let _ = write!(text, " {}", general(*a, 6));
+            }
+            row[1..].iter().for_each(|a| text.push_str(&self.format.text(&[Value::Float(a / times)])));
+            text.push('\n');
+            array.extend(lead);
+            array.extend(row.iter().map(|a| a / times));
+        }
+        let out = w.slots.get_mut(slot);
+        out.step = Some(t.step);
+        (out.array, out.array_cols) = (array, self.columns());
+        text
+    }
+
+    fn columns(&self) -> usize {
+        usize::from(self.chunks.kind.compressed) + self.chunks.kind.coordinates + 1 + self.values.len()
+    }
+}
+
+impl Fix for Declared {
+    fn file(&self) -> Option<&Path> {
+        self.output.file.as_ref().map(|(path, _)| path.as_path())
+    }
+
+    fn counts_steps(&self) -> bool {
+        true
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.schedule.declare(w, &self.key());
+        let name = format!("f_{}", self.id);
+        let slot = w.slots.id(&name);
+        *w.slots.get_mut(slot) =
+            perigrain_world::Slot { name, array_cols: self.columns(), ..perigrain_world::Slot::default() };
+        if self.checking { Ok(()) } else { self.output.begin(w, &self.key(), &self.titles()) }
+    }
+
+    fn remove(&self, w: &mut World) {
+        forget(w, &self.key());
+        let_go(w, &self.chunks.id);
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (when, span) = (self.schedule.when(), cx.span());
+        if self.weighs() {
+            check_masses(cx.world(), span)?;
+        }
+        let mut sources = vec![];
+        for what in &self.values {
+            sources.push(match what {
+                What::Input(input) => Some(input.source(cx, Wants::PerAtom, Stage::EndOfStep, &when)?),
+                _ => None,
+            });
+        }
+        let bias = self.bias.as_ref().map(|r| temp_flow::known(r, cx)).transpose()?;
+        let chunk_slot = self.chunks.seal(cx, Stage::EndOfStep, &when)?;
+        let (me, key, slot) = (self.clone(), self.key(), cx.slot(&format!("f_{}", self.id)));
+        let mut sheet = self.output.sheet(cx.world(), &key);
+        // Averages come here whole: each is joined with those before it.
+        let averager = Averager { key: key.clone(), repeat: 1, ave: self.ave, off: vec![] };
+        let access = Access::new("x v f mass mask slots", "slots memo");
+        let op = StepOp::new(
+            format!("fix {} ave/chunk", self.id),
+            Stage::EndOfStep,
+            access,
+            move |w: &mut World, t| {
+                let Some(due) = me.schedule.due(w, &key, t.step) else { return Ok(()) };
+                let chunks = Chunks::of(w, chunk_slot, me.chunks.kind);
+                let flow = bias.as_ref().and_then(|b| b.flow(w));
+                let sample = me.sample(w, &sources, flow.as_ref(), &chunks);
+                if due.first {
+                    let last = (me.ave == Ave::One).then(|| me.schedule.last(t.step));
+                    hold(w, &me.chunks.id, t.step, last, span)?;
+                }
+                let Some(rows) = me.add(w, sample, due) else { return Ok(()) };
+                let whole = Due { first: true, last: true };
+                let Some((total, times)) = averager.add(w, &rows, whole) else { return Ok(()) };
+                let block = me.publish(w, t, [slot, chunk_slot], &total, times);
+                sheet.as_mut().map_or(Ok(()), |s| s.block(&block))
+            },
+        );
+        Ok(vec![op.when(when).in_setup(true).boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape {
+            array: self.columns(),
+            array_rows: Shape::OPEN,
+            every: self.schedule.freq,
+            ..Shape::default()
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,378 @@
+//! fix ave/histo and ave/histo/weight: histograms over time.
+
+use super::ave_atom::{Input, Source};
+use super::ave_time::Output;
+use super::bins::{Beyond, Bins, Histogram};
+use super::window::{Ave, Averager, Due, Schedule, forget};
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Result, Span, fail};
+use perigrain_base::math::cformat::{general, shortest};
+use perigrain_computes::reduce::BIG;
+use perigrain_lang::{Args, ValueRef, Word};
+use perigrain_plan::{Access, Op, Stage};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
+use perigrain_world::{GroupId, Slot, World};
+use std::fmt::Write;
+use std::path::Path;
+
+/// `fix ave/histo`.
+pub struct AveHisto;
+
+/// `fix ave/histo/weight`.
+pub struct AveHistoWeight;
+
+const PAGE: &str = "Values: `x y z vx vy vz fx fy fz`, `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]` with ranges such as `[*]`, and \
+    `v_name`; all of one kind (global, per atom, local). At every multiple of Nfreq the histogram of Nrepeat samples, Nevery \
+    steps apart, the last of them at that step, is offered and written. Only particles of the group count.\n\n\
+    `mode scalar|vector`: single numbers (default), or vectors, columns, per-atom and local values. `kind \
+    global|peratom|local`: which values of a style that has several. `ave one|running|window M`: each histogram for itself, \
+    the sum of all so far, or of the last M. `beyond ignore|end|extra`: what lies outside lo and hi is not counted, counts in \
+    the end bins, or in two bins of its own. `start N`, `file`, `append`, `overwrite`, `title1 title2 title3` as for fix \
+    ave/time.\n\n\
+    Vector of 4: values counted, values not counted, smallest and largest. Array with a row per bin: its centre, its count, \
+    its share. Under `-compat lammps` smallest and largest of `ave running` begin at 0, as in LAMMPS 22Jul2025.";
+
+impl Style for AveHisto {
+    fn name(&self) -> &'static str {
+        "ave/histo"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group ave/histo Nevery Nrepeat Nfreq lo hi Nbin value … [keyword value …]",
+            summary: "Counts how often values fall into each of equal bins, over time.",
+            text: PAGE,
+            example: "fix h all ave/histo 1 1 1 -2.0 2.0 8 vx vy vz mode vector file speeds.txt beyond end",
+        }
+    }
+}
+
+impl Style for AveHistoWeight {
+    fn name(&self) -> &'static str {
+        "ave/histo/weight"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group ave/histo/weight Nevery Nrepeat Nfreq lo hi Nbin value weight [keyword value …]",
+            summary: "As fix ave/histo, but each value counts as much as its weight.",
+            text: "Exactly two values of the same length: the first is sorted into bins, the second is what it adds to its \
+                   bin. Everything else is as for [fix ave/histo](fix_ave_histo.md).",
+            example: "fix h all ave/histo/weight 1 1 1 -2.0 2.0 8 vz c_dmg mode vector",
+        }
+    }
+}
+
+impl FixStyle for AveHisto {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        build(args, cx, false)
+    }
+}
+
+impl FixStyle for AveHistoWeight {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        build(args, cx, true)
+    }
+}
+
+const KEYWORDS: &[&str] = &[
+    "mode",
+    "kind",
+    "ave",
+    "start",
+    "beyond",
+    "off",
+    "file",
+    "append",
+    "overwrite",
+    "title1",
+    "title2",
+    "title3",
+];
+
+fn build(args: &mut Args, cx: &BuildCx, weight: bool) -> Result<Box<dyn Fix>> {
+    let mut schedule = Schedule::read(args)?;
+    let mut unknown = args.peek().is_some_and(|w| w.unknown);
+    let lo = args.number("lo")?;
+    let span = args.here();
+    unknown |= args.peek().is_some_and(|w| w.unknown);
+    let hi = args.number("hi")?;
+    if lo >= hi && !unknown {
+        return fail(Code::BAD_VALUE, span, format!("hi must be above lo: {hi} is not above {lo}"));
+    }
+    let inner = args.integer_from(1, "the number of bins")? as usize;
+    let mut words: Vec<&Word> = vec![];
+    while let Some(word) = args.peek().filter(|w| {
+        Input::attribute(&w.text).is_some() || ["c_", "f_", "v_"].iter().any(|p| w.text.starts_with(p))
+    }) {
+        args.next();
+        words.push(word);
+    }
+    if words.is_empty() {
+        let span = args.expect("a value such as vx, c_ID or v_name")?.span;
+        return fail(Code::WRONG_KIND, span, "a value is expected: x … fz, c_ID, f_ID or v_name");
+    }
+    let (mut ave, mut beyond, mut vector, mut kind) = (Ave::One, Beyond::Ignore, false, None);
+    let mut output = Output::default();
+    while let Some(word) = args.next() {
+        match word.text.as_str() {
+            "mode" => vector = args.choice("mode", &["scalar", "vector"])? == "vector",
+            "kind" => kind = Some(args.choice("kind", &["global", "peratom", "local"])?),
+            "ave" => ave = Ave::read(args)?,
+            "start" => schedule.start = args.integer("the first step")?,
+            "beyond" => {
+                beyond = match args.choice("value of beyond", &["ignore", "end", "extra"])? {
+                    "ignore" => Beyond::Ignore,
+                    "end" => Beyond::End,
+                    _ => Beyond::Extra,
+                }
+            }
+            other if output.read(other, args)? => {}
+            _ => return Err(args.unknown(word, KEYWORDS)),
+        }
+    }
+    output.check(ave, cx)?;
+    let (inputs, wants) = inputs(&words, vector, kind, schedule.every, cx)?;
+    if weight && inputs.len() != 2 {
+        let text = format!("two values are needed, one to sort and its weight: here are {}", inputs.len());
+        return fail(Code::BAD_VALUE, words[0].span, text);
+    }
+    let bins = Bins { lo, hi, inner, beyond };
+    let (id, group, checking) = (cx.id.to_string(), cx.group, cx.checking);
+    Ok(Box::new(Declared { id, group, schedule, bins, inputs, wants, weight, ave, output, checking }))
+}
+
+/// The inputs, all of one kind.
+fn inputs(
+    words: &[&Word],
+    vector: bool,
+    kind: Option<&str>,
+    every: i64,
+    cx: &BuildCx,
+) -> Result<(Vec<Input>, Wants)> {
+    let mut found: Vec<(Input, Wants, Span)> = vec![];
+    for word in words {
+        if let Some(input) = Input::attribute(&word.text) {
+            found.push((input, Wants::PerAtom, word.span));
+            continue;
+        }
+        let wants = if vector { kind_of(word, kind, cx)? } else { Wants::Number };
+        for word in cx.expand(word, wants)? {
+            let Some(r) = ValueRef::parse(&word.text, word.span)? else { continue };
+            cx.reading(&r, wants)?;
+            super::compatible(&r, &cx.shape(&r).unwrap_or_default(), every, "Nevery")?;
+            found.push((Input::Value(r), wants, word.span));
+        }
+    }
+    let wants = found.first().map_or(Wants::Number, |f| f.1);
+    if let Some((.., span)) = found.iter().find(|f| f.1 != wants) {
+        return fail(
+            Code::CONFLICT,
+            *span,
+            "values of different kinds (global, per atom, local) in one histogram",
+        );
+    }
+    if wants == Wants::PerAtom && !vector {
+        return fail(Code::CONFLICT, found[0].2, "per-atom values need `mode vector`");
+    }
+    Ok((found.into_iter().map(|f| f.0).collect(), wants))
+}
+
+/// What kind of values a reference has in mode vector.
+fn kind_of(word: &Word, kind: Option<&str>, cx: &BuildCx) -> Result<Wants> {
+    let head = word.text.split('[').next().unwrap_or(&word.text);
+    let shape = match ValueRef::parse(head, word.span)? {
+        Some(r) => cx.shape(&r).unwrap_or_default(),
+        None => Shape::default(),
+    };
+    Ok(match kind {
+        Some("peratom") => Wants::PerAtom,
+        Some("local") => Wants::Local,
+        Some(_) => Wants::Vector,
+        None if shape.vector > 0 || shape.array > 0 => Wants::Vector,
+        None if shape.atom.is_some() => Wants::PerAtom,
+        None if shape.local > 0 => Wants::Local,
+        None => Wants::Vector,
+    })
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    schedule: Schedule,
+    bins: Bins,
+    inputs: Vec<Input>,
+    wants: Wants,
+    weight: bool,
+    ave: Ave,
+    output: Output,
+    checking: bool,
+}
+
+impl Declared {
+    fn key(&self) -> String {
+        let style = if self.weight { "ave/histo/weight" } else { "ave/histo" };
+        format!("{style}/{}", self.id)
+    }
+
+    /// The values of one input at present.
+    fn list(&self, w: &World, source: &Source) -> Vec<f64> {
+        match source {
+            Source::Reading(r) if self.wants != Wants::PerAtom => r.list(w),
+            _ => {
+                let bit = self.group.bit();
+                let chosen = (0..w.n()).filter(|&i| w.particles.mask[i] & bit != 0);
+                chosen.map(|i| source.atom(w, i)).collect()
+            }
+        }
+    }
+
+    /// One sample on top of those `before` in the same average: one sum, in LAMMPS' order.
+    fn sample(&self, w: &World, sources: &[Source], before: Option<Vec<f64>>) -> Result<Histogram> {
+        let mut h = Histogram::new(&self.bins);
+        if let Some(counts) = before.filter(|b| b.len() == h.counts.len()) {
+            h.counts = counts;
+        }
+        if let (true, [values, weights]) = (self.weight, sources) {
+            let (values, weights) = (self.list(w, values), self.list(w, weights));
+            if values.len() != weights.len() {
+                return fail(Code::CONFLICT, None, "there are not as many weights as values");
+            }
+            values.iter().zip(&weights).for_each(|(v, weight)| h.add(&self.bins, *v, *weight));
+            return Ok(h);
+        }
+        for source in sources {
+            self.list(w, source).iter().for_each(|v| h.add(&self.bins, *v, 1.0));
+        }
+        Ok(h)
+    }
+
+    /// Smallest and largest value of all samples that count now; `one` are those of this sample.
+    fn extremes(&self, w: &mut World, one: [f64; 2], due: Due) -> [f64; 2] {
+        let lammps = w.settings.lammps();
+        let list = w.memo.entry(format!("{}/extremes", self.key())).or_default();
+        let fold = |list: &[f64]| {
+            list.chunks_exact(2)
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |e, p| [e[0].min(p[0]), e[1].max(p[1])])
+        };
+        let keep = match self.ave {
+            Ave::One => 0,
+            Ave::Running => 1,
+            Ave::Window(m) => m - 1,
+        };
+        if due.first {
+            if self.ave == Ave::Running && !list.is_empty() {
+                let all = fold(list);
+                *list = all.to_vec();
+            }
+            let spare = (list.len() / 2).saturating_sub(keep) * 2;
+            list.drain(..spare);
+            if self.ave == Ave::Running && list.is_empty() && lammps {
+                list.extend([0.0, 0.0]);
+            }
+            list.extend(one);
+        } else if let [.., lo, hi] = &mut list[..] {
+            (*lo, *hi) = (lo.min(one[0]), hi.max(one[1]));
+        }
+        let [lo, hi] = fold(list);
+        // Of no value at all, as `compute reduce` has it.
+        if lo > hi { [BIG, -BIG] } else { [lo, hi] }
+    }
+
+    /// The block of one histogram in the file.
+    fn block(&self, step: i64, stats: &[f64; 4], rows: &[f64]) -> String {
+        let mut text = format!("{step} {}", self.bins.count());
+        for a in stats {
+            let _ = write!(text, " {}", shortest(*a));
+        }
+        text.push('\n');
+        for (k, row) in rows.chunks_exact(3).enumerate() {
+            let cells: Vec<String> = row.iter().map(|a| general(*a, 6)).collect();
+            let _ = writeln!(text, "{} {}", k + 1, cells.join(" "));
+        }
+        text
+    }
+
+    fn titles(&self) -> Vec<String> {
+        vec![
+            format!("# Histogrammed data for fix {}", self.id),
+            "# TimeStep Number-of-bins Total-counts Missing-counts Min-value Max-value".into(),
+            "# Bin Coord Count Count/Total".into(),
+        ]
+    }
+
+    /// Centre, count and share of every bin.
+    fn rows(&self, counts: &[f64]) -> Vec<f64> {
+        let bins = self.bins.count();
+        let all = counts.get(bins).copied().unwrap_or(0.0);
+        let share = |c: f64| if all == 0.0 { 0.0 } else { c / all };
+        (0..bins)
+            .flat_map(|k| {
+                let count = counts.get(k).copied().unwrap_or(0.0);
+                [self.bins.centre(k), count, share(count)]
+            })
+            .collect()
+    }
+}
+
+impl Fix for Declared {
+    fn file(&self) -> Option<&Path> {
+        self.output.file.as_ref().map(|(path, _)| path.as_path())
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.remove(w);
+        self.schedule.declare(w, &self.key());
+        let name = format!("f_{}", self.id);
+        let slot = w.slots.id(&name);
+        let (vector, array) = (vec![0.0; 4], self.rows(&[]));
+        *w.slots.get_mut(slot) =
+            Slot { name, step: Some(w.clock.step), vector, array, array_cols: 3, ..Slot::default() };
+        if self.checking { Ok(()) } else { self.output.begin(w, &self.key(), &self.titles()) }
+    }
+
+    fn remove(&self, w: &mut World) {
+        forget(w, &self.key());
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let when = self.schedule.when();
+        let mut sources = vec![];
+        for input in &self.inputs {
+            sources.push(input.source(cx, self.wants, Stage::EndOfStep, &when)?);
+        }
+        let (me, key, slot) = (self.clone(), self.key(), cx.slot(&format!("f_{}", self.id)));
+        let so_far = format!("{key}/bins");
+        let mut sheet = self.output.sheet(cx.world(), &key);
+        let averager = Averager { key: key.clone(), repeat: 1, ave: self.ave, off: vec![] };
+        let access = Access::new("slots x v f mask", "slots memo");
+        let op = StepOp::new(format!("fix {} ave/histo", self.id), Stage::EndOfStep, access, move |w, t| {
+            let Some(due) = me.schedule.due(w, &key, t.step) else { return Ok(()) };
+            let before = w.memo.remove(&so_far).filter(|_| !due.first);
+            let one = me.sample(w, &sources, before)?;
+            let [lo, hi] = me.extremes(w, one.extremes, due);
+            if !due.last {
+                w.memo.insert(so_far.clone(), one.counts);
+                return Ok(());
+            }
+            let whole = Due { first: true, last: true };
+            let Some((counts, _)) = averager.add(w, &one.counts, whole) else { return Ok(()) };
+            let (bins, rows) = (me.bins.count(), me.rows(&counts));
+            let stats = [counts[bins], counts[bins + 1], lo, hi];
+            let out = w.slots.get_mut(slot);
+            (out.step, out.vector, out.array_cols) = (Some(t.step), stats.to_vec(), 3);
+            out.array.clone_from(&rows);
+            sheet.as_mut().map_or(Ok(()), |s| s.block(&me.block(t.step, &stats, &rows)))
+        });
+        Ok(vec![op.when(when).in_setup(true).boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        let (array_rows, every) = (self.bins.count(), self.schedule.freq);
+        Shape { vector: 4, array: 3, array_rows, every, ..Shape::default() }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}

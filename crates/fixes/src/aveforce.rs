@@ -1,0 +1,111 @@
+//! fix aveforce: every particle of a group feels the mean force of the group.
+
+use super::components::Components;
+use super::{Fix, FixStyle, Minimizing};
+use perigrain_base::diag::Result;
+use perigrain_lang::Args;
+use perigrain_plan::{Access, Op, Stage};
+use perigrain_styles::matter::{change_forces, publish_levels};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+
+/// The style.
+pub struct AveForce;
+
+impl Style for AveForce {
+    fn name(&self) -> &'static str {
+        "aveforce"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group aveforce fx fy fz [region ID]",
+            summary: "Gives all particles of the group the mean of their forces, plus a given force.",
+            text: "f ← ⟨f⟩ + (fx, fy, fz): masses do not count. Each of fx fy fz is a number, `NULL` (this component stays) or \
+                   `v_name` of an equal-style variable, evaluated each step. With `region` only particles inside it at \
+                   that moment. Forces of fixes declared later are not seen. Acts in the setup of a run too. Vector of 3 \
+                   (extensive): the total force before the change.",
+            example: "fix stiff foot aveforce NULL NULL 0.0",
+        }
+    }
+}
+
+impl FixStyle for AveForce {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let components = Components::read(args, cx, false)?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), components }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    components: Components,
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (chosen, force) = self.components.seal(cx)?;
+        let level = cx.level();
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let access = Access::new("x mask", "f");
+        let op = StepOp::new(format!("fix {} aveforce", self.id), Stage::PostForce, access, move |w, t| {
+            if t.unchanged {
+                return Ok(());
+            }
+            // Of several levels of steps the added force belongs to one.
+            let here = level.acts(&t.phase);
+            let [count, before @ ..] = change_forces::<4>(w, &chosen, |_, _, f| [1.0, f[0], f[1], f[2]]);
+            if count > 0.0 {
+                let mean: [Option<f64>; 3] = std::array::from_fn(|d| {
+                    force[d].map(|r| before[d] / count + if here { r.get(w) } else { 0.0 })
+                });
+                change_forces::<0>(w, &chosen, |_, _, f| {
+                    (0..3).for_each(|d| f[d] = mean[d].unwrap_or(f[d]));
+                    []
+                });
+            }
+            publish_levels(w, slot, t, &before);
+            Ok(())
+        });
+        Ok(vec![op.in_every_level().boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { vector: 3, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
+    }
+
+    fn has_level(&self) -> bool {
+        true
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn the_mean_of_the_group() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 3]);
+        b.world.particles.f = vec![[1.0, 2.0, 3.0], [3.0, 4.0, 5.0], [9.0; 3]];
+        b.world.particles.mask[2] = 0;
+        b.equal.insert("e".into(), 10.0);
+        let fix = b.fix(&AveForce, "0 NULL v_e").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        assert_eq!(b.world.particles.f, [[2.0, 2.0, 14.0], [2.0, 4.0, 14.0], [9.0; 3]]);
+        assert_eq!(b.slot_of("f_f").vector, [4.0, 6.0, 8.0]);
+        for words in ["0 0", "0 0 v_no", "0 0 0 region q", "0 0 0 foo"] {
+            assert!(b.fix(&AveForce, words).is_err(), "{words}");
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Where the faces of a deforming box are at a step, and how fast its lengths grow.
+
+use super::{Declared, Motion};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_plan::{Stage, Tick, When};
+use perigrain_styles::{Reading, SealCx};
+use perigrain_world::World;
+use std::f64::consts::TAU;
+
+/// The way of one dimension through a run.
+#[derive(Clone, Debug)]
+pub struct Track {
+    /// Faces at the start.
+    start: [f64; 2],
+    way: Way,
+}
+
+#[derive(Clone, Debug)]
+enum Way {
+    /// Not moved here.
+    Still,
+    /// Linear to these faces at the end.
+    Linear([f64; 2]),
+    /// The length grows as exp(rate · t).
+    Exponential(f64),
+    /// The length swings.
+    Wiggle(f64, f64),
+    /// Change of length, and its rate.
+    Variable(Reading, Reading),
+    /// The volume stays. `shared`: two dimensions follow one.
+    Volume { shared: bool },
+}
+
+impl Track {
+    /// Whether this dimension is moved at all.
+    pub fn moves(&self) -> bool {
+        !matches!(self.way, Way::Still)
+    }
+
+    fn length(&self) -> f64 {
+        self.start[1] - self.start[0]
+    }
+
+    /// Faces that are `length` apart around the middle of the start.
+    fn around(&self, length: f64) -> [f64; 2] {
+        let middle = 0.5 * (self.start[0] + self.start[1]);
+        [middle - 0.5 * length, middle + 0.5 * length]
+    }
+}
+
+/// The ways of a run that begins now.
+///
+/// # Errors
+/// Variables that are gone.
+pub fn tracks(fix: &Declared, cx: &mut dyn SealCx, when: &When) -> Result<[Track; 3]> {
+    let w = cx.world();
+    let (clock, domain) = (w.clock.clone(), w.domain()?.clone());
+    // Of runs that share a ramp, the start is where the line was given.
+    let said = w.memo.get(&fix.key()).filter(|m| clock.first != clock.start && m.len() == 6);
+    let face = |k: usize, now: f64| said.map_or(now, |m| m[k]);
+    let start = [0, 1, 2].map(|d| [face(d, domain.lo[d]), face(d + 3, domain.hi[d])]);
+    let time = (clock.stop - clock.start) as f64 * clock.dt;
+    let followers = fix.motions.iter().flatten().filter(|m| matches!(m, Motion::Volume)).count();
+    let mut ways = [const { Way::Still }; 3];
+    for (d, motion) in fix.motions.iter().enumerate() {
+        let Some(motion) = motion else { continue };
+        let ([lo, hi], s) = (start[d], fix.scales[d]);
+        let grown = |by: f64| Way::Linear([lo - 0.5 * by, hi + 0.5 * by]);
+        ways[d] = match motion {
+            Motion::Final(a, b) => Way::Linear([a * s, b * s]),
+            Motion::Delta(a, b) => Way::Linear([lo + a * s, hi + b * s]),
+            Motion::Scale(f) => {
+                let (middle, half) = (0.5 * (lo + hi), 0.5 * f * (hi - lo));
+                Way::Linear([middle - half, middle + half])
+            }
+            Motion::Velocity(v) => grown(time * v * s),
+            Motion::Rate(r) => grown(time * r * (hi - lo)),
+            Motion::TrueRate(r) => Way::Exponential(*r),
+            Motion::Wiggle(a, period) => Way::Wiggle(a * s, *period),
+            Motion::Volume => Way::Volume { shared: followers == 2 },
+            Motion::Variable(change, rate) => Way::Variable(
+                cx.value(change, Stage::EndOfStep, when)?,
+                cx.value(rate, Stage::EndOfStep, when)?,
+            ),
+        };
+    }
+    let mut ways = ways.into_iter();
+    Ok(start.map(|start| Track { start, way: ways.next().unwrap_or(Way::Still) }))
+}
+
+/// How fast lengths grow and lower faces move, as compute temp/deform asks for it. Under `compat lammps` it knows nothing of
+/// lengths that keep the volume, and before the first change of a run (`first`) of those alone that grow evenly.
+pub fn streaming(tracks: &[Track; 3], w: &World, rate: [f64; 3], first: bool) -> [[f64; 3]; 2] {
+    let clock = &w.clock;
+    let time = (clock.stop - clock.start) as f64 * clock.dt;
+    // Of all ways but those to given faces the middle stays.
+    let low = std::array::from_fn(|d| match &tracks[d].way {
+        Way::Linear([lo, _]) if time > 0.0 => (lo - tracks[d].start[0]) / time,
+        _ => -0.5 * rate[d],
+    });
+    let known = |d: usize| match tracks[d].way {
+        Way::Linear(_) => true,
+        Way::Volume { .. } => !w.settings.lammps(),
+        _ => !(first && w.settings.lammps()),
+    };
+    [rate, low].map(|v| std::array::from_fn(|d| if known(d) { v[d] } else { 0.0 }))
+}
+
+/// Lower faces, upper faces and rates of the lengths at a step.
+///
+/// # Errors
+/// A box without room.
+pub fn faces(tracks: &[Track; 3], w: &World, t: &Tick) -> Result<([f64; 3], [f64; 3], [f64; 3])> {
+    let (clock, domain) = (&w.clock, w.domain()?);
+    let (elapsed, all) = ((t.step - clock.start) as f64, (clock.stop - clock.start) as f64);
+    let (time, share) = (elapsed * clock.dt, if all > 0.0 { elapsed / all } else { 1.0 });
+    let mut at = [0, 1, 2].map(|d| [domain.lo[d], domain.hi[d]]);
+    let mut rate = [0.0; 3];
+    for (d, track) in tracks.iter().enumerate() {
+        let [lo, hi] = track.start;
+        match &track.way {
+            Way::Still | Way::Volume { .. } => {}
+            Way::Linear([a, b]) => {
+                at[d] = [lo + share * (a - lo), hi + share * (b - hi)];
+                let way = (b - a) - (hi - lo);
+                rate[d] = if all > 0.0 { way / (all * clock.dt) } else { 0.0 };
+            }
+            Way::Exponential(r) => {
+                let length = track.length() * (r * time).exp();
+                (at[d], rate[d]) = (track.around(length), r * length);
+            }
+            Way::Wiggle(a, period) => {
+                let (phase, half) = (TAU * time / period, 0.5 * a);
+                at[d] = [lo - half * phase.sin(), hi + half * phase.sin()];
+                rate[d] = a * TAU / period * phase.cos();
+            }
+            Way::Variable(change, speed) => {
+                let half = 0.5 * change.get(w);
+                (at[d], rate[d]) = ([lo - half, hi + half], speed.get(w));
+            }
+        }
+    }
+    follow(tracks, &mut at, &mut rate);
+    for (d, [lo, hi]) in at.iter().enumerate() {
+        if tracks[d].moves() && !(hi > lo && (hi - lo).is_finite()) {
+            let text = format!(
+                "the box would reach from {lo} to {hi} along {} at step {}",
+                ["x", "y", "z"][d],
+                t.step
+            );
+            return Err(Diagnostic::error(Code::BAD_VALUE, None, text).into());
+        }
+    }
+    Ok((at.map(|f| f[0]), at.map(|f| f[1]), rate))
+}
+
+/// The dimensions that keep the volume.
+fn follow(tracks: &[Track; 3], at: &mut [[f64; 2]; 3], rate: &mut [f64; 3]) {
+    let volume: f64 = tracks.iter().map(Track::length).product();
+    let led = (*at, *rate);
+    for (d, track) in tracks.iter().enumerate() {
+        let Way::Volume { shared } = track.way else { continue };
+        let others = [(d + 1) % 3, (d + 2) % 3];
+        let follows = |k: usize| matches!(tracks[k].way, Way::Volume { .. });
+        // A dimension that nobody moves counts as it was at the start.
+        let length =
+            |k: usize| if tracks[k].moves() { led.0[k][1] - led.0[k][0] } else { tracks[k].length() };
+        let relative = |k: usize| if tracks[k].moves() { led.1[k] / length(k) } else { 0.0 };
+        let own = if shared {
+            let (leader, twin) =
+                if follows(others[0]) { (others[1], others[0]) } else { (others[0], others[1]) };
+            let own = (volume / length(leader) / tracks[twin].length() * track.length()).sqrt();
+            rate[d] = -0.5 * own * relative(leader);
+            own
+        } else {
+            let own = volume / length(others[0]) / length(others[1]);
+            rate[d] = -own * (relative(others[0]) + relative(others[1]));
+            own
+        };
+        at[d] = track.around(own);
+    }
+}

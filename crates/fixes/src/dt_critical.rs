@@ -1,0 +1,164 @@
+//! fix dt/critical: a time step that follows the stability limits of the scene.
+
+use super::time_step::Follower;
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_lang::Args;
+use perigrain_plan::Op;
+use perigrain_styles::critical::{self, Estimate};
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::{GroupId, RunStyle, World};
+
+/// The style.
+pub struct DtCritical;
+
+impl Style for DtCritical {
+    fn name(&self) -> &'static str {
+        "dt/critical"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID all dt/critical N safety [pd cfl|silling|exact] [max T]",
+            summary: "Sets the time step to a part of what peridynamic solids and contacts stand.",
+            text: "In the setup of a run and every N steps the step becomes `safety` times the shorter of the two limits of \
+                   compute dt/critical (`pd exact` unless said otherwise), at most T. As bonds break and contacts come and go \
+                   the limits change, and the step follows. Under `run_style staggered` the long step becomes the grains' \
+                   limit, shortened to what `m N` short steps of the solids fill; with `faster grains` the step becomes the \
+                   grains', shortened to the N-th part of the solids'. Where no limit is known, as for grains that do not \
+                   touch, the step is T, or stays. Scalar (intensive): the last step at which it changed.\n\n\
+                   Contacts that begin between two looks are stiffer than was known: give T, or a small N. `pd exact` costs \
+                   some 50 to 200 force evaluations per look.",
+            example: "fix ct all dt/critical 100 0.8 pd exact max 2.0e-7",
+        }
+    }
+}
+
+impl FixStyle for DtCritical {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        if cx.group != GroupId::ALL {
+            return fail(Code::BAD_VALUE, cx.span, "fix dt/critical must use the group `all`");
+        }
+        let every = args.integer_from(1, "the number of steps between two looks")?;
+        let span = args.here();
+        let safety = args.positive("the part of the limit")?;
+        if safety >= 1.0 {
+            return fail(
+                Code::BAD_VALUE,
+                span,
+                format!("a part of the limit is below 1: {safety} lets waves grow"),
+            );
+        }
+        let mut rule = Rule { how: Estimate::Exact, safety, longest: None };
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "pd" => rule.how = Estimate::read(args)?,
+                "max" => rule.longest = Some(args.positive("the longest step")?),
+                _ => return Err(args.unknown(word, &["pd", "max"])),
+            }
+        }
+        Ok(Box::new(Declared { follower: Follower::new("dt/critical", cx.id, every), rule }))
+    }
+}
+
+/// How the step follows from the limits.
+#[derive(Clone, Copy)]
+struct Rule {
+    how: Estimate,
+    safety: f64,
+    longest: Option<f64>,
+}
+
+impl Rule {
+    fn step(&self, w: &World, solids: f64, grains: f64) -> f64 {
+        let limit = match &w.settings.run_style {
+            RunStyle::Verlet => solids.min(grains),
+            RunStyle::Staggered { ratio: None, .. } => grains,
+            RunStyle::Staggered { ratio: Some(m), rare: false, .. } => grains.min(*m as f64 * solids),
+            RunStyle::Staggered { ratio: Some(m), .. } => grains.min(solids / *m as f64),
+            // Whoever acts in the longest steps of all has the last word.
+            RunStyle::Respa(r) => {
+                let pairs = r.subs.iter().flatten().copied().max().unwrap_or(r.pair);
+                solids.min(grains) * r.steps(pairs) as f64
+            }
+        };
+        let step = (self.safety * limit).min(self.longest.unwrap_or(f64::INFINITY));
+        if step.is_finite() { step } else { w.clock.dt }
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    follower: Follower,
+    rule: Rule,
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.follower.declare(w);
+        critical::ask_walls(w);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        self.follower.remove(w);
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let rule = self.rule;
+        let mut probes = cx.probes()?;
+        let reads = "x v radius mass type volume families contacts";
+        Ok(self.follower.ops(cx, reads, move |w| {
+            let (solids, grains) = (critical::solids(w, rule.how)?, critical::grains(w, &mut probes)?);
+            Ok(rule.step(w, solids, grains))
+        }))
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, ..Shape::default() }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::{AtomStyle, Respa};
+
+    #[test]
+    fn the_step_suits_the_way_steps_are_made() {
+        let mut w = World::default();
+        w.clock.dt = 7.0;
+        let rule = Rule { how: Estimate::Cfl, safety: 0.5, longest: None };
+        let staggered = |ratio, rare| RunStyle::Staggered { ratio, rare, twice: None };
+        let inf = f64::INFINITY;
+        let levels = |subs| RunStyle::Respa(Respa { loops: vec![3, 5], bond: 0, pair: 2, subs });
+        for (style, solids, grains, step) in [
+            (RunStyle::Verlet, 2.0, 8.0, 1.0),
+            (RunStyle::Verlet, 2.0, inf, 1.0),
+            (RunStyle::Verlet, inf, inf, 7.0),
+            (staggered(Some(3), false), 2.0, 8.0, 3.0),
+            (staggered(Some(5), false), 2.0, 8.0, 4.0),
+            (staggered(None, false), 2.0, 8.0, 4.0),
+            (staggered(None, false), 2.0, inf, 7.0),
+            (staggered(Some(4), true), 8.0, 3.0, 1.0),
+            (levels(None), 2.0, 8.0, 1.0),
+            (levels(Some(vec![0, 1])), 2.0, 8.0, 5.0),
+        ] {
+            w.settings.run_style = style.clone();
+            assert_eq!(rule.step(&w, solids, grains), step, "{style:?}");
+        }
+        assert_eq!(Rule { longest: Some(0.25), ..rule }.step(&w, inf, inf), 0.25);
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let b = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
+        for words in ["", "0 0.8", "10", "10 1.0", "10 0.8 pd fast", "10 0.8 max 0", "10 0.8 emax 3"] {
+            assert!(b.fix(&DtCritical, words).is_err(), "{words}");
+        }
+    }
+}

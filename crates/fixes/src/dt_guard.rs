@@ -1,0 +1,109 @@
+//! fix dt/guard: a run whose energy is off goes back to where it was right, and on in shorter steps.
+
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_lang::Args;
+use perigrain_plan::{Op, Rule};
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::{GroupId, World};
+
+/// The style.
+pub struct DtGuard;
+
+impl Style for DtGuard {
+    fn name(&self) -> &'static str {
+        "dt/guard"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID all dt/guard N tolerance [shrink F] [min T] [recover K]",
+            summary: "Takes back blocks of steps in which energy was made, and goes on in shorter steps.",
+            text: "A run is made in blocks of N steps, and every step at which a fix or output acts ends one. At its end, before \
+                   anything is put out, the residual of compute energy/ledger is compared with that at the block's beginning: if \
+                   it has changed by more than `tolerance` times the energy that was held then plus what went in and out since, \
+                   or particles are lost or have no finite place, the scene is put back as it was at the beginning, the \
+                   step is multiplied by F (0.5), and the log says so in one line. After K good blocks in a row (`recover`; \
+                   never unless given) the step becomes longer by 1/F, up to the longest that the deck has set. Below T \
+                   (1e-6 of the first step) the run ends with an error.\n\n\
+                   What is put out belongs to good blocks only. A run makes its number of steps, so that it covers less time \
+                   when steps became shorter (`fix halt` with the variable `time` ends at a time). The tolerance must leave room \
+                   for the errors of dashpots, friction and breaking bonds, which are of first order in the step: some per \
+                   cent. The ledger costs a second evaluation of contacts in each step, a block a copy of the scene.",
+            example: "fix g all dt/guard 20 0.05 shrink 0.5 recover 10",
+        }
+    }
+}
+
+impl FixStyle for DtGuard {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        if cx.group != GroupId::ALL {
+            return fail(Code::BAD_VALUE, cx.span, "fix dt/guard must use the group `all`");
+        }
+        let every = args.integer_from(1, "the number of steps in a block")?;
+        let tolerance = args.positive("the part of the energy that may be off")?;
+        let mut rule = Rule { every, tolerance, shrink: 0.5, shortest: 1e-6 * cx.world.clock.dt, recover: 0 };
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "shrink" => {
+                    let span = args.here();
+                    rule.shrink = args.positive("what steps are multiplied with")?;
+                    if rule.shrink >= 1.0 {
+                        let text = format!("shrink makes steps shorter: {} is not below 1", rule.shrink);
+                        return fail(Code::BAD_VALUE, span, text);
+                    }
+                }
+                "min" => rule.shortest = args.positive("the shortest step")?,
+                "recover" => rule.recover = args.integer_from(1, "the number of good blocks")?,
+                _ => return Err(args.unknown(word, &["shrink", "min", "recover"])),
+            }
+        }
+        Ok(Box::new(Declared { rule }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    rule: Rule,
+}
+
+impl Fix for Declared {
+    fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        // The run's loop does the work: it alone can go back.
+        Ok(vec![])
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        // The next run's setup opens the ledger.
+        w.touch();
+        Ok(())
+    }
+
+    fn guard(&self) -> Option<Rule> {
+        Some(self.rule)
+    }
+
+    fn needs_whole_steps(&self, _w: &World) -> Option<&'static str> {
+        Some("its ledger counts the work of whole steps")
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn words() {
+        let b = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
+        let rule = b.fix(&DtGuard, "20 0.1 shrink 0.25 min 1e-9 recover 7").unwrap().guard().unwrap();
+        assert_eq!(rule, Rule { every: 20, tolerance: 0.1, shrink: 0.25, shortest: 1e-9, recover: 7 });
+        for words in ["", "20", "0 0.1", "20 0", "20 0.1 shrink 1", "20 0.1 min 0", "20 0.1 grow 3"] {
+            assert!(b.fix(&DtGuard, words).is_err(), "{words}");
+        }
+    }
+}

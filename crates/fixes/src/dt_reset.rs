@@ -1,0 +1,236 @@
+//! fix dt/reset: a time step that follows the fastest particle.
+
+use super::time_step::Follower;
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::par;
+use perigrain_lang::Args;
+use perigrain_plan::Op;
+use perigrain_styles::common::{scales, units_lattice};
+use perigrain_styles::matter::{Masses, check_masses};
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::{GroupId, RunStyle, World};
+
+/// The style.
+pub struct DtReset;
+
+impl Style for DtReset {
+    fn name(&self) -> &'static str {
+        "dt/reset"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group dt/reset N Tmin Tmax Xmax [emax E] [units lattice|box]",
+            summary: "Chooses the time step so that no particle moves further than Xmax in one step.",
+            text: "In the setup of a run and every N steps, for each particle: Δt = min(Xmax/|v|, √(2 Xmax m/|f|)), \
+                   made smaller by Xmax/|v Δt + ½ f/m Δt²| where that is less than 1; with `emax` also \
+                   Δt ≤ E/(|f| |v|). The smallest over the group, bounded by Tmin and Tmax (a number or `NULL`), is the \
+                   new step. Elapsed time is the sum of the steps as they were. Xmax in lattice spacings (of x) \
+                   unless `units box`. Scalar (intensive): the last step at which Δt changed. Where nothing moves and \
+                   Tmax is `NULL`, Δt stays as it is (LAMMPS makes it 1e20).\n\n\
+                   Under `run_style staggered m N` the step is the long one. Particles of solids make N short ones in it, and \
+                   their limit is meant for these: it counts N times. `m auto` chooses the short step by what bonds stand, \
+                   so that there it counts once.",
+            example: "fix step all dt/reset 10 1.0e-10 1.0e-8 1.0e-6 units box",
+        }
+    }
+}
+
+impl FixStyle for DtReset {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let every = args.integer_from(1, "the number of steps between two looks")?;
+        let shortest = bound(args, "Tmin")?;
+        let span = args.here();
+        let longest = bound(args, "Tmax")?;
+        if let (Some(a), Some(b)) = (shortest, longest)
+            && a >= b
+        {
+            return fail(Code::BAD_VALUE, span, format!("Tmin must be less than Tmax: {a} is not below {b}"));
+        }
+        let reach = args.positive("Xmax")?;
+        let (mut lattice, mut energy) = (true, None);
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "units" => lattice = units_lattice(args)?,
+                "emax" => energy = Some(args.positive("the largest change of kinetic energy")?),
+                _ => return Err(args.unknown(word, &["emax", "units"])),
+            }
+        }
+        let reach = reach * scales(cx.world, lattice)[0];
+        let rule = Rule { group: cx.group, shortest, longest, reach, energy };
+        Ok(Box::new(Declared { follower: Follower::new("dt/reset", cx.id, every), rule }))
+    }
+}
+
+fn bound(args: &mut Args, what: &str) -> Result<Option<f64>> {
+    if args.eat("NULL") { Ok(None) } else { args.non_negative(what).map(Some) }
+}
+
+/// How a step size follows from velocities and forces.
+#[derive(Clone, Copy)]
+struct Rule {
+    group: GroupId,
+    shortest: Option<f64>,
+    longest: Option<f64>,
+    /// Furthest way in one step [length].
+    reach: f64,
+    /// Largest change of kinetic energy in one step.
+    energy: Option<f64>,
+}
+
+impl Rule {
+    /// The step for the present velocities and forces.
+    fn step(&self, w: &World) -> f64 {
+        let (p, masses, bit) = (&w.particles, Masses::of(w), self.group.bit());
+        let units = w.settings.units.constants();
+        let root = (units.ftm2v * units.mvv2e).sqrt();
+        let short = match w.settings.run_style {
+            RunStyle::Staggered { ratio: Some(m), rare: false, .. } => m as f64,
+            _ => 1.0,
+        };
+        let solid = |i: usize| {
+            w.families.as_ref().is_some_and(|f| f.place.get(i).is_some_and(|place| *place != u32::MAX))
+        };
+        let chunk = |range: std::ops::Range<usize>| {
+            range.filter(|&i| p.mask[i] & bit != 0).fold(f64::INFINITY, |dt: f64, i| {
+                let own = self.limit(p.v[i], p.f[i], units.ftm2v * (1.0 / masses.get(i)), root);
+                dt.min(if short > 1.0 && solid(i) { short * own } else { own })
+            })
+        };
+        let limit = par::reduce(p.len(), chunk, f64::min).unwrap_or(f64::INFINITY);
+        let mut dt = if limit.is_infinite() && self.longest.is_none() { w.clock.dt } else { limit };
+        if let Some(t) = self.shortest {
+            dt = dt.max(t);
+        }
+        if let Some(t) = self.longest {
+            dt = dt.min(t);
+        }
+        dt
+    }
+
+    /// The longest step of a particle with velocity `v`, force `f` and inverse mass `a` (times the unit of force).
+    fn limit(&self, v: [f64; 3], f: [f64; 3], a: f64, root: f64) -> f64 {
+        let square = |u: [f64; 3]| u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+        let (vsq, fsq) = (square(v), square(f));
+        let mut dt = f64::INFINITY;
+        if vsq > 0.0 {
+            dt = dt.min(self.reach / vsq.sqrt());
+        }
+        if fsq > 0.0 {
+            dt = dt.min((2.0 * self.reach / (a * fsq.sqrt())).sqrt());
+        }
+        if let Some(energy) = self.energy
+            && fsq * vsq > 0.0
+        {
+            dt = dt.min(energy / (fsq * vsq).sqrt() / root);
+        }
+        if dt.is_infinite() {
+            return dt;
+        }
+        let way = square(std::array::from_fn(|d| dt * v[d] + 0.5 * dt * dt * a * f[d])).sqrt();
+        if way > self.reach { dt * (self.reach / way) } else { dt }
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    follower: Follower,
+    rule: Rule,
+}
+
+impl Fix for Declared {
+    fn counts_steps(&self) -> bool {
+        true
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.follower.declare(w);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        self.follower.remove(w);
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (rule, span) = (self.rule, cx.span());
+        check_masses(cx.world(), span)?;
+        Ok(self.follower.ops(cx, "v f mass mask", move |w| Ok(rule.step(w))))
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, ..Shape::default() }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_plan::Stage;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    fn step(b: &mut Bench, words: &str) -> f64 {
+        let fix = b.fix(&DtReset, words).unwrap();
+        fix.declare(&mut b.world).unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::EndOfStep).unwrap();
+        b.world.clock.dt
+    }
+
+    fn scene() -> Bench {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
+        b.world.lattice = perigrain_world::Lattice::none(0.5);
+        b
+    }
+
+    // m = 2 throughout; limits by hand.
+    #[test]
+    fn the_fastest_decides() {
+        let mut b = scene();
+        b.world.particles.v = vec![[3.0, 0.0, 4.0], [0.0; 3]];
+        assert_eq!(step(&mut b, "1 NULL NULL 0.5 units box"), 0.1);
+        assert_eq!(step(&mut b, "1 NULL NULL 1"), 0.1); // lattice spacings of 0.5
+        assert_eq!(step(&mut b, "1 NULL 0.05 0.5 units box"), 0.05);
+        assert_eq!(step(&mut b, "1 0.2 NULL 0.5 units box"), 0.2);
+        b.world.particles.f[1] = [0.0, 100.0, 0.0]; // √(2 · 0.25 · 2 / 100) = 0.1
+        b.world.particles.v[0] = [0.0; 3];
+        assert!((step(&mut b, "1 NULL NULL 0.25 units box") - 0.1).abs() < 1e-16);
+        // v and f along each other: 0.1 alone for either, way 0.75, so 0.1/3.
+        b.world.particles.v[1] = [0.0, 2.5, 0.0];
+        assert!((step(&mut b, "1 NULL NULL 0.25 units box") - 0.05).abs() < 1e-16);
+        assert!((step(&mut b, "1 NULL NULL 0.25 emax 5 units box") - 0.02).abs() < 1e-16);
+    }
+
+    #[test]
+    fn the_last_change_is_remembered() {
+        let mut b = scene();
+        b.world.clock.step = 7;
+        b.world.particles.v[0] = [1.0, 0.0, 0.0];
+        step(&mut b, "5 NULL NULL 0.5 units box");
+        assert_eq!(b.slot_of("f_f").scalar, 7.0);
+        assert_eq!(b.world.memo["dt/reset/f"], [7.0]);
+        b.world.particles.v[0] = [0.0; 3];
+        assert_eq!(step(&mut b, "5 NULL NULL 0.5"), 0.5); // nothing moves: stays
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let b = scene();
+        for words in [
+            "",
+            "0 NULL NULL 1",
+            "1 2 1 1",
+            "1 -1 1 1",
+            "1 NULL NULL 0",
+            "1 NULL NULL 1 emx 2",
+            "1 NULL NULL",
+        ] {
+            assert!(b.fix(&DtReset, words).is_err(), "{words}");
+        }
+    }
+}

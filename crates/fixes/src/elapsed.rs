@@ -1,0 +1,56 @@
+//! Time since the declaration of a fix.
+
+use perigrain_world::World;
+
+/// How much time has passed since the declaration, also where the time step changes or steps are renumbered.
+#[derive(Clone, Copy)]
+pub struct Elapsed {
+    /// Step of the declaration.
+    pub origin: f64,
+    /// Time up to `step`.
+    time: f64,
+    /// Since which step `dt` holds.
+    step: f64,
+    /// The present time step.
+    dt: f64,
+    /// The latest step.
+    last: f64,
+}
+
+impl Elapsed {
+    /// As the world remembers it under this key; from now on where it does not.
+    pub fn load(w: &World, key: &str) -> Self {
+        match w.memo.get(key).map(Vec::as_slice) {
+            Some(&[origin, time, step, dt, last]) => Self { origin, time, step, dt, last },
+            _ => {
+                let step = w.clock.step as f64;
+                Self { origin: step, time: 0.0, step, dt: w.clock.dt, last: step }
+            }
+        }
+    }
+
+    /// Lets the world remember it.
+    pub fn store(self, w: &mut World, key: &str) {
+        let Self { origin, time, step, dt, last } = self;
+        match w.memo.get_mut(key) {
+            Some(memo) => memo.copy_from_slice(&[origin, time, step, dt, last]),
+            None => drop(w.memo.insert(key.to_string(), vec![origin, time, step, dt, last])),
+        }
+    }
+
+    /// The time at the latest step.
+    pub fn now(&self) -> f64 {
+        self.time + (self.last - self.step) * self.dt
+    }
+
+    /// Goes on to `step` by one time step `dt`.
+    pub fn follow(&mut self, step: i64, dt: f64) {
+        let before = (step - 1) as f64;
+        self.step += before - self.last;
+        self.last = before;
+        if dt != self.dt {
+            *self = Self { time: self.now(), step: before, dt, ..*self };
+        }
+        self.last = step as f64;
+    }
+}

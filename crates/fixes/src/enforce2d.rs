@@ -1,0 +1,112 @@
+//! fix enforce2d: keeps a two-dimensional scene in its plane.
+
+use super::{Fix, FixStyle, Minimizing};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::par;
+use perigrain_lang::Args;
+use perigrain_plan::{Access, Op, Stage};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::GroupId;
+
+/// The style.
+pub struct Enforce2d;
+
+impl Style for Enforce2d {
+    fn name(&self) -> &'static str {
+        "enforce2d"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group enforce2d",
+            summary: "Sets velocity and force along z to zero in two-dimensional scenes.",
+            text: "Acts on vz and fz of the particles of the group and, for spheres, on the components of angular velocity \
+                   and torque that would turn them out of the plane (x and y). Needs `dimension 2`. Forces of fixes \
+                   declared later are not seen: declare it last. Acts in the setup of a run too.",
+            example: "fix flat all enforce2d",
+        }
+    }
+}
+
+impl FixStyle for Enforce2d {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        if !cx.world.settings.two_dimensional {
+            let text = "fix enforce2d belongs to two-dimensional scenes";
+            return Err(Diagnostic::error(Code::CONFLICT, cx.span, text)
+                .help("say `dimension 2` before the box is created, or leave this fix out")
+                .into());
+        }
+        args.finish()?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+}
+
+impl Fix for Declared {
+    fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (bit, access) = (self.group.bit(), Access::new("mask", "v f omega torque"));
+        let op = StepOp::new(format!("fix {} enforce2d", self.id), Stage::PostForce, access, move |w, t| {
+            if t.unchanged {
+                return Ok(());
+            }
+            let p = &mut w.particles;
+            par::each((&mut p.v[..], &mut p.f[..], &p.mask[..]), |_, (v, f, mask)| {
+                for ((v, f), _) in v.iter_mut().zip(f).zip(mask).filter(|(_, m)| **m & bit != 0) {
+                    (v[2], f[2]) = (0.0, 0.0);
+                }
+            });
+            if p.style.sphere {
+                par::each((&mut p.omega[..], &mut p.torque[..], &p.mask[..]), |_, (omega, torque, mask)| {
+                    for ((a, b), _) in omega.iter_mut().zip(torque).zip(mask).filter(|(_, m)| **m & bit != 0)
+                    {
+                        (*a, *b) = ([0.0, 0.0, a[2]], [0.0, 0.0, b[2]]);
+                    }
+                });
+            }
+            Ok(())
+        });
+        Ok(vec![op.in_every_level().boxed()])
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn nothing_leaves_the_plane() {
+        let sphere = AtomStyle { sphere: true, sphere_mass: true, ..AtomStyle::default() };
+        let mut b = Bench::new(sphere, &[[0.0; 3]; 2]);
+        assert!(b.fix(&Enforce2d, "").is_err());
+        b.world.settings.two_dimensional = true;
+        for column in [&mut b.world.particles.v, &mut b.world.particles.f] {
+            *column = vec![[1.0, 2.0, 3.0]; 2];
+        }
+        b.world.particles.omega = vec![[1.0, 2.0, 3.0]; 2];
+        b.world.particles.torque = vec![[1.0, 2.0, 3.0]; 2];
+        b.world.particles.mask[1] = 0;
+        let fix = b.fix(&Enforce2d, "").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        let p = &b.world.particles;
+        assert_eq!((p.v[0], p.f[0]), ([1.0, 2.0, 0.0], [1.0, 2.0, 0.0]));
+        assert_eq!((p.omega[0], p.torque[0]), ([0.0, 0.0, 3.0], [0.0, 0.0, 3.0]));
+        assert_eq!((p.v[1], p.torque[1]), ([1.0, 2.0, 3.0], [1.0, 2.0, 3.0]));
+        assert!(b.fix(&Enforce2d, "1").is_err());
+    }
+}

@@ -1,0 +1,173 @@
+//! fix evaporate: particles that vanish at random.
+
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_lang::Args;
+use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_styles::common::seed;
+use perigrain_styles::matter::{Chosen, publish};
+use perigrain_styles::newcomers::Account;
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::{GroupId, World};
+
+/// The style.
+pub struct Evaporate;
+
+impl Style for Evaporate {
+    fn name(&self) -> &'static str {
+        "evaporate"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group evaporate N M region seed [molecule no]",
+            summary: "Deletes M particles of a region every N steps, chosen at random.",
+            text: "At multiples of N, M particles of the group inside the region at that moment are deleted, or all of them \
+                   where there are fewer. Random numbers are LAMMPS'; the same particles go as long as both programs keep \
+                   particles in the same order (`atom_modify sort 0 0` there). Ids of the others stay. A second run goes on where the first \
+                   one ended, also after a restart. `molecule yes` is refused: particles belong to no molecules. Scalar (intensive): how many are gone so far.",
+            example: "fix dry grains evaporate 5 1 ball 4711",
+        }
+    }
+}
+
+impl FixStyle for Evaporate {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let every = args.integer_from(1, "the number of steps N")?;
+        let count = args.integer_from(1, "the number of particles M")? as u64;
+        let word = args.expect("the region's ID")?;
+        cx.region(word)?;
+        let region = word.text.clone();
+        let seed = seed(args)?;
+        while let Some(word) = args.next() {
+            if word.text != "molecule" {
+                return Err(args.unknown(word, &["molecule"]));
+            }
+            if args.flag("molecule")? {
+                let text = "the particles of this scene belong to no molecules";
+                return fail(Code::CONFLICT, word.span, text);
+            }
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, every, count, region, seed }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    every: i64,
+    count: u64,
+    region: String,
+    seed: u32,
+}
+
+impl Declared {
+    fn key(&self) -> String {
+        format!("evaporate/{}", self.id)
+    }
+
+    /// Deletes this step's share.
+    fn act(&self, w: &mut World, chosen: &Chosen, account: &mut Account) {
+        // Who is drawn depends on the order of creation.
+        w.fall_back();
+        let p = &w.particles;
+        let here = chosen.now(w);
+        let mut list: Vec<usize> = (0..p.len()).filter(|&i| here.has(p.mask[i], p.x[i])).collect();
+        let mut gone = vec![false; p.len()];
+        for _ in 0..self.count.min(list.len() as u64) {
+            let which = (list.len() as f64 * account.stream.uniform()) as usize;
+            gone[list.swap_remove(which)] = true;
+            account.done += 1;
+        }
+        if !gone.contains(&true) {
+            return;
+        }
+        // From the end, so that nobody who moves into a hole is one of them.
+        let mut order: Vec<usize> = (0..p.len()).collect();
+        for k in (0..p.len()).rev().filter(|&k| gone[k]) {
+            order.swap_remove(k);
+        }
+        w.gather(&order);
+    }
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        Account::maker(w, self.seed).store(w, &self.key());
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.memo.remove(&self.key());
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        let chosen = Chosen::new(cx.world(), self.group, Some(&self.region), span)?;
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let w = cx.world();
+        w.slots.get_mut(slot).scalar = Account::load(w, &self.key()).map_or(0.0, |a| a.done as f64);
+        let me = self.clone();
+        let access = Access::new("x mask", "everything");
+        let act = move |w: &mut World, t: &Tick| {
+            let key = me.key();
+            let Some(mut account) = Account::load(w, &key).filter(|_| t.step % me.every == 0) else {
+                return Ok(());
+            };
+            me.act(w, &chosen, &mut account);
+            account.store(w, &key);
+            w.rebuild.due = true;
+            publish(w, slot, t, account.done as f64, &[]);
+            Ok(())
+        };
+        Ok(vec![StepOp::new(format!("fix {} evaporate", self.id), Stage::Exchange, access, act).boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, ..Shape::default() }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+    use perigrain_world::region::{Region, Shape};
+
+    #[test]
+    fn only_inside_and_no_more_than_there_are() {
+        let places: Vec<[f64; 3]> = (0..8).map(|k| [f64::from(k), 0.0, 0.0]).collect();
+        let mut b = Bench::new(AtomStyle::default(), &places);
+        let near = Shape::Sphere { center: [0.0; 3], radius: 4.5 };
+        b.world.regions.insert("near".into(), Region::inside(near));
+        let fix = b.fix(&Evaporate, "2 3 near 44").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        for (step, left) in [(1, 8), (2, 5), (3, 5), (4, 3), (6, 3)] {
+            b.world.clock.step = step;
+            b.stage(&mut ops, Stage::Exchange).unwrap();
+            assert_eq!(b.world.n(), left, "step {step}");
+        }
+        assert_eq!(b.slot_of("f_f").scalar, 5.0);
+        let mut tags = b.world.particles.tag.clone();
+        tags.sort_unstable();
+        assert_eq!(tags, [6, 7, 8]);
+        for words in [
+            "",
+            "0 1 near 4",
+            "1 0 near 4",
+            "1 1 far 4",
+            "1 1 near 0",
+            "1 1 near 4 molecule yes",
+            "1 1 near 4 no",
+        ] {
+            assert!(b.fix(&Evaporate, words).is_err(), "{words}");
+        }
+    }
+}

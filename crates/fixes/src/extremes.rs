@@ -1,0 +1,161 @@
+//! `fix extremes`: the smallest and the largest value each of some quantities has had.
+
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Result, fail};
+use perigrain_lang::{Args, Param};
+use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use perigrain_world::{SlotId, World};
+
+/// The style.
+pub struct ExtremesStyle;
+
+impl Style for ExtremesStyle {
+    fn name(&self) -> &'static str {
+        "extremes"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group extremes N value …",
+            summary: "Remembers the smallest and the largest value of quantities, looked at every N steps.",
+            text: "Each value is a single number: `v_name`, `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`. `f_ID[2k-1]` is the \
+                smallest and `f_ID[2k]` the largest value the k-th quantity has had since the fix was declared, at the \
+                start of a run and at steps that are multiples of N; several runs count as one. The group is without \
+                meaning. Not in LAMMPS.",
+            example: "fix peak all extremes 1 v_force",
+        }
+    }
+}
+
+impl FixStyle for ExtremesStyle {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let every = args.integer_from(1, "the number of steps between two looks")?;
+        let mut values = vec![];
+        while let Some(word) = args.peek() {
+            let p = args.param("a value")?;
+            if matches!(p, Param::Number(_)) {
+                return fail(
+                    perigrain_base::diag::Code::WRONG_KIND,
+                    word.span,
+                    "a number has no extremes: name a value",
+                );
+            }
+            cx.param(&p, false)?;
+            values.push(p);
+        }
+        if values.is_empty() {
+            args.expect("a value such as v_name or c_ID")?;
+        }
+        Ok(Box::new(Extremes { id: cx.id.to_string(), every, values }))
+    }
+}
+
+/// A declared fix.
+#[derive(Clone)]
+struct Extremes {
+    id: String,
+    every: i64,
+    values: Vec<Param>,
+}
+
+impl Extremes {
+    fn memo(&self) -> String {
+        format!("extremes/{}", self.id)
+    }
+}
+
+impl Fix for Extremes {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let when = When::Every(self.every).or(When::First);
+        let readings = self.values.iter().map(|p| cx.param(p, Stage::EndOfStep, &when));
+        Ok(vec![Box::new(Watch {
+            name: format!("fix {} extremes", self.id),
+            memo: self.memo(),
+            when: when.clone(),
+            readings: readings.collect::<Result<_>>()?,
+            slot: cx.slot(&format!("f_{}", self.id)),
+        })])
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        let none = [f64::INFINITY, f64::NEG_INFINITY].repeat(self.values.len());
+        w.memo.insert(self.memo(), none);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.memo.remove(&self.memo());
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { vector: 2 * self.values.len(), ..Shape::default() }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+/// Looks at the values and keeps what is beyond all before.
+struct Watch {
+    name: String,
+    memo: String,
+    when: When,
+    readings: Vec<Reading>,
+    slot: SlotId,
+}
+
+impl Op for Watch {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn stage(&self) -> Stage {
+        Stage::EndOfStep
+    }
+
+    fn access(&self) -> Access {
+        Access::new("slots", "slots memo")
+    }
+
+    fn when(&self) -> When {
+        self.when.clone()
+    }
+
+    fn in_setup(&self) -> bool {
+        true
+    }
+
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let mut known = w.memo.remove(&self.memo).unwrap_or_default();
+        widen(&mut known, self.readings.iter().map(|r| r.get(w)));
+        let mut slot = w.slots.take(self.slot);
+        slot.vector.clone_from(&known);
+        w.slots.put(self.slot, slot, t.step);
+        w.memo.insert(self.memo.clone(), known);
+        Ok(())
+    }
+}
+
+/// Lets each pair (smallest, largest) of `known` take in the next value.
+fn widen(known: &mut [f64], values: impl Iterator<Item = f64>) {
+    for (pair, v) in known.chunks_exact_mut(2).zip(values) {
+        pair[0] = pair[0].min(v);
+        pair[1] = pair[1].max(v);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extremes_take_in_values() {
+        let mut known = [f64::INFINITY, f64::NEG_INFINITY].repeat(2);
+        for v in [[1.0, -5.0], [3.0, -7.0], [2.0, -6.0]] {
+            widen(&mut known, v.into_iter());
+        }
+        assert_eq!(known, [1.0, 3.0, -7.0, -5.0]);
+    }
+}

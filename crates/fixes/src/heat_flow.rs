@@ -1,0 +1,121 @@
+//! fix heat/flow: temperatures of particles that follow the heat they take up.
+
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::par;
+use perigrain_lang::Args;
+use perigrain_plan::{Access, Op, Stage};
+use perigrain_styles::matter::{Masses, check_masses};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::GroupId;
+use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
+
+/// The style.
+pub struct HeatFlow;
+
+impl Style for HeatFlow {
+    fn name(&self) -> &'static str {
+        "heat/flow"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group heat/flow constant cp | type cp1 … cpN",
+            summary: "Changes the temperature of particles by the heat that flows into them.",
+            text: "T += Δt q/(m c_p) at the end of each step, with the heat flow q of contacts in energy/time units and \
+                   the specific heat c_p in energy/(mass temperature) units, one for all or one for each type. Needs \
+                   `fix ID all property/atom temperature heatflow`.",
+            example: "fix warm all property/atom temperature heatflow\nset group ball temperature 300\n\
+                      fix flow ball heat/flow constant 840",
+        }
+    }
+}
+
+impl FixStyle for HeatFlow {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let types = cx.world.types;
+        let capacity = match args.choice("style", &["constant", "type"])? {
+            "constant" => vec![args.positive("the specific heat")?; types],
+            _ => (1..=types)
+                .map(|k| args.positive(&format!("the specific heat of type {k}")))
+                .collect::<Result<_>>()?,
+        };
+        args.finish()?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, capacity }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    /// Specific heat by type − 1.
+    capacity: Vec<f64>,
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (capacity, bit, span) = (self.capacity.clone(), self.group.bit(), cx.span());
+        check_masses(cx.world(), span)?;
+        let columns = &cx.world().columns;
+        let (Some(temperature), Some(heat)) = (columns.custom(TEMPERATURE), columns.custom(HEATFLOW)) else {
+            let text = "fix heat/flow needs particles with temperature and heat flow";
+            return Err(Diagnostic::error(Code::INCOMPLETE, span, text)
+                .help("write `fix ID all property/atom temperature heatflow` before the run")
+                .into());
+        };
+        let access = Access::new("columns mass type mask", "columns");
+        let op =
+            StepOp::new(format!("fix {} heat/flow", self.id), Stage::FinalIntegrate, access, move |w, t| {
+                let n = w.n();
+                let mut warmth = std::mem::take(w.columns.scalar(&temperature, n));
+                warmth.resize(n, 0.0);
+                let (p, masses) = (&w.particles, Masses::of(w));
+                let flow = w.columns.get_scalar(&heat).unwrap_or_default();
+                par::each((&mut warmth[..], flow, &p.mask[..]), |start, (warmth, flow, mask)| {
+                    for (k, ((warmth, flow), mask)) in warmth.iter_mut().zip(flow).zip(mask).enumerate() {
+                        if mask & bit != 0 {
+                            let i = start + k;
+                            *warmth += t.dt * flow / (masses.get(i) * capacity[usize::from(p.kind[i]) - 1]);
+                        }
+                    }
+                });
+                *w.columns.scalar(&temperature, n) = warmth;
+                Ok(())
+            });
+        Ok(vec![op.in_every_level().boxed()])
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::property_atom::PropertyAtomFix;
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn heat_warms() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 3]);
+        b.world.clock.dt = 0.5;
+        let flow = b.fix(&HeatFlow, "type 4").unwrap();
+        assert!(b.seal(&*flow).is_err());
+        let own = b.fix(&PropertyAtomFix, "temperature heatflow").unwrap();
+        own.declare(&mut b.world).unwrap();
+        *b.world.columns.scalar("property/atom/f/temperature", 3) = vec![300.0; 3];
+        *b.world.columns.scalar("property/atom/f/heatflow", 3) = vec![16.0, -16.0, 16.0];
+        b.world.particles.mask[2] = 0;
+        let mut ops = b.seal(&*flow).unwrap();
+        b.stage(&mut ops, Stage::FinalIntegrate).unwrap();
+        // ΔT = 0.5 · 16/(2 · 4) by hand.
+        let after = b.world.columns.get_scalar("property/atom/f/temperature").unwrap();
+        assert_eq!(after, [301.0, 299.0, 300.0]);
+        for words in ["", "constant", "constant 0", "constant -1", "type", "every 2"] {
+            assert!(b.fix(&HeatFlow, words).is_err(), "{words}");
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! fix indent: a sphere, cylinder, cone or plane that repels particles.
+
+mod form;
+
+use super::{Fix, FixStyle, Minimizing};
+use form::{Form, check_ends};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::{Args, Param, Word};
+use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_styles::common::{axis, scales, units_lattice, variable_param};
+use perigrain_styles::matter::{Chosen, change_forces, publish};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::GroupId;
+
+/// The style.
+pub struct Indent;
+
+const KEYWORDS: &[&str] = &["sphere", "cylinder", "cone", "plane", "side", "units"];
+
+impl Style for Indent {
+    fn name(&self) -> &'static str {
+        "indent"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group indent K sphere x y z R | cylinder dim c1 c2 R | cone dim c1 c2 radlo radhi lo hi | \
+                     plane dim pos lo|hi [side in|out] [units lattice|box]",
+            summary: "Pushes particles out of a sphere, cylinder, cone or half-space.",
+            text: "A particle at distance r < R from the sphere's centre or the cylinder's axis feels the force \
+                   K (r − R)² away from it; `side in` keeps particles inside instead (r > R, force towards the centre). \
+                   `cone` stands \
+                   between discs of the radii radlo and radhi at the places lo and hi on its axis, one of which may be a \
+                   point; the depth is that below the nearest face, end faces included, and the force is across it (LAMMPS 22Jul2025's \
+                   goes away from the cone's middle and its energies are negative: `-compat lammps`; with `side in` \
+                   and a point its forces are wrong or no numbers, which is not reproduced). `plane dim pos lo` pushes what is below pos upwards, `hi` what is above downwards. K is in \
+                   force/distance² units; peridynamic particles in LAMMPS' convention take it as force density. Places \
+                   and radius are numbers or `v_name` of an equal-style variable, evaluated each step; numbers are in \
+                   lattice spacings (the radius in those of x, a cone's in those of its axis) unless `units box`; variables are not scaled. Across \
+                   periodic faces the nearest image counts. Scalar (extensive): the energy Σ K/3 |r − R|³; `fix_modify \
+                   ID energy yes` adds it to the potential energy. Vector of 3 (extensive): the force on the indenter.",
+            example: "fix ball all indent 4.0e20 sphere 0.0 0.0 v_z 0.003 units box",
+        }
+    }
+}
+
+impl FixStyle for Indent {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let stiffness = args.non_negative("the force constant K")?;
+        let (mut form, mut inside, mut lattice) = (None, false, true);
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "side" => inside = args.choice("side", &["in", "out"])? == "in",
+                "units" => lattice = units_lattice(args)?,
+                _ if form.is_some() && KEYWORDS.contains(&word.text.as_str()) => {
+                    return fail(Code::CONFLICT, word.span, "an indenter has one shape; use a second fix");
+                }
+                _ => form = Some(read_form(word, args, cx)?),
+            }
+        }
+        let Some(form) = form else {
+            return Err(Diagnostic::error(Code::MISSING_ARGUMENT, args.here(), "the indenter has no shape")
+                .help(
+                    "write `sphere x y z R`, `cylinder dim c1 c2 R`, `cone dim c1 c2 radlo radhi lo hi` or `plane dim pos \
+                     lo|hi`",
+                )
+                .into());
+        };
+        if let (Form::Cone { .. }, true) = (&form, cx.world.settings.lammps()) {
+            let text = "compat lammps: a cone pushes away from its middle, with negative energies";
+            cx.note(Diagnostic::note(Code::COMPAT, cx.span, text));
+        }
+        let form = scaled(&form, scales(cx.world, lattice))?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, stiffness, form, inside }))
+    }
+}
+
+fn read_form(word: &Word, args: &mut Args, cx: &BuildCx) -> Result<Form<Param>> {
+    let param = |args: &mut Args, what: &str| {
+        let p = variable_param(args, what)?;
+        cx.param(&p, false).map(|()| p)
+    };
+    let radius = |args: &mut Args| {
+        let span = args.here();
+        match param(args, "the radius")? {
+            Param::Number(r) if r < 0.0 => fail(Code::BAD_VALUE, span, "the radius must not be negative"),
+            p => Ok(p),
+        }
+    };
+    match word.text.as_str() {
+        "sphere" => {
+            let center = [param(args, "x")?, param(args, "y")?, param(args, "z")?];
+            Ok(Form::Sphere { center, radius: radius(args)? })
+        }
+        "cylinder" => {
+            let axis = axis(args, "axis of the cylinder")?;
+            let center = [param(args, "c1")?, param(args, "c2")?];
+            Ok(Form::Cylinder { axis, center, radius: radius(args)? })
+        }
+        "cone" => {
+            let axis = axis(args, "axis of the cone")?;
+            let center = [param(args, "c1")?, param(args, "c2")?];
+            let radii = [radius(args)?, radius(args)?];
+            let from = args.here();
+            let low = param(args, "the cone's lower end")?;
+            let span = from.to(args.here());
+            let ends = [low, param(args, "the cone's upper end")?];
+            if let [Param::Number(lo), Param::Number(hi)] = ends {
+                check_ends(lo, hi).map_err(|e| e.at(span))?;
+            }
+            Ok(Form::Cone { axis, center, radii, ends })
+        }
+        "plane" => {
+            let axis = axis(args, "direction of the plane")?;
+            let place = param(args, "the plane's position")?;
+            Ok(Form::Plane { axis, place, high: args.choice("side of the plane", &["lo", "hi"])? == "hi" })
+        }
+        _ => Err(args.unknown(word, KEYWORDS)),
+    }
+}
+
+/// Numbers become lengths of the box; variables stay.
+fn scaled(form: &Form<Param>, scale: [f64; 3]) -> Result<Form<Param>> {
+    form.map(|p, axis| {
+        Ok(match p {
+            Param::Number(a) => Param::Number(a * scale[axis]),
+            p => p.clone(),
+        })
+    })
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    stiffness: f64,
+    form: Form<Param>,
+    inside: bool,
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        let chosen = Chosen::new(cx.world(), self.group, None, span)?;
+        let form = self.form.map(|p, _| cx.param(p, Stage::PostForce, &When::Always))?;
+        let (k, inside) = (self.stiffness, self.inside);
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let access = Access::new("x mask", "f");
+        let op = StepOp::new(format!("fix {} indent", self.id), Stage::PostForce, access, move |w, t| {
+            if t.unchanged {
+                return Ok(());
+            }
+            let body = form.now(w)?;
+            let [energy, reaction @ ..] = change_forces::<4>(w, &chosen, |w, i, f| {
+                let Some((push, energy)) = body.push(w, w.particles.x[i], k, inside) else {
+                    return [0.0; 4];
+                };
+                (0..3).for_each(|d| f[d] += push[d]);
+                [energy, -push[0], -push[1], -push[2]]
+            });
+            publish(w, slot, t, energy, &reaction);
+            Ok(())
+        });
+        Ok(vec![op.boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, vector: 3, scalar_extensive: true, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn has_energy(&self) -> bool {
+        true
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
+    }
+
+    fn has_level(&self) -> bool {
+        true
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::{AtomStyle, Lattice};
+
+    /// The force on a particle at (3, 0, 1), and the indenter's energy and force.
+    fn force(b: &mut Bench, words: &str) -> ([f64; 3], f64, Vec<f64>) {
+        b.world.particles.f = vec![[0.0; 3]];
+        let fix = b.fix(&Indent, words).unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        let slot = b.slot_of("f_f");
+        (b.world.particles.f[0], slot.scalar, slot.vector.clone())
+    }
+
+    fn scene() -> Bench {
+        let mut b = Bench::new(AtomStyle::default(), &[[3.0, 0.0, 1.0]]);
+        b.equal.insert("z".into(), 1.0);
+        b.equal.insert("n".into(), -1.0);
+        b.world.lattice = Lattice::none(0.5);
+        b
+    }
+
+    // Depth 2 (or where said otherwise), K = 6: force 24, energy 6/3 · 8 = 16, by hand.
+    #[test]
+    fn shapes_and_sides() {
+        let mut b = scene();
+        let (out, energy, reaction) = force(&mut b, "6 sphere 0 0 v_z 5 units box");
+        assert_eq!((out, energy, reaction), ([24.0, 0.0, 0.0], 16.0, vec![-24.0, 0.0, 0.0]));
+        assert_eq!(force(&mut b, "6 sphere 0 0 v_z 1 side in units box").0, [-24.0, 0.0, 0.0]);
+        assert_eq!(force(&mut b, "6 sphere 0 0 v_z 1 units box").0, [0.0; 3]);
+        assert_eq!(force(&mut b, "6 cylinder y 0 v_z 5 units box").0, [24.0, 0.0, 0.0]);
+        assert_eq!(force(&mut b, "6 cylinder z 0 0 5 units box").0, [24.0, 0.0, 0.0]);
+        assert_eq!(force(&mut b, "6 plane z 3 lo units box").0, [0.0, 0.0, 24.0]);
+        assert_eq!(force(&mut b, "6 plane z -1 hi units box").0, [0.0, 0.0, -24.0]);
+        assert_eq!(force(&mut b, "6 plane z 3 hi units box").0, [0.0; 3]);
+        assert_eq!(force(&mut b, "6 sphere 3 0 v_z 5 units box").0, [0.0; 3]);
+        // Cones that are cylinders with ends.
+        assert_eq!(force(&mut b, "6 cone z 0 0 5 5 -9 9 units box").0, [24.0, 0.0, 0.0]);
+        assert_eq!(force(&mut b, "6 cone z 0 0 1 1 -9 9 side in units box").0, [-24.0, 0.0, 0.0]);
+        assert_eq!(force(&mut b, "6 cone z 0 0 5 5 -3 9 units box").0, [24.0, 0.0, 0.0]);
+        assert_eq!(force(&mut b, "6 cone z 0 0 9 9 -1 9 units box").0, [0.0, 0.0, -24.0]);
+        // In lattice spacings of 0.5.
+        assert_eq!(force(&mut b, "6 sphere 0 0 2 10").0, [24.0, 0.0, 0.0]);
+        // The box repeats after 20: the sphere's image at -18 is 5 away from x = -13 … and 2 deep from x = 3.
+        assert_eq!(force(&mut b, "6 sphere 20 0 v_z 5 units box").0, [24.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let mut b = scene();
+        for words in [
+            "",
+            "-1 sphere 0 0 0 1",
+            "1",
+            "1 sphere 0 0 0",
+            "1 sphere 0 0 0 -1",
+            "1 cone x 0 0 1 2 3 3",
+            "1 cone x 0 0 1 -2 3 4",
+            "1 cone x 0 0 1 2 3",
+            "1 plane w 0 lo",
+            "1 plane x 0 up",
+            "1 sphere 0 0 0 1 plane x 0 lo",
+            "1 sphere 0 0 0 1 unit box",
+            "1 sphere 0 0 v_q 1",
+        ] {
+            assert!(b.fix(&Indent, words).is_err(), "{words}");
+        }
+        let fix = b.fix(&Indent, "1 sphere 0 0 0 v_n").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        assert!(b.stage(&mut ops, Stage::PostForce).is_err());
+    }
+}

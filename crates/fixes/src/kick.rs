@@ -1,0 +1,105 @@
+//! Half kicks and drifts of velocity Verlet in one pass over memory, with what acts on particles right before and after.
+
+mod pass;
+
+use super::nve::half_step;
+use pass::{Kick, Part, faster};
+use perigrain_base::diag::Result;
+use perigrain_plan::{Act, Gist, Solids, Stretch, Tick};
+use perigrain_styles::matter::Masses;
+use perigrain_styles::step_op::StepOp;
+use perigrain_world::{GroupId, World};
+
+/// Lets the op that begins a step make whole ones in stretches: half kicks and drifts of a group; with `inertia`,
+/// I / (m R²), spins too: ω += Δt/2 · torque/I. How far anybody has gone at most is told to the account of ways.
+pub fn first<F>(op: StepOp<F>, group: GroupId, inertia: Option<f64>) -> StepOp<F>
+where
+    F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
+{
+    op.taking_turns(move |w, t, _| whole(w, group, inertia, t, Part::First), went)
+}
+
+/// The same for the op that ends a step, and can begin the next one.
+pub fn second<F>(op: StepOp<F>, group: GroupId, inertia: Option<f64>) -> StepOp<F>
+where
+    F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
+{
+    let part = |on: bool| if on { Part::Both } else { Part::Second };
+    op.taking_turns(move |w, t, on| whole(w, group, inertia, t, part(on)), went)
+}
+
+/// A part of a step, or of a level of steps, of which only the shortest drift; of the two lengths of steps for grains and
+/// solids see [`some`].
+fn whole(w: &World, group: GroupId, inertia: Option<f64>, t: &Tick, part: Part) -> Option<Act> {
+    let (short, solids) = (t.phase.level == 0, t.phase.solids.clone());
+    let part = if part == Part::First && !short && solids.is_none() { Part::Second } else { part };
+    // Bonds of solids turn nothing, so that short steps have none of it.
+    let inertia = inertia.filter(|_| solids.is_none() || !short);
+    let half = half_step(w, t.dt);
+    let k = Kick { half, spin: inertia.map_or(0.0, |i| half / i), dt: t.dt, bit: group.bit() };
+    let (spins, own) = (inertia.is_some(), w.particles.style.own_mass());
+    let Some(solids) = solids else {
+        return Some(match own {
+            true => Act::moving(move |s, beside| k.together(s, spins, part, s.all.mass, beside)),
+            false => Act::new(move |s| {
+                let masses = Masses::new(s.all.style, s.all.mass, s.all.kind, s.all.type_mass);
+                moved(k.part_of(s, 0..s.x.len(), spins, part, &masses))
+            }),
+        });
+    };
+    Some(Act::new(move |s| {
+        let masses = Masses::new(s.all.style, s.all.mass, s.all.kind, s.all.type_mass);
+        moved(some(&k, s, spins, part, &masses, (&solids, short)))
+    }))
+}
+
+/// What came of a motion: the largest v².
+fn moved(most: f64) -> Gist {
+    Gist { most, ..Gist::default() }
+}
+
+/// A part of a step of two lengths: in the long one all are kicked and all but solids drift, in the short ones solids do
+/// both. Solids are created one after the other: what a particle does is decided once for all like it that follow.
+fn some(
+    k: &Kick,
+    s: &mut Stretch,
+    spins: bool,
+    part: Part,
+    masses: &Masses,
+    (solids, short): (&Solids, bool),
+) -> f64 {
+    let (mut from, mut most) = (0, 0.0);
+    while from < s.x.len() {
+        let (kind, mask) = (&s.all.kind[s.start + from..s.start + s.x.len()], &s.mask[from..]);
+        let own = from..from + alike(kind, mask);
+        let solid = solids.has(kind[0]);
+        let drifts = short || !solid || mask[0] & solids.twice != 0;
+        let part = if drifts { part } else { Part::Second };
+        if solid || !short {
+            most = faster(most, k.part_of(s, own.clone(), spins, part, masses));
+        }
+        from = own.end;
+    }
+    most
+}
+
+/// How many particles from the first on have its type and groups.
+fn alike(kind: &[u16], mask: &[u32]) -> usize {
+    const EACH: usize = 16;
+    let (first, bits) = (kind[0], mask[0]);
+    let mut n = 0;
+    // Whole groups are compared without a branch for each.
+    for (kind, mask) in kind.chunks_exact(EACH).zip(mask.chunks_exact(EACH)) {
+        let differ = kind.iter().fold(0, |d, k| d | (k ^ first)) != 0;
+        if differ || mask.iter().fold(0, |d, m| d | (m ^ bits)) != 0 {
+            break;
+        }
+        n += EACH;
+    }
+    n + kind[n..].iter().zip(&mask[n..]).take_while(|(k, m)| (**k, **m) == (first, bits)).count()
+}
+
+/// Tells the account of ways what came of a part.
+fn went(w: &mut World, t: &Tick, gist: Gist) {
+    w.rebuild.travel.went(t.dt.abs() * gist.most.sqrt());
+}

@@ -1,0 +1,408 @@
+//! One pass over particles: kicks, drifts and what stands beside them, four particles at a time.
+
+use super::super::freeze::hold;
+use super::super::gravity::{pulled_each, pulled_four};
+use perigrain_base::math::four::{Plain, has_avx2};
+use perigrain_base::math::lanes::Lanes;
+use perigrain_base::math::threes::{self, Threes};
+use perigrain_base::math::vec3::Vec3;
+use perigrain_plan::{Beside, Gist, Stretch};
+use perigrain_styles::matter::Masses;
+use std::ops::Range;
+
+/// What a pass makes of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Part {
+    /// First half kick and drift: v += Δt/2 · f/m, x += Δt · v; spins as velocities.
+    First,
+    /// Second half kick.
+    Second,
+    /// The second half kick of a step, and first half kick and drift of the next one under the same forces.
+    Both,
+}
+
+/// A stretch of particles. Spins and torques are empty where there are none.
+struct Chunk<'a> {
+    x: &'a mut [Vec3],
+    v: &'a mut [Vec3],
+    f: &'a mut [Vec3],
+    mask: &'a [u32],
+    omega: &'a mut [Vec3],
+    torque: &'a mut [Vec3],
+    radius: &'a [f64],
+}
+
+/// What is the same for all particles.
+#[derive(Clone, Copy)]
+pub(super) struct Kick {
+    /// Δt/2 in units that turn force/mass into velocity.
+    pub half: f64,
+    /// The same over I / (m R²).
+    pub spin: f64,
+    pub dt: f64,
+    pub bit: u32,
+}
+
+/// What comes of a chunk.
+#[derive(Default)]
+struct Came {
+    /// Σ −m a·x of those that were pulled, before they drifted.
+    energy: f64,
+    /// What was taken from those held.
+    held: [f64; 3],
+    /// The largest v² after a drift.
+    most: f64,
+}
+
+/// A chunk in fours.
+struct Fours<'a> {
+    x: &'a mut [[Vec3; 4]],
+    v: &'a mut [[Vec3; 4]],
+    f: &'a mut [[Vec3; 4]],
+    omega: &'a mut [[Vec3; 4]],
+    torque: &'a mut [[Vec3; 4]],
+    radius: &'a [[f64; 4]],
+}
+
+impl Fours<'_> {
+    /// Four of them, to be looked at one by one.
+    #[inline(always)]
+    fn one<'a>(&'a mut self, k: usize, mask: &'a [u32; 4]) -> Chunk<'a> {
+        Chunk {
+            x: &mut self.x[k],
+            v: &mut self.v[k],
+            f: &mut self.f[k],
+            mask,
+            omega: self.omega.get_mut(k).map_or(&mut [][..], |four| &mut four[..]),
+            torque: self.torque.get_mut(k).map_or(&mut [][..], |four| &mut four[..]),
+            radius: self.radius.get(k).map_or(&[][..], |four| &four[..]),
+        }
+    }
+}
+
+/// What comes of fours, lane by lane.
+struct Sums<F> {
+    /// The largest v².
+    fastest: F,
+    /// Zero, but where a v² was no number.
+    wrong: F,
+    energy: F,
+}
+
+impl<F: Threes> Sums<F> {
+    /// # Safety
+    /// The processor must have what the form needs.
+    #[inline(always)]
+    unsafe fn new() -> Self {
+        // SAFETY: passed on.
+        let zero = unsafe { F::splat(0.0) };
+        Self { fastest: zero, wrong: zero, energy: zero }
+    }
+}
+
+impl Kick {
+    /// A stretch, with what stands beside the motion: what came of a pull, of a hold and of the motion, with the bits that
+    /// they have alone.
+    pub fn together(
+        &self,
+        s: &mut Stretch,
+        spins: bool,
+        part: Part,
+        mass: &[f64],
+        beside: &Beside,
+    ) -> [Gist; 3] {
+        let (masses, start, own) = (Masses::Own(mass), s.start, 0..s.x.len());
+        let came = self.stretch(chunk(s, own), spins, part, &masses, start, beside);
+        let sums = |sums| Gist { sums, most: 0.0 };
+        [sums([came.energy, 0.0, 0.0]), sums(came.held), Gist { most: came.most, ..Gist::default() }]
+    }
+
+    /// Some particles of a stretch, and the largest v² among them after a drift.
+    pub fn part_of(
+        &self,
+        s: &mut Stretch,
+        own: Range<usize>,
+        spins: bool,
+        part: Part,
+        masses: &Masses,
+    ) -> f64 {
+        let first = s.start + own.start;
+        self.stretch(chunk(s, own), spins, part, masses, first, &Beside::default()).most
+    }
+
+    /// The particles from `start` on.
+    fn stretch(
+        &self,
+        c: Chunk,
+        spins: bool,
+        part: Part,
+        masses: &Masses,
+        start: usize,
+        beside: &Beside,
+    ) -> Came {
+        let end = start + c.x.len();
+        match masses {
+            Masses::Own(mass) => {
+                let (fours, rest) = mass[start..end].as_chunks::<4>();
+                let rest: [f64; 4] = std::array::from_fn(|l| rest.get(l).copied().unwrap_or(1.0));
+                self.chunk(c, part, spins, beside, |at| fours.get(at).copied().unwrap_or(rest))
+            }
+            by_type => self.chunk(c, part, spins, beside, |at| {
+                let mass = |i| if i < end { by_type.get(i) } else { 1.0 };
+                std::array::from_fn(|l| mass(start + 4 * at + l))
+            }),
+        }
+    }
+
+    /// A chunk; `masses(k)` are those of four particles from `4 k` on, whatever they are beyond the end.
+    fn chunk(
+        &self,
+        c: Chunk,
+        part: Part,
+        spins: bool,
+        beside: &Beside,
+        masses: impl Fn(usize) -> [f64; 4],
+    ) -> Came {
+        match (part, spins) {
+            (Part::First, true) => self.here::<1, true, true>(c, beside, masses),
+            (Part::Second, true) => self.here::<1, false, true>(c, beside, masses),
+            (Part::Both, true) => self.here::<2, true, true>(c, beside, masses),
+            (Part::First, false) => self.here::<1, true, false>(c, beside, masses),
+            (Part::Second, false) => self.here::<1, false, false>(c, beside, masses),
+            (Part::Both, false) => self.here::<2, true, false>(c, beside, masses),
+        }
+    }
+
+    /// As wide as this processor can; the bits are the same.
+    fn here<const KICKS: usize, const DRIFT: bool, const SPIN: bool>(
+        &self,
+        c: Chunk,
+        beside: &Beside,
+        masses: impl Fn(usize) -> [f64; 4],
+    ) -> Came {
+        #[cfg(target_arch = "x86_64")]
+        if has_avx2() {
+            // SAFETY: the processor has AVX2.
+            return unsafe { self.avx2::<KICKS, DRIFT, SPIN>(c, beside, masses) };
+        }
+        // SAFETY: this form needs nothing.
+        unsafe { self.four::<Plain, KICKS, DRIFT, SPIN>(c, beside, masses) }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn avx2<const KICKS: usize, const DRIFT: bool, const SPIN: bool>(
+        &self,
+        c: Chunk,
+        beside: &Beside,
+        masses: impl Fn(usize) -> [f64; 4],
+    ) -> Came {
+        // SAFETY: the processor has AVX2.
+        unsafe { self.four::<perigrain_base::math::four::Avx2, KICKS, DRIFT, SPIN>(c, beside, masses) }
+    }
+
+    /// Four particles at a time, and those one by one of whom not the same is true.
+    ///
+    /// # Safety
+    /// The processor must have what the form needs.
+    #[inline(always)]
+    unsafe fn four<F: Threes, const KICKS: usize, const DRIFT: bool, const SPIN: bool>(
+        &self,
+        c: Chunk,
+        beside: &Beside,
+        masses: impl Fn(usize) -> [f64; 4],
+    ) -> Came {
+        let (x4, x) = c.x.as_chunks_mut::<4>();
+        let (v4, v) = c.v.as_chunks_mut::<4>();
+        let (f4, f) = c.f.as_chunks_mut::<4>();
+        let (mask4, mask) = c.mask.as_chunks::<4>();
+        let (omega4, omega) = c.omega.as_chunks_mut::<4>();
+        let (torque4, torque) = c.torque.as_chunks_mut::<4>();
+        let (radius4, radius) = c.radius.as_chunks::<4>();
+        let mut came = Came::default();
+        let rest = Chunk { x, v, f, mask, omega, torque, radius };
+        self.each::<KICKS, DRIFT, SPIN>(rest, &masses(mask4.len()), beside, &mut came);
+        let pulled = beside.pull.map_or(0, |pull| pull.bit);
+        let same = |masks: &[u32]| {
+            let (all, some) = masks.iter().fold((u32::MAX, 0), |(all, some), m| (all & m, some | m));
+            all & self.bit != 0 && all & pulled == pulled && some & beside.held == 0
+        };
+        let mut fours = Fours { x: x4, v: v4, f: f4, omega: omega4, torque: torque4, radius: radius4 };
+        // SAFETY (all below): the caller's promise.
+        let mut sums = unsafe { Sums::<F>::new() };
+        if same(mask4.as_flattened()) {
+            unsafe {
+                self.all::<F, KICKS, DRIFT, SPIN>(&mut fours, 0..mask4.len(), &masses, beside, &mut sums)
+            };
+        } else {
+            for (k, mask) in mask4.iter().enumerate() {
+                if same(mask) {
+                    unsafe {
+                        self.all::<F, KICKS, DRIFT, SPIN>(&mut fours, k..k + 1, &masses, beside, &mut sums)
+                    };
+                } else {
+                    self.each::<KICKS, DRIFT, SPIN>(fours.one(k, mask), &masses(k), beside, &mut came);
+                }
+            }
+        }
+        came.most = (sums.fastest + sums.wrong).numbers().into_iter().fold(came.most, faster);
+        came.energy += sums.energy.numbers().iter().sum::<f64>();
+        came
+    }
+
+    /// Particles of which the same is true, four at a time: these fours of a chunk.
+    ///
+    /// # Safety
+    /// The processor must have what the form needs.
+    #[inline(always)]
+    unsafe fn all<F: Threes, const KICKS: usize, const DRIFT: bool, const SPIN: bool>(
+        &self,
+        c: &mut Fours,
+        own: Range<usize>,
+        masses: &impl Fn(usize) -> [f64; 4],
+        beside: &Beside,
+        sums: &mut Sums<F>,
+    ) {
+        let first = own.start;
+        // Cut to one length, so that it is looked at once.
+        let (x, v, f) = (&mut c.x[own.clone()], &mut c.v[own.clone()], &mut c.f[own.clone()]);
+        let n = x.len();
+        let (v, f) = (&mut v[..n], &mut f[..n]);
+        let spinning = if SPIN { own.clone() } else { 0..0 };
+        let (omega, radius) = (&mut c.omega[spinning.clone()], &c.radius[spinning]);
+        let torque = if c.torque.is_empty() { &mut [][..] } else { &mut c.torque[own] };
+        let clears_torque = beside.clears && torque.len() == n;
+        let (pulls, a) = beside.pull.map_or((false, [0.0; 3]), |pull| (true, pull.a));
+        // SAFETY (all below): the caller's promise; arrays of twelve and of four numbers.
+        unsafe {
+            let (zero, along) = (F::splat(0.0), threes::repeated::<F>(a));
+            let (mut fastest, mut wrong, mut energy) = (sums.fastest, sums.wrong, sums.energy);
+            for k in 0..n {
+                let m = masses(first + k);
+                let m = F::load(m.as_ptr());
+                let at = x[k].as_flattened_mut().as_mut_ptr();
+                let force = f[k].as_flattened_mut().as_mut_ptr();
+                let mut push = threes::load::<F>(force);
+                if pulls {
+                    let depth;
+                    (push, depth) = pulled_four(push, threes::load(at), m, along, a);
+                    energy = energy - depth;
+                }
+                if beside.clears {
+                    threes::store([zero; 3], force);
+                } else if pulls {
+                    threes::store(push, force);
+                }
+                let v = kicked::<F, KICKS>(&mut v[k], push, F::splat(self.half) / m);
+                if SPIN {
+                    let r = F::load(radius[k].as_ptr());
+                    let turn = threes::load::<F>(torque[k].as_flattened().as_ptr());
+                    kicked::<F, KICKS>(&mut omega[k], turn, F::splat(self.spin) / (r * r * m));
+                }
+                if clears_torque {
+                    threes::store([zero; 3], torque[k].as_flattened_mut().as_mut_ptr());
+                }
+                if DRIFT {
+                    let [a, b, c] = threes::load::<F>(at);
+                    threes::store([a + v[0] * self.dt, b + v[1] * self.dt, c + v[2] * self.dt], at);
+                    let [x, y, z] = F::parted([v[0] * v[0], v[1] * v[1], v[2] * v[2]]);
+                    let square = x + y + z;
+                    fastest = fastest.most(square);
+                    // Zero times what is infinite or no number is no number, and stays so in a sum.
+                    wrong = wrong + square * 0.0;
+                }
+            }
+            (sums.fastest, sums.wrong, sums.energy) = (fastest, wrong, energy);
+        }
+    }
+
+    /// A few particles, one by one.
+    #[inline(always)]
+    fn each<const KICKS: usize, const DRIFT: bool, const SPIN: bool>(
+        &self,
+        c: Chunk,
+        m: &[f64; 4],
+        beside: &Beside,
+        came: &mut Came,
+    ) {
+        if let Some(pull) = &beside.pull {
+            came.energy += pulled_each(c.f, c.x, m, c.mask, pull.bit, pull.a);
+        }
+        hold(c.f, c.torque, c.mask, beside.held, &mut came.held);
+        for (i, m) in (0..c.mask.len()).zip(m).filter(|(i, _)| c.mask[*i] & self.bit != 0) {
+            let v = &mut c.v[i];
+            kick::<KICKS>(v, &c.f[i], self.half / m);
+            if DRIFT {
+                (0..3).for_each(|d| c.x[i][d] += self.dt * v[d]);
+                came.most = faster(came.most, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+            }
+            if SPIN {
+                let r = c.radius[i];
+                kick::<KICKS>(&mut c.omega[i], &c.torque[i], self.spin / (r * r * m));
+            }
+        }
+        if beside.clears {
+            c.f.fill([0.0; 3]);
+            c.torque.fill([0.0; 3]);
+        }
+    }
+}
+
+/// Particles of a stretch as the loops see them.
+fn chunk<'a>(s: &'a mut Stretch<'_>, own: Range<usize>) -> Chunk<'a> {
+    let first = s.start + own.start;
+    let (omega, torque, radius) = match s.omega.is_empty() {
+        true => (&mut [][..], &mut [][..], &[][..]),
+        false => {
+            (&mut s.omega[own.clone()], &mut s.torque[own.clone()], &s.all.radius[first..first + own.len()])
+        }
+    };
+    let (x, v, f) = (&mut s.x[own.clone()], &mut s.v[own.clone()], &mut s.f[own.clone()]);
+    Chunk { x, v, f, mask: &s.mask[own], omega, torque, radius }
+}
+
+/// v += by · f, `KICKS` times.
+#[inline(always)]
+fn kick<const KICKS: usize>(v: &mut Vec3, f: &Vec3, by: f64) {
+    for d in 0..3 {
+        let dv = by * f[d];
+        for _ in 0..KICKS {
+            v[d] += dv;
+        }
+    }
+}
+
+/// [`kick`] of four, and what comes of it.
+///
+/// # Safety
+/// The processor must have what the form needs.
+#[inline(always)]
+unsafe fn kicked<F: Threes, const KICKS: usize>(v: &mut [Vec3; 4], [fa, fb, fc]: [F; 3], by: F) -> [F; 3] {
+    let p = v.as_flattened_mut().as_mut_ptr();
+    // SAFETY: twelve numbers; the rest is the caller's promise.
+    unsafe {
+        let ([a, b, c], [ba, bb, bc]) = (threes::load::<F>(p), by.spread());
+        let (da, db, dc) = (ba * fa, bb * fb, bc * fc);
+        let mut now = [a, b, c];
+        for _ in 0..KICKS {
+            now = [now[0] + da, now[1] + db, now[2] + dc];
+        }
+        threes::store(now, p);
+        now
+    }
+}
+
+/// The larger one; a NaN counts as infinite.
+#[inline(always)]
+pub(super) fn faster(a: f64, b: f64) -> f64 {
+    if b <= a {
+        a
+    } else if b.is_nan() {
+        f64::INFINITY
+    } else {
+        b
+    }
+}
+
+#[cfg(test)]
+mod tests;

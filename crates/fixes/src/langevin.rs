@@ -1,0 +1,415 @@
+//! fix langevin: friction and random forces, as if particles were in a bath of some temperature.
+
+use super::{Fix, FixStyle, Minimizing};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::math::rng::Marsaglia;
+use perigrain_base::math::vec3::{Vec3, dot};
+use perigrain_lang::{Args, Param, RefKind, ValueRef};
+use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_styles::common::variable_param;
+use perigrain_styles::matter::{Masses, check_masses, publish, sum};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use perigrain_world::{COUPLED, GroupId, SlotId, World};
+
+/// The style.
+pub struct Langevin;
+
+impl Style for Langevin {
+    fn name(&self) -> &'static str {
+        "langevin"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group langevin Tstart Tstop damp seed [omega yes|no] [scale type ratio]… [tally yes|no] \
+                     [zero yes|no]",
+            summary: "Friction and random forces of a bath of some temperature.",
+            text: "f ← f − m/damp v + √(24 k_B T m/(damp Δt)) (u − ½), with u uniform between 0 and 1 for each particle and \
+                   direction. T goes from Tstart to Tstop during a run (`run … start stop`); Tstart may be `v_name` of an \
+                   equal- or atom-style variable, evaluated each step, and Tstop is then without meaning. damp [time] may be scaled \
+                   by type: `scale 2 3.0` makes it three times as long for type 2. `omega yes` does the same to the spins of \
+                   spheres: the torque is −(10/3) I/damp ω + √(80 k_B T I/(damp Δt)) (u − ½), I being the moment of inertia. `zero yes` takes the mean of the random forces \
+                   away from each. Something else must move the particles (`fix nve/sphere`), and damping contacts are a second bath of temperature 0. \
+                   Scalar (extensive): with `tally yes` the energy taken from the motion of translation so far, else 0; \
+                   it is the thermo keyword `ecouple`, and `econserve` holds it. \
+                   Not in minimizations.\n\n\
+                   Random numbers are those of LAMMPS on one process: particles draw in the order of their creation (LAMMPS sorts them \
+                   now and then: `atom_modify sort 0 0`). The stream goes on from run to run, also through a restart file, and a run cut in \
+                   two is one run; LAMMPS draws once more and begins to tally anew when a run begins (`-compat lammps`), and restart files do not \
+                   hold its streams. Refused: `angmom` (no ellipsoids here), `gjf` (LAMMPS has a fix of its own for it), and \
+                   `fix_modify ID temp` with a temperature that takes a flow away.",
+            example: "fix bath grains langevin 300.0 300.0 1.0e-3 48279 omega yes",
+        }
+    }
+}
+
+const KEYWORDS: &[&str] = &["angmom", "gjf", "omega", "scale", "tally", "zero"];
+
+impl FixStyle for Langevin {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let start = temperature(args, cx)?;
+        let stop = args.non_negative("the temperature Tstop")?;
+        let damp = args.positive("the time of damping")?;
+        let span = args.here();
+        let seed = args.integer_from(1, "the seed")?;
+        let Some(seed) = u32::try_from(seed).ok().filter(|s| *s <= Marsaglia::MAX_SEED) else {
+            return fail(Code::BAD_VALUE, span, format!("seeds go from 1 to {}", Marsaglia::MAX_SEED));
+        };
+        let ratios = vec![1.0; cx.world.types];
+        let (id, group) = (cx.id.to_string(), cx.group);
+        let mut fix =
+            Declared { id, group, start, stop, damp, seed, ratios, omega: false, tally: false, zero: false };
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "omega" => fix.omega = omega(args, cx)?,
+                "tally" => fix.tally = args.flag("tally")?,
+                "zero" => fix.zero = args.flag("zero")?,
+                "scale" => {
+                    let (lo, hi) = args.type_range(cx.world.types)?;
+                    let ratio = args.positive("the ratio of times of damping")?;
+                    (lo..=hi).for_each(|k| fix.ratios[usize::from(k) - 1] = ratio);
+                }
+                "angmom" | "gjf" if args.peek_text() == "no" => drop(args.next()),
+                "angmom" => {
+                    return fail(
+                        Code::NOT_SUPPORTED,
+                        word.span,
+                        "`angmom` is for ellipsoids: write `omega yes`",
+                    );
+                }
+                "gjf" => {
+                    let text = "`gjf` of fix langevin, which LAMMPS gives up for a fix of its own";
+                    return fail(Code::NOT_SUPPORTED, word.span, text);
+                }
+                _ => return Err(args.unknown(word, KEYWORDS)),
+            }
+        }
+        if fix.zero && fix.tally {
+            let text = "the energy that `tally` counts lacks what `zero` takes away";
+            cx.note(Diagnostic::warning(Code::SUSPICIOUS, cx.span, text));
+        }
+        Ok(Box::new(fix))
+    }
+}
+
+/// Tstart: a number or a variable.
+fn temperature(args: &mut Args, cx: &BuildCx) -> Result<Param> {
+    let span = args.here();
+    let start = variable_param(args, "the temperature Tstart")?;
+    cx.param(&start, true)?;
+    match start {
+        Param::Number(t) if t < 0.0 => fail(Code::BAD_VALUE, span, "a temperature must not be negative"),
+        start => Ok(start),
+    }
+}
+
+fn omega(args: &mut Args, cx: &BuildCx) -> Result<bool> {
+    let span = args.here();
+    let yes = args.flag("omega")?;
+    if yes && !cx.world.particles.style.sphere {
+        let d = Diagnostic::error(Code::WRONG_ORDER, span, "only spheres spin");
+        return Err(d.help("put `atom_style sphere` at the top of the deck, or leave `omega` out").into());
+    }
+    Ok(yes)
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    start: Param,
+    stop: f64,
+    damp: f64,
+    seed: u32,
+    /// Times of damping by type − 1, in those of `damp`.
+    ratios: Vec<f64>,
+    omega: bool,
+    tally: bool,
+    zero: bool,
+}
+
+/// Energy taken so far, power at the last step, and the stream: what outlives a step.
+struct Account {
+    energy: f64,
+    power: f64,
+    stream: Marsaglia,
+}
+
+impl Account {
+    fn load(w: &World, key: &str, seed: u32) -> Self {
+        let kept = w.memo.get(key).and_then(|list| {
+            let (&[energy, power], stand) = list.split_first_chunk()?;
+            Some(Self { energy, power, stream: Marsaglia::resumed(stand)? })
+        });
+        kept.unwrap_or_else(|| Self { energy: 0.0, power: 0.0, stream: Marsaglia::new(seed) })
+    }
+
+    fn store(&self, w: &mut World, key: &str) {
+        let list = [self.energy, self.power].into_iter().chain(self.stream.stand()).collect();
+        w.memo.insert(key.to_string(), list);
+    }
+}
+
+/// The particles of a group in the order of their creation.
+fn by_creation(w: &World, group: GroupId) -> Vec<usize> {
+    let (p, bit) = (&w.particles, group.bit());
+    let mut members: Vec<usize> = (0..p.len()).filter(|&i| p.mask[i] & bit != 0).collect();
+    if !p.rank.is_empty() {
+        members.sort_unstable_by_key(|&i| p.rank[i]);
+    }
+    members
+}
+
+impl Declared {
+    /// Under this name the world keeps what outlives a step.
+    fn key(&self) -> String {
+        format!("langevin/{}", self.id)
+    }
+
+    /// The columns of the forces and torques that were added last.
+    fn columns(&self) -> [String; 2] {
+        [self.key(), format!("{}/torque", self.key())]
+    }
+
+    /// √T of each of these particles.
+    fn roots(&self, w: &World, members: &[usize], start: Reading, span: Span) -> Result<Vec<f64>> {
+        if let Param::Number(start) = self.start {
+            let c = &w.clock;
+            let (done, all) = ((c.step - c.start) as f64, (c.stop - c.start) as f64);
+            let part = if done == 0.0 { 0.0 } else { done / all };
+            let t: f64 = start + part * (self.stop - start);
+            return Ok(vec![t.sqrt(); members.len()]);
+        }
+        let roots: Vec<f64> = members.iter().map(|&i| start.atom(w, i).sqrt()).collect();
+        match roots.iter().position(|r| r.is_nan()) {
+            None => Ok(roots),
+            Some(k) => {
+                let t = start.atom(w, members[k]);
+                fail(
+                    Code::BAD_VALUE,
+                    span,
+                    format!("the temperature has become {t}: it must not be negative"),
+                )
+            }
+        }
+    }
+
+    /// Forces on these particles: inertia by inertia, `push` √m and `drag` m times the velocity, each over times of damping.
+    fn bath(
+        &self,
+        w: &World,
+        who: &[(usize, f64, f64)],
+        stream: &mut Marsaglia,
+        rotation: bool,
+    ) -> Vec<Vec3> {
+        let (units, p) = (w.settings.units.constants(), &w.particles);
+        let by = if rotation { 80.0 } else { 24.0 };
+        let push = (by * units.boltz / self.damp / w.clock.dt / units.mvv2e).sqrt() / units.ftm2v;
+        let drag = if rotation { 10.0 / 3.0 } else { 1.0 } / self.damp / units.ftm2v;
+        let ratio = |i: usize| self.ratios[usize::from(p.kind[i]) - 1];
+        let mut forces: Vec<Vec3> = who
+            .iter()
+            .map(|&(i, inertia, root)| {
+                let size = inertia.sqrt() * push / ratio(i).sqrt() * root;
+                [0; 3].map(|_| size * (stream.uniform() - 0.5))
+            })
+            .collect();
+        if self.zero && !rotation {
+            let mut mean = [0.0; 3];
+            forces.iter().for_each(|f| (0..3).for_each(|d| mean[d] += f[d]));
+            let mean = mean.map(|a| a / forces.len() as f64);
+            forces.iter_mut().for_each(|f| (0..3).for_each(|d| f[d] -= mean[d]));
+        }
+        for (f, &(i, inertia, _)) in forces.iter_mut().zip(who) {
+            let v = if rotation { p.omega[i] } else { p.v[i] };
+            (0..3).for_each(|d| f[d] -= inertia * drag / ratio(i) * v[d]);
+        }
+        forces
+    }
+
+    /// Draws, and adds forces and torques.
+    fn act(&self, w: &mut World, t: &Tick, start: Reading, span: Span) -> Result<()> {
+        if t.unchanged && !w.settings.lammps() {
+            return Ok(());
+        }
+        let members = by_creation(w, self.group);
+        let roots = self.roots(w, &members, start, span)?;
+        let mut account = Account::load(w, &self.key(), self.seed);
+        let masses = Masses::of(w);
+        let with = |inertia: &dyn Fn(usize) -> f64| -> Vec<(usize, f64, f64)> {
+            members.iter().zip(&roots).map(|(&i, root)| (i, inertia(i), *root)).collect()
+        };
+        let moved = with(&|i| masses.get(i));
+        let mut parts = vec![(self.bath(w, &moved, &mut account.stream, false), false)];
+        if self.omega {
+            let turned = with(&|i| 0.4 * w.particles.mass[i] * w.particles.radius[i] * w.particles.radius[i]);
+            parts.push((self.bath(w, &turned, &mut account.stream, true), true));
+        }
+        for (forces, rotation) in parts {
+            self.add(w, t, (&members, &forces), rotation);
+        }
+        account.store(w, &self.key());
+        Ok(())
+    }
+
+    /// Adds forces or torques; where LAMMPS draws once more, in place of those of the step before.
+    fn add(&self, w: &mut World, t: &Tick, (members, forces): (&[usize], &[Vec3]), rotation: bool) {
+        let (n, kept) = (w.n(), self.tally || w.settings.lammps());
+        let column = &self.columns()[usize::from(rotation)];
+        let mut own = if kept { std::mem::take(w.columns.vector(column, n)) } else { vec![] };
+        let p = &mut w.particles;
+        let to = if rotation { &mut p.torque } else { &mut p.f };
+        if t.unchanged {
+            to.iter_mut().zip(&own).for_each(|(f, last)| (0..3).for_each(|d| f[d] -= last[d]));
+        }
+        own.fill([0.0; 3]);
+        for (&i, force) in members.iter().zip(forces) {
+            (0..3).for_each(|d| to[i][d] += force[d]);
+            if kept {
+                own[i] = *force;
+            }
+        }
+        if kept {
+            *w.columns.vector(column, n) = own;
+        }
+    }
+
+    /// Counts the energy of the step: power by the trapezoidal rule.
+    fn count(&self, w: &mut World, t: &Tick, slot: SlotId) {
+        let mut account = Account::load(w, &self.key(), self.seed);
+        let (forces, p) = (w.columns.get_vector(&self.key()).unwrap_or(&[]), &w.particles);
+        let [power] = sum::<1>(&p.mask, self.group, |i| [forces.get(i).map_or(0.0, |f| dot(*f, p.v[i]))]);
+        if !t.setup {
+            account.energy += 0.5 * w.clock.dt * (account.power + power);
+        } else if w.settings.lammps() {
+            account.energy = 0.0;
+        }
+        if !t.setup || !t.unchanged || w.settings.lammps() {
+            account.power = power;
+        }
+        account.store(w, &self.key());
+        w.memo.insert(self.key() + COUPLED, vec![-account.energy]);
+        publish(w, slot, t, -account.energy, &[]);
+    }
+}
+
+impl Fix for Declared {
+    fn remove(&self, w: &mut World) {
+        w.memo.remove(&self.key());
+        self.columns().iter().for_each(|column| w.columns.remove(column));
+        w.memo.remove(&(self.key() + COUPLED));
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        check_masses(cx.world(), span)?;
+        let p = &cx.world().particles;
+        let point = |i: usize| p.mask[i] & self.group.bit() != 0 && p.radius[i] <= 0.0;
+        if self.omega && (0..p.len()).any(point) {
+            return fail(Code::CONFLICT, span, "`omega yes` needs particles with a radius");
+        }
+        let start = cx.param(&self.start, Stage::PostForce, &When::Always)?;
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let me = self.clone();
+        let name = format!("fix {} langevin", self.id);
+        let access = Access::new("v omega mass radius type mask memo", "f torque memo");
+        let push = StepOp::new(name.clone(), Stage::PostForce, access, move |w, t| me.act(w, t, start, span));
+        let (me, access) = (self.clone(), Access::new("v mask memo", "memo"));
+        let count = StepOp::new(name, Stage::EndOfStep, access, move |w, t| {
+            match me.tally {
+                true => me.count(w, t, slot),
+                false => publish(w, slot, t, 0.0, &[]),
+            }
+            Ok(())
+        });
+        Ok(vec![push.boxed(), count.in_setup(true).boxed()])
+    }
+
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        if !args.eat("temp") {
+            return super::no_option(args);
+        }
+        let word = args.expect("the ID of a temperature")?;
+        let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
+        cx.value(&r, false)?;
+        if cx.shape(&r).is_some_and(|s| s.flow) {
+            let text = "fix langevin with a temperature that takes a flow away";
+            return fail(Code::NOT_SUPPORTED, word.span, text);
+        }
+        let text = "without effect: this temperature takes nothing away from velocities";
+        cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, text));
+        Ok(())
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, scalar_extensive: true, ..Shape::default() }
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Absent
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    // m = 2, damp 4, Δt 0.005, k_B = 1 (lj): drag m/damp v = v/2, pushes √(24 · 2 · T/(4 · 0.005)) (u − ½).
+    #[test]
+    fn drag_and_pushes_by_hand() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0; 3], [2.0; 3]]);
+        b.world.particles.v = vec![[1.0, 0.0, -2.0]; 3];
+        b.world.particles.f = vec![[0.0; 3]; 3];
+        b.world.particles.mask[1] = 0;
+        let fix = b.fix(&Langevin, "1.5 1.5 4 12345").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        let mut stream = Marsaglia::new(12345);
+        let push = (24.0f64 * 2.0 * 1.5 / (4.0 * 0.005)).sqrt();
+        let f = &b.world.particles.f;
+        assert_eq!(f[1], [0.0; 3]);
+        for i in [0, 2] {
+            for (d, v) in [1.0, 0.0, -2.0].into_iter().enumerate() {
+                let expected = push * (stream.uniform() - 0.5) - 0.5 * v;
+                // A handful of roundings.
+                assert!((f[i][d] - expected).abs() < 1e-12, "{i} {d}");
+            }
+        }
+        fix.remove(&mut b.world);
+        assert!(b.world.memo.is_empty());
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
+        b.equal.insert("n".into(), -1.0);
+        for words in [
+            "",
+            "1 1 1",
+            "-1 1 1 5",
+            "1 1 0 5",
+            "1 1 1 0",
+            "1 1 1 1000000000",
+            "v_q 1 1 5",
+            "1 v_n 1 5",
+            "1 1 1 5 omega yes",
+            "1 1 1 5 scale 2 1",
+            "1 1 1 5 scale 1 0",
+            "1 1 1 5 angmom 3.3",
+            "1 1 1 5 gjf vhalf",
+            "1 1 1 5 zeros yes",
+        ] {
+            assert!(b.fix(&Langevin, words).is_err(), "{words}");
+        }
+        assert!(b.fix(&Langevin, "1 1 1 5 angmom no gjf no omega no").is_ok());
+        let fix = b.fix(&Langevin, "v_n 1 1 5").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        assert!(b.stage(&mut ops, Stage::PostForce).is_err());
+    }
+}

@@ -1,0 +1,143 @@
+//! Fixes: what is done to particles during the steps besides their mutual forces.
+
+mod adapt;
+mod addforce;
+mod addtorque;
+mod ave_atom;
+mod ave_chunk;
+mod ave_histo;
+mod ave_time;
+mod aveforce;
+mod balance;
+mod bins;
+mod components;
+mod controller;
+mod crowd;
+pub mod deform;
+mod deposit;
+mod drag;
+mod dt_critical;
+mod dt_guard;
+mod dt_reset;
+mod elapsed;
+mod enforce2d;
+mod evaporate;
+mod extremes;
+mod faces;
+mod freeze;
+mod gravity;
+mod halt;
+mod heat_flow;
+mod indent;
+mod kick;
+mod langevin;
+mod lineforce;
+mod momentum;
+mod move_fix;
+mod nve;
+mod nve_limit;
+mod nve_noforce;
+mod nve_sphere;
+mod path;
+mod planeforce;
+mod pour;
+mod print;
+mod property_atom;
+mod recenter;
+mod resistance;
+pub mod rigid;
+mod setforce;
+mod spring;
+mod spring_self;
+mod store_force;
+mod store_state;
+mod time_step;
+mod vector;
+mod viscous;
+mod viscous_sphere;
+mod wall;
+mod wall_harmonic;
+mod wall_reflect;
+mod window;
+
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_lang::{Args, ValueRef};
+pub use perigrain_styles::fix::{Fix, FixStyle, Minimizing, no_option};
+use perigrain_styles::{BuildCx, Shape};
+
+/// Every fix style.
+#[rustfmt::skip]
+pub const FIXES: &[&dyn FixStyle] = &[
+    &adapt::Adapt,
+    &addforce::AddForce,
+    &addtorque::AddTorque,
+    &ave_atom::AveAtom,
+    &ave_chunk::AveChunk,
+    &ave_histo::AveHisto,
+    &ave_histo::AveHistoWeight,
+    &ave_time::AveTime,
+    &aveforce::AveForce,
+    &balance::Balance,
+    &controller::Controller,
+    &deform::Deform,
+    &deposit::Deposit,
+    &drag::Drag,
+    &dt_critical::DtCritical,
+    &dt_guard::DtGuard,
+    &dt_reset::DtReset,
+    &enforce2d::Enforce2d,
+    &evaporate::Evaporate,
+    &extremes::ExtremesStyle,
+    &freeze::Freeze,
+    &gravity::Gravity,
+    &halt::HaltFix,
+    &heat_flow::HeatFlow,
+    &indent::Indent,
+    &langevin::Langevin,
+    &lineforce::LineForce,
+    &momentum::Momentum,
+    &move_fix::Move,
+    &nve::Nve,
+    &nve_limit::NveLimit,
+    &nve_noforce::NveNoForce,
+    &nve_sphere::NveSphere,
+    &planeforce::PlaneForce,
+    &pour::Pour,
+    &print::Print,
+    &property_atom::PropertyAtomFix,
+    &recenter::Recenter,
+    &rigid::Rigid,
+    &rigid::RigidNve,
+    &rigid::RigidNveSmall,
+    &rigid::RigidSmall,
+    &setforce::SetForce,
+    &spring::Spring,
+    &spring_self::SpringSelf,
+    &store_force::StoreForce,
+    &store_state::StoreState,
+    &vector::VectorFix,
+    &viscous::Viscous,
+    &viscous_sphere::ViscousSphere,
+    &wall::gran::WallGran,
+    &wall::region::WallGranRegion,
+    &wall::mesh::WallMesh,
+    &wall_harmonic::WallHarmonic,
+    &wall_reflect::WallReflect,
+];
+
+/// Takes the region after the keyword `region`.
+fn region_keyword(args: &mut Args, cx: &BuildCx) -> Result<String> {
+    let word = args.expect("the region's ID")?;
+    cx.region(word).map(|_| word.text.clone())
+}
+
+/// Refuses a fix whose values are not new at all the steps they are wanted: multiples of `every`.
+fn compatible(r: &ValueRef, shape: &Shape, every: i64, what: &str) -> Result<()> {
+    if shape.every <= 1 || every % shape.every == 0 {
+        return Ok(());
+    }
+    let text = format!("`{r}` is new every {} steps only, and {what} is {every}", shape.every);
+    Err(Diagnostic::error(Code::CONFLICT, r.span, text)
+        .help(format!("let {what} be a multiple of {}", shape.every))
+        .into())
+}

@@ -1,0 +1,219 @@
+//! fix momentum: takes drift and rotation of a group away every so many steps.
+
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::math::vec3::{Vec3, cross, dot, sub};
+use perigrain_base::par;
+use perigrain_commands::momentum::rotation;
+use perigrain_lang::Args;
+use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_styles::matter::{Masses, centre, check_masses, sum, unwrapped};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::{GroupId, World};
+
+/// The style.
+pub struct Momentum;
+
+impl Style for Momentum {
+    fn name(&self) -> &'static str {
+        "momentum"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group momentum N [linear x y z] [angular] [rescale]",
+            summary: "Takes the drift of a group, its rotation, or both away every N steps.",
+            text: "`linear x y z` (each 0 or 1): the velocity of the centre of mass along these directions. `angular`: the \
+                   rotation about the centre of mass, as if the group were rigid. `rescale`: velocities are scaled so that \
+                   the group's kinetic energy of translation stays what it was. At least one of the first two.",
+            example: "fix calm plate momentum 10 linear 1 1 0 angular",
+        }
+    }
+}
+
+impl FixStyle for Momentum {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let every = args.integer_from(1, "the number of steps N")?;
+        let mut fix = Declared {
+            id: cx.id.to_string(),
+            group: cx.group,
+            every,
+            linear: [false; 3],
+            angular: false,
+            rescale: false,
+        };
+        let none = args.is_empty();
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "linear" => {
+                    for axis in &mut fix.linear {
+                        *axis = args.choice("switch of linear", &["0", "1"])? == "1";
+                    }
+                }
+                "angular" => fix.angular = true,
+                "rescale" => fix.rescale = true,
+                _ => return Err(args.unknown(word, &["linear", "angular", "rescale"])),
+            }
+        }
+        if none || (!fix.linear.contains(&true) && !fix.angular) {
+            return Err(Diagnostic::error(
+                Code::MISSING_ARGUMENT,
+                args.here(),
+                "nothing would be taken away",
+            )
+            .help("say `linear 1 1 1`, `angular` or both")
+            .into());
+        }
+        Ok(Box::new(fix))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    every: i64,
+    linear: [bool; 3],
+    angular: bool,
+    rescale: bool,
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        check_masses(cx.world(), span)?;
+        let (me, access) = (self.clone(), Access::new("x image mass mask", "v"));
+        let op = StepOp::new(format!("fix {} momentum", self.id), Stage::EndOfStep, access, move |w, _| {
+            let before = if me.rescale { energy(w, me.group) } else { 0.0 };
+            if me.linear.contains(&true) {
+                me.stop_drift(w);
+            }
+            if me.angular {
+                me.stop_rotation(w);
+            }
+            let after = if me.rescale { energy(w, me.group) } else { 0.0 };
+            if after != 0.0 {
+                let factor = (before / after).sqrt();
+                change(w, me.group, |_, v| v.map(|a| a * factor));
+            }
+            Ok(())
+        });
+        Ok(vec![op.when(When::Every(self.every)).boxed()])
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+impl Declared {
+    fn stop_drift(&self, w: &mut World) {
+        let masses = Masses::of(w);
+        let [mass, momentum @ ..] = sum::<4>(&w.particles.mask, self.group, |i| {
+            let (v, m) = (w.particles.v[i], masses.get(i));
+            [m, m * v[0], m * v[1], m * v[2]]
+        });
+        if mass > 0.0 {
+            let drift: Vec3 = std::array::from_fn(|d| if self.linear[d] { momentum[d] / mass } else { 0.0 });
+            change(w, self.group, |_, v| sub(v, drift));
+        }
+    }
+
+    fn stop_rotation(&self, w: &mut World) {
+        let (mass, center) = centre(w, self.group);
+        if mass <= 0.0 {
+            return;
+        }
+        let masses = Masses::of(w);
+        let [lx, ly, lz, xx, yy, zz, xy, yz, xz] = sum::<9>(&w.particles.mask, self.group, |i| {
+            let (r, m) = (sub(unwrapped(w, i), center), masses.get(i));
+            let l = cross(r, w.particles.v[i]);
+            let [x, y, z] = r;
+            let diagonal = [m * (y * y + z * z), m * (x * x + z * z), m * (x * x + y * y)];
+            [
+                m * l[0],
+                m * l[1],
+                m * l[2],
+                diagonal[0],
+                diagonal[1],
+                diagonal[2],
+                -m * x * y,
+                -m * y * z,
+                -m * x * z,
+            ]
+        });
+        let omega = rotation([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], [lx, ly, lz]);
+        let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
+        let (x, image) = (std::mem::take(&mut w.particles.x), std::mem::take(&mut w.particles.image));
+        change(w, self.group, |i, v| {
+            let place = std::array::from_fn(|d| x[i][d] + f64::from(image[i][d]) * lengths[d]);
+            sub(v, cross(omega, sub(place, center)))
+        });
+        (w.particles.x, w.particles.image) = (x, image);
+    }
+}
+
+/// Σ m v² of a group.
+fn energy(w: &World, group: GroupId) -> f64 {
+    let masses = Masses::of(w);
+    let [twice] = sum(&w.particles.mask, group, |i| {
+        let v = w.particles.v[i];
+        [masses.get(i) * dot(v, v)]
+    });
+    twice
+}
+
+/// Gives each particle of a group a new velocity.
+fn change(w: &mut World, group: GroupId, new: impl Fn(usize, Vec3) -> Vec3 + Sync) {
+    let bit = group.bit();
+    let p = &mut w.particles;
+    par::each((&mut p.v[..], &p.mask[..]), |start, (v, mask)| {
+        for (k, (v, _)) in v.iter_mut().zip(mask).enumerate().filter(|(_, (_, m))| **m & bit != 0) {
+            *v = new(start + k, *v);
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    /// Four particles of mass 2 that turn about (0, 0, 0) with ω = (0, 0, 3) and drift along x and y.
+    fn scene() -> Bench {
+        let places = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.5], [0.0, -1.0, -0.5]];
+        let mut b = Bench::new(AtomStyle::default(), &places);
+        b.world.particles.v = places
+            .iter()
+            .map(|r| perigrain_base::math::vec3::add(cross([0.0, 0.0, 3.0], *r), [1.0, 2.0, 0.0]))
+            .collect();
+        b
+    }
+
+    #[test]
+    fn drift_and_rotation_go() {
+        let mut b = scene();
+        let fix = b.fix(&Momentum, "1 linear 1 0 1 angular").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::EndOfStep).unwrap();
+        for v in &b.world.particles.v {
+            let off = sub(*v, [0.0, 2.0, 0.0]);
+            assert!(dot(off, off) < 1e-24, "{v:?}");
+        }
+    }
+
+    #[test]
+    fn rescaling_keeps_the_energy() {
+        let mut b = scene();
+        let before = energy(&b.world, GroupId::ALL);
+        let fix = b.fix(&Momentum, "1 linear 1 1 1 rescale").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::EndOfStep).unwrap();
+        let after = energy(&b.world, GroupId::ALL);
+        assert!((before / after - 1.0).abs() < 1e-14);
+        for words in ["", "0 angular", "1", "1 rescale", "1 linear 1 1", "1 linear 2 1 1", "1 linear 0 0 0"] {
+            assert!(b.fix(&Momentum, words).is_err(), "{words}");
+        }
+    }
+}

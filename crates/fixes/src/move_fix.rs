@@ -1,0 +1,407 @@
+//! fix move: prescribed motion of particles, straight or swinging.
+
+use super::elapsed::Elapsed;
+use super::lineforce::direction;
+use super::nve::half_step;
+use super::path::{Path, Readings};
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::par;
+use perigrain_lang::{Args, Param, ValueRef};
+use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_styles::common::{number_or_null, param_or_null, scales, units_lattice};
+use perigrain_styles::matter::{Masses, check_masses, keep_places, unwrapped};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::{GroupId, SlotId, World};
+use std::f64::consts::PI;
+
+/// The style.
+pub struct Move;
+
+impl Style for Move {
+    fn name(&self) -> &'static str {
+        "move"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group move linear Vx Vy Vz | wiggle Ax Ay Az period | rotate Px Py Pz Rx Ry Rz period | \
+                     transrot Vx Vy Vz Px Py Pz Rx Ry Rz period | variable v_dx v_dy v_dz v_vx v_vy v_vz \
+                     [units lattice|box]",
+            summary: "Moves particles on a prescribed path, whatever the forces on them.",
+            text: "With t the time since the fix was declared and x0 the position then (unwrapped): `linear` is \
+                   x = x0 + V t, v = V; `wiggle` is x = x0 + A sin ω t, v = A ω cos ω t with ω = 2π/period; `rotate` turns \
+                   the particles about the axis R through P, right-handed, and gives spheres the angular velocity ω; \
+                   `transrot` is `rotate` about an axis that flies at V. `variable`: displacements from x0 and velocities by \
+                   equal- or atom-style variables; without a displacement the velocity moves the particle, without a velocity \
+                   the velocity stays. Where a component is `NULL` (for `variable`: both) it is integrated as by fix nve. V, A \
+                   and P are in lattice spacings unless `units box`. It moves the particles itself: they belong to no other \
+                   integrator. Particles that join the group later move on from where they are. Per-atom array: x0, 3 \
+                   columns. `timestep`, `fix dt/reset` and reset_timestep do not disturb the path. LAMMPS refuses the first \
+                   two beside fix move; after reset_timestep it takes the new steps since the declaration's old one, which \
+                   makes the particles jump, and so does perigrain under `-compat lammps`.",
+            example: "fix grip top move linear 0.0 0.0 3.0 units box",
+        }
+    }
+}
+
+impl FixStyle for Move {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let kind = args.choice("motion", &["linear", "wiggle", "rotate", "transrot", "variable"])?;
+        let mut path = match kind {
+            "linear" => Path::Linear(components(args)?),
+            "wiggle" => {
+                let amplitude = components(args)?;
+                Path::Wiggle(amplitude, 2.0 * PI / args.positive("the period")?)
+            }
+            "variable" => {
+                let mut three = |names: [&str; 3]| -> Result<[Option<ValueRef>; 3]> {
+                    let [x, y, z] = names.map(|name| variable(args, cx, name));
+                    Ok([x?, y?, z?])
+                };
+                Path::Variables(Box::new([three(["x", "y", "z"])?, three(["vx", "vy", "vz"])?]))
+            }
+            _ => {
+                let velocity = if kind == "transrot" { three(args, "V")? } else { [0.0; 3] };
+                let point = three(args, "P")?;
+                let axis = direction(args)?;
+                let omega = 2.0 * PI / args.positive("the period")?;
+                Path::Turn { point, axis, omega, velocity }
+            }
+        };
+        let mut lattice = true;
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "units" => lattice = units_lattice(args)?,
+                _ => return Err(args.unknown(word, &["units"])),
+            }
+        }
+        let scale = scales(cx.world, lattice);
+        match &mut path {
+            Path::Linear(a) | Path::Wiggle(a, _) => {
+                *a = std::array::from_fn(|d| a[d].map(|a| a * scale[d]));
+            }
+            Path::Turn { point, velocity, .. } => {
+                (0..3).for_each(|d| (point[d], velocity[d]) = (point[d] * scale[d], velocity[d] * scale[d]));
+            }
+            Path::Variables(..) => {}
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, path }))
+    }
+}
+
+/// Three numbers, each of which may be `NULL`.
+fn components(args: &mut Args) -> Result<[Option<f64>; 3]> {
+    let mut found = [None; 3];
+    for (found, axis) in found.iter_mut().zip(["x", "y", "z"]) {
+        *found = number_or_null(args, &format!("the {axis} component"))?;
+    }
+    Ok(found)
+}
+
+/// Three numbers.
+fn three(args: &mut Args, what: &str) -> Result<[f64; 3]> {
+    let mut number = |axis| args.number(&format!("{what}{axis}"));
+    Ok([number("x")?, number("y")?, number("z")?])
+}
+
+/// A variable or `NULL`.
+fn variable(args: &mut Args, cx: &BuildCx, what: &str) -> Result<Option<ValueRef>> {
+    let word = args.peek();
+    match param_or_null(args, &format!("the variable for {what}"))? {
+        None => Ok(None),
+        Some(Param::Ref(r)) => {
+            cx.param(&Param::Ref(r.clone()), true)?;
+            Ok(Some(r))
+        }
+        Some(Param::Number(_)) => {
+            let span = word.map(|w| w.span);
+            fail(Code::WRONG_KIND, span, format!("the variable for {what} is written v_name, or NULL"))
+        }
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    path: Path,
+}
+
+impl Declared {
+    fn key(&self) -> String {
+        format!("move/{}", self.id)
+    }
+
+    /// Remembers where particles of the group that are not known yet would have started.
+    fn capture(&self, w: &mut World) {
+        let key = self.key();
+        let now = Elapsed::load(w, &key).now();
+        keep_places(w, &key, self.group, |w, i| self.path.start(unwrapped(w, i), now));
+    }
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.remove(w);
+        Elapsed::load(w, &self.key()).store(w, &self.key());
+        self.capture(w);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.memo.remove(&self.key());
+        w.columns.remove(&self.key());
+    }
+
+    fn welcome(&self, w: &mut World) {
+        self.capture(w);
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (group, path, key, span) = (self.group, self.path.clone(), self.key(), cx.span());
+        let free = path.given().map(|g| !g);
+        if free.contains(&true) {
+            check_masses(cx.world(), span)?;
+        }
+        self.capture(cx.world());
+        let mut readings = Readings::default();
+        for (readings, params) in readings.iter_mut().zip(path.params()) {
+            for (reading, param) in readings.iter_mut().zip(params) {
+                *reading = match param {
+                    Some(p) => Some(cx.param(&p, Stage::InitialIntegrate, &When::Always)?),
+                    None => None,
+                };
+            }
+        }
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let name = format!("fix {} move", self.id);
+        let access = Access::new("f mass mask", "x v");
+        let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access, move |w, t| {
+            if t.setup {
+                show_starts(w, &key, slot, t);
+            } else {
+                advance(w, group, &path, &readings, &key, t);
+            }
+            Ok(())
+        });
+        let mut ops = vec![first.in_setup(true).boxed()];
+        if free.contains(&true) {
+            let access = Access::new("f mass mask", "v");
+            let second = StepOp::new(name, Stage::FinalIntegrate, access, move |w, t| {
+                kick(w, group, free, t.dt);
+                Ok(())
+            });
+            ops.push(second.boxed());
+        }
+        Ok(ops)
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { atom: Some(3), ..Shape::default() }
+    }
+
+    fn integrates(&self) -> bool {
+        true
+    }
+
+    fn needs_whole_steps(&self, w: &World) -> Option<&'static str> {
+        let free = self.path.given().contains(&false) && !w.settings.lammps();
+        free.then_some(
+            "its free components would feel the forces of the outermost level alone, as they do in LAMMPS",
+        )
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+/// Offers the starting positions as per-atom values.
+fn show_starts(w: &mut World, key: &str, slot: SlotId, t: &Tick) {
+    let out = w.slots.get_mut(slot);
+    (out.step, out.cols) = (Some(t.step), 3);
+    out.atom.clear();
+    out.atom.extend(w.columns.get_vector(key).unwrap_or_default().as_flattened());
+}
+
+/// The path's positions and velocities at this step; free components kicked and drifted.
+fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key: &str, t: &Tick) {
+    let mut elapsed = Elapsed::load(w, key);
+    elapsed.follow(t.step, t.dt);
+    elapsed.store(w, key);
+    let lammps = (t.step as f64 - elapsed.origin) * t.dt;
+    let time = if w.settings.lammps() { lammps } else { elapsed.now() };
+    let (bit, half) = (group.bit(), half_step(w, t.dt));
+    let periodic = w.domain.as_ref().map_or([false; 3], |d| d.periodic());
+    let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
+    if w.columns.get_vector(key).is_none() {
+        return;
+    }
+    let (mut places, mut velocities) =
+        (std::mem::take(&mut w.particles.x), std::mem::take(&mut w.particles.v));
+    let world = &*w;
+    let (start, masses) = (world.columns.get_vector(key).unwrap_or_default(), Masses::of(world));
+    let columns =
+        (&mut places[..], &mut velocities[..], &world.particles.f[..], &world.particles.mask[..], start);
+    par::each(columns, |first, (x, v, f, mask, start)| {
+        for (k, ((((x, v), f), mask), start)) in x.iter_mut().zip(v).zip(f).zip(mask).zip(start).enumerate() {
+            if mask & bit == 0 {
+                continue;
+            }
+            let given = path.at(world, first + k, *start, time, readings);
+            for d in 0..3 {
+                let before = x[d];
+                match (given.x[d], given.v[d]) {
+                    (Some(place), speed) => (x[d], v[d]) = (place, speed.unwrap_or(v[d])),
+                    (None, Some(speed)) => {
+                        v[d] = speed;
+                        x[d] += t.dt * speed;
+                    }
+                    (None, None) => {
+                        v[d] += half / masses.get(first + k) * f[d];
+                        x[d] += t.dt * v[d];
+                    }
+                }
+                if periodic[d] {
+                    // The image nearest to where it was: wrapping is left to the next reneighbouring.
+                    x[d] -= lengths[d] * ((x[d] - before) / lengths[d]).round();
+                }
+            }
+        }
+    });
+    (w.particles.x, w.particles.v) = (places, velocities);
+    if let Some(spin) = path.spin().filter(|_| w.particles.style.sphere) {
+        let p = &mut w.particles;
+        for (omega, _) in p.omega.iter_mut().zip(&p.mask).filter(|(_, m)| **m & bit != 0) {
+            *omega = spin;
+        }
+    }
+}
+
+/// Second half kick of the free components.
+fn kick(w: &mut World, group: GroupId, free: [bool; 3], dt: f64) {
+    let (half, bit) = (half_step(w, dt), group.bit());
+    let p = &mut w.particles;
+    let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
+    par::each((&mut p.v[..], &p.f[..], &p.mask[..]), |first, (v, f, mask)| {
+        for (k, ((v, f), mask)) in v.iter_mut().zip(f).zip(mask).enumerate() {
+            if mask & bit != 0 {
+                let by = half / masses.get(first + k);
+                (0..3).filter(|&d| free[d]).for_each(|d| v[d] += by * f[d]);
+            }
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::{AtomStyle, Compat, Lattice};
+
+    fn scene() -> Bench {
+        let mut b = Bench::new(AtomStyle::default(), &[[1.0, 2.0, 3.0]]);
+        b.world.clock.dt = 0.5;
+        b.world.clock.step = 10;
+        b.world.lattice = Lattice::none(2.0);
+        b
+    }
+
+    /// Declares the fix and makes one step.
+    fn begin(b: &mut Bench, words: &str) -> Vec<Box<dyn Op>> {
+        let fix = b.fix(&Move, words).unwrap();
+        fix.declare(&mut b.world).unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        step(b, &mut ops);
+        ops
+    }
+
+    fn step(b: &mut Bench, ops: &mut [Box<dyn Op>]) {
+        b.world.clock.step += 1;
+        b.stage(ops, Stage::InitialIntegrate).unwrap();
+        b.stage(ops, Stage::FinalIntegrate).unwrap();
+    }
+
+    // m = 2, f = 8, dt = 0.5: half kicks of 1, by hand.
+    #[test]
+    fn linear_with_a_free_component() {
+        let mut b = scene();
+        b.world.particles.f[0] = [8.0; 3];
+        let mut ops = begin(&mut b, "linear 1 NULL -3 units box");
+        assert_eq!(b.world.particles.x[0], [1.5, 2.5, 1.5]);
+        assert_eq!(b.world.particles.v[0], [1.0, 2.0, -3.0]);
+        step(&mut b, &mut ops);
+        assert_eq!(b.world.particles.x[0], [2.0, 4.0, 0.0]);
+    }
+
+    #[test]
+    fn wiggle_in_lattice_spacings() {
+        let mut b = scene();
+        begin(&mut b, "wiggle 1 0 NULL 2");
+        // A quarter period: sin = 1, cos = 6e-17.
+        let p = &b.world.particles;
+        assert_eq!(p.x[0], [3.0, 2.0, 3.0]);
+        assert!(p.v[0][0].abs() < 1e-15);
+    }
+
+    #[test]
+    fn across_a_periodic_face_the_image_is_kept() {
+        let mut b = scene();
+        b.world.particles.image[0] = [1, 0, 0]; // unwrapped x = 21
+        let mut ops = begin(&mut b, "linear 10 0 0 units box");
+        assert_eq!(b.world.particles.x[0][0], 6.0);
+        step(&mut b, &mut ops);
+        assert_eq!(b.world.particles.x[0][0], 11.0); // not wrapped before reneighbouring
+    }
+
+    #[test]
+    fn new_time_steps_and_numbers_do_not_jump() {
+        let mut b = scene();
+        let mut ops = begin(&mut b, "linear 1 0 0 units box");
+        b.world.clock.set_dt(0.25);
+        step(&mut b, &mut ops);
+        assert_eq!(b.world.particles.x[0][0], 1.75); // 1 + 0.5 + 0.25
+        b.world.clock.reset(0);
+        step(&mut b, &mut ops);
+        assert_eq!(b.world.particles.x[0][0], 2.0);
+        b.world.settings.compat = Compat::Lammps;
+        step(&mut b, &mut ops);
+        assert_eq!(b.world.particles.x[0][0], -1.0); // 1 + (2 − 10) · 0.25, as LAMMPS has it
+    }
+
+    #[test]
+    fn latecomers_move_on_from_where_they_are() {
+        let mut b = scene();
+        let fix = b.fix(&Move, "linear 1 0 0 units box").unwrap();
+        begin(&mut b, "linear 1 0 0 units box");
+        b.world.particles.push(2, 1, [5.0; 3]);
+        b.world.columns.resize(2);
+        let mut ops = b.seal(&*fix).unwrap();
+        step(&mut b, &mut ops);
+        assert_eq!(b.world.particles.x[1][0], 5.5);
+        assert_eq!(b.world.particles.x[0][0], 2.0);
+        fix.remove(&mut b.world);
+        assert!(b.world.columns.get_vector("move/f").is_none() && b.world.memo.is_empty());
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let b = scene();
+        for words in [
+            "",
+            "linear 1 2",
+            "rotate 0 0 0 0 0 0 5",
+            "rotate 0 0 0 0 0 1",
+            "transrot 1 0 0 0 0 0 1 5",
+            "variable v_no NULL NULL NULL NULL NULL",
+            "variable 1 NULL NULL NULL NULL NULL",
+            "wiggle 1 1 1",
+            "wiggle 1 1 1 0",
+            "linear 1 1 1 unit box",
+            "liner 1 1 1",
+        ] {
+            assert!(b.fix(&Move, words).is_err(), "{words}");
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! fix nve/limit: velocity Verlet that lets no particle go farther than a limit in one step.
+
+use super::nve::half_step;
+use super::{Fix, FixStyle};
+use perigrain_base::diag::Result;
+use perigrain_base::math::vec3::dot;
+use perigrain_base::par;
+use perigrain_lang::Args;
+use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_styles::matter::{Masses, add, check_masses, publish};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::{GroupId, World};
+
+/// The style.
+pub struct NveLimit;
+
+impl Style for NveLimit {
+    fn name(&self) -> &'static str {
+        "nve/limit"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group nve/limit xmax",
+            summary: "Moves the particles of the group by velocity Verlet, none farther than xmax in a step.",
+            text: "After each half kick a velocity above xmax/Δt is shortened to that. Meant for scenes that start with heavy \
+                   overlaps; energy is not kept. Scalar (extensive): how often a velocity has been shortened since the \
+                   fix was declared.",
+            example: "fix 1 all nve/limit 1.0e-5",
+        }
+    }
+}
+
+impl FixStyle for NveLimit {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let most = args.positive("the longest way xmax")?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, most }))
+    }
+}
+
+/// Places, velocities, forces and group bits of a chunk.
+type Parts<'a> = (&'a mut [[f64; 3]], &'a mut [[f64; 3]], &'a [[f64; 3]], &'a [u32]);
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    most: f64,
+}
+
+impl Declared {
+    fn key(&self) -> String {
+        format!("nve/limit/{}", self.id)
+    }
+
+    /// A half kick, limited; the number of velocities that were shortened.
+    fn kick(&self, w: &mut World, t: &Tick, drift: bool) -> f64 {
+        let (half, bit) = (half_step(w, t.dt), self.group.bit());
+        // The way in the deck's step, however short those are in which it is gone.
+        let fastest = self.most / w.clock.dt;
+        let square = fastest * fastest;
+        let p = &mut w.particles;
+        let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
+        let columns = (&mut p.x[..], &mut p.v[..], &p.f[..], &p.mask[..]);
+        let chunk = |start: usize, (x, v, f, mask): Parts<'_>| {
+            let mut shortened = 0.0;
+            for (k, (((x, v), f), mask)) in x.iter_mut().zip(v).zip(f).zip(mask).enumerate() {
+                if mask & bit == 0 {
+                    continue;
+                }
+                let by = half / masses.get(start + k);
+                (0..3).for_each(|d| v[d] += by * f[d]);
+                let speed = dot(*v, *v);
+                if speed > square {
+                    shortened += 1.0;
+                    let scale = (square / speed).sqrt();
+                    *v = v.map(|a| a * scale);
+                }
+                if drift {
+                    (0..3).for_each(|d| x[d] += t.dt * v[d]);
+                }
+            }
+            [shortened]
+        };
+        par::reduce_each(columns, chunk, add).map_or(0.0, |[n]| n)
+    }
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        w.memo.insert(self.key(), vec![0.0]);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.memo.remove(&self.key());
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        check_masses(cx.world(), span)?;
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let half = |stage, drift, me: Self| {
+            let (name, access) = (format!("fix {} nve/limit", me.id), Access::new("f mass mask", "x v memo"));
+            let key = me.key();
+            StepOp::new(name, stage, access, move |w: &mut World, t: &Tick| {
+                // In steps of two lengths solids alone move in the short ones, and none of them by this fix.
+                let short = t.phase.solids.is_some() && !t.phase.outermost();
+                let drift = drift && (t.phase.level == 0 || t.phase.solids.is_some());
+                let shortened = if t.setup || short { 0.0 } else { me.kick(w, t, drift) };
+                let total = w.memo.get_mut(&key).and_then(|m| m.first_mut()).map_or(shortened, |n| {
+                    *n += shortened;
+                    *n
+                });
+                publish(w, slot, t, total, &[]);
+                Ok(())
+            })
+            .in_setup(drift)
+            .in_every_level()
+            .boxed()
+        };
+        Ok(vec![
+            half(Stage::InitialIntegrate, true, self.clone()),
+            half(Stage::FinalIntegrate, false, self.clone()),
+        ])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, scalar_extensive: true, ..Shape::default() }
+    }
+
+    fn integrates(&self) -> bool {
+        true
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    // m = 2, dt = 0.5: the first feels f = 40 and would fly at 5; the limit 1 per step is a speed of 2.
+    #[test]
+    fn fast_ones_are_slowed_and_counted() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
+        b.world.clock.dt = 0.5;
+        b.world.particles.f = vec![[40.0, 0.0, 0.0], [8.0, 0.0, 0.0]];
+        b.world.particles.v = vec![[0.0; 3]; 2];
+        let fix = b.fix(&NveLimit, "1").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::InitialIntegrate).unwrap();
+        assert_eq!(b.world.particles.x, [[1.0, 0.0, 0.0], [0.5, 0.0, 0.0]]);
+        b.stage(&mut ops, Stage::FinalIntegrate).unwrap();
+        assert_eq!(b.world.particles.v, [[2.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
+        assert_eq!(b.slot_of("f_f").scalar, 2.0);
+        for words in ["", "0", "-1", "x"] {
+            assert!(b.fix(&NveLimit, words).is_err(), "{words}");
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! fix nve/sphere: velocity Verlet of spheres, translation and rotation.
+
+use super::kick as kicks;
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::Args;
+use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::{GroupId, World};
+
+/// I / (m R²) of a solid sphere.
+const INERTIA: f64 = 0.4;
+/// I / (m R²) of a disc about its axis.
+const DISC: f64 = 0.5;
+
+/// The style.
+pub struct NveSphere;
+
+impl Style for NveSphere {
+    fn name(&self) -> &'static str {
+        "nve/sphere"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group nve/sphere [disc]",
+            summary: "Moves and turns the group's spheres by velocity Verlet.",
+            text: "As `fix nve`, and with each half kick ω += Δt/2 · torque/I, I = 2/5 m R² (solid spheres). `disc`, \
+                   for flat scenes, takes I = 1/2 m R². Every particle of the group needs a radius. `update dipole` is refused as \
+                   LAMMPS refuses it where particles have no dipole: no particle in perigrain has one.",
+            example: "fix 1 all nve/sphere",
+        }
+    }
+}
+
+impl FixStyle for NveSphere {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let mut inertia = INERTIA;
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "update" => {
+                    let what = args.expect("dipole or dipole/dlm")?;
+                    if !matches!(what.text.as_str(), "dipole" | "dipole/dlm") {
+                        return Err(args.unknown(what, &["dipole", "dipole/dlm"]));
+                    }
+                    let text = "`update dipole` needs particles with a dipole, and these have none";
+                    let d = Diagnostic::error(Code::CONFLICT, word.span.to(what.span), text);
+                    return Err(d.help("leave it out").into());
+                }
+                "disc" if cx.world.settings.two_dimensional => inertia = DISC,
+                "disc" => {
+                    let text = "`disc` belongs to flat scenes (`dimension 2`)";
+                    return fail(Code::CONFLICT, word.span, text);
+                }
+                _ => return Err(args.unknown(word, &["update", "disc"])),
+            }
+        }
+        if !cx.world.particles.style.sphere {
+            return Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, "fix nve/sphere needs spheres")
+                .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
+                .into());
+        }
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, inertia }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    /// I / (m R²).
+    inertia: f64,
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (group, inertia, span) = (self.group, self.inertia, cx.span());
+        let p = &cx.world().particles;
+        let member = |i: &usize| p.mask[*i] & group.bit() != 0;
+        if let Some(i) = (0..p.len()).filter(member).find(|&i| p.radius[i] <= 0.0) {
+            let text = format!("fix nve/sphere needs spheres, but particle {} has no radius", p.tag[i]);
+            return Err(Diagnostic::error(Code::INCOMPLETE, span, text)
+                .help("add `set … diameter …`, or move this particle with `fix nve`")
+                .into());
+        }
+        let name = format!("fix {} nve/sphere", self.id);
+        let access = || Access::new("f torque mass radius mask", "x v omega");
+        let idle = |_: &mut World, _: &Tick| Ok(());
+        let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), idle);
+        let second = StepOp::new(name, Stage::FinalIntegrate, access(), idle);
+        let first = kicks::first(first.in_every_level().reporting(), group, Some(inertia));
+        let second = kicks::second(second.in_every_level().reporting(), group, Some(inertia));
+        Ok(vec![first.boxed(), second.boxed()])
+    }
+
+    fn integrates(&self) -> bool {
+        true
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    fn bench() -> Bench {
+        let mut b = Bench::new(AtomStyle { sphere: true, ..AtomStyle::default() }, &[[1.0, 0.0, 0.0]; 2]);
+        b.world.particles.radius = vec![0.5; 2];
+        b
+    }
+
+    #[test]
+    fn spheres_turn_with_the_inertia_of_solid_ones() {
+        let mut b = bench();
+        b.world.clock.dt = 0.5;
+        b.world.particles.f = vec![[4.0, 0.0, 0.0]; 2];
+        b.world.particles.torque = vec![[0.0, 0.4, 0.0]; 2];
+        b.world.particles.mask[1] = 0;
+        let fix = b.fix(&NveSphere, "").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::InitialIntegrate).unwrap();
+        b.stage(&mut ops, Stage::FinalIntegrate).unwrap();
+        // m = 2, R = 0.5: I = 0.2, so dω = 0.5 · 0.4/0.2 = 1 over the whole step.
+        let p = &b.world.particles;
+        assert!((p.omega[0][1] - 1.0).abs() < 1e-15 && p.omega[1] == [0.0; 3]);
+        assert_eq!((p.v[0][0], p.x[0][0]), (1.0, 1.25));
+    }
+
+    #[test]
+    fn points_and_unknown_words_are_refused() {
+        let mut b = bench();
+        b.world.particles.radius[1] = 0.0;
+        let fix = b.fix(&NveSphere, "").unwrap();
+        let e = b.seal(&*fix).err().unwrap();
+        assert_eq!(e.0[0].message, "fix nve/sphere needs spheres, but particle 2 has no radius");
+        for words in ["disc", "update dipole", "update dipole/dlm"] {
+            assert_eq!(b.fix(&NveSphere, words).err().unwrap().0[0].code, Code::CONFLICT);
+        }
+        b.world.settings.two_dimensional = true;
+        assert!(b.fix(&NveSphere, "disc").is_ok());
+        assert_eq!(b.fix(&NveSphere, "dics").err().unwrap().0[0].code, Code::UNKNOWN_KEYWORD);
+        b.world.particles.style.sphere = false;
+        assert!(b.fix(&NveSphere, "").is_err());
+    }
+}

@@ -1,0 +1,98 @@
+//! Diameters of poured spheres: all the same, from a range, or a few in given shares.
+
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::math::rng::ParkMiller;
+use perigrain_lang::Args;
+use std::f64::consts::PI;
+
+/// A distribution of radii.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sizes {
+    /// All the same.
+    One(f64),
+    /// Uniform between two.
+    Range(f64, f64),
+    /// Radii and their shares of the number of spheres.
+    Poly(Vec<[f64; 2]>),
+}
+
+impl Sizes {
+    /// Reads `one D`, `range Dlo Dhi` or `poly N D1 P1 …`.
+    ///
+    /// # Errors
+    /// Diameters that are not positive, shares that do not sum to 1.
+    pub fn read(args: &mut Args) -> Result<Self> {
+        Ok(match args.choice("distribution of diameters", &["one", "range", "poly"])? {
+            "one" => Self::One(0.5 * args.positive("the diameter")?),
+            "range" => {
+                let lo = args.positive("the smallest diameter")?;
+                let span = args.here();
+                let hi = args.positive("the largest diameter")?;
+                if lo > hi {
+                    let text = format!("the diameters must rise: {lo} is above {hi}");
+                    return fail(Code::BAD_VALUE, span, text);
+                }
+                Self::Range(0.5 * lo, 0.5 * hi)
+            }
+            _ => Self::Poly(shares(args)?),
+        })
+    }
+
+    /// The largest radius.
+    pub fn largest(&self) -> f64 {
+        match self {
+            Self::One(r) => *r,
+            Self::Range(_, hi) => *hi,
+            Self::Poly(list) => list.iter().fold(0.0, |a, p| p[0].max(a)),
+        }
+    }
+
+    /// What a sphere takes of the volume (in a flat scene of the area), as LAMMPS reckons it: of a range the largest, of
+    /// shares the mean.
+    pub fn space(&self, flat: bool) -> f64 {
+        let one = |r: f64| if flat { PI * r * r } else { 4.0 / 3.0 * PI * r * r * r };
+        match self {
+            Self::One(r) => one(*r),
+            Self::Range(_, hi) => one(*hi),
+            Self::Poly(list) => list.iter().map(|[r, share]| one(*r) * share).sum(),
+        }
+    }
+
+    /// The next radius.
+    pub fn sample(&self, stream: &mut ParkMiller) -> f64 {
+        match self {
+            Self::One(r) => *r,
+            Self::Range(lo, hi) => lo + stream.uniform() * (hi - lo),
+            Self::Poly(list) => {
+                let value = stream.uniform();
+                let mut sum = 0.0;
+                for [r, share] in list {
+                    sum += share;
+                    if sum >= value {
+                        return *r;
+                    }
+                }
+                list.last().map_or(0.0, |p| p[0])
+            }
+        }
+    }
+}
+
+fn shares(args: &mut Args) -> Result<Vec<[f64; 2]>> {
+    let start = args.here();
+    let count = args.integer_from(1, "the number of diameters")?;
+    let mut list = vec![];
+    for k in 1..=count {
+        let radius = 0.5 * args.positive(&format!("diameter {k}"))?;
+        let share = args.non_negative(&format!("the share of diameter {k}"))?;
+        list.push([radius, share]);
+    }
+    let sum: f64 = list.iter().map(|p| p[1]).sum();
+    // LAMMPS' tolerance.
+    if (sum - 1.0).abs() > 1e-3 {
+        let text = format!("the shares of diameters must sum to 1, not {sum}");
+        let d = Diagnostic::error(Code::BAD_VALUE, start.to(args.here()), text);
+        return Err(d.help("write `poly N D1 P1 D2 P2 …` with P1 + P2 + … = 1").into());
+    }
+    Ok(list)
+}

@@ -1,0 +1,203 @@
+//! fix property/atom: further properties of particles, by names of the deck's own.
+
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::{Args, Word};
+use perigrain_plan::Op;
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
+use perigrain_world::properties::MOLECULE;
+use perigrain_world::{Properties, World};
+
+/// The style.
+pub struct PropertyAtomFix;
+
+impl Style for PropertyAtomFix {
+    fn name(&self) -> &'static str {
+        "property/atom"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group property/atom name … [mol] [temperature] [heatflow] [ghost yes|no] [writedata yes|no]",
+            summary: "Gives all particles properties of the deck's own.",
+            text: "A name is `i_NAME` (whole numbers) or `d_NAME` (numbers), or `i2_NAME N` and `d2_NAME N` for N columns. They \
+                   are 0 at first, belong to all particles whatever the group, and are set by `set … d_NAME value` (or \
+                   `d2_NAME[k]`). Read them with `compute property/atom`, in `dump custom`, `fix store/state` and in formulas \
+                   (`d_NAME`, `d_NAME[7]`; without columns). `temperature` and `heatflow` are what granular contacts that conduct heat \
+                   read and write, and `fix heat/flow` integrates. `mol` gives \
+                   molecule IDs to particles whose style has none. `write_data` writes them all into a section of the fix's name, \
+                   unless `writedata no`, and `read_data … fix ID NULL SECTION` reads it. `ghost` is read for LAMMPS' decks. LAMMPS' `q` and `rmass` are refused: atom styles say what particles have.",
+            example: "fix mine all property/atom i_flag d_heat\nset group ball d_heat 3.5 i_flag 2\nvariable heat atom d_heat+1",
+        }
+    }
+}
+
+impl FixStyle for PropertyAtomFix {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let (mut names, mut written): (Vec<String>, _) = (vec![], true);
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "writedata" => written = args.flag("writedata")?,
+                "ghost" => {
+                    args.flag("ghost")?;
+                    cx.note(Diagnostic::note(
+                        Code::NO_EFFECT,
+                        word.span,
+                        "without effect: there are no ghosts",
+                    ));
+                }
+                "mol" => {
+                    no_molecules(word, cx, names.iter().any(|name| name == MOLECULE))?;
+                    names.push(MOLECULE.to_string());
+                }
+                "q" | "rmass" => {
+                    let text =
+                        format!("`{}` cannot be added: atom styles say what particles have", word.text);
+                    return fail(Code::NOT_SUPPORTED, word.span, text);
+                }
+                _ => names.extend(columns(word, args, cx, &names)?),
+            }
+        }
+        if names.is_empty() {
+            args.expect("a name such as i_flag or d_heat")?;
+        }
+        Ok(Box::new(Declared(Properties { fix: cx.id.to_string(), names, written })))
+    }
+}
+
+/// Checks that particles have no molecule IDs yet, from their style, this line or another fix.
+fn no_molecules(word: &Word, cx: &BuildCx, before: bool) -> Result<()> {
+    let style = &cx.world.particles.style;
+    if style.bonded {
+        let text = format!("particles of atom_style {} have molecules by themselves", style.name());
+        return fail(Code::CONFLICT, word.span, text);
+    }
+    // A fix of this ID may be declared again.
+    let again = cx.names.fix_style(cx.id) == Some("property/atom");
+    if before || (style.molecules && !again) {
+        return fail(Code::DUPLICATE_NAME, word.span, "`mol` exists already");
+    }
+    Ok(())
+}
+
+/// The columns of one name, as `d_heat` or `d2_heat/1`.
+fn columns(word: &Word, args: &mut Args, cx: &BuildCx, before: &[String]) -> Result<Vec<String>> {
+    if [TEMPERATURE, HEATFLOW].contains(&word.text.as_str()) {
+        return free(word, cx, before, &word.text).map(|()| vec![word.text.clone()]);
+    }
+    let prefix = ["i_", "d_", "i2_", "d2_"].into_iter().find(|p| word.text.starts_with(p));
+    let tail = prefix.map_or("", |p| &word.text[p.len()..]);
+    let (Some(prefix), true) =
+        (prefix, !tail.is_empty() && tail.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'))
+    else {
+        let d = Diagnostic::error(
+            Code::BAD_VALUE,
+            word.span,
+            format!("`{}` is no name of a property", word.text),
+        );
+        return Err(d.help("write i_NAME, d_NAME, i2_NAME N, d2_NAME N, temperature or heatflow").into());
+    };
+    let several = prefix.contains('2');
+    let count = if several { args.integer_from(1, "the number of columns")? } else { 1 };
+    let key = |k: i64| if several { format!("{}/{k}", word.text) } else { word.text.clone() };
+    free(word, cx, before, &key(1))?;
+    Ok((1..=count).map(key).collect())
+}
+
+/// The name alone, of `i_heat`, `d_heat` and `d2_heat/1` alike; `None` of `temperature` and `heatflow`.
+fn stem(key: &str) -> Option<&str> {
+    let head = key.split_once('/').map_or(key, |(head, _)| head);
+    head.split_once('_').map(|(_, stem)| stem)
+}
+
+/// Checks that there is no property of this name yet, of whatever kind. A fix of this ID may be declared again.
+fn free(word: &Word, cx: &BuildCx, before: &[String], key: &str) -> Result<()> {
+    let own = format!("property/atom/{}/", cx.id);
+    let columns = cx.world.columns.names();
+    let others = columns.iter().filter(|full| !full.starts_with(&own));
+    let others = others.filter_map(|full| full.strip_prefix("property/atom/")?.split_once('/'));
+    let mut taken = others.map(|(_, key)| key).chain(before.iter().map(String::as_str));
+    match taken.find(|other| *other == key || (stem(other).is_some() && stem(other) == stem(key))) {
+        None => Ok(()),
+        Some(other) if other == key => {
+            fail(Code::DUPLICATE_NAME, word.span, format!("`{}` exists already", word.text))
+        }
+        Some(other) => {
+            let shown = other.split('/').next().unwrap_or(other);
+            let text = format!("`{}` and `{shown}` differ in nothing but their kind", word.text);
+            let d = Diagnostic::error(Code::DUPLICATE_NAME, word.span, text);
+            Err(d.help("names must differ behind the first underscore").into())
+        }
+    }
+}
+
+#[derive(Clone)]
+struct Declared(Properties);
+
+impl Declared {
+    fn molecules(&self) -> bool {
+        self.0.names.iter().any(|name| name == MOLECULE)
+    }
+
+    fn columns(&self) -> impl Iterator<Item = String> {
+        (0..self.0.names.len()).filter_map(|k| self.0.column(k))
+    }
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        let n = w.n();
+        for column in self.columns() {
+            w.columns.scalar(&column, n);
+        }
+        w.properties.push(self.0.clone());
+        if self.molecules() {
+            w.particles.style.molecules = true;
+            w.particles.molecule.resize(n, 0);
+        }
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        if self.molecules() {
+            w.particles.style.molecules = w.particles.style.bonded;
+            w.particles.molecule.clear();
+        }
+        w.properties.retain(|p| p.fix != self.0.fix);
+        self.columns().for_each(|column| w.columns.remove(&column));
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let n = cx.world().n();
+        cx.world().columns.resize(n);
+        Ok(vec![])
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn columns_come_and_go() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
+        let fix = b.fix(&PropertyAtomFix, "i_a d_b d2_c 2 ghost yes").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        let columns = &b.world.columns;
+        assert_eq!(columns.custom("d_b").as_deref(), Some("property/atom/f/d_b"));
+        assert_eq!(columns.custom("d2_c[2]").as_deref(), Some("property/atom/f/d2_c/2"));
+        assert_eq!((columns.custom("d2_c[3]"), columns.custom("b")), (None, None));
+        fix.remove(&mut b.world);
+        assert!(b.world.columns.names().is_empty());
+        b.world.columns.scalar("property/atom/other/d_b", 2);
+        for words in ["", "d_b", "x_b", "d_", "d_a d_a", "d2_c", "d2_c 0", "q", "ghost maybe", "d_a-b"] {
+            assert!(b.fix(&PropertyAtomFix, words).is_err(), "{words}");
+        }
+    }
+}

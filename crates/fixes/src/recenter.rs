@@ -1,0 +1,162 @@
+//! fix recenter: holds the centre of mass of a group at a place.
+
+use super::{Fix, FixStyle};
+use perigrain_base::diag::Result;
+use perigrain_base::math::vec3::length;
+use perigrain_base::par;
+use perigrain_lang::Args;
+use perigrain_plan::{Access, Op, Stage};
+use perigrain_styles::common::scales;
+use perigrain_styles::matter::{centre, check_masses, publish};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::{GroupId, World};
+
+/// The style.
+pub struct Recenter;
+
+impl Style for Recenter {
+    fn name(&self) -> &'static str {
+        "recenter"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group recenter x y z [shift group2] [units box|lattice|fraction]",
+            summary: "Shifts particles every step so that the centre of mass of the group stays at a place.",
+            text: "Each of x y z is a number, `NULL` (not held) or `INIT` (where the centre was when the fix was declared). \
+                   The group itself is shifted, or another after `shift`. Numbers are in lattice spacings unless `units box`, \
+                   or fractions of the box. Velocities stay. Acts after the time integration of fixes declared before: \
+                   declare it after them. Scalar (extensive): the length of the last shift; vector of 3 (extensive): the \
+                   shift.",
+            example: "fix still plate recenter INIT INIT NULL",
+        }
+    }
+}
+
+/// Where one coordinate of the centre is held.
+#[derive(Clone, Copy)]
+enum Hold {
+    Free,
+    Initial,
+    At(f64),
+}
+
+impl FixStyle for Recenter {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let mut hold = [Hold::Free; 3];
+        for (hold, axis) in hold.iter_mut().zip(["x", "y", "z"]) {
+            *hold = match args.peek_text() {
+                "NULL" => args.next().map_or(Hold::Free, |_| Hold::Free),
+                "INIT" => args.next().map_or(Hold::Initial, |_| Hold::Initial),
+                _ => Hold::At(args.number(&format!("{axis} of the centre"))?),
+            };
+        }
+        let (mut shifted, mut units) = (cx.group, "lattice");
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "shift" => shifted = cx.group(args.expect("the group to shift")?)?,
+                "units" => units = args.choice("value of units", &["box", "lattice", "fraction"])?,
+                _ => return Err(args.unknown(word, &["shift", "units"])),
+            }
+        }
+        let scale = scales(cx.world, units == "lattice");
+        let hold = std::array::from_fn(|d| match hold[d] {
+            Hold::At(c) => Hold::At(c * scale[d]),
+            other => other,
+        });
+        let fraction = units == "fraction";
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, shifted, hold, fraction }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    shifted: GroupId,
+    hold: [Hold; 3],
+    fraction: bool,
+}
+
+impl Declared {
+    fn key(&self) -> String {
+        format!("recenter/{}", self.id)
+    }
+
+    /// What must be added to the positions now.
+    fn shift(&self, w: &World) -> [f64; 3] {
+        let (_, now) = centre(w, self.group);
+        let (lo, lengths) = w.domain.as_ref().map_or(([0.0; 3], [0.0; 3]), |d| (d.lo, d.lengths()));
+        let initial = w.memo.get(&self.key());
+        std::array::from_fn(|d| match self.hold[d] {
+            Hold::Free => 0.0,
+            Hold::Initial => initial.and_then(|x| x.get(d)).map_or(0.0, |x| x - now[d]),
+            Hold::At(c) if self.fraction => lo[d] + c * lengths[d] - now[d],
+            Hold::At(c) => c - now[d],
+        })
+    }
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        w.spread_type_masses();
+        let (_, at) = centre(w, self.group);
+        w.memo.insert(self.key(), at.to_vec());
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.memo.remove(&self.key());
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        check_masses(cx.world(), span)?;
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let (me, access) = (self.clone(), Access::new("image mass mask", "x"));
+        let op =
+            StepOp::new(format!("fix {} recenter", self.id), Stage::InitialIntegrate, access, move |w, t| {
+                let shift = me.shift(w);
+                let (bit, p) = (me.shifted.bit(), &mut w.particles);
+                par::each((&mut p.x[..], &p.mask[..]), |_, (x, mask)| {
+                    for (x, _) in x.iter_mut().zip(mask).filter(|(_, m)| **m & bit != 0) {
+                        (0..3).for_each(|d| x[d] += shift[d]);
+                    }
+                });
+                publish(w, slot, t, length(shift), &shift);
+                Ok(())
+            });
+        Ok(vec![op.boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, vector: 3, scalar_extensive: true, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn the_centre_stays() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [2.0, 4.0, 6.0]]);
+        let fix = b.fix(&Recenter, "INIT 0.25 NULL units fraction").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        b.world.particles.x[0] = [-2.0, 0.0, 2.0];
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::InitialIntegrate).unwrap();
+        // Centre now (0, 2, 4); held at (1, -10 + 20/4, any).
+        assert_eq!(b.world.particles.x, [[-1.0, -7.0, 2.0], [3.0, -3.0, 6.0]]);
+        assert_eq!(b.slot_of("f_f").vector, [1.0, -7.0, 0.0]);
+        for words in ["0 0", "0 0 INITIAL", "0 0 0 shift q", "0 0 0 units boxes", "0 0 0 shit all"] {
+            assert!(b.fix(&Recenter, words).is_err(), "{words}");
+        }
+    }
+}

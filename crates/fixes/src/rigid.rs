@@ -1,0 +1,387 @@
+//! fix rigid, rigid/small: groups of particles that move as rigid bodies.
+
+mod bodies;
+mod infile;
+mod motion;
+mod nve;
+mod pass;
+
+pub use nve::{RigidNve, RigidNveSmall};
+
+use super::{Fix, FixStyle, no_option};
+use bodies::Split;
+use motion::Crew;
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Args, Word};
+use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_styles::common::range_from;
+use perigrain_styles::matter::check_masses;
+use perigrain_styles::molecules::named;
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
+use perigrain_world::{GroupId, World};
+
+/// Columns of the array: centre, velocity, force, torque, image counts.
+const COLUMNS: usize = 15;
+
+/// `fix rigid`.
+pub struct Rigid;
+
+/// `fix rigid/small`.
+pub struct RigidSmall;
+
+impl Style for Rigid {
+    fn name(&self) -> &'static str {
+        "rigid"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group rigid single | molecule | custom i_NAME | group N ID1 … IDN  [force M x y z] [torque M x y z] \
+                     [reinit yes|no] [infile FILE]",
+            summary: "Lets groups of particles move as rigid bodies.",
+            text: "One body of the whole group (`single`), one for each molecule ID or value of a property of `fix property/atom`, in \
+                   ascending order, or one for each of N groups; each needs two particles at least. Mass, centre and moments of inertia are \
+                   those of the particles, spheres being solid; overlaps count twice. Forces and torques on a body are the \
+                   sums of those on its particles. The centre moves by velocity Verlet, the orientation by Richardson's \
+                   steps of the quaternion at constant angular momentum; places, velocities and spins of the particles follow. \
+                   No other fix may move them, and contacts inside a body are left out with `neigh_modify exclude`.\n\n\
+                   `force M off off on` and `torque M …` turn components of the sum off for bodies M (a number or range, `1*3`). Bodies are set up from their particles \
+                   when a run begins after something has changed; with `reinit no` only once, so that what was done to the particles \
+                   between runs is undone. `infile` gives mass, centre, inertia xx yy zz xy xz yz, velocity, angular momentum and image \
+                   counts of some bodies, one line each behind the number of lines, and means `reinit no`.\n\n\
+                   Scalar: temperature of the bodies, Σ (m v² + ω·I·ω) over 6 degrees of freedom each (LAMMPS counts less where components are turned off). Array, a row for each body: centre, \
+                   velocity, force, torque, image counts (3 columns each). The forces that hold bodies together count in \
+                   pressures, unless `fix_modify ID virial no`. In the setup of a run LAMMPS leaves out the forces of fixes that stand below this \
+                   one, so that its first half kick lacks them; perigrain does so under `compat lammps` only. Temperatures count the freedom of single particles; LAMMPS \
+                   takes away what bodies have lost. `langevin`, `gravity` (fix gravity acts on the particles), thermostats and \
+                   barostats are refused.",
+            example: "unfix motion\nset group plate diameter 0.0\nfix body plate rigid single torque * off off on",
+        }
+    }
+}
+
+impl Style for RigidSmall {
+    fn name(&self) -> &'static str {
+        "rigid/small"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group rigid/small molecule | custom i_NAME  [reinit yes|no] [infile FILE] [mol TEMPLATE]",
+            summary: "Lets molecules move as rigid bodies, as many as there are.",
+            text: "As `fix rigid`, without its array and its keywords `force` and `torque`. Particles that join the group during a run become \
+                   bodies of their own, molecule by molecule, with the next rebuild of neighbour lists; `mol` names the template they come \
+                   from, for LAMMPS' sake. In `infile` the number of a body is its molecule ID.",
+            example: "units si\natom_style sphere\nregion b block 0 0.1 0 0.1 0 0.1\ncreate_box 1 b\nfix m all property/atom mol\n\
+                      create_atoms 1 single 0.05 0.05 0.05\ncreate_atoms 1 single 0.055 0.05 0.05\nset group all diameter 0.01 density 2500.0 \
+                      mol 1\npair_style zero 0.01\npair_coeff * *\nneigh_modify exclude molecule/intra all\nvelocity all ramp vy 0 1 x 0.05 0.055\n\
+                      fix 1 all rigid/small molecule\nthermo_style custom step f_1\nrun 10",
+        }
+    }
+}
+
+impl FixStyle for Rigid {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        large(self.name(), args, cx)
+    }
+}
+
+impl FixStyle for RigidSmall {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        small(self.name(), args, cx)
+    }
+}
+
+/// Few bodies of any kind.
+fn large(style: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+    let split = match args.choice("kind of bodies", &["single", "molecule", "group", "custom"])? {
+        "single" => Split::Single,
+        "group" => groups(args, cx)?,
+        "custom" => custom(args, cx)?,
+        _ => molecules(cx)?,
+    };
+    build(style, true, split, args, cx)
+}
+
+/// Molecules, as many as there are.
+fn small(style: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+    let split = match args.choice("kind of bodies", &["molecule", "custom"])? {
+        "custom" => custom(args, cx)?,
+        _ => molecules(cx)?,
+    };
+    build(style, false, split, args, cx)
+}
+
+fn molecules(cx: &BuildCx) -> Result<Split> {
+    if cx.world.particles.style.molecules {
+        return Ok(Split::Molecule);
+    }
+    let d = Diagnostic::error(Code::CONFLICT, cx.span, "particles of this atom_style belong to no molecules");
+    Err(d.help("`fix ID all property/atom mol` gives them molecule IDs").into())
+}
+
+fn custom(args: &mut Args, cx: &BuildCx) -> Result<Split> {
+    let word = args.expect("a property i_NAME")?;
+    match cx.world.columns.custom(&word.text) {
+        Some(column) if word.text.starts_with("i_") => Ok(Split::Custom(column)),
+        _ => {
+            let text = format!("`{}` is no whole-number property i_NAME", word.text);
+            let d = Diagnostic::error(Code::UNKNOWN_NAME, word.span, text);
+            Err(d
+                .help("values of a variable become one by `fix p all property/atom i_body` and `set group all i_body v_NAME`")
+                .into())
+        }
+    }
+}
+
+fn groups(args: &mut Args, cx: &BuildCx) -> Result<Split> {
+    let count = args.integer_from(1, "the number of groups")?;
+    let list: Result<Vec<GroupId>> = (0..count.min(32)).map(|_| cx.group(args.expect("a group")?)).collect();
+    Ok(Split::Groups(list?))
+}
+
+/// Components of force or torque that are turned off for some bodies.
+#[derive(Clone)]
+struct Switch {
+    torque: bool,
+    bodies: (i64, i64),
+    on: [bool; 3],
+    span: Span,
+}
+
+fn build(
+    style: &'static str,
+    whole: bool,
+    split: Split,
+    args: &mut Args,
+    cx: &BuildCx,
+) -> Result<Box<dyn Fix>> {
+    let mut me = Declared {
+        style,
+        whole,
+        id: cx.id.to_string(),
+        group: cx.group,
+        split,
+        switches: vec![],
+        reinit: true,
+        infile: None,
+        template: None,
+        virial: true,
+    };
+    while let Some(word) = args.next() {
+        match word.text.as_str() {
+            "force" | "torque" if whole => me.switches.push(switch(word, args)?),
+            "reinit" => me.reinit = args.flag("reinit")?,
+            "infile" => me.infile = Some(args.expect("a file name")?.clone()),
+            "mol" if !whole => me.template = Some(template(args, cx)?),
+            "langevin" | "gravity" | "temp" | "iso" | "aniso" | "x" | "y" | "z" | "couple" | "tparam"
+            | "pchain" | "dilate" => {
+                let text = format!("fix {style}: `{}` is not in perigrain", word.text);
+                return fail(Code::NOT_SUPPORTED, word.span, text);
+            }
+            _ if whole => return Err(args.unknown(word, &["force", "torque", "reinit", "infile"])),
+            _ => return Err(args.unknown(word, &["reinit", "infile", "mol"])),
+        }
+    }
+    me.reinit &= me.infile.is_none();
+    Ok(Box::new(me))
+}
+
+fn switch(word: &Word, args: &mut Args) -> Result<Switch> {
+    let at = args.expect("a body or a range of bodies")?;
+    let bodies = range_from(at, 1, i64::MAX)?;
+    let on = [args.flag("x")?, args.flag("y")?, args.flag("z")?];
+    Ok(Switch { torque: word.text == "torque", bodies, on, span: at.span })
+}
+
+/// The template that inserted bodies come from: here bodies are found by themselves.
+fn template(args: &mut Args, cx: &BuildCx) -> Result<String> {
+    let word = args.expect("a molecule template")?;
+    let set = named(word, cx)?;
+    if set.iter().any(|t| t.mass.is_some() || t.com.is_some() || t.inertia.is_some()) {
+        let text = "templates that give mass, com or inertia of the whole are not in perigrain: bodies have those of their particles";
+        return fail(Code::NOT_SUPPORTED, word.span, text);
+    }
+    Ok(word.text.clone())
+}
+
+#[derive(Clone)]
+struct Declared {
+    style: &'static str,
+    /// `rigid` and `rigid/nve`: with an array, and components that can be turned off.
+    whole: bool,
+    id: String,
+    group: GroupId,
+    split: Split,
+    switches: Vec<Switch>,
+    reinit: bool,
+    infile: Option<Word>,
+    /// The template of inserted bodies.
+    template: Option<String>,
+    virial: bool,
+}
+
+impl Declared {
+    /// Whether orientations move by NO_SQUISH.
+    fn exact(&self) -> bool {
+        self.style.starts_with("rigid/nve")
+    }
+
+    /// Where the world keeps its state.
+    fn key(&self, what: &str) -> String {
+        format!("{}/{}/{what}", self.style, self.id)
+    }
+
+    /// By component whether forces and torques on body `k` (from 0) count.
+    fn allowed(&self, k: usize, flat: bool) -> [[f64; 3]; 2] {
+        let mut on = if flat { [[1.0, 1.0, 0.0], [0.0, 0.0, 1.0]] } else { [[1.0; 3]; 2] };
+        let body = k as i64 + 1;
+        for s in self.switches.iter().filter(|s| (s.bodies.0..=s.bodies.1).contains(&body)) {
+            let own = &mut on[usize::from(s.torque)];
+            for (a, yes) in own.iter_mut().zip(s.on) {
+                *a *= f64::from(u8::from(yes));
+            }
+        }
+        on
+    }
+
+    /// Sets the bodies up at the beginning of a run where that is due.
+    fn begin(&self, w: &mut World, span: Span) -> Result<()> {
+        let there = w.memo.contains_key(&self.key("bodies"));
+        if there && !self.reinit {
+            return Ok(());
+        }
+        self.set_up(w, span)?;
+        if let Some(file) = &self.infile {
+            infile::apply(self, w, file)?;
+        }
+        let count = self.load(w).len() as i64;
+        match self
+            .switches
+            .iter()
+            .find(|s| s.bodies.0 > count || (s.bodies.1 > count && s.bodies.1 != i64::MAX))
+        {
+            Some(s) => fail(Code::BAD_VALUE, s.span, format!("there are bodies 1 to {count}")),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.remove(w);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        for what in ["bodies", "virial"] {
+            w.memo.remove(&self.key(what));
+        }
+        for what in ["body", "place", "contact mass"] {
+            w.columns.remove(&self.key(what));
+        }
+    }
+
+    fn shape(&self) -> Shape {
+        let rows = match &self.split {
+            Split::Single => 1,
+            Split::Groups(list) => list.len(),
+            _ => Shape::OPEN,
+        };
+        let shape = Shape { scalar: true, ..Shape::default() };
+        if self.whole { Shape { array: COLUMNS, array_rows: rows, ..shape } } else { shape }
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        check_masses(cx.world(), span)?;
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let name = format!("fix {} {}", self.id, self.style);
+        let (me, mut seen) = (self.clone(), None);
+        let bodies = StepOp::new(
+            name.clone(),
+            Stage::Neighbor,
+            Access::new("x v omega mass", "bodies"),
+            move |w, t| {
+                if t.setup && !t.unchanged {
+                    me.begin(w, span)?;
+                }
+                let now = Some((w.rebuild.generation, w.n()));
+                if seen != now {
+                    seen = now;
+                    me.adopt(w, span)?;
+                    me.wrap(w);
+                }
+                Ok(())
+            },
+        );
+        let (me, mut crew) = (self.clone(), Crew::of(self));
+        let access = || Access::new("f torque mass mask bodies", "x v omega");
+        let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
+            me.advance(w, t, &mut crew);
+            Ok(())
+        });
+        let second = |me: Declared| {
+            let mut crew = Crew::of(&me);
+            move |w: &mut World, t: &Tick| {
+                if !t.unchanged {
+                    me.finish_step(w, t, slot, &mut crew);
+                }
+                Ok(())
+            }
+        };
+        let (me, mut crew) = (self.clone(), Crew::of(self));
+        let on = move |w: &mut World, t: &Tick| me.go_on(w, t, slot, &mut crew);
+        let last = StepOp::new(name.clone(), Stage::FinalIntegrate, access(), second(self.clone()));
+        let (first, last) = (first.reporting(), last.reporting().and_on(on));
+        let mut ops = vec![bodies.boxed(), first.boxed()];
+        if cx.world().settings.lammps() {
+            // Its setup sums up forces when it comes to this fix: those of fixes that stand below are missing.
+            let setup = StepOp::new(name, Stage::PostForce, access(), second(self.clone())).reporting();
+            ops.extend([setup.when(When::First).boxed(), last.in_setup(false).boxed()]);
+        } else {
+            ops.push(last.in_setup(true).boxed());
+        }
+        Ok(ops)
+    }
+
+    fn stop(&self, w: &mut World, what: Motion, span: Span) -> Result<()> {
+        self.begin(w, span)?;
+        self.adopt(w, span)?;
+        let mut bodies = self.load(w);
+        for body in &mut bodies {
+            match what {
+                Motion::Linear => body.v = [0.0; 3],
+                Motion::Angular => (body.momentum, body.omega) = ([0.0; 3], [0.0; 3]),
+            }
+        }
+        self.store(w, &bodies);
+        self.carry(w);
+        Ok(())
+    }
+
+    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        if args.eat("virial") {
+            self.virial = args.flag("virial")?;
+            return Ok(());
+        }
+        no_option(args)
+    }
+
+    fn integrates(&self) -> bool {
+        true
+    }
+
+    fn needs_whole_steps(&self, _w: &World) -> Option<&'static str> {
+        Some(
+            "its bodies add up the forces of a step once, and LAMMPS' count those of one level twice and leave others out",
+        )
+    }
+
+    fn adopts(&self) -> Option<&str> {
+        self.template.as_deref()
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}

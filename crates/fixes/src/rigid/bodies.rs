@@ -1,0 +1,217 @@
+//! Rigid bodies as state: which particles they are made of, what they weigh, where they are.
+
+use super::Declared;
+use perigrain_base::diag::{Code, Result, Span, fail};
+use perigrain_base::math::body::{apply, axes, from_axes, principal};
+use perigrain_base::math::vec3::{add, cross, scale, sub};
+use perigrain_styles::matter::{Masses, unwrapped};
+use perigrain_styles::rigid_bodies::Body;
+use perigrain_styles::rigid_bodies::{WIDTH, bodies};
+use perigrain_world::{CONTACT_MASS, GroupId, World};
+use std::collections::BTreeMap;
+
+/// I / (m R²) of a solid sphere.
+const SPHERE: f64 = 0.4;
+
+/// What makes particles one body.
+#[derive(Clone)]
+pub enum Split {
+    /// The group.
+    Single,
+    /// The molecule ID.
+    Molecule,
+    /// A column of whole numbers.
+    Custom(String),
+    /// One of these groups.
+    Groups(Vec<GroupId>),
+}
+
+impl Declared {
+    /// The bodies as the world keeps them.
+    pub fn load(&self, w: &World) -> Vec<Body> {
+        bodies(w, self.style, &self.id)
+    }
+
+    /// Puts the bodies back.
+    pub fn store(&self, w: &mut World, bodies: &[Body]) {
+        let rows = w.memo.entry(self.key("bodies")).or_default();
+        rows.resize(WIDTH * bodies.len(), 0.0);
+        rows.chunks_exact_mut(WIDTH).zip(bodies).for_each(|(row, body)| body.write(row));
+    }
+
+    /// What particle `i` has in common with its body; nothing for one that belongs to none.
+    fn name_of(&self, w: &World, i: usize) -> std::result::Result<Option<f64>, u32> {
+        let p = &w.particles;
+        let is = |g: GroupId| p.mask[i] & g.bit() != 0;
+        let value = match &self.split {
+            Split::Single => 0.0,
+            Split::Molecule => f64::from(p.molecule[i]),
+            Split::Custom(column) => {
+                w.columns.get_scalar(column).and_then(|c| c.get(i)).copied().unwrap_or(0.0)
+            }
+            Split::Groups(list) => {
+                let mut mine = list.iter().enumerate().filter(|(_, g)| is(**g));
+                let first = mine.next();
+                if mine.next().is_some() {
+                    return Err(p.tag[i]);
+                }
+                return Ok(first.map(|(k, _)| k as f64));
+            }
+        };
+        Ok(is(self.group).then_some(value))
+    }
+
+    /// Particles without a body so far, by what they have in common, ascending.
+    fn loose(&self, w: &World, body: &[f64], span: Span) -> Result<Vec<(f64, Vec<usize>)>> {
+        let mut found: BTreeMap<i64, (f64, Vec<usize>)> = BTreeMap::new();
+        for i in (0..w.n()).filter(|&i| body.get(i).copied().unwrap_or(0.0) == 0.0) {
+            match self.name_of(w, i) {
+                Ok(None) => {}
+                // Names are whole numbers.
+                Ok(Some(name)) => found.entry(name as i64).or_insert((name, vec![])).1.push(i),
+                Err(tag) => {
+                    return fail(Code::CONFLICT, span, format!("particle {tag} belongs to two rigid bodies"));
+                }
+            }
+        }
+        let list: Vec<(f64, Vec<usize>)> = found.into_values().collect();
+        if let Some((name, members)) = list.iter().find(|(_, m)| m.len() < 2) {
+            let tag = w.particles.tag[members[0]];
+            let what = if matches!(self.split, Split::Molecule) {
+                format!(" (molecule {name})")
+            } else {
+                String::new()
+            };
+            let text =
+                format!("a rigid body needs two particles at least, but particle {tag}{what} is alone");
+            return fail(Code::CONFLICT, span, text);
+        }
+        Ok(list)
+    }
+
+    /// Makes all bodies anew from their particles.
+    pub fn set_up(&self, w: &mut World, span: Span) -> Result<()> {
+        let n = w.n();
+        let list = self.loose(w, &[], span)?;
+        if let Split::Groups(groups) = &self.split
+            && list.len() < groups.len()
+        {
+            return fail(
+                Code::CONFLICT,
+                span,
+                "a rigid body needs two particles at least: one of the groups is empty",
+            );
+        }
+        if list.is_empty() && matches!(self.split, Split::Single) {
+            return fail(
+                Code::CONFLICT,
+                span,
+                "a rigid body needs two particles at least: the group is empty",
+            );
+        }
+        w.columns.scalar(&self.key("body"), n).fill(0.0);
+        w.columns.vector(&self.key("place"), n).fill([0.0; 3]);
+        let all: Vec<usize> = (0..n).collect();
+        self.weigh(w, &all, 0.0);
+        self.store(w, &[]);
+        self.enter(w, &list);
+        Ok(())
+    }
+
+    /// Makes bodies of particles that have come since.
+    pub fn adopt(&self, w: &mut World, span: Span) -> Result<()> {
+        if matches!(self.split, Split::Single | Split::Groups(_)) {
+            return Ok(());
+        }
+        let body = w.columns.get_scalar(&self.key("body")).unwrap_or_default();
+        let list = self.loose(w, body, span)?;
+        if !list.is_empty() {
+            self.enter(w, &list);
+        }
+        Ok(())
+    }
+
+    fn enter(&self, w: &mut World, list: &[(f64, Vec<usize>)]) {
+        let n = w.n();
+        let mut bodies = self.load(w);
+        for (name, members) in list {
+            let body = Body { name: *name, ..of_particles(w, members) };
+            bodies.push(body);
+            let number = bodies.len() as f64;
+            members.iter().for_each(|&i| w.columns.scalar(&self.key("body"), n)[i] = number);
+            self.weigh(w, members, body.mass);
+            self.place(w, &body, members);
+        }
+        self.store(w, &bodies);
+    }
+
+    /// In contacts these particles have the mass of a body.
+    pub fn weigh(&self, w: &mut World, members: &[usize], mass: f64) {
+        let n = w.n();
+        let column = w.columns.scalar(&format!("{}/{}{CONTACT_MASS}", self.style, self.id), n);
+        members.iter().for_each(|&i| column[i] = mass);
+    }
+
+    /// Keeps where particles are as seen from the body.
+    pub fn place(&self, w: &mut World, body: &Body, members: &[usize]) {
+        let (n, axes) = (w.n(), axes(body.q));
+        for &i in members {
+            let d = sub(unwrapped(w, i), body.x);
+            w.columns.vector(&self.key("place"), n)[i] = apply(&axes, d);
+        }
+    }
+
+    /// Counts anew in which image of the box the centres are.
+    pub fn wrap(&self, w: &mut World) {
+        let mut bodies = self.load(w);
+        if let Some(domain) = &w.domain {
+            let lengths = domain.lengths();
+            for body in &mut bodies {
+                body.image = [0, 1, 2].map(|d| match domain.boundary.periodic(d) {
+                    true => ((body.x[d] - domain.lo[d]) / lengths[d]).floor(),
+                    false => 0.0,
+                });
+            }
+        }
+        self.store(w, &bodies);
+    }
+}
+
+/// Mass, centre, axes and motion of a body made of these particles.
+fn of_particles(w: &World, members: &[usize]) -> Body {
+    let (p, masses) = (&w.particles, Masses::of(w));
+    let mut b = Body::default();
+    for &i in members {
+        let m = masses.get(i);
+        b.mass += m;
+        b.x = add(b.x, scale(m, unwrapped(w, i)));
+        b.v = add(b.v, scale(m, p.v[i]));
+    }
+    b.x = b.x.map(|a| a / b.mass);
+    b.v = b.v.map(|a| a / b.mass);
+    let mut tensor = [0.0; 6];
+    for &i in members {
+        let (m, d) = (masses.get(i), sub(unwrapped(w, i), b.x));
+        let r = p.radius.get(i).copied().unwrap_or(0.0);
+        let own = SPHERE * m * r * r;
+        for (k, (a, c)) in [(1, 2), (0, 2), (0, 1)].into_iter().enumerate() {
+            tensor[k] += m * (d[a] * d[a] + d[c] * d[c]) + own;
+        }
+        for (k, (a, c)) in [(0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
+            tensor[3 + k] -= m * d[a] * d[c];
+        }
+        b.momentum = add(b.momentum, scale(m, cross(d, p.v[i])));
+        if let Some(omega) = p.omega.get(i).filter(|_| r > 0.0) {
+            b.momentum = add(b.momentum, scale(own, *omega));
+        }
+    }
+    orient(&mut b, tensor);
+    b
+}
+
+/// Axes and principal moments from a tensor of inertia xx yy zz xy xz yz.
+pub fn orient(body: &mut Body, tensor: [f64; 6]) {
+    let (moments, frame) = principal(tensor);
+    body.moments = moments;
+    body.q = from_axes(frame);
+}

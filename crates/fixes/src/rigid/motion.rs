@@ -1,0 +1,238 @@
+//! One step of rigid bodies and of the particles that follow them.
+
+use super::pass::{POSE, Part, Pass};
+use super::{COLUMNS, Declared};
+use perigrain_base::math::body::{apply, apply_transposed, matrix};
+use perigrain_base::math::vec3::{SIX, Vec3, add, cross, dot, sub};
+use perigrain_base::par;
+use perigrain_plan::Tick;
+use perigrain_styles::matter::{self, Masses};
+use perigrain_styles::rigid_bodies::{Body, WIDTH};
+use perigrain_world::{Offers, SlotId, World};
+
+/// What the ops of a step work with: who belongs to which body, and where bodies are.
+pub struct Crew {
+    /// Generation of lists and number of particles that the members are of.
+    seen: Option<(u64, usize)>,
+    /// Where the members of each body begin in `members`.
+    first: Vec<usize>,
+    /// Particles, body by body, in the order of storage.
+    members: Vec<usize>,
+    /// Places of the bodies.
+    poses: Vec<[f64; POSE]>,
+    bodies: String,
+    body: String,
+    place: String,
+    virial: String,
+}
+
+impl Crew {
+    /// Nobody so far.
+    pub fn of(fix: &Declared) -> Self {
+        let [bodies, body, place, virial] = ["bodies", "body", "place", "virial"].map(|what| fix.key(what));
+        let (seen, first, members, poses) = (None, vec![], vec![], vec![]);
+        Self { seen, first, members, poses, bodies, body, place, virial }
+    }
+
+    /// Sorts the particles by bodies where their order may have changed.
+    fn muster(&mut self, w: &World, bodies: usize) {
+        let now = Some((w.rebuild.generation, w.n()));
+        if self.seen == now && self.first.len() == bodies + 1 {
+            return;
+        }
+        self.seen = now;
+        let number = w.columns.get_scalar(&self.body).unwrap_or_default();
+        let mine = || {
+            let body = |(i, k): (usize, &f64)| (i, *k as usize);
+            number.iter().enumerate().map(body).filter(|(_, k)| (1..=bodies).contains(k))
+        };
+        self.first.clear();
+        self.first.resize(bodies + 1, 0);
+        mine().for_each(|(_, k)| self.first[k] += 1);
+        for k in 0..bodies {
+            self.first[k + 1] += self.first[k];
+        }
+        let mut next = self.first.clone();
+        self.members.resize(self.first[bodies], 0);
+        for (i, k) in mine() {
+            self.members[next[k - 1]] = i;
+            next[k - 1] += 1;
+        }
+    }
+}
+
+impl Declared {
+    /// First half kick, drift, turn; particles follow.
+    pub fn advance(&self, w: &mut World, t: &Tick, crew: &mut Crew) {
+        self.move_bodies(w, t, crew, Part::First);
+        let tally = t.virial && self.virial;
+        let virial = self.follow(w, t, crew, true, tally);
+        if tally {
+            w.memo.insert(crew.virial.clone(), virial.to_vec());
+        }
+    }
+
+    /// New forces on the bodies and the second half kick; in the setup of a run the forces alone. Particles follow. What decks
+    /// can read goes to the slot.
+    pub fn finish_step(&self, w: &mut World, t: &Tick, slot: SlotId, crew: &mut Crew) {
+        self.move_bodies(w, t, crew, if t.setup { Part::Forces } else { Part::Second });
+        let tally = t.virial && self.virial;
+        let virial = self.follow(w, t, crew, false, tally);
+        if tally {
+            let before = w.memo.remove(&crew.virial).filter(|_| !t.setup);
+            for (k, total) in w.tally.fixes.iter_mut().enumerate() {
+                // In setup the other half of the step is taken to be alike.
+                *total += virial[k] + before.as_ref().map_or(virial[k], |v| v[k]);
+            }
+        }
+        self.publish(w, t, slot, &self.load(w));
+    }
+
+    /// The end of a step and the beginning of the next one, which asks for no virial; nobody sees the velocities in between.
+    pub fn go_on(&self, w: &mut World, t: &Tick, slot: SlotId, crew: &mut Crew) {
+        if w.slots.get(slot).offers == Offers::default() {
+            self.move_bodies(w, t, crew, Part::Both);
+        } else {
+            // Something within steps reads the values.
+            self.move_bodies(w, t, crew, Part::Second);
+            self.publish(w, t, slot, &self.load(w));
+            self.move_bodies(w, t, crew, Part::First);
+        }
+        self.follow(w, t, crew, true, false);
+    }
+
+    /// A part of a step for the bodies alone.
+    fn move_bodies(&self, w: &mut World, t: &Tick, crew: &mut Crew, part: Part) {
+        let Some(mut kept) = w.memo.get_mut(&crew.bodies).map(std::mem::take) else { return };
+        let (rows, _) = kept.as_chunks_mut::<WIDTH>();
+        if part.gathers() {
+            crew.muster(w, rows.len());
+        }
+        crew.poses.resize(rows.len(), [0.0; POSE]);
+        let pass = Pass {
+            fix: self,
+            part,
+            half: half(w, t),
+            dt: t.dt,
+            flat: w.settings.two_dimensional,
+            lengths: w.domain.as_ref().map_or([0.0; 3], |d| d.lengths()),
+            p: &w.particles,
+            first: &crew.first,
+            members: &crew.members,
+        };
+        par::each((rows, &mut crew.poses[..]), |start, (rows, poses)| pass.bodies(start, rows, poses));
+        w.memo.insert(crew.bodies.clone(), kept);
+    }
+
+    /// Velocities and spins of the particles from those of their bodies, places too where they `move`; where it is
+    /// asked for, half the virial of the forces that hold the bodies together.
+    fn follow(&self, w: &mut World, t: &Tick, crew: &Crew, moving: bool, tally: bool) -> [f64; 6] {
+        let half = half(w, t);
+        let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
+        let p = &mut w.particles;
+        let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
+        let (image, f) = (&p.image, &p.f);
+        let number = w.columns.get_scalar(&crew.body).unwrap_or_default();
+        let place = w.columns.get_vector(&crew.place).unwrap_or_default();
+        let n = number.len().min(place.len());
+        // Points do not turn.
+        let turning = p.style.sphere.then(|| (&mut p.omega[..n], &p.radius[..n]));
+        let columns = (&mut p.x[..n], &mut p.v[..n], turning, &number[..n], &place[..n]);
+        let follow = |start: usize, (x, v, mut turning, number, place): Columns<'_>| {
+            let (mut total, mut farthest) = ([0.0; 6], 0.0);
+            for (k, ((x, v), (number, place))) in
+                x.iter_mut().zip(v).zip(number.iter().zip(place)).enumerate()
+            {
+                let Some(pose) = crew.poses.get((*number as usize).wrapping_sub(1)) else { continue };
+                let three = |k: usize| [pose[k], pose[k + 1], pose[k + 2]];
+                let (i, omega) = (start + k, three(15));
+                let away = apply(&[three(0), three(3), three(6)], *place);
+                let shift: Vec3 = std::array::from_fn(|d| f64::from(image[i][d]) * lengths[d]);
+                let old = (*x, *v);
+                *v = add(cross(omega, away), three(12));
+                if let Some((spin, radius)) = &mut turning
+                    && radius[k] > 0.0
+                {
+                    spin[k] = omega;
+                }
+                if moving {
+                    *x = sub(add(away, three(9)), shift);
+                    let way = sub(*x, old.0);
+                    farthest = farther(farthest, dot(way, way));
+                }
+                if !tally {
+                    continue;
+                }
+                let (m, old_x) = (masses.get(i), add(old.0, shift));
+                let hold: Vec3 = std::array::from_fn(|d| m * (v[d] - old.1[d]) / half - f[i][d]);
+                for (s, (a, c)) in total.iter_mut().zip(SIX) {
+                    *s += 0.5 * old_x[a] * hold[c];
+                }
+            }
+            (total, farthest)
+        };
+        let both = |a: ([f64; 6], f64), b: ([f64; 6], f64)| (matter::add(a.0, b.0), farther(a.1, b.1));
+        let (virial, farthest) = par::reduce_each(columns, follow, both).unwrap_or_default();
+        if moving {
+            w.rebuild.travel.went(farthest.sqrt());
+        }
+        virial
+    }
+
+    /// Velocities and spins of the particles as their bodies have them now, outside of a run.
+    pub fn carry(&self, w: &mut World) {
+        let t = Tick::between_runs(&w.clock);
+        let mut crew = Crew::of(self);
+        self.move_bodies(w, &t, &mut crew, Part::Stand);
+        self.follow(w, &t, &crew, false, false);
+    }
+
+    /// The values that decks can read.
+    fn publish(&self, w: &mut World, t: &Tick, slot: SlotId, bodies: &[Body]) {
+        let flat = w.settings.two_dimensional;
+        let units = w.settings.units.constants();
+        let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
+        let (mut sum, mut freedom) = (0.0, 0.0);
+        for b in bodies {
+            let inner = apply_transposed(&matrix(b.q), b.omega);
+            sum += b.mass * dot(b.v, b.v);
+            sum += (0..3).map(|d| b.moments[d] * inner[d] * inner[d]).sum::<f64>();
+            let linear = b.moments.contains(&0.0);
+            freedom += if flat { 3.0 } else { 6.0 - f64::from(u8::from(linear)) };
+        }
+        let out = w.slots.get_mut(slot);
+        out.step = Some(t.step);
+        out.scalar = if freedom > 0.0 { sum * units.mvv2e / (freedom * units.boltz) } else { 0.0 };
+        if !self.whole {
+            return;
+        }
+        out.array.clear();
+        out.array_cols = COLUMNS;
+        for b in bodies {
+            let x: Vec3 = std::array::from_fn(|d| b.x[d] - b.image[d] * lengths[d]);
+            for part in [x, b.v, b.force, b.torque, b.image] {
+                out.array.extend(part);
+            }
+        }
+    }
+}
+
+/// Half a step in units that turn force/mass into velocity.
+fn half(w: &World, t: &Tick) -> f64 {
+    0.5 * t.dt * w.settings.units.constants().ftm2v
+}
+
+/// Positions, velocities, spins and radii, number of the body, place in it.
+type Columns<'a> =
+    (&'a mut [Vec3], &'a mut [Vec3], Option<(&'a mut [Vec3], &'a [f64])>, &'a [f64], &'a [Vec3]);
+
+/// The larger one; a NaN counts as infinite.
+fn farther(a: f64, b: f64) -> f64 {
+    if b <= a {
+        a
+    } else if b.is_nan() {
+        f64::INFINITY
+    } else {
+        b
+    }
+}

@@ -1,0 +1,284 @@
+//! The motion of rigid bodies themselves: forces, kicks, drift and turn, four bodies at a time where the processor can.
+
+use super::Declared;
+use perigrain_base::math::body::{Quat, matrix, no_squish, richardson, spin};
+use perigrain_base::math::four::{Four, has_avx2};
+use perigrain_base::math::real::Real;
+use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
+use perigrain_styles::rigid_bodies::WIDTH;
+use perigrain_world::Particles;
+
+/// Numbers of a body's place: matrix, centre, velocity, angular velocity; two spare ones make it whole rows of four.
+pub const POSE: usize = 20;
+
+/// Numbers of a body that its motion takes up: whole rows of four, up to the first image count.
+const MOVING: usize = 28;
+
+/// What a pass makes of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Part {
+    /// Nothing: the places alone.
+    Stand,
+    /// First half kick, drift, turn.
+    First,
+    /// New forces alone.
+    Forces,
+    /// New forces and the second half kick.
+    Second,
+    /// The second half kick of a step, and what the next one begins with.
+    Both,
+}
+
+impl Part {
+    /// Whether forces are new.
+    pub fn gathers(self) -> bool {
+        matches!(self, Part::Forces | Part::Second | Part::Both)
+    }
+
+    /// Whether bodies drift and turn.
+    fn moves(self) -> bool {
+        matches!(self, Part::First | Part::Both)
+    }
+}
+
+/// A pass over bodies.
+pub struct Pass<'a> {
+    /// Whose bodies.
+    pub fix: &'a Declared,
+    /// What is made of the step.
+    pub part: Part,
+    /// Δt/2 in units that turn force/mass into velocity.
+    pub half: f64,
+    /// Δt.
+    pub dt: f64,
+    /// A scene of two dimensions.
+    pub flat: bool,
+    /// Edges of the box.
+    pub lengths: Vec3,
+    /// The particles.
+    pub p: &'a Particles,
+    /// Where the members of each body begin.
+    pub first: &'a [usize],
+    /// Particles by bodies.
+    pub members: &'a [usize],
+}
+
+/// A body, or lanes of bodies, in motion.
+struct Moving<R> {
+    name: R,
+    mass: R,
+    x: Vec3<R>,
+    v: Vec3<R>,
+    momentum: Vec3<R>,
+    q: Quat<R>,
+    moments: Vec3<R>,
+    force: Vec3<R>,
+    torque: Vec3<R>,
+    omega: Vec3<R>,
+    image: R,
+}
+
+impl<R: Real> Moving<R> {
+    /// In the order of [`Body`](super::bodies::Body) as it is kept.
+    #[inline(always)]
+    fn of(a: &[R; MOVING]) -> Self {
+        let three = |k: usize| [a[k], a[k + 1], a[k + 2]];
+        Self {
+            name: a[0],
+            mass: a[1],
+            x: three(2),
+            v: three(5),
+            momentum: three(8),
+            q: [a[11], a[12], a[13], a[14]],
+            moments: three(15),
+            force: three(18),
+            torque: three(21),
+            omega: three(24),
+            image: a[27],
+        }
+    }
+
+    #[inline(always)]
+    fn numbers(&self) -> [R; MOVING] {
+        let Self { name, mass, x, v, momentum: l, q, moments: i, force: f, torque: t, omega: o, image } =
+            self;
+        [
+            *name, *mass, x[0], x[1], x[2], v[0], v[1], v[2], l[0], l[1], l[2], q[0], q[1], q[2], q[3], i[0],
+            i[1], i[2], f[0], f[1], f[2], t[0], t[1], t[2], o[0], o[1], o[2], *image,
+        ]
+    }
+
+    /// Half a kick.
+    #[inline(always)]
+    fn kick(&mut self, half: f64, on: &[Vec3<R>; 2]) {
+        let by = self.mass.like(half) / self.mass;
+        for d in 0..3 {
+            self.v[d] = self.v[d] + by * self.force[d] * on[0][d];
+            self.momentum[d] = self.momentum[d] + self.torque[d] * half * on[1][d];
+        }
+    }
+
+    /// The matrix, the centre, the velocity, the angular velocity.
+    #[inline(always)]
+    fn pose(&self) -> [R; POSE] {
+        let ([a, b, c], x, v, o) = (matrix(self.q), self.x, self.v, self.omega);
+        let none = x[0].like(0.0);
+        [
+            a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], x[0], x[1], x[2], v[0], v[1], v[2], o[0],
+            o[1], o[2], none, none,
+        ]
+    }
+}
+
+impl Pass<'_> {
+    /// The bodies from `start` on.
+    pub fn bodies(&self, start: usize, rows: &mut [[f64; WIDTH]], poses: &mut [[f64; POSE]]) {
+        if self.part.gathers() {
+            rows.iter_mut().enumerate().for_each(|(k, row)| self.gather(start + k, row));
+        }
+        let mut done = 0;
+        #[cfg(target_arch = "x86_64")]
+        if has_avx2() && !self.fix.exact() {
+            done = rows.len() / 4 * 4;
+            // SAFETY: the processor has AVX2.
+            unsafe { self.avx2(start, &mut rows[..done], &mut poses[..done]) };
+        }
+        let rest = rows[done..].iter_mut().zip(&mut poses[done..]);
+        for (k, (row, pose)) in rest.enumerate() {
+            // Bodies have more numbers than those of their motion: see `columns`.
+            let (own, _) = row.split_first_chunk_mut::<MOVING>().unwrap_or_else(|| unreachable!());
+            let mut b = Moving::of(own);
+            self.go(&mut b, &self.fix.allowed(start + done + k, self.flat), |b| {
+                let exact = self.fix.exact();
+                exact.then(|| no_squish(b.q, b.momentum, b.moments, self.dt))
+            });
+            (*own, *pose) = (b.numbers(), b.pose());
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn avx2(&self, start: usize, rows: &mut [[f64; WIDTH]], poses: &mut [[f64; POSE]]) {
+        let (rows, poses) = (rows.as_chunks_mut::<4>().0, poses.as_chunks_mut::<4>().0);
+        for (k, (rows, poses)) in rows.iter_mut().zip(poses).enumerate() {
+            // SAFETY: this form has what `Avx2` needs.
+            unsafe { self.four::<perigrain_base::math::four::Avx2>(start + 4 * k, rows, poses) };
+        }
+    }
+
+    /// Four bodies.
+    ///
+    /// # Safety
+    /// The processor must have what the form needs.
+    #[inline(always)]
+    unsafe fn four<F: Four>(&self, first: usize, rows: &mut [[f64; WIDTH]; 4], poses: &mut [[f64; POSE]; 4]) {
+        // Closures would keep the compiler from putting these operations in line.
+        let allowed = [0, 1, 2, 3].map(|l| self.fix.allowed(first + l, self.flat));
+        let mut on = [[[0.0; 4]; 3]; 2];
+        for (l, own) in allowed.iter().enumerate() {
+            for (s, d) in [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2)] {
+                on[s][d][l] = own[s][d];
+            }
+        }
+        let [[fx, fy, fz], [tx, ty, tz]] = &on;
+        // SAFETY: by the caller's promise; arrays of four numbers.
+        let on = unsafe {
+            [
+                [F::load(fx.as_ptr()), F::load(fy.as_ptr()), F::load(fz.as_ptr())],
+                [F::load(tx.as_ptr()), F::load(ty.as_ptr()), F::load(tz.as_ptr())],
+            ]
+        };
+        // SAFETY: likewise.
+        unsafe {
+            let mut b = Moving::of(&columns::<F, WIDTH, MOVING>(rows));
+            self.go(&mut b, &on, |_| None);
+            put::<F, WIDTH, MOVING>(rows, &b.numbers());
+            put::<F, POSE, POSE>(poses, &b.pose());
+        }
+    }
+
+    /// The pass for a body, or lanes of bodies; `exactly` gives orientation and angular momentum after a step where
+    /// Richardson's is not wanted.
+    #[inline(always)]
+    fn go<R: Real>(
+        &self,
+        b: &mut Moving<R>,
+        on: &[Vec3<R>; 2],
+        exactly: impl Fn(&Moving<R>) -> Option<(Quat<R>, Vec3<R>)>,
+    ) {
+        if matches!(self.part, Part::Second | Part::Both) {
+            b.kick(self.half, on);
+        }
+        if !self.part.moves() {
+            if self.part != Part::Stand {
+                b.omega = spin(b.momentum, b.q, b.moments);
+            }
+            return;
+        }
+        b.kick(self.half, on);
+        b.x = add(b.x, scale(b.mass.like(self.dt), b.v));
+        if let Some(turned) = exactly(b) {
+            (b.q, b.momentum) = turned;
+            b.omega = spin(b.momentum, b.q, b.moments);
+            return;
+        }
+        let omega = spin(b.momentum, b.q, b.moments);
+        (b.q, b.omega) = richardson(b.q, b.momentum, omega, b.moments, 0.5 * self.dt);
+    }
+
+    /// Sums of forces and torques of body `k`, in the order of storage.
+    fn gather(&self, k: usize, row: &mut [f64; WIDTH]) {
+        let (mut force, mut torque, centre) = ([0.0; 3], [0.0; 3], [row[2], row[3], row[4]]);
+        let p = self.p;
+        for &i in &self.members[self.first[k]..self.first[k + 1]] {
+            let (x, image) = (p.x[i], p.image[i]);
+            let there: Vec3 = std::array::from_fn(|d| x[d] + f64::from(image[d]) * self.lengths[d]);
+            force = add(force, p.f[i]);
+            torque = add(torque, cross(sub(there, centre), p.f[i]));
+            if let Some(own) = p.torque.get(i) {
+                torque = add(torque, *own);
+            }
+        }
+        row[18..21].copy_from_slice(&force);
+        row[21..24].copy_from_slice(&torque);
+    }
+}
+
+/// The first `M` numbers of four rows as lanes; `M` is a multiple of four.
+///
+/// # Safety
+/// The processor must have what the form needs.
+#[inline(always)]
+unsafe fn columns<F: Four, const N: usize, const M: usize>(rows: &[[f64; N]; 4]) -> [F; M] {
+    const { assert!(M <= N && M.is_multiple_of(4)) };
+    // SAFETY: by the caller's promise, and within the rows by the assertion.
+    unsafe {
+        let mut out = [F::splat(0.0); M];
+        for (k, four) in out.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+            let [a, b, c, d] = rows;
+            *four = F::transpose([
+                F::load(a.as_ptr().add(4 * k)),
+                F::load(b.as_ptr().add(4 * k)),
+                F::load(c.as_ptr().add(4 * k)),
+                F::load(d.as_ptr().add(4 * k)),
+            ]);
+        }
+        out
+    }
+}
+
+/// The way back.
+///
+/// # Safety
+/// The processor must have what the form needs.
+#[inline(always)]
+unsafe fn put<F: Four, const N: usize, const M: usize>(rows: &mut [[f64; N]; 4], lanes: &[F; M]) {
+    const { assert!(M <= N && M.is_multiple_of(4)) };
+    for (k, four) in lanes.as_chunks::<4>().0.iter().enumerate() {
+        let back = F::transpose(*four);
+        for l in 0..4 {
+            // SAFETY: within the rows by the assertion.
+            unsafe { back[l].store(rows[l].as_mut_ptr().add(4 * k)) };
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! fix setforce: forces replaced by given ones.
+
+use super::components::Components;
+use super::{Fix, FixStyle, Minimizing};
+use perigrain_base::diag::Result;
+use perigrain_lang::Args;
+use perigrain_plan::{Access, Act, Gist, Op, Stage, Stretch, Tick};
+use perigrain_styles::matter::{change_forces, publish_levels};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use perigrain_world::World;
+
+/// The style.
+pub struct SetForce;
+
+impl Style for SetForce {
+    fn name(&self) -> &'static str {
+        "setforce"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group setforce fx fy fz [region ID]",
+            summary: "Replaces components of the force on each particle of the group.",
+            text: "Each of fx fy fz is a number, `NULL` (this component stays) or `v_name` of an equal- or atom-style \
+                   variable, evaluated each step; in force units, for peridynamic particles in LAMMPS' convention force \
+                   densities. Only forces computed before count: those of pair styles and of fixes declared earlier. \
+                   With `region` only particles inside it at that moment. Acts in the setup of a run too. Vector of 3 \
+                   (extensive): the total force before the change.",
+            example: "fix clamp foot setforce 0.0 0.0 0.0",
+        }
+    }
+}
+
+impl FixStyle for SetForce {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let components = Components::read(args, cx, true)?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), components }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    components: Components,
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (chosen, force) = self.components.seal(cx)?;
+        let level = cx.level();
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let access = Access::new("f x mask", "f");
+        let numbers = chosen.bit_alone().zip(numbers(&force));
+        let hold = move |_: &World, t: &Tick, _: bool| {
+            let (bit, values) = numbers.filter(|_| !t.unchanged)?;
+            let here = level.acts(&t.phase);
+            let values = values.map(|v: Option<f64>| v.map(|a| if here { a } else { 0.0 }));
+            Some(Act::new(move |s: &mut Stretch<'_>| replace(s, bit, &values)))
+        };
+        let told = move |w: &mut World, t: &Tick, gist: Gist| publish_levels(w, slot, t, &gist.sums);
+        let op = StepOp::new(format!("fix {} setforce", self.id), Stage::PostForce, access, move |w, t| {
+            if t.unchanged {
+                return Ok(());
+            }
+            // Of several levels of steps the value belongs to one.
+            let here = level.acts(&t.phase);
+            let before = change_forces(w, &chosen, |w, i, f| {
+                let before = *f;
+                for d in 0..3 {
+                    if let Some(reading) = force[d] {
+                        f[d] = if here { reading.atom(w, i) } else { 0.0 };
+                    }
+                }
+                before
+            });
+            publish_levels(w, slot, t, &before);
+            Ok(())
+        });
+        Ok(vec![op.taking_turns(hold, told).in_every_level().boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { vector: 3, vector_extensive: true, ..Shape::default() }
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
+    }
+
+    fn has_level(&self) -> bool {
+        true
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+/// The components, if all that are given are numbers.
+fn numbers(force: &[Option<Reading>; 3]) -> Option<[Option<f64>; 3]> {
+    let mut values = [None; 3];
+    for (value, reading) in values.iter_mut().zip(force) {
+        *value = match reading {
+            None => None,
+            Some(Reading::Const(a)) => Some(*a),
+            Some(_) => return None,
+        };
+    }
+    Some(values)
+}
+
+/// Replaces components of the forces of a group's particles by numbers; the sum of what was there before.
+fn replace(s: &mut Stretch, bit: u32, values: &[Option<f64>; 3]) -> Gist {
+    let mut gist = Gist::default();
+    // Particles that are held lie together: most eights have none.
+    for (k, eight) in s.mask.chunks(8).enumerate() {
+        if eight.iter().fold(0, |all, m| all | m) & bit == 0 {
+            continue;
+        }
+        for (f, _) in s.f[8 * k..].iter_mut().zip(eight).filter(|(_, m)| **m & bit != 0) {
+            for d in 0..3 {
+                gist.sums[d] += f[d];
+                f[d] = values[d].unwrap_or(f[d]);
+            }
+        }
+    }
+    gist
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+    use perigrain_world::region::{Region, Shape};
+
+    fn scene() -> Bench {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [5.0, 0.0, 0.0]]);
+        b.world.particles.f = vec![[1.0, 2.0, 3.0], [10.0, 20.0, 30.0]];
+        b.atom.insert("a".into(), vec![-1.0, -2.0]);
+        b.equal.insert("e".into(), 7.0);
+        b.world.regions.insert("r".into(), Region::inside(Shape::Sphere { center: [0.0; 3], radius: 1.0 }));
+        b
+    }
+
+    #[test]
+    fn components_are_replaced_and_the_total_is_kept() {
+        let mut b = scene();
+        let fix = b.fix(&SetForce, "NULL v_e v_a").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        assert_eq!(b.world.particles.f, [[1.0, 7.0, -1.0], [10.0, 7.0, -2.0]]);
+        assert_eq!(b.slot_of("f_f").vector, [11.0, 22.0, 33.0]);
+    }
+
+    #[test]
+    fn only_inside_the_region() {
+        let mut b = scene();
+        let fix = b.fix(&SetForce, "0 0 0 region r").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        assert_eq!(b.world.particles.f, [[0.0; 3], [10.0, 20.0, 30.0]]);
+        assert_eq!(b.slot_of("f_f").vector, [1.0, 2.0, 3.0]);
+        b.world.regions.clear();
+        assert!(b.seal(&*fix).is_err());
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let b = scene();
+        for words in ["0 0", "0 0 v_no", "0 0 zero", "0 0 c_a", "0 0 0 regoin r", "0 0 0 region q"] {
+            assert!(b.fix(&SetForce, words).is_err(), "{words}");
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! fix spring/self: every particle on a spring to where it was.
+
+use super::{Fix, FixStyle, Minimizing};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_lang::{Args, Param};
+use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_styles::common::variable_param;
+use perigrain_styles::matter::{Chosen, change_forces, keep_places, publish, unwrapped};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::{GroupId, World};
+
+/// The style.
+pub struct SpringSelf;
+
+impl Style for SpringSelf {
+    fn name(&self) -> &'static str {
+        "spring/self"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group spring/self K [xyz|xy|xz|yz|x|y|z]",
+            summary: "Ties each particle of the group to the place where it was when the fix was declared.",
+            text: "f ← f − K (x − x0) in the directions named (default: all), with unwrapped positions. K is a number or \
+                   `v_name` of an equal- or atom-style variable, evaluated each step. Particles that join the group later are \
+                   tied where they are then. Acts in the setup of a run too. Scalar (extensive): the energy Σ K (x − x0)²/2, \
+                   which `fix_modify ID energy yes` adds to the potential energy.",
+            example: "fix hold foot spring/self 10.0 xy",
+        }
+    }
+}
+
+impl FixStyle for SpringSelf {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let at = args.here();
+        let stiffness = variable_param(args, "the stiffness K")?;
+        if let Param::Number(k) = stiffness
+            && k <= 0.0
+        {
+            let text = format!("the stiffness K must be greater than zero, not {k}");
+            return fail(Code::BAD_VALUE, at, text);
+        }
+        cx.param(&stiffness, true)?;
+        let along = match args.is_empty() {
+            true => "xyz",
+            false => args.choice("direction", &["xyz", "xy", "xz", "yz", "x", "y", "z"])?,
+        };
+        let along = ["x", "y", "z"].map(|d| along.contains(d));
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, stiffness, along }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    stiffness: Param,
+    along: [bool; 3],
+}
+
+impl Declared {
+    fn key(&self) -> String {
+        format!("spring/self/{}", self.id)
+    }
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        w.columns.remove(&self.key());
+        keep_places(w, &self.key(), self.group, unwrapped);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.columns.remove(&self.key());
+    }
+
+    fn welcome(&self, w: &mut World) {
+        keep_places(w, &self.key(), self.group, unwrapped);
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (span, key, along) = (cx.span(), self.key(), self.along);
+        let chosen = Chosen::new(cx.world(), self.group, None, span)?;
+        keep_places(cx.world(), &key, self.group, unwrapped);
+        let stiffness = cx.param(&self.stiffness, Stage::PostForce, &When::Always)?;
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let access = Access::new("x image mask", "f");
+        let op =
+            StepOp::new(format!("fix {} spring/self", self.id), Stage::PostForce, access, move |w, t| {
+                if t.unchanged {
+                    return Ok(());
+                }
+                let [energy] = change_forces(w, &chosen, |w, i, f| {
+                    let Some(start) = w.columns.get_vector(&key) else { return [0.0] };
+                    let (x, k) = (unwrapped(w, i), stiffness.atom(w, i));
+                    let mut square = 0.0;
+                    for d in (0..3).filter(|&d| along[d]) {
+                        let away = x[d] - start[i][d];
+                        f[d] -= k * away;
+                        square += away * away;
+                    }
+                    [0.5 * k * square]
+                });
+                publish(w, slot, t, energy, &[]);
+                Ok(())
+            });
+        Ok(vec![op.boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, scalar_extensive: true, ..Shape::default() }
+    }
+
+    fn has_energy(&self) -> bool {
+        true
+    }
+
+    fn minimizing(&self) -> Minimizing {
+        Minimizing::Acts
+    }
+
+    fn has_level(&self) -> bool {
+        true
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn springs_remember_the_declaration() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0; 3]]);
+        let fix = b.fix(&SpringSelf, "2 xz").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        b.world.particles.x[0] = [1.0, 1.0, -2.0];
+        b.world.particles.f = vec![[0.0; 3]; 2];
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostForce).unwrap();
+        assert_eq!(b.world.particles.f, [[-2.0, 0.0, 4.0], [0.0; 3]]);
+        assert_eq!(b.slot_of("f_f").scalar, 5.0);
+        fix.remove(&mut b.world);
+        assert!(b.world.columns.get_vector("spring/self/f").is_none());
+        for words in ["", "1 w", "1 x y", "v_no"] {
+            let whole = b.fix(&SpringSelf, words);
+            assert!(whole.is_err() || words == "1 x y", "{words}");
+        }
+    }
+}

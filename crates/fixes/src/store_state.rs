@@ -1,0 +1,239 @@
+//! fix store/state: keeps attributes and values of particles from one moment to the next.
+
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_computes::property_atom::{Getter, find_attribute, read_attribute};
+use perigrain_lang::{Args, ValueRef, Word};
+use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_styles::matter::centre;
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
+use perigrain_world::{GroupId, Slot, World};
+
+/// The style.
+pub struct StoreState;
+
+impl Style for StoreState {
+    fn name(&self) -> &'static str {
+        "store/state"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group store/state N input … [com yes|no]",
+            summary: "Keeps per-atom attributes and values as they were at one moment, or every N steps.",
+            text: "Inputs: the attributes of `compute property/atom` (positions, velocities, forces, radius …), `c_ID`, \
+                   `c_ID[k]`, `f_ID`, `f_ID[k]` with ranges such as `[*]`, and `v_name` of an atom-style variable. N = 0: once, \
+                   attributes when the fix is declared, values and properties (`i_NAME`, `d_NAME` …) in the setup of the next run; N > 0: then, and at multiples \
+                   of N. `com yes`: `xu yu zu` are kept relative to the centre of mass of the group. Per-atom vector for one \
+                   input, array for several; 0 for particles outside the group and those that come later.",
+            example: "fix start all store/state 0 xu yu zu\ncompute far all reduce max f_start[1]",
+        }
+    }
+}
+
+/// One input.
+#[derive(Clone)]
+enum Input {
+    /// An attribute, by name.
+    Attribute(&'static str, Getter),
+    /// A value.
+    Value(ValueRef),
+}
+
+impl FixStyle for StoreState {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let every = args.integer_from(0, "the number of steps N")?;
+        let mut inputs = vec![];
+        while let Some(word) = args.peek().filter(|w| w.text != "com") {
+            args.next();
+            let custom = cx.world.columns.custom(&word.text).map(|_| "");
+            match find_attribute(&word.text).or(custom) {
+                Some(name) => inputs.push(Input::Attribute(name, read_attribute(word, cx)?)),
+                None => value(word, every, cx, &mut inputs)?,
+            }
+        }
+        if inputs.is_empty() {
+            let text = "`fix` ends too early: an input such as xu or c_ID is missing";
+            return fail(Code::MISSING_ARGUMENT, args.here(), text);
+        }
+        let relative = args.eat("com") && args.flag("com")?;
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, every, inputs, relative }))
+    }
+}
+
+fn value(word: &Word, every: i64, cx: &BuildCx, inputs: &mut Vec<Input>) -> Result<()> {
+    if ValueRef::parse(word.text.split('[').next().unwrap_or(""), word.span)?.is_none() {
+        // Says which attributes there are.
+        return read_attribute(word, cx).map(drop);
+    }
+    for word in cx.expand(word, Wants::PerAtom)? {
+        let Some(r) = ValueRef::parse(&word.text, word.span)? else { continue };
+        cx.value(&r, true)?;
+        super::compatible(&r, &cx.shape(&r).unwrap_or_default(), every, "N")?;
+        inputs.push(Input::Value(r));
+    }
+    Ok(())
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    every: i64,
+    inputs: Vec<Input>,
+    relative: bool,
+}
+
+impl Input {
+    /// When this one is not kept: attributes are when the fix is declared, values and properties of fix property/atom in the
+    /// setup of a run.
+    fn left_out_at(&self) -> Which {
+        match self {
+            Input::Attribute(_, Getter::Own(_) | Getter::Whole(_)) => Which::Values,
+            _ => Which::Attributes,
+        }
+    }
+}
+
+/// Which inputs are kept now.
+#[derive(Clone, Copy, PartialEq)]
+enum Which {
+    Attributes,
+    Values,
+    All,
+}
+
+impl Declared {
+    fn column(&self, k: usize) -> String {
+        format!("store/state/{}/{k}", self.id)
+    }
+
+    /// Whether values have been kept once.
+    fn filled(&self) -> String {
+        format!("store/state/{}", self.id)
+    }
+
+    /// Keeps inputs; `readings` are those of values.
+    fn keep(&self, w: &mut World, which: Which, readings: &[Option<Reading>]) {
+        let (n, bit) = (w.n(), self.group.bit());
+        let center = if self.relative { centre(w, self.group).1 } else { [0.0; 3] };
+        for (k, input) in self.inputs.iter().enumerate() {
+            let name = self.column(k);
+            let world = &*w;
+            let list: Vec<f64> = match input {
+                Input::Attribute(name, getter) if which != input.left_out_at() => {
+                    let less = match *name {
+                        "xu" => center[0],
+                        "yu" => center[1],
+                        "zu" => center[2],
+                        _ => 0.0,
+                    };
+                    let values = getter.now(world);
+                    (0..n).map(|i| values.get(i) - less).collect()
+                }
+                Input::Value(_) if which != input.left_out_at() => {
+                    let Some(reading) = readings.get(k).copied().flatten() else { continue };
+                    (0..n).map(|i| reading.atom(world, i)).collect()
+                }
+                _ => continue,
+            };
+            let inside = |i: usize| w.particles.mask[i] & bit != 0;
+            let kept = (0..n).map(|i| if inside(i) { list[i] } else { 0.0 }).collect();
+            *w.columns.scalar(&name, n) = kept;
+        }
+    }
+
+    /// Offers what is kept.
+    fn show(&self, w: &mut World, step: i64) {
+        let (n, cols) = (w.n(), self.inputs.len());
+        let lists: Vec<&[f64]> =
+            (0..cols).map(|k| w.columns.get_scalar(&self.column(k)).unwrap_or_default()).collect();
+        let atom: Vec<f64> =
+            (0..n).flat_map(|i| lists.iter().map(move |l| l.get(i).copied().unwrap_or(0.0))).collect();
+        let slot = w.slots.id(&format!("f_{}", self.id));
+        let out = w.slots.get_mut(slot);
+        (out.step, out.cols, out.atom) = (Some(step), cols, atom);
+    }
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.remove(w);
+        w.spread_type_masses();
+        self.keep(w, Which::Attributes, &[]);
+        let name = format!("f_{}", self.id);
+        let slot = w.slots.id(&name);
+        *w.slots.get_mut(slot) = Slot { name, ..Slot::default() };
+        self.show(w, w.clock.step);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.memo.remove(&self.filled());
+        (0..self.inputs.len()).for_each(|k| w.columns.remove(&self.column(k)));
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let when = if self.every == 0 { When::First } else { When::First.or(When::Every(self.every)) };
+        let (mut me, mut readings) = (self.clone(), vec![]);
+        // What is stored once and for all may go.
+        let stored = self.every == 0 && cx.world().memo.contains_key(&self.filled());
+        for input in &mut me.inputs {
+            readings.push(match input {
+                _ if stored => None,
+                Input::Attribute(_, getter) => {
+                    let span = cx.span();
+                    *getter = getter.present(cx.world(), span)?;
+                    None
+                }
+                Input::Value(r) => Some(cx.reading(r, Wants::PerAtom, Stage::EndOfStep, &when)?),
+            });
+        }
+        let access = Access::new("slots x v f", "slots columns");
+        let op =
+            StepOp::new(format!("fix {} store/state", self.id), Stage::EndOfStep, access, move |w, t| {
+                if !t.setup {
+                    me.keep(w, Which::All, &readings);
+                } else if w.memo.insert(me.filled(), vec![]).is_none() {
+                    me.keep(w, Which::Values, &readings);
+                }
+                me.show(w, t.step);
+                Ok(())
+            });
+        Ok(vec![op.when(when).in_setup(true).boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { atom: Some(self.inputs.len()), every: self.every, ..Shape::default() }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn the_moment_of_the_declaration_stays() {
+        let mut b = Bench::new(AtomStyle::default(), &[[1.0, 2.0, 3.0], [3.0, 2.0, 3.0]]);
+        b.atom.insert("a".into(), vec![7.0, 8.0]);
+        let fix = b.fix(&StoreState, "0 xu y v_a com yes").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        assert_eq!(b.slot_of("f_f").atom, [-1.0, 2.0, 0.0, 1.0, 2.0, 0.0]);
+        b.world.particles.x[0] = [9.0; 3];
+        let mut ops = b.seal(&*fix).unwrap();
+        let t = perigrain_plan::Tick { setup: true, ..b.tick() };
+        ops[0].run(&mut b.world, &t).unwrap();
+        assert_eq!(b.slot_of("f_f").atom, [-1.0, 2.0, 7.0, 1.0, 2.0, 8.0]);
+        fix.remove(&mut b.world);
+        assert!(b.world.memo.is_empty() && b.world.columns.names().is_empty());
+        for words in ["", "0", "-1 x", "0 radius", "0 zz", "0 v_no", "0 x com maybe"] {
+            assert!(b.fix(&StoreState, words).is_err(), "{words}");
+        }
+    }
+}

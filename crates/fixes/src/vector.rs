@@ -1,0 +1,179 @@
+//! fix vector: keeps values of a run one after another.
+
+use super::ave_time::leading_values;
+use super::window::forget;
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_lang::{Args, ValueRef};
+use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
+use perigrain_world::{Slot, World};
+
+/// The style.
+pub struct VectorFix;
+
+impl Style for VectorFix {
+    fn name(&self) -> &'static str {
+        "vector"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group vector Nevery value … [nmax N]",
+            summary: "Keeps single numbers every Nevery steps as a vector that grows.",
+            text: "A value is `c_ID`, `c_ID[k]`, `f_ID`, `f_ID[k]`, with ranges such as `[*]`, or `v_name`. At multiples of \
+                   Nevery, the start of the first run among them, each adds an element: one value gives a vector, several \
+                   an array with a row per time and a column per value. `nmax N` keeps the last N only. For formulas such \
+                   as `trap(f_ID)`. The group means nothing.",
+            example: "fix keep all vector 1 v_force v_speed",
+        }
+    }
+}
+
+impl FixStyle for VectorFix {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let every = args.integer_from(1, "Nevery")?;
+        let (mut values, mut extensive) = (vec![], vec![]);
+        for word in leading_values(args)? {
+            for word in cx.expand(word, Wants::Number)? {
+                let Some(r) = ValueRef::parse(&word.text, word.span)? else { continue };
+                cx.value(&r, false)?;
+                super::compatible(&r, &cx.shape(&r).unwrap_or_default(), every, "Nevery")?;
+                extensive.push(cx.names.extensive(&r));
+                values.push(r);
+            }
+        }
+        let mut most = None;
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "nmax" => most = Some(args.integer_from(1, "the number of values to keep")? as usize),
+                _ => return Err(args.unknown(word, &["nmax"])),
+            }
+        }
+        if extensive.iter().any(|e| *e != extensive[0]) {
+            let text = "values that grow with the scene and values that do not cannot share an array";
+            return fail(Code::CONFLICT, cx.span, text);
+        }
+        let grows = extensive.contains(&true);
+        Ok(Box::new(Declared { id: cx.id.to_string(), every, values, most, grows }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    every: i64,
+    values: Vec<ValueRef>,
+    most: Option<usize>,
+    grows: bool,
+}
+
+impl Declared {
+    fn key(&self) -> String {
+        format!("vector/{}", self.id)
+    }
+}
+
+impl Fix for Declared {
+    fn counts_steps(&self) -> bool {
+        true
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.remove(w);
+        let name = format!("f_{}", self.id);
+        let slot = w.slots.id(&name);
+        *w.slots.get_mut(slot) = Slot { name, array_cols: self.values.len(), ..Slot::default() };
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        forget(w, &self.key());
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let when = When::Every(self.every);
+        let mut readings = vec![];
+        for r in &self.values {
+            readings.push(cx.reading(r, Wants::Number, Stage::EndOfStep, &when)?);
+        }
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let (most, cols, key) = (self.most, self.values.len(), self.key());
+        let access = Access::new("slots", "slots memo");
+        let op = StepOp::new(format!("fix {} vector", self.id), Stage::EndOfStep, access, move |w, t| {
+            // The setup of a run stands at a step that the run before may have kept already.
+            let last = format!("{key}/last");
+            if w.memo.get(&last).is_some_and(|s| s.first() == Some(&(t.step as f64))) {
+                return Ok(());
+            }
+            w.memo.insert(last, vec![t.step as f64]);
+            let row: Vec<f64> = readings.iter().map(|r| r.get(w)).collect();
+            let list = w.memo.entry(format!("{key}/list")).or_default();
+            list.extend(row);
+            if let Some(most) = most
+                && list.len() > most * cols
+            {
+                list.drain(..cols);
+            }
+            let list = list.clone();
+            let out = w.slots.get_mut(slot);
+            out.step = Some(t.step);
+            match cols {
+                1 => out.vector = list,
+                _ => (out.array, out.array_cols) = (list, cols),
+            }
+            Ok(())
+        });
+        Ok(vec![op.when(when).in_setup(true).boxed()])
+    }
+
+    fn shape(&self) -> Shape {
+        let rows = self.most.unwrap_or(Shape::OPEN);
+        match self.values.len() {
+            1 => Shape { vector: rows, vector_extensive: self.grows, every: self.every, ..Shape::default() },
+            n => Shape {
+                array: n,
+                array_rows: rows,
+                array_extensive: self.grows,
+                every: self.every,
+                ..Shape::default()
+            },
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+
+    #[test]
+    fn values_queue_up() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
+        b.equal.insert("e".into(), 7.0);
+        b.equal.insert("g".into(), 8.0);
+        for (words, wanted) in [("1 v_e", vec![7.0; 3]), ("1 v_e nmax 2", vec![7.0; 2])] {
+            let fix = b.fix(&VectorFix, words).unwrap();
+            fix.declare(&mut b.world).unwrap();
+            let mut ops = b.seal(&*fix).unwrap();
+            for step in [0, 0, 1, 2] {
+                b.world.clock.step = step;
+                b.stage(&mut ops, Stage::EndOfStep).unwrap();
+            }
+            assert_eq!(b.slot_of("f_f").vector, wanted);
+        }
+        let fix = b.fix(&VectorFix, "1 v_e v_g").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::EndOfStep).unwrap();
+        assert_eq!(b.slot_of("f_f").array, [7.0, 8.0]);
+        for words in ["", "0 v_e", "1", "1 x", "1 v_e nmax 0", "1 v_e foo"] {
+            assert!(b.fix(&VectorFix, words).is_err(), "{words}");
+        }
+    }
+}

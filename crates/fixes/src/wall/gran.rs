@@ -1,0 +1,274 @@
+//! fix wall/gran: planes across an axis, or a cylinder about z, on which grains lean.
+
+use super::words::{self, KEYWORDS};
+use super::{Common, Declared, Form, Surface, needs_spheres, not_across_periodic};
+use crate::elapsed::Elapsed;
+use crate::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_contact::walls::{Planes, Tube, Wall};
+use perigrain_lang::Args;
+use perigrain_plan::Tick;
+use perigrain_styles::common::{axis, number_or_null};
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::{Face, World};
+use std::f64::consts::PI;
+
+/// The style.
+pub struct WallGran;
+
+const WALLS: [&str; 5] = ["xplane", "yplane", "zplane", "zcylinder", "region"];
+
+impl Style for WallGran {
+    fn name(&self) -> &'static str {
+        "wall/gran"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group wall/gran granular MODELS … | hooke Kn Kt gamma_n gamma_t xmu dampflag [limit_damping] | \
+                     hooke/history … | hertz/history …  xplane lo hi | yplane lo hi | zplane lo hi | zcylinder R \
+                     [wiggle x|y|z A period | shear x|y|z V] [contacts] [temperature T|v_name] [material E nu] [about x y z]",
+            summary: "Flat walls across an axis, or a cylinder about z, on which grains lean.",
+            text: "Grains feel a wall as a grain of infinite mass, with the force style's law: overlap δ = R − r with r the \
+                distance of the centre, m̄ = m, R̄ = R on a plane, 1/R̄ = 1/R − 1/(2 R_c) inside a cylinder and + outside. \
+                MODELS are those of `pair_coeff … granular` and describe a grain on this wall (for `hertz/material` two \
+                bodies of that material). `lo` or `hi` is `NULL` where there is one plane only; with two, a grain that is \
+                larger than the gap feels both (LAMMPS, and perigrain under `-compat lammps`: only the nearer one). Places \
+                are in box units; the box may not be periodic across a wall.\n\n\
+                `wiggle`: the wall is at its place + A − A cos ω t, ω = 2π/period, t since the fix was declared. `shear`: it \
+                moves in its own plane at V; a cylinder along z, or about z for x and y, clockwise seen from above.\n\n\
+                `contacts` offers 8 columns per particle: 1 where it touches, the force on it, the wall's nearest point, \
+                its radius, and with a model of heat the heat that flows into the particle as a ninth. `temperature` is that of the wall, a number or an \
+                equal-style variable, and belongs to a model of heat: h π a² (T_wall − T) flows into a grain (`heat area h`), or 2 k a (T_wall − T).\n\n\
+                LAMMPS 22Jul2025 has faults that perigrain has under `-compat lammps` alone: springs of `hooke/history`, \
+                `hertz/history` and the `…_classic` models on walls hang on the contact radius and lose it when they slide; \
+                a cylinder with `shear x` or `y` also flies along that axis; sticky grains hold on to hollow walls and regions \
+                no longer than they touch.\n\n\
+                Not in LAMMPS: `material E nu` gives the wall elastic constants of its own, for 1/E* and 1/G* of two \
+                unlike bodies; the global vector is the force on the wall (1–3), the torque on it (4–6) about the \
+                origin or the point `about`, and the heat that flows into it (7). Only grains near the wall are looked at, so that a wall far from most costs \
+                nothing. The particle deepest in the wall when one is first pressed in by more than a tenth of its radius is told of after the run.\n\n\
+                Springs of sliding contacts are kept in restart files; a run cut in two has the bits of one.",
+            example: "fix floor grains wall/gran granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin \
+                      NULL 1.0 0.5 zplane -0.002 NULL",
+        }
+    }
+}
+
+impl FixStyle for WallGran {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        needs_spheres(cx, "wall/gran")?;
+        let material = words::force(args, cx, &WALLS)?;
+        let mut common = words::common(cx, material);
+        let (mut form, span) = wall(args, cx)?;
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "wiggle" | "shear" if form.motion.is_some() => {
+                    return fail(Code::CONFLICT, word.span, "a wall has one motion: `wiggle` or `shear`");
+                }
+                "wiggle" => {
+                    let at = args.here();
+                    let axis = axis(args, "direction of the motion")?;
+                    if matches!(form.place, Place::Tube(_)) && axis != 2 {
+                        return fail(Code::BAD_VALUE, at, "a cylinder about z can wiggle along z only");
+                    }
+                    let amplitude = args.number("the amplitude")?;
+                    form.motion =
+                        Some(Motion::Wiggle(axis, amplitude, 2.0 * PI / args.positive("the period")?));
+                }
+                "shear" => {
+                    let at = args.here();
+                    let axis = axis(args, "direction of the motion")?;
+                    if matches!(form.place, Place::Planes(across, ..) if across == axis) {
+                        return fail(Code::BAD_VALUE, at, "a plane cannot shear along its normal");
+                    }
+                    form.motion = Some(Motion::Shear(axis, args.number("the velocity")?));
+                }
+                _ if words::keyword(word, args, cx, &mut common)? => {}
+                _ => return Err(args.unknown(word, &[&["wiggle", "shear"], &KEYWORDS[..]].concat())),
+            }
+        }
+        words::check_heat(&common)?;
+        form.warn(cx, span);
+        Ok(Box::new(Declared { common, form }))
+    }
+}
+
+/// Where the wall stands.
+#[derive(Clone, Copy)]
+enum Place {
+    /// Across an axis.
+    Planes(usize, Option<f64>, Option<f64>),
+    /// About z, its radius.
+    Tube(f64),
+}
+
+/// How it moves.
+#[derive(Clone, Copy)]
+enum Motion {
+    /// Axis, amplitude, angular frequency.
+    Wiggle(usize, f64, f64),
+    /// Axis, speed.
+    Shear(usize, f64),
+}
+
+#[derive(Clone, Copy)]
+struct Flat {
+    place: Place,
+    motion: Option<Motion>,
+}
+
+fn wall(args: &mut Args, cx: &BuildCx) -> Result<(Flat, Span)> {
+    let word = args.expect("the wall: xplane yplane zplane or zcylinder")?;
+    let (place, axes): (_, &[usize]) = match word.text.as_str() {
+        "xplane" => (planes(0, args)?, &[0]),
+        "yplane" => (planes(1, args)?, &[1]),
+        "zplane" => (planes(2, args)?, &[2]),
+        "zcylinder" => (Place::Tube(args.positive("the radius of the cylinder")?), &[0, 1]),
+        "region" => {
+            let d = Diagnostic::error(Code::UNKNOWN_STYLE, word.span, "a region is a wall of another fix");
+            return Err(d.help("write `fix … wall/gran/region … region ID`").into());
+        }
+        _ => return Err(args.unknown(word, &WALLS[..4])),
+    };
+    not_across_periodic(cx, axes, word.span)?;
+    Ok((Flat { place, motion: None }, word.span))
+}
+
+fn planes(axis: usize, args: &mut Args) -> Result<Place> {
+    let span = args.here();
+    let lo = number_or_null(args, "the lower plane")?;
+    let hi = number_or_null(args, "the upper plane")?;
+    match (lo, hi) {
+        (None, None) => fail(Code::BAD_VALUE, span, "one of the two planes must have a place"),
+        (Some(a), Some(b)) if a >= b => {
+            fail(Code::BAD_VALUE, span, format!("the lower plane {a} lies not below the upper one {b}"))
+        }
+        _ => Ok(Place::Planes(axis, lo, hi)),
+    }
+}
+
+impl Flat {
+    /// Warns of walls that no grain will ever meet.
+    fn warn(&self, cx: &BuildCx, span: Span) {
+        let Some(d) = &cx.world.domain else { return };
+        let fixed = |axis: usize, side: usize| d.boundary.0[axis][side] == Face::Fixed;
+        let text = match self.place {
+            Place::Planes(a, lo, hi) => {
+                let beyond = lo.is_some_and(|p| p < d.lo[a] && fixed(a, 0))
+                    || hi.is_some_and(|p| p > d.hi[a] && fixed(a, 1));
+                let name = ["x", "y", "z"][a];
+                beyond.then(|| {
+                    format!("a plane lies outside the box across {name}: grains are lost before they meet it")
+                })
+            }
+            Place::Tube(r) => {
+                let far = |lo: f64, hi: f64| lo.abs().max(hi.abs());
+                let near = |lo: f64, hi: f64| if lo > 0.0 { lo } else { (-hi).max(0.0) };
+                let corner = far(d.lo[0], d.hi[0]).hypot(far(d.lo[1], d.hi[1]));
+                let closest = near(d.lo[0], d.hi[0]).hypot(near(d.lo[1], d.hi[1]));
+                (r > corner || r < closest).then(|| {
+                    format!(
+                        "the cylinder of radius {r} about x = y = 0 lies outside the box: no grain meets it"
+                    )
+                })
+            }
+        };
+        if let Some(text) = text {
+            cx.note(Diagnostic::warning(Code::SUSPICIOUS, span, text));
+        }
+    }
+}
+
+impl Form for Flat {
+    const STYLE: &'static str = "wall/gran";
+
+    fn declare(&self, w: &mut World, key: &str) {
+        w.memo.remove(key);
+        Elapsed::load(w, key).store(w, key);
+    }
+
+    fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
+        self.tell_beyond(fix, cx)?;
+        Ok(Box::new(Running {
+            form: *self,
+            key: fix.key(Self::STYLE),
+            offset: 0.0,
+            velocity: [0.0; 3],
+            spin: 0.0,
+        }))
+    }
+}
+
+impl Flat {
+    /// Tells of grains that stand on the far side of a plane: it would push them out.
+    fn tell_beyond(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<()> {
+        let Place::Planes(axis, lo, hi) = self.place else { return Ok(()) };
+        let p = &cx.world().particles;
+        let beyond = |i: &usize| {
+            let x = p.x[*i][axis];
+            p.mask[*i] & fix.group.bit() != 0 && (lo.is_some_and(|a| x < a) || hi.is_some_and(|a| x > a))
+        };
+        let Some(first) = (0..p.len()).find(beyond) else { return Ok(()) };
+        let (many, tag) = ((0..p.len()).filter(beyond).count(), p.tag[first]);
+        cx.log().line(&format!(
+            "WARNING: fix {} {}: {many} particle(s) stand beyond the wall, the first is {tag}",
+            fix.id,
+            Self::STYLE
+        ))
+    }
+}
+
+/// The wall during a run.
+struct Running {
+    form: Flat,
+    key: String,
+    /// How far it has moved along its motion's axis.
+    offset: f64,
+    velocity: [f64; 3],
+    spin: f64,
+}
+
+impl Surface for Running {
+    fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64> {
+        let Some(motion) = self.form.motion else { return Ok(0.0) };
+        let mut elapsed = Elapsed::load(w, &self.key);
+        if !t.setup {
+            elapsed.follow(t.step, t.dt);
+            elapsed.store(w, &self.key);
+        }
+        let lammps = (t.step as f64 - elapsed.origin) * t.dt;
+        let time = if w.settings.lammps() { lammps } else { elapsed.now() };
+        let before = self.offset;
+        match (motion, self.form.place) {
+            (Motion::Wiggle(axis, amplitude, omega), _) => {
+                self.offset = amplitude - amplitude * (omega * time).cos();
+                self.velocity[axis] = amplitude * omega * (omega * time).sin();
+            }
+            (Motion::Shear(axis @ (0 | 1), speed), Place::Tube(_)) => {
+                self.spin = speed;
+                // LAMMPS lets a turning cylinder fly along the axis that names the turning, too.
+                self.velocity[axis] = if w.settings.lammps() { speed } else { 0.0 };
+            }
+            (Motion::Shear(axis, speed), _) => self.velocity[axis] = speed,
+        }
+        Ok((self.offset - before).abs())
+    }
+
+    fn wall<'a>(&'a self, w: &'a World) -> Box<dyn Wall + 'a> {
+        let velocity = self.velocity;
+        match self.form.place {
+            Place::Planes(axis, lo, hi) => {
+                let along = matches!(self.form.motion, Some(Motion::Wiggle(a, ..)) if a == axis);
+                let by = if along { self.offset } else { 0.0 };
+                let nearer = w.settings.lammps();
+                let [lo, hi] = [lo, hi].map(|p| p.map(|p| p + by));
+                Box::new(Planes { axis, lo, hi, velocity, nearer })
+            }
+            Place::Tube(radius) => {
+                let lammps = w.settings.lammps();
+                Box::new(Tube { radius, velocity, spin: self.spin, lammps })
+            }
+        }
+    }
+}

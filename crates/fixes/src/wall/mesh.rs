@@ -1,0 +1,202 @@
+//! fix wall/mesh: a surface of triangles from an STL file as a wall, at rest or moving.
+
+mod moving;
+
+use super::words::{self, KEYWORDS};
+use super::{Common, Declared, Form, Surface, needs_spheres};
+use crate::elapsed::Elapsed;
+use crate::{Fix, FixStyle};
+use moving::{Motion, Placed, Running};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::math::vec3::{cross, dot, length, scale, sub};
+use perigrain_commands::create_atoms::mesh::read;
+use perigrain_contact::mesh::Mesh;
+use perigrain_contact::walls::{Wall, WallSweep};
+use perigrain_lang::{Args, Word};
+use perigrain_plan::Tick;
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::World;
+use std::sync::Arc;
+
+/// The style.
+pub struct WallMesh;
+
+impl Style for WallMesh {
+    fn name(&self) -> &'static str {
+        "wall/mesh"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group wall/mesh granular MODELS … | hooke … | hooke/history … | hertz/history …  mesh FILE.stl \
+                     [scale S] [shift X Y Z] [move linear Vx Vy Vz | move wiggle Ax Ay Az period | \
+                     move rotate Px Py Pz Rx Ry Rz period | move variable v_dx|NULL v_dy|NULL v_dz|NULL] [contacts] \
+                     [material E nu] [about x y z]",
+            summary: "A surface of triangles from an STL file as a wall on which grains lean, at rest or moving.",
+            text: "Not in LAMMPS. Forces as those of `fix wall/gran` on a plane, with the nearest point of the surface: from \
+                both sides, whatever the order of corners. A face counts where it is the nearest of its surroundings, an \
+                edge or corner that several triangles share once, and only where no neighbour is nearer. Neighbours whose \
+                normals differ by less than 30° make one smooth patch: of places on one patch that look alike (normals \
+                within 45°) the nearest one counts, and the springs of friction pass from triangle to triangle. So a plane \
+                cut into triangles is a plane: a ball that rolls across feels no kick.\n\n\
+                The file's numbers are multiplied by `scale`, then shifted, into box units; corners are shared where their \
+                numbers are the same. A triangle without area is refused; edges that border one triangle only (holes, or \
+                the rim of a plate) are told of.\n\n\
+                `move`: with t the time since the fix was declared, `linear` is a shift V t, `wiggle` A sin ω t with \
+                ω = 2π/period, `rotate` a turn about the axis R through P, right-handed, one in a period; `variable` shifts \
+                by equal-style variables, and the wall has the velocity of the change since the step before.\n\n\
+                Global vector: force (1–3) and torque (4–6) on the wall, about the origin, the axis' point or `about`. \
+                Local values, a row for each triangle: its number in the file, the force on it (3), the work of sliding \
+                Σ F_n |v_t| Δt since the fix was declared, that work by area; `dump local` writes them. By Archard's law \
+                the depth worn off is the last column times k/H.",
+            example: "fix blade grains wall/mesh granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin \
+                      NULL 1.0 0.5 mesh blade.stl scale 0.001 shift 0 0 -0.0025 move rotate 0 0 0 0 0 1 0.5",
+        }
+    }
+}
+
+/// Words that only meshes know.
+const OWN: [&str; 3] = ["scale", "shift", "move"];
+
+impl FixStyle for WallMesh {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        needs_spheres(cx, "wall/mesh")?;
+        let material = words::force(args, cx, &["mesh"])?;
+        let mut common = words::common(cx, material);
+        let word = args.expect("the word `mesh`")?;
+        if word.text != "mesh" {
+            return Err(args.unknown(word, &["mesh"]));
+        }
+        let file = args.expect("the name of an STL file")?;
+        let (mut factor, mut shift, mut motion) = (1.0, [0.0; 3], Motion::Rest);
+        let (mut about, own_center) = (None, common.center);
+        while let Some(word) = args.next() {
+            match word.text.as_str() {
+                "scale" => factor = args.positive("the scale")?,
+                "shift" => shift = [args.number("x")?, args.number("y")?, args.number("z")?],
+                "move" if !matches!(motion, Motion::Rest) => {
+                    return fail(Code::CONFLICT, word.span, "a wall has one motion");
+                }
+                "move" => {
+                    motion = Motion::read(args, cx)?;
+                    about = motion.point();
+                }
+                _ if words::keyword(word, args, cx, &mut common)? => {}
+                _ => return Err(args.unknown(word, &[&OWN[..], &KEYWORDS[..]].concat())),
+            }
+        }
+        if let (Some(point), true) = (about, common.center == own_center) {
+            common.center = point;
+        }
+        words::check_heat(&common)?;
+        let mesh = surface(file, factor, shift, cx)?;
+        Ok(Box::new(Declared { common, form: Triangles { mesh: Arc::new(mesh), motion } }))
+    }
+}
+
+/// Reads the file's triangles into their place.
+fn surface(file: &Word, factor: f64, shift: [f64; 3], cx: &BuildCx) -> Result<Mesh> {
+    let bytes = match std::fs::read(&file.text) {
+        Ok(bytes) => bytes,
+        Err(_) if cx.world.parts.promised.may_come(&file.text) => return Ok(Mesh::default()),
+        Err(e) => {
+            return fail(Code::NO_FILE, file.span, format!("the file `{}` cannot be read: {e}", file.text));
+        }
+    };
+    let (_, _, mut triangles) = match read(&bytes) {
+        Ok(found) => found,
+        Err(what) => {
+            return fail(Code::NO_FILE, file.span, format!("`{}` is no STL file: {what}", file.text));
+        }
+    };
+    if triangles.is_empty() {
+        return fail(Code::BAD_VALUE, file.span, format!("`{}` holds no triangles", file.text));
+    }
+    for p in triangles.iter_mut().flatten() {
+        (0..3).for_each(|d| p[d] = factor * p[d] + shift[d]);
+    }
+    let mesh = Mesh::new(triangles).map_err(|bad| {
+        let text = format!("triangle {} of `{}` has no area", bad + 1, file.text);
+        Diagnostic::error(Code::BAD_VALUE, file.span, text)
+            .help("let the program that made the mesh repair it: merge corners and drop degenerate facets")
+    })?;
+    if mesh.open_edges > 0 {
+        let text = format!(
+            "the mesh `{}` is not closed: {} of its edges border one triangle only",
+            file.text, mesh.open_edges
+        );
+        let note = Diagnostic::warning(Code::SUSPICIOUS, file.span, text);
+        cx.note(note.help("the rim of a plate or pipe is as meant; a hole lets grains through"));
+    }
+    Ok(mesh)
+}
+
+#[derive(Clone)]
+struct Triangles {
+    mesh: Arc<Mesh>,
+    motion: Motion,
+}
+
+/// Where the work of sliding on each triangle is kept.
+fn work_key(key: &str) -> String {
+    format!("{key}/work")
+}
+
+impl Form for Triangles {
+    const STYLE: &'static str = "wall/mesh";
+    const LOCAL: usize = 6;
+
+    fn declare(&self, w: &mut World, key: &str) {
+        w.memo.remove(key);
+        Elapsed::load(w, key).store(w, key);
+        w.memo.insert(work_key(key), vec![0.0; self.mesh.triangles().len()]);
+        w.memo.insert(moving::place_key(key), vec![]);
+    }
+
+    fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
+        let key = fix.key(Self::STYLE);
+        let running = Running::new(self.mesh.clone(), &self.motion, &key, cx)?;
+        let areas = self.mesh.triangles().iter().map(perigrain_contact::mesh::area).collect();
+        Ok(Box::new(Tracked { running, work: work_key(&key), areas }))
+    }
+}
+
+/// The wall during a run, with what it feels triangle by triangle.
+struct Tracked {
+    running: Running,
+    work: String,
+    areas: Vec<f64>,
+}
+
+impl Surface for Tracked {
+    fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64> {
+        self.running.place(w, t)
+    }
+
+    fn wall<'a>(&'a self, _w: &'a World) -> Box<dyn Wall + 'a> {
+        Box::new(Placed(&self.running))
+    }
+
+    fn local(&mut self, w: &mut World, contacts: &WallSweep, t: &Tick) -> Vec<f64> {
+        let mut rows: Vec<[f64; 6]> = vec![[0.0; 6]; self.areas.len()];
+        let mut work = w.memo.remove(&self.work).unwrap_or_default();
+        work.resize(self.areas.len(), 0.0);
+        let p = &w.particles;
+        for (touch, wrench) in contacts.contacts() {
+            let (i, k, n) = (touch.grain as usize, touch.near.part as usize, touch.near.normal);
+            let Some(row) = rows.get_mut(k) else { continue };
+            (0..3).for_each(|d| row[1 + d] -= wrench.force[d]);
+            if !t.setup {
+                let spin = scale(p.radius[i], cross(p.omega[i], n));
+                let slip = sub(sub(p.v[i], touch.near.velocity), spin);
+                let across = sub(slip, scale(dot(slip, n), n));
+                work[k] += dot(wrench.force, n).max(0.0) * length(across) * t.dt;
+            }
+        }
+        for (k, row) in rows.iter_mut().enumerate() {
+            (row[0], row[4], row[5]) = (k as f64 + 1.0, work[k], work[k] / self.areas[k]);
+        }
+        w.memo.insert(self.work.clone(), work);
+        rows.into_iter().flatten().collect()
+    }
+}

@@ -1,0 +1,206 @@
+//! How a mesh moves: its place, turn and velocity at each step.
+
+use crate::elapsed::Elapsed;
+use crate::lineforce::direction;
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::math::vec3::{Vec3, add, cross, length, scale, sub};
+use perigrain_contact::mesh::Mesh;
+use perigrain_contact::walls::{Near, Wall};
+use perigrain_lang::{Args, Param, ValueRef};
+use perigrain_plan::{Stage, Tick, When};
+use perigrain_styles::common::param_or_null;
+use perigrain_styles::{BuildCx, Reading, SealCx};
+use perigrain_world::World;
+use perigrain_world::region::turned;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// The motion a deck names.
+#[derive(Clone, Debug)]
+pub enum Motion {
+    /// None.
+    Rest,
+    /// A velocity.
+    Linear(Vec3),
+    /// Amplitudes and angular frequency.
+    Wiggle(Vec3, f64),
+    /// A point, the unit vector of an axis, angular velocity.
+    Rotate(Vec3, Vec3, f64),
+    /// Displacements.
+    Variable([Option<ValueRef>; 3]),
+}
+
+impl Motion {
+    /// Reads the words after `move`.
+    ///
+    /// # Errors
+    /// Every mistake in them.
+    pub fn read(args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let three = |args: &mut Args, what: &str| -> Result<Vec3> {
+            let mut number = |axis: &str| args.number(&format!("{what}{axis}"));
+            Ok([number("x")?, number("y")?, number("z")?])
+        };
+        Ok(match args.choice("motion", &["linear", "wiggle", "rotate", "variable"])? {
+            "linear" => Self::Linear(three(args, "V")?),
+            "wiggle" => {
+                let amplitude = three(args, "A")?;
+                Self::Wiggle(amplitude, 2.0 * PI / args.positive("the period")?)
+            }
+            "rotate" => {
+                let point = three(args, "P")?;
+                let axis = direction(args)?;
+                let span = args.here();
+                let period = args.number("the period")?;
+                if period == 0.0 {
+                    return fail(Code::BAD_VALUE, span, "the period must not be zero");
+                }
+                Self::Rotate(point, axis, 2.0 * PI / period)
+            }
+            _ => {
+                let mut one =
+                    |name: &str| match param_or_null(args, &format!("the displacement along {name}"))? {
+                        None => Ok(None),
+                        Some(Param::Ref(r)) => cx.value(&r, false).map(|()| Some(r)),
+                        Some(Param::Number(_)) => {
+                            let text = format!(
+                                "the displacement along {name} is an equal-style variable v_name, or NULL"
+                            );
+                            fail(Code::WRONG_KIND, cx.span, text)
+                        }
+                    };
+                Self::Variable([one("x")?, one("y")?, one("z")?])
+            }
+        })
+    }
+
+    /// A point of the axis, where there is one.
+    pub fn point(&self) -> Option<Vec3> {
+        match self {
+            Self::Rotate(point, ..) => Some(*point),
+            _ => None,
+        }
+    }
+}
+
+/// Where the place of a mesh that follows variables is kept from step to step.
+pub fn place_key(key: &str) -> String {
+    format!("{key}/place")
+}
+
+/// A mesh during a run.
+pub struct Running {
+    mesh: Arc<Mesh>,
+    motion: Motion,
+    readings: [Option<Reading>; 3],
+    key: String,
+    shift: Vec3,
+    angle: f64,
+    velocity: Vec3,
+    /// The farthest corner from the axis.
+    arm: f64,
+}
+
+impl Running {
+    /// At rest in its first place.
+    ///
+    /// # Errors
+    /// Variables that are gone.
+    pub fn new(mesh: Arc<Mesh>, motion: &Motion, key: &str, cx: &mut dyn SealCx) -> Result<Self> {
+        let mut readings = [None; 3];
+        if let Motion::Variable(names) = motion {
+            for (reading, name) in readings.iter_mut().zip(names) {
+                if let Some(r) = name {
+                    *reading = Some(cx.value(r, Stage::PostForce, &When::Always)?);
+                }
+            }
+        }
+        let arm = match motion {
+            Motion::Rotate(point, axis, _) => mesh.farthest(*point, *axis),
+            _ => 0.0,
+        };
+        let (motion, key) = (motion.clone(), key.to_string());
+        Ok(Self { mesh, motion, readings, key, shift: [0.0; 3], angle: 0.0, velocity: [0.0; 3], arm })
+    }
+
+    /// Goes to where the mesh is at this step; how far its points have moved at most.
+    ///
+    /// # Errors
+    /// A displacement that is no number.
+    pub fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64> {
+        if matches!(self.motion, Motion::Rest) {
+            return Ok(0.0);
+        }
+        let mut elapsed = Elapsed::load(w, &self.key);
+        if !t.setup {
+            elapsed.follow(t.step, t.dt);
+            elapsed.store(w, &self.key);
+        }
+        let (time, before) = (elapsed.now(), (self.shift, self.angle));
+        match &self.motion {
+            Motion::Rest => {}
+            Motion::Linear(v) => (self.shift, self.velocity) = (scale(time, *v), *v),
+            Motion::Wiggle(a, omega) => {
+                self.shift = scale((omega * time).sin(), *a);
+                self.velocity = scale(omega * (omega * time).cos(), *a);
+            }
+            Motion::Rotate(_, _, omega) => self.angle = omega * time,
+            Motion::Variable(_) => self.follow(w, t)?,
+        }
+        Ok(length(sub(self.shift, before.0)) + self.arm * (self.angle - before.1).abs())
+    }
+
+    /// The displacement that variables give, and the velocity of its change since the step before.
+    fn follow(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        self.shift = self.readings.map(|r| r.map_or(0.0, |r| r.get(w)));
+        if self.shift.iter().any(|a| !a.is_finite()) {
+            return fail(Code::NOT_FINITE, None, format!("the wall's displacement is {:?}", self.shift));
+        }
+        let key = place_key(&self.key);
+        self.velocity = match w.memo.get(&key).map(Vec::as_slice) {
+            Some(&[step, x, y, z]) if t.step as f64 - step == 1.0 => {
+                scale(1.0 / t.dt, sub(self.shift, [x, y, z]))
+            }
+            // Within the setup of a run that goes on where the last one ended, nothing has moved.
+            _ => [0.0; 3],
+        };
+        let [x, y, z] = self.shift;
+        w.memo.insert(key, vec![t.step as f64, x, y, z]);
+        Ok(())
+    }
+
+    /// A place as seen from the mesh.
+    fn undo(&self, x: Vec3) -> Vec3 {
+        let x = sub(x, self.shift);
+        match &self.motion {
+            Motion::Rotate(point, axis, _) => turned(x, *point, *axis, (-self.angle).into()),
+            _ => x,
+        }
+    }
+}
+
+/// A mesh where it is now.
+pub struct Placed<'a>(pub &'a Running);
+
+impl Wall for Placed<'_> {
+    fn close(&self, x: Vec3, reach: f64, _spare: &mut Vec<Near>) -> bool {
+        self.0.mesh.close(self.0.undo(x), reach)
+    }
+
+    fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
+        let (me, from) = (self.0, out.len());
+        me.mesh.near(me.undo(x), reach, out);
+        for near in &mut out[from..] {
+            near.velocity = me.velocity;
+            if let Motion::Rotate(point, axis, omega) = &me.motion {
+                near.normal = turned(near.normal, [0.0; 3], *axis, me.angle.into());
+                let place = sub(x, scale(near.distance, near.normal));
+                let arm = sub(place, add(*point, me.shift));
+                near.velocity = add(near.velocity, scale(*omega, cross(*axis, arm)));
+            }
+        }
+    }
+
+    fn passes(&self, from: u32, to: u32) -> bool {
+        self.0.mesh.passes(from, to)
+    }
+}

@@ -1,0 +1,151 @@
+//! Walls of granular scenes: what the fixes wall/gran, wall/gran/region and wall/mesh have in common.
+
+pub mod gran;
+pub mod mesh;
+mod op;
+mod plastic;
+pub mod region;
+mod words;
+
+use super::Fix;
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_contact::walls::{Wall, WallSweep};
+use perigrain_lang::Param;
+use perigrain_pairs::contact::durations;
+use perigrain_plan::{Op, Tick};
+use perigrain_styles::{BuildCx, SealCx, Shape};
+use perigrain_world::{GroupId, World};
+use words::Material;
+
+/// A wall of some form during a run.
+trait Surface: Send {
+    /// Puts the wall where it is at this step; an upper bound of how far its points have moved since the last call.
+    fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64>;
+
+    /// The wall as it is now.
+    fn wall<'a>(&'a self, w: &'a World) -> Box<dyn Wall + 'a>;
+
+    /// Local values of the contacts that were found, [`Form::LOCAL`] columns.
+    fn local(&mut self, _w: &mut World, _contacts: &WallSweep, _t: &Tick) -> Vec<f64> {
+        vec![]
+    }
+}
+
+/// A declared wall: what its form is, and all that does not depend on the form.
+trait Form: Clone + Send + 'static {
+    /// The word in the deck.
+    const STYLE: &'static str;
+    /// Columns of local values.
+    const LOCAL: usize = 0;
+
+    /// The wall for a run.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>>;
+
+    /// Captures what it must know of the moment it is declared, under `key`.
+    fn declare(&self, w: &mut World, key: &str);
+}
+
+/// What all walls have.
+#[derive(Clone)]
+struct Common {
+    id: String,
+    group: GroupId,
+    material: Material,
+    /// Whether each particle's contact is told.
+    contacts: bool,
+    /// How warm the wall is.
+    temperature: Option<(Param, Span)>,
+    /// About which point the wall's torque is meant.
+    center: [f64; 3],
+}
+
+impl Common {
+    /// Columns of the values by particle.
+    fn columns(&self) -> usize {
+        op::COLUMNS + usize::from(self.temperature.is_some())
+    }
+
+    /// Where small state of the fix is kept in the world.
+    fn key(&self, style: &str) -> String {
+        format!("{style}/{}", self.id)
+    }
+}
+
+#[derive(Clone)]
+struct Declared<F> {
+    common: Common,
+    form: F,
+}
+
+impl<F: Form> Fix for Declared<F> {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        plastic::suits(&self.common.material.model, cx)?;
+        let surface = self.form.surface(&self.common, cx)?;
+        let op = op::WallOp::new(F::STYLE, F::LOCAL, &self.common, surface, cx)?;
+        Ok(match plastic::Plastic::of(&self.common.material.model) {
+            Some(_) => op::halves(op),
+            None => vec![Box::new(op)],
+        })
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.form.declare(w, &self.common.key(F::STYLE));
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        let key = self.common.key(F::STYLE);
+        let inner = format!("{key}/");
+        w.memo.retain(|name, _| *name != key && !name.starts_with(&inner));
+        w.wall_contacts.remove(&self.common.id);
+        w.wall_contacts.remove(&plastic::Plastic::key(&self.common.id));
+        if let Some(all) = &mut w.parts.wall_springs {
+            all.remove(&self.common.id);
+        }
+    }
+
+    fn shape(&self) -> Shape {
+        let atom = self.common.contacts.then(|| self.common.columns());
+        Shape { vector: op::FELT, vector_extensive: true, atom, local: F::LOCAL, ..Shape::default() }
+    }
+
+    fn contact_time(&self, w: &World, said: Option<(f64, f64)>) -> Option<f64> {
+        let law = self.common.material.law(w.settings.compat);
+        durations::on_wall(w, &law, self.common.group.bit(), said)
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+/// Refuses particles without a radius.
+fn needs_spheres(cx: &BuildCx, style: &str) -> Result<()> {
+    if cx.world.particles.style.sphere {
+        return Ok(());
+    }
+    let text = format!("fix {style} needs particles with a radius");
+    let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
+    Err(d.help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck").into())
+}
+
+/// Refuses a wall across a direction in which the box repeats.
+fn not_across_periodic(cx: &BuildCx, axes: &[usize], span: Span) -> Result<()> {
+    let Some(domain) = &cx.world.domain else {
+        let text = "the simulation box is not defined yet: a create_box must come first";
+        return Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, text).into());
+    };
+    let periodic = domain.periodic();
+    match axes.iter().find(|d| periodic[**d]) {
+        None => Ok(()),
+        Some(d) => {
+            let name = ["x", "y", "z"][*d];
+            let text = format!("this wall stands across {name}, where the box is periodic");
+            let d = Diagnostic::error(Code::CONFLICT, span, text);
+            Err(d.help(format!("make {name} fixed or shrink-wrapped with `boundary`")).into())
+        }
+    }
+}

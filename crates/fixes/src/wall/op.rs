@@ -1,0 +1,366 @@
+//! The op of a wall: who may touch it, contacts, forces, and what it feels.
+
+use super::plastic::Plastic;
+use super::{Common, Surface};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::math::vec3::{Vec3, length, scale, sub};
+use perigrain_base::par;
+use perigrain_contact::driver::DEEP;
+use perigrain_contact::walls::{Spheres, WallSweep};
+use perigrain_contact::{Advance, Granular};
+use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_styles::{Reading, SealCx};
+use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
+use perigrain_world::contacts::Contacts;
+use perigrain_world::{SlotId, World};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Columns of `contacts`: in contact or not, force, the wall's nearest point, radius.
+pub const COLUMNS: usize = 8;
+
+/// Length of the global vector: force, torque, heat.
+pub const FELT: usize = 7;
+
+/// Forces of one wall.
+pub struct WallOp {
+    name: String,
+    id: String,
+    bit: u32,
+    law: Granular,
+    surface: Box<dyn Surface>,
+    sweep: WallSweep,
+    /// The rebuild the list of particles near the wall was made at.
+    generation: Option<u64>,
+    /// How far the wall may have moved since.
+    travelled: f64,
+    /// Where particles were then, and their radii; empty where rebuilds follow them.
+    anchors: Vec<(Vec3, f64)>,
+    slot: SlotId,
+    contacts: bool,
+    /// Columns of local values.
+    local: usize,
+    center: [f64; 3],
+    span: Span,
+    /// Which particle was too deep in the wall, by which part of its radius and when.
+    deep: Option<(u32, f64, i64)>,
+    warmth: Option<Warmth>,
+    /// The memory of contacts before a setup that only evaluates.
+    kept: Option<Contacts>,
+    /// What plastic grains need.
+    plastic: Option<Plastic>,
+}
+
+/// What a wall that conducts heat needs.
+struct Warmth {
+    /// Its temperature.
+    wall: Reading,
+    /// Columns of temperatures and heat flows of the particles.
+    temperature: String,
+    flow: String,
+}
+
+impl Warmth {
+    /// Where the wall has a temperature.
+    fn new(common: &Common, cx: &mut dyn SealCx) -> Result<Option<Self>> {
+        let Some((wall, _)) = &common.temperature else { return Ok(None) };
+        let wall = cx.param(wall, Stage::PostForce, &When::Always)?;
+        let columns = &cx.world().columns;
+        let (Some(temperature), Some(flow)) = (columns.custom(TEMPERATURE), columns.custom(HEATFLOW)) else {
+            let text = "walls that conduct heat need particles with a temperature";
+            return Err(Diagnostic::error(Code::INCOMPLETE, cx.span(), text)
+                .help("add `fix ID all property/atom temperature heatflow` and `set group all temperature …`")
+                .into());
+        };
+        Ok(Some(Self { wall, temperature, flow }))
+    }
+}
+
+impl WallOp {
+    /// With nothing computed yet.
+    ///
+    /// # Errors
+    /// What a wall with a temperature lacks.
+    pub fn new(
+        style: &str,
+        local: usize,
+        common: &Common,
+        surface: Box<dyn Surface>,
+        cx: &mut dyn SealCx,
+    ) -> Result<Self> {
+        let warmth = Warmth::new(common, cx)?;
+        let compat = cx.world().settings.compat;
+        Ok(Self {
+            name: format!("fix {} {style}", common.id),
+            id: common.id.clone(),
+            bit: common.group.bit(),
+            law: common.material.law(compat),
+            surface,
+            sweep: WallSweep::default(),
+            generation: None,
+            travelled: 0.0,
+            anchors: vec![],
+            slot: cx.slot(&format!("f_{}", common.id)),
+            contacts: common.contacts,
+            local,
+            center: common.center,
+            span: cx.span(),
+            deep: None,
+            warmth,
+            kept: None,
+            plastic: Plastic::of(&common.material.model),
+        })
+    }
+
+    /// Finds out anew who may touch the wall, where particles or wall have moved too far since.
+    fn list(&mut self, w: &World, grains: &Spheres) {
+        let s = &w.settings.neighbor;
+        // Only then no particle is ever farther than half a skin from where it was at the last rebuild.
+        let followed = s.check && s.every == 1 && s.delay == 0 && !s.once;
+        let fresh = self.generation == Some(w.rebuild.generation) && self.travelled <= 0.5 * s.skin;
+        if fresh && (followed || stayed(grains, &self.anchors, s.skin)) {
+            return;
+        }
+        let wall = self.surface.wall(w);
+        // Half a skin for the wall, and one for particles: those that have moved half a skin already may move half a skin back, and
+        // those whose anchors are known a whole one.
+        let far = 1.5 * s.skin;
+        self.sweep.list(&*wall, grains, &w.particles.mask, self.bit, &self.law, far);
+        self.generation = Some(w.rebuild.generation);
+        self.travelled = 0.0;
+        self.anchors.clear();
+        if !followed {
+            self.anchors.extend(grains.x.iter().copied().zip(grains.radius.iter().copied()));
+        }
+    }
+
+    /// Puts the wall where it is and finds who touches it.
+    fn meet(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        self.travelled += self.surface.place(w, t)?;
+        let mut memory = take(w, &self.id);
+        // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
+        self.kept = (t.setup && !w.settings.lammps()).then(|| memory.clone());
+        let p = &w.particles;
+        // Masses count when forces are asked for.
+        let grains =
+            Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
+        self.list(w, &grains);
+        let wall = self.surface.wall(w);
+        self.sweep.meet(&*wall, &grains, &self.law, &mut memory);
+        drop(wall);
+        give(w, &self.id, memory);
+        Ok(())
+    }
+
+    /// Before any forces: what plastic grains must know of this wall.
+    fn approach(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let Some(plastic) = &self.plastic else { return Ok(()) };
+        // Grains grow before they meet the wall.
+        plastic.begin(w, t);
+        self.meet(w, t)?;
+        if let Some(plastic) = &mut self.plastic {
+            plastic.gather(w, t, &self.id, &self.sweep);
+        }
+        Ok(())
+    }
+
+    /// Remembers the deepest particle when the law first holds no longer.
+    fn find_deep(&mut self, w: &World, t: &Tick) {
+        // Plastic grains are made for deep contacts.
+        if self.deep.is_some() || self.plastic.is_some() {
+            return;
+        }
+        let p = &w.particles;
+        let deep = self.sweep.contacts().map(|(touch, _)| {
+            let i = touch.grain as usize;
+            (p.tag[i], 1.0 - touch.near.distance / p.radius[i])
+        });
+        let deeper = |a: (u32, f64), b: (u32, f64)| if b.1 > a.1 { b } else { a };
+        self.deep = deep.filter(|d| d.1 > DEEP).reduce(deeper).map(|(tag, part)| (tag, part, t.step));
+    }
+
+    /// Adds the heat that flows between the wall and the particles; what the wall takes up.
+    fn conduct(&mut self, w: &mut World) -> f64 {
+        let (Some(warmth), n) = (&self.warmth, w.n()) else { return 0.0 };
+        let wall = warmth.wall.get(w);
+        let mut flow = std::mem::take(w.columns.scalar(&warmth.flow, n));
+        let temperature = w.columns.scalar(&warmth.temperature, n).clone();
+        let p = &w.particles;
+        let grains =
+            Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
+        let lost = self.sweep.conduct(&grains, &self.law, wall, &temperature, &mut flow);
+        *w.columns.scalar(&warmth.flow, n) = flow;
+        -lost
+    }
+
+    fn publish(&mut self, w: &mut World, t: &Tick, felt: [f64; FELT]) {
+        let n = w.n();
+        let local = self.surface.local(w, &self.sweep, t);
+        let (p, out) = (&w.particles, w.slots.get_mut(self.slot));
+        out.step = Some(t.step);
+        out.vector.clear();
+        out.vector.extend(felt);
+        (out.local, out.local_cols) = (local, self.local);
+        if self.contacts {
+            let cols = COLUMNS + usize::from(self.warmth.is_some());
+            out.cols = cols;
+            out.atom.clear();
+            out.atom.resize(cols * n, 0.0);
+            for (k, (touch, wrench)) in self.sweep.contacts().enumerate() {
+                let i = touch.grain as usize;
+                let point = sub(p.x[i], scale(touch.near.distance, touch.near.normal));
+                let row = &mut out.atom[cols * i..][..cols];
+                row[0] = 1.0;
+                row[1..4].copy_from_slice(&wrench.force);
+                row[4..7].copy_from_slice(&point);
+                row[7] = p.radius[i];
+                if let Some(heat) = row.get_mut(COLUMNS) {
+                    *heat = self.sweep.heat(k);
+                }
+            }
+        }
+    }
+}
+
+/// Whether no surface of a particle has come farther than `far` from where it was.
+fn stayed(grains: &Spheres, anchors: &[(Vec3, f64)], far: f64) -> bool {
+    let come = |range: std::ops::Range<usize>| {
+        let grown = |k: usize| {
+            let (from, radius) = anchors[k];
+            length(sub(grains.x[k], from)) + grains.radius[k] - radius
+        };
+        range.map(grown).fold(0.0, f64::max)
+    };
+    anchors.len() == grains.x.len() && par::reduce(anchors.len(), come, f64::max).unwrap_or(0.0) <= far
+}
+
+/// Takes out what the contacts of a wall remember.
+fn take(w: &mut World, id: &str) -> Contacts {
+    w.wall_contacts.get_mut(id).map(std::mem::take).unwrap_or_default()
+}
+
+/// Puts it back.
+fn give(w: &mut World, id: &str, memory: Contacts) {
+    match w.wall_contacts.get_mut(id) {
+        Some(place) => *place = memory,
+        None => drop(w.wall_contacts.insert(id.to_string(), memory)),
+    }
+}
+
+/// One wall as two ops, for plastic grains: who meets it before all forces, and what it does after those of pairs.
+pub fn halves(wall: WallOp) -> Vec<Box<dyn Op>> {
+    let name = wall.name.clone();
+    let both = Arc::new(Mutex::new(wall));
+    let half = |early| Box::new(Half { name: name.clone(), early, wall: both.clone() }) as Box<dyn Op>;
+    vec![half(true), half(false)]
+}
+
+struct Half {
+    name: String,
+    early: bool,
+    wall: Arc<Mutex<WallOp>>,
+}
+
+impl Half {
+    fn wall(&self) -> MutexGuard<'_, WallOp> {
+        self.wall.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Op for Half {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn stage(&self) -> Stage {
+        if self.early { Stage::PreForce } else { Stage::PostForce }
+    }
+
+    fn access(&self) -> Access {
+        Access::new(
+            "x v omega radius mass mask wall_contacts columns",
+            "f torque wall_contacts radius columns",
+        )
+    }
+
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let mut wall = self.wall();
+        match (self.early, t.unchanged) {
+            (_, true) => Ok(()),
+            (true, _) => wall.approach(w, t),
+            (false, _) => wall.run(w, t),
+        }
+    }
+
+    fn finish(&mut self, w: &mut World) -> Result<()> {
+        if self.early { Ok(()) } else { self.wall().finish(w) }
+    }
+
+    fn bytes(&self, w: &World) -> u64 {
+        self.wall().bytes(w) / 2
+    }
+}
+
+impl Op for WallOp {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn stage(&self) -> Stage {
+        Stage::PostForce
+    }
+
+    fn access(&self) -> Access {
+        Access::new("x v omega radius mass mask wall_contacts", "f torque wall_contacts")
+    }
+
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if t.unchanged {
+            return Ok(());
+        }
+        if self.plastic.is_none() {
+            self.meet(w, t)?;
+        }
+        let mut memory = take(w, &self.id);
+        if let Some(plastic) = &mut self.plastic {
+            plastic.press(w, t, &self.id, &self.sweep, &mut memory);
+        }
+        let (p, masses) = (&w.particles, w.contact_masses());
+        let grains =
+            Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &masses, tag: &p.tag };
+        let step = Advance { dt: t.dt, history: !t.setup };
+        self.sweep.act(&grains, &self.law, &mut memory, step);
+        let springs = w.parts.wall_springs.is_some().then(|| self.sweep.springs(&grains, &self.law));
+        if let (Some(all), Some(own)) = (&mut w.parts.wall_springs, springs) {
+            all.insert(self.id.clone(), own);
+        }
+        give(w, &self.id, self.kept.take().unwrap_or(memory));
+        let p = &mut w.particles;
+        let [fx, fy, fz, tx, ty, tz] = self.sweep.scatter(&mut p.f, &mut p.torque, &p.x, self.center);
+        let heat = self.conduct(w);
+        self.find_deep(w, t);
+        self.publish(w, t, [fx, fy, fz, tx, ty, tz, heat]);
+        Ok(())
+    }
+
+    fn finish(&mut self, w: &mut World) -> Result<()> {
+        if let Some((tag, part, step)) = self.deep.take() {
+            let percent = 100.0 * part;
+            let text = format!(
+                "{}: particle {tag} is {percent:.0} % of its radius deep in the wall at step {step}: contact laws hold below \
+                 10 %",
+                self.name
+            );
+            w.parts.notes.push(
+                Diagnostic::warning(Code::SUSPICIOUS, self.span, text)
+                    .help("take a stiffer wall, or look for particles that were created inside it")
+                    .help("only the first step at which it is so is reported"),
+            );
+        }
+        Ok(())
+    }
+
+    fn bytes(&self, _w: &World) -> u64 {
+        // Positions and radii of those near the wall.
+        self.sweep.listed() as u64 * 36
+    }
+}

@@ -1,0 +1,110 @@
+//! What walls do to plastic grains (normal model `mdr`).
+
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_contact::powder::{self, Manner, Material, State, TOLD, WALL};
+use perigrain_contact::walls::WallSweep;
+use perigrain_contact::{Model, Normal};
+use perigrain_plan::Tick;
+use perigrain_styles::SealCx;
+use perigrain_world::World;
+use perigrain_world::contacts::Contacts;
+
+/// What the numbers of plastic grains are called in decks, in their order.
+const NUMBERS: [&str; 5] = ["E", "nu", "Y", "psi_b", "the restitution"];
+
+/// Refuses a wall that is not of what the plastic grains of the pair style are made of: their memory is one. How a wall sticks
+/// is its own.
+///
+/// # Errors
+/// Another normal model, or another number.
+pub fn suits(model: &Model, cx: &mut dyn SealCx) -> Result<()> {
+    let Some(grains) = cx.world().parts.plastic else { return Ok(()) };
+    let Some(wall) = model.normal.plastic() else {
+        let text = format!("the grains are plastic (`mdr`), the wall is `{}`", model.normal.name());
+        let d = Diagnostic::error(Code::CONFLICT, cx.span(), text);
+        return Err(d.help("give the wall the model and the numbers of the grains").into());
+    };
+    let Some(k) = (0..NUMBERS.len()).find(|&k| wall[k] != grains[k]) else { return Ok(()) };
+    let text = format!(
+        "{} is {} in the wall and {} in the grains: plastic grains (`mdr`) need walls of their own kind",
+        NUMBERS[k], wall[k], grains[k]
+    );
+    let d = Diagnostic::error(Code::CONFLICT, cx.span(), text);
+    Err(d.help(format!("write {} for the wall too", grains[k])).into())
+}
+
+/// A wall under plastic grains.
+pub struct Plastic {
+    material: Material,
+    spare: Vec<f64>,
+}
+
+impl Plastic {
+    /// For walls whose normal model is `mdr`.
+    pub fn of(model: &Model) -> Option<Self> {
+        let Normal::Mdr { material, .. } = model.normal else { return None };
+        Some(Self { material, spare: vec![] })
+    }
+
+    /// Under which name their memory is kept.
+    pub fn key(id: &str) -> String {
+        format!("mdr/{id}")
+    }
+
+    /// Begins the step for all grains.
+    pub fn begin(&self, w: &mut World, t: &Tick) {
+        let at = (t.step, t.setup);
+        if !powder::begun(w, at) {
+            powder::begin(w, at, &self.material).put(&mut w.columns);
+        }
+    }
+
+    /// Tells the grains how much nearer the wall comes.
+    pub fn gather(&mut self, w: &mut World, t: &Tick, id: &str, sweep: &WallSweep) {
+        if t.setup {
+            return;
+        }
+        let n = w.n();
+        let mut state = State::take(&mut w.columns, n);
+        let (touching, keys) = sweep.touching();
+        let depths = touching.iter().map(|c| {
+            let k = c.grain as usize;
+            (k, w.particles.radius[k] - c.near.distance)
+        });
+        if let Some(memory) = w.wall_contacts.get(&Self::key(id)) {
+            powder::gather(&mut state, memory, keys, depths);
+        }
+        state.put(&mut w.columns);
+    }
+
+    /// Presses the grains; the rest of the law is told by `contacts`.
+    pub fn press(&mut self, w: &mut World, t: &Tick, id: &str, sweep: &WallSweep, contacts: &mut Contacts) {
+        let key = Self::key(id);
+        let n = w.n();
+        let mut state = State::take(&mut w.columns, n);
+        let mut memory = w.wall_contacts.remove(&key).unwrap_or_default();
+        // In setup forces are only evaluated.
+        let kept = t.setup.then(|| state.clone());
+        let (touching, keys) = sweep.touching();
+        memory.carry(keys, WALL, &mut self.spare);
+        let manner = Manner { lammps: w.settings.lammps(), setup: t.setup };
+        let width = contacts.width;
+        let before = t.setup.then(|| memory.history.clone());
+        let rows = memory.history.chunks_exact_mut(WALL).zip(contacts.history.chunks_exact_mut(width));
+        for (c, (own, told)) in touching.iter().zip(rows) {
+            let k = c.grain as usize;
+            let radius = w.particles.radius[k];
+            let (depth, told) = (radius - c.near.distance, &mut told[width - TOLD..]);
+            let deed = powder::press(&self.material, &state, k, radius, depth, own, told, manner);
+            let mut sum = powder::Sum::default();
+            sum.add(&deed, c.near.normal);
+            sum.give(&mut state, k);
+        }
+        if let Some(before) = before {
+            powder::undo(&before, &mut memory.history, WALL, manner.lammps);
+        }
+        let state = kept.unwrap_or(state);
+        w.wall_contacts.insert(key, memory);
+        state.put(&mut w.columns);
+    }
+}

@@ -1,0 +1,175 @@
+//! fix wall/gran/region: the surface of a region as a wall, at rest or moving with it.
+
+use super::words::{self, KEYWORDS};
+use super::{Common, Declared, Form, Surface, needs_spheres};
+use crate::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_contact::walls::{Near, Wall};
+use perigrain_lang::Args;
+use perigrain_plan::Tick;
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::region::Look;
+use perigrain_world::{Region, World};
+
+/// The style.
+pub struct WallGranRegion;
+
+impl Style for WallGranRegion {
+    fn name(&self) -> &'static str {
+        "wall/gran/region"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group wall/gran/region granular MODELS … | hooke … | hooke/history … | hertz/history …  \
+                     region regionID [contacts] [temperature T|v_name] [material E nu] [about x y z]",
+            summary: "The surface of a region as a wall on which grains lean, at rest or moving.",
+            text: "As `fix wall/gran`, with the surface of a region of any shape. Grains inside feel every face they touch, \
+                grains outside (`side out`) the nearest point; a region with `open` faces is a shell that is felt from \
+                both sides. R̄ counts the wall's curvature, 1/R̄ = 1/R + 1/R_w: R_w = −R_s inside a sphere of radius R_s, \
+                −2 R_c inside a cylinder or cone of radius R_c there, the same with + from outside, flat for everything \
+                else (ellipsoids too, as in LAMMPS); where the wall is too hollow for the grain, R̄ = R.\n\n\
+                Of a `union` those places count that lie in no other part, of an `intersect` those that lie in all; parts \
+                with open faces hide nothing. Edges that such a combination makes towards the grains are not rounded: \
+                avoid them.\n\n\
+                A region that follows variables moves the wall, and its surface has the velocity of that motion (the \
+                change since the step before, zero in the first). `region ID delete` and a new `region ID` of the same \
+                name between runs change the wall.\n\n\
+                LAMMPS takes cones for hollow from outside, open cylinders for flat from outside, feels nothing of a \
+                union's outside, misses contacts beside the ends of an ellipsoid's axes, takes moving parts of unions and \
+                intersections for resting ones, gives a turning wall a speed in proportion to the length of the axis that the \
+                deck names, and lets only cylinders and spheres push while they change their size; \
+                perigrain does the same under `-compat lammps` alone. Keywords and values as those of `fix wall/gran`.",
+            example: "region funnel cone z 0.0 0.0 0.001 0.005 -0.001 0.006 units box open 1 open 2\n\
+                      fix funnel grains wall/gran/region granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential \
+                      mindlin NULL 1.0 0.5 region funnel",
+        }
+    }
+}
+
+impl FixStyle for WallGranRegion {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        needs_spheres(cx, "wall/gran/region")?;
+        let material = words::force(args, cx, &["region"])?;
+        let mut common = words::common(cx, material);
+        let word = args.expect("the word `region`")?;
+        if word.text != "region" {
+            return Err(args.unknown(word, &["region"]));
+        }
+        let word = args.expect("the region's ID")?;
+        let region = cx.region(word)?;
+        let span = word.span;
+        if let Some(turn) = region.motion.as_ref().and_then(|m| m.turn.as_ref()) {
+            common.center = turn.point;
+        }
+        while let Some(word) = args.next() {
+            if !words::keyword(word, args, cx, &mut common)? {
+                return Err(args.unknown(word, &KEYWORDS));
+            }
+        }
+        words::check_heat(&common)?;
+        Ok(Box::new(Declared { common, form: Shaped { region: word.text.clone(), span } }))
+    }
+}
+
+/// The region by name: it may be put anew between runs.
+#[derive(Clone)]
+struct Shaped {
+    region: String,
+    span: Span,
+}
+
+impl Form for Shaped {
+    const STYLE: &'static str = "wall/gran/region";
+
+    fn declare(&self, w: &mut World, key: &str) {
+        // No step and no pose: the wall has no velocity in its first step.
+        w.memo.insert(key.to_string(), vec![]);
+    }
+
+    fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
+        let w = cx.world();
+        let Some(region) = w.regions.get(&self.region) else {
+            let text = format!("there is no region `{}` any more", self.region);
+            let d = Diagnostic::error(Code::UNKNOWN_REGION, self.span, text);
+            return Err(d.help("define it again before the run, or remove the fix with `unfix`").into());
+        };
+        let before = region.follows().then(|| region.clone());
+        let (name, span) = (self.region.clone(), self.span);
+        let radius = w.particles.radius.iter().copied().fold(0.0, f64::max);
+        Ok(Box::new(Running { name, span, key: fix.key(Self::STYLE), before, elapsed: None, radius }))
+    }
+}
+
+/// The wall during a run.
+struct Running {
+    name: String,
+    span: Span,
+    key: String,
+    /// A region that follows variables, as it was at the step before.
+    before: Option<Region>,
+    /// The time since then, if it was then that it was there.
+    elapsed: Option<f64>,
+    /// The largest radius when the run began.
+    radius: f64,
+}
+
+impl Surface for Running {
+    fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64> {
+        let Some(region) = w.regions.get(&self.name) else {
+            return fail(Code::UNKNOWN_REGION, self.span, format!("region `{}` is gone", self.name));
+        };
+        let Some(before) = &mut self.before else { return Ok(0.0) };
+        let mut nothing = vec![];
+        let memo = w.memo.get_mut(&self.key).unwrap_or(&mut nothing);
+        let since = memo.first().map_or(f64::INFINITY, |step| t.step as f64 - step);
+        self.elapsed = (since == 1.0).then_some(t.dt);
+        if memo.len() < 2 {
+            before.clone_from(region);
+        }
+        // Regions are put anew between runs only: all but the pose is as it was.
+        before.set_pose(&mut memo.iter().skip(1).copied());
+        // Places of the wall that matter are a radius from a particle in the box at most.
+        let margin = 2.0 * self.radius;
+        let corners = w.domain.as_ref().map(|d| {
+            let end =
+                |k: usize, a: usize| if k & (1 << a) == 0 { d.lo[a] - margin } else { d.hi[a] + margin };
+            [0, 1, 2, 3, 4, 5, 6, 7].map(|k| [0, 1, 2].map(|a| end(k, a)))
+        });
+        memo.clear();
+        memo.push(t.step as f64);
+        region.pose(memo);
+        Ok(region.travel(before, corners.as_ref().map_or(&[], |c| &c[..])))
+    }
+
+    fn wall<'a>(&'a self, w: &'a World) -> Box<dyn Wall + 'a> {
+        Box::new(Faces {
+            // Places were found a moment ago, so that the region is there.
+            region: w.regions.get(&self.name),
+            look: Look { before: self.before.as_ref().zip(self.elapsed), lammps: w.settings.lammps() },
+        })
+    }
+}
+
+/// The region's surface at one moment.
+struct Faces<'a> {
+    region: Option<&'a Region>,
+    look: Look<'a>,
+}
+
+impl Wall for Faces<'_> {
+    fn close(&self, x: [f64; 3], reach: f64, spare: &mut Vec<Near>) -> bool {
+        self.region.is_some_and(|r| r.close(x, reach, spare))
+    }
+
+    fn near(&self, x: [f64; 3], reach: f64, out: &mut Vec<Near>) {
+        if let Some(region) = self.region {
+            region.near(x, reach, &self.look, out);
+        }
+    }
+
+    fn holds(&self, _near: &Near) -> bool {
+        // LAMMPS lets go of regions at once.
+        !self.look.lammps
+    }
+}

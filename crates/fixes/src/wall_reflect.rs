@@ -1,0 +1,161 @@
+//! fix wall/reflect: flat walls that throw particles back.
+
+use super::faces::{Face, Spot, check};
+use super::{Fix, FixStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::par;
+use perigrain_lang::Args;
+use perigrain_plan::{Access, Op, Stage};
+use perigrain_styles::common::{scales, units_lattice};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::{GroupId, World};
+
+/// The style.
+pub struct WallReflect;
+
+impl Style for WallReflect {
+    fn name(&self) -> &'static str {
+        "wall/reflect"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group wall/reflect xlo|xhi|ylo|yhi|zlo|zhi EDGE|place … [units lattice|box]",
+            summary: "Throws particles back that have gone through flat walls.",
+            text: "After the drift of a step a particle of the group whose centre is at a distance d beyond a wall is put \
+                   as far inside, and its velocity across the wall changes sign. Up to six walls, each named by the face on whose side it \
+                   stands: `xlo` holds x above its place, `xhi` below. The place is `EDGE` (the face of the box when the fix is \
+                   declared: it does not move with the box), a number, or `v_name` of an equal-style variable, evaluated each step; numbers and variables \
+                   are in lattice spacings unless `units box`. A wall that moves gives no velocity to whom it throws back. Sizes of spheres do not count, nor does \
+                   their spin change. Faces of that direction must not be periodic. Energy is kept to first order in the time step only. \
+                   Not in minimizations, and not under `run_style respa`, in which LAMMPS reflects nobody without a word.",
+            example: "fix floor grains wall/reflect zlo -0.001 zhi EDGE units box",
+        }
+    }
+}
+
+impl FixStyle for WallReflect {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let (mut faces, mut lattice) = (vec![], true);
+        while let Some(word) = args.next() {
+            if let Some(face) = Face::read(word, &faces, args, cx)? {
+                faces.push(face);
+                continue;
+            }
+            match word.text.as_str() {
+                "units" => lattice = units_lattice(args)?,
+                _ => {
+                    return Err(args.unknown(word, &["xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "units"]));
+                }
+            }
+        }
+        check(&faces, false, args, cx)?;
+        if cx.names.all(perigrain_styles::UseKind::Fix).iter().any(|id| is_rigid(cx, id)) {
+            let text = "a wall that puts particles back pulls rigid bodies apart for a moment: `fix wall/harmonic` does not";
+            cx.note(Diagnostic::warning(Code::SUSPICIOUS, cx.span, text));
+        }
+        let scale = scales(cx.world, lattice);
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, faces, scale }))
+    }
+}
+
+fn is_rigid(cx: &BuildCx, id: &str) -> bool {
+    cx.names.fix_style(id).is_some_and(|style| style.starts_with("rigid"))
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    faces: Vec<Face>,
+    scale: [f64; 3],
+}
+
+/// Throws those of the group back that are beyond the face, which is at `at`.
+fn reflect(w: &mut World, bit: u32, face: &Face, at: f64) {
+    let (d, p) = (face.axis, &mut w.particles);
+    par::each((&mut p.x[..], &mut p.v[..], &p.mask[..]), |_, (x, v, mask)| {
+        for ((x, v), _) in x.iter_mut().zip(v).zip(mask).filter(|(_, m)| **m & bit != 0) {
+            if face.depth(*x, at) < 0.0 {
+                x[d] = at + (at - x[d]);
+                v[d] = -v[d];
+            }
+        }
+    });
+}
+
+impl Fix for Declared {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let stage = Stage::PostIntegrate;
+        let mut walls: Vec<(Face, Spot)> = vec![];
+        for face in &self.faces {
+            walls.push((face.clone(), face.seal(cx, stage, self.scale)?));
+        }
+        let bit = self.group.bit();
+        let access = Access::new("mask", "x v");
+        let op = StepOp::new(format!("fix {} wall/reflect", self.id), stage, access, move |w, _| {
+            for (face, spot) in &walls {
+                let at = spot.get(w);
+                reflect(w, bit, face, at);
+            }
+            Ok(())
+        });
+        Ok(vec![op.boxed()])
+    }
+
+    fn needs_whole_steps(&self, _w: &World) -> Option<&'static str> {
+        Some("in LAMMPS it throws nobody back in them")
+    }
+
+    fn boxed(&self) -> Box<dyn Fix> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::{AtomStyle, Boundary, Domain, Face as Side, Lattice};
+
+    fn scene() -> Bench {
+        let mut b = Bench::new(AtomStyle::default(), &[[3.0, -9.5, 1.0], [-11.0, 12.0, 0.0]]);
+        let mut faces = Boundary::default();
+        (faces.0[0], faces.0[1]) = ([Side::Fixed; 2], [Side::Fixed; 2]);
+        b.world.domain = Some(Domain::new([-10.0; 3], [10.0; 3], faces));
+        b.world.particles.v = vec![[1.0, -2.0, 3.0]; 2];
+        b.equal.insert("h".into(), 1.0);
+        b.world.lattice = Lattice::none(0.5);
+        b
+    }
+
+    // By hand: as far inside as they were outside.
+    #[test]
+    fn those_beyond_are_put_back_and_turned() {
+        let mut b = scene();
+        let fix = b.fix(&WallReflect, "xlo EDGE xhi v_h yhi 20 ylo -18.5").unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::PostIntegrate).unwrap();
+        // The wall at 1 · 0.5: 3 → -2; faces at -10 and at 20 · 0.5: -11 → -9, 12 → 8; at -18.5 · 0.5: -9.5 → -9.
+        assert_eq!(b.world.particles.x, [[-2.0, -9.0, 1.0], [-9.0, 8.0, 0.0]]);
+        assert_eq!(b.world.particles.v, [[-1.0, 2.0, 3.0], [-1.0, 2.0, 3.0]]);
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        let b = scene();
+        for words in [
+            "",
+            "units box",
+            "xlo",
+            "xlo EDGE xlo 1",
+            "zlo EDGE",
+            "xlo EDGE ylow 1",
+            "xlo v_q",
+            "xlo c_q",
+            "xlo EDGE units metres",
+        ] {
+            assert!(b.fix(&WallReflect, words).is_err(), "{words}");
+        }
+    }
+}

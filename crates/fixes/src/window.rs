@@ -1,0 +1,265 @@
+//! Averages over time, as all `fix ave/…` make them: when samples are taken, and how averages follow one another.
+
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::Args;
+use perigrain_plan::When;
+use perigrain_world::World;
+
+/// `Nevery Nrepeat Nfreq` and `start`.
+#[derive(Clone, Copy, Debug)]
+pub struct Schedule {
+    /// Distance of two samples.
+    pub every: i64,
+    /// Samples per average.
+    pub repeat: i64,
+    /// Distance of two averages.
+    pub freq: i64,
+    /// No sample before this step.
+    pub start: i64,
+}
+
+/// What a step is to a schedule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Due {
+    /// The first sample of an average.
+    pub first: bool,
+    /// The last one: the average is complete.
+    pub last: bool,
+}
+
+impl Schedule {
+    /// Takes the three numbers.
+    ///
+    /// # Errors
+    /// Numbers below 1, and samples that overlap.
+    pub fn read(args: &mut Args) -> Result<Self> {
+        let every = args.integer_from(1, "Nevery")?;
+        let repeat_span = args.here();
+        let repeat = args.integer_from(1, "Nrepeat")?;
+        let span = args.here();
+        let unknown = args.peek().is_some_and(|w| w.unknown);
+        let freq = args.integer_from(1, "Nfreq")?;
+        if freq % every != 0 && !unknown {
+            let text = format!("Nfreq must be a multiple of Nevery: {freq} is none of {every}");
+            return fail(Code::BAD_VALUE, span, text);
+        }
+        if repeat.saturating_mul(every) > freq && !unknown {
+            let text = format!("{repeat} samples every {every} steps do not fit into {freq} steps");
+            return Err(Diagnostic::error(Code::BAD_VALUE, repeat_span, text)
+                .help("Nrepeat times Nevery may be at most Nfreq")
+                .into());
+        }
+        Ok(Self { every, repeat, freq, start: 0 })
+    }
+
+    /// When samples may be due.
+    pub fn when(&self) -> When {
+        match self.repeat {
+            1 => When::Every(self.freq),
+            _ => When::Samples { every: self.every, repeat: self.repeat, freq: self.freq },
+        }
+    }
+
+    /// The first sample from a step on: averages whose first samples are past are left out.
+    fn next_from(&self, step: i64) -> i64 {
+        let mut next = step.div_euclid(self.freq) * self.freq + self.freq;
+        if next < self.start {
+            next += (self.start - next + self.freq - 1) / self.freq * self.freq;
+        }
+        if next - self.freq == step && self.repeat == 1 {
+            return step;
+        }
+        next -= (self.repeat - 1) * self.every;
+        if next < step { next + self.freq } else { next }
+    }
+
+    /// Forgets all samples; the next is taken at the present step at the earliest.
+    pub fn declare(&self, w: &mut World, key: &str) {
+        forget(w, key);
+        let next = self.next_from(w.clock.step);
+        w.memo.insert(format!("{key}/next"), vec![next as f64, 0.0]);
+    }
+
+    /// The last sample of an average whose first one is at this step.
+    pub fn last(&self, first: i64) -> i64 {
+        first + (self.repeat - 1) * self.every
+    }
+
+    /// Whether a sample is due at this step; then the schedule moves on.
+    pub fn due(&self, w: &mut World, key: &str, step: i64) -> Option<Due> {
+        let name = format!("{key}/next");
+        let (mut next, mut taken) = match w.memo.get(&name).map(Vec::as_slice) {
+            Some(&[next, taken]) => (next as i64, taken as i64),
+            _ => (self.next_from(step), 0),
+        };
+        // `reset_timestep` may have led past the next sample, or far away from it.
+        if step > next || next - step > self.freq + self.start.max(0) {
+            (next, taken) = (self.next_from(step), 0);
+        }
+        let due = step == next;
+        let found = Due { first: taken == 0, last: taken + 1 == self.repeat };
+        if due {
+            taken = if found.last { 0 } else { taken + 1 };
+            next = if found.last {
+                step + self.freq - (self.repeat - 1) * self.every
+            } else {
+                step + self.every
+            };
+        }
+        w.memo.insert(name, vec![next as f64, taken as f64]);
+        due.then_some(found)
+    }
+}
+
+/// Forgets everything below a key.
+pub fn forget(w: &mut World, key: &str) {
+    let below = format!("{key}/");
+    w.memo.retain(|name, _| !name.starts_with(&below));
+}
+
+/// How an average goes with the ones before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ave {
+    /// Each for itself.
+    One,
+    /// The mean of all so far.
+    Running,
+    /// The mean of the last few.
+    Window(usize),
+}
+
+impl Ave {
+    /// Takes `one`, `running` or `window M`.
+    ///
+    /// # Errors
+    /// Any other word.
+    pub fn read(args: &mut Args) -> Result<Self> {
+        Ok(match args.choice("kind of average", &["one", "running", "window"])? {
+            "one" => Ave::One,
+            "running" => Ave::Running,
+            _ => Ave::Window(args.integer_from(1, "the number of averages in a window")? as usize),
+        })
+    }
+}
+
+/// Adds up samples and joins averages; its state lives in the world's memory below `key`.
+pub struct Averager {
+    /// Where in the world's memory.
+    pub key: String,
+    /// Samples per average, by which a sum is divided; 1 leaves sums.
+    pub repeat: i64,
+    /// How averages follow one another.
+    pub ave: Ave,
+    /// Which of each row of values are the latest ones instead of averages; as long as a row, or empty.
+    pub off: Vec<bool>,
+}
+
+impl Averager {
+    /// Adds a sample. After the last one of an average: sums over averages, and their number.
+    pub fn add(&self, w: &mut World, values: &[f64], due: Due) -> Option<(Vec<f64>, f64)> {
+        let off = |i: usize| self.off.get(i % self.off.len().max(1)).copied().unwrap_or(false);
+        let sum_name = format!("{}/sum", self.key);
+        let mut sum = w.memo.remove(&sum_name).unwrap_or_default();
+        if due.first || sum.len() != values.len() {
+            sum.clear();
+            sum.resize(values.len(), 0.0);
+        }
+        for (i, (sum, value)) in sum.iter_mut().zip(values).enumerate() {
+            *sum = if off(i) { *value } else { *sum + value };
+        }
+        if !due.last {
+            w.memo.insert(sum_name, sum);
+            return None;
+        }
+        for (i, sum) in sum.iter_mut().enumerate() {
+            if !off(i) {
+                *sum /= self.repeat as f64;
+            }
+        }
+        let (mut total, count) = self.join(w, &sum);
+        for (i, total) in total.iter_mut().enumerate().filter(|(i, _)| off(*i)) {
+            *total = count * sum[i];
+        }
+        w.memo.insert(sum_name, sum);
+        Some((total, count))
+    }
+
+    /// Joins an average with those before it.
+    fn join(&self, w: &mut World, one: &[f64]) -> (Vec<f64>, f64) {
+        let (total_name, count_name) = (format!("{}/total", self.key), format!("{}/count", self.key));
+        let mut total = w.memo.remove(&total_name).unwrap_or_default();
+        let mut count = w.memo.get(&count_name).and_then(|c| c.first().copied()).unwrap_or(0.0);
+        if total.len() != one.len() || self.ave == Ave::One {
+            (total, count) = (vec![0.0; one.len()], 0.0);
+            w.memo.remove(&format!("{}/list", self.key));
+        }
+        for (total, one) in total.iter_mut().zip(one) {
+            *total += one;
+        }
+        count += 1.0;
+        if let Ave::Window(most) = self.ave {
+            let list = w.memo.entry(format!("{}/list", self.key)).or_default();
+            if count > most as f64 {
+                for (total, old) in total.iter_mut().zip(list.drain(..one.len())) {
+                    *total -= old;
+                }
+                count -= 1.0;
+            }
+            list.extend_from_slice(one);
+        }
+        w.memo.insert(count_name, vec![count]);
+        w.memo.insert(total_name, total.clone());
+        (total, count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn steps(s: &Schedule, from: i64) -> Vec<i64> {
+        let mut w = World::default();
+        w.clock.step = from;
+        s.declare(&mut w, "k");
+        (from..40).filter(|&k| s.due(&mut w, "k", k).is_some()).collect()
+    }
+
+    // The first two from LAMMPS' manual of fix ave/time, scaled down.
+    #[test]
+    fn samples_end_at_multiples() {
+        let s = Schedule { every: 2, repeat: 3, freq: 10, start: 0 };
+        assert_eq!(steps(&s, 0), [6, 8, 10, 16, 18, 20, 26, 28, 30, 36, 38]);
+        assert_eq!(steps(&s, 7), [16, 18, 20, 26, 28, 30, 36, 38]);
+        assert_eq!(steps(&Schedule { start: 21, ..s }, 0), [26, 28, 30, 36, 38]);
+        let one = Schedule { every: 5, repeat: 1, freq: 15, start: 0 };
+        assert_eq!(steps(&one, 0), [0, 15, 30]);
+        assert_eq!(steps(&one, 1), [15, 30]);
+        let mut t = perigrain_plan::Tick::between_runs(&perigrain_world::Clock::default());
+        let fires: Vec<i64> = (0..21)
+            .filter(|&k| {
+                t.step = k;
+                s.when().fires(&t)
+            })
+            .collect();
+        assert_eq!(fires, [0, 6, 8, 10, 16, 18, 20]);
+    }
+
+    #[test]
+    fn averages_of_averages() {
+        let due = Due { first: true, last: true };
+        for (ave, wanted) in
+            [(Ave::One, [1.0, 2.0, 6.0]), (Ave::Running, [1.0, 1.5, 3.0]), (Ave::Window(2), [1.0, 1.5, 4.0])]
+        {
+            let mut w = World::default();
+            let a = Averager { key: "k".into(), repeat: 1, ave, off: vec![false, true] };
+            let means = [1.0, 2.0, 6.0].map(|v| {
+                let (total, count) = a.add(&mut w, &[v, v], due).unwrap();
+                assert_eq!(total[1] / count, v);
+                total[0] / count
+            });
+            assert_eq!(means, wanted, "{ave:?}");
+            forget(&mut w, "k");
+            assert!(w.memo.is_empty());
+        }
+    }
+}

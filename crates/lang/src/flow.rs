@@ -1,0 +1,294 @@
+//! Commands that move the cursor: if, jump, label, next, include, quit; and `variable`, which steers them.
+
+use super::args::{Args, blame};
+use super::command::{Command, Word};
+use super::condition;
+use super::script::{Frame, Script};
+use super::substitute::expand;
+use super::text::Mapped;
+use super::value::Env;
+use super::vars::Vars;
+use perigrain_base::diag::{Code, Diagnostic, FileId, Result, Sources, fail, unseen};
+
+/// How deep includes and then-commands may nest.
+const NESTING: usize = 100;
+
+/// How many turns of a loop `check` follows.
+const CHECKED_TURNS: u64 = 10_000;
+
+/// Reads files for `include` and `jump`.
+pub trait Files {
+    /// The whole text of a file.
+    fn read(&self, path: &str) -> std::io::Result<String>;
+    /// Whether an earlier line of the deck may have written this file (`check` mode, which writes nothing).
+    fn comes_later(&self, _path: &str) -> bool {
+        false
+    }
+    /// Whether the deck is only read (`check` mode), so that long loops need not be followed to their end.
+    fn only_checks(&self) -> bool {
+        false
+    }
+}
+
+/// What became of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flow {
+    /// It is none of the flow commands.
+    NotMine,
+    /// It is done.
+    Done,
+    /// The deck asks to end with this exit status.
+    Quit(i32),
+}
+
+/// One branch of an `if`: its condition (none for `else`) and its commands.
+type Branch<'a> = (Option<&'a Word>, &'a [Word]);
+
+impl Script {
+    /// The commands that [`Script::flow`] carries out.
+    pub const FLOW: &'static [&'static str] = &["if", "jump", "label", "next", "include", "quit", "variable"];
+
+    /// Carries out a command that moves the cursor or sets a variable.
+    pub fn flow(
+        &mut self,
+        command: &Command,
+        sources: &mut Sources,
+        vars: &mut Vars,
+        env: &mut dyn Env,
+        files: &dyn Files,
+    ) -> Result<Flow> {
+        match command.name.text.as_str() {
+            "if" => self.branch(command, vars, env)?,
+            "jump" => self.jump(command, sources, vars, files)?,
+            "include" => self.include(command, sources, files)?,
+            "label" => {
+                let mut args = Args::new(command);
+                args.expect("the label's name")?;
+                args.finish()?;
+            }
+            "next" => {
+                Args::new(command).expect("a variable's name")?;
+                self.skip_jump |= vars.next(&command.args)?;
+            }
+            "quit" => return self.quit(command),
+            "variable" => {
+                vars.define(command, env, files)?;
+                if let Some(name) = command.args.first().filter(|_| self.speculative) {
+                    vars.mark_unknown(&name.text);
+                }
+            }
+            _ => return Ok(Flow::NotMine),
+        }
+        Ok(Flow::Done)
+    }
+
+    fn branch(&mut self, command: &Command, vars: &Vars, env: &mut dyn Env) -> Result<()> {
+        self.room(command)?;
+        let mut chosen: Vec<Word> = Vec::new();
+        let mut unsure = false;
+        for (condition, commands) in branches(command)? {
+            let holds = condition.map_or(Ok(Some(true)), |c| evaluate(c, vars, env))?;
+            if holds == Some(false) {
+                continue;
+            }
+            chosen.extend_from_slice(commands);
+            unsure |= holds.is_none();
+            if holds == Some(true) {
+                break;
+            }
+        }
+        let speculative = unsure || self.speculative;
+        self.frames.push(Frame::Commands { queue: chosen.into(), speculative });
+        Ok(())
+    }
+
+    fn jump(
+        &mut self,
+        command: &Command,
+        sources: &mut Sources,
+        vars: &Vars,
+        files: &dyn Files,
+    ) -> Result<()> {
+        let mut args = Args::new(command);
+        let target = args.expect("a file, or SELF")?;
+        let label = args.next();
+        args.finish()?;
+        if std::mem::take(&mut self.skip_jump) {
+            return Ok(());
+        }
+        if self.speculative {
+            self.escaped = true;
+            return Ok(());
+        }
+        let place = (command.span.file, command.span.start);
+        let again = !self.made.insert(place);
+        if self.escaped && again {
+            return Ok(());
+        }
+        let Some((level, current)) = self.file() else {
+            return fail(Code::WRONG_ORDER, command.span, "there is no file to jump in");
+        };
+        let file = if target.text == "SELF" { Some(current) } else { load(target, sources, files)? };
+        let Some(file) = file else {
+            self.escaped = true;
+            return Ok(());
+        };
+        self.comes_back(file);
+        let at = match label {
+            None => 0,
+            Some(l) => match self.behind_label(&l.text, file, sources)? {
+                Some(at) => at,
+                None => return no_label(l),
+            },
+        };
+        let Some(turns) = self.progress.turn(place, vars.fingerprint() ^ self.position()) else {
+            return stuck(command, target);
+        };
+        if turns > CHECKED_TURNS && files.only_checks() {
+            return Ok(());
+        }
+        self.frames[level] = Frame::File { file, at };
+        if label.is_some() {
+            self.frames.truncate(level + 1);
+        }
+        Ok(())
+    }
+
+    /// A number for what waits to be read below and above the jump at hand.
+    fn position(&self) -> u64 {
+        self.frames.iter().fold(0, |h: u64, f| {
+            let part = match f {
+                Frame::File { file, at } => (u64::from(file.0) << 32) ^ *at as u64,
+                Frame::Commands { queue, .. } => !(queue.len() as u64),
+            };
+            h.rotate_left(13).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ part
+        })
+    }
+
+    fn include(&mut self, command: &Command, sources: &mut Sources, files: &dyn Files) -> Result<()> {
+        let mut args = Args::new(command);
+        let target = args.expect("a file")?;
+        args.finish()?;
+        self.room(command)?;
+        if let Some(file) = load(target, sources, files)? {
+            self.frames.push(Frame::File { file, at: 0 });
+        }
+        Ok(())
+    }
+
+    fn quit(&mut self, command: &Command) -> Result<Flow> {
+        let mut args = Args::new(command);
+        let span = args.here();
+        let status = if args.is_empty() { 0 } else { args.integer("the exit status")? };
+        let Ok(status) = i32::try_from(status) else {
+            return fail(Code::BAD_VALUE, span, "this is no exit status");
+        };
+        args.finish()?;
+        if self.speculative {
+            self.escaped = true;
+            return Ok(Flow::Done);
+        }
+        Ok(Flow::Quit(status))
+    }
+
+    /// Drops finished frames and refuses one level too many.
+    fn room(&mut self, command: &Command) -> Result<()> {
+        while matches!(self.frames.last(), Some(Frame::Commands { queue, .. }) if queue.is_empty()) {
+            self.frames.pop();
+        }
+        if self.frames.len() < NESTING {
+            return Ok(());
+        }
+        fail(Code::CONFLICT, command.span, format!("files and then-commands nest deeper than {NESTING}"))
+    }
+}
+
+/// The branches of an `if`.
+fn branches(command: &Command) -> Result<Vec<Branch<'_>>> {
+    let mut args = Args::new(command);
+    let mut out = Vec::new();
+    let condition = args.expect("a condition")?;
+    let then = args.expect("the word then")?;
+    if then.text != "then" {
+        return Err(
+            blame(then, Code::UNKNOWN_KEYWORD, format!("`{}` found, expected then", then.text)).into()
+        );
+    }
+    args.clone().expect("a command to carry out")?;
+    out.push((Some(condition), until_next(&mut args)));
+    while let Some(word) = args.next() {
+        if word.text == "elif" {
+            let condition = args.expect("a condition")?;
+            out.push((Some(condition), until_next(&mut args)));
+            continue;
+        }
+        out.push((None, until_next(&mut args)));
+        if let Some(w) = args.next() {
+            let message = format!("`{}` after else can never be reached", w.text);
+            return Err(blame(w, Code::EXTRA_ARGUMENT, message).into());
+        }
+    }
+    Ok(out)
+}
+
+/// The words up to the next `elif` or `else`.
+fn until_next<'a>(args: &mut Args<'a>) -> &'a [Word] {
+    let all = args.clone().rest();
+    let n = all.iter().position(|w| w.text == "elif" || w.text == "else").unwrap_or(all.len());
+    for _ in 0..n {
+        args.next();
+    }
+    &all[..n]
+}
+
+/// Whether a condition holds; `None` if that is unknown.
+fn evaluate(word: &Word, vars: &Vars, env: &mut dyn Env) -> Result<Option<bool>> {
+    let text = Mapped::whole(&word.text, word.span, word.origin, word.unknown);
+    let full = expand(&text, vars, env, None)?;
+    let truth = condition::holds(&full);
+    if word.unknown || full.unknown(0..full.text.len()) {
+        return Ok(None);
+    }
+    truth.map(Some)
+}
+
+/// A label that is nowhere.
+fn no_label<T>(label: &Word) -> Result<T> {
+    let message = format!("there is no `label {}` to jump to", label.text);
+    Err(blame(label, Code::UNKNOWN_LABEL, message).into())
+}
+
+/// A loop in which nothing changes.
+fn stuck<T>(command: &Command, target: &Word) -> Result<T> {
+    let message =
+        format!("this loop never ends: nothing has changed since an earlier `jump {}` here", target.text);
+    let d = Diagnostic::error(Code::CONFLICT, command.span, message);
+    Err(d.help("move a variable by `next`, or leave by `if … then \"jump SELF LABEL\"` on something that changes").into())
+}
+
+/// Why a file could not be read.
+pub(super) fn unreadable(path: &Word, e: &std::io::Error) -> Diagnostic {
+    let reason = match e.kind() {
+        std::io::ErrorKind::NotFound => "does not exist".to_owned(),
+        _ => format!("cannot be read: {e}"),
+    };
+    blame(path, Code::NO_FILE, format!("the file `{}` {reason}", path.text))
+}
+
+/// Reads a file into the sources, once per content; `None` if its name is not known yet (`check` mode).
+fn load(path: &Word, sources: &mut Sources, files: &dyn Files) -> Result<Option<FileId>> {
+    let text = match files.read(&path.text) {
+        Ok(text) => text,
+        Err(_) if path.unknown => return Ok(None),
+        Err(_) if files.comes_later(&path.text) => return Err(unseen(path.span, &path.text)),
+        Err(e) => return Err(unreadable(path, &e).into()),
+    };
+    let mut k = 0;
+    while let Some(s) = sources.get(FileId(k)) {
+        if s.name == path.text && s.text == text {
+            return Ok(Some(FileId(k)));
+        }
+        k += 1;
+    }
+    Ok(Some(sources.add(path.text.clone(), text)))
+}

@@ -1,0 +1,226 @@
+//! The lexer: physical lines into logical lines, logical lines into words, with nom.
+
+use super::command::{Command, Word};
+use super::scan::place;
+use super::text::Mapped;
+use nom::bytes::complete::{tag, take_till, take_until, take_while1};
+use nom::character::complete::{char, none_of};
+use nom::combinator::opt;
+use nom::sequence::{delimited, terminated};
+use nom::{IResult, Parser, branch::alt};
+use perigrain_base::diag::{Code, Diagnostic, FileId, Result, Span, fail};
+
+/// What the end of a physical line finds open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Mode {
+    /// Nothing.
+    Plain,
+    /// Inside '…', "…" or """…""", opened at this byte of the logical line.
+    Quote(Quote, usize),
+    /// After `#`.
+    Comment(usize),
+}
+
+/// The three kinds of quotes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Quote {
+    /// `'…'`
+    Single,
+    /// `"…"`
+    Double,
+    /// `"""…"""`
+    Triple,
+}
+
+impl Quote {
+    fn mark(self) -> &'static str {
+        match self {
+            Quote::Single => "'",
+            Quote::Double => "\"",
+            Quote::Triple => "\"\"\"",
+        }
+    }
+    fn name(self) -> &'static str {
+        match self {
+            Quote::Single => "single",
+            Quote::Double => "double",
+            Quote::Triple => "triple",
+        }
+    }
+}
+
+/// A logical line of a source text.
+pub(super) struct Logical {
+    /// The line with `&` joins done, comment included.
+    pub text: Mapped,
+    /// Where its comment starts; its length if there is none.
+    pub code: usize,
+    /// The first byte after it in the source.
+    pub next: usize,
+}
+
+/// The physical line at the front of `input` and what follows its line break.
+fn physical(input: &str) -> IResult<&str, &str> {
+    terminated(take_till(|c| c == '\n'), opt(char('\n'))).parse(input)
+}
+
+/// An opening quote mark.
+pub(super) fn opening(input: &str) -> IResult<&str, Quote> {
+    alt((
+        tag("\"\"\"").map(|_| Quote::Triple),
+        tag("\"").map(|_| Quote::Double),
+        tag("'").map(|_| Quote::Single),
+    ))
+    .parse(input)
+}
+
+/// The quote mark that ends a quoted stretch.
+pub(super) fn close_quote(input: &str, quote: Quote) -> IResult<&str, ()> {
+    tag(quote.mark()).map(|_| ()).parse(input)
+}
+
+/// One step of the scan for quotes and comments: what it consumed, and the state after it.
+pub(super) fn advance(input: &str, at: usize, mode: Mode) -> IResult<&str, Mode> {
+    match mode {
+        Mode::Comment(_) => take_while1(|_| true).map(|_| mode).parse(input),
+        Mode::Quote(q, _) => {
+            alt((tag(q.mark()).map(|_| Mode::Plain), none_of("").map(move |_| mode))).parse(input)
+        }
+        Mode::Plain => alt((
+            opening.map(|q| Mode::Quote(q, at)),
+            char('#').map(|_| Mode::Comment(at)),
+            none_of("").map(|_| Mode::Plain),
+        ))
+        .parse(input),
+    }
+}
+
+/// Scans `text`, which starts at byte `base` of its line.
+fn scan(text: &str, base: usize, mut mode: Mode) -> Mode {
+    let mut rest = text;
+    loop {
+        if mode == Mode::Plain {
+            // the bytes that can change the state
+            let Some(k) = rest.find(['"', '\'', '#']) else { return mode };
+            rest = &rest[k..];
+        }
+        let Ok((after, next)) = advance(rest, base + place(text, rest), mode) else { return mode };
+        (rest, mode) = (after, next);
+    }
+}
+
+/// Reads the logical line that starts at byte `start` of `source`; `None` at its end.
+pub(super) fn logical(source: &str, file: FileId, start: usize) -> Result<Option<Logical>> {
+    let Some(mut rest) = source.get(start..).filter(|r| !r.is_empty()) else { return Ok(None) };
+    let mut text = Mapped::default();
+    let mut mode = Mode::Plain;
+    while let Ok((after, line)) = physical(rest) {
+        let at = place(source, rest);
+        let body = line.strip_suffix('\r').unwrap_or(line);
+        mode = scan(body, text.text.len(), mode);
+        rest = after;
+        let joined = body.trim_end().strip_suffix('&');
+        if joined.is_none() && matches!(mode, Mode::Quote(Quote::Triple, _)) && !rest.is_empty() {
+            text.push_literal(&source[at..place(source, rest)], file, at);
+            continue;
+        }
+        text.push_literal(joined.unwrap_or(body), file, at);
+        if joined.is_none() || rest.is_empty() {
+            break;
+        }
+    }
+    if let Mode::Quote(q, at) = mode {
+        return Err(unclosed(q, text.span(at..at + q.mark().len())).into());
+    }
+    let code = if let Mode::Comment(at) = mode { at } else { text.text.len() };
+    Ok(Some(Logical { text, code, next: place(source, rest) }))
+}
+
+/// Whether a text typed so far ends inside a logical line: `&` at its end, or `"""` still open.
+pub fn is_unfinished(text: &str) -> bool {
+    let (mut mode, mut open) = (Mode::Plain, false);
+    for line in text.split('\n') {
+        mode = scan(line, 0, if open { mode } else { Mode::Plain });
+        open = matches!(mode, Mode::Quote(Quote::Triple, _)) || line.trim_end().ends_with('&');
+    }
+    open
+}
+
+/// A line that does not come from a file: the comment is found, quotes are checked.
+pub(super) fn standalone(text: Mapped) -> Result<Logical> {
+    let mode = scan(&text.text, 0, Mode::Plain);
+    if let Mode::Quote(q, at) = mode {
+        return Err(unclosed(q, text.span(at..at + q.mark().len())).into());
+    }
+    let code = if let Mode::Comment(at) = mode { at } else { text.text.len() };
+    Ok(Logical { text, code, next: 0 })
+}
+
+/// The complaint about a quote without its partner.
+pub(super) fn unclosed(q: Quote, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::OPEN_QUOTE, span, format!("unmatched {} quote", q.name()))
+        .help(format!("close it with {}, or continue the line with & at its end", q.mark()))
+}
+
+/// A word: the bytes inside the quotes, and the length of the quote mark (0 for a bare word).
+fn word(input: &str) -> IResult<&str, (&str, usize)> {
+    if !input.starts_with(['"', '\'']) && !input.is_empty() {
+        let end = input.find(blank).unwrap_or(input.len());
+        if end > 0 {
+            return Ok((&input[end..], (&input[..end], 0)));
+        }
+    }
+    let triple = delimited(tag("\"\"\""), take_until("\"\"\""), tag("\"\"\""));
+    let double = delimited(char('"'), take_till(|c| c == '"'), char('"'));
+    let single = delimited(char('\''), take_till(|c| c == '\''), char('\''));
+    alt((triple.map(|w| (w, 3)), double.map(|w| (w, 1)), single.map(|w| (w, 1)))).parse(input)
+}
+
+fn blank(c: char) -> bool {
+    c.is_ascii_whitespace() || c == '\x0b'
+}
+
+/// Splits a line (comment cut off, values put in) into its words.
+pub(super) fn words(line: &Mapped) -> Result<Vec<Word>> {
+    let text = line.text.as_str();
+    let mut out = Vec::new();
+    let mut rest = text.trim_start_matches(blank);
+    while !rest.is_empty() {
+        let Ok((after, (body, mark))) = word(rest) else {
+            let at = place(text, rest);
+            let span = line.span(at..at + 1);
+            let q = if rest.starts_with('\'') { Quote::Single } else { Quote::Double };
+            return Err(unclosed(q, span).into());
+        };
+        let next = after.trim_start_matches(blank);
+        let glued = next.len() == after.len() && !after.is_empty();
+        if mark > 0 && glued {
+            let at = place(text, after);
+            let end = at + after.find(blank).unwrap_or(after.len());
+            return fail(Code::SYNTAX, line.span(at..end), "a closing quote must be followed by a space");
+        }
+        let at = place(text, rest) + mark;
+        let range = at..at + body.len();
+        out.push(Word {
+            text: body.to_owned(),
+            span: line.span(range.clone()),
+            quoted: mark > 0,
+            origin: line.origin(range.clone()),
+            unknown: line.unknown(range),
+        });
+        rest = next;
+    }
+    Ok(out)
+}
+
+/// The command a line holds, `None` if it holds no word.
+pub(super) fn command(line: &Mapped) -> Result<Option<Command>> {
+    let mut words = words(line)?;
+    if words.is_empty() {
+        return Ok(None);
+    }
+    let args = words.split_off(1);
+    let Some(name) = words.pop() else { return Ok(None) };
+    let last = args.last().map_or(name.span, |w| w.span);
+    Ok(Some(Command { span: name.span.to(last), name, args, text: line.text.clone() }))
+}

@@ -1,0 +1,258 @@
+//! The cursor through a deck: it yields one logical line after the other, through includes, jumps and then-commands.
+
+use super::command::{Command, Line, Word};
+use super::lex::{self, Logical};
+use super::progress::Progress;
+use super::substitute::expand;
+use super::text::Mapped;
+use super::value::Env;
+use super::vars::Vars;
+use perigrain_base::diag::{FileId, Result, Sources};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::sync::Arc;
+
+/// Where lines come from.
+#[derive(Clone, Debug)]
+pub(super) enum Frame {
+    /// A text, from byte `at` on.
+    File { file: FileId, at: usize },
+    /// Commands given as words (`if … then "…"`).
+    Commands { queue: VecDeque<Word>, speculative: bool },
+}
+
+/// A logical line, taken apart as far as it does not depend on variables.
+#[derive(Debug)]
+struct Prepared {
+    raw: Arc<str>,
+    body: Body,
+    /// The first byte after it.
+    next: usize,
+}
+
+/// What is left to do with a line.
+#[derive(Debug)]
+enum Body {
+    /// Values have to be put in.
+    Open(Mapped),
+    /// Nothing: these are its words.
+    Closed(Option<Arc<Command>>),
+}
+
+/// What a file has shown of itself so far.
+#[derive(Clone, Debug, Default)]
+struct Known {
+    /// Lines by their first byte; kept once a jump has shown that lines come back.
+    lines: BTreeMap<usize, Arc<Prepared>>,
+    /// The byte behind the first `label` line of each name; none before the first jump to a label.
+    labels: Option<Arc<BTreeMap<String, usize>>>,
+}
+
+/// A cursor that is pulled.
+#[derive(Clone, Debug)]
+pub struct Script {
+    pub(super) frames: Vec<Frame>,
+    /// `next` has run out: the next `jump` is passed over.
+    pub(super) skip_jump: bool,
+    /// The command at hand stands in a branch that may not be taken (`check` mode).
+    pub(super) speculative: bool,
+    /// A jump or quit in such a branch was passed over, so that loops must end by themselves.
+    pub(super) escaped: bool,
+    /// Jumps that have been made.
+    pub(super) made: BTreeSet<(FileId, u32)>,
+    /// Whether loops get anywhere.
+    pub(super) progress: Progress,
+    raw: Arc<str>,
+    known: BTreeMap<FileId, Known>,
+}
+
+impl Script {
+    /// A cursor at the start of a text.
+    pub fn new(file: FileId) -> Self {
+        Self::with(Frame::File { file, at: 0 })
+    }
+
+    /// A cursor through a text typed after the one this cursor has read: a `next` that has run out there
+    /// still passes over the first `jump` here.
+    pub fn then(&self, file: FileId) -> Self {
+        Self { skip_jump: self.skip_jump, ..Self::new(file) }
+    }
+
+    /// A cursor through commands given as words, as in `run … every N "command"`.
+    pub fn of_commands(words: &[Word]) -> Self {
+        Self::with(Frame::Commands { queue: words.iter().cloned().collect(), speculative: false })
+    }
+
+    fn with(frame: Frame) -> Self {
+        Self {
+            frames: vec![frame],
+            skip_jump: false,
+            speculative: false,
+            escaped: false,
+            made: BTreeSet::new(),
+            progress: Progress::default(),
+            raw: "".into(),
+            known: BTreeMap::new(),
+        }
+    }
+
+    /// The line read last, as it is echoed; there also when it was refused.
+    pub fn raw(&self) -> &str {
+        &self.raw
+    }
+
+    /// What is left of the file that the line at hand stands in; `None` if it is a command of an `if`.
+    pub fn unread(&self) -> Option<(FileId, usize)> {
+        match self.frames.last() {
+            Some(Frame::File { file, at }) => Some((*file, *at)),
+            _ => None,
+        }
+    }
+
+    /// Whether the command at hand may or may not be reached (`check` mode).
+    pub fn is_speculative(&self) -> bool {
+        self.speculative
+    }
+
+    /// Tells the cursor that a command has changed something outside the variables.
+    pub fn changed(&mut self) {
+        self.progress.outside();
+    }
+
+    /// The next logical line, blank ones and comments included; `None` at the end.
+    ///
+    /// After an error the cursor stands behind the line at fault and can go on.
+    pub fn next(&mut self, sources: &mut Sources, vars: &Vars, env: &mut dyn Env) -> Result<Option<Line>> {
+        let Some(line) = self.pull(sources)? else { return Ok(None) };
+        self.raw = line.raw.clone();
+        let (command, echoes) = match &line.body {
+            Body::Closed(command) => (command.clone(), vec![]),
+            Body::Open(code) => {
+                let mut echoes = Vec::new();
+                let full = expand(code, vars, env, Some(&mut echoes))?;
+                (lex::command(&full)?.map(Arc::new), echoes)
+            }
+        };
+        let expanded = !echoes.is_empty();
+        Ok(Some(Line { raw: line.raw.clone(), echoes, command, expanded }))
+    }
+
+    /// The next logical line of whatever is on top.
+    fn pull(&mut self, sources: &Sources) -> Result<Option<Arc<Prepared>>> {
+        loop {
+            match self.frames.last_mut() {
+                None => return Ok(None),
+                Some(Frame::Commands { queue, speculative }) => {
+                    self.speculative = *speculative;
+                    if let Some(w) = queue.pop_front() {
+                        self.raw = w.text.as_str().into();
+                        let line = lex::standalone(Mapped::whole(&w.text, w.span, w.origin, w.unknown))?;
+                        return prepared(line).map(|l| Some(Arc::new(l)));
+                    }
+                }
+                Some(Frame::File { file, at }) => {
+                    self.speculative = false;
+                    let (file, start) = (*file, *at);
+                    if let Some(line) = self.known.get(&file).and_then(|k| k.lines.get(&start)) {
+                        *at = line.next;
+                        return Ok(Some(line.clone()));
+                    }
+                    if let Some(line) = self.read(sources, file, start)? {
+                        return Ok(Some(line));
+                    }
+                }
+            }
+            self.frames.pop();
+        }
+    }
+
+    /// Reads the line of the topmost file that starts at byte `start`.
+    fn read(&mut self, sources: &Sources, file: FileId, start: usize) -> Result<Option<Arc<Prepared>>> {
+        let text = sources.get(file).map_or("", |s| s.text.as_str());
+        // behind the physical line, should the logical one be unreadable
+        let line = text.get(start..).unwrap_or("");
+        let end = line.find('\n').unwrap_or(line.len());
+        self.move_to((start + end + 1).min(text.len()));
+        if !line.is_empty() {
+            self.raw = line[..end].into();
+        }
+        let Some(line) = lex::logical(text, file, start)? else { return Ok(None) };
+        self.move_to(line.next);
+        let line = Arc::new(prepared(line)?);
+        if let Some(known) = self.known.get_mut(&file) {
+            known.lines.insert(start, line.clone());
+        }
+        Ok(Some(line))
+    }
+
+    fn move_to(&mut self, byte: usize) {
+        if let Some(Frame::File { at, .. }) = self.frames.last_mut() {
+            *at = byte;
+        }
+    }
+
+    /// Notes that lines of a file come back.
+    pub(super) fn comes_back(&mut self, file: FileId) {
+        self.known.entry(file).or_default();
+    }
+
+    /// The byte behind the first `label` line with this name; `None` if there is none.
+    ///
+    /// # Errors
+    /// A line before it that cannot be read.
+    pub(super) fn behind_label(
+        &mut self,
+        name: &str,
+        file: FileId,
+        sources: &Sources,
+    ) -> Result<Option<usize>> {
+        let known = self.known.entry(file).or_default();
+        if let Some(labels) = &known.labels {
+            return Ok(labels.get(name).copied());
+        }
+        let text = sources.get(file).map_or("", |s| s.text.as_str());
+        let mut labels = BTreeMap::new();
+        let mut at = 0;
+        loop {
+            let line = match lex::logical(text, file, at) {
+                Ok(Some(line)) => line,
+                Ok(None) => break,
+                // a line that cannot be read hides what stands behind it
+                Err(e) => return labels.get(name).map_or(Err(e), |at| Ok(Some(*at))),
+            };
+            at = line.next;
+            if let Some(label) = label_of(&line) {
+                labels.entry(label).or_insert(at);
+            }
+        }
+        let found = labels.get(name).copied();
+        known.labels = Some(Arc::new(labels));
+        Ok(found)
+    }
+
+    /// The file that is being read.
+    pub(super) fn file(&self) -> Option<(usize, FileId)> {
+        self.frames.iter().enumerate().rev().find_map(|(k, f)| match f {
+            Frame::File { file, .. } => Some((k, *file)),
+            Frame::Commands { .. } => None,
+        })
+    }
+}
+
+/// Takes a line apart, into words if no value has to be put in.
+fn prepared(line: Logical) -> Result<Prepared> {
+    let code = line.text.head(line.code);
+    let open = code.text.contains('$');
+    let body = if open { Body::Open(code) } else { Body::Closed(lex::command(&code)?.map(Arc::new)) };
+    Ok(Prepared { raw: line.text.text.into(), body, next: line.next })
+}
+
+/// The name that a `label` line gives; as in LAMMPS no values are put in.
+fn label_of(line: &Logical) -> Option<String> {
+    let code = line.text.text.get(..line.code)?;
+    let mut words = code.split_whitespace();
+    if words.next() != Some("label") {
+        return None;
+    }
+    let name = words.next()?;
+    Some(name.trim_matches(|c| c == '"' || c == '\'').to_owned())
+}

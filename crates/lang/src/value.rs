@@ -1,0 +1,108 @@
+//! Values of formulas, and what a formula asks of the world around it.
+
+use super::reference::ValueRef;
+use super::vars::Vars;
+use perigrain_base::diag::{Code, Result, Span, fail};
+
+/// Time as formulas see it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Clock {
+    /// The present step.
+    pub step: i64,
+    /// The step at which the current (or last) run began, or its `start`.
+    pub begin: i64,
+    /// The step at which the current (or last) run ends, or its `stop`.
+    pub end: i64,
+    /// The time step.
+    pub dt: f64,
+    /// Whether a run is going on; `ramp` rests at its first value otherwise.
+    pub running: bool,
+}
+
+/// What a formula yields.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// Not known before the run (`check` mode only); whatever is computed from it is unknown too.
+    Unknown,
+    /// One number.
+    Number(f64),
+    /// A global vector.
+    Vector(Vec<f64>),
+    /// One number per particle.
+    Atom(Vec<f64>),
+}
+
+impl Value {
+    /// What the value is, for messages.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Value::Unknown => "an unknown value",
+            Value::Number(_) => "a number",
+            Value::Vector(_) => "a global vector",
+            Value::Atom(_) => "one value per particle",
+        }
+    }
+}
+
+/// A question about the session: `is_active(category,name)` and its kin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Question {
+    /// `is_active`: is it in use?
+    Active,
+    /// `is_available`: could it be used?
+    Available,
+    /// `is_defined`: has the deck defined it?
+    Defined,
+}
+
+/// The world as formulas see it.
+///
+/// `vars` is the variable table of the formula at hand: what is computed for it may read variables too.
+pub trait Env {
+    /// A thermo keyword (`step`, `pe`, `vol` …); `None` if there is no such keyword.
+    fn keyword(&mut self, name: &str, vars: &Vars) -> Option<Result<Value>>;
+    /// The value of a compute or fix.
+    fn reference(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value>;
+    /// The same in a formula of one value per particle: where there are both, the particles' own values.
+    fn of_particles(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value> {
+        self.reference(r, vars)
+    }
+    /// The whole global vector of a compute or fix; with an index, that column of its global array.
+    fn vector(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value> {
+        self.reference(r, vars)
+    }
+    /// One particle's `x`, `vx`, `mass`, `type` …; `tag` counts from 1.
+    fn particle(&mut self, attribute: &str, tag: usize, span: Span) -> Result<Value>;
+    /// An attribute of every particle, in storage order; `None` if there is no such attribute.
+    fn column(&mut self, attribute: &str) -> Option<Result<Vec<f64>>>;
+    /// `count(group)`, `xcm(group,dim[,region])` …; number and form of the arguments have been checked.
+    fn group_function(&mut self, name: &str, args: &[String], span: Span, vars: &Vars) -> Result<Value>;
+    /// For every particle 1 if it is in the group and in the region, else 0.
+    fn mask(&mut self, _group: Option<&str>, _region: Option<&str>, span: Span, _: &Vars) -> Result<Value> {
+        fail(Code::WRONG_ORDER, span, "there are no particles here")
+    }
+    /// `extract_setting(name)`; `None` if there is no such setting.
+    fn setting(&self, _name: &str) -> Option<Value> {
+        None
+    }
+    /// `is_active`, `is_available`, `is_defined`; variables are looked up by the caller.
+    fn answer(&self, _question: Question, _category: &str, _name: &str, span: Span) -> Result<bool> {
+        fail(Code::UNKNOWN_NAME, span, "there is no scene here")
+    }
+    /// What a fix has set an internal-style variable to in the run going on.
+    fn control(&self, _name: &str) -> Option<f64> {
+        None
+    }
+    /// Whether the limit of `timer timeout` has passed.
+    fn timed_out(&self) -> bool {
+        false
+    }
+    /// The present step and run.
+    fn clock(&self) -> Clock;
+    /// How many particles there are.
+    fn natoms(&self) -> usize;
+    /// Every thermo keyword, for "did you mean".
+    fn keywords(&self) -> Vec<&str> {
+        vec![]
+    }
+}

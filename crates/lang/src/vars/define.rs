@@ -1,0 +1,238 @@
+//! The `variable` command: what each style reads, and LAMMPS' rules for names that exist.
+
+use super::files::{AtomFile, Lines};
+use super::{Data, Kind, Variable, Vars, bad_name, is_name};
+use crate::args::{Args, blame};
+use crate::command::{Command, Word};
+use crate::flow::Files;
+use crate::substitute::{float_format, substitute_known};
+use crate::value::Env;
+use perigrain_base::diag::{Code, Result, Span, fail, nearest};
+use perigrain_base::math::cformat::Spec;
+use std::time::Instant;
+
+const STYLES: &[(&str, Kind)] = &[
+    ("index", Kind::Index),
+    ("loop", Kind::Loop),
+    ("world", Kind::World),
+    ("universe", Kind::Universe),
+    ("uloop", Kind::Uloop),
+    ("string", Kind::Text),
+    ("getenv", Kind::Getenv),
+    ("file", Kind::File),
+    ("atomfile", Kind::Atomfile),
+    ("format", Kind::Format),
+    ("equal", Kind::Equal),
+    ("atom", Kind::Atom),
+    ("vector", Kind::Vector),
+    ("timer", Kind::Timer),
+    ("internal", Kind::Internal),
+];
+
+/// What `timer` variables count from.
+static BIRTH: std::sync::LazyLock<Instant> = std::sync::LazyLock::new(Instant::now);
+
+impl Vars {
+    /// The `variable` command.
+    pub fn define(&mut self, command: &Command, env: &mut dyn Env, files: &dyn Files) -> Result<()> {
+        let mut args = Args::new(command);
+        let name = args.expect("the variable's name")?;
+        if !is_name(&name.text) {
+            return Err(bad_name(&name.text).at(name.span).into());
+        }
+        let style = args.expect("a style such as equal, index or loop")?;
+        if style.text == "delete" {
+            args.finish()?;
+            self.remove(&name.text);
+            return Ok(());
+        }
+        let kind = kind_of(style)?;
+        let old = self.find(&name.text);
+        if old.is_some() && kind.stays() {
+            return Ok(());
+        }
+        if let Some(old) = old.filter(|v| v.kind != kind) {
+            let (name, old_kind) = (&name.text, old.kind.name());
+            let message = format!("variable `{name}` is of style {old_kind} already");
+            let mut d = blame(style, Code::DUPLICATE_NAME, message)
+                .help(format!("`variable {name} delete` first, or choose another name"));
+            if let Some(span) = old.span {
+                d = d.label(span, "defined here");
+            }
+            return Err(d.into());
+        }
+        let mut variable = self.read(kind, args, env, files)?;
+        variable.unknown |= command.args.iter().any(|w| w.unknown);
+        variable.span = Some(command.span);
+        self.put(&name.text, variable);
+        Ok(())
+    }
+
+    /// Reads what follows the style.
+    fn read(&self, kind: Kind, mut args: Args<'_>, env: &mut dyn Env, files: &dyn Files) -> Result<Variable> {
+        let mut unknown = false;
+        let data = match kind {
+            Kind::Index | Kind::Universe => {
+                args.clone().expect("at least one value")?;
+                let span = args.here();
+                let values: Vec<String> = args.rest().iter().map(|w| w.text.clone()).collect();
+                self.same_turns(kind, values.len() as i64, span)?;
+                Data::List { values: values.into(), at: 0 }
+            }
+            Kind::World => {
+                let value = args.expect("the value for the one partition there is")?;
+                Data::Text(value.text.clone())
+            }
+            Kind::Loop => read_loop(&mut args, true)?,
+            Kind::Uloop => {
+                let span = args.here();
+                let data = read_loop(&mut args, false)?;
+                if let Data::Range { last, .. } = data {
+                    self.same_turns(kind, last, span)?;
+                }
+                data
+            }
+            Kind::Text => {
+                let word = args.expect("the text, in quotes if it holds spaces")?;
+                let value = substitute_known(&word.text, word.span, self, env)?;
+                unknown = value.unknown;
+                Data::Text(value.text)
+            }
+            Kind::Getenv => Data::Getenv(args.expect("the environment variable's name")?.text.clone()),
+            Kind::File | Kind::Atomfile => {
+                let path = args.expect("a file name")?;
+                match read_file(kind, path, files)? {
+                    Some(data) => data,
+                    None => {
+                        unknown = true;
+                        Data::Text(String::new())
+                    }
+                }
+            }
+            Kind::Format => self.read_format(&mut args)?,
+            Kind::Equal | Kind::Atom | Kind::Vector => {
+                args.clone().expect("a formula")?;
+                let (text, span) = joined(args.rest());
+                Data::Formula(self.formula(&text, span)?)
+            }
+            Kind::Timer => Data::Number(BIRTH.elapsed().as_secs_f64()),
+            Kind::Internal => Data::Number(args.number("the value")?),
+        };
+        args.finish()?;
+        Ok(Variable { unknown, ..Variable::new(kind, data) })
+    }
+
+    /// Partitions take from all universe and uloop variables together, so that their lengths must agree.
+    fn same_turns(&self, kind: Kind, turns: i64, span: Span) -> Result<()> {
+        if kind == Kind::Index {
+            return Ok(());
+        }
+        for (name, v) in self.table.iter() {
+            let other = match (&v.data, v.kind) {
+                (Data::List { values, .. }, Kind::Universe) => values.len() as i64,
+                (Data::Range { last, .. }, Kind::Uloop) => *last,
+                _ => continue,
+            };
+            if other != turns && !v.unknown {
+                let message = format!(
+                    "universe and uloop variables must have equally many values: `{name}` has {other}, this one {turns}"
+                );
+                return fail(Code::CONFLICT, span, message);
+            }
+        }
+        Ok(())
+    }
+
+    fn read_format(&self, args: &mut Args<'_>) -> Result<Data> {
+        let of = args.expect("the equal-style variable to format")?;
+        match self.kind(&of.text) {
+            Some(Kind::Equal | Kind::Timer | Kind::Internal) => {}
+            Some(k) => {
+                let message = format!(
+                    "`{}` is of style {}; an equal, timer or internal variable is needed",
+                    of.text,
+                    k.name()
+                );
+                return Err(blame(of, Code::WRONG_KIND, message).into());
+            }
+            None => return Err(self.unknown(&of.text, of.span).into()),
+        }
+        let format = args.expect("a format such as %.6g")?;
+        float_format(&format.text, format.span)?;
+        let Ok(spec) = Spec::parse(&format.text) else {
+            let message = format!("`{}` holds more than a conversion such as %.6g", format.text);
+            return Err(blame(format, Code::SYNTAX, message).into());
+        };
+        if spec.plus || spec.alternate || format.text.contains(['l', 'L']) {
+            let message = format!("`{}` has a flag or length that is not taken here", format.text);
+            let d = blame(format, Code::FORMAT, message);
+            return Err(d.help("write %, then `-` or `0`, a width and a precision, as %-10.4g").into());
+        }
+        Ok(Data::Format { name: of.text.clone(), format: format.text.clone() })
+    }
+}
+
+/// The kind a style word names.
+fn kind_of(style: &Word) -> Result<Kind> {
+    if let Some((_, kind)) = STYLES.iter().find(|(name, _)| *name == style.text) {
+        return Ok(*kind);
+    }
+    if style.text == "python" {
+        let d = blame(style, Code::NOT_SUPPORTED, "perigrain has no Python inside, so no python variables");
+        return Err(d.help("compute the value outside and pass it by `-var NAME value`").into());
+    }
+    let d = blame(style, Code::UNKNOWN_STYLE, format!("`{}` is no style of variable", style.text));
+    let names: Vec<&str> = STYLES.iter().map(|(n, _)| *n).chain(["delete"]).collect();
+    Err(match nearest(&style.text, names.iter().copied()) {
+        Some(n) => d.help(format!("did you mean `{n}`?")),
+        None => d.help(format!("one of {}", names.join(" "))),
+    }
+    .into())
+}
+
+/// The content of a file; `None` if it is not there yet but will be (`check` mode).
+fn read_file(kind: Kind, path: &Word, files: &dyn Files) -> Result<Option<Data>> {
+    if path.unknown {
+        return Ok(None);
+    }
+    let text = match files.read(&path.text) {
+        Ok(text) => text,
+        Err(_) if files.comes_later(&path.text) => return Ok(None),
+        Err(e) => return Err(crate::flow::unreadable(path, &e).into()),
+    };
+    Ok(Some(match kind {
+        Kind::File => Data::Lines(Lines::read(&path.text, &text, path.span)?),
+        _ => Data::Atoms(AtomFile::read(&path.text, &text, path.span)?),
+    }))
+}
+
+/// `loop N [pad]`, and where `from` is allowed `loop N1 N2 [pad]`.
+fn read_loop(args: &mut Args<'_>, from: bool) -> Result<Data> {
+    let mut span = args.here();
+    let mut bounds = vec![args.integer("the last number of the loop")?];
+    if from && args.peek().is_some_and(|w| w.text != "pad") {
+        span = span.to(args.here());
+        bounds.push(args.integer("the last number of the loop, or pad")?);
+    }
+    let pad = args.eat("pad");
+    let (now, last) = if bounds.len() == 1 { (1, bounds[0]) } else { (bounds[0], bounds[1]) };
+    if last < now || last < 0 {
+        return fail(Code::BAD_VALUE, span, format!("a loop from {now} to {last} has no turns"));
+    }
+    let width = if pad { last.to_string().len() } else { 0 };
+    Ok(Data::Range { now, last, width })
+}
+
+/// Several words as one formula that stands where they stand, with their distances if they fit.
+fn joined(words: &[Word]) -> (String, Span) {
+    let (Some(first), Some(last)) = (words.first(), words.last()) else {
+        return (String::new(), Span::default());
+    };
+    let mut text = first.text.clone();
+    for pair in words.windows(2) {
+        let gap = (pair[1].span.start as usize).saturating_sub(pair[0].span.end as usize);
+        text.push_str(&" ".repeat(gap.clamp(1, 1000)));
+        text.push_str(&pair[1].text);
+    }
+    (text, first.span.to(last.span))
+}

@@ -1,0 +1,113 @@
+//! Variables with several values: `next`, and `next()` in formulas.
+
+use super::{Data, Kind, Variable, Vars};
+use crate::args::blame;
+use crate::command::Word;
+use crate::expr::Trail;
+use crate::reference::{RefKind, ValueRef};
+use crate::value::{Env, Value};
+use perigrain_base::diag::{Code, Result, Span, fail};
+use std::sync::Arc;
+
+impl Variable {
+    /// Its list or file has come to an end (by `next()` inside a formula).
+    pub fn exhausted(&self) -> bool {
+        match &self.data {
+            Data::Lines(l) => l.is_over(),
+            Data::Atoms(a) => a.is_over(),
+            _ => false,
+        }
+    }
+
+    /// Leaves the position in a file to those it was shared with, and goes on with one of its own.
+    pub fn detach(&mut self) {
+        match &mut self.data {
+            Data::Lines(l) => l.detach(),
+            Data::Atoms(a) => a.detach(),
+            _ => {}
+        }
+    }
+
+    /// Moves on; false if there is nothing further.
+    pub fn advance(&mut self) -> bool {
+        match &mut self.data {
+            Data::List { values, at } => {
+                *at += 1;
+                *at < values.len()
+            }
+            Data::Range { now, last, .. } => {
+                *now += 1;
+                *now <= *last
+            }
+            Data::Lines(l) => l.advance(),
+            Data::Atoms(a) => a.advance(),
+            _ => false,
+        }
+    }
+}
+
+impl Vars {
+    /// `next`: moves all of `names` on; true if one of them has no further value (it is then forgotten).
+    pub fn next(&mut self, names: &[Word]) -> Result<bool> {
+        let family = |k: Kind| if k == Kind::Uloop { Kind::Universe } else { k };
+        let mut first = None;
+        for name in names {
+            let Some(kind) = self.kind(&name.text) else {
+                return Err(self.unknown(&name.text, name.span).into());
+            };
+            if !kind.moves() {
+                let message = format!(
+                    "`{}` is of style {}; next moves index, loop, file, atomfile, universe and uloop variables",
+                    name.text,
+                    kind.name()
+                );
+                return Err(blame(name, Code::WRONG_KIND, message).into());
+            }
+            if *first.get_or_insert(family(kind)) != family(kind) {
+                return fail(Code::CONFLICT, name.span, "all variables of one next must have the same style");
+            }
+        }
+        let mut exhausted = false;
+        for name in names {
+            let Some(v) = Arc::make_mut(&mut self.table).get_mut(&name.text) else { continue };
+            self.state = self.state.wrapping_sub(v.state());
+            let more = v.advance();
+            let in_file = matches!(v.data, Data::Lines(_) | Data::Atoms(_));
+            self.state = self.state.wrapping_add(v.state());
+            if in_file {
+                self.event();
+            }
+            if !more {
+                self.remove(&name.text);
+                exhausted = true;
+            }
+        }
+        // all partitions of a universe end together
+        if exhausted && first == Some(Kind::Universe) {
+            names.iter().for_each(|n| self.remove(&n.text));
+        }
+        Ok(exhausted)
+    }
+
+    /// `next(name)` in a formula: the present value of a file- or atomfile-style variable, which then moves on.
+    pub(crate) fn take_next(&self, name: &str, span: Span, env: &mut dyn Env) -> Result<Value> {
+        let r = ValueRef { kind: RefKind::Variable, name: name.to_owned(), index: vec![], span };
+        let Some(variable) = self.find(name) else { return Err(self.unknown(name, span).into()) };
+        if variable.unknown {
+            return Ok(Value::Unknown);
+        }
+        if !matches!(variable.kind, Kind::File | Kind::Atomfile) {
+            let style = variable.kind.name();
+            let message = format!("next() moves file and atomfile variables; `{name}` is of style {style}");
+            return fail(Code::WRONG_KIND, span, message);
+        }
+        let value = self.reference(&r, env, &mut Trail::default())?;
+        self.event();
+        match &variable.data {
+            Data::Lines(l) => l.advance(),
+            Data::Atoms(a) => a.advance(),
+            _ => false,
+        };
+        Ok(value)
+    }
+}

@@ -1,0 +1,287 @@
+//! Neighbour lists: each pair once, within reach plus skin, in an order that only tags decide.
+
+use super::grid::{Grid, extent};
+use perigrain_base::par;
+
+/// How far two types of particles reach for each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reach {
+    /// R_i + R_j.
+    Touch,
+    /// R_i + R_j and this much more (cohesion) [length].
+    Beyond(f64),
+    /// A distance [length].
+    Fixed(f64),
+}
+
+/// Which pairs of types (from 1) are wanted and how far they reach; symmetric.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wanted {
+    types: usize,
+    reach: Vec<Option<Reach>>,
+}
+
+impl Wanted {
+    /// Nothing wanted yet.
+    pub fn new(types: usize) -> Self {
+        Self { types, reach: vec![None; types * types] }
+    }
+
+    /// Wants pairs of these types.
+    pub fn set(&mut self, a: u16, b: u16, reach: Reach) {
+        let (a, b) = (usize::from(a) - 1, usize::from(b) - 1);
+        self.reach[a * self.types + b] = Some(reach);
+        self.reach[b * self.types + a] = Some(reach);
+    }
+
+    /// How far these types reach, if they are wanted.
+    pub fn get(&self, a: u16, b: u16) -> Option<Reach> {
+        self.reach[(usize::from(a) - 1) * self.types + usize::from(b) - 1]
+    }
+
+    fn any(&self, a: u16) -> bool {
+        (1..=self.types as u16).any(|b| self.get(a, b).is_some())
+    }
+}
+
+/// What a list must know of the particles: columns of equal length and the box.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// Positions, wrapped into the box along periodic directions [length].
+    pub x: &'a [[f64; 3]],
+    /// Identities.
+    pub tag: &'a [u32],
+    /// Types, from 1.
+    pub kind: &'a [u16],
+    /// Radii; may be empty where no pair reaches by touch.
+    pub radius: &'a [f64],
+    /// Edge lengths of the box; zero where it does not repeat.
+    pub period: [f64; 3],
+}
+
+impl View<'_> {
+    fn radius(&self, i: usize) -> f64 {
+        self.radius.get(i).copied().unwrap_or(0.0)
+    }
+
+    /// x_i − (x_j + shift · period).
+    #[inline]
+    pub fn difference(&self, p: &Pair) -> [f64; 3] {
+        difference(self.x, &self.period, p)
+    }
+}
+
+/// x_i − (x_j + shift · period) for a pair of the list.
+#[inline]
+pub fn difference(x: &[[f64; 3]], period: &[f64; 3], p: &Pair) -> [f64; 3] {
+    let (a, b) = (&x[p.i as usize], &x[p.j as usize]);
+    std::array::from_fn(|d| a[d] - (b[d] + f64::from(p.shift[d]) * period[d]))
+}
+
+/// Two particles, the one of smaller tag first, and which image of the second is meant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pair {
+    /// The particle of smaller tag.
+    pub i: u32,
+    /// The other.
+    pub j: u32,
+    /// How many periods j's image is away.
+    pub shift: [i8; 3],
+}
+
+/// Particles of one type and similar size: within a factor of two.
+struct Class {
+    kind: u16,
+    octave: i32,
+    members: Vec<u32>,
+    largest: f64,
+}
+
+/// Every wanted pair within reach plus `skin` that `keep(i, j)` lets pass, once, sorted by the two tags.
+///
+/// Types and sizes are searched class by class, the fewer among the more, so that a few big particles among
+/// many small ones cost what is near them and one look at every small one.
+pub fn pairs(
+    v: &View,
+    wanted: &Wanted,
+    skin: f64,
+    keep: &(impl Fn(usize, usize) -> bool + Sync),
+) -> Vec<Pair> {
+    let mut out = found(v, wanted, skin, 0.0, keep);
+    out.sort_by_key(|p| (v.tag[p.i as usize], v.tag[p.j as usize], p.shift));
+    out
+}
+
+/// Those of [`pairs`] in which one is beyond the sizes that are [`small`], in no order to rely on.
+pub fn pairs_of_large(
+    v: &View,
+    wanted: &Wanted,
+    skin: f64,
+    keep: &(impl Fn(usize, usize) -> bool + Sync),
+) -> Vec<Pair> {
+    found(v, wanted, skin, small(v.radius), keep)
+}
+
+/// The radius that small ones stay below: they fill two octaves from the smallest on.
+pub fn small(radius: &[f64]) -> f64 {
+    let least = par::best(radius, f64::INFINITY, |a, r| if r > 0.0 && r < a { r } else { a });
+    // The power of two at or below it: a number without its fraction.
+    let octave = f64::from_bits(least.to_bits() >> 52 << 52);
+    4.0 * octave
+}
+
+/// Pairs class by class, in which one is not below `small`.
+fn found(
+    v: &View,
+    wanted: &Wanted,
+    skin: f64,
+    small: f64,
+    keep: &(impl Fn(usize, usize) -> bool + Sync),
+) -> Vec<Pair> {
+    let classes = classes(v, wanted);
+    let mut out = vec![];
+    for (k, a) in classes.iter().enumerate() {
+        for b in classes[k..].iter().filter(|b| a.largest >= small || b.largest >= small) {
+            let Some(reach) = wanted.get(a.kind, b.kind) else { continue };
+            let (few, many) = if b.members.len() < a.members.len() { (b, a) } else { (a, b) };
+            out.append(&mut Search { v, few, many, reach, skin, keep }.run());
+        }
+    }
+    out
+}
+
+fn classes(v: &View, wanted: &Wanted) -> Vec<Class> {
+    let in_use: Vec<bool> = (1..=wanted.types as u16).map(|a| wanted.any(a)).collect();
+    let mut list: Vec<Class> = vec![];
+    let mut last = 0;
+    for (i, &kind) in v.kind.iter().enumerate() {
+        if !in_use[usize::from(kind) - 1] {
+            continue;
+        }
+        let r = v.radius(i);
+        // The exponent of a positive double; 0 for points.
+        let octave = if r > 0.0 { (r.to_bits() >> 52) as i32 } else { 0 };
+        let fits = |c: &Class| c.kind == kind && c.octave == octave;
+        if !list.get(last).is_some_and(fits) {
+            last = list.iter().position(fits).unwrap_or_else(|| {
+                list.push(Class { kind, octave, members: vec![], largest: 0.0 });
+                list.len() - 1
+            });
+        }
+        list[last].members.push(i as u32);
+        list[last].largest = list[last].largest.max(r);
+    }
+    list
+}
+
+/// The search of one class among another or itself.
+struct Search<'a, K> {
+    v: &'a View<'a>,
+    few: &'a Class,
+    many: &'a Class,
+    reach: Reach,
+    skin: f64,
+    keep: &'a K,
+}
+
+impl<K: Fn(usize, usize) -> bool + Sync> Search<'_, K> {
+    fn run(&self) -> Vec<Pair> {
+        let far = self.cutoff(self.few.largest, self.many.largest);
+        let alone = std::ptr::eq(self.few, self.many);
+        let nearby;
+        let targets = if alone {
+            &self.many.members
+        } else {
+            nearby = self.nearby(far);
+            &nearby
+        };
+        let mut grid = Grid::default();
+        grid.fill(self.v.x, targets, self.cutoff(self.many.largest, self.many.largest));
+        let images: [i32; 3] = std::array::from_fn(|d| match self.v.period[d] {
+            l if l > 0.0 => (far / l).ceil().min(127.0) as i32,
+            _ => 0,
+        });
+        let searchers = &self.few.members;
+        let some = |range: std::ops::Range<usize>| {
+            let mut found = vec![];
+            for &i in &searchers[range] {
+                self.around(i as usize, alone, &grid, images, &mut found);
+            }
+            found
+        };
+        let join = |mut a: Vec<Pair>, mut b: Vec<Pair>| {
+            a.append(&mut b);
+            a
+        };
+        par::reduce(searchers.len(), some, join).unwrap_or_default()
+    }
+
+    fn cutoff(&self, ri: f64, rj: f64) -> f64 {
+        self.skin
+            + match self.reach {
+                Reach::Touch => ri + rj,
+                Reach::Beyond(gap) => ri + rj + gap,
+                Reach::Fixed(c) => c,
+            }
+    }
+
+    /// Members of the larger class within `far` of the smaller one's bounding box (where nothing repeats).
+    fn nearby(&self, far: f64) -> Vec<u32> {
+        let (lo, hi) = extent(self.v.x, self.few.members.iter().copied());
+        let free = |d: usize| self.v.period[d] > 0.0;
+        let near = |m: &&u32| {
+            let p = &self.v.x[**m as usize];
+            (0..3).all(|d| free(d) || (p[d] >= lo[d] - far && p[d] <= hi[d] + far))
+        };
+        self.many.members.iter().filter(near).copied().collect()
+    }
+
+    /// All partners of particle `i` among the points of `grid` and their images.
+    fn around(&self, i: usize, alone: bool, grid: &Grid, images: [i32; 3], found: &mut Vec<Pair>) {
+        let (v, x) = (self.v, self.v.x[i]);
+        let ri = v.radius(i);
+        let far = self.cutoff(ri, self.many.largest);
+        for_images(images, |shift| {
+            let at: [f64; 3] = std::array::from_fn(|d| x[d] - f64::from(shift[d]) * v.period[d]);
+            let (lo, hi) = (at.map(|a| a - far), at.map(|a| a + far));
+            // Of a pair within one class the search meets both orders: keep one.
+            let forward = shift > [0; 3];
+            if alone && shift < [0; 3] {
+                return;
+            }
+            grid.near(&lo, &hi, |run| {
+                for &j in run {
+                    let j = j as usize;
+                    if alone && !forward && v.tag[i] >= v.tag[j] {
+                        continue;
+                    }
+                    let d: [f64; 3] = std::array::from_fn(|k| at[k] - v.x[j][k]);
+                    let cut = self.cutoff(ri, v.radius(j));
+                    if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < cut * cut && (self.keep)(i, j) {
+                        found.push(oriented(v.tag, i, j, shift));
+                    }
+                }
+            });
+        });
+    }
+}
+
+fn for_images(images: [i32; 3], mut f: impl FnMut([i8; 3])) {
+    for a in -images[0]..=images[0] {
+        for b in -images[1]..=images[1] {
+            for c in -images[2]..=images[2] {
+                f([a as i8, b as i8, c as i8]);
+            }
+        }
+    }
+}
+
+fn oriented(tag: &[u32], i: usize, j: usize, shift: [i8; 3]) -> Pair {
+    if tag[i] <= tag[j] {
+        return Pair { i: i as u32, j: j as u32, shift };
+    }
+    Pair { i: j as u32, j: i as u32, shift: shift.map(|s| -s) }
+}
+
+#[cfg(test)]
+mod tests;

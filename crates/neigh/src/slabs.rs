@@ -1,0 +1,380 @@
+//! Particles in the order of cells, and cells in slabs: the spatial order that granular loops and the world work in.
+
+use super::grid::extent;
+use super::list::small;
+use perigrain_base::par;
+use std::ops::Range;
+
+/// Layers of cells in a slab at least: fixed, because it decides the order in which forces are added up.
+const LAYERS: usize = 1;
+/// Largest radius in units of the smallest up to which one grid of cells serves all.
+const ALIKE: f64 = 4.0;
+/// Cells per particle at most; beyond that cells grow.
+const SPARSE: usize = 4;
+
+/// Points sorted by cell: along a fast axis, then a middle one, then a slow one; within a cell by tag. The order is a
+/// function of positions and tags alone.
+#[derive(Clone, Debug, Default)]
+pub struct Slabs {
+    /// Fast, middle and slow axis.
+    axes: [usize; 3],
+    /// Cells along these.
+    cells: [usize; 3],
+    /// Whether these repeat.
+    repeats: [bool; 3],
+    lo: [f64; 3],
+    per_length: [f64; 3],
+    /// Layers of cells in a slab, so that pairs of cells reach into the next slab at most, and so that all pairs do.
+    layers: [usize; 2],
+    /// First place of each cell, and the number of all places.
+    start: Vec<u32>,
+    /// The point at each place.
+    pub order: Vec<u32>,
+}
+
+/// A run of neighbouring places and the image they are seen in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// First place.
+    pub from: u32,
+    /// Past the last place.
+    pub to: u32,
+    /// The code of the image, see [`shift_of`].
+    pub image: u32,
+}
+
+/// How long the edges of cells should be, and how far pairs reach, for spheres whose surfaces are up to `more` apart.
+///
+/// Cells of spheres of about one size are as long as pairs reach, and neighbours are in neighbouring cells. Where sizes
+/// differ much, this holds for the [`small`] ones, and [`pairs_of_large`](super::list::pairs_of_large) finds the others.
+pub fn edges(radius: &[f64], more: f64) -> [f64; 2] {
+    let (least, most) = (par::best(radius, f64::INFINITY, f64::min), par::best(radius, 0.0, f64::max));
+    let reach = 2.0 * most + more;
+    if most <= ALIKE * least {
+        return [reach; 2];
+    }
+    let small = small(radius);
+    let larger = par::best(radius, 0.0, |a, r| if r < small && r > a { r } else { a });
+    [2.0 * larger + more, reach]
+}
+
+/// The image in which nothing is shifted.
+pub const HERE: u32 = perigrain_base::math::lanes::NO_SHIFT;
+
+/// How many periods an image is away along x, y and z.
+pub fn shift_of(image: u32) -> [f64; 3] {
+    [image % 3, image / 3 % 3, image / 9 % 3].map(|k| f64::from(k) - 1.0)
+}
+
+impl Slabs {
+    /// Sorts all points into cells of at least `edge`, for pairs that reach so far at most; `lo` and `period` describe the
+    /// box, `period` is zero where it does not repeat, and elsewhere at least the reach.
+    pub fn sort(
+        &mut self,
+        x: &[[f64; 3]],
+        tag: &[u32],
+        [edge, reach]: [f64; 2],
+        lo: &[f64; 3],
+        period: &[f64; 3],
+    ) {
+        self.lay_out(x, [edge, reach], lo, period);
+        let mut cell = vec![0; x.len()];
+        par::each((&mut cell[..], x), |_, (cell, x)| {
+            cell.iter_mut().zip(x).for_each(|(cell, x)| *cell = self.cell_of(x));
+        });
+        self.start.clear();
+        self.start.resize(self.cells.iter().product::<usize>() + 1, 0);
+        cell.iter().for_each(|&c| self.start[c as usize + 1] += 1);
+        for c in 1..self.start.len() {
+            self.start[c] += self.start[c - 1];
+        }
+        self.order.clear();
+        if cell.is_sorted() {
+            self.order.extend(0..x.len() as u32);
+        } else {
+            let mut next = self.start.clone();
+            self.order.resize(x.len(), 0);
+            for (i, &c) in cell.iter().enumerate() {
+                self.order[next[c as usize] as usize] = i as u32;
+                next[c as usize] += 1;
+            }
+        }
+        for c in self.start.windows(2) {
+            let members = &mut self.order[c[0] as usize..c[1] as usize];
+            if !members.is_sorted_by_key(|&i| tag[i as usize]) {
+                members.sort_unstable_by_key(|&i| tag[i as usize]);
+            }
+        }
+    }
+
+    /// Cells and slabs for all points, as [`Slabs::sort`] makes them, into which nobody is sorted.
+    pub fn laid_out(x: &[[f64; 3]], edges: [f64; 2], lo: &[f64; 3], period: &[f64; 3]) -> Self {
+        let mut slabs = Self::default();
+        slabs.lay_out(x, edges, lo, period);
+        slabs
+    }
+
+    /// The axis along which slabs follow each other.
+    pub fn slow_axis(&self) -> usize {
+        self.axes[2]
+    }
+
+    /// Slabs for pairs that reach into neighbouring cells.
+    pub fn near(&self) -> Cut<'_> {
+        Cut { of: self, layers: self.layers[0] }
+    }
+
+    /// Slabs for all pairs: where spheres are of about one size, the same ones.
+    pub fn far(&self) -> Cut<'_> {
+        Cut { of: self, layers: self.layers[1] }
+    }
+
+    /// The layer of cells that a point lies in.
+    pub fn layer_of(&self, x: &[f64; 3]) -> usize {
+        self.along(2, x)
+    }
+
+    /// Which cell along one of the axes, of which 2 is the slow one.
+    fn along(&self, k: usize, x: &[f64; 3]) -> usize {
+        // A float below zero becomes 0 in the cast.
+        (((x[self.axes[k]] - self.lo[k]) * self.per_length[k]) as usize).min(self.cells[k] - 1)
+    }
+
+    fn lay_out(&mut self, x: &[[f64; 3]], [edge, reach]: [f64; 2], lo: &[f64; 3], period: &[f64; 3]) {
+        let wider = |a: ([f64; 3], [f64; 3]), b: ([f64; 3], [f64; 3])| {
+            let with =
+                |f: fn(f64, f64) -> f64, a: [f64; 3], b: [f64; 3]| std::array::from_fn(|d| f(a[d], b[d]));
+            (with(f64::min, a.0, b.0), with(f64::max, a.1, b.1))
+        };
+        let of = |range: Range<usize>| extent(x, range.start as u32..range.end as u32);
+        let (from, to) = par::reduce(x.len(), of, wider).unwrap_or_else(|| extent(x, 0..0));
+        let open = |d: usize| period[d] == 0.0;
+        let origin: [f64; 3] = std::array::from_fn(|d| if open(d) { from[d] } else { lo[d] });
+        let length: [f64; 3] =
+            std::array::from_fn(|d| if open(d) { (to[d] - from[d]).max(0.0) } else { period[d] });
+        let room = (64 + SPARSE * x.len()) as f64;
+        let mut size = edge.max(f64::MIN_POSITIVE);
+        let count = loop {
+            let along = |d: usize| (length[d] / size).floor() + if open(d) { 1.0 } else { 0.0 };
+            let count = [0, 1, 2].map(|d| along(d).max(1.0));
+            let all = count[0] * count[1] * count[2];
+            if all <= room || x.is_empty() {
+                break count.map(|c| if x.is_empty() { 1 } else { c as usize });
+            }
+            size *= (all / room).cbrt().clamp(1.01, 1e100);
+        };
+        let far = if reach > size { LAYERS.max((reach / size).ceil() as usize) } else { LAYERS };
+        self.layers = [LAYERS, far];
+        // The slow axis: the longest of those that do not repeat, or the longest of all if these are thin.
+        let slow = |open_only: bool| (0..3).filter(|&d| !open_only || open(d)).max_by_key(|&d| count[d]);
+        let thin = |d: &usize| count[*d] < 4 * far;
+        let slowest = slow(true).filter(|d| !thin(d)).or(slow(false)).unwrap_or(2);
+        let mut rest = [0, 1, 2].into_iter().filter(|&d| d != slowest);
+        self.axes = [rest.next().unwrap_or(0), rest.next().unwrap_or(1), slowest];
+        self.cells = self.axes.map(|d| count[d]);
+        self.repeats = self.axes.map(|d| !open(d));
+        self.lo = self.axes.map(|d| origin[d]);
+        self.per_length = self.axes.map(|d| if open(d) { 1.0 / size } else { count[d] as f64 / length[d] });
+    }
+
+    fn cell_of(&self, x: &[f64; 3]) -> u32 {
+        let at = [0, 1, 2].map(|k| self.along(k, x));
+        ((at[2] * self.cells[1] + at[1]) * self.cells[0] + at[0]) as u32
+    }
+
+    /// The places of a cell.
+    pub fn places(&self, cell: usize) -> Range<usize> {
+        self.start[cell] as usize..self.start[cell + 1] as usize
+    }
+
+    /// The half neighbourhood of a cell beyond itself: every pair of neighbouring cells, each in each of its images,
+    /// occurs from one side only.
+    pub fn runs(&self, cell: usize, out: &mut Vec<Run>) {
+        out.clear();
+        let [nx, ny, _] = self.cells;
+        let at = [cell % nx, cell / nx % ny, cell / (nx * ny)];
+        self.row(at, [1..2, 0..1, 0..1], out);
+        self.row(at, [-1..2, 1..2, 0..1], out);
+        for y in -1..2 {
+            self.row(at, [-1..2, y..y + 1, 1..2], out);
+        }
+    }
+
+    /// Cells at offsets along the fast axis in one row.
+    fn row(&self, at: [usize; 3], [dx, dy, dz]: [Range<i32>; 3], out: &mut Vec<Run>) {
+        let wrapped = |k: usize, offset: i32| {
+            let (c, n) = (at[k] as i32 + offset, self.cells[k] as i32);
+            match self.repeats[k] {
+                _ if (0..n).contains(&c) => Some((c as usize, 0)),
+                true => Some((c.rem_euclid(n) as usize, c.div_euclid(n))),
+                false => None,
+            }
+        };
+        let (Some((y, sy)), Some((z, sz))) = (wrapped(1, dy.start), wrapped(2, dz.start)) else { return };
+        let row = (z * self.cells[1] + y) * self.cells[0];
+        // Within the row all cells are one run.
+        let (first, last) = (at[0] as i32 + dx.start, at[0] as i32 + dx.end - 1);
+        if (sy, sz) == (0, 0) && first >= 0 && (last as usize) < self.cells[0] {
+            let (from, to) = (self.start[row + first as usize], self.start[row + last as usize + 1]);
+            return out.push(Run { from, to, image: HERE });
+        }
+        for (x, sx) in dx.filter_map(|dx| wrapped(0, dx)) {
+            let mut shift = [0; 3];
+            (shift[self.axes[0]], shift[self.axes[1]], shift[self.axes[2]]) = (sx, sy, sz);
+            let image = (HERE as i32 + shift[0] + 3 * shift[1] + 9 * shift[2]) as u32;
+            let cell = row + x;
+            let run = Run { from: self.start[cell], to: self.start[cell + 1], image };
+            match out.last_mut() {
+                Some(last) if last.to == run.from && last.image == image => last.to = run.to,
+                _ => out.push(run),
+            }
+        }
+    }
+}
+
+/// Cells cut into slabs across the slow axis, some layers each.
+#[derive(Clone, Copy, Debug)]
+pub struct Cut<'a> {
+    of: &'a Slabs,
+    layers: usize,
+}
+
+impl Cut<'_> {
+    /// Number of slabs. Pairs of a slab lie in it or reach into the next one, of the last into the first where the slow axis
+    /// repeats; there are then an even number of slabs, or one.
+    pub fn count(&self) -> usize {
+        let slabs = (self.of.cells[2] / self.layers.max(1)).max(1);
+        if self.of.repeats[2] && slabs > 1 { slabs & !1 } else { slabs }
+    }
+
+    /// The slab that pairs of slab `k` reach into, if there is one.
+    pub fn next(&self, k: usize) -> Option<usize> {
+        let next = (k + 1) % self.count();
+        (next > k || self.of.repeats[2]).then_some(next)
+    }
+
+    /// The cells of slab `k`.
+    pub fn slab(&self, k: usize) -> Range<usize> {
+        let [nx, ny, layers] = self.of.cells;
+        let slabs = self.count();
+        k * layers / slabs * (nx * ny)..(k + 1) * layers / slabs * (nx * ny)
+    }
+
+    /// The places of slab `k`.
+    pub fn members(&self, k: usize) -> Range<usize> {
+        let cells = self.slab(k);
+        self.of.start[cells.start] as usize..self.of.start[cells.end] as usize
+    }
+
+    /// The slab of each layer of cells.
+    pub fn of_layers(&self) -> Vec<usize> {
+        let layer = self.of.cells[0] * self.of.cells[1];
+        (0..self.count()).flat_map(|k| vec![k; self.slab(k).len() / layer]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_base::math::rng::ParkMiller;
+    use std::collections::BTreeSet;
+
+    fn points(n: usize, box_: [f64; 3]) -> Vec<[f64; 3]> {
+        let mut random = ParkMiller::new(7);
+        (0..n).map(|_| box_.map(|l| l * random.uniform())).collect()
+    }
+
+    /// Pairs closer than `cut`, each with the image of the second, by looking at everything.
+    fn all(x: &[[f64; 3]], cut: f64, period: [f64; 3]) -> BTreeSet<(usize, usize, u32)> {
+        let mut found = BTreeSet::new();
+        for image in 0..27 {
+            let s = shift_of(image);
+            if (0..3).any(|d| period[d] == 0.0 && s[d] != 0.0) {
+                continue;
+            }
+            for (i, j) in (0..x.len()).flat_map(|i| (0..i).map(move |j| (i, j))) {
+                let square: f64 = (0..3).map(|d| (x[i][d] - x[j][d] - s[d] * period[d]).powi(2)).sum();
+                if square < cut * cut {
+                    found.insert((i, j, image));
+                }
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn every_pair_is_met_once_and_slabs_reach_only_into_the_next() {
+        let edges = [8.0, 3.2, 5.0];
+        let x = points(300, edges);
+        let tag: Vec<u32> = (0..300).map(|i| (i * 7919) % 300).collect();
+        for period in [[0.0; 3], edges, [8.0, 0.0, 0.0], [0.0, 3.2, 5.0]] {
+            let mut slabs = Slabs::default();
+            slabs.sort(&x, &tag, [1.0; 2], &[0.0; 3], &period);
+            let (mut found, mut runs) = (BTreeSet::new(), vec![]);
+            for k in 0..slabs.near().count() {
+                let next = slabs.near().slab((k + 1) % slabs.near().count());
+                for cell in slabs.near().slab(k) {
+                    let own = slabs.places(cell);
+                    let point = |at: usize| &x[slabs.order[at] as usize];
+                    assert!(own.clone().all(|at| slabs.near().of_layers()[slabs.layer_of(point(at))] == k));
+                    slabs.runs(cell, &mut runs);
+                    for i in own.clone() {
+                        let rest = Run { from: i as u32 + 1, to: own.end as u32, image: HERE };
+                        for r in runs.iter().chain([&rest]) {
+                            for j in r.from as usize..r.to as usize {
+                                let reach =
+                                    |c: &Range<usize>| c.clone().any(|c| slabs.places(c).contains(&j));
+                                assert!(reach(&slabs.near().slab(k)) || reach(&next));
+                                let (a, b) = (slabs.order[i] as usize, slabs.order[j] as usize);
+                                let entry = if a > b { (a, b, r.image) } else { (b, a, 26 - r.image) };
+                                assert!(found.insert(entry), "{entry:?} twice");
+                            }
+                        }
+                    }
+                }
+            }
+            let wanted = all(&x, 1.0, period);
+            assert!(wanted.len() > 500 && wanted.is_subset(&found), "{period:?}");
+        }
+    }
+
+    #[test]
+    fn slabs_of_small_cells_are_as_thick_as_pairs_reach() {
+        let x = points(3000, [9.0, 4.0, 3.0]);
+        let tag: Vec<u32> = (0..3000).collect();
+        for period in [[0.0; 3], [9.0, 4.0, 3.0]] {
+            let mut slabs = Slabs::default();
+            slabs.sort(&x, &tag, [0.3, 1.1], &[0.0; 3], &period);
+            let count = slabs.far().count();
+            assert!(count >= 4 && slabs.near().count() > count);
+            let of = |i: usize| {
+                let place = slabs.order.iter().position(|o| *o as usize == i).unwrap();
+                (0..count).find(|k| slabs.far().members(*k).contains(&place)).unwrap()
+            };
+            for (i, j, _) in all(&x[..300], 1.1, period) {
+                let (a, b) = (of(i), of(j));
+                assert!(a == b || (a + 1) % count == b || (b + 1) % count == a, "{a} {b}");
+            }
+        }
+        assert_eq!(edges(&[1.0, 4.0], 0.5), [8.5, 8.5]);
+        assert_eq!(edges(&[1.0, 3.9, 4.1], 0.5), [8.3, 8.7]);
+    }
+
+    #[test]
+    fn the_order_depends_on_places_and_tags_alone() {
+        let x = points(200, [3.0; 3]);
+        let tag: Vec<u32> = (0..200).collect();
+        let sorted = |x: &[[f64; 3]], tag: &[u32]| {
+            let mut s = Slabs::default();
+            s.sort(x, tag, [1.0; 2], &[0.0; 3], &[0.0; 3]);
+            s.order.iter().map(|&i| tag[i as usize]).collect::<Vec<_>>()
+        };
+        let (back, mixed): (Vec<_>, Vec<_>) = x.iter().copied().zip(tag.iter().copied()).rev().unzip();
+        assert_eq!(sorted(&x, &tag), sorted(&back, &mixed));
+        assert_eq!(sorted(&[], &[]), []);
+        // Far points do not cost memory.
+        let mut s = Slabs::default();
+        s.sort(&[[0.0; 3], [1e12, 3.0, 4.0]], &[1, 2], [1.0; 2], &[0.0; 3], &[0.0; 3]);
+        assert!(s.start.len() < 200);
+    }
+}

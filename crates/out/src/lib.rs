@@ -1,0 +1,32 @@
+//! What leaves the program: logs, tables, dumps, pictures.
+//!
+//! This room formats and writes; it computes nothing about the physics and takes plain slices and closures.
+
+pub mod binary;
+pub mod dump;
+pub mod file;
+pub mod formats;
+pub mod forms;
+pub mod image;
+pub mod log;
+pub mod restart;
+pub mod rows;
+pub mod sheet;
+pub mod table;
+pub mod thermo;
+pub mod vtu;
+
+use std::sync::OnceLock;
+
+pub use sheet::Sheet;
+
+use perigrain_base::par;
+
+/// Makes `n` things on all threads; they come back in order.
+fn make<T: Send + Sync>(n: usize, one: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let slots: Vec<OnceLock<T>> = (0..n).map(|_| OnceLock::new()).collect();
+    par::for_rows(n, |k| {
+        slots[k].get_or_init(|| one(k));
+    });
+    slots.into_iter().filter_map(OnceLock::into_inner).collect()
+}

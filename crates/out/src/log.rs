@@ -1,0 +1,290 @@
+//! The log: one handle for everything a run says, to the screen and to the log file.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::file;
+use super::rows::{Row, Tables};
+use perigrain_base::diag::Result;
+
+/// Where the lines of a deck are repeated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Echo {
+    /// Nowhere.
+    None,
+    /// On the screen.
+    Screen,
+    /// In the log file; LAMMPS' default.
+    #[default]
+    Log,
+    /// In both.
+    Both,
+}
+
+impl Echo {
+    /// Reads LAMMPS' words.
+    pub fn parse(word: &str) -> Option<Self> {
+        Some(match word {
+            "none" => Self::None,
+            "screen" => Self::Screen,
+            "log" => Self::Log,
+            "both" => Self::Both,
+            _ => return None,
+        })
+    }
+}
+
+/// A handle to the screen and the log file; clones write to the same places.
+#[derive(Clone)]
+pub struct Log(Arc<Mutex<Inner>>);
+
+struct Inner {
+    screen: Option<Box<dyn Write + Send>>,
+    file: Option<(PathBuf, BufWriter<File>)>,
+    echo: Echo,
+    /// Rows of step tables, once somebody wants them kept.
+    tables: Option<Tables>,
+}
+
+impl std::fmt::Debug for Log {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let inner = self.inner();
+        f.debug_struct("Log")
+            .field("screen", &inner.screen.is_some())
+            .field("file", &inner.file.as_ref().map(|(path, _)| path))
+            .field("echo", &inner.echo)
+            .finish()
+    }
+}
+
+impl Log {
+    /// A log with this screen (`None`: silent) and no file yet.
+    pub fn new(screen: Option<Box<dyn Write + Send>>) -> Self {
+        Self(Arc::new(Mutex::new(Inner { screen, file: None, echo: Echo::default(), tables: None })))
+    }
+
+    /// A log that goes nowhere.
+    pub fn silent() -> Self {
+        Self::new(None)
+    }
+
+    /// A log on the standard output.
+    pub fn stdout() -> Self {
+        Self::new(Some(Box::new(std::io::stdout())))
+    }
+
+    /// Replaces the screen, for instance by one that makes room for a progress bar.
+    pub fn set_screen(&self, screen: Option<Box<dyn Write + Send>>) {
+        self.inner().screen = screen;
+    }
+
+    /// Switches to another log file, `log FILE [append]`; the old one is finished first.
+    pub fn open(&self, path: &Path, append: bool) -> Result<()> {
+        let mut inner = self.inner();
+        inner.close()?;
+        inner.file = Some((path.to_path_buf(), file::open(path, append)?));
+        Ok(())
+    }
+
+    /// Finishes the log file, `log none`.
+    pub fn close(&self) -> Result<()> {
+        self.inner().close()
+    }
+
+    /// The log file in use.
+    pub fn path(&self) -> Option<PathBuf> {
+        self.inner().file.as_ref().map(|(path, _)| path.clone())
+    }
+
+    /// Sets where the lines of a deck are repeated.
+    pub fn set_echo(&self, echo: Echo) {
+        self.inner().echo = echo;
+    }
+
+    /// Repeats a line of a deck where [`Log::set_echo`] said.
+    pub fn echo(&self, line: &str) -> Result<()> {
+        let mut inner = self.inner();
+        let echo = inner.echo;
+        if matches!(echo, Echo::Screen | Echo::Both) {
+            inner.say(line);
+        }
+        if matches!(echo, Echo::Log | Echo::Both) {
+            inner.record(line)?;
+        }
+        Ok(())
+    }
+
+    /// A line for screen and file.
+    pub fn line(&self, line: &str) -> Result<()> {
+        let mut inner = self.inner();
+        inner.say(line);
+        inner.record(line)
+    }
+
+    /// A line for the screen alone.
+    pub fn to_screen(&self, line: &str) {
+        self.inner().say(line);
+    }
+
+    /// A line for the file alone.
+    pub fn to_log(&self, line: &str) -> Result<()> {
+        self.inner().record(line)
+    }
+
+    /// From now on the rows of step tables are kept as numbers too.
+    pub fn keep_rows(&self) {
+        self.inner().tables.get_or_insert_default();
+    }
+
+    /// A row of a step table, kept if [`Log::keep_rows`] asked for it.
+    pub fn row(&self, make: impl FnOnce() -> (Vec<String>, Row)) {
+        if let Some(tables) = &mut self.inner().tables {
+            let (columns, row) = make();
+            tables.push(columns, row);
+        }
+    }
+
+    /// Looks at the rows kept, and may change them.
+    pub fn tables<T>(&self, look: impl FnOnce(&mut Tables) -> T) -> T {
+        look(self.inner().tables.get_or_insert_default())
+    }
+
+    /// Hands everything written so far to the system.
+    pub fn flush(&self) -> Result<()> {
+        self.inner().flush()
+    }
+
+    fn inner(&self) -> MutexGuard<'_, Inner> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Inner {
+    /// A screen that cannot be written (`| head`) is dropped; the file has it all.
+    fn say(&mut self, line: &str) {
+        if let Some(screen) = &mut self.screen
+            && writeln!(screen, "{line}").is_err()
+        {
+            self.screen = None;
+        }
+    }
+
+    /// A file that cannot be written is reported once and then dropped.
+    fn record(&mut self, line: &str) -> Result<()> {
+        let Some((_, file)) = &mut self.file else { return Ok(()) };
+        let outcome = writeln!(file, "{line}");
+        self.report(outcome)
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        if let Some(screen) = &mut self.screen
+            && screen.flush().is_err()
+        {
+            self.screen = None;
+        }
+        let Some((_, file)) = &mut self.file else { return Ok(()) };
+        let outcome = file.flush();
+        self.report(outcome)
+    }
+
+    fn report(&mut self, outcome: std::io::Result<()>) -> Result<()> {
+        let Err(e) = outcome else { return Ok(()) };
+        let path = self.file.take().map(|(path, _)| path).unwrap_or_default();
+        Err(file::trouble("write the log file", &path, &e).into())
+    }
+
+    fn close(&mut self) -> Result<()> {
+        self.flush()?;
+        self.file = None;
+        Ok(())
+    }
+}
+
+/// A screen that keeps what it is told, for tests and bindings.
+#[derive(Clone, Debug, Default)]
+pub struct Buffer(Arc<Mutex<Vec<u8>>>);
+
+impl Buffer {
+    /// What was written so far.
+    pub fn text(&self) -> String {
+        String::from_utf8_lossy(&self.0.lock().unwrap_or_else(PoisonError::into_inner)).into_owned()
+    }
+}
+
+impl Write for Buffer {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(path: &Path) -> String {
+        std::fs::read_to_string(path).unwrap()
+    }
+
+    #[test]
+    fn lines_go_where_they_should() {
+        let dir = tempfile::tempdir().unwrap();
+        let (a, b) = (dir.path().join("a.log"), dir.path().join("b.log"));
+        let screen = Buffer::default();
+        let log = Log::new(Some(Box::new(screen.clone())));
+        log.open(&a, false).unwrap();
+        log.clone().line("both").unwrap();
+        log.to_screen("screen");
+        log.to_log("file").unwrap();
+        log.echo("units si").unwrap();
+        log.open(&b, false).unwrap();
+        log.set_echo(Echo::Both);
+        log.echo("run 0").unwrap();
+        log.open(&a, true).unwrap();
+        log.set_echo(Echo::None);
+        log.echo("unseen").unwrap();
+        log.line("again").unwrap();
+        log.close().unwrap();
+        log.line("screen only").unwrap();
+        assert_eq!(read(&a), "both\nfile\nunits si\nagain\n");
+        assert_eq!(read(&b), "run 0\n");
+        assert_eq!(screen.text(), "both\nscreen\nrun 0\nagain\nscreen only\n");
+        assert_eq!(log.path(), None);
+    }
+
+    #[test]
+    fn a_file_that_fails_is_named_once() {
+        let log = Log::silent();
+        assert!(log.open(Path::new("/no/such/folder/x.log"), false).is_err());
+        if Path::new("/dev/full").exists() {
+            log.open(Path::new("/dev/full"), true).unwrap();
+            log.line("x").unwrap();
+            let problem = log.flush().unwrap_err().to_string();
+            assert!(problem.contains("/dev/full"), "{problem}");
+            log.line("goes on").unwrap();
+            log.flush().unwrap();
+        }
+    }
+
+    #[test]
+    fn a_screen_that_fails_is_dropped() {
+        struct Broken;
+        impl Write for Broken {
+            fn write(&mut self, _: &[u8]) -> std::io::Result<usize> {
+                Err(std::io::ErrorKind::BrokenPipe.into())
+            }
+            fn flush(&mut self) -> std::io::Result<()> {
+                Ok(())
+            }
+        }
+        let log = Log::new(Some(Box::new(Broken)));
+        log.line("x").unwrap();
+        assert!(log.0.lock().unwrap().screen.is_none());
+    }
+}

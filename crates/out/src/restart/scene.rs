@@ -1,0 +1,80 @@
+//! Whether a scene read from a restart file is sound, and whether it is still the scene of the file.
+
+use super::sum_of;
+use perigrain_world::{Resume, World};
+use std::collections::BTreeMap;
+
+/// What a scene just read says about itself.
+pub fn resume(w: &World, declared: Vec<String>) -> Resume {
+    let names = w.regions.keys().chain(w.materials.keys()).chain(w.memo.keys()).cloned();
+    let names = names.chain(w.columns.names()).collect();
+    let bits = w.groups.names().filter_map(|n| w.groups.find(n)).fold(0, |bits, g| bits | g.bit());
+    let new = Resume { declared, fingerprint: 0, bits, names };
+    Resume { fingerprint: fingerprint(w, &new), ..new }
+}
+
+/// A checksum over everything that forces, bonds and motion depend on, limited to the groups and names that `of` knows:
+/// what a deck defines besides does not count.
+pub fn fingerprint(w: &World, of: &Resume) -> u32 {
+    fn known<'a, T>(map: &'a BTreeMap<String, T>, of: &Resume) -> Vec<(&'a String, &'a T)> {
+        map.iter().filter(|(name, _)| of.names.contains(name)).collect()
+    }
+    let p = &w.particles;
+    let masks: Vec<u32> = p.mask.iter().map(|m| m & of.bits).collect();
+    let mut columns = w.columns.clone();
+    columns.split_off(|name| of.names.iter().any(|n| n == name));
+    let motion = (&p.tag, &p.kind, masks, &p.image, &p.x, &p.v, &p.f);
+    let matter = (&p.mass, &p.radius, &p.omega, &p.torque, &p.volume, &p.x0, &p.density, &p.molecule);
+    let c = &w.clock;
+    let clock = (c.step, c.dt, c.time_base, c.time_step);
+    let names = (known(&w.regions, of), known(&w.materials, of), known(&w.memo, of));
+    let scene = (&w.settings, &w.domain, p.style, w.types, &w.type_mass, &w.lattice);
+    sum_of(&(
+        clock,
+        scene,
+        motion,
+        matter,
+        columns,
+        names,
+        (&w.rebuild, &w.families, &w.contacts, &w.wall_contacts, &w.bonds.list, &w.bonds.weights),
+    ))
+}
+
+/// Columns of one length, types and bonds within bounds: what every loop relies on.
+///
+/// # Errors
+/// What does not fit.
+pub fn check(w: &World) -> Result<(), &'static str> {
+    let (p, n) = (&w.particles, w.particles.x.len());
+    let own = |there: bool, len: usize| len == if there { n } else { 0 };
+    let style = p.style;
+    let same = [p.tag.len(), p.kind.len(), p.mask.len(), p.v.len(), p.f.len(), p.mass.len()];
+    if same.iter().any(|len| *len != n)
+        || !own(style.sphere, p.radius.len())
+        || !own(style.sphere, p.omega.len())
+        || !own(style.sphere, p.torque.len())
+        || !own(style.peri, p.volume.len())
+        || !own(style.peri, p.x0.len())
+        || !own(style.own_mass(), p.density.len())
+        || !own(style.molecules, p.molecule.len())
+        || !p.image.are_for(n)
+        || !w.columns.have(n)
+    {
+        return Err("columns of particles differ in length");
+    }
+    if n > 0 && w.domain.is_none() {
+        return Err("there are particles without a box");
+    }
+    if w.type_mass.len() != w.types || p.kind.iter().any(|k| *k == 0 || usize::from(*k) > w.types) {
+        return Err("a particle's type is beyond the number of types");
+    }
+    if w.contacts.values().chain(w.wall_contacts.values()).any(|c| !c.sound()) {
+        return Err("contacts and their history differ in length");
+    }
+    let Some(f) = &w.families else { return Ok(()) };
+    let lengths = [f.place.len(), f.family_volume.len(), f.family_size.len(), f.hurt.len()];
+    if lengths.iter().any(|len| *len != n) || f.reference.as_ref().is_some_and(|r| r.len() != n) {
+        return Err("families and particles differ in number");
+    }
+    Ok(())
+}

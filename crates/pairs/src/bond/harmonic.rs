@@ -1,0 +1,140 @@
+//! bond harmonic: springs along bonds.
+
+use super::{BondForce, BondStyle, Pull, Stretched};
+use perigrain_base::diag::Result;
+use perigrain_base::math::cformat::general;
+use perigrain_lang::Args;
+use perigrain_plan::Op;
+use perigrain_styles::pull::{Along, Law};
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::World;
+use perigrain_world::adapted::Coefficient;
+use std::collections::BTreeMap;
+
+/// The style.
+pub struct HarmonicStyle;
+
+impl Style for HarmonicStyle {
+    fn name(&self) -> &'static str {
+        "harmonic"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "bond_style harmonic\nbond_coeff T K r0",
+            summary: "Springs along bonds.",
+            text: "E = K (r − r0)²: the usual ½ is in K [energy/length²], r0 is a length. The force at length r is 2 K (r − r0).",
+            example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
+                      create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\n\
+                      create_bonds single/bond 1 1 2\nbond_style harmonic\nbond_coeff 1 50.0 1.0\nfix 1 all nve\n\
+                      thermo_style custom step ebond\nrun 10",
+        }
+    }
+}
+
+impl BondStyle for HarmonicStyle {
+    fn build(&self, _args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn BondForce>> {
+        Ok(Box::<Harmonic>::default())
+    }
+}
+
+/// Stiffness and length at rest by type.
+#[derive(Clone, Default)]
+struct Harmonic {
+    springs: BTreeMap<u16, [f64; 2]>,
+}
+
+fn pull([k, r0]: [f64; 2], r: f64) -> Pull {
+    let stretch = r - r0;
+    let force = -2.0 * k * stretch;
+    Pull { energy: k * stretch * stretch, force_per_length: if r > 0.0 { force / r } else { 0.0 } }
+}
+
+/// Stiffness and length of a type as fixes have changed them.
+fn adapted(w: &World, kind: u16, [k, r0]: [f64; 2]) -> [f64; 2] {
+    let of = |name: &str| {
+        let (style, name, types) = ("harmonic".to_string(), name.to_string(), (kind, kind));
+        w.adapted(&Coefficient { bond: true, style, name, types })
+    };
+    [of("k").unwrap_or(k), of("r0").unwrap_or(r0)]
+}
+
+/// The springs of a run.
+struct Adapting {
+    /// As the deck's lines said.
+    said: Harmonic,
+    /// As fixes have changed them.
+    now: Harmonic,
+}
+
+impl Law for Adapting {
+    fn pull(&self, kind: u16, r: f64) -> Option<Pull> {
+        self.now.springs.get(&kind).map(|s| pull(*s, r))
+    }
+
+    fn adapt(&mut self, w: &World) {
+        self.now = self.said.clone();
+        for (kind, spring) in &mut self.now.springs {
+            *spring = adapted(w, *kind, *spring);
+        }
+    }
+}
+
+impl BondForce for Harmonic {
+    fn name(&self) -> &'static str {
+        "harmonic"
+    }
+
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        let spring = [args.number("the stiffness K")?, args.number("the length r0")?];
+        self.springs.extend(kinds.iter().map(|&k| (k, spring)));
+        Ok(())
+    }
+
+    fn covers(&self, kind: u16) -> bool {
+        self.springs.contains_key(&kind)
+    }
+
+    fn restrict(&mut self, kinds: &[u16]) {
+        self.springs.retain(|k, _| kinds.contains(k));
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let law = Adapting { said: self.clone(), now: self.clone() };
+        Ok(vec![Box::new(Along::new("bond harmonic", cx.span(), law))])
+    }
+
+    fn coefficients(&self) -> &'static [&'static str] {
+        &["k", "r0"]
+    }
+
+    fn coefficient(&self, name: &str, kind: u16) -> Option<f64> {
+        let [k, r0] = self.springs.get(&kind)?;
+        Some(if name == "k" { *k } else { *r0 })
+    }
+
+    fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
+        self.springs.get(&bond.kind).map(|s| pull(adapted(w, bond.kind, *s), bond.length()))
+    }
+
+    fn written(&self, kind: u16) -> Option<String> {
+        self.springs.get(&kind).map(|s| s.map(|a| general(a, 16)).join(" "))
+    }
+
+    fn boxed(&self) -> Box<dyn BondForce> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_force_is_the_slope_of_the_energy() {
+        let (spring, r, h) = ([7.0, 1.2], 1.5, 1e-6);
+        let slope = (pull(spring, r + h).energy - pull(spring, r - h).energy) / (2.0 * h);
+        // Central differences of a parabola are exact but for rounding, about 1e-16/1e-6.
+        assert!((pull(spring, r).force_per_length * r + slope).abs() < 1e-8);
+        assert_eq!(pull(spring, 1.2), Pull::default());
+    }
+}

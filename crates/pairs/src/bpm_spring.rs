@@ -1,0 +1,172 @@
+//! `pair_style bpm/spring`: damped repulsion of particles of bonded solids.
+
+use super::shared::{built_at, near, push};
+use super::{Pair, PairStyle, TypePairs};
+use perigrain_base::diag::Result;
+use perigrain_base::math::vec3::{dot, sub};
+use perigrain_lang::Args;
+use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference};
+use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::adapted::Coefficient;
+use perigrain_world::{Allowed, World};
+use std::collections::BTreeMap;
+
+/// The style.
+pub struct BpmSpringStyle;
+
+impl Style for BpmSpringStyle {
+    fn name(&self) -> &'static str {
+        "bpm/spring"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "pair_style bpm/spring\npair_coeff I J k rc gamma",
+            summary: "Damped repulsion within a distance, for particles of bonded solids.",
+            text: "F = k (rc − r) − γ (1 − (r/rc)⁸) r̂·v pushes particles apart while r < rc, with the energy k (rc − r)²/2. Bonded particles \
+                   are left out as `special_bonds` says. Every pair of types needs coefficients of its own (LAMMPS mixes).",
+            example: "pair_style bpm/spring\npair_coeff * * 1.0 0.0009 0.5",
+        }
+    }
+}
+
+impl PairStyle for BpmSpringStyle {
+    fn build(&self, _args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Pair>> {
+        Ok(Box::<Springs>::default())
+    }
+}
+
+/// Stiffness, cutoff and damping by pair of types.
+#[derive(Clone, Default)]
+struct Springs {
+    table: BTreeMap<(u16, u16), [f64; 3]>,
+}
+
+impl Springs {
+    /// With what fixes have made of it.
+    fn adapted(&self, w: &World) -> Self {
+        let mut new = self.clone();
+        for (&types, [k, _, gamma]) in &mut new.table {
+            let of = |name: &str| {
+                let (style, name) = (self.name().to_string(), name.to_string());
+                w.adapted(&Coefficient { bond: false, style, name, types })
+            };
+            *k = of("k").unwrap_or(*k);
+            *gamma = of("gamma").unwrap_or(*gamma);
+        }
+        new
+    }
+}
+
+impl Pair for Springs {
+    fn name(&self) -> &'static str {
+        "bpm/spring"
+    }
+
+    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        let k = args.non_negative("the stiffness k")?;
+        let spring = [k, args.positive("the cutoff rc")?, args.non_negative("the damping gamma")?];
+        self.table.extend(pairs.iter().map(|p| (*p, spring)));
+        Ok(())
+    }
+
+    fn covers(&self, i: u16, j: u16) -> bool {
+        self.table.contains_key(&(i.min(j), i.max(j)))
+    }
+
+    fn restrict(&mut self, pairs: &TypePairs) {
+        self.table.retain(|p, _| pairs.contains(p));
+    }
+
+    fn coefficients(&self) -> &'static [&'static str] {
+        &["k", "gamma"]
+    }
+
+    fn coefficient(&self, name: &str, types: (u16, u16)) -> Option<f64> {
+        let [k, _, gamma] = self.table.get(&types)?;
+        Some(if name == "k" { *k } else { *gamma })
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let mut wanted = Wanted::new(cx.world().types);
+        self.table.iter().for_each(|((a, b), s)| wanted.set(*a, *b, Reach::Fixed(s[1])));
+        Ok(vec![Box::new(Repulsion {
+            said: self.clone(),
+            law: self.clone(),
+            adapted: 0.0,
+            wanted,
+            made: None,
+            list: vec![],
+        })])
+    }
+
+    fn cutoff(&self, _w: &World) -> Option<f64> {
+        self.table.values().map(|c| c[1]).reduce(f64::max)
+    }
+
+    fn boxed(&self) -> Box<dyn Pair> {
+        Box::new(self.clone())
+    }
+}
+
+/// The op.
+struct Repulsion {
+    /// As the deck's lines said.
+    said: Springs,
+    /// As fixes have changed it.
+    law: Springs,
+    /// Which of their changes have been seen.
+    adapted: f64,
+    wanted: Wanted,
+    /// Rebuild and change of bonds at which the list was made.
+    made: Option<(u64, u64)>,
+    list: Vec<Near>,
+}
+
+impl Op for Repulsion {
+    fn name(&self) -> &str {
+        "pair bpm/spring"
+    }
+    fn stage(&self) -> Stage {
+        Stage::Force
+    }
+    fn access(&self) -> Access {
+        Access::new("x v type bonds", "f tally")
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let period = w.periods();
+        let now = (w.rebuild.generation, w.bonds.changes);
+        if t.setup || self.made != Some(now) {
+            self.list = near(w, built_at(w), &self.wanted, w.settings.neighbor.skin, &Allowed::new(w));
+            self.made = Some(now);
+        }
+        if self.adapted != w.adaptations() {
+            self.adapted = w.adaptations();
+            self.law = self.said.adapted(w);
+        }
+        let mut energy = 0.0;
+        for pair in &self.list {
+            let (i, j) = (pair.i as usize, pair.j as usize);
+            let p = &w.particles;
+            let kinds = (p.kind[i].min(p.kind[j]), p.kind[i].max(p.kind[j]));
+            let Some([k, cut, gamma]) = self.law.table.get(&kinds).copied() else { continue };
+            let d = difference(&p.x, &period, pair);
+            let square = dot(d, d);
+            if square >= cut * cut {
+                continue;
+            }
+            let r = square.sqrt();
+            let near = 1.0 - (r / cut).powi(2).powi(2).powi(2);
+            let v = sub(p.v[i], p.v[j]);
+            let force = (k * (cut - r) - gamma * dot(d, v) * near / r) / r;
+            let f = d.map(|d| d * force);
+            let own = 0.5 * k * (cut - r) * (cut - r);
+            energy += own;
+            push(w, t, [i, j], d, f, own);
+        }
+        if t.energy {
+            w.tally.add_pair("bpm/spring", energy);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,24 @@
+//! Granular models as decks write them: shared by pair styles and walls.
+
+pub mod classic;
+pub mod durations;
+pub mod words;
+
+use perigrain_base::diag::Span;
+use perigrain_contact::Model;
+use perigrain_contact::driver::{Average, Curvature};
+
+/// What one `pair_coeff` line says of its pairs of types, or a wall of its contacts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coeff {
+    /// The models.
+    pub model: Model,
+    /// Sharing among simultaneous contacts.
+    pub average: Average,
+    /// Effective radius.
+    pub curvature: Curvature,
+    /// The reach of the neighbour list by hand [length].
+    pub cutoff: Option<f64>,
+    /// The word with the normal model, for messages.
+    pub span: Span,
+}

@@ -1,0 +1,236 @@
+//! What touching grains do to each other at a moment, by the rules of any granular pair style.
+
+use super::granular::force::grains;
+use super::granular::reach::{largest, reaching};
+use super::shared::{built_at, find_frozen, near};
+use perigrain_base::diag::Result;
+use perigrain_base::math::vec3::{cross, dot, length, scale, sub};
+use perigrain_contact::bodies::solids;
+use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
+use perigrain_contact::{Advance, ContactLaw, Wrench};
+use perigrain_neigh::list::{Pair, Reach, Wanted, difference};
+use perigrain_styles::probe::{Ask, Balance, Interaction, OWN, Probe, Springs};
+use perigrain_world::contacts::Contacts;
+use perigrain_world::{Allowed, World};
+
+/// The numbers a granular style gives to each pair, in LAMMPS' order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Own {
+    /// `granular`: tangential force and its size, rolling force and its size, twisting torque, x_i − x_j.
+    Granular,
+    /// The same of plastic grains (`mdr`), and the mean area of contact of both sides.
+    Powder,
+    /// `gran/…`: tangential force and its size, relative velocity along and across the line of centres.
+    Gran,
+}
+
+/// Evaluates the contacts of one pair style.
+pub struct ContactProbe<L> {
+    name: &'static str,
+    rules: Rules<L>,
+    wanted: Wanted,
+    own: Own,
+    sweep: Sweep,
+    /// The list of a rebuild.
+    listed: Option<(u64, Vec<Pair>)>,
+}
+
+impl<L: ContactLaw> ContactProbe<L> {
+    /// Of the pairs of types that `wanted` names, with the contacts kept in the world under the style's name.
+    pub fn new(name: &'static str, rules: Rules<L>, wanted: Wanted, own: Own) -> Self {
+        Self { name, rules, wanted, own, sweep: Sweep::default(), listed: None }
+    }
+
+    /// Pairs that may touch: those of the neighbour list, as it was when lists were last rebuilt.
+    fn list(&self, w: &World) -> Vec<Pair> {
+        let wanted = reaching(&self.rules, &self.wanted, w);
+        near(w, built_at(w), &wanted, w.settings.neighbor.skin, &Allowed::new(w))
+    }
+
+    /// Evaluates all contacts at the present places and velocities, with the memory they have, and reads the outcome.
+    fn evaluated<T>(
+        &mut self,
+        w: &World,
+        ask: Ask,
+        read: impl FnOnce(&Grains, &Rules<L>, &Sweep, &Contacts) -> T,
+    ) -> Result<T> {
+        let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
+        let body = match &w.families {
+            Some(families) if asked => solids(families, w.n()),
+            _ => vec![],
+        };
+        let mut frozen = vec![];
+        find_frozen(w, &mut frozen);
+        let masses = w.contact_masses();
+        let grains = Grains { mass: &masses, ..grains(w, w.periods(), &body, &frozen)? };
+        let mut memory = w.contacts.get(self.name).cloned().unwrap_or_default();
+        let still = Advance { dt: w.clock.dt, history: false };
+        let stands = |(made, _): &(u64, Vec<Pair>)| *made == w.rebuild.generation && w.clock.running;
+        let list = match self.listed.take().filter(stands) {
+            Some((_, list)) => list,
+            None => self.list(w),
+        };
+        let rules = match ask {
+            Ask::Felt { setup } => &self.rules.again(setup),
+            Ask::Acting | Ask::Idle => &self.rules,
+        };
+        self.sweep.run(&list, &grains, rules, &mut memory, still);
+        self.listed = Some((w.rebuild.generation, list));
+        Ok(read(&grains, rules, &self.sweep, &memory))
+    }
+
+    /// Pairs of spheres closer than the largest of their types, or than the cutoff given by hand.
+    fn within_cutoffs(&self, w: &World) -> Vec<Pair> {
+        let largest = largest(w);
+        let mut wanted = Wanted::new(w.types);
+        for a in 1..=w.types as u16 {
+            for b in a..=w.types as u16 {
+                let touch = largest[usize::from(a) - 1] + largest[usize::from(b) - 1];
+                match self.wanted.get(a, b) {
+                    Some(Reach::Touch) => wanted.set(a, b, Reach::Fixed(touch)),
+                    Some(fixed) => wanted.set(a, b, fixed),
+                    None => {}
+                }
+            }
+        }
+        near(w, &w.particles.x, &wanted, 0.0, &Allowed::new(w))
+    }
+}
+
+impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn own(&self) -> usize {
+        match self.own {
+            Own::Granular => 12,
+            Own::Powder => 13,
+            Own::Gran => 10,
+        }
+    }
+
+    fn cutoff(&self, w: &World) -> Option<f64> {
+        // With what contacts that hold span beyond touch.
+        let (spans, largest) = (reaching(&self.rules, &self.wanted, w), largest(w));
+        let types = 1..=w.types as u16;
+        let pairs = types.clone().flat_map(|a| types.clone().map(move |b| (a, b)));
+        let reach = pairs.filter_map(|(a, b)| {
+            let touch = largest[usize::from(a) - 1] + largest[usize::from(b) - 1];
+            spans.get(a, b).map(|reach| match reach {
+                Reach::Touch => touch,
+                Reach::Beyond(gap) => touch + gap,
+                Reach::Fixed(r) => r,
+            })
+        });
+        reach.reduce(f64::max)
+    }
+
+    fn listed(&self, w: &World) -> Vec<[u32; 2]> {
+        self.list(w).iter().map(|p| [p.i, p.j]).collect()
+    }
+
+    fn look(&mut self, w: &World, ask: Ask) -> Result<Vec<Interaction>> {
+        let p = &w.particles;
+        let own = self.own;
+        let acting = self.evaluated(w, ask, |grains, _, sweep, memory| {
+            let mut all: Vec<_> =
+                sweep.contacts().map(|(pair, wrench)| interaction(grains, pair, wrench, own)).collect();
+            if own == Own::Powder {
+                // The last of what such contacts are told.
+                let rows = memory.history.chunks_exact(memory.width.max(1));
+                all.iter_mut().zip(rows).for_each(|(a, row)| a.own[12] = row.last().copied().unwrap_or(0.0));
+            }
+            all
+        })?;
+        if ask != Ask::Idle {
+            return Ok(acting);
+        }
+        let mut acting = acting.into_iter().peekable();
+        let mut all = vec![];
+        for pair in self.within_cutoffs(w) {
+            let key = |i: u32, j: u32| (p.tag[i as usize], p.tag[j as usize]);
+            while let Some(a) = acting.next_if(|a| key(a.i, a.j) < key(pair.i, pair.j)) {
+                all.push(a);
+            }
+            let d = difference(&p.x, &w.periods(), &pair);
+            all.push(match acting.next_if(|a| (a.i, a.j) == (pair.i, pair.j) && a.d == d) {
+                Some(a) => a,
+                None => Interaction { i: pair.i, j: pair.j, d, ..Interaction::default() },
+            });
+        }
+        all.extend(acting);
+        Ok(all)
+    }
+
+    fn springs(&mut self, w: &World) -> Result<Vec<Springs>> {
+        self.evaluated(w, Ask::Acting, |grains, rules, sweep, memory| {
+            let mut all = vec![];
+            sweep.each(grains, rules, memory, |c| {
+                let g = &c.geometry;
+                all.push(Springs {
+                    ends: [c.pair.i, c.pair.j],
+                    normal: g.normal,
+                    stiffness: c.law.springs(g).map(|k| c.share * k),
+                    arms: g.radii.map(|r| r - 0.5 * g.overlap),
+                });
+            });
+            all
+        })
+    }
+
+    fn balance(&mut self, w: &World) -> Result<Balance> {
+        self.evaluated(w, Ask::Felt { setup: false }, |grains, rules, sweep, memory| {
+            let mut sum = Balance::default();
+            sweep.each(grains, rules, memory, |c| {
+                let (i, j) = (c.pair.i as usize, c.pair.j as usize);
+                let (n, f) = (c.geometry.normal, c.wrench.force);
+                let stored = c.law.stored(&c.geometry, c.history);
+                let v = sub(grains.v[i], grains.v[j]);
+                let (along, central) = (dot(v, n), dot(f, n));
+                let turning =
+                    dot(c.wrench.torque_i, grains.omega[i]) + dot(c.wrench.torque_j, grains.omega[j]);
+                sum.stored[0] += c.share * stored.normal;
+                sum.stored[1] += c.share * stored.across;
+                sum.damping -= (central - c.share * stored.push) * along;
+                sum.across -= dot(f, v) - central * along + turning;
+            });
+            sum
+        })
+    }
+}
+
+fn interaction(grains: &Grains, pair: &Pair, wrench: &Wrench, own: Own) -> Interaction {
+    let (i, j) = (pair.i as usize, pair.j as usize);
+    let d = difference(grains.x, &grains.period, pair);
+    let distance = length(d);
+    let n = scale(1.0 / distance, d);
+    let across = sub(wrench.force, scale(dot(wrench.force, n), n));
+    let mut numbers = [0.0; OWN];
+    numbers[..3].copy_from_slice(&across);
+    numbers[3] = length(across);
+    match own {
+        Own::Granular | Own::Powder => {
+            // What the torque has beyond that of the tangential force, which acts in the middle of the overlap.
+            let radii = [grains.radius[i], grains.radius[j]];
+            let overlap = radii[0] + radii[1] - distance;
+            let rest = sub(wrench.torque_i, scale(radii[0] - 0.5 * overlap, cross(across, n)));
+            // Rounding of torques that cancel is no torque.
+            let torque = length(wrench.torque_i);
+            let rest = if length(rest) > 1e-12 * torque { rest } else { [0.0; 3] };
+            // The rolling torque is R n × F with R = R_i R_j / (R_i + R_j).
+            let rolling = scale((radii[0] + radii[1]) / (radii[0] * radii[1]), cross(rest, n));
+            numbers[4..7].copy_from_slice(&rolling);
+            numbers[7] = length(rolling);
+            numbers[8] = dot(rest, n);
+            numbers[9..12].copy_from_slice(&d);
+        }
+        Own::Gran => {
+            let relative = sub(grains.v[i], grains.v[j]);
+            let along = scale(dot(relative, n), n);
+            numbers[4..7].copy_from_slice(&along);
+            numbers[7..10].copy_from_slice(&sub(relative, along));
+        }
+    }
+    Interaction { i: pair.i, j: pair.j, d, force: wrench.force, energy: 0.0, own: numbers }
+}

@@ -1,0 +1,38 @@
+//! `pair_style gran/hooke/history`: the older granular style, one model for all pairs of types.
+
+use super::{Pair, PairStyle, granular};
+use perigrain_base::diag::Result;
+use perigrain_lang::Args;
+use perigrain_styles::{BuildCx, Doc, Style};
+
+/// The style.
+pub struct GranHookeHistory;
+
+impl Style for GranHookeHistory {
+    fn name(&self) -> &'static str {
+        "gran/hooke/history"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "pair_style gran/hooke/history Kn Kt|NULL gamma_n gamma_t|NULL xmu dampflag [limit_damping]",
+            summary: "Contacts of spheres: linear springs along and across the normal, damping, friction.",
+            text: "F_n = Kn δ − m̄ gamma_n v_n along the normal for an overlap δ > 0, m̄ = m_i m_j/(m_i + m_j); across \
+                   it F_t = −Kt ξ − m̄ gamma_t v_t, at most xmu |F_n|. ξ is the slip accumulated while the contact \
+                   lasts, without its part along the normal, and shortened to what slides.\n\n`NULL` stands for Kt = 2/7 \
+                   Kn and gamma_t = gamma_n/2; `dampflag` 0 sets gamma_t to 0, 1 keeps it. Torques act with the full \
+                   radii as arms. `limit_damping` keeps the normal force from pulling.\n\n`pair_coeff I J` has no words \
+                   of its own but must name all types. As a sub-style of hybrid it acts between the types it was named \
+                   for. What `fix freeze` holds counts as infinitely heavy.\n\npair_style granular has the same force \
+                   with `hooke … damping mass_velocity tangential linear_history_classic` and `hertz … tangential \
+                   mindlin_classic`, but with arms that end in the middle of the overlap.",
+            example: "pair_style gran/hooke/history 200000.0 NULL 50.0 NULL 0.5 0\npair_coeff * *",
+        }
+    }
+}
+
+impl PairStyle for GranHookeHistory {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
+        granular::classic(self.name(), false, true, args, cx)
+    }
+}

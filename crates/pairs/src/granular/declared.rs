@@ -1,0 +1,244 @@
+//! Granular pair styles with their coefficients: rules by pair of types, given or mixed.
+
+use super::force::{Force, conducts};
+use super::powder::Powder;
+use crate::contact::{Coeff, durations, words};
+use crate::contact_probe::{ContactProbe, Own};
+use crate::{Pair, TypePairs};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_contact::driver::{Average, Curvature, Rule, Rules};
+use perigrain_contact::powder::{Material, State};
+use perigrain_contact::{Damping, Granular, Model, Normal, Twisting};
+use perigrain_lang::Args;
+use perigrain_neigh::list::{Reach, Wanted};
+use perigrain_plan::Op;
+use perigrain_styles::probe::Probe;
+use perigrain_styles::{BuildCx, SealCx};
+use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
+use perigrain_world::{Compat, World};
+use std::collections::BTreeMap;
+
+/// A granular pair style with its coefficients.
+#[derive(Clone)]
+pub struct Declared {
+    /// The style; contact history is kept under its name.
+    name: &'static str,
+    cutoff: Option<f64>,
+    /// What all pairs of types get, where the style's own line says it all.
+    all: Option<Coeff>,
+    given: BTreeMap<(u16, u16), Coeff>,
+    /// As a sub-style: the pairs of types it acts on.
+    only: Option<Vec<(u16, u16)>>,
+}
+
+/// `pair_style gran/*`: one model for all pairs of types.
+///
+/// # Errors
+/// Every mistake in the line, and particles without a radius.
+pub fn classic(
+    name: &'static str,
+    hertz: bool,
+    history: bool,
+    args: &mut Args,
+    cx: &BuildCx,
+) -> Result<Box<dyn Pair>> {
+    needs_spheres(name, cx)?;
+    let span = args.here();
+    let numbers = crate::contact::classic::numbers(args, hertz, cx.world.settings.units)?;
+    let model = Model::classic(hertz, history, &numbers);
+    let (average, curvature, cutoff) = (Average::None, Curvature::Both, None);
+    let all = Some(Coeff { model, average, curvature, cutoff, span });
+    Ok(Box::new(Declared { all, ..Declared::new(name, None) }))
+}
+
+/// Refuses particles without a radius.
+pub fn needs_spheres(name: &str, cx: &BuildCx) -> Result<()> {
+    if cx.world.particles.style.sphere {
+        return Ok(());
+    }
+    let text = format!("pair_style {name} needs particles with a radius");
+    Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, text)
+        .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
+        .into())
+}
+
+impl Declared {
+    /// Without coefficients yet.
+    pub fn new(name: &'static str, cutoff: Option<f64>) -> Self {
+        Self { name, cutoff, all: None, given: BTreeMap::new(), only: None }
+    }
+
+    /// The law of a pair of types and its reach: given, or mixed from the like pairs.
+    fn rule(&self, i: u16, j: u16, compat: Compat) -> Result<Option<(Rule<Granular>, Reach)>> {
+        let reach = |c: Option<f64>| c.or(self.cutoff).map_or(Reach::Touch, Reach::Fixed);
+        if let Some(c) = self.given.get(&(i, j)) {
+            let rule = Rule { law: c.model.law(compat), average: c.average, curvature: c.curvature };
+            return Ok(Some((rule, reach(c.cutoff))));
+        }
+        let (Some(a), Some(b)) = (self.given.get(&(i, i)), self.given.get(&(j, j))) else { return Ok(None) };
+        let refuse = |one: &str, other: &str| {
+            let text = format!("types {i} and {j} cannot be mixed: `{one}` and `{other}` differ");
+            Diagnostic::error(Code::CONFLICT, b.span, text)
+                .label(a.span, "the other one")
+                .help(format!("give this pair a line of its own: `pair_coeff {i} {j} …`"))
+        };
+        if a.average != b.average || a.curvature != b.curvature {
+            return Err(refuse("average/curvature", "average/curvature").into());
+        }
+        let law = a.model.mixed(&b.model, compat).map_err(|e| refuse(e.0, e.1))?;
+        let cutoff = a.cutoff.zip(b.cutoff).map(|(p, q)| (p * q).sqrt());
+        Ok(Some((Rule { law, average: a.average, curvature: a.curvature }, reach(cutoff))))
+    }
+
+    /// A type whose Mindlin stiffness from its material is mixed with that of another material.
+    fn mixed_shear(&self) -> Option<&Coeff> {
+        let null = |c: &Coeff| c.model.tangential.stiffness.is_none();
+        let like = |k: &(u16, u16)| k.0 == k.1;
+        let types: Vec<_> = self.given.iter().filter(|(k, c)| like(k) && null(c)).collect();
+        let meets = |a: u16, b: u16| a < b && self.acts_on(a, b) && !self.given.contains_key(&(a, b));
+        let unlike = |a: &Coeff, b: &Coeff| a.model.normal.material() != b.model.normal.material();
+        let pairs = types.iter().flat_map(|a| types.iter().map(move |b| (a, b)));
+        pairs.into_iter().find(|(a, b)| meets(a.0.0, b.0.0) && unlike(a.1, b.1)).map(|(a, _)| a.1)
+    }
+
+    /// What plastic grains are made of: all of one kind, and nothing else in the style.
+    fn powder(&self) -> Result<Option<(Material, Span)>> {
+        let normal = |c: &Coeff| c.model.normal;
+        let Some(first) = self.given.values().find(|c| matches!(normal(c), Normal::Mdr { .. })) else {
+            return Ok(None);
+        };
+        let Normal::Mdr { material, .. } = normal(first) else { return Ok(None) };
+        let Some(other) = self.given.values().find(|c| normal(c) != normal(first)) else {
+            return Ok(Some((material, first.span)));
+        };
+        Err(Diagnostic::error(
+            Code::CONFLICT,
+            other.span,
+            "all pairs of types have the same normal model `mdr`, or none",
+        )
+        .label(first.span, "`mdr` here")
+        .help("write the same numbers for all: `pair_coeff * * mdr E nu Y gamma psi_b e …`")
+        .into())
+    }
+
+    fn acts_on(&self, i: u16, j: u16) -> bool {
+        self.only.as_ref().is_none_or(|pairs| pairs.contains(&(i, j)))
+    }
+
+    /// Rules and reaches of all pairs of types it acts on.
+    fn tables(&self, types: usize, compat: Compat) -> Result<(Rules<Granular>, Wanted)> {
+        let (mut rules, mut wanted) = (Rules::new(types), Wanted::new(types));
+        for i in 1..=types as u16 {
+            for j in i..=types as u16 {
+                if !self.acts_on(i, j) {
+                    continue;
+                }
+                if let Some((rule, reach)) = self.rule(i, j, compat)? {
+                    rules.set(i, j, rule);
+                    wanted.set(i, j, reach);
+                }
+            }
+        }
+        Ok((rules, wanted))
+    }
+}
+
+impl Pair for Declared {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        let coeff = match self.all {
+            Some(all) => all,
+            None => words::coeff(args, &[])?,
+        };
+        self.given.extend(pairs.iter().map(|&p| (p, coeff)));
+        Ok(())
+    }
+
+    fn declare(&self, w: &mut World) {
+        if self.given.values().any(|c| c.model.normal.plastic().is_some()) {
+            State::declare(w);
+        }
+    }
+
+    fn covers(&self, i: u16, j: u16) -> bool {
+        let has = |a: u16, b: u16| self.given.contains_key(&(a.min(b), a.max(b)));
+        has(i, j) || (has(i, i) && has(j, j))
+    }
+
+    fn restrict(&mut self, pairs: &TypePairs) {
+        self.only = Some(pairs.to_vec());
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let w = cx.world();
+        let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
+        let columns = &w.columns;
+        if conducts(&rules) && [TEMPERATURE, HEATFLOW].iter().any(|name| columns.custom(name).is_none()) {
+            let text = "contacts that conduct heat need particles with a temperature";
+            return Err(Diagnostic::error(Code::INCOMPLETE, cx.span(), text)
+                .help("add `fix ID all property/atom temperature heatflow` and `set group all temperature …`")
+                .into());
+        }
+        if let Some((material, span)) = self.powder()? {
+            // Walls look it up: pair styles are sealed before fixes.
+            cx.world().parts.plastic = self.given.values().find_map(|c| c.model.normal.plastic());
+            return Ok(vec![Box::new(Powder::new(self.name, rules, wanted, material, span))]);
+        }
+        Ok(vec![Box::new(Force::new(self.name, rules, wanted, cx.world().types))])
+    }
+
+    fn probes(&self, w: &World) -> Result<Vec<Box<dyn Probe>>> {
+        let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
+        let own = match self.name {
+            "granular" if self.powder()?.is_some() => Own::Powder,
+            "granular" => Own::Granular,
+            _ => Own::Gran,
+        };
+        Ok(vec![Box::new(ContactProbe::new(self.name, rules, wanted, own))])
+    }
+
+    fn contact_time(&self, w: &World, said: Option<(f64, f64)>) -> Option<f64> {
+        let rules = self.tables(w.types, w.settings.compat).ok()?.0;
+        durations::between_grains(w, &rules, said)
+    }
+
+    fn needs(&self) -> &'static [&'static str] {
+        &["diameter", "density"]
+    }
+
+    fn check(&self, cx: &BuildCx) {
+        let w = cx.world;
+        if let Err(e) = self.powder() {
+            e.0.into_iter().for_each(|d| cx.note(d));
+        }
+        if let Err(e) = self.tables(w.types, w.settings.compat) {
+            e.0.into_iter().for_each(|d| cx.note(d));
+        }
+        if !w.settings.lammps() {
+            return;
+        }
+        if let Some(c) = self.given.values().find(|c| c.model.damping == Damping::Tsuji) {
+            let text = "compat lammps: damping tsuji without its factor √2";
+            cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
+        }
+        if let Some(c) = self.given.values().find(|c| c.model.twisting != Twisting::None) {
+            let text = "compat lammps: a sliding twist takes the direction of the spin, not of its torque";
+            cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
+        }
+        if let Some(c) = self.mixed_shear() {
+            let text =
+                "compat lammps: shear stiffness of mixed type pairs from E* in the place of both moduli";
+            cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Pair> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests;

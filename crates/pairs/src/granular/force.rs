@@ -1,0 +1,380 @@
+//! The op of granular contacts: list when it is due, contacts, forces and torques.
+
+use super::super::shared::{add_virial, built_at, find_frozen, made_at, near};
+use super::reach::reaching;
+use perigrain_base::diag::Result;
+use perigrain_base::math::vec3::Vec3;
+use perigrain_base::par;
+use perigrain_contact::bodies::solids;
+use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
+use perigrain_contact::fast::{Fast, Frame, Laws, MOST_GRAINS, MOST_MEMORY};
+use perigrain_contact::{Advance, ContactLaw, Granular, Heat};
+use perigrain_neigh::list::{Pair, Reach, Wanted};
+use perigrain_neigh::slabs::{edges, shift_of};
+use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
+use perigrain_world::contacts::{Contacts, Deep};
+use perigrain_world::{Allowed, World};
+use std::borrow::Cow;
+use std::ops::Range;
+
+/// Forces and torques of all granular contacts of one pair style.
+pub struct Force {
+    rules: Rules<Granular>,
+    wanted: Wanted,
+    /// The style's name, under which contact history is kept in the world.
+    style: &'static str,
+    /// What the op is called.
+    name: String,
+    /// Whether fix freeze holds a particle; empty without one.
+    frozen: Vec<bool>,
+    /// Whether nobody changes masses, radii and groups in a step.
+    steady: bool,
+    /// The rebuild the lists were made at.
+    generation: Option<u64>,
+    plain: Plain,
+    /// The fast loop, where it knows all the rules.
+    fast: Option<Fast<Granular>>,
+    /// Whether the fast loop has the contacts now.
+    is_fast: bool,
+}
+
+/// The plain loop: knows every rule.
+#[derive(Default)]
+struct Plain {
+    list: Vec<Pair>,
+    body: Vec<u32>,
+    /// Who was there when the bodies were found.
+    roster: Option<u64>,
+    sweep: Sweep,
+}
+
+impl Force {
+    /// With nothing computed yet.
+    pub fn new(style: &'static str, rules: Rules<Granular>, wanted: Wanted, types: usize) -> Self {
+        let fast = laws(&rules, &wanted, types).map(Fast::new);
+        let (name, plain) = (format!("pair {style}"), Plain::default());
+        let frozen = vec![];
+        let steady = false;
+        Self { rules, wanted, style, name, frozen, steady, generation: None, plain, fast, is_fast: false }
+    }
+
+    /// Which solid each particle belongs to, where some rule asks.
+    fn find_bodies(&mut self, w: &World) {
+        self.plain.body.clear();
+        let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
+        if let (true, Some(families)) = (asked, &w.families) {
+            self.plain.body = solids(families, w.n());
+        }
+    }
+
+    /// Lists for the present rebuild: those there are, if they outlast it; else new ones from the positions that the world keeps
+    /// for that, from which all lists reach far enough until the next rebuild.
+    fn renew(&mut self, w: &mut World) -> Result<()> {
+        let before = self.generation.replace(w.rebuild.generation);
+        let (period, kept) = (w.periods(), &w.rebuild.kept);
+        if let Some(fast) = self.fast.as_mut().filter(|fast| self.is_fast && fast.len() == w.n())
+            && kept.outlasted > 0
+            && before == Some(kept.last[0])
+            && w.rebuild.generation == kept.last[1]
+        {
+            fast.turn(&kept.turns, period);
+            return Ok(());
+        }
+        let skin = w.settings.neighbor.skin;
+        if let Some(fast) = self.fast.as_mut().filter(|fast| suits(w, period, fast)) {
+            let known = if self.is_fast { None } else { w.contacts.remove(self.style) };
+            let frame = Frame { lo: w.domain()?.lo, period, reach: kept.reach(skin), skin };
+            let allowed = Allowed::new(w);
+            let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
+            fast.rebuild(&grains, &frame, known.as_ref(), &|i, j| allowed.pair(i, j));
+            fast.turn(&kept.turns, period);
+            self.is_fast = true;
+            return Ok(());
+        }
+        self.hand_over(w);
+        let wanted = reaching(&self.rules, &self.wanted, w);
+        self.plain.list = near(w, built_at(w), &wanted, skin, &Allowed::new(w));
+        Ok(())
+    }
+
+    /// The fast loop gives its contacts back to the world.
+    fn hand_over(&mut self, w: &mut World) {
+        if let Some(fast) = self.fast.as_mut().filter(|_| std::mem::take(&mut self.is_fast)) {
+            fast.keep_contacts();
+            w.contacts.insert(self.style.to_string(), fast.contacts());
+            fast.clear();
+        }
+    }
+
+    /// Contacts by the fast loop; `anew`: masses may not be those of the step before.
+    fn run_fast(&mut self, w: &mut World, t: &Tick, period: Vec3, store: bool, anew: bool) -> Result<()> {
+        let Some(fast) = &mut self.fast else { return Ok(()) };
+        w.contacts.remove(self.style);
+        let step = Advance { dt: t.dt, history: !t.setup };
+        let p = &mut w.particles;
+        let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
+        let masses = w.contact_masses();
+        let grains = Grains { mass: &masses, ..grains(w, period, &[], &self.frozen)? };
+        if anew || matches!(masses, Cow::Owned(_)) {
+            fast.weigh(&grains);
+        }
+        let virial = fast.run(&grains, [&mut f, &mut torque], step, store, t.virial);
+        let deep = fast.deep;
+        drop(masses);
+        (w.particles.f, w.particles.torque) = (f, torque);
+        if t.virial {
+            add_virial(w, virial);
+        }
+        if conducts(&self.rules) {
+            let (fast, frozen) = (&*fast, &self.frozen);
+            conduct(w, |w, temperature, flow| {
+                fast.conduct(&self::grains(w, period, &[], frozen)?, temperature, flow);
+                Ok(())
+            })?;
+        }
+        if t.contacts {
+            w.contacts.insert(self.style.to_string(), fast.contacts());
+        }
+        report(w, t, deep);
+        Ok(())
+    }
+
+    /// As [`Force::run_fast`], list by list: `ready` is told which grains have all their forces. `false`, with nothing done, where
+    /// somebody reads more than forces, or lists do not come one by one.
+    fn run_piecewise(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        (period, store, anew): (Vec3, bool, bool),
+        ready: &mut dyn FnMut(&mut World, Range<usize>),
+    ) -> Result<bool> {
+        let plain = !t.virial && !t.contacts && !conducts(&self.rules);
+        let alone = matches!(w.contact_masses(), Cow::Borrowed(_));
+        let fast = self.fast.as_mut().filter(|fast| self.is_fast && plain && alone && fast.is_piecewise());
+        let Some(fast) = fast else { return Ok(false) };
+        let seen = grains(w, period, &[], &self.frozen)?;
+        if anew {
+            fast.weigh(&seen);
+        }
+        let step = Advance { dt: t.dt, history: !t.setup };
+        let mut piecewise = fast.begin_piecewise(&seen, step, store);
+        w.contacts.remove(self.style);
+        loop {
+            let p = &mut w.particles;
+            let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
+            let seen = grains(w, period, &[], &self.frozen)?;
+            let complete = fast.go_on(&mut piecewise, &seen, [&mut f, &mut torque]);
+            (w.particles.f, w.particles.torque) = (f, torque);
+            let Some(complete) = complete else { break };
+            complete.into_iter().for_each(|particles| ready(w, particles));
+        }
+        let deep = fast.deep;
+        report(w, t, deep);
+        Ok(true)
+    }
+
+    /// What precedes contacts: lists where they are due; the box, whether contacts remember, and whether masses may be others.
+    fn prepare(&mut self, w: &mut World, t: &Tick) -> Result<(Vec3, bool, bool)> {
+        // A run that continues an unchanged scene has no setup; who comes or goes shifts the others.
+        if t.setup || self.generation.is_none() || self.plain.roster != Some(w.rebuild.roster) {
+            self.plain.roster = Some(w.rebuild.roster);
+            self.find_bodies(w);
+        }
+        let stale = self.is_fast && self.fast.as_ref().is_some_and(|f| f.len() != w.n());
+        let renewed = stale || self.generation != Some(w.rebuild.generation);
+        if renewed {
+            self.renew(w)?;
+        }
+        // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
+        let store = !t.setup || w.settings.lammps();
+        let anew = renewed || t.setup || !self.steady;
+        if anew {
+            find_frozen(w, &mut self.frozen);
+        }
+        Ok((w.periods(), store, anew))
+    }
+
+    /// All contacts.
+    fn act(&mut self, w: &mut World, t: &Tick, (period, store, anew): (Vec3, bool, bool)) -> Result<()> {
+        match self.is_fast {
+            true => self.run_fast(w, t, period, store, anew),
+            false => self.run_plain(w, t, period, store),
+        }
+    }
+
+    fn run_plain(&mut self, w: &mut World, t: &Tick, period: Vec3, store: bool) -> Result<()> {
+        let mut memory = w.contacts.remove(self.style).unwrap_or_default();
+        let kept: Option<Contacts> = (!store).then(|| memory.clone());
+        let plain = &mut self.plain;
+        let masses = w.contact_masses();
+        let grains = Grains { mass: &masses, ..grains(w, period, &plain.body, &self.frozen)? };
+        let step = Advance { dt: t.dt, history: !t.setup };
+        plain.sweep.run(&plain.list, &grains, &self.rules, &mut memory, step);
+        let deep = plain.sweep.deep(&grains);
+        if conducts(&self.rules) {
+            conduct(w, |w, temperature, flow| {
+                let grains = self::grains(w, period, &plain.body, &self.frozen)?;
+                plain.sweep.conduct(&grains, &self.rules, temperature, flow);
+                Ok(())
+            })?;
+        }
+        report(w, t, deep);
+        plain.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
+        if t.virial {
+            let part = plain.sweep.virial(&w.particles.x, &period);
+            add_virial(w, part);
+        }
+        w.contacts.insert(self.style.to_string(), kept.unwrap_or(memory));
+        Ok(())
+    }
+}
+
+impl Op for Force {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn stage(&self) -> Stage {
+        Stage::Force
+    }
+
+    fn access(&self) -> Access {
+        Access::new("x v omega radius mass type", "f torque contacts tally")
+    }
+
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let how = self.prepare(w, t)?;
+        self.act(w, t, how)
+    }
+
+    fn run_telling(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        ready: &mut dyn FnMut(&mut World, Range<usize>),
+    ) -> Result<bool> {
+        let how = self.prepare(w, t)?;
+        let told = self.run_piecewise(w, t, how, ready)?;
+        if !told {
+            self.act(w, t, how)?;
+        }
+        Ok(told)
+    }
+
+    fn settle(&mut self, written: &dyn Fn(&str) -> bool) {
+        // Who comes or goes has lists made anew, and all is read again.
+        self.steady = !["mass", "mask", "radius"].into_iter().any(written);
+    }
+
+    fn finish(&mut self, w: &mut World) -> Result<()> {
+        self.hand_over(w);
+        self.generation = None;
+        Ok(())
+    }
+
+    fn bytes(&self, w: &World) -> u64 {
+        if let Some(fast) = self.fast.as_ref().filter(|_| self.is_fast) {
+            // Short lists with history; per grain what contacts read and write, and positions once more.
+            return (fast.pairs()[1] * 44 + w.n() * 250) as u64;
+        }
+        // Pairs read with both ends (12 + 2 × 32 bytes); per contact both ends' state, wrench and history.
+        (self.plain.list.len() * 76 + self.plain.sweep.len() * 400) as u64
+    }
+}
+
+/// The laws as the fast loop wants them; `None` where some rule is not for it.
+fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<Granular>> {
+    let plain = rules.any(|r| {
+        r.average != Average::None || r.curvature != Curvature::Both || r.law.memory() > MOST_MEMORY
+    });
+    let touch = |a, b| wanted.get(a, b).is_none_or(|r| r == Reach::Touch);
+    let all = 1..=types as u16;
+    if plain || !all.clone().all(|a| all.clone().all(|b| touch(a, b))) {
+        return None;
+    }
+    Laws::new(types, |a, b| rules.get(a, b).map(|r| r.law))
+}
+
+/// Whether the fast loop can take these particles.
+fn suits(w: &World, period: Vec3, fast: &Fast<Granular>) -> bool {
+    let p = &w.particles;
+    let most = par::best(&p.radius, 0.0, f64::max);
+    let more = w.rebuild.kept.reach(w.settings.neighbor.skin) + fast.span(most);
+    let still = w.domain.as_ref().is_none_or(|d| d.flow.is_none());
+    let fits = still && w.families.is_none() && !p.is_empty() && p.len() <= MOST_GRAINS;
+    fits && !meet_twice(w, period, most, more)
+}
+
+/// Most grains whose images are looked at one by one.
+const FEW: usize = 64;
+
+/// Whether two grains might meet in two images at once, with surfaces up to `more` apart, or one meets itself.
+fn meet_twice(w: &World, period: Vec3, most: f64, more: f64) -> bool {
+    let (radius, x) = (&w.particles.radius, made_at(w));
+    let shortest = period.into_iter().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+    if 2.0 * (2.0 * most + more) <= shortest {
+        return false;
+    }
+    // In two images the larger distance is half a period at least.
+    let large: Vec<usize> =
+        (0..radius.len()).filter(|&i| 2.0 * (radius[i] + most + more) > shortest).collect();
+    let [edge, reach] = edges(radius, more);
+    if large.len() > FEW || edge == reach || reach > shortest {
+        return true;
+    }
+    let twice = |i: usize, j: usize| {
+        let reach = radius[i] + radius[j] + more;
+        let near = |image: &u32| {
+            let shift = shift_of(*image);
+            let d: Vec3 = std::array::from_fn(|d| x[i][d] - (x[j][d] + shift[d] * period[d]));
+            let absent = (0..3).any(|d| period[d] == 0.0 && shift[d] != 0.0);
+            !absent && d.iter().map(|d| d * d).sum::<f64>() < reach * reach
+        };
+        (0..27).filter(near).count() > 1
+    };
+    large.iter().enumerate().any(|(k, &i)| large[k + 1..].iter().any(|&j| twice(i, j)))
+}
+
+/// What contacts see of the particles.
+pub fn grains<'a>(w: &'a World, period: Vec3, body: &'a [u32], frozen: &'a [bool]) -> Result<Grains<'a>> {
+    let p = &w.particles;
+    Ok(Grains {
+        x: &p.x,
+        v: &p.v,
+        omega: &p.omega,
+        radius: &p.radius,
+        mass: &p.mass,
+        kind: &p.kind,
+        tag: &p.tag,
+        period,
+        flow: w.domain()?.flow.map(|flow| (flow, &p.mask[..])),
+        body,
+        frozen,
+        travel: w.rebuild.travel,
+    })
+}
+
+/// Gives temperatures and heat flows to who adds those through contacts, if particles have both.
+fn conduct(w: &mut World, through: impl FnOnce(&World, &[f64], &mut [f64]) -> Result<()>) -> Result<()> {
+    let names = [TEMPERATURE, HEATFLOW].map(|name| w.columns.custom(name));
+    let [Some(temperature), Some(heat)] = names else { return Ok(()) };
+    let n = w.particles.len();
+    let mut flow = std::mem::take(w.columns.scalar(&heat, n));
+    let temperature = w.columns.scalar(&temperature, n).clone();
+    through(w, &temperature, &mut flow)?;
+    *w.columns.scalar(&heat, n) = flow;
+    Ok(())
+}
+
+/// Whether some contacts conduct heat.
+pub fn conducts(rules: &Rules<Granular>) -> bool {
+    rules.any(|r| r.law.heat != Heat::None)
+}
+
+/// Keeps the first grains that were seen too deep in each other.
+fn report(w: &mut World, t: &Tick, deep: Option<([u32; 2], f64)>) {
+    if let (Some((ids, part)), None) = (deep, &w.parts.deep) {
+        w.parts.deep = Some(Deep { step: t.step, ids, part, told: false });
+    }
+}

@@ -1,0 +1,228 @@
+//! `pair_style hybrid` and `hybrid/overlay`: several pair styles, each for its own pairs of types.
+
+use super::{ByPart, PAIRS, Pair, PairStyle, TypePairs};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::Args;
+use perigrain_plan::Op;
+use perigrain_styles::probe::Probe;
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::World;
+use std::collections::BTreeMap;
+
+/// `hybrid`: one sub-style per pair of types.
+pub struct Hybrid;
+
+/// `hybrid/overlay`: sub-styles add up.
+pub struct Overlay;
+
+const TEXT: &str = "Sub-styles follow with their own words. `pair_coeff i j sub …` gives coefficients of one sub-style; \
+    with `hybrid` a later line for the same types replaces the earlier sub-style, with `hybrid/overlay` it adds \
+    to it. `pair_coeff i j none` leaves a pair without forces. Two types without a line of their own take the \
+    sub-style that both use alone, with its mixed coefficients. A sub-style that no pair uses is an error, and each \
+    can be named once.";
+
+impl Style for Hybrid {
+    fn name(&self) -> &'static str {
+        "hybrid"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "pair_style hybrid style args style args …\npair_coeff i j style|none args",
+            summary: "Different pair styles for different pairs of types.",
+            text: TEXT,
+            example: "pair_style hybrid peri/pmb granular\n\
+                      pair_coeff * * granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4\n\
+                      pair_coeff 1 1 peri/pmb 1.6863e22 0.0015001 5.0e-4 0.25",
+        }
+    }
+}
+
+impl Style for Overlay {
+    fn name(&self) -> &'static str {
+        "hybrid/overlay"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "pair_style hybrid/overlay style args style args …\npair_coeff i j style|none args",
+            summary: "Several pair styles whose forces add up.",
+            text: TEXT,
+            example: "pair_style hybrid/overlay peri/pmb granular\n\
+                      pair_coeff * * granular hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4\n\
+                      pair_coeff 1 1 peri/pmb 1.6863e22 0.0015001 5.0e-4 0.25",
+        }
+    }
+}
+
+impl PairStyle for Hybrid {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
+        Ok(Box::new(build("hybrid", false, args, cx)?))
+    }
+}
+
+impl PairStyle for Overlay {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
+        Ok(Box::new(build("hybrid/overlay", true, args, cx)?))
+    }
+}
+
+fn build(name: &'static str, overlay: bool, args: &mut Args, cx: &BuildCx) -> Result<Declared> {
+    let known: Vec<&'static str> =
+        PAIRS.iter().map(|s| s.name()).filter(|n| !n.starts_with("hybrid")).collect();
+    let mut subs: Vec<Box<dyn Pair>> = vec![];
+    while subs.is_empty() || !args.is_empty() {
+        let word = args.peek().map_or(cx.span, |w| w.span);
+        let sub = args.choice("sub-style", &known)?;
+        if subs.iter().any(|s| s.name() == sub) {
+            return Err(Diagnostic::error(Code::NOT_SUPPORTED, word, format!("`{sub}` is named twice"))
+                .help("one is enough: coefficients may differ for every pair of types")
+                .into());
+        }
+        let solid = |name: &str| name.starts_with("peri/");
+        if let Some(first) = subs.iter().find(|s| solid(s.name()) && solid(sub)) {
+            let text = format!("`{sub}` beside `{}`: one scene has one peridynamic style", first.name());
+            return Err(Diagnostic::error(Code::NOT_SUPPORTED, word, text)
+                .help("coefficients may differ for every pair of types; LAMMPS crashes here without a word")
+                .into());
+        }
+        let Some(style) = PAIRS.iter().find(|s| s.name() == sub) else { continue };
+        subs.push(style.build(args, cx)?);
+    }
+    Ok(Declared { name, overlay, subs, users: BTreeMap::new() })
+}
+
+struct Declared {
+    name: &'static str,
+    overlay: bool,
+    subs: Vec<Box<dyn Pair>>,
+    /// The sub-styles of each pair of types that has been spoken of; none for `none`.
+    users: BTreeMap<(u16, u16), Vec<usize>>,
+}
+
+impl Declared {
+    /// The sub-styles that act between two types: as given, or the one both types use alone.
+    fn users(&self, i: u16, j: u16) -> Option<Vec<usize>> {
+        if let Some(list) = self.users.get(&(i, j)) {
+            return Some(list.clone());
+        }
+        match (self.users.get(&(i, i)).map(Vec::as_slice), self.users.get(&(j, j)).map(Vec::as_slice)) {
+            (Some([a]), Some([b])) if a == b && self.subs[*a].covers(i, j) => Some(vec![*a]),
+            _ => None,
+        }
+    }
+
+    /// The pairs of types that sub-style `k` acts on.
+    fn pairs_of(&self, k: usize, types: usize) -> Vec<(u16, u16)> {
+        let all = (1..=types as u16).flat_map(|i| (i..=types as u16).map(move |j| (i, j)));
+        all.filter(|&(i, j)| self.users(i, j).is_some_and(|list| list.contains(&k))).collect()
+    }
+
+    /// Sub-style `k`, limited to its pairs.
+    fn limited(&self, k: usize, types: usize) -> Box<dyn Pair> {
+        let mut sub = self.subs[k].boxed();
+        sub.restrict(&self.pairs_of(k, types));
+        sub
+    }
+}
+
+impl Pair for Declared {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        if args.eat("none") {
+            self.users.extend(pairs.iter().map(|&p| (p, vec![])));
+            return Ok(());
+        }
+        let names: Vec<&'static str> = self.subs.iter().map(|s| s.name()).collect();
+        let name = args.choice(&format!("sub-style of this {}", self.name), &names)?;
+        let k = names.iter().position(|n| *n == name).unwrap_or(0);
+        self.subs[k].coeff(pairs, args, cx)?;
+        for p in pairs {
+            let list = self.users.entry(*p).or_default();
+            if !self.overlay {
+                list.clear();
+            }
+            if !list.contains(&k) {
+                list.push(k);
+            }
+        }
+        Ok(())
+    }
+
+    fn declare(&self, w: &mut World) {
+        self.subs.iter().for_each(|s| s.declare(w));
+    }
+
+    fn covers(&self, i: u16, j: u16) -> bool {
+        self.users(i.min(j), i.max(j)).is_some()
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        Ok(self.ops_by_part(cx)?.into_iter().flat_map(|(_, ops)| ops).collect())
+    }
+
+    fn ops_by_part(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {
+        let types = cx.world().types;
+        // Solids first: contacts ask which particles belong to one.
+        let mut order: Vec<usize> = (0..self.subs.len()).collect();
+        order.sort_by_key(|&k| self.subs[k].true_forces().is_none());
+        order.into_iter().map(|k| Ok((k, self.limited(k, types).ops(cx)?))).collect()
+    }
+
+    fn probes(&self, w: &World) -> Result<Vec<Box<dyn Probe>>> {
+        Ok(self.probes_by_part(w)?.into_iter().flat_map(|(_, probes)| probes).collect())
+    }
+
+    fn cutoff(&self, w: &World) -> Option<f64> {
+        (0..self.subs.len()).filter_map(|k| self.limited(k, w.types).cutoff(w)).reduce(f64::max)
+    }
+
+    fn probes_by_part(&self, w: &World) -> Result<ByPart<dyn Probe>> {
+        (0..self.subs.len()).map(|k| Ok((k, self.limited(k, w.types).probes(w)?))).collect()
+    }
+
+    fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let solid = self.subs.iter_mut().find(|s| s.true_forces().is_some());
+        match (command, solid) {
+            ("peri_modify", Some(sub)) => sub.modify(command, args, cx),
+            _ => fail(
+                Code::CONFLICT,
+                cx.span,
+                format!("`{command}` concerns no sub-style of this {}", self.name),
+            ),
+        }
+    }
+
+    fn solid(&self, kind: u16) -> bool {
+        self.users(kind, kind).is_some_and(|list| list.iter().any(|&k| self.subs[k].solid(kind)))
+    }
+
+    fn parts(&self) -> Vec<&dyn Pair> {
+        self.subs.iter().map(AsRef::as_ref).collect()
+    }
+
+    fn check(&self, cx: &BuildCx) {
+        let types = cx.world.types;
+        for (k, sub) in self.subs.iter().enumerate() {
+            if self.pairs_of(k, types).is_empty() {
+                let text = format!("no pair of types uses the sub-style {} of {}", sub.name(), self.name);
+                cx.note(
+                    Diagnostic::error(Code::CONFLICT, cx.span, text)
+                        .help(format!("give it coefficients: `pair_coeff i j {} …`", sub.name()))
+                        .help("with `hybrid` a later pair_coeff replaces an earlier one: put `* *` first"),
+                );
+            }
+            self.limited(k, types).check(cx);
+        }
+    }
+
+    fn boxed(&self) -> Box<dyn Pair> {
+        Box::new(Declared {
+            name: self.name,
+            overlay: self.overlay,
+            subs: self.subs.iter().map(|s| s.boxed()).collect(),
+            users: self.users.clone(),
+        })
+    }
+}

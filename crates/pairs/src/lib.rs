@@ -1,0 +1,37 @@
+//! Pair styles: forces between particles.
+
+pub mod bond;
+mod bpm_peri;
+mod bpm_spring;
+pub mod contact;
+pub mod contact_probe;
+mod gran_hertz_history;
+mod gran_hooke;
+mod gran_hooke_history;
+mod granular;
+mod hybrid;
+pub mod peri;
+mod shared;
+mod zero;
+
+pub use perigrain_styles::pair::{ByPart, Pair, PairStyle, TypePairs};
+pub use perigrain_styles::probe;
+
+/// Every pair style.
+#[rustfmt::skip]
+pub const PAIRS: &[&dyn PairStyle] = &[
+    &bpm_peri::BpmPeriStyle,
+    &bpm_spring::BpmSpringStyle,
+    &gran_hertz_history::GranHertzHistory,
+    &gran_hooke::GranHooke,
+    &gran_hooke_history::GranHookeHistory,
+    &granular::GranularStyle,
+    &hybrid::Hybrid,
+    &hybrid::Overlay,
+    &peri::PeriEps,
+    &peri::PeriLps,
+    &peri::PeriPmb,
+    &peri::PeriPmbPlastic,
+    &peri::PeriVes,
+    &zero::ZeroStyle,
+];

@@ -1,0 +1,239 @@
+//! The op behind all peridynamic styles: families at the first run, forces at every step.
+
+use super::{Pair, Solid, reunion};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_peri::families::{Families, FamilyOptions, ForceUnit, PeriTally, PmbCoeff, PmbTable};
+use perigrain_plan::{Access, Level, Op, Stage, Tick};
+use perigrain_styles::peri_view::view;
+use perigrain_world::adapted::Coefficient;
+use perigrain_world::{Crack, World};
+
+/// Bond and short-range forces of all peridynamic bodies.
+pub struct Force {
+    style: Solid,
+    options: FamilyOptions,
+    name: String,
+    /// The coefficients as the deck's lines said them, before micro-moduli were calibrated.
+    said: PmbTable,
+    /// Which changes by fixes have been seen.
+    adapted: f64,
+}
+
+impl Force {
+    /// The op of a style.
+    pub fn new(style: Solid, said: PmbTable, options: FamilyOptions) -> Self {
+        let name = format!("pair {}", style.name);
+        Self { style, options, name, said, adapted: 0.0 }
+    }
+}
+
+impl Op for Force {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn stage(&self) -> Stage {
+        Stage::Force
+    }
+
+    fn level(&self) -> Level {
+        Level::At(0)
+    }
+
+    fn access(&self) -> Access {
+        Access::new("x x0 type volume families", "f families tally")
+    }
+
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let first = w.families.is_none();
+        if t.setup {
+            self.prepare(w)?;
+        } else if self.adapted != w.adaptations() {
+            self.adapt(w)?;
+        }
+        let Some(mut families) = w.families.take() else { return Ok(()) };
+        families.law.dt = t.dt;
+        let mut sums = PeriTally::default();
+        let mut atoms = std::mem::take(&mut w.tally.atom);
+        if t.atom_energy {
+            sums.per_atom_energy = Some(&mut atoms);
+        }
+        let mut virials = std::mem::take(&mut w.tally.atom_virial);
+        if t.atom_virial {
+            sums.per_atom_virial = Some(&mut virials);
+        }
+        let advance = match t.setup {
+            // LAMMPS advances bonds in the setup of every run but the first, be that one of no steps.
+            true => w.settings.lammps() && !first && !t.unchanged,
+            false => true,
+        };
+        let mut f = std::mem::take(&mut w.particles.f);
+        let tally = (t.energy || t.virial || t.atom_energy).then_some(&mut sums);
+        families.force(&view(w)?, &mut f, advance, tally);
+        if advance && families.options.reunite && families.parted(|i| reunion::outside(w, i)) {
+            // Contacts are looked for anew in the next step.
+            w.rebuild.due = true;
+        }
+        w.particles.f = f;
+        let (energy, virial) = (sums.energy, sums.virial);
+        (w.tally.atom, w.tally.atom_virial) = (atoms, virials);
+        w.tally.add_pair(self.style.name, energy);
+        for (total, part) in w.tally.virial.iter_mut().zip(virial) {
+            *total += part;
+        }
+        w.families = Some(families);
+        Ok(())
+    }
+}
+
+impl Force {
+    /// Takes the coefficients that a fix has changed.
+    fn adapt(&mut self, w: &mut World) -> Result<()> {
+        self.adapted = w.adaptations();
+        let Some(mut families) = w.families.take() else { return Ok(()) };
+        let table = self.table(w)?;
+        families.refresh(&view(w)?, &table);
+        w.families = Some(families);
+        Ok(())
+    }
+
+    /// The coefficients in force.
+    fn table(&self, w: &World) -> Result<PmbTable> {
+        let mut table = self.style.table.clone();
+        if w.adaptations() == 0.0 {
+            return Ok(table);
+        }
+        let types = table.types() as u16;
+        for (i, j) in (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j))) {
+            let (Some(own), Some(said)) = (self.style.table.get(i, j), self.said.get(i, j)) else { continue };
+            let of = |name: &str| {
+                let style = self.style.name.to_string();
+                w.adapted(&Coefficient { bond: false, style, name: name.to_string(), types: (i, j) })
+            };
+            // A calibrated micro-modulus keeps its ratio to what the line says.
+            let ratio = if said.c > 0.0 { own.c / said.c } else { 1.0 };
+            let new = PmbCoeff {
+                c: of("c").map_or(own.c, |c| c * ratio),
+                s00: of("s00").unwrap_or(own.s00),
+                alpha: of("alpha").unwrap_or(own.alpha),
+                ..*own
+            };
+            table.set(i, j, new)?;
+        }
+        Ok(table)
+    }
+
+    /// Families at the first run, masses of true-force bodies at every run.
+    fn prepare(&mut self, w: &mut World) -> Result<()> {
+        self.adapted = w.adaptations();
+        let table = self.table(w)?;
+        if self.options.unit == ForceUnit::Newton {
+            self.true_masses(w)?;
+        }
+        let families = match w.families.take() {
+            Some(mut families) => {
+                families.options = self.options;
+                families.law = self.style.law.clone();
+                families.refresh(&view(w)?, &table);
+                families
+            }
+            None => {
+                let law = self.style.law.clone();
+                let families = Families::build_of(&view(w)?, &table, self.options, law)?;
+                self.tell_lone(w, &families);
+                self.tell_doubles(w, &families);
+                families
+            }
+        };
+        w.families = Some(families);
+        self.mark(w)?;
+        reunion::check_spheres(&self.style, w)
+    }
+
+    /// Cracks that have waited for families, and particles whose bonds never break.
+    fn mark(&self, w: &mut World) -> Result<()> {
+        let Some(mut families) = w.families.take() else { return Ok(()) };
+        for crack in std::mem::take(&mut w.cracks) {
+            if families.cut(&view(w)?, |a, b| crack.cuts(a, b)) == 0 {
+                return Err(Crack::missed(&crack).into());
+            }
+        }
+        families.lasting.clear();
+        if !self.style.lasting.is_empty() {
+            let start = families.reference.as_deref().unwrap_or(&w.particles.x0);
+            let lasts = |x: &[f64; 3]| self.style.lasting.iter().any(|r| r.contains(*x));
+            families.lasting = start.iter().map(lasts).collect();
+        }
+        w.families = Some(families);
+        Ok(())
+    }
+
+    /// Warns of particles of solids that no bond reaches.
+    fn tell_lone(&self, w: &mut World, families: &Families) {
+        let p = &w.particles;
+        let lone = |i: &usize| self.style.covers(p.kind[*i], p.kind[*i]) && families.family_size[*i] == 0;
+        let mut all = (0..p.len()).filter(lone);
+        let Some(first) = all.next().filter(|_| !self.options.compat_lammps) else { return };
+        let (tag, kind, others) = (p.tag[first], p.kind[first], all.count());
+        let more = if others > 0 { format!(" and {others} more have") } else { " has".to_string() };
+        let text =
+            format!("particle {tag} (type {kind}){more} no partner within the horizon: no bond holds it");
+        let horizon = self.style.table.get(kind, kind).map_or(0.0, |c| c.horizon);
+        w.parts.notes.push(
+            Diagnostic::warning(Code::SUSPICIOUS, None, text)
+                .help(format!("the horizon is {horizon}: compare it with the distance of particles"))
+                .help("particles that shall only touch others need no peridynamic coefficients of their own"),
+        );
+    }
+
+    /// Warns of particles of solids that stand at the place of another one: bodies with such are on no lattice.
+    fn tell_doubles(&self, w: &mut World, families: &Families) {
+        let p = &w.particles;
+        let mut order: Vec<usize> =
+            families.list.particle.iter().filter(|p| **p != u32::MAX).map(|p| *p as usize).collect();
+        order.sort_unstable_by(|&a, &b| p.x[a].partial_cmp(&p.x[b]).unwrap_or(std::cmp::Ordering::Equal));
+        let double = |pair: &&[usize]| {
+            let (a, b) = (pair[0], pair[1]);
+            p.x[a] == p.x[b] && self.style.covers(p.kind[a], p.kind[b])
+        };
+        let mut all = order.windows(2).filter(double);
+        let Some(first) = all.next() else { return };
+        let (a, b, others) = (p.tag[first[0]], p.tag[first[1]], all.count());
+        let more = if others > 0 { format!(", and {others} more pairs,") } else { String::new() };
+        let text = format!(
+            "particles {} and {}{more} are at the same place: no bond joins them",
+            a.min(b),
+            a.max(b)
+        );
+        w.parts.notes.push(
+            Diagnostic::warning(Code::SUSPICIOUS, None, text)
+                .help("`delete_atoms overlap` takes away one of two such particles before the run"),
+        );
+    }
+
+    /// m = ρV for every particle of a peridynamic type.
+    fn true_masses(&self, w: &mut World) -> Result<()> {
+        let p = &mut w.particles;
+        for i in 0..p.len() {
+            let kind = p.kind[i];
+            if !self.style.covers(kind, kind) {
+                continue;
+            }
+            let density = self.style.materials.density(kind).unwrap_or(p.density[i]);
+            if density.is_nan() || density <= 0.0 {
+                return Err(Diagnostic::error(
+                    Code::INCOMPLETE,
+                    None,
+                    format!(
+                        "particle {} (type {kind}) has no density, which `peri_modify force newton` needs",
+                        p.tag[i]
+                    ),
+                )
+                .help(format!("add `set type {kind} density …`"))
+                .into());
+            }
+            p.mass[i] = density * p.volume[i];
+        }
+        Ok(())
+    }
+}

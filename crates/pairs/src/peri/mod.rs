@@ -1,0 +1,390 @@
+//! Peridynamic pair styles: what they share. A style is its law, the words of its coefficients and its page.
+
+mod bond_probe;
+mod eps;
+mod force;
+mod horizon;
+mod lps;
+pub mod materials;
+mod numbers;
+mod options;
+mod plastic;
+mod pmb;
+mod reunion;
+mod ves;
+
+use super::{Pair, TypePairs};
+use bond_probe::BondProbe;
+pub use eps::PeriEps;
+use force::Force;
+pub use lps::PeriLps;
+use materials::Materials;
+pub use numbers::{beyond_elastic, lasting, stiffness};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::Args;
+use perigrain_peri::calibration::constants;
+use perigrain_peri::families::{
+    FamilyOptions, ForceUnit, Influence, Law, LawKind, Layout, Moduli, PmbCoeff, PmbTable, VolumeRule,
+};
+use perigrain_plan::Op;
+use perigrain_styles::probe::Probe;
+use perigrain_styles::{BuildCx, SealCx};
+use perigrain_world::{Region, World};
+pub use plastic::PeriPmbPlastic;
+pub use pmb::PeriPmb;
+pub use ves::PeriVes;
+
+/// A peridynamic style with its coefficients.
+#[derive(Clone)]
+struct Solid {
+    name: &'static str,
+    table: PmbTable,
+    law: Law,
+    materials: Materials,
+    /// Some pair was given as numbers.
+    raw: bool,
+    /// `peri_modify force`, if it was said.
+    unit: Option<ForceUnit>,
+    volume: VolumeRule,
+    calibrate: Calibrate,
+    /// Broken bonds still push.
+    compress: bool,
+    /// The rule of unloading that a line has said.
+    unloading: Option<LawKind>,
+    /// Regions whose particles' bonds never break.
+    lasting: Vec<Region>,
+    /// `peri_modify repulsion no`.
+    no_repulsion: bool,
+    /// `peri_modify family`, and where that was said: broken bonds let their ends touch.
+    reunite: Option<(bool, Span)>,
+}
+
+/// Which constant of the lattice the micro-modulus makes right.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Calibrate {
+    No,
+    Bulk,
+    Young,
+}
+
+/// Starts a style: particles must have volumes.
+fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair>> {
+    if !cx.world.particles.style.peri {
+        return Err(Diagnostic::error(
+            Code::WRONG_ORDER,
+            cx.span,
+            format!("pair_style {name} needs particles with a volume"),
+        )
+        .help("put `atom_style peri` (or `hybrid sphere peri`) at the top of the deck")
+        .into());
+    }
+    let influence = if kind.bond_based() { Influence::One } else { Influence::default() };
+    let law = Law { kind, influence, moduli: vec![Moduli::default(); cx.world.types], ..Law::default() };
+    Ok(Box::new(Solid {
+        name,
+        table: PmbTable::new(cx.world.types),
+        law,
+        materials: Materials::default(),
+        raw: false,
+        unit: None,
+        volume: VolumeRule::Lammps,
+        calibrate: Calibrate::No,
+        compress: false,
+        unloading: None,
+        lasting: vec![],
+        no_repulsion: false,
+        reunite: None,
+    }))
+}
+
+/// Coefficients of one line: of the bonds, and of the ends where the law is state-based.
+type Coeff = (PmbCoeff, Moduli);
+
+/// Reads the coefficients of a law as LAMMPS writes them.
+fn numbers(kind: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
+    let (mut c, mut moduli) = stiffness(kind, args)?;
+    let span = args.here();
+    let (horizon, s00, alpha) = lasting(args)?;
+    beyond_elastic(kind, args, &mut moduli)?;
+    if !kind.bond_based() {
+        c = short_range(moduli.bulk, horizon);
+    }
+    let lc = cx.world.lattice.spacing[0];
+    if !cx.world.lattice.basis.is_empty() && lc > 0.0 {
+        horizon::range(horizon / lc, span, cx);
+        horizon::warn(horizon / lc, lc, span, cx);
+    }
+    Ok((PmbCoeff { c, horizon, s00, alpha }, moduli))
+}
+
+/// Bonds flow in compression.
+fn below_zero(syc: f64, at: Span) -> Result<()> {
+    if syc < 0.0 {
+        return Ok(());
+    }
+    fail(Code::BAD_VALUE, at, format!("syc is a stretch in compression, below zero: {syc}"))
+}
+
+/// The micro-modulus whose short-range forces a state-based solid has: 18K/(πδ⁴).
+fn short_range(bulk: f64, horizon: f64) -> f64 {
+    18.0 * bulk / (std::f64::consts::PI * horizon.powi(4))
+}
+
+impl Solid {
+    fn unit(&self) -> ForceUnit {
+        let implied = if self.materials.is_empty() { ForceUnit::Density } else { ForceUnit::Newton };
+        self.unit.unwrap_or(implied)
+    }
+
+    /// The table with room for all types (`pair_style` may come before `create_box`).
+    fn grow(&mut self, types: usize) {
+        if self.table.types() == types {
+            return;
+        }
+        self.table = PmbTable::new(types);
+        self.law.moduli = vec![Moduli::default(); types];
+    }
+
+    /// The smallest density of a type's particles; in LAMMPS' convention their mass holds it.
+    fn lightest(&self, w: &World, kind: u16) -> Option<f64> {
+        let p = &w.particles;
+        let column = if self.unit() == ForceUnit::Newton { &p.density } else { &p.mass };
+        let of_kind = p.kind.iter().zip(column).filter(|(k, d)| **k == kind && **d > 0.0);
+        of_kind.map(|(_, d)| *d).reduce(f64::min)
+    }
+
+    /// The rule for yielding bonds on their way back, at the end of a line.
+    fn unloading(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        if !matches!(self.law.kind, LawKind::Yield | LawKind::Flat) {
+            return Ok(());
+        }
+        let at = args.here();
+        let said = match args.peek_text() {
+            "plastic" => LawKind::Yield,
+            "nonlinear" => LawKind::Flat,
+            _ if self.unloading.is_some() => return Ok(()),
+            _ => LawKind::Yield,
+        };
+        if self.unloading.is_some_and(|known| known != said) {
+            let text = "another pair has the other rule of unloading: one rule holds for all";
+            return fail(Code::CONFLICT, at, text);
+        }
+        if matches!(args.peek_text(), "plastic" | "nonlinear") {
+            args.next();
+            self.unloading = Some(said);
+        }
+        if cx.world.families.is_some() && self.law.kind != said {
+            return fail(Code::WRONG_ORDER, at, "the rule of unloading cannot change after the first run");
+        }
+        self.law.kind = said;
+        Ok(())
+    }
+
+    fn options(&self, w: &World) -> FamilyOptions {
+        let s = &w.settings;
+        FamilyOptions {
+            volume: self.volume,
+            unit: self.unit(),
+            lattice_spacing: w.lattice.spacing[0],
+            compat_lammps: s.lammps(),
+            compress: self.compress,
+            layout: if s.force_list { Layout::List } else { Layout::Auto },
+            skip_rest: !s.no_skipping,
+            portable: s.portable,
+            no_repulsion: self.no_repulsion,
+            reunite: self.reunite.is_some_and(|r| r.0),
+        }
+    }
+
+    /// The coefficients with micro-moduli that are right on a simple cubic lattice of this spacing.
+    fn calibrated(&self, spacing: f64, span: Span) -> Result<PmbTable> {
+        let mut table = self.table.clone();
+        if self.calibrate == Calibrate::No || !self.law.kind.bond_based() {
+            return Ok(table);
+        }
+        if self.law.surface {
+            self.cannot(
+                span,
+                "cannot be calibrated and have its surfaces corrected: that makes K right by itself",
+            )?;
+        }
+        let types = table.types() as u16;
+        for (i, j) in (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j))) {
+            let Some(own) = self.table.get(i, j).copied() else { continue };
+            let lattice = constants(own.horizon / spacing, self.volume, self.law.influence);
+            let ratio = if self.calibrate == Calibrate::Bulk { lattice.bulk } else { lattice.young };
+            if lattice.neighbours == 0 {
+                self.cannot(span, "cannot be calibrated: its horizon reaches no neighbour")?;
+            }
+            table.set(i, j, PmbCoeff { c: own.c / ratio, ..own })?;
+        }
+        Ok(table)
+    }
+
+    fn cannot(&self, span: Span, why: &str) -> Result<()> {
+        fail(Code::CONFLICT, span, format!("{} {why}", self.name))
+    }
+}
+
+impl Pair for Solid {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        self.grow(cx.world.types);
+        args.eat(self.name);
+        let span = args.here();
+        let (coeff, moduli) = match self.materials.coeff(self.law.kind, pairs, args, cx)? {
+            Some(coeff) => coeff,
+            None => {
+                self.raw = true;
+                numbers(self.law.kind, args, cx)?
+            }
+        };
+        self.unloading(args, cx)?;
+        if self.raw && !self.materials.is_empty() {
+            return Err(Diagnostic::error(
+                Code::CONFLICT,
+                span,
+                "materials and plain numbers cannot be mixed in one peridynamic body: the one means forces, the other force densities",
+            )
+            .help("give every pair a `material` or `mix`, or every pair numbers")
+            .into());
+        }
+        for &(i, j) in pairs {
+            self.table.set(i, j, coeff).map_err(|e| e.at(span))?;
+            if i == j {
+                self.law.moduli[usize::from(i) - 1] = moduli;
+            }
+            let types = self.table.types();
+            if matches!(self.law.kind, LawKind::Yield | LawKind::Flat) {
+                self.law.yields.resize(types * types, f64::NEG_INFINITY);
+                let (a, b) = (usize::from(i) - 1, usize::from(j) - 1);
+                self.law.yields[a * types + b] = moduli.syc;
+                self.law.yields[b * types + a] = moduli.syc;
+            }
+        }
+        Ok(())
+    }
+
+    fn covers(&self, i: u16, j: u16) -> bool {
+        (i.max(j) as usize) <= self.table.types() && self.table.get(i, j).is_some()
+    }
+
+    fn restrict(&mut self, pairs: &TypePairs) {
+        let mut table = PmbTable::new(self.table.types());
+        for &(i, j) in pairs {
+            // These coefficients were accepted before.
+            if let Some(Err(_)) = self.table.get(i, j).map(|c| table.set(i, j, *c)) {
+                return;
+            }
+        }
+        self.table = table;
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        let w = cx.world();
+        let [a, b, c] = w.lattice.spacing;
+        if !(a == b && b == c) {
+            self.cannot(span, "needs a lattice that is the same in x, y and z")?;
+        }
+        let options = self.options(w);
+        let before = w.families.as_ref().map(|f| f.law.kind);
+        cx.leave_out(
+            &format!("neighbour list of {}", self.name),
+            "bonds never change partners; close pairs are found by their stretch",
+        );
+        let mut style = self.clone();
+        style.table = self.calibrated(a, span)?;
+        if self.law.kind == LawKind::Pmb && (self.law.surface || self.law.influence != Influence::One) {
+            style.law.kind = LawKind::Shaped;
+        }
+        style.law.shared_or_apart(before).map_err(|e| e.at(span))?;
+        Ok(vec![Box::new(Force::new(style, self.table.clone(), options))])
+    }
+
+    fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        options::read(self, command, args, cx)
+    }
+
+    fn coefficients(&self) -> &'static [&'static str] {
+        if self.law.kind.bond_based() { &["c", "s00", "alpha"] } else { &["s00", "alpha"] }
+    }
+
+    fn coefficient(&self, name: &str, (i, j): (u16, u16)) -> Option<f64> {
+        let own = self.table.get(i, j)?;
+        match name {
+            "c" => Some(own.c),
+            "s00" => Some(own.s00),
+            "alpha" => Some(own.alpha),
+            _ => None,
+        }
+    }
+
+    fn needs(&self) -> &'static [&'static str] {
+        if self.materials.is_empty() { &["volume", "density"] } else { &["volume"] }
+    }
+
+    fn stable_step(&self, w: &World, said: Option<f64>) -> Option<f64> {
+        let types = self.table.types() as u16;
+        let stiffest = |i: u16| {
+            let all = (1..=types).filter_map(|j| self.table.get(i, j));
+            if self.law.kind.bond_based() {
+                // Bonds sum up to 2π c δ² over a whole ball (Silling & Askari 2005, equation 34).
+                return all.map(|p| std::f64::consts::PI * p.c * p.horizon * p.horizon).reduce(f64::max);
+            }
+            // Fitted to the exact limits of the cubic lattice, 1.48 dx/√(K/ρ) at nu = 0.25 and 3.39 at 0.48 for a
+            // horizon of 3.015 dx (Bloch waves, weights of LAMMPS), less five per cent.
+            let m = self.law.of(i);
+            let shortest = all.map(|p| p.horizon).reduce(f64::min)?;
+            Some((0.61 * m.bulk + 6.6 * m.shear) / (shortest * shortest))
+        };
+        let ftm2v = w.settings.units.constants().ftm2v;
+        let step = |i: u16| {
+            let own = self.materials.density(i);
+            let rho = own.or_else(|| if w.n() > 0 { self.lightest(w, i) } else { said })?;
+            Some((rho / (ftm2v * stiffest(i)?)).sqrt())
+        };
+        (1..=types).filter_map(step).reduce(f64::min)
+    }
+
+    fn unbreakable(&self) -> Option<u16> {
+        let endless = |i: &u16| self.table.get(*i, *i).is_some_and(|c| c.s00.is_infinite());
+        (1..=self.table.types() as u16).find(endless).filter(|_| !self.materials.is_empty())
+    }
+
+    fn true_forces(&self) -> Option<bool> {
+        Some(self.unit() == ForceUnit::Newton)
+    }
+
+    fn check(&self, cx: &BuildCx) {
+        let w = cx.world;
+        reunion::check(self, cx);
+        if w.families.is_some() || !w.settings.lammps() {
+            return;
+        }
+        let alphas = self.table.iter().any(|c| c.alpha != 0.0);
+        if w.types > 1 && alphas {
+            cx.note(Diagnostic::note(
+                Code::COMPAT,
+                cx.span,
+                "compat lammps: one critical stretch per particle also across mixed types",
+            ));
+        }
+    }
+
+    fn singles(&self, _w: &World) -> Result<Vec<Box<dyn Probe>>> {
+        let plain = self.law.kind == LawKind::Pmb && !self.compress;
+        Ok(if plain { vec![Box::new(BondProbe)] } else { vec![] })
+    }
+
+    fn cutoff(&self, _w: &World) -> Option<f64> {
+        self.table.iter().map(|c| c.horizon).reduce(f64::max)
+    }
+
+    fn boxed(&self) -> Box<dyn Pair> {
+        Box::new(self.clone())
+    }
+}

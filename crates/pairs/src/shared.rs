@@ -1,0 +1,57 @@
+//! What pair styles share: who was near whom at the last rebuild, whom fix freeze holds, what a pair adds to sums.
+
+use perigrain_base::math::vec3::{Vec3, add, sub};
+use perigrain_neigh::list::{Pair, View, Wanted, pairs};
+use perigrain_plan::Tick;
+use perigrain_world::tally::add_share;
+use perigrain_world::{Allowed, World};
+
+/// The positions that lists are made from: those of the last rebuild, of which later ones are within half a skin [length].
+pub fn built_at(w: &World) -> &[Vec3] {
+    known_or_present(w, w.held())
+}
+
+/// The positions that lists are made from which outlast rebuilds: perhaps those of an earlier one [length].
+pub fn made_at(w: &World) -> &[Vec3] {
+    known_or_present(w, w.made())
+}
+
+fn known_or_present<'a>(w: &'a World, known: &'a [Vec3]) -> &'a [Vec3] {
+    if known.len() == w.n() { known } else { &w.particles.x }
+}
+
+/// Pairs within reach plus `skin` at the positions `x` that `allowed` lets meet, sorted by their tags.
+pub fn near(w: &World, x: &[Vec3], wanted: &Wanted, skin: f64, allowed: &Allowed) -> Vec<Pair> {
+    let p = &w.particles;
+    let view = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
+    pairs(&view, wanted, skin, &|i, j| allowed.pair(i, j))
+}
+
+/// Which particles fix freeze holds; empty without one.
+pub fn find_frozen(w: &World, out: &mut Vec<bool>) {
+    out.clear();
+    if let Some((_, group)) = &w.parts.frozen {
+        out.extend(w.particles.mask.iter().map(|m| m & group.bit() != 0));
+    }
+}
+
+/// Gives the force `f` to the first of `ends` and its opposite to the other, `d` = x_i − x_j apart, and single particles
+/// and the virial their shares.
+pub fn push(w: &mut World, t: &Tick, ends: [usize; 2], d: Vec3, f: Vec3, energy: f64) {
+    let [i, j] = ends;
+    let forces = &mut w.particles.f;
+    forces[i] = add(forces[i], f);
+    forces[j] = sub(forces[j], f);
+    if t.atom_energy {
+        ends.iter().for_each(|&i| w.tally.atom[i] += 0.5 * energy);
+    }
+    if t.virial {
+        let atoms = t.atom_virial.then_some(&mut w.tally.atom_virial[..]);
+        add_share(&mut w.tally.virial, atoms, ends, d, f);
+    }
+}
+
+/// Adds a style's part of the virial: xx yy zz xy xz yz.
+pub fn add_virial(w: &mut World, part: [f64; 6]) {
+    w.tally.virial.iter_mut().zip(part).for_each(|(total, part)| *total += part);
+}

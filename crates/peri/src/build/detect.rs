@@ -1,0 +1,129 @@
+//! Bodies: which particles hang together by bonds, and which of them sit on a lattice.
+
+use crate::families::{Cells, FamilyOptions, PeriView, PmbTable};
+use perigrain_base::math::forest::{find, join};
+
+/// The bodies of a scene.
+#[derive(Debug)]
+pub struct Bodies {
+    /// Particles of each body, in order; bodies in the order of their first particles. Particles without
+    /// bonds belong to none.
+    pub members: Vec<Vec<u32>>,
+    /// Smallest bond length per body.
+    pub nearest: Vec<f64>,
+    /// Whether a bond of the body crosses a periodic face.
+    pub wraps: Vec<bool>,
+}
+
+/// Squared length of the shortest image of the vector from `j` to `i`, and whether it is not the plain one.
+pub fn distance(view: &PeriView, i: u32, j: u32) -> (f64, bool) {
+    let (a, b) = (view.x[i as usize], view.x[j as usize]);
+    let plain = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    let d = view.bounds.nearest(plain);
+    (d[0] * d[0] + d[1] * d[1] + d[2] * d[2], d != plain)
+}
+
+/// Calls `f(i, j, |x_i - x_j|^2, whether the shortest image crosses a periodic face)` for every bond.
+pub fn bonds(
+    view: &PeriView,
+    which: impl Iterator<Item = u32> + Clone,
+    table: &PmbTable,
+    options: &FamilyOptions,
+    mut f: impl FnMut(u32, u32, f64, bool),
+) {
+    let far = reach(table, options);
+    if far <= 0.0 {
+        return;
+    }
+    let mut cells = Cells::default();
+    cells.fill(view.x, which, &view.bounds, far);
+    cells.pairs(|i, j| {
+        let (rsq, wraps) = distance(view, i, j);
+        if rsq > far * far {
+            return;
+        }
+        let Some(coeff) = table.get(view.kind[i as usize], view.kind[j as usize]) else { return };
+        let cut = options.volume.reach(coeff.horizon, options.lattice_spacing);
+        if rsq <= cut * cut && !view.excludes(i, j) {
+            f(i, j, rsq, wraps);
+        }
+    });
+}
+
+/// The longest reach of any family.
+pub fn reach(table: &PmbTable, options: &FamilyOptions) -> f64 {
+    table.iter().map(|c| options.volume.reach(c.horizon, options.lattice_spacing)).fold(0.0, f64::max)
+}
+
+/// Finds the bodies of a scene.
+pub fn bodies(view: &PeriView, table: &PmbTable, options: &FamilyOptions) -> Bodies {
+    let n = view.x.len();
+    let mut parent: Vec<u32> = (0..n as u32).collect();
+    let mut shortest = vec![f64::INFINITY; n];
+    let mut crosses = vec![false; n];
+    bonds(view, 0..n as u32, table, options, |i, j, rsq, wraps| {
+        join(&mut parent, i, j);
+        shortest[i as usize] = shortest[i as usize].min(rsq);
+        shortest[j as usize] = shortest[j as usize].min(rsq);
+        crosses[i as usize] |= wraps;
+    });
+    let mut found = Bodies { members: vec![], nearest: vec![], wraps: vec![] };
+    let mut body = vec![u32::MAX; n];
+    for i in 0..n {
+        if shortest[i].is_infinite() {
+            continue;
+        }
+        let r = find(&mut parent, i as u32) as usize;
+        if body[r] == u32::MAX {
+            body[r] = found.members.len() as u32;
+            found.members.push(vec![]);
+            found.nearest.push(f64::INFINITY);
+            found.wraps.push(false);
+        }
+        let b = body[r] as usize;
+        found.members[b].push(i as u32);
+        found.nearest[b] = found.nearest[b].min(shortest[i].sqrt());
+        found.wraps[b] |= crosses[i];
+    }
+    found
+}
+
+/// A lattice that carries a body.
+#[derive(Debug)]
+pub struct Sites {
+    /// Spacing.
+    pub spacing: f64,
+    /// Lattice coordinates of the body's particles, from 0.
+    pub at: Vec<[i32; 3]>,
+    /// Number of sites in each direction.
+    pub size: [i32; 3],
+}
+
+/// The sites of a body if all its particles are within 1e-10 spacings of a simple cubic lattice along the
+/// axes whose spacing is `nearest`.
+pub fn sites(view: &PeriView, members: &[u32], nearest: f64) -> Option<Sites> {
+    let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for &i in members {
+        for k in 0..3 {
+            lo[k] = lo[k].min(view.x[i as usize][k]);
+            hi[k] = hi[k].max(view.x[i as usize][k]);
+        }
+    }
+    // The longest extent gives the spacing with the fewest digits lost.
+    let longest = [0, 1, 2].map(|k| hi[k] - lo[k]).into_iter().fold(0.0, f64::max);
+    let steps = (longest / nearest).round();
+    if !(1.0..1e6).contains(&steps) {
+        return None;
+    }
+    let spacing = longest / steps;
+    let size = [0, 1, 2].map(|k| ((hi[k] - lo[k]) / spacing).round() as i32 + 1);
+    let mut at = Vec::with_capacity(members.len());
+    for &i in members {
+        let c = [0, 1, 2].map(|k| (view.x[i as usize][k] - lo[k]) / spacing);
+        if c.iter().any(|c| (c - c.round()).abs() > 1e-10) {
+            return None;
+        }
+        at.push(c.map(|c| c.round() as i32));
+    }
+    Some(Sites { spacing, at, size })
+}

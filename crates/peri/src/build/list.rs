@@ -1,0 +1,208 @@
+//! Laying out bonds as a list: records by slabs, half of the bonds with each.
+
+use super::detect::{bonds, distance, reach};
+use crate::families::list::{GROUP, ListBody, Record};
+use crate::families::{FamilyOptions, PeriView, PmbTable};
+
+/// The list layout of the bonds among `members`, and the sums of initial partners' volumes and numbers.
+pub fn lay_out(
+    view: &PeriView,
+    members: &[u32],
+    wraps: bool,
+    table: &PmbTable,
+    options: &FamilyOptions,
+    family_volume: &mut [f64],
+    family_size: &mut [u16],
+) -> ListBody {
+    if members.is_empty() {
+        return ListBody { start: vec![0], back_start: vec![0], slab: vec![0], ..Default::default() };
+    }
+    let mut contact = f64::NEG_INFINITY;
+    let found = |each: &mut dyn FnMut(u32, u32, Option<u8>)| {
+        bonds(view, members.iter().copied(), table, options, |p, q, rsq, _| {
+            // Two at one place: a bond without a length has no stretch and no direction.
+            if rsq == 0.0 {
+                return;
+            }
+            let range = options.contact_range(view, p, q);
+            contact = contact.max(range * range / rsq - 1.0);
+            each(p, q, None);
+        });
+    };
+    let mut body =
+        gathered(view, members, (wraps, reach(table, options)), (family_volume, family_size), found);
+    body.contact = contact;
+    body
+}
+
+/// The same of bonds that are known, by their ends and their type from 0, of which the longest is `far`.
+pub fn lay_out_links(
+    view: &PeriView,
+    links: &[([u32; 2], u8)],
+    far: f64,
+    family_volume: &mut [f64],
+    family_size: &mut [u16],
+) -> ListBody {
+    if links.is_empty() {
+        return ListBody { start: vec![0], back_start: vec![0], slab: vec![0], ..Default::default() };
+    }
+    let mut members: Vec<u32> = links.iter().flat_map(|l| l.0).collect();
+    members.sort_unstable();
+    members.dedup();
+    let wraps = links.iter().any(|(ends, _)| distance(view, ends[0], ends[1]).1);
+    let found = |each: &mut dyn FnMut(u32, u32, Option<u8>)| {
+        links.iter().for_each(|&([p, q], kind)| each(p, q, Some(kind)));
+    };
+    let mut body = gathered(view, &members, (wraps, far), (family_volume, family_size), found);
+    body.contact = f64::NEG_INFINITY;
+    body
+}
+
+/// The length of the longest of some bonds.
+pub fn longest(view: &PeriView, links: &[([u32; 2], u8)]) -> f64 {
+    links.iter().map(|(ends, _)| distance(view, ends[0], ends[1]).0).fold(0.0, f64::max).sqrt()
+}
+
+/// The list of the bonds that `found` goes through, with a type of their own or that of their ends.
+fn gathered(
+    view: &PeriView,
+    members: &[u32],
+    (wraps, far): (bool, f64),
+    (family_volume, family_size): (&mut [f64], &mut [u16]),
+    found: impl FnOnce(&mut dyn FnMut(u32, u32, Option<u8>)),
+) -> ListBody {
+    let mut body = order(view, members, wraps, far);
+    let n = body.particle.len();
+    let mut record_of = vec![u32::MAX; view.x.len()];
+    for (r, &p) in body.particle.iter().enumerate() {
+        record_of[p as usize] = r as u32;
+    }
+    let mut kinds: Vec<u16> = members.iter().map(|&p| view.kind[p as usize]).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    let local = |p: u32| kinds.iter().position(|&k| k == view.kind[p as usize]).unwrap_or(0) as u8;
+    body.kind = body.particle.iter().map(|&p| local(p)).collect();
+    let mut slab_of = vec![0u32; n];
+    for s in 0..body.slabs() {
+        slab_of[body.slab[s] as usize..body.slab[s + 1] as usize].fill(s as u32);
+    }
+    let last = body.slabs() as u32 - 1;
+    let (mut pairs, mut typed): (Vec<(u32, u8, u32)>, bool) = (vec![], false);
+    found(&mut |p, q, own| {
+        family_volume[p as usize] += view.volume[q as usize];
+        family_volume[q as usize] += view.volume[p as usize];
+        family_size[p as usize] += 1;
+        family_size[q as usize] += 1;
+        let (a, b) = (record_of[p as usize], record_of[q as usize]);
+        let (low, high) = (a.min(b), a.max(b));
+        let across = body.ring && slab_of[low as usize] == 0 && slab_of[high as usize] == last;
+        let (i, j) = if across { (high, low) } else { (low, high) };
+        typed |= own.is_some();
+        pairs.push((i, own.unwrap_or(body.kind[j as usize]), j));
+    });
+    pairs.sort_unstable();
+    fill(&mut body, &pairs);
+    body.kinds = kinds;
+    if typed {
+        // Constants go by the bonds' types alone.
+        body.kind.fill(0);
+        body.kinds.truncate(1);
+    }
+    body.record = body
+        .particle
+        .iter()
+        .map(|&p| Record {
+            reference: view.x[p as usize],
+            volume: view.volume[p as usize],
+            ..Default::default()
+        })
+        .collect();
+    body.last = vec![[0.0; 3]; n];
+    body.moving = vec![false; body.slabs()];
+    body.tension = vec![0.0; n];
+    body.flagged = vec![0; n];
+    body
+}
+
+/// Records in slabs no thinner than the longest family reaches; within a slab, neighbours near each other.
+fn order(view: &PeriView, members: &[u32], wraps: bool, far: f64) -> ListBody {
+    let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for &p in members {
+        for k in 0..3 {
+            lo[k] = lo[k].min(view.x[p as usize][k]);
+            hi[k] = hi[k].max(view.x[p as usize][k]);
+        }
+    }
+    let closed = [0, 1, 2].map(|k| wraps && view.bounds.periodic[k]);
+    for k in (0..3).filter(|&k| closed[k]) {
+        (lo[k], hi[k]) = (view.bounds.lo[k], view.bounds.hi[k]);
+    }
+    let length = [0, 1, 2].map(|k| hi[k] - lo[k]);
+    // Along an open direction if there is one, else along a ring.
+    let axis = (0..3).fold(0, |best, k| {
+        let better = (closed[best] && !closed[k]) || (closed[best] == closed[k] && length[k] > length[best]);
+        if better { k } else { best }
+    });
+    let mut slabs = ((length[axis] / far * (1.0 - 1e-9)).floor() as usize).clamp(1, 1 << 16);
+    let ring = closed[axis] && slabs >= 3;
+    if closed[axis] && !ring {
+        slabs = 1;
+    }
+    let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+    let (b, c) = if length[b] > length[c] { (b, c) } else { (c, b) };
+    let fine = far / 3.0;
+    let key = |p: u32| {
+        let x = view.x[p as usize];
+        let s = ((x[axis] - lo[axis]) / length[axis].max(f64::MIN_POSITIVE) * slabs as f64) as usize;
+        let layer = |k: usize| ((x[k] - lo[k]) / fine).round() as i64;
+        (s.min(slabs - 1), layer(c), layer(axis), layer(b), p)
+    };
+    let mut keyed: Vec<_> = members.iter().map(|&p| key(p)).collect();
+    keyed.sort_unstable();
+    let mut slab = vec![0u32; slabs + 1];
+    for k in &keyed {
+        slab[k.0 + 1] += 1;
+    }
+    for s in 0..slabs {
+        slab[s + 1] += slab[s];
+    }
+    ListBody { particle: keyed.iter().map(|k| k.4).collect(), slab, ring, ..Default::default() }
+}
+
+/// Groups of four bonds from (owner, partner's local type, partner) in order.
+fn fill(body: &mut ListBody, pairs: &[(u32, u8, u32)]) {
+    let n = body.particle.len();
+    body.start = vec![0];
+    body.back_start = vec![0; n + 1];
+    let mut rest = pairs;
+    for i in 0..n as u32 {
+        while let Some(&(owner, kind, _)) = rest.first()
+            && owner == i
+        {
+            let same = |p: &&(u32, u8, u32)| p.0 == i && p.1 == kind;
+            let count = rest.iter().take(GROUP).take_while(same).count();
+            for k in 0..GROUP {
+                body.partner.push(if k < count { rest[k].2 } else { i });
+                if k < count {
+                    body.back_start[rest[k].2 as usize + 1] += 1;
+                }
+            }
+            body.alive.push((1 << count) - 1);
+            body.group_kind.push(kind);
+            body.owner.push(i);
+            rest = &rest[count..];
+        }
+        body.start.push(body.owner.len() as u32);
+    }
+    for i in 0..n {
+        body.back_start[i + 1] += body.back_start[i];
+    }
+    let mut place = body.back_start.clone();
+    body.back = vec![0; pairs.len()];
+    for (b, &j) in body.partner.iter().enumerate() {
+        if body.lives(b) {
+            body.back[place[j as usize] as usize] = b as u32;
+            place[j as usize] += 1;
+        }
+    }
+}

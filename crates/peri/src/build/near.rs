@@ -1,0 +1,171 @@
+//! Pairs without a living bond that may come into short-range contact: found now and then, kept in between.
+//!
+//! Any two particles closer than the reach of families when these were built are bonded. So nobody without a
+//! bond can be in contact before two particles have come closer by the reach minus the contact range, and later
+//! searches keep all pairs within the contact range plus a skin. How much closer two particles may have come is
+//! bounded by the range of displacement changes, added up over steps: a body that flies undeformed needs no search.
+
+use super::detect::distance;
+use crate::families::lattice::RowMotion;
+use crate::families::{Families, NearPair, PeriView};
+
+/// Contact between unbonded particles never reaches farther than this many lattice spacings.
+const CONTACT: f64 = 1.35;
+/// Pairs are kept up to this many spacings beyond that.
+const SKIN: f64 = 0.35;
+
+impl Families {
+    /// Starts with no pairs, good until something has moved by more than the reach of families leaves free.
+    pub(crate) fn start_near(&mut self, shortest_reach: f64) {
+        let free = shortest_reach - CONTACT * self.options.lattice_spacing;
+        self.near.skin = free;
+        self.near.allowed = [free; 2];
+        self.near.spent = [0.0; 2];
+        self.near.pairs.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Forgets pairs; they are searched anew at the next force evaluation.
+    pub fn forget_near(&mut self) {
+        self.near.allowed = [f64::NEG_INFINITY; 2];
+    }
+
+    /// Brings the pairs up to date with positions. `within` and `all` are the ranges of displacement changes
+    /// since the last step that advanced: the largest in one body, and that of all particles together. Returns
+    /// how much closer particles may be now than when pairs were searched.
+    pub fn update_near(&mut self, view: &PeriView, within: f64, all: f64, advance: bool) -> [f64; 2] {
+        let mut closer = [0.0; 2];
+        for (part, change) in [within, all].into_iter().enumerate() {
+            let spent = self.near.spent[part] + change;
+            if spent >= self.near.allowed[part] {
+                self.search(view, part);
+                continue;
+            }
+            closer[part] = spent;
+            if advance {
+                self.near.spent[part] = spent;
+            }
+        }
+        closer
+    }
+
+    fn search(&mut self, view: &PeriView, part: usize) {
+        let lc = self.options.lattice_spacing;
+        let range = (CONTACT + SKIN) * lc;
+        let mut pairs = std::mem::take(&mut self.near.pairs[part]);
+        let mut cells = std::mem::take(&mut self.scratch.cells);
+        pairs.clear();
+        self.near.spent[part] = 0.0;
+        self.near.allowed[part] = SKIN * lc;
+        self.near.skin = SKIN * lc;
+        let mut keep = |families: &Self, i: u32, j: u32| {
+            // Most pairs are too far apart.
+            if distance(view, i, j).0 >= range * range {
+                return;
+            }
+            let same = families.body_of(i) == families.body_of(j) && families.body_of(i) != u32::MAX;
+            if same == (part == 0)
+                && families.table.get(view.kind[i as usize], view.kind[j as usize]).is_some()
+                && !(same && families.bonded(i, j))
+            {
+                pairs.push(families.near_pair(view, i, j, 0.0));
+            }
+        };
+        if part == 0 {
+            let members = (0..self.place.len() as u32).filter(|&p| self.place[p as usize] != u32::MAX);
+            cells.fill(view.x, members, &view.bounds, range);
+            cells.pairs(|i, j| keep(self, i, j));
+        } else {
+            let (chosen, gap) = self.across(view, range);
+            cells.fill(view.x, chosen.iter().copied(), &view.bounds, range);
+            cells.pairs(|i, j| keep(self, i, j));
+            self.near.allowed[part] = self.near.allowed[part].max(gap - CONTACT * lc);
+        }
+        pairs.sort_unstable_by_key(|pair| pair.ends);
+        self.near.pairs[part] = pairs;
+        self.scratch.cells = cells;
+    }
+
+    /// Particles that may be within `range` of another body, and the least gap between bodies if there are none.
+    fn across(&self, view: &PeriView, range: f64) -> (Vec<u32>, f64) {
+        let bodies = self.lattices.len() + 1;
+        let mut boxes = vec![([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]); bodies];
+        for p in 0..self.place.len() as u32 {
+            if let Some((lo, hi)) = boxes.get_mut(self.body_of(p) as usize) {
+                for k in 0..3 {
+                    lo[k] = lo[k].min(view.x[p as usize][k]);
+                    hi[k] = hi[k].max(view.x[p as usize][k]);
+                }
+            }
+        }
+        let loose = self.near.loose.iter().map(|l| l.0);
+        if view.bounds.periodic != [false; 3] || self.near.loose.len() > 64 || bodies > 1000 {
+            let all = (0..self.place.len() as u32).filter(|&p| self.place[p as usize] != u32::MAX);
+            return (all.chain(loose).collect(), 0.0);
+        }
+        let mut gap = f64::INFINITY;
+        for (a, own) in boxes.iter().enumerate() {
+            for other in &boxes[a + 1..] {
+                gap = gap.min(separation(own, other));
+            }
+        }
+        if gap > range && self.near.loose.is_empty() {
+            return (vec![], gap);
+        }
+        let near = |x: &[f64; 3], b: &([f64; 3], [f64; 3])| separation(&(*x, *x), b) <= range;
+        let bonded = (0..self.place.len() as u32).filter(|&p| {
+            let (own, x) = (self.body_of(p), &view.x[p as usize]);
+            own != u32::MAX
+                && (boxes.iter().enumerate().any(|(b, other)| b as u32 != own && near(x, other))
+                    || self.near.loose.iter().any(|l| near(x, &(view.x[l.0 as usize], view.x[l.0 as usize]))))
+        });
+        (bonded.chain(loose).collect(), 0.0)
+    }
+
+    /// Keeps a pair whose bond has just broken in view.
+    pub(crate) fn add_broken(&mut self, view: &PeriView, i: u32, j: u32) {
+        let range = CONTACT * self.options.lattice_spacing + self.near.skin.max(0.0);
+        if distance(view, i, j).0 < range * range {
+            let pair = self.near_pair(view, i, j, self.near.spent[0]);
+            self.near.pairs[0].push(pair);
+        }
+    }
+
+    /// Two particles that cannot touch before they have come closer by what lies between them now; `spent` is
+    /// what has been spent so far.
+    fn near_pair(&self, view: &PeriView, i: u32, j: u32, spent: f64) -> NearPair {
+        let gap = distance(view, i, j).0.sqrt() - self.options.contact_range(view, i, j);
+        // Rounded down by more than f32 and the sum of many steps may lose.
+        let after = if gap > 0.0 { (spent + gap) * (1.0 - 1e-6) } else { 0.0 };
+        NearPair { ends: [i.min(j), i.max(j)], after: after as f32 }
+    }
+
+    /// The ranges of displacement changes within bodies and over everything; loose particles are looked at here.
+    pub(crate) fn ranges(&mut self, view: &PeriView, list: &RowMotion, advance: bool) -> (f64, f64) {
+        let mut all = *list;
+        let mut within = diagonal(list);
+        for body in &self.lattices {
+            let motion = body.motion.iter().fold(RowMotion::NONE, |m, row| m.with(row));
+            within = within.max(diagonal(&motion));
+            all = all.with(&motion);
+        }
+        for (p, last) in &mut self.near.loose {
+            let x = view.x[*p as usize];
+            let d = view.bounds.nearest([0, 1, 2].map(|k| x[k] - last[k]));
+            all = all.with(&RowMotion { least: d, most: d, ..RowMotion::NONE });
+            if advance {
+                *last = x;
+            }
+        }
+        (within, diagonal(&all))
+    }
+}
+
+/// The length of the diagonal of the box of displacement changes.
+fn diagonal(m: &RowMotion) -> f64 {
+    (0..3).map(|k| (m.most[k] - m.least[k]).max(0.0).powi(2)).sum::<f64>().sqrt()
+}
+
+/// The distance of two boxes.
+fn separation(a: &([f64; 3], [f64; 3]), b: &([f64; 3], [f64; 3])) -> f64 {
+    (0..3).map(|k| (a.0[k] - b.1[k]).max(b.0[k] - a.1[k]).max(0.0).powi(2)).sum::<f64>().sqrt()
+}

@@ -1,0 +1,385 @@
+//! Peridynamic families at work: building them, the forces of a step, breaking, damage.
+
+use std::sync::{Mutex, PoisonError};
+
+use super::breaking::{Periodic, break_bonds};
+use super::chunk::{Kernels, Plain};
+#[cfg(target_arch = "x86_64")]
+use super::chunk::{Wide, Widest};
+use super::contact::{Repulsion, push_apart, repel};
+use super::energy::tally;
+use super::gather::{GatherKernels, gather};
+use super::lanes::has_avx2;
+#[cfg(target_arch = "x86_64")]
+use super::lanes512::has_avx512;
+use super::lattice::{self, ChunkColumns, Mode};
+use super::list;
+use super::list_kernel::RowKernels;
+use super::state::{self, kernels::StateKernels};
+use super::stretching::StretchKernels;
+use super::tables;
+use crate::build::{detect, lattice as cells, list as records};
+use crate::families::lattice::RowMotion;
+use crate::families::{
+    Bounds, Candidate, Families, FamilyOptions, ForceUnit, Law, LawKind, Layout, NearPairs, PeriTally,
+    PeriView, PmbCoeff, PmbTable, Scratch,
+};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::par::{self, Shared};
+
+impl Families {
+    /// Finds all bonds: partners closer than the horizon of their types in the present positions. They are
+    /// microelastic.
+    ///
+    /// # Errors
+    /// A periodic box shorter than two horizons is refused: a bond would meet its own image.
+    pub fn build(view: &PeriView, table: &PmbTable, options: FamilyOptions) -> Result<Self> {
+        Self::build_of(view, table, options, Law::default())
+    }
+
+    /// The same for bonds of any law.
+    ///
+    /// # Errors
+    /// As for [`Families::build`].
+    pub fn build_of(view: &PeriView, table: &PmbTable, options: FamilyOptions, law: Law) -> Result<Self> {
+        check_box(view, detect::reach(table, &options))?;
+        let mut families = Self::empty(view, table, options, law);
+        families.lay_out(view);
+        families.number_places();
+        families.refresh(view, table);
+        if families.law.kind.has_states() {
+            families.weigh(view, periods(&view.bounds));
+        }
+        let reaches = table.iter().map(|c| options.volume.reach(c.horizon, options.lattice_spacing));
+        families.start_near(reaches.fold(f64::INFINITY, f64::min));
+        if view.excluded.is_some() {
+            // Close pairs without a bond may meet as soon as the rules are gone.
+            families.forget_near();
+        }
+        families.find_loose(view);
+        Ok(families)
+    }
+
+    /// The same of bonds that are known: ends and type − 1 of each, with coefficients by type. There is no short-range
+    /// contact; `table` has what is said of pairs of types of particles.
+    ///
+    /// # Errors
+    /// As for [`Families::build`].
+    pub fn build_from(
+        view: &PeriView,
+        links: &[([u32; 2], u8)],
+        (table, of_bonds): (&PmbTable, Vec<PmbCoeff>),
+        options: FamilyOptions,
+        law: Law,
+    ) -> Result<Self> {
+        let far = records::longest(view, links);
+        check_box(view, far)?;
+        let mut families = Self::empty(view, table, FamilyOptions { no_repulsion: true, ..options }, law);
+        families.of_bonds = of_bonds;
+        families.reference = Some(view.x.to_vec());
+        let (volume, size) = (&mut families.family_volume, &mut families.family_size);
+        families.list = records::lay_out_links(view, links, far, volume, size);
+        families.number_places();
+        families.refresh(view, table);
+        if families.law.kind.has_states() {
+            families.weigh(view, periods(&view.bounds));
+        }
+        families.start_near(far);
+        Ok(families)
+    }
+
+    fn empty(view: &PeriView, table: &PmbTable, options: FamilyOptions, law: Law) -> Self {
+        let n = view.x.len();
+        Self {
+            table: table.clone(),
+            options,
+            law,
+            of_bonds: vec![],
+            seen: 0,
+            armed: false,
+            lattices: vec![],
+            list: Default::default(),
+            reference: (view.x != view.x0).then(|| view.x.to_vec()),
+            place: vec![u32::MAX; n],
+            family_volume: vec![0.0; n],
+            family_size: vec![0; n],
+            lasting: vec![],
+            hurt: vec![false; n],
+            near: NearPairs::default(),
+            released: 0.0,
+            heat: 0.0,
+            relaxing: None,
+            counts_losses: false,
+            scratch: Scratch::default(),
+        }
+    }
+
+    /// Gives each body its layout.
+    fn lay_out(&mut self, view: &PeriView) {
+        let bodies = detect::bodies(view, &self.table, &self.options);
+        let mut listed = Vec::new();
+        let mut wraps = false;
+        for (k, members) in bodies.members.iter().enumerate() {
+            let free =
+                self.options.layout == Layout::Auto && !bodies.wraps[k] && self.suits_lattice(view, members);
+            let sites = if free { detect::sites(view, members, bodies.nearest[k]) } else { None };
+            let (volume, size) = (&mut self.family_volume, &mut self.family_size);
+            let body = sites.and_then(|sites| {
+                cells::lay_out(view, members, &sites, &self.table, &self.options, volume, size)
+            });
+            match body {
+                Some(body) => self.lattices.push(body),
+                None => {
+                    listed.extend_from_slice(members);
+                    wraps |= bodies.wraps[k];
+                }
+            }
+        }
+        listed.sort_unstable();
+        let (volume, size) = (&mut self.family_volume, &mut self.family_size);
+        self.list = records::lay_out(view, &listed, wraps, &self.table, &self.options, volume, size);
+    }
+
+    /// Lattice kernels of bonds with memory know one pair of types and one volume.
+    fn suits_lattice(&self, view: &PeriView, members: &[u32]) -> bool {
+        let of = |p: u32| (view.kind[p as usize], view.volume[p as usize].to_bits());
+        let kind = self.law.kind;
+        kind == LawKind::Pmb
+            || !kind.bond_based()
+            || members.first().is_none_or(|first| members.iter().all(|p| of(*p) == of(*first)))
+    }
+
+    /// Numbers cells and records through all bodies.
+    fn number_places(&mut self) {
+        let mut first = 0;
+        self.place.fill(u32::MAX);
+        for body in &mut self.lattices {
+            body.first_place = first;
+            for (cell, &p) in body.particle.iter().enumerate() {
+                if p != u32::MAX {
+                    self.place[p as usize] = first + cell as u32;
+                }
+            }
+            first += body.particle.len() as u32;
+        }
+        self.list.first_place = first;
+        for (r, &p) in self.list.particle.iter().enumerate() {
+            if p != u32::MAX {
+                self.place[p as usize] = first + r as u32;
+            }
+        }
+    }
+
+    fn find_loose(&mut self, view: &PeriView) {
+        let types = self.table.types() as u16;
+        let touches = |kind: u16| (1..=types).any(|other| self.table.get(kind, other).is_some());
+        let loose = (0..self.place.len()).filter(|&p| self.place[p] == u32::MAX && touches(view.kind[p]));
+        self.near.loose = loose.map(|p| (p as u32, view.x[p])).collect();
+    }
+
+    /// Takes over coefficients, types and volumes that a deck has changed since families were built. Families
+    /// themselves stay.
+    pub fn refresh(&mut self, view: &PeriView, table: &PmbTable) {
+        self.table = table.clone();
+        for body in &mut self.lattices {
+            tables::refresh(body, view, table, &self.options, &self.law);
+        }
+        list::refresh(&mut self.list, view, table, &self.options, (&self.law, &self.of_bonds));
+    }
+
+    /// Takes in particles created since: they have no family, but short-range contact.
+    fn welcome(&mut self, view: &PeriView) {
+        let n = view.x.len();
+        if self.place.len() == n {
+            return;
+        }
+        self.place.resize(n, u32::MAX);
+        self.family_volume.resize(n, 0.0);
+        self.family_size.resize(n, 0);
+        self.hurt.resize(n, false);
+        if let Some(reference) = &mut self.reference {
+            reference.extend_from_slice(&view.x[reference.len()..]);
+        }
+        self.find_loose(view);
+        self.forget_near();
+    }
+
+    /// Adds the forces of all bonds and of short-range contact to `f`. With `advance`, overstretched bonds
+    /// then break and the families' smallest stretches are those of this step.
+    pub fn force(
+        &mut self,
+        view: &PeriView,
+        f: &mut [[f64; 3]],
+        advance: bool,
+        tally: Option<&mut PeriTally>,
+    ) {
+        #[cfg(target_arch = "x86_64")]
+        if !self.options.portable && has_avx512() {
+            return self.force_with::<Widest>(view, f, advance, tally);
+        }
+        #[cfg(target_arch = "x86_64")]
+        if !self.options.portable && has_avx2() {
+            return self.force_with::<Wide>(view, f, advance, tally);
+        }
+        self.force_with::<Plain>(view, f, advance, tally);
+    }
+
+    fn force_with<K: Kernels + RowKernels + StretchKernels + GatherKernels + StateKernels>(
+        &mut self,
+        view: &PeriView,
+        f: &mut [[f64; 3]],
+        advance: bool,
+        mut tallied: Option<&mut PeriTally>,
+    ) {
+        self.welcome(view);
+        let period = periods(&view.bounds);
+        let reference = self.reference.as_deref().unwrap_or(view.x0);
+        // Bonded particles that were put close to each other before families were built push each other from the start.
+        let repels = !self.options.no_repulsion;
+        for body in &mut self.lattices {
+            let presses = repels && body.contact >= 0.0;
+            // SAFETY: `force` has chosen kernels that the processor has.
+            unsafe { gather::<K>(body, view, reference, presses) };
+        }
+        let presses = repels && self.list.contact >= 0.0;
+        let moved = list::gather(&mut self.list, view, presses);
+        let states = self.law.kind.has_states();
+        match states {
+            true => self.sweep_states::<K>(view, f, (advance, tallied.is_some()), period),
+            false => self.sweep::<K>(f, advance, period),
+        }
+        if advance && self.counts_losses {
+            self.count_heat::<K>(view, period);
+        }
+        self.contact(view, f, &moved, advance, tallied.as_deref_mut());
+        if let Some(t) = tallied {
+            match states {
+                true => state::tally::<K>(self, view, t, (advance, period)),
+                false => tally::<K>(self, view, t, period),
+            }
+        }
+        if advance {
+            self.advance::<K>(view, period);
+        }
+    }
+
+    /// Adds the forces of all bonds, slab by slab in two colours.
+    fn sweep<K: Kernels + RowKernels + StateKernels>(
+        &mut self,
+        f: &mut [[f64; 3]],
+        advance: bool,
+        period: [f64; 3],
+    ) {
+        let mode = Mode { advance, armed: self.armed, skip: self.options.skip_rest };
+        let newton = self.options.unit == ForceUnit::Newton;
+        let Self { lattices, list, scratch, options, .. } = self;
+        scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
+        let window = || {
+            scratch.windows[par::slot() % scratch.windows.len()]
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+        };
+        let f = Shared::new(f);
+        for body in lattices {
+            let mut columns = ChunkColumns::take(body);
+            let sweep = lattice::Sweep::new(body, &mut columns, mode, newton, None);
+            par::two_colours(body.slabs(), |slab| sweep.slab::<K>(slab, &mut window(), &f));
+            columns.give(body);
+        }
+        let (mut tension, mut flagged) =
+            (std::mem::take(&mut list.tension), std::mem::take(&mut list.flagged));
+        let sweep = list::Sweep {
+            body: list,
+            tension: Shared::new(&mut tension),
+            flagged: Shared::new(&mut flagged),
+            mode,
+            options: *options,
+            period,
+        };
+        // A ring of an odd number of slabs cannot be coloured with two colours: its last one goes alone.
+        let slabs = list.slabs();
+        let odd = list.ring && slabs % 2 == 1;
+        par::two_colours(slabs - usize::from(odd), |slab| sweep.slab::<K>(slab, &mut window(), &f));
+        if odd {
+            sweep.slab::<K>(slabs - 1, &mut window(), &f);
+        }
+        (list.tension, list.flagged) = (tension, flagged);
+    }
+
+    fn contact(
+        &mut self,
+        view: &PeriView,
+        f: &mut [[f64; 3]],
+        moved: &RowMotion,
+        advance: bool,
+        tally: Option<&mut PeriTally>,
+    ) {
+        let closer = (!self.options.no_repulsion).then(|| {
+            let (within, all) = self.ranges(view, moved, advance);
+            self.update_near(view, within, all, advance)
+        });
+        let mut repulsion = Repulsion { view, table: &self.table, options: &self.options, f, tally };
+        if let Some(closer) = closer {
+            repel(self, closer, &mut repulsion);
+        }
+        push_apart(self, &mut repulsion);
+    }
+
+    /// Breaks bonds and makes this step the previous one.
+    fn advance<K: Kernels + RowKernels + StretchKernels + StateKernels>(
+        &mut self,
+        view: &PeriView,
+        period: [f64; 3],
+    ) {
+        if self.armed {
+            self.break_and_count::<K>(view, period);
+        }
+        self.armed = true;
+        for body in &mut self.lattices {
+            body.u.swap(0, 1);
+        }
+        list::keep(&mut self.list);
+    }
+
+    pub(super) fn break_bonds<K: StretchKernels>(&mut self, view: &PeriView, period: [f64; 3]) {
+        let mut found: Vec<Candidate> = std::mem::take(&mut self.scratch.candidates);
+        let mut ends = std::mem::take(&mut self.scratch.ends);
+        ends.clear();
+        let lasting = &self.lasting;
+        let spared = |p: u32| lasting.get(p as usize).copied().unwrap_or(false);
+        for body in &mut self.lattices {
+            break_bonds::<K, _>(body, &self.options, &mut found, &spared);
+            ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
+        }
+        break_bonds::<K, _>(&mut Periodic(&mut self.list, period), &self.options, &mut found, &spared);
+        ends.extend(found.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
+        for &[i, j] in &ends {
+            self.hurt[i as usize] = true;
+            self.hurt[j as usize] = true;
+            self.add_broken(view, i, j);
+        }
+        self.scratch.candidates = found;
+        self.scratch.ends = ends;
+    }
+}
+
+/// Lengths of the periodic directions; infinite in open ones.
+pub(super) fn periods(bounds: &Bounds) -> [f64; 3] {
+    [0, 1, 2].map(|k| if bounds.periodic[k] { bounds.hi[k] - bounds.lo[k] } else { f64::INFINITY })
+}
+
+fn check_box(view: &PeriView, reach: f64) -> Result<()> {
+    let bounds = &view.bounds;
+    for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let length = bounds.hi[k] - bounds.lo[k];
+        if bounds.periodic[k] && length < 2.0 * reach {
+            let message = format!(
+                "the periodic box is {length} long in {name}, less than twice the horizon {reach}: \
+                 bonds would meet their own images"
+            );
+            let help = "make the box longer, the horizon shorter, or this boundary f, s or m";
+            return Err(Diagnostic::error(Code::CONFLICT, None, message).help(help).into());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,405 @@
+//! Peridynamic families: what bonds exist, what they are made of, and which still live.
+
+use std::sync::Mutex;
+
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::math::vec3::SIX;
+
+mod cells;
+mod excluded;
+mod kin;
+pub mod lattice;
+pub mod law;
+pub mod list;
+mod measures;
+
+pub use cells::Cells;
+pub use excluded::Excluded;
+pub use law::{Influence, Law, LawKind, Moduli};
+pub use measures::Measures;
+
+/// Coefficients of the prototype microelastic brittle model for one pair of types.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct PmbCoeff {
+    /// Micromodulus, energy per distance and volume squared.
+    pub c: f64,
+    /// Horizon, a distance.
+    pub horizon: f64,
+    /// Critical stretch of an otherwise unstretched family.
+    pub s00: f64,
+    /// How much compression raises the critical stretch; not negative.
+    pub alpha: f64,
+}
+
+/// Coefficients by pair of types (1-based), symmetric; unset pairs belong to other styles or to none.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct PmbTable {
+    types: usize,
+    pairs: Vec<Option<PmbCoeff>>,
+}
+
+impl PmbTable {
+    /// A table for `types` types with nothing set.
+    pub fn new(types: usize) -> Self {
+        Self { types, pairs: vec![None; types * types] }
+    }
+
+    /// The number of types.
+    pub fn types(&self) -> usize {
+        self.types
+    }
+
+    /// Sets types `a`, `b` and `b`, `a`.
+    ///
+    /// # Errors
+    /// A coefficient that makes no sense is refused by name; the caller knows the place in the deck.
+    pub fn set(&mut self, a: u16, b: u16, coeff: PmbCoeff) -> Result<()> {
+        let bad = |what: &str| {
+            Err(Diagnostic::error(Code::BAD_VALUE, None, format!("peri/pmb: {what}"))
+                .help("pair_coeff I J c horizon s00 alpha")
+                .into())
+        };
+        if !(coeff.c.is_finite() && coeff.c >= 0.0) {
+            return bad("c must be finite and not negative");
+        }
+        if !(coeff.horizon.is_finite() && coeff.horizon > 0.0) {
+            return bad("the horizon must be positive");
+        }
+        if coeff.s00.is_nan() || coeff.s00 < 0.0 {
+            return bad("s00 must not be negative");
+        }
+        if !(coeff.alpha.is_finite() && coeff.alpha >= 0.0) {
+            return bad("alpha must be finite and not negative");
+        }
+        let (a, b) = (usize::from(a) - 1, usize::from(b) - 1);
+        self.pairs[a * self.types + b] = Some(coeff);
+        self.pairs[b * self.types + a] = Some(coeff);
+        Ok(())
+    }
+
+    /// The coefficients of types `a` and `b` if they were set.
+    pub fn get(&self, a: u16, b: u16) -> Option<&PmbCoeff> {
+        self.pairs[(usize::from(a) - 1) * self.types + usize::from(b) - 1].as_ref()
+    }
+
+    /// The pairs that were set.
+    pub fn iter(&self) -> impl Iterator<Item = &PmbCoeff> {
+        self.pairs.iter().flatten()
+    }
+}
+
+/// How the volume of a partner near the horizon counts (`peri_modify volume`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum VolumeRule {
+    /// Weight (delta + dx/2 - |xi|)/dx within dx/2 of the horizon, where families end: LAMMPS.
+    #[default]
+    Lammps,
+    /// Weight 1 for every bond up to the horizon.
+    None,
+    /// The same weight as LAMMPS, but families reach to delta + dx/2, where it vanishes.
+    Full,
+}
+
+impl VolumeRule {
+    /// How far families reach for horizon `delta` and lattice spacing `dx`.
+    pub fn reach(self, delta: f64, dx: f64) -> f64 {
+        if self == Self::Full { delta + 0.5 * dx } else { delta }
+    }
+
+    /// The weight of a bond of reference length `r0` (physics: Parks et al. 2008, eq. 14).
+    pub fn weight(self, r0: f64, delta: f64, dx: f64) -> f64 {
+        let half = 0.5 * dx;
+        if self == Self::None || (r0 - delta).abs() > half {
+            return 1.0;
+        }
+        (-1.0 / (2.0 * half)) * r0 + (1.0 + (delta - half) / (2.0 * half))
+    }
+}
+
+/// What `f` holds (`peri_modify force`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum ForceUnit {
+    /// Force per volume, as LAMMPS' peri styles.
+    #[default]
+    Density,
+    /// Force: the density times the volume of the particle it acts on.
+    Newton,
+}
+
+/// Which layout bonds are kept in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Layout {
+    /// The lattice where a body is one, the list elsewhere.
+    #[default]
+    Auto,
+    /// The list everywhere.
+    List,
+}
+
+/// Everything about families that is not a coefficient.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct FamilyOptions {
+    /// Partial volumes.
+    pub volume: VolumeRule,
+    /// What `f` holds.
+    pub unit: ForceUnit,
+    /// Spacing of the latest `lattice` command: partial volumes and short-range contact use it.
+    pub lattice_spacing: f64,
+    /// One critical stretch per particle, and LAMMPS' absolute threshold for stretch.
+    pub compat_lammps: bool,
+    /// Broken bonds still push when they are shorter than at the start (`peri_modify broken compress`).
+    pub compress: bool,
+    /// Lattice or list.
+    pub layout: Layout,
+    /// Leave out what is exactly at rest; same bits either way.
+    #[serde(skip)]
+    pub skip_rest: bool,
+    /// Use the portable kernels even where better ones would run.
+    #[serde(skip)]
+    pub portable: bool,
+    /// No short-range repulsion: other contact laws keep particles apart.
+    #[serde(default)]
+    pub no_repulsion: bool,
+    /// Members of one family whose bond is broken meet again as others do (`peri_modify family broken`).
+    #[serde(default)]
+    pub reunite: bool,
+}
+
+/// Bond length changes below this count as none under `compat lammps`: an absolute length.
+const NEAR_ZERO: f64 = 2.2204e-16;
+/// Stretches below this carry exactly no force.
+const DEAD_BAND: f64 = 4e-13;
+
+impl FamilyOptions {
+    /// The |z| (twice the stretch) below which a bond of this reference length counts as unstretched.
+    pub fn dead_band(&self, length: f64) -> f64 {
+        if self.compat_lammps { 2.0 * NEAR_ZERO / length } else { 2.0 * DEAD_BAND }
+    }
+
+    /// The distance below which two particles repel each other, bonded or not:
+    /// min(0.9 of their distance at creation, 1.35 lattice spacings) (LAMMPS' peri styles).
+    #[inline]
+    pub fn contact_range(&self, view: &PeriView, i: u32, j: u32) -> f64 {
+        let (a, b) = (view.x0[i as usize], view.x0[j as usize]);
+        let d = view.bounds.nearest([a[0] - b[0], a[1] - b[1], a[2] - b[2]]);
+        (0.9 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()).min(1.35 * self.lattice_spacing)
+    }
+
+    /// The defaults for a lattice spacing.
+    pub fn new(lattice_spacing: f64) -> Self {
+        Self {
+            volume: VolumeRule::Lammps,
+            unit: ForceUnit::Density,
+            lattice_spacing,
+            compat_lammps: false,
+            compress: false,
+            layout: Layout::Auto,
+            skip_rest: true,
+            portable: false,
+            no_repulsion: false,
+            reunite: false,
+        }
+    }
+}
+
+/// An orthogonal box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Low corner.
+    pub lo: [f64; 3],
+    /// High corner.
+    pub hi: [f64; 3],
+    /// Which directions repeat.
+    pub periodic: [bool; 3],
+}
+
+impl Bounds {
+    /// The shortest of `d` and its images.
+    #[inline]
+    pub fn nearest(&self, mut d: [f64; 3]) -> [f64; 3] {
+        for k in 0..3 {
+            let length = self.hi[k] - self.lo[k];
+            if self.periodic[k] && d[k].abs() > 0.5 * length {
+                d[k] -= length * (d[k] / length).round();
+            }
+        }
+        d
+    }
+}
+
+/// Energy and virial of one force evaluation; the caller zeroes them.
+#[derive(Debug, Default)]
+pub struct PeriTally<'a> {
+    /// Sum over particles: energy densities, or energies under [`ForceUnit::Newton`].
+    pub energy: f64,
+    /// Virial xx, yy, zz, xy, xz, yz: with one volume factor, as LAMMPS.
+    pub virial: [f64; 6],
+    /// Energy (density) of each particle, added to.
+    pub per_atom_energy: Option<&'a mut [f64]>,
+    /// Virial of each particle, half of a bond's for each end, added to.
+    pub per_atom_virial: Option<&'a mut [[f64; 6]]>,
+}
+
+impl PeriTally<'_> {
+    /// Whether something is wanted of each particle.
+    pub fn per_atom(&self) -> bool {
+        self.per_atom_energy.is_some() || self.per_atom_virial.is_some()
+    }
+
+    /// Adds the virial of the force `pull` times `d` on `i` from `j`.
+    pub fn add_virial(&mut self, i: usize, j: usize, pull: f64, d: [f64; 3]) {
+        let product = SIX.map(|(a, b)| pull * d[a] * d[b]);
+        self.virial.iter_mut().zip(product).for_each(|(v, p)| *v += p);
+        if let Some(atoms) = self.per_atom_virial.as_deref_mut() {
+            for k in 0..6 {
+                atoms[i][k] += 0.5 * product[k];
+                atoms[j][k] += 0.5 * product[k];
+            }
+        }
+    }
+}
+
+/// What families need to know about particles: columns of equal length, and the box.
+#[derive(Clone, Copy, Debug)]
+pub struct PeriView<'a> {
+    /// Positions.
+    pub x: &'a [[f64; 3]],
+    /// Positions at creation.
+    pub x0: &'a [[f64; 3]],
+    /// Types, from 1.
+    pub kind: &'a [u16],
+    /// Volumes.
+    pub volume: &'a [f64],
+    /// The box.
+    pub bounds: Bounds,
+    /// Pairs that `neigh_modify exclude` takes away: no bonds when families are found, no short-range contact.
+    pub excluded: Option<Excluded<'a>>,
+}
+
+impl PeriView<'_> {
+    /// Whether a rule takes this pair away.
+    #[inline]
+    pub fn excludes(&self, i: u32, j: u32) -> bool {
+        self.excluded.is_some_and(|rules| rules.pair(i as usize, j as usize))
+    }
+}
+
+/// All families of a scene: state only; `laws::peri` builds and sweeps them.
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+pub struct Families {
+    /// Coefficients in force.
+    pub table: PmbTable,
+    /// Rules the families were built with.
+    pub options: FamilyOptions,
+    /// What bonds do.
+    pub law: Law,
+    /// Coefficients by type of bond − 1, where families are what a table of bonds says (`bond_style bpm/peri`).
+    #[serde(default)]
+    pub of_bonds: Vec<PmbCoeff>,
+    /// The change of that table that families have taken in last.
+    #[serde(default)]
+    pub seen: u64,
+    /// Whether a step has been advanced: nothing breaks before.
+    pub armed: bool,
+    /// Bodies on a lattice.
+    pub lattices: Vec<lattice::LatticeBody>,
+    /// All other bonds.
+    pub list: list::ListBody,
+    /// Reference positions, per particle, where they are not the positions at creation.
+    pub reference: Option<Vec<[f64; 3]>>,
+    /// Where each particle is: a cell of a lattice or a record of the list, counted through all bodies;
+    /// `u32::MAX` for particles without a family.
+    pub place: Vec<u32>,
+    /// Sum of the volumes of all partners at the start, per particle.
+    pub family_volume: Vec<f64>,
+    /// Number of partners at the start, per particle.
+    pub family_size: Vec<u16>,
+    /// Particles whose bonds never break; empty if there are none.
+    pub lasting: Vec<bool>,
+    /// Whether a particle may have lost a bond: damage need not be counted elsewhere.
+    pub hurt: Vec<bool>,
+    /// Pairs without a living bond that may come into short-range contact.
+    pub near: NearPairs,
+    /// Energy of bonds where they broke, as far as it was counted [energy].
+    #[serde(default)]
+    pub released: f64,
+    /// What relaxing and flowing bonds have turned into heat, as far as it was counted [energy].
+    #[serde(default)]
+    pub heat: f64,
+    /// The power at which bonds relaxed at the last step that was counted.
+    #[serde(default)]
+    pub relaxing: Option<f64>,
+    /// Count both.
+    #[serde(skip)]
+    pub counts_losses: bool,
+    /// Scratch that is not state.
+    #[serde(skip)]
+    pub scratch: Scratch,
+}
+
+/// Pairs without a living bond that may come into short-range contact before they are looked for again.
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub struct NearPairs {
+    /// Pairs within a body (the list counts as one), and pairs across bodies.
+    pub pairs: [Vec<NearPair>; 2],
+    /// How much closer than at the last search two particles of the same body, and of different ones, may be.
+    pub spent: [f64; 2],
+    /// How much closer they may come before pairs must be searched anew.
+    pub allowed: [f64; 2],
+    /// How much farther than contact pairs are kept.
+    pub skin: f64,
+    /// Particles without a family whose type has short-range contact, and where they were.
+    pub loose: Vec<(u32, [f64; 3])>,
+}
+
+/// Two particles, the first with the lower number, that may come into short-range contact.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct NearPair {
+    /// The particles.
+    pub ends: [u32; 2],
+    /// What [`NearPairs::spent`] must reach before they can touch.
+    pub after: f32,
+}
+
+/// Memory kept between steps that holds nothing a step depends on; a clone starts empty.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    /// One per thread.
+    pub windows: Vec<Mutex<Window>>,
+    /// Cells of the search for near pairs.
+    pub cells: Cells,
+    /// Energy and virial of rows.
+    pub rows: Vec<[f64; 7]>,
+    /// Bonds that may break.
+    pub candidates: Vec<Candidate>,
+    /// Particles whose bonds have broken in this step.
+    pub ends: Vec<[u32; 2]>,
+}
+
+impl Clone for Scratch {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+/// A bond that may break.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// Cells or records.
+    pub ends: [u32; 2],
+    /// Stencil vector, or place in the list.
+    pub bond: u32,
+    /// Present stretch.
+    pub stretch: f64,
+    /// Critical stretch.
+    pub s00: f64,
+    /// Its rise under compression.
+    pub alpha: f64,
+}
+
+/// What one thread needs for a slab.
+#[derive(Debug, Default)]
+pub struct Window {
+    /// Forces of a slab and of what it reaches.
+    pub force: Vec<f64>,
+}

@@ -1,0 +1,174 @@
+//! Correspondence measures: deformation gradient, strain and stress of a particle from its living bonds.
+
+use crate::families::{Families, PeriView};
+use perigrain_base::math::vec3::{length, sub};
+
+/// A tensor, row by row.
+pub type Tensor = [[f64; 3]; 3];
+
+/// Determinants of the shape tensor below this share of its mean eigenvalue cubed count as zero: bonds then lie in a
+/// plane or on a line up to rounding.
+const FLAT: f64 = 1e-10;
+
+impl Families {
+    /// The deformation gradient of a particle, F = (Σ ω w Y⊗ξ V_j) K⁻¹ with the shape tensor K = Σ ω w ξ⊗ξ V_j over
+    /// the living bonds (Silling et al. 2007; Hartmann et al. 2023, Eq. 26 and 27). `None` without three bonds in
+    /// independent directions.
+    pub fn gradient(&self, view: &PeriView, i: usize) -> Option<Tensor> {
+        let (mut shape, mut moved) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
+        self.each(i, |n| {
+            let j = n.partner as usize;
+            let Some(pair) = self.table.get(view.kind[i], view.kind[j]).filter(|_| n.alive) else { return };
+            let (xi, y) = (self.first_bond(view, i, j), view.bounds.nearest(sub(view.x[j], view.x[i])));
+            let length = length(xi);
+            let volume = self.options.volume.weight(length, pair.horizon, self.options.lattice_spacing);
+            let share = self.law.influence.of(length, pair.horizon) * volume * view.volume[j];
+            for a in 0..3 {
+                for b in 0..3 {
+                    shape[a][b] += share * xi[a] * xi[b];
+                    moved[a][b] += share * y[a] * xi[b];
+                }
+            }
+        });
+        let inverse = inverse(&shape)?;
+        Some([0, 1, 2].map(|a| [0, 1, 2].map(|b| (0..3).map(|k| moved[a][k] * inverse[k][b]).sum())))
+    }
+}
+
+/// The inverse of a tensor whose eigenvalues are not negative; `None` if one of them vanishes.
+fn inverse(t: &Tensor) -> Option<Tensor> {
+    let mean = (t[0][0] + t[1][1] + t[2][2]) / 3.0;
+    let whole = determinant(t);
+    if whole.is_nan() || whole <= FLAT * mean.powi(3) {
+        return None;
+    }
+    Some([0, 1, 2].map(|a| {
+        [0, 1, 2].map(|b| {
+            let (p, q, r, s) = ((b + 1) % 3, (b + 2) % 3, (a + 1) % 3, (a + 2) % 3);
+            (t[p][r] * t[q][s] - t[p][s] * t[q][r]) / whole
+        })
+    }))
+}
+
+/// det.
+pub fn determinant(t: &Tensor) -> f64 {
+    t[0][0] * (t[1][1] * t[2][2] - t[1][2] * t[2][1]) - t[0][1] * (t[1][0] * t[2][2] - t[1][2] * t[2][0])
+        + t[0][2] * (t[1][0] * t[2][1] - t[1][1] * t[2][0])
+}
+
+/// The Green–Lagrange strain ½(FᵀF − 1): xx yy zz xy xz yz.
+pub fn green_lagrange(f: &Tensor) -> [f64; 6] {
+    let of = |a: usize, b: usize| {
+        let unit = if a == b { 1.0 } else { 0.0 };
+        0.5 * ((0..3).map(|k| f[k][a] * f[k][b]).sum::<f64>() - unit)
+    };
+    [of(0, 0), of(1, 1), of(2, 2), of(0, 1), of(0, 2), of(1, 2)]
+}
+
+/// The Cauchy stress of a compressible Neo-Hooke solid, σ = (G/J)(FFᵀ − 1) + (λ/2J)(J² − 1)1 with λ = K − 2G/3
+/// (Hartmann et al. 2023, Eq. 28 to 30): xx yy zz xy xz yz. `None` where J is not positive.
+pub fn neo_hooke(f: &Tensor, bulk: f64, shear: f64) -> Option<[f64; 6]> {
+    let j = determinant(f);
+    if j.is_nan() || j <= 0.0 {
+        return None;
+    }
+    let lambda = bulk - 2.0 * shear / 3.0;
+    let pressure = 0.5 * lambda / j * (j * j - 1.0);
+    let of = |a: usize, b: usize| {
+        let left = (0..3).map(|k| f[a][k] * f[b][k]).sum::<f64>();
+        if a == b { shear / j * (left - 1.0) + pressure } else { shear / j * left }
+    };
+    Some([of(0, 0), of(1, 1), of(2, 2), of(0, 1), of(0, 2), of(1, 2)])
+}
+
+/// Von Mises' equivalent stress of xx yy zz xy xz yz.
+pub fn von_mises(s: &[f64; 6]) -> f64 {
+    let square = |a: f64| a * a;
+    let normal = square(s[0] - s[1]) + square(s[1] - s[2]) + square(s[2] - s[0]);
+    (0.5 * normal + 3.0 * (square(s[3]) + square(s[4]) + square(s[5]))).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::families::{Bounds, FamilyOptions, Layout, PmbCoeff, PmbTable, VolumeRule};
+
+    /// A block of 6³ points one apart, moved by `F`; what each particle finds.
+    fn gradients(f: &Tensor, layout: Layout, volume: VolumeRule) -> Vec<Option<Tensor>> {
+        let place = |i: i32| [i % 6, i / 6 % 6, i / 36].map(f64::from);
+        let x0: Vec<[f64; 3]> = (0..216).map(place).collect();
+        let moved = |x: &[f64; 3]| [0, 1, 2].map(|a| 0.5 + (0..3).map(|b| f[a][b] * x[b]).sum::<f64>());
+        let x: Vec<[f64; 3]> = x0.iter().map(moved).collect();
+        let mut table = PmbTable::new(1);
+        table.set(1, 1, PmbCoeff { c: 1.0, horizon: 2.015, s00: 1.0, alpha: 0.0 }).unwrap();
+        let bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3] };
+        let start =
+            PeriView { x: &x0, x0: &x0, kind: &[1; 216], volume: &[1.0; 216], bounds, excluded: None };
+        let options = FamilyOptions { layout, volume, ..FamilyOptions::new(1.0) };
+        let families = Families::build(&start, &table, options).unwrap();
+        let now = PeriView { x: &x, ..start };
+        (0..216).map(|i| families.gradient(&now, i)).collect()
+    }
+
+    const SKEW: Tensor = [[1.1, 0.2, -0.05], [0.03, 0.9, 0.1], [-0.2, 0.04, 1.05]];
+
+    #[test]
+    fn homogeneous_deformation_is_found_exactly_everywhere() {
+        // physics.md 4.8: exact for any family, surfaces too; sums of 80 bonds round to some 1e-15.
+        for layout in [Layout::Auto, Layout::List] {
+            for volume in [VolumeRule::Lammps, VolumeRule::None, VolumeRule::Full] {
+                for found in gradients(&SKEW, layout, volume) {
+                    let found = found.unwrap();
+                    let off = found.iter().flatten().zip(SKEW.iter().flatten()).map(|(a, b)| (a - b).abs());
+                    assert!(off.fold(0.0, f64::max) < 1e-13);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_rotation_has_no_strain_and_no_stress() {
+        let (c, s) = (0.7f64.cos(), 0.7f64.sin());
+        let turn = [[c, -s, 0.0], [s * c, c * c, -s], [s * s, s * c, c]];
+        for f in gradients(&turn, Layout::Auto, VolumeRule::Lammps) {
+            let f = f.unwrap();
+            assert!(green_lagrange(&f).iter().all(|e| e.abs() < 1e-13));
+            assert!(neo_hooke(&f, 2.0, 1.0).unwrap().iter().all(|e| e.abs() < 1e-12));
+        }
+    }
+
+    #[test]
+    fn closed_forms_of_the_neo_hooke_solid() {
+        // physics.md 3.1 and 4.8: incompressible compression to λ = √(1 − 2·0.134) has σ_vM = G |λ² − 1/λ| = 0.4368 G.
+        let k = 0.732f64.sqrt();
+        let side = k.powf(-0.5);
+        let f = [[side, 0.0, 0.0], [0.0, side, 0.0], [0.0, 0.0, k]];
+        let stress = neo_hooke(&f, 50.0, 1.0).unwrap();
+        assert!((von_mises(&stress) - (1.0 / k - k * k)).abs() < 1e-14);
+        assert!((von_mises(&stress) - 0.4368).abs() < 5e-5);
+        // Simple shear: E_xy = γ/2, σ_xy = Gγ.
+        let f = [[1.0, 0.3, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        assert_eq!(green_lagrange(&f)[3], 0.15);
+        assert!((neo_hooke(&f, 7.0, 2.0).unwrap()[3] - 0.6).abs() < 1e-15);
+        // A tiny strain: Hooke's law with K = 7, G = 2, λ = 17/3.
+        let e = 1e-7;
+        let f = [[1.0 + e, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let stress = neo_hooke(&f, 7.0, 2.0).unwrap();
+        // Second order in e, and rounding of 1e-16 over 1e-7.
+        assert!(
+            (stress[0] / e - (7.0 + 8.0 / 3.0)).abs() < 1e-5 && (stress[1] / e - 17.0 / 3.0).abs() < 1e-5
+        );
+        assert!(neo_hooke(&[[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], 1.0, 1.0).is_none());
+    }
+
+    #[test]
+    fn flat_families_have_no_gradient() {
+        let x: Vec<[f64; 3]> = (0..25).map(|i| [f64::from(i % 5), f64::from(i / 5), 0.0]).collect();
+        let mut table = PmbTable::new(1);
+        table.set(1, 1, PmbCoeff { c: 1.0, horizon: 2.015, s00: 1.0, alpha: 0.0 }).unwrap();
+        let bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3] };
+        let view = PeriView { x: &x, x0: &x, kind: &[1; 25], volume: &[1.0; 25], bounds, excluded: None };
+        let families = Families::build(&view, &table, FamilyOptions::new(1.0)).unwrap();
+        assert!((0..25).all(|i| families.gradient(&view, i).is_none()));
+    }
+}

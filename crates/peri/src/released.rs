@@ -1,0 +1,154 @@
+//! The energy that bonds set free where they break, and what they turn into heat where they relax or flow.
+
+use super::chunk::Kernels;
+use super::energy::tally;
+use super::list_kernel::RowKernels;
+use super::state::{self, kernels::StateKernels};
+use super::stretching::StretchKernels;
+use crate::families::lattice::PAD;
+use crate::families::law::SiteState;
+use crate::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
+
+impl Families {
+    /// Breaks bonds; where that is counted, adds the difference of the energies of all bonds before and after.
+    pub(super) fn break_and_count<K: Kernels + RowKernels + StretchKernels + StateKernels>(
+        &mut self,
+        view: &PeriView,
+        period: [f64; 3],
+    ) {
+        if !self.counts_losses {
+            return self.break_bonds::<K>(view, period);
+        }
+        let mut alive: Vec<Vec<u8>> = self.lattices.iter().map(|b| b.alive.clone()).collect();
+        let mut listed = self.list.alive.clone();
+        self.break_bonds::<K>(view, period);
+        if self.scratch.ends.is_empty() {
+            return;
+        }
+        let after = self.living_energy::<K>(view, period);
+        self.exchange(&mut alive, &mut listed);
+        let before = self.living_energy::<K>(view, period);
+        self.exchange(&mut alive, &mut listed);
+        self.released += before - after;
+    }
+
+    /// Adds what has become heat since the last step: at the present places plastic bonds have lost the difference of the
+    /// energies before and after they flowed; the dashpots of viscous ones take up 2/τ times the energy of their springs, by
+    /// the trapezoidal rule. Nothing under LAMMPS' laws, whose forces have no energy.
+    pub(super) fn count_heat<K: Kernels + RowKernels + StateKernels>(
+        &mut self,
+        view: &PeriView,
+        period: [f64; 3],
+    ) {
+        match self.law.kind {
+            _ if self.options.compat_lammps => {}
+            LawKind::Eps | LawKind::Yield => {
+                if !self.flowed() {
+                    return self.forget_earlier();
+                }
+                let before = self.bond_energy::<K>(view, period);
+                self.forget_earlier();
+                self.heat += before - self.bond_energy::<K>(view, period);
+            }
+            LawKind::Ves => {
+                let own = self.law.moduli.iter().find(|m| m.tau > 0.0).copied().unwrap_or_default();
+                if own.tau <= 0.0 {
+                    return;
+                }
+                // What is left without the dilatation and the springs that do not relax.
+                let mut springs = self.law.clone();
+                springs.moduli.iter_mut().for_each(|m| (m.bulk, m.lambda) = (0.0, 1.0));
+                let law = std::mem::replace(&mut self.law, springs);
+                let power = 2.0 / own.tau * own.lambda * self.bond_energy::<K>(view, period);
+                self.law = law;
+                self.relax(power);
+            }
+            LawKind::VesApart => {
+                // The same with 2λ/τ of each end in its modulus.
+                let kept = self.springs_alone(view);
+                let law = self.law.clone();
+                self.law.moduli.iter_mut().for_each(|m| m.bulk = 0.0);
+                let power = self.bond_energy::<K>(view, period);
+                self.law = law;
+                let states = self.lattices.iter_mut().map(|b| &mut b.state).chain([&mut self.list.state]);
+                states.zip(kept).for_each(|(state, columns)| state.columns = columns);
+                self.relax(power);
+            }
+            _ => {}
+        }
+    }
+
+    /// Adds the heat of a step at whose end the power is this.
+    fn relax(&mut self, power: f64) {
+        self.heat += 0.5 * self.law.dt * (self.relaxing.unwrap_or(power) + power);
+        self.relaxing = Some(power);
+    }
+
+    /// Puts 2λ/τ times the modulus of the springs in the place of all moduli of sites; returns the columns as they were.
+    fn springs_alone(&mut self, view: &PeriView) -> Vec<Vec<f64>> {
+        let law = &self.law;
+        let scale = |columns: &mut [f64], (pad, stride): (usize, usize), particle: &[u32]| {
+            for (site, &p) in particle.iter().enumerate().filter(|(_, p)| **p != u32::MAX) {
+                let own = law.of(view.kind[p as usize]);
+                columns[stride + pad + site] *= if own.tau > 0.0 { 2.0 * own.lambda / own.tau } else { 0.0 };
+                columns[3 * stride + pad + site] = 1.0;
+            }
+        };
+        let mut kept = Vec::new();
+        for body in &mut self.lattices {
+            kept.push(body.state.columns.clone());
+            scale(&mut body.state.columns, (PAD, body.stride), &body.particle);
+        }
+        kept.push(self.list.state.columns.clone());
+        scale(&mut self.list.state.columns, (0, self.list.record.len()), &self.list.particle);
+        kept
+    }
+
+    /// Whether what bonds remember has changed in this step.
+    fn flowed(&self) -> bool {
+        let changed = |s: &SiteState| !s.earlier.is_empty() && s.earlier != s.memory;
+        self.lattices.iter().any(|b| changed(&b.state)) || changed(&self.list.state)
+    }
+
+    fn forget_earlier(&mut self) {
+        self.lattices.iter_mut().for_each(|b| b.state.earlier.clear());
+        self.list.state.earlier.clear();
+    }
+
+    fn exchange(&mut self, alive: &mut [Vec<u8>], listed: &mut Vec<u8>) {
+        for (body, bits) in self.lattices.iter_mut().zip(alive) {
+            std::mem::swap(&mut body.alive, bits);
+        }
+        std::mem::swap(&mut self.list.alive, listed);
+    }
+
+    /// The energy of all bonds that live at the places of the last force evaluation, dilatations being theirs too.
+    fn living_energy<K: Kernels + RowKernels + StateKernels>(
+        &mut self,
+        view: &PeriView,
+        period: [f64; 3],
+    ) -> f64 {
+        if !self.law.kind.bond_based() {
+            let mut aside = vec![[0.0; 3]; view.x.len()];
+            self.sweep_states::<K>(view, &mut aside, (false, true), period);
+        }
+        self.bond_energy::<K>(view, period)
+    }
+
+    /// The energy of all bonds that live at the places of the last force evaluation, with the dilatations of that.
+    fn bond_energy<K: Kernels + RowKernels + StateKernels>(
+        &mut self,
+        view: &PeriView,
+        period: [f64; 3],
+    ) -> f64 {
+        let mut atoms = vec![0.0; view.x.len()];
+        let dense = self.options.unit == ForceUnit::Density;
+        let mut sum = PeriTally { per_atom_energy: dense.then_some(&mut atoms), ..PeriTally::default() };
+        match self.law.kind.has_states() {
+            true => state::tally::<K>(self, view, &mut sum, (true, period)),
+            false => tally::<K>(self, view, &mut sum, period),
+        }
+        let total = sum.energy;
+        if dense { atoms.iter().zip(view.volume).map(|(e, v)| e * v).sum() } else { total }
+    }
+}

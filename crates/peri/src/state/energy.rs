@@ -1,0 +1,257 @@
+//! Energy and virial under state-based laws.
+
+use super::super::energy::{Sums, collect, whole_rows};
+use super::super::single::Single;
+use super::kernels::StateKernels;
+use super::lattice::States;
+use super::law::{Angles, BondLaw, Ends, Moment, Stretch, of_law};
+use super::list::{Weighing, banded, bond};
+use super::settle::{columns_of, moment};
+use crate::families::lattice::{LANES, LatticeBody, PAD};
+use crate::families::law::{COLUMNS, SiteState};
+use crate::families::list::ListBody;
+use crate::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
+use perigrain_base::par::Shared;
+
+/// One bond with all that its energy depends on.
+struct Bond<'a> {
+    /// Particles.
+    ends: [usize; 2],
+    /// Places in columns.
+    at: [usize; 2],
+    volume: [f64; 2],
+    y: [f64; 3],
+    length: f64,
+    omega: f64,
+    /// ω w.
+    share: f64,
+    stretch: Stretch<Single>,
+    memory: [Single; 2],
+    state: &'a SiteState,
+    stride: usize,
+}
+
+/// Adds energy and virial of all bonds as they were during the force evaluation, which has `advanced` bonds or not. The
+/// energy density of a particle is ½Kθ² + ½ 15G/m Σ ω w |xi|² ε² V; LAMMPS counts half of the second term.
+pub fn tally<K: StateKernels>(
+    families: &mut Families,
+    view: &PeriView,
+    t: &mut PeriTally,
+    (advanced, period): (bool, [f64; 3]),
+) {
+    let newton = families.options.unit == ForceUnit::Newton;
+    let scale = |p: usize| if newton { view.volume[p] } else { 1.0 };
+    let mut rows = std::mem::take(&mut families.scratch.rows);
+    for k in 0..families.lattices.len() {
+        let body = &families.lattices[k];
+        for (cell, &p) in body.particle.iter().enumerate().filter(|(_, p)| **p != u32::MAX) {
+            let p = p as usize;
+            own(families, view, p, body.state.theta[PAD + cell], scale(p), t);
+        }
+        if t.per_atom() || !body.cell_kind.is_empty() {
+            lattice(families, view, body, (advanced, t));
+        } else {
+            lattice_rows::<K>(families, k, view, advanced, &mut rows);
+            collect(&rows, t);
+        }
+    }
+    families.scratch.rows = rows;
+    let list = &families.list;
+    for (record, &p) in list.particle.iter().enumerate().filter(|(_, p)| **p != u32::MAX) {
+        own(families, view, p as usize, list.state.theta[record], scale(p as usize), t);
+    }
+    listed(families, list, (advanced, period), t);
+}
+
+/// Energy and virial of each row of a body of one volume, several cells at a time.
+fn lattice_rows<K: StateKernels>(
+    families: &mut Families,
+    body: usize,
+    view: &PeriView,
+    advanced: bool,
+    rows: &mut Vec<Sums>,
+) {
+    let state = &mut families.lattices[body].state;
+    let mut memory = if state.earlier.is_empty() { std::mem::take(&mut state.memory) } else { vec![] };
+    let mut earlier = std::mem::take(&mut state.earlier);
+    let mut touched = std::mem::take(&mut state.touched);
+    {
+        let told = if earlier.is_empty() { &mut memory } else { &mut earlier };
+        let (memory, touched) = (Shared::new(told), Shared::new(&mut touched));
+        let states = States {
+            kind: families.law.kind,
+            compat: families.options.compat_lammps,
+            moment: Moment { held: state.held, ..moment(&families.law, false) },
+            keep: false,
+            memory: &memory,
+            touched: &touched,
+            spread: false,
+        };
+        let body: &LatticeBody = &families.lattices[body];
+        let of_chunk = |chunk: usize, data: &super::super::chunk::Chunk| {
+            // SAFETY: live bonds lead to cells of the body, whose columns have PAD cells around.
+            unsafe { states.sums::<K>(body, chunk, data, advanced) }
+        };
+        let newton = families.options.unit == ForceUnit::Newton;
+        whole_rows(body, view, rows, (newton, newton), of_chunk);
+    }
+    let state = &mut families.lattices[body].state;
+    if earlier.is_empty() {
+        state.memory = memory;
+    }
+    (state.earlier, state.touched) = (earlier, touched);
+}
+
+/// The energy of a particle's dilatation.
+fn own(families: &Families, view: &PeriView, p: usize, theta: f64, scale: f64, t: &mut PeriTally) {
+    let energy = 0.5 * families.law.of(view.kind[p]).bulk * theta * theta * scale;
+    t.energy += energy;
+    if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
+        atoms[p] += energy;
+    }
+}
+
+fn lattice(families: &Families, view: &PeriView, body: &LatticeBody, (advanced, t): (bool, &mut PeriTally)) {
+    let (entries, options, law) = (body.stencil.len(), &families.options, &families.law);
+    let numbers = law.kind.memory();
+    for slot in (0..body.rows.len()).filter(|&slot| body.rows[slot].len > 0) {
+        let row = body.rows[slot];
+        for e in 0..entries {
+            let xi = body.xi(e);
+            let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let weight = options.volume.weight(length, body.horizon, options.lattice_spacing);
+            for cell in row.start as usize..(row.start + row.len) as usize {
+                if !body.lives(cell, e) {
+                    continue;
+                }
+                let Some(to) = body.ahead(slot, cell, e) else { continue };
+                let u = |k: usize, c: usize| body.u[1][k * body.stride + PAD + c];
+                let mut stretch = banded(body.z(1, cell, to, e), length, options);
+                if !advanced {
+                    stretch.before = banded(body.z(0, cell, to, e), length, options).s;
+                }
+                let first = (cell / LANES * entries + e) * numbers * LANES + cell % LANES;
+                let ends = [body.particle[cell] as usize, body.particle[to] as usize];
+                let (a, b) = (view.kind[ends[0]], view.kind[ends[1]]);
+                let c = families.table.get(a, b).map_or(0.0, |k| k.c);
+                let (omega, share) =
+                    Weighing::of(law).weigh(length, weight, (c, body.horizon, law.yields(a, b)));
+                add(
+                    families,
+                    &Bond {
+                        ends,
+                        at: [PAD + cell, PAD + to],
+                        volume: ends.map(|p| view.volume[p]),
+                        y: [0, 1, 2].map(|k| xi[k] + u(k, to) - u(k, cell)),
+                        length,
+                        omega,
+                        share,
+                        stretch,
+                        memory: std::array::from_fn(|k| {
+                            Single(if k < numbers { body.state.remembered()[first + k * LANES] } else { 0.0 })
+                        }),
+                        state: &body.state,
+                        stride: body.stride,
+                    },
+                    t,
+                );
+            }
+        }
+    }
+}
+
+fn listed(families: &Families, list: &ListBody, (advanced, period): (bool, [f64; 3]), t: &mut PeriTally) {
+    let (options, law) = (&families.options, &families.law);
+    let numbers = law.kind.memory();
+    for i in 0..list.record.len() {
+        for k in list.own(i).filter(|&k| list.lives(k)) {
+            let j = list.partner[k] as usize;
+            let mut b = bond(list, (i, j, k), period, Weighing::of(law), options);
+            if !advanced {
+                b.stretch.before = banded(list.z(true, i, j, period).0, b.length, options).s;
+            }
+            let ends = [i, j].map(|r| list.particle[r] as usize);
+            add(
+                families,
+                &Bond {
+                    ends,
+                    at: [i, j],
+                    volume: [i, j].map(|r| list.record[r].volume),
+                    y: b.y,
+                    length: b.length,
+                    omega: b.omega,
+                    share: b.share,
+                    stretch: b.stretch,
+                    memory: std::array::from_fn(|n| {
+                        Single(if n < numbers { list.state.remembered()[k * numbers + n] } else { 0.0 })
+                    }),
+                    state: &list.state,
+                    stride: list.record.len(),
+                },
+                t,
+            );
+        }
+    }
+}
+
+/// Adds an energy density of a particle, or with its volume an energy.
+fn share_out(t: &mut PeriTally, p: usize, density: f64, volume: Option<f64>) {
+    let energy = density * volume.unwrap_or(1.0);
+    t.energy += energy;
+    if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
+        atoms[p] += energy;
+    }
+}
+
+/// Whether the ends of a law's bonds have a stiffness of their own, column 1; and the share of the squares that counts
+/// for each end. LAMMPS counts half of the shear energies.
+pub fn shares(kind: LawKind, compat: bool) -> (bool, f64) {
+    match kind {
+        LawKind::Shaped => (true, 0.5),
+        _ if kind.bond_based() => (false, 0.25),
+        _ => (true, if compat { 0.25 } else { 0.5 }),
+    }
+}
+
+/// Adds one bond's energies and virial.
+fn add(families: &Families, b: &Bond, t: &mut PeriTally) {
+    let kind = families.law.kind;
+    of_law!(kind, families.options.compat_lammps, W => add_of::<W>(families, b, t));
+}
+
+fn add_of<W: BondLaw>(families: &Families, b: &Bond, t: &mut PeriTally) {
+    let (law, options) = (&families.law, &families.options);
+    let newton = options.unit == ForceUnit::Newton;
+    let now = Moment { held: b.state.held, ..moment(law, false) };
+    let (own, half) = shares(law.kind, options.compat_lammps);
+    let columns = |at: usize| -> [Single; COLUMNS] {
+        let count = columns_of(law.kind, options.compat_lammps);
+        std::array::from_fn(|k| Single(if k < count { b.state.columns[k * b.stride + at] } else { 0.0 }))
+    };
+    let ends: Ends<Single> = b.at.map(columns);
+    let angles: [Angles<Single>; 2] = std::array::from_fn(|end| {
+        let at = b.at[end];
+        let theta = b.state.theta[at];
+        Angles {
+            now: Single(theta),
+            unrelaxed: Single(b.state.unrelaxed[at] + (theta - b.state.before[at])),
+            // SAFETY: plain arithmetic.
+            relaxing: unsafe { W::relaxing(&ends[end], &now) },
+        }
+    });
+    let omega = Single(b.omega);
+    // SAFETY: plain arithmetic.
+    let squares = unsafe { W::squares(&b.stretch, omega, &angles, &b.memory, &now) };
+    for (end, square) in [squares.0, squares.1].into_iter().enumerate() {
+        let p = b.ends[end];
+        let shear = if own { ends[end][1].0 } else { 1.0 };
+        let energy = half * shear * b.share * b.length * b.length * square.0 * b.volume[1 - end];
+        share_out(t, p, energy, newton.then_some(b.volume[end]));
+    }
+    let mut memory = b.memory;
+    // SAFETY: plain arithmetic.
+    let (near, far) = unsafe { W::pull(&b.stretch, omega, &ends, &mut memory, &now) };
+    // Force density times the one volume of the virial, or the force itself: V_i V_j either way.
+    let pull = -0.5 * (near.0 + far.0) * b.share * b.volume[0] * b.volume[1];
+    t.add_virial(b.ends[0], b.ends[1], pull, b.y);
+}

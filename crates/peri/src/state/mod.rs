@@ -1,0 +1,159 @@
+//! Ordinary state-based materials: sweeps over all bonds for what sites have, then for forces.
+
+pub mod chunk;
+mod energy;
+pub mod kernels;
+pub mod lattice;
+mod law;
+mod list;
+mod settle;
+pub mod tables;
+mod terms;
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use super::chunk::Kernels;
+use super::lattice::{ChunkColumns, Mode, Sweep};
+use super::list_kernel::RowKernels;
+use crate::families::lattice::{LatticeBody, PAD};
+use crate::families::law::COLUMNS;
+use crate::families::{Families, FamilyOptions, ForceUnit, LawKind, PeriView, Window};
+pub use energy::tally;
+use lattice::{States, Sum, find_active};
+use law::Moment;
+use perigrain_base::par::{self, Shared};
+use settle::{Settling, Sites, moment};
+
+impl Families {
+    /// Weighs all families: at their building.
+    pub(super) fn weigh(&mut self, view: &PeriView, period: [f64; 3]) {
+        for body in &mut self.lattices {
+            tables::weigh_lattice(body, view, &self.options, &self.law);
+        }
+        tables::weigh_list(&mut self.list, period, &self.law);
+    }
+
+    /// Adds the forces of all bonds under a state-based law.
+    pub(super) fn sweep_states<K: Kernels + RowKernels + kernels::StateKernels>(
+        &mut self,
+        view: &PeriView,
+        f: &mut [[f64; 3]],
+        (advance, tallied): (bool, bool),
+        period: [f64; 3],
+    ) {
+        let Self { lattices, list, scratch, options, law, table, armed, counts_losses, .. } = self;
+        let mode = Mode { advance, armed: *armed, skip: options.skip_rest };
+        scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
+        let windows: &[Mutex<Window>] = &scratch.windows;
+        let now = moment(law, advance);
+        let compat = options.compat_lammps;
+        let counted = *counts_losses && advance;
+        let settling = Settling { law, table, moment: now, compat, advance, tallied, counted };
+        let f = Shared::new(f);
+        for body in lattices {
+            lattice_body::<K>(body, view, &f, (mode, options), &settling, windows);
+        }
+        list::body(list, view, &f, (mode, options), &settling, (windows, period));
+    }
+
+    /// The dilatation of a particle at the last force evaluation.
+    pub fn dilatation(&self, i: usize) -> f64 {
+        self.of_site(i, |state| &state.theta)
+    }
+
+    /// The accumulated plastic multiplier of a particle.
+    pub fn plastic_strain(&self, i: usize) -> f64 {
+        self.of_site(i, |state| &state.plastic)
+    }
+
+    fn of_site(&self, i: usize, column: impl Fn(&crate::families::law::SiteState) -> &Vec<f64>) -> f64 {
+        let place = self.place.get(i).copied().unwrap_or(u32::MAX);
+        if place == u32::MAX {
+            return 0.0;
+        }
+        let body = self.lattices.partition_point(|b| b.first_place + b.particle.len() as u32 <= place);
+        let (state, at) = match self.lattices.get(body) {
+            Some(body) => (&body.state, PAD + (place - body.first_place) as usize),
+            None => (&self.list.state, (place - self.list.first_place) as usize),
+        };
+        column(state).get(at).copied().unwrap_or(0.0)
+    }
+}
+
+/// LAMMPS takes the energy of plastic bonds from what they remembered before they flowed; ours is compared with that one
+/// where heat is counted.
+fn keep_earlier(state: &mut crate::families::law::SiteState, settling: &Settling) {
+    let flows = matches!(settling.law.kind, LawKind::Eps | LawKind::Yield);
+    let asked = if settling.compat { settling.tallied } else { settling.counted };
+    match flows && asked {
+        true => state.earlier.clone_from(&state.memory),
+        false => state.earlier.clear(),
+    }
+}
+
+/// One thread's window.
+fn window(windows: &[Mutex<Window>]) -> MutexGuard<'_, Window> {
+    windows[par::slot() % windows.len()].lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The sweeps over one body on a lattice.
+fn lattice_body<K: Kernels + kernels::StateKernels>(
+    body: &mut LatticeBody,
+    view: &PeriView,
+    f: &Shared<[f64; 3]>,
+    (mode, options): (Mode, &FamilyOptions),
+    settling: &Settling,
+    windows: &[Mutex<Window>],
+) {
+    let kind = settling.law.kind;
+    find_active(body, kind.memory() > 0);
+    body.state.columns.resize(COLUMNS * body.stride, 0.0);
+    let mut columns = ChunkColumns::take(body);
+    keep_earlier(&mut body.state, settling);
+    let mut memory = std::mem::take(&mut body.state.memory);
+    let mut touched = std::mem::take(&mut body.state.touched);
+    let newton = options.unit == ForceUnit::Newton;
+    let particle = std::mem::take(&mut body.particle);
+    let (memory_of, touched_of) = (Shared::new(&mut memory), Shared::new(&mut touched));
+    let states = States {
+        kind,
+        compat: settling.compat,
+        moment: Moment { held: body.state.held, ..settling.moment },
+        keep: mode.advance,
+        memory: &memory_of,
+        touched: &touched_of,
+        spread: false,
+    };
+    let spread = States { spread: true, ..states };
+    let count = particle.len();
+    let only = if let [only] = body.kinds[..] { Some(only) } else { None };
+    let sites = Sites { count, pad: PAD, stride: body.stride, particle: &particle, kind: view.kind, only };
+    let mut add_up = |body: &mut LatticeBody, sum, states| {
+        let mut sums = std::mem::take(&mut body.state.sums);
+        sums.clear();
+        sums.resize(body.stride, 0.0);
+        let shared = Shared::new(&mut sums);
+        let sweep = Sweep::new(body, &mut columns, mode, newton, Some(states));
+        par::two_colours(body.slabs(), |slab| {
+            lattice::slab::<K>(&sweep, sum, slab, &mut window(windows), &shared);
+        });
+        body.state.sums = sums;
+    };
+    if !kind.bond_based() {
+        add_up(body, Sum::Dilatation, states);
+        settling.dilatations(&mut body.state, &sites);
+    }
+    if kind == LawKind::Shaped {
+        settling.stiffen(&mut body.state, &sites);
+    }
+    if kind == LawKind::Eps {
+        add_up(body, if settling.compat { Sum::NormLammps } else { Sum::Norm }, spread);
+        settling.flow(&mut body.state, &sites);
+    }
+    body.particle = particle;
+    let sweep = Sweep::new(body, &mut columns, mode, newton, Some(spread));
+    par::two_colours(body.slabs(), |slab| sweep.slab::<K>(slab, &mut window(windows), f));
+    columns.give(body);
+    (body.state.memory, body.state.touched) = (memory, touched);
+    settling.held(&mut body.state);
+}

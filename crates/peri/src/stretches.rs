@@ -1,0 +1,77 @@
+//! What single bonds and particles show of their stretches: LAMMPS' critical stretch, first lengths, the dead band.
+
+use super::breaking::{Bonds, banded};
+use crate::evaluate::periods;
+use crate::families::list::GROUP;
+use crate::families::{Families, FamilyOptions, PeriView};
+use perigrain_base::math::vec3::{Vec3, sub};
+
+impl Families {
+    /// s0 = max (s00 − alpha s) over the bonds that each particle had before the last step broke some, s being their
+    /// stretches in that step; the largest number there is for particles that had none, and for all before the first step.
+    pub fn critical_stretches(&self, view: &PeriView) -> Vec<f64> {
+        let mut all = vec![f64::MAX; view.x.len()];
+        if !self.armed {
+            return all;
+        }
+        for body in &self.lattices {
+            let mut most = vec![f64::NEG_INFINITY; body.sites()];
+            for (cell, most) in most.iter_mut().enumerate().filter(|(c, _)| body.particle[*c] != u32::MAX) {
+                body.family(cell as u32, &self.options, |s, s00, alpha| *most = most.max(s00 - alpha * s));
+            }
+            for &(cell, e) in &body.broken {
+                let (cell, e) = (cell as usize, usize::from(e));
+                let Some(to) = body.ahead(body.slot_of(cell), cell, e) else { continue };
+                let length = body.xi(e).iter().map(|x| x * x).sum::<f64>().sqrt();
+                let [_, s00, alpha] = body.pair(cell, to);
+                let critical = s00 - alpha * banded(body.z(0, cell, to, e), length, &self.options);
+                for site in [cell, to] {
+                    most[site] = most[site].max(critical);
+                }
+            }
+            show(&mut all, &body.particle, &most);
+        }
+        self.critical_of_list(view, &mut all);
+        all
+    }
+
+    fn critical_of_list(&self, view: &PeriView, all: &mut [f64]) {
+        let (list, period) = (&self.list, periods(&view.bounds));
+        let mut most = vec![f64::NEG_INFINITY; list.record.len()];
+        let mut count = |i: usize, b: usize| {
+            let (j, pair) = (list.partner[b] as usize, list.constants(b));
+            let (z, length) = list.z(true, i, j, period);
+            let critical = pair.s00 - pair.alpha * banded(z, length, &self.options);
+            for site in [i, j] {
+                most[site] = most[site].max(critical);
+            }
+        };
+        for i in 0..list.record.len() {
+            list.own(i).filter(|b| list.lives(*b)).for_each(|b| count(i, b));
+        }
+        for &b in &list.broken {
+            count(list.owner[b as usize / GROUP] as usize, b as usize);
+        }
+        show(all, &list.particle, &most);
+    }
+
+    /// The bond from particle `i` to particle `j` at the start, by the shortest way where the box repeats.
+    pub fn first_bond(&self, view: &PeriView, i: usize, j: usize) -> Vec3 {
+        let at = self.reference.as_deref().unwrap_or(view.x0);
+        view.bounds.nearest(sub(at[j], at[i]))
+    }
+}
+
+/// Whether a bond of the length `r`, at first `r0`, counts as unstretched.
+pub fn unstretched(r: f64, r0: f64, options: &FamilyOptions) -> bool {
+    2.0 * (r / r0 - 1.0).abs() < options.dead_band(r0)
+}
+
+/// Hands what sites have found to their particles.
+fn show(all: &mut [f64], particle: &[u32], most: &[f64]) {
+    for (&p, &most) in particle.iter().zip(most) {
+        if p != u32::MAX && most > f64::NEG_INFINITY {
+            all[p as usize] = most;
+        }
+    }
+}

@@ -1,0 +1,405 @@
+//! What a step is made of: ops, their stage, what they read and write, and when they act.
+
+use super::stretch::{Act, Gist};
+use super::{Level, Phase};
+use perigrain_base::diag::Result;
+use perigrain_world::World;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The stages of a step in their order, in LAMMPS' words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    /// First half kick and drift.
+    InitialIntegrate,
+    /// After the drift.
+    PostIntegrate,
+    /// Particles come and go.
+    Exchange,
+    /// Wrap, shrink, lost test, lists.
+    Neighbor,
+    /// Before forces: clear them.
+    PreForce,
+    /// Pair and bond forces.
+    Force,
+    /// Forces of fixes.
+    PostForce,
+    /// Second half kick.
+    FinalIntegrate,
+    /// After the step.
+    EndOfStep,
+    /// Tables and files.
+    Output,
+}
+
+impl Stage {
+    /// All stages in order.
+    pub const ALL: [Stage; 10] = [
+        Stage::InitialIntegrate,
+        Stage::PostIntegrate,
+        Stage::Exchange,
+        Stage::Neighbor,
+        Stage::PreForce,
+        Stage::Force,
+        Stage::PostForce,
+        Stage::FinalIntegrate,
+        Stage::EndOfStep,
+        Stage::Output,
+    ];
+
+    /// Whether ops of this stage also act in a run's setup unless they say otherwise.
+    pub fn in_setup(self) -> bool {
+        !matches!(
+            self,
+            Stage::InitialIntegrate
+                | Stage::PostIntegrate
+                | Stage::Exchange
+                | Stage::FinalIntegrate
+                | Stage::EndOfStep
+        )
+    }
+
+    /// The stage's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::InitialIntegrate => "initial integrate",
+            Stage::PostIntegrate => "post integrate",
+            Stage::Exchange => "exchange",
+            Stage::Neighbor => "neighbor",
+            Stage::PreForce => "pre force",
+            Stage::Force => "force",
+            Stage::PostForce => "post force",
+            Stage::FinalIntegrate => "final integrate",
+            Stage::EndOfStep => "end of step",
+            Stage::Output => "output",
+        }
+    }
+}
+
+/// At which steps of a run an op acts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum When {
+    /// Every step.
+    Always,
+    /// Steps that are multiples of N.
+    Every(i64),
+    /// The setup of a run.
+    First,
+    /// The last step of a run.
+    Last,
+    /// `repeat` steps, `every` apart, of which the last is a multiple of `freq` (averages over time).
+    Samples {
+        /// Distance of two samples.
+        every: i64,
+        /// Number of samples.
+        repeat: i64,
+        /// Distance of two averages.
+        freq: i64,
+    },
+    /// These steps (ascending).
+    At(Arc<[i64]>),
+    /// Whenever one of these does.
+    Any(Vec<When>),
+    /// Only when asked between runs.
+    Never,
+}
+
+impl When {
+    /// Whether the op acts at this tick.
+    pub fn fires(&self, t: &Tick) -> bool {
+        match self {
+            When::Always => true,
+            When::Every(n) => *n > 0 && t.step % n == 0,
+            When::First => t.setup,
+            When::Last => t.step == t.last,
+            When::Samples { every, repeat, freq } => {
+                let before = (-t.step).rem_euclid(*freq);
+                before % every == 0 && before / every < *repeat
+            }
+            When::At(steps) => steps.binary_search(&t.step).is_ok(),
+            When::Any(list) => list.iter().any(|w| w.fires(t)),
+            When::Never => false,
+        }
+    }
+
+    /// The first step from `step` on at which it may act, in a run up to `last`: the end of time if there is none. Steps before
+    /// it are silent but for the setup and an early end of a run.
+    pub fn next(&self, step: i64, last: i64) -> i64 {
+        match self {
+            When::Always => step,
+            When::Every(n) if *n > 0 => step + (-step).rem_euclid(*n),
+            When::Last if step <= last => last,
+            When::Samples { every, repeat, freq } => {
+                let before = (-step).rem_euclid(*freq);
+                // The samples of an average begin so long before its step.
+                let begin = (repeat - 1) * every;
+                step + if before > begin { before - begin } else { before % every }
+            }
+            When::At(steps) => steps.get(steps.partition_point(|s| *s < step)).copied().unwrap_or(i64::MAX),
+            When::Any(list) => list.iter().map(|w| w.next(step, last)).min().unwrap_or(i64::MAX),
+            When::Every(_) | When::First | When::Last | When::Never => i64::MAX,
+        }
+    }
+
+    /// The union of two.
+    #[must_use]
+    pub fn or(self, other: When) -> When {
+        match (self, other) {
+            (When::Always, _) | (_, When::Always) => When::Always,
+            (When::Never, w) | (w, When::Never) => w,
+            (a, b) if a == b => a,
+            (When::Any(mut a), When::Any(b)) => {
+                a.extend(b.into_iter().filter(|w| !a.contains(w)).collect::<Vec<_>>());
+                When::Any(a)
+            }
+            (When::Any(mut a), b) | (b, When::Any(mut a)) => {
+                if !a.contains(&b) {
+                    a.push(b);
+                }
+                When::Any(a)
+            }
+            (a, b) => When::Any(vec![a, b]),
+        }
+    }
+}
+
+impl std::fmt::Display for When {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            When::Always => write!(f, "every step"),
+            When::Every(n) => write!(f, "every {n} steps"),
+            When::First => write!(f, "first"),
+            When::Last => write!(f, "last"),
+            When::Samples { every, repeat, freq } => {
+                write!(f, "{repeat} samples every {every} steps up to each multiple of {freq}")
+            }
+            When::At(steps) => write!(f, "at {} chosen steps", steps.len()),
+            When::Any(list) => {
+                write!(f, "{}", list.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))
+            }
+            When::Never => write!(f, "on demand"),
+        }
+    }
+}
+
+/// What an op may know of the present step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tick {
+    /// Present step.
+    pub step: i64,
+    /// First step of the run.
+    pub first: i64,
+    /// Last step of the run.
+    pub last: i64,
+    /// Step size.
+    pub dt: f64,
+    /// Whether this is the run's setup (forces at the start, no motion).
+    pub setup: bool,
+    /// In setup: the scene is as the last run left it, so forces, bonds and history stand already.
+    pub unchanged: bool,
+    /// The end has come early (a minimization has converged): all outputs show it, whatever their intervals.
+    pub ending: bool,
+    /// Somebody reads the energy at this step.
+    pub energy: bool,
+    /// Somebody reads the virial at this step.
+    pub virial: bool,
+    /// Somebody reads per-particle energies at this step.
+    pub atom_energy: bool,
+    /// Which of several levels of steps.
+    pub phase: Phase,
+    /// Somebody reads the world's contacts at this step.
+    pub contacts: bool,
+    /// Somebody reads per-particle virials at this step.
+    pub atom_virial: bool,
+}
+
+impl Tick {
+    /// The same, and nobody reads sums.
+    pub fn silent(&self) -> Tick {
+        let none = (false, false, false, false);
+        let mut t = self.clone();
+        (t.energy, t.virial, t.atom_energy, t.atom_virial) = none;
+        t.contacts = false;
+        t
+    }
+
+    /// The tick of something that happens between runs.
+    pub fn between_runs(c: &perigrain_world::Clock) -> Tick {
+        Tick {
+            step: c.step,
+            first: c.step,
+            last: c.step,
+            dt: c.dt,
+            setup: false,
+            unchanged: true,
+            ending: false,
+            energy: false,
+            virial: false,
+            atom_energy: false,
+            phase: Phase::default(),
+            contacts: false,
+            atom_virial: false,
+        }
+    }
+}
+
+/// What an op reads and writes, by column or state name (`x`, `v`, `f`, `families`, `c_dmg`).
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Access {
+    /// Read.
+    pub reads: Vec<&'static str>,
+    /// Written.
+    pub writes: Vec<&'static str>,
+}
+
+impl Access {
+    /// Reads and writes, each as words separated by blanks.
+    pub fn new(reads: &'static str, writes: &'static str) -> Self {
+        Self {
+            reads: reads.split(' ').filter(|s| !s.is_empty()).collect(),
+            writes: writes.split(' ').filter(|s| !s.is_empty()).collect(),
+        }
+    }
+
+    /// Whether this is written.
+    pub fn writes(&self, what: &str) -> bool {
+        self.writes.iter().any(|w| *w == what || *w == "everything")
+    }
+
+    /// Whether this is read.
+    pub fn reads(&self, what: &str) -> bool {
+        self.reads.iter().any(|r| *r == what || *r == "everything")
+    }
+}
+
+/// The row of LAMMPS' timing table an op's time goes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum OpClass {
+    /// Pair and bond forces.
+    Pair,
+    /// Lists, wrapping.
+    Neigh,
+    /// Thermo, dumps and what they need.
+    Output,
+    /// Fixes.
+    Modify,
+    /// The rest.
+    Other,
+}
+
+/// One thing a step does. Ops own scratch only; whatever outlives a step lives in `World`.
+pub trait Op: Send {
+    /// A name for plan and timing, as `fix ball indent`.
+    fn name(&self) -> &str;
+    /// Where in the step.
+    fn stage(&self) -> Stage;
+    /// What it reads and writes.
+    fn access(&self) -> Access;
+    /// At which steps. Providers of values get the union of their consumers' times instead.
+    fn when(&self) -> When {
+        When::Always
+    }
+    /// Whether it acts in the setup of a run too.
+    fn in_setup(&self) -> bool {
+        self.stage().in_setup()
+    }
+    /// In which of several levels of steps it acts.
+    fn level(&self) -> Level {
+        Level::Outermost
+    }
+    /// Whether it tells the world's account ([`Travel`](perigrain_world::Travel)) how far it moves particles in whole steps.
+    fn reports_travel(&self) -> bool {
+        false
+    }
+    /// Told once all ops of a plan are known: which columns and states some of them write by name.
+    fn settle(&mut self, _written: &dyn Fn(&str) -> bool) {}
+    /// Acts at the end of this step and, in the same pass, as its fix does at the beginning of the next one, which nobody
+    /// looks in between of; `false` if it cannot, and has then done nothing.
+    ///
+    /// # Errors
+    /// As `run`.
+    fn run_on(&mut self, _w: &mut World, _t: &Tick) -> Result<bool> {
+        Ok(false)
+    }
+    /// As `run`, for the last op that adds forces: it may tell which particles have all of theirs while these are in fast memory,
+    /// each once, and reads and writes nothing of those any more; they may be moved at once. `false` if it did not tell.
+    ///
+    /// # Errors
+    /// As `run`.
+    fn run_telling(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        _ready: &mut dyn FnMut(&mut World, Range<usize>),
+    ) -> Result<bool> {
+        self.run(w, t).map(|()| false)
+    }
+    /// What it does to stretches of particles at this tick, where it acts on each particle by itself: such ops take turns.
+    /// With `on` it acts at the end of this step and, in the same pass, as its fix (or it itself) does at the beginning of
+    /// the next one, which nobody looks in between of. `None` if it cannot.
+    fn on_stretches(&self, _w: &World, _t: &Tick, _on: bool) -> Option<Act> {
+        None
+    }
+    /// Takes what came of all stretches.
+    fn took_turns(&mut self, _w: &mut World, _t: &Tick, _gist: Gist) {}
+    /// The row of the timing table.
+    fn class(&self) -> OpClass {
+        match self.stage() {
+            Stage::Force => OpClass::Pair,
+            Stage::Neighbor => OpClass::Neigh,
+            Stage::Output => OpClass::Output,
+            Stage::PreForce => OpClass::Other,
+            _ => OpClass::Modify,
+        }
+    }
+    /// Acts.
+    ///
+    /// # Errors
+    /// Failures of the physics (lost particles, numbers out of control) and of files.
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()>;
+    /// What the run's end should do (close files, print a fact).
+    ///
+    /// # Errors
+    /// As `run`.
+    fn finish(&mut self, _w: &mut World) -> Result<()> {
+        Ok(())
+    }
+    /// Bytes of memory the op has touched per call, for `plan --measure`; 0 when unknown.
+    fn bytes(&self, _w: &World) -> u64 {
+        0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_next_step_is_the_first_that_fires() {
+        let every = When::Every(7);
+        let samples = When::Samples { every: 3, repeat: 4, freq: 20 };
+        let long = When::Samples { every: 5, repeat: 4, freq: 20 };
+        let at = When::At([-4, 0, 3, 90].into());
+        let any = When::Any(vec![every.clone(), When::First, at.clone(), When::Last]);
+        let last = 83;
+        let tick = |step: i64| Tick { step, last, ..Tick::between_runs(&perigrain_world::Clock::default()) };
+        for w in [
+            When::Always,
+            When::Every(0),
+            When::Never,
+            When::First,
+            When::Last,
+            every,
+            samples,
+            long,
+            at,
+            any,
+        ] {
+            for from in -30..100 {
+                // Beyond what is looked through here nothing but what comes again and again fires, and that has come before.
+                let found = (from..200).find(|&step| w.fires(&tick(step))).unwrap_or(i64::MAX);
+                assert_eq!(w.next(from, last), found, "{w:?} from {from}");
+            }
+        }
+    }
+}

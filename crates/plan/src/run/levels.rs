@@ -1,0 +1,172 @@
+//! Steps of several lengths within each other: each level has forces of its own, and a step of it holds steps of the next.
+//!
+//! The reversible scheme of Tuckerman, Berne & Martyna (1992): the forces of a level kick by half of its step at both ends
+//! of it, and what lies between is a whole number of steps of the level below; particles drift in the shortest ones.
+//! `run_style respa` is just that, with lists made anew at the beginning of a long step as in LAMMPS; of two levels for
+//! grains and solids (`staggered`) the long one moves the grains, and lists follow once all have moved.
+
+use super::verlet::tick;
+use crate::{Phase, Solids, Stage, StepPlan, Tick};
+use perigrain_base::diag::Result;
+use perigrain_world::World;
+use perigrain_world::columns::{HEATFLOW, heat_of_level, of_level};
+use std::sync::Arc;
+
+/// Levels of steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Levels {
+    /// How many steps of a level one of the next holds, from the shortest.
+    pub loops: Vec<i64>,
+    /// Who alone moves in the short steps of two lengths.
+    pub solids: Option<Arc<Solids>>,
+}
+
+impl Levels {
+    /// How many there are.
+    fn count(&self) -> usize {
+        self.loops.len() + 1
+    }
+
+    /// A tick as those who act in a level see it.
+    pub(super) fn at(&self, t: &Tick, level: usize) -> Tick {
+        let phase = Phase { level, levels: self.count(), solids: self.solids.clone() };
+        Tick { phase, ..t.clone() }
+    }
+}
+
+/// Whether the forces of all levels are kept, and belong to these particles.
+pub fn stand(w: &World, levels: usize) -> bool {
+    let (n, kinds) = (w.n(), if w.particles.style.sphere { 2 } else { 1 });
+    let whole = |name: &String| w.columns.get_vector(name).is_some_and(|c| c.len() == n);
+    let warm = w.columns.custom(HEATFLOW).is_some();
+    let heat = |k| !warm || w.columns.get_scalar(&heat_of_level(k)).is_some_and(|c| c.len() == n);
+    (0..levels).all(|k| of_level(k).iter().take(kinds).all(whole) && heat(k))
+}
+
+/// Forces of all levels at the start of a run, and its first outputs.
+///
+/// # Errors
+/// The first op's that fails.
+pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool, l: &Levels) -> Result<()> {
+    if unchanged && stand(w, l.count()) {
+        return super::verlet::setup(plan, w, true);
+    }
+    let mut t = tick(w, true);
+    plan.ask(&mut t);
+    plan.run(w, &l.at(&t, l.count() - 1), &[Stage::Neighbor])?;
+    w.columns.forget_levels();
+    for stages in first_forces(w) {
+        for k in 0..l.count() {
+            exchange(w, k);
+            plan.run(w, &l.at(&t, k), stages)?;
+            exchange(w, k);
+        }
+    }
+    // Weights are those of the masses that the outermost level leaves (`fix adapt`).
+    for k in 0..l.count() {
+        exchange(w, k);
+        plan.run(w, &l.at(&t, k), &[Stage::PostForce])?;
+        exchange(w, k);
+    }
+    join(w, l);
+    plan.run(w, &t, &[Stage::InitialIntegrate, Stage::PostIntegrate, Stage::FinalIntegrate])?;
+    plan.run(w, &t, &[Stage::EndOfStep, Stage::Output])
+}
+
+/// What is done level by level before the first forces, and what then: all that the outermost level changes holds for forces of
+/// every level, but not in LAMMPS.
+fn first_forces(w: &World) -> &'static [&'static [Stage]] {
+    match w.settings.lammps() {
+        true => &[&[Stage::PreForce, Stage::Force]],
+        false => &[&[Stage::PreForce], &[Stage::Force]],
+    }
+}
+
+/// One step of the outermost level up to its outputs.
+///
+/// # Errors
+/// The first op's that fails.
+pub fn step(plan: &mut StepPlan, w: &mut World, t: &Tick, l: &Levels) -> Result<()> {
+    level(plan, w, t, (l, l.count() - 1), false)?;
+    join(w, l);
+    Ok(())
+}
+
+/// One step of a level. Only the last of the steps in it have their sums asked for: those end where the step ends. Of the
+/// shortest the last kick is made with the first one of the next where `more` follow at once.
+fn level(plan: &mut StepPlan, w: &mut World, t: &Tick, (l, k): (&Levels, usize), more: bool) -> Result<()> {
+    const NEWS: [Stage; 3] = [Stage::PostIntegrate, Stage::Exchange, Stage::Neighbor];
+    let here = l.at(t, k);
+    let (first, last) = (here.phase.nested(), here.phase.outermost());
+    exchange(w, k);
+    if !plan.goes_on() {
+        plan.run(w, &here, &[Stage::InitialIntegrate])?;
+    }
+    if first && last {
+        plan.run(w, &here, &NEWS)?;
+    }
+    if let Some(below) = k.checked_sub(1) {
+        let m = l.loops[below];
+        let lasting = Tick { dt: t.dt / m as f64, ..t.clone() };
+        let passing = lasting.silent();
+        for i in 1..=m {
+            let t = if i < m { &passing } else { &lasting };
+            level(plan, w, t, (l, below), i < m)?;
+        }
+    }
+    if last && !first {
+        plan.run(w, &here, &NEWS)?;
+    }
+    forces(plan, w, &here)?;
+    plan.end(w, &here, |_| more && k == 0)?;
+    exchange(w, k);
+    Ok(())
+}
+
+/// The forces of a level, but for what fixes do to them.
+fn forces(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
+    plan.run(w, t, &[Stage::PreForce])?;
+    if w.settings.lammps() && t.phase.nested() {
+        // Whatever their level, pairs and bonds take the longest step for theirs.
+        return plan.run(w, &Tick { dt: w.clock.dt, ..t.clone() }, &[Stage::Force]);
+    }
+    plan.run(w, t, &[Stage::Force])
+}
+
+/// Lets the present forces, torques and heat flows and those of a level change places.
+pub(super) fn exchange(w: &mut World, level: usize) {
+    let (n, [force, torque]) = (w.n(), of_level(level));
+    std::mem::swap(&mut w.particles.f, w.columns.vector(&force, n));
+    if w.particles.style.sphere {
+        std::mem::swap(&mut w.particles.torque, w.columns.vector(&torque, n));
+    }
+    if let Some(heat) = w.columns.custom(HEATFLOW) {
+        w.columns.swap_scalars(&heat, &heat_of_level(level), n);
+    }
+}
+
+/// Shows the forces, torques and heat flows of all levels together.
+fn join(w: &mut World, l: &Levels) {
+    let p = &mut w.particles;
+    for k in 0..l.count() {
+        for (sum, name) in [&mut p.f, &mut p.torque].into_iter().zip(of_level(k)) {
+            let part = w.columns.get_vector(&name).unwrap_or_default();
+            if k == 0 {
+                sum.clear();
+                sum.extend_from_slice(part);
+                continue;
+            }
+            for (sum, part) in sum.iter_mut().zip(part) {
+                (0..3).for_each(|d| sum[d] += part[d]);
+            }
+        }
+    }
+    let Some(heat) = w.columns.custom(HEATFLOW) else { return };
+    let n = w.n();
+    let mut sum = vec![0.0; n];
+    for k in 0..l.count() {
+        let part = w.columns.get_scalar(&heat_of_level(k)).unwrap_or_default();
+        sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+    }
+    *w.columns.scalar(&heat, n) = sum;
+}

@@ -1,0 +1,241 @@
+//! Velocity Verlet over a sealed plan: the loop, short enough to read aloud.
+
+use super::guarded::{Guarded, Verdict};
+use crate::{Phase, Stage, StepPlan, Tick};
+use perigrain_base::diag::Result;
+use perigrain_base::par;
+use perigrain_world::columns::HEATFLOW;
+use perigrain_world::{Halt, World};
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// Steps made.
+    pub steps: i64,
+    /// Wall time of the steps, setup not included.
+    pub time: Duration,
+    /// CPU time of the whole process during the steps.
+    pub cpu: f64,
+    /// Ended from outside before the last step.
+    pub interrupted: bool,
+}
+
+/// Where a run stands after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Made {
+    /// Steps of this run that are made.
+    pub done: i64,
+    /// Steps of this run.
+    pub total: i64,
+    /// The step counter.
+    pub step: i64,
+    /// Elapsed time [time units of the deck].
+    pub time: f64,
+    /// Step size [time units of the deck].
+    pub dt: f64,
+}
+
+/// Told after every step, for a progress bar.
+pub trait Watch: Send {
+    /// A step is made.
+    fn step(&mut self, made: &Made);
+}
+
+/// Computes forces at the start of a run and makes its first outputs.
+///
+/// When the scene is `unchanged` since the last run, forces, bonds and contact history stand already, and a run
+/// cut in two equals one run to the bit; only sums that nobody had asked for are made up for.
+///
+/// # Errors
+/// The first op's that fails.
+pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool) -> Result<()> {
+    let mut t = tick(w, true);
+    t.unchanged = unchanged;
+    plan.ask(&mut t);
+    if unchanged {
+        w.rebuild.builds = 0;
+        w.rebuild.dangerous = 0;
+        tally_anew(plan, w, &t)?;
+        return plan.run(w, &t, &[Stage::Output]);
+    }
+    plan.run(w, &t, &[Stage::Neighbor, Stage::PreForce, Stage::Force, Stage::PostForce])?;
+    plan.run(w, &t, &[Stage::InitialIntegrate, Stage::PostIntegrate, Stage::FinalIntegrate])?;
+    plan.run(w, &t, &[Stage::EndOfStep, Stage::Output])
+}
+
+/// Energy and virial of the present state where the last step did not tally them; forces stay as they are.
+fn tally_anew(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
+    let have = &w.tally;
+    let stands = have.step == Some(t.step);
+    let enough = (!t.energy || stands)
+        && (!t.virial || (stands && have.with_virial))
+        && (!t.atom_energy || (stands && have.with_atoms))
+        && (!t.atom_virial || (stands && have.with_atom_virial));
+    if enough {
+        return Ok(());
+    }
+    let kept = (w.particles.f.clone(), w.particles.torque.clone());
+    let n = w.particles.len();
+    let warm = w.columns.custom(HEATFLOW).map(|name| (w.columns.scalar(&name, n).clone(), name));
+    // Fixes see that nothing has changed: they add their virial and leave the forces alone.
+    plan.run(w, t, &[Stage::PreForce, Stage::Force, Stage::PostForce])?;
+    if let Some((heat, name)) = warm {
+        *w.columns.scalar(&name, n) = heat;
+    }
+    (w.particles.f, w.particles.torque) = kept;
+    Ok(())
+}
+
+/// Makes the steps `clock.first + 1 ..= clock.last`.
+///
+/// # Errors
+/// The first op's that fails; the world is then as that op left it.
+pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Result<Outcome> {
+    w.rebuild.travel.begin(plan.guard.is_none() && plan.reports_travel());
+    // A guard may take steps back.
+    let sure = plan.guard.is_none();
+    let outcome = steps(plan, w, watch, |plan, w, t| plan.step(w, t, |w| sure && !over(w)));
+    w.rebuild.travel.begin(false);
+    outcome
+}
+
+/// Whether the present step is the last one, or somebody wants it to be.
+fn over(w: &World) -> bool {
+    let c = &w.clock;
+    c.step >= c.last
+        || c.halt != Halt::No
+        || w.settings.stop.load(Ordering::Relaxed)
+        || w.settings.ends_at(c.step)
+}
+
+/// The stages of a step before anything is put out.
+pub(super) const MOTION: [Stage; 8] = [
+    Stage::InitialIntegrate,
+    Stage::PostIntegrate,
+    Stage::Exchange,
+    Stage::Neighbor,
+    Stage::PreForce,
+    Stage::Force,
+    Stage::PostForce,
+    Stage::FinalIntegrate,
+];
+
+/// And those that put out.
+const OUTPUTS: [Stage; 2] = [Stage::EndOfStep, Stage::Output];
+
+/// Makes the steps of a run, each by `step` and then its outputs.
+///
+/// # Errors
+/// As [`verlet`].
+pub(super) fn steps(
+    plan: &mut StepPlan,
+    w: &mut World,
+    watch: &mut dyn Watch,
+    step: impl Fn(&mut StepPlan, &mut World, &Tick) -> Result<()> + Sync,
+) -> Result<Outcome> {
+    let (begin, cpu) = (Instant::now(), cpu_seconds());
+    let first = w.clock.step;
+    let mut guard = match plan.guard.take() {
+        Some(guard) => Some(Guarded::new(guard, plan, w)?),
+        None => None,
+    };
+    // All of it on one thread of the pool: to hand over at every step would take longer than many a step.
+    let interrupted = par::inside(|| -> Result<bool> {
+        while w.clock.step < w.clock.last && w.clock.halt == Halt::No {
+            if plan.begun() {
+                // Half of this step is made.
+            } else if w.settings.stop.load(Ordering::Relaxed) {
+                return Ok(true);
+            } else if w.settings.ends_at(w.clock.step) {
+                w.clock.halt = Halt::All;
+                break;
+            }
+            w.clock.step += 1;
+            let mut t = tick(w, false);
+            plan.ask(&mut t);
+            match &mut guard {
+                None => {
+                    step(plan, w, &t)?;
+                    plan.run(w, &t, &OUTPUTS)?;
+                }
+                Some(guard) => {
+                    let made = step(plan, w, &t);
+                    if guard.judge(plan, w, &t, made)? == Verdict::Back {
+                        continue;
+                    }
+                    plan.run(w, &t, &OUTPUTS)?;
+                    guard.keep(plan, w, &t)?;
+                }
+            }
+            let c = &w.clock;
+            let (done, total) = (c.step - first, c.last - first);
+            watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });
+        }
+        Ok(false)
+    })?;
+    plan.guard = guard.map(Guarded::into_guard);
+    let steps = w.clock.step - first;
+    Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })
+}
+
+/// Forces and output for each scene that `next` puts in; nothing moves. `next` says `false` when there are no more.
+///
+/// # Errors
+/// The first op's that fails, and those of `next`.
+pub fn look(
+    plan: &mut StepPlan,
+    w: &mut World,
+    mut next: impl FnMut(&mut World) -> Result<bool>,
+) -> Result<Outcome> {
+    let (begin, cpu) = (Instant::now(), cpu_seconds());
+    let (mut steps, mut interrupted) = (0, false);
+    loop {
+        interrupted |= w.settings.stop.load(Ordering::Relaxed);
+        if interrupted || !next(w)? {
+            break;
+        }
+        let mut shown = tick(w, steps == 0);
+        plan.ask(&mut shown);
+        let forces = Tick { setup: true, ..shown.clone() };
+        plan.run(w, &forces, &[Stage::Neighbor, Stage::PreForce, Stage::Force, Stage::PostForce])?;
+        if shown.setup {
+            plan.end_first(w, &shown)?;
+        } else {
+            plan.run(w, &shown, &[Stage::EndOfStep])?;
+        }
+        plan.run(w, &shown, &[Stage::Output])?;
+        plan.release(w)?;
+        steps += 1;
+    }
+    Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })
+}
+
+/// The tick of the step the clock stands at.
+pub(super) fn tick(w: &World, setup: bool) -> Tick {
+    Tick {
+        step: w.clock.step,
+        first: w.clock.first,
+        last: w.clock.last,
+        dt: w.clock.dt,
+        setup,
+        unchanged: false,
+        ending: false,
+        energy: false,
+        virial: false,
+        atom_energy: false,
+        phase: Phase::default(),
+        contacts: false,
+        atom_virial: false,
+    }
+}
+
+/// User + system time of this process [s], from /proc where there is one, else 0.
+pub(super) fn cpu_seconds() -> f64 {
+    let Ok(stat) = std::fs::read_to_string("/proc/self/stat") else { return 0.0 };
+    let Some((_, rest)) = stat.rsplit_once(')') else { return 0.0 };
+    let fields: Vec<f64> = rest.split_whitespace().map(|s| s.parse().unwrap_or(0.0)).collect();
+    // utime and stime are fields 14 and 15 of proc(5); ticks are 1/100 s on Linux.
+    fields.get(11).zip(fields.get(12)).map_or(0.0, |(u, s)| (u + s) / 100.0)
+}

@@ -1,0 +1,335 @@
+//! Ops in the order of a step, with what was left out and why.
+
+use super::ending::Ending;
+use super::{Act, Gist, Guard, Level, Meter, Op, OpClass, Stage, Tick, Turns, When, take_turns};
+use perigrain_base::diag::{Diagnostics, Result, Span};
+use perigrain_world::World;
+use std::ops::Range;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// An op with its times and the command it came from.
+pub struct Placed {
+    /// The op.
+    pub op: Box<dyn Op>,
+    /// When it acts (an op's own, or the union of its readers').
+    pub when: When,
+    /// In which of several levels of steps (an op's own, or what `run_style` and `fix_modify` say).
+    pub level: Level,
+    /// The command that created it, for messages.
+    pub from: Option<Span>,
+    /// The value it provides, as `c_dmg`; empty for ops that provide none to others.
+    pub provides: String,
+    /// Whether it reads the world's contacts.
+    pub reads_contacts: bool,
+    /// Where in the step it acts.
+    pub stage: Stage,
+    /// Whether it acts in the setup of a run.
+    pub in_setup: bool,
+    /// What it has cost.
+    pub meter: Meter,
+}
+
+impl Placed {
+    /// An op at its own times.
+    pub fn new(op: Box<dyn Op>, from: Option<Span>) -> Self {
+        let (when, level, reads_contacts) = (op.when(), op.level(), op.access().reads("contacts"));
+        let (stage, in_setup, provides) = (op.stage(), op.in_setup(), String::new());
+        Self { op, when, level, from, provides, reads_contacts, stage, in_setup, meter: Meter::default() }
+    }
+
+    /// Lets the op act, and adds up what that costs; `clock` is when the one before was done.
+    fn timed<T>(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        clock: &mut Instant,
+        act: impl FnOnce(&mut dyn Op, &mut World) -> Result<T>,
+    ) -> Result<T> {
+        let outcome = act(&mut *self.op, w);
+        let begin = std::mem::replace(clock, Instant::now());
+        self.meter.time += *clock - begin;
+        self.meter.calls += 1;
+        self.meter.bytes += self.op.bytes(w);
+        outcome.map_err(|e| placed_error(e, self, t))
+    }
+}
+
+/// Something the plan does without, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeftOut {
+    /// What.
+    pub what: String,
+    /// Why it is not needed.
+    pub why: String,
+}
+
+/// So many particles are moved without looking at the clock.
+const FEW: usize = 200;
+
+/// The sealed step.
+#[derive(Default)]
+pub struct StepPlan {
+    /// Ops in order.
+    pub ops: Vec<Placed>,
+    /// What was left out.
+    pub left_out: Vec<LeftOut>,
+    /// When somebody reads the energy.
+    pub energy: Vec<When>,
+    /// When somebody reads the virial.
+    pub virial: Vec<When>,
+    /// When somebody reads per-particle energies.
+    pub atom_energy: Vec<When>,
+    /// When somebody reads per-particle virials.
+    pub atom_virial: Vec<When>,
+    /// Who watches the energy.
+    pub guard: Option<Guard>,
+    /// How many levels of steps there are (`run_style respa`), if more than one.
+    pub levels: Option<usize>,
+    /// The end of the last step has begun the present one.
+    begun: bool,
+    /// Whether nobody reads forces between the drift and the next ones; unknown at first.
+    pub(super) unread: Option<bool>,
+    /// Steps in which only what acts in every step acts, in a run up to the step beside it.
+    pub(super) quiet: (Range<i64>, i64),
+    /// The ending of quiet steps before quiet steps.
+    pub(super) usual: Option<Arc<Ending>>,
+}
+
+impl StepPlan {
+    /// Adds an op at the end of its stage (ops of a stage keep the order in which they are added).
+    pub fn add(&mut self, placed: Placed) {
+        let stage = placed.op.stage();
+        let at = self.ops.iter().position(|p| p.stage > stage).unwrap_or(self.ops.len());
+        self.ops.insert(at, placed);
+        (self.unread, self.quiet, self.usual) = (None, Default::default(), None);
+    }
+
+    /// Tells every op what all of them write, now that they are known.
+    pub fn settle(&mut self) {
+        let written: Vec<&str> = self.ops.iter().flat_map(|p| p.op.access().writes).collect();
+        self.ops.iter_mut().for_each(|p| p.op.settle(&|what| written.contains(&what)));
+    }
+
+    /// Fills in which sums are asked for at this tick.
+    pub fn ask(&mut self, t: &mut Tick) {
+        self.look_ahead(t);
+        let any = |list: &[When]| list.iter().any(|w| t.ending || self.fires(w, t));
+        let (energy, virial, atoms) = (any(&self.energy), any(&self.virial), any(&self.atom_energy));
+        let atom_virial = any(&self.atom_virial);
+        let reads = |p: &Placed| p.reads_contacts && (t.ending || self.fires(&p.when, t));
+        let contacts = atom_virial || self.ops.iter().any(reads);
+        t.energy = energy || atoms;
+        t.virial = virial || atom_virial;
+        t.atom_energy = atoms;
+        t.atom_virial = atom_virial;
+        t.contacts = contacts;
+    }
+
+    /// Runs the ops of some stages, which must be in order, at this tick: those that act in its level of steps.
+    ///
+    /// # Errors
+    /// The first op's that fails, with the place of its command.
+    pub fn run(&mut self, w: &mut World, t: &Tick, stages: &[Stage]) -> Result<()> {
+        let Some((first, end)) = stages.first().zip(stages.last()) else { return Ok(()) };
+        let mut clock = None;
+        let from = self.ops.partition_point(|p| p.stage < *first);
+        for k in from..self.ops.len() {
+            let p = &self.ops[k];
+            if p.stage > *end {
+                break;
+            }
+            if !stages.contains(&p.stage) || !p.level.acts(&t.phase) || (t.setup && !p.in_setup) {
+                continue;
+            }
+            let ends = t.ending && p.stage == Stage::Output && p.when != When::Never;
+            if ends || self.fires(&p.when, t) {
+                self.ops[k].timed(w, t, clock.get_or_insert_with(Instant::now), |op, w| op.run(w, t))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Runs what acts at the end of steps at the first tick of a run without motion: those that act in no setup too.
+    ///
+    /// # Errors
+    /// The first op's that fails, with the place of its command.
+    pub fn end_first(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let later = Tick { setup: false, ..t.clone() };
+        for p in self.ops.iter_mut().filter(|p| p.stage == Stage::EndOfStep) {
+            let t = if p.in_setup { t } else { &later };
+            if p.when.fires(t) {
+                p.timed(w, t, &mut Instant::now(), |op, w| op.run(w, t))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether all that move particles report how far, and none grows; who adds or wraps particles has lists made anew.
+    pub fn reports_travel(&self) -> bool {
+        let moves = |p: &&Placed| ["x", "radius"].iter().any(|what| p.op.access().writes(what));
+        let anew = |p: &Placed| matches!(p.op.stage(), Stage::Exchange | Stage::Neighbor);
+        self.ops.iter().filter(moves).all(|p| anew(p) || p.op.reports_travel())
+    }
+
+    /// Whether the last step has made the beginning of the next one, which has to be made then.
+    pub fn begun(&self) -> bool {
+        self.begun
+    }
+
+    /// Makes one step up to its outputs. Ops that act on each particle by itself take turns after the forces. Where `more`
+    /// steps are sure to follow and nobody looks in between, the last kick is made with the first one of the next step.
+    ///
+    /// # Errors
+    /// The first op's that fails.
+    pub fn step(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
+        use Stage::{InitialIntegrate, PostIntegrate};
+        if !self.goes_on() {
+            self.run(w, t, &[InitialIntegrate])?;
+        }
+        self.run(w, t, &[PostIntegrate, Stage::Exchange, Stage::Neighbor, Stage::PreForce])?;
+        if self.force_and_end(w, t, &more)? {
+            return Ok(());
+        }
+        self.run(w, t, &[Stage::Force])?;
+        self.end(w, t, more)
+    }
+
+    /// Where one op alone adds forces and all that follows acts on each particle by itself: particles that have all their forces
+    /// are moved while they are in fast memory, if the op tells who has. Every particle sees the same as otherwise. `false` where
+    /// that is not so, and nothing has been done.
+    fn force_and_end(&mut self, w: &mut World, t: &Tick, more: &impl Fn(&World) -> bool) -> Result<bool> {
+        let ending = self.ending(t);
+        let Some(force) = ending.force else { return Ok(false) };
+        let (order, clears) = (&ending.order[..], ending.clears);
+        let last = ending.last.filter(|_| more(w));
+        let acts = self.offers(w, t, order, [last, clears]);
+        let turns = Turns::new(&acts, w.n()).filter(|_| !acts.is_empty() && acts.len() == order.len());
+        let Some(mut turns) = turns else { return Ok(false) };
+        let (mut clock, mut moving) = (Instant::now(), Duration::ZERO);
+        let p = &mut self.ops[force];
+        let told = p.timed(w, t, &mut clock, |op, w| {
+            op.run_telling(w, t, &mut |w, particles| {
+                // To look at the clock takes longer than to move a few particles.
+                let begin = (particles.len() > FEW).then(Instant::now);
+                turns.ready(w, particles);
+                moving += begin.map_or(Duration::ZERO, |begin| begin.elapsed());
+            })
+        })?;
+        p.meter.time = p.meter.time.saturating_sub(moving);
+        let gists = if told { turns.finish() } else { take_turns(w, &acts) };
+        self.took_turns(w, t, (order, last), gists, moving + clock.elapsed());
+        Ok(true)
+    }
+
+    /// Tells ops what came of their turns, which took so long together.
+    fn took_turns(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        (ops, last): (&[usize], Option<usize>),
+        gists: Vec<Gist>,
+        elapsed: Duration,
+    ) {
+        let each = elapsed / gists.len().max(1) as u32;
+        for (&k, gist) in ops.iter().zip(gists) {
+            let p = &mut self.ops[k];
+            p.op.took_turns(w, t, gist);
+            p.meter.time += each;
+            p.meter.calls += 1;
+            p.meter.bytes += p.op.bytes(w);
+            self.begun |= last == Some(k);
+        }
+    }
+
+    /// What these ops, from the first on, offer to do to stretches. The last kick of the step goes on into the next one, and what
+    /// clears forces then, if there is one.
+    fn offers(&self, w: &World, t: &Tick, ops: &[usize], [last, clears]: [Option<usize>; 2]) -> Vec<Act> {
+        let goes_on = |k: usize| last == Some(k) || (last.is_some() && clears == Some(k));
+        ops.iter().map_while(|&k| self.ops[k].op.on_stretches(w, t, goes_on(k))).collect()
+    }
+
+    /// Whether the step before has made the beginning of this one.
+    pub fn goes_on(&mut self) -> bool {
+        std::mem::take(&mut self.begun)
+    }
+
+    /// What is left of a step, or of one of a level, after its forces. Ops that act on each particle by itself take turns;
+    /// `more` as for [`StepPlan::step`].
+    ///
+    /// # Errors
+    /// The first op's that fails.
+    pub fn end(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
+        let ending = self.ending(t);
+        let (order, clears) = (&ending.order[..], ending.clears);
+        let (mut at, mut clock) = (0, Instant::now());
+        while at < order.len() {
+            let last = ending.last.filter(|_| self.begun || more(w));
+            let acts = self.offers(w, t, &order[at..], [last, clears]);
+            if acts.is_empty() {
+                let (k, p) = (order[at], &mut self.ops[order[at]]);
+                let whole = last == Some(k) && t.phase.levels == 1;
+                self.begun |= whole && p.timed(w, t, &mut clock, |op, w| op.run_on(w, t))?;
+                if !self.begun && clears != Some(k) {
+                    p.timed(w, t, &mut clock, |op, w| op.run(w, t))?;
+                }
+                if !self.begun && last == Some(k) {
+                    return Ok(());
+                }
+                at += 1;
+                continue;
+            }
+            let gists = take_turns(w, &acts);
+            let elapsed = std::mem::replace(&mut clock, Instant::now()).elapsed();
+            self.took_turns(w, t, (&order[at..], last), gists, elapsed);
+            at += acts.len();
+        }
+        Ok(())
+    }
+
+    /// Makes ops of forces give what they hold of the scene back to the world; they take it up anew at their next step.
+    ///
+    /// # Errors
+    /// As `finish`.
+    pub fn release(&mut self, w: &mut World) -> Result<()> {
+        self.ops.iter_mut().filter(|p| p.op.stage() == Stage::Force).try_for_each(|p| p.op.finish(w))
+    }
+
+    /// Tells every op that the run is over.
+    ///
+    /// # Errors
+    /// All that went wrong.
+    pub fn finish(&mut self, w: &mut World) -> Result<()> {
+        let mut problems = Diagnostics::default();
+        for p in &mut self.ops {
+            if let Err(e) = p.op.finish(w) {
+                problems.append(e);
+            }
+        }
+        if problems.is_empty() { Ok(()) } else { Err(problems) }
+    }
+
+    /// Time spent per row of the timing table.
+    pub fn time_by_class(&self) -> [(OpClass, Duration); 5] {
+        let classes = [OpClass::Pair, OpClass::Neigh, OpClass::Output, OpClass::Modify, OpClass::Other];
+        classes.map(|c| (c, self.ops.iter().filter(|p| p.op.class() == c).map(|p| p.meter.time).sum()))
+    }
+
+    /// Sets all meters to zero.
+    pub fn reset_meters(&mut self) {
+        for p in &mut self.ops {
+            p.meter = Meter::default();
+        }
+    }
+}
+
+fn placed_error(e: Diagnostics, p: &Placed, t: &Tick) -> Diagnostics {
+    let mut e = e;
+    for d in &mut e.0 {
+        if d.span.is_none() {
+            d.span = p.from;
+            d.help.push(format!("in op `{}` at step {}", p.op.name(), t.step));
+        }
+    }
+    e
+}

@@ -1,0 +1,109 @@
+//! What acts may use while they act.
+
+use perigrain_base::diag::{Diagnostic, Diagnostics, Result, Source, Span};
+use perigrain_base::math::vec3::Vec3;
+use perigrain_lang::{Command, Param, ValueRef, Word};
+use perigrain_world::{GroupId, World};
+use std::cell::RefCell;
+use std::sync::Arc;
+
+/// Evaluates what a deck refers to, between runs.
+pub trait Values {
+    /// One number.
+    ///
+    /// # Errors
+    /// Unknown names, values that are not available between runs.
+    fn scalar(&mut self, w: &mut World, r: &ValueRef) -> Result<f64>;
+    /// One number per particle.
+    ///
+    /// # Errors
+    /// As `scalar`.
+    fn per_atom(&mut self, w: &mut World, r: &ValueRef) -> Result<Vec<f64>>;
+    /// One number, after internal-style variables have been given these values.
+    ///
+    /// # Errors
+    /// As `scalar`, and variables that are not internal-style.
+    fn with_internal(&mut self, w: &mut World, r: &ValueRef, set: &[(&ValueRef, f64)]) -> Result<f64>;
+    /// The velocity that a temperature takes away from each particle.
+    ///
+    /// # Errors
+    /// Computes that take none away.
+    fn flow(&mut self, w: &mut World, compute: &ValueRef) -> Result<Flow>;
+    /// Stops the bodies of a fix of rigid bodies, and their particles with them.
+    ///
+    /// # Errors
+    /// Other fixes, and bodies that cannot be.
+    fn stop(&mut self, w: &mut World, fix: &Word, what: Motion) -> Result<()>;
+}
+
+/// What a temperature takes away from velocities before it looks at them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flow {
+    /// From each particle; nothing from those outside of the group.
+    pub taken: Vec<Vec3>,
+    /// The group of the temperature.
+    pub group: GroupId,
+    /// Components that are taken away whole.
+    pub whole: [bool; 3],
+    /// Who is left out with all its freedom; nobody if empty.
+    pub apart: Vec<bool>,
+}
+
+/// The two motions of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// Of the centre of mass.
+    Linear,
+    /// Rotation about it.
+    Angular,
+}
+
+/// What an act may use.
+pub struct ActCx<'a> {
+    /// What it changes.
+    pub world: &'a mut World,
+    /// Values of variables, computes and fixes.
+    pub values: &'a mut dyn Values,
+    /// The whole line, for messages.
+    pub span: Span,
+    /// Lines for screen and log, as `Created 64 atoms`.
+    pub said: &'a mut Vec<String>,
+    /// Declaring lines that a file held, with its text: worked off right after the act.
+    pub then: &'a mut Vec<(Command, Arc<Source>)>,
+    /// Warnings.
+    pub notes: &'a RefCell<Diagnostics>,
+}
+
+impl ActCx<'_> {
+    /// Says a line on screen and log.
+    pub fn say(&mut self, line: impl Into<String>) {
+        self.said.push(line.into());
+    }
+
+    /// Leaves a warning or note.
+    pub fn note(&self, d: Diagnostic) {
+        self.notes.borrow_mut().push(d.at(self.span));
+    }
+
+    /// The value of a parameter now.
+    ///
+    /// # Errors
+    /// As `Values::scalar`.
+    pub fn number(&mut self, p: &Param) -> Result<f64> {
+        match p {
+            Param::Number(a) => Ok(*a),
+            Param::Ref(r) => self.values.scalar(self.world, r),
+        }
+    }
+
+    /// The value of a parameter for each particle now.
+    ///
+    /// # Errors
+    /// As `Values::per_atom`.
+    pub fn per_atom(&mut self, p: &Param) -> Result<Vec<f64>> {
+        match p {
+            Param::Number(a) => Ok(vec![*a; self.world.n()]),
+            Param::Ref(r) => self.values.per_atom(self.world, r),
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! What a bond style is: a style that reads its line, and what it declares.
+
+use super::pull::{Pull, Stretched};
+use super::{BuildCx, SealCx, Style};
+use perigrain_base::diag::Result;
+use perigrain_lang::Args;
+use perigrain_plan::Op;
+use perigrain_world::World;
+
+/// A bond style: one file, one line in `BONDS`.
+pub trait BondStyle: Style {
+    /// Reads the words after the style's name.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>>;
+}
+
+/// A declared bond style with its coefficients.
+pub trait BondForce: Send + Sync {
+    /// The style's name.
+    fn name(&self) -> &'static str;
+
+    /// Reads the words of `bond_coeff` after the types.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, cx: &BuildCx) -> Result<()>;
+
+    /// Whether a bond type has coefficients.
+    fn covers(&self, kind: u16) -> bool;
+
+    /// Limits the style to some bond types (as a sub-style of `hybrid`); by default it acts on all.
+    fn restrict(&mut self, _kinds: &[u16]) {}
+
+    /// The ops it contributes to a step.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>>;
+
+    /// What a bond does, by the coefficients it has at the moment, for `compute bond/local`; `None` where that takes more than
+    /// its two ends.
+    fn single(&self, w: &World, bond: &Stretched) -> Option<Pull>;
+
+    /// The pair styles of which one has to be in force besides; any will do by default.
+    fn companions(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// The coefficients that `fix adapt` may change, by name.
+    fn coefficients(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// What the deck's lines said of one of them.
+    fn coefficient(&self, _name: &str, _kind: u16) -> Option<f64> {
+        None
+    }
+
+    /// The coefficients of a type as a data file has them.
+    fn written(&self, kind: u16) -> Option<String>;
+
+    /// A copy, so that a failing line changes nothing.
+    fn boxed(&self) -> Box<dyn BondForce>;
+}

@@ -1,0 +1,87 @@
+//! What a compute is: a style that reads its line, and what it declares.
+
+use super::{BuildCx, Flow, SealCx, Shape, Style};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_lang::Args;
+use perigrain_plan::{Op, Stage, When};
+use perigrain_world::{SlotId, World};
+
+/// A compute style: one file, one line in `COMPUTES`.
+pub trait ComputeStyle: Style {
+    /// Reads the words after the style's name.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>>;
+}
+
+/// A declared compute.
+pub trait Compute: Send {
+    /// Which values it offers.
+    fn shape(&self) -> Shape;
+
+    /// The op that fills `slot`; it is run at most once per step, at `stage`, whenever `when` fires.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>>;
+
+    /// Captures what it must know of the moment it is declared (positions).
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn declare(&self, _w: &mut World) -> Result<()> {
+        Ok(())
+    }
+
+    /// Captures the same for particles made since, when a run begins.
+    fn welcome(&self, _w: &mut World) {}
+
+    /// Forgets what `declare` captured.
+    fn remove(&self, _w: &mut World) {}
+
+    /// Whether it takes note of how the first run begins, even if nobody asks for it then.
+    fn begins(&self) -> bool {
+        false
+    }
+
+    /// The op that takes the present state as a new beginning after a snapshot of a dump (`dump_modify refresh`), for
+    /// computes that have one.
+    ///
+    /// # Errors
+    /// As `op`.
+    fn refresh(&self, _cx: &mut dyn SealCx, _stage: Stage, _when: &When) -> Result<Option<Box<dyn Op>>> {
+        Ok(None)
+    }
+
+    /// `compute_modify ID …`. The options of temperatures concern no other compute.
+    ///
+    /// # Errors
+    /// Unknown keywords.
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let span = args.here();
+        match args.choice("option of a compute", &["extra/dof", "extra", "dynamic/dof", "dynamic"])? {
+            "extra/dof" | "extra" => drop(args.number("the number of degrees of freedom")?),
+            _ => drop(args.flag("dynamic/dof")?),
+        }
+        let text = "without effect: only temperatures have degrees of freedom";
+        cx.note(Diagnostic::note(Code::NO_EFFECT, span, text));
+        Ok(())
+    }
+
+    /// What a temperature takes away from velocities before it looks at them, if it does (`Shape::flow`).
+    fn flow(&self, _w: &World) -> Option<Flow> {
+        None
+    }
+
+    /// The temperature whose flow it takes away, where that is not its own.
+    fn bias(&self) -> Option<&perigrain_lang::ValueRef> {
+        None
+    }
+
+    /// Uses another temperature, if it uses one (`thermo_modify temp`).
+    fn take_temperature(&mut self, _temperature: &perigrain_lang::ValueRef) {}
+
+    /// A copy, so that a failing `compute_modify` changes nothing.
+    fn boxed(&self) -> Box<dyn Compute>;
+}

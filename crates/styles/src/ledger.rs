@@ -1,0 +1,251 @@
+//! The ledger of energy: what a scene holds, and what has gone through each channel since the ledger was opened.
+
+use crate::probe::{Balance, Probe};
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::math::vec3::dot;
+use perigrain_base::par;
+use perigrain_peri::families::ForceUnit;
+use perigrain_plan::Tick;
+use perigrain_world::World;
+
+/// What does work on particles besides their mutual forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channel {
+    /// Walls.
+    Walls,
+    /// Gravity.
+    Gravity,
+    /// All other fixes.
+    Imposed,
+}
+
+/// Columns of the forces of each channel at the present step.
+const FORCES: [&str; 3] = ["ledger/walls", "ledger/gravity", "ledger/imposed"];
+/// And of their torques.
+const TORQUES: [&str; 3] = ["ledger/walls torque", "ledger/gravity torque", "ledger/imposed torque"];
+/// Forces and torques as they were before the next fix.
+const BEFORE: [&str; 2] = ["ledger/force", "ledger/torque"];
+/// The name of the book in the world's memory.
+const BOOK: &str = "energy/ledger";
+
+/// The channels' sums.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Book {
+    /// Power of walls, gravity and what else is imposed, of dashpots, of everything across the normal, and of all forces
+    /// on driven particles, at the last step.
+    power: [f64; 6],
+    /// Work of the same since the ledger was opened.
+    work: [f64; 6],
+    /// Kinetic energy of driven particles at the last step, and what has come in besides forces.
+    driven: [f64; 2],
+    /// Residual less energies, at the last opening.
+    base: f64,
+}
+
+impl Book {
+    fn read(w: &World) -> Option<Self> {
+        let m = w.memo.get(BOOK).filter(|m| m.len() == 15)?;
+        let six = |k: usize| std::array::from_fn(|i| m[k + i]);
+        Some(Self { power: six(0), work: six(6), driven: [m[12], m[13]], base: m[14] })
+    }
+
+    fn write(&self, w: &mut World) {
+        let mut m = [self.power, self.work].concat();
+        m.extend(self.driven);
+        m.push(self.base);
+        w.memo.insert(BOOK.to_string(), m);
+    }
+}
+
+/// Forgets the ledger: the next run opens a new one.
+pub fn forget(w: &mut World) {
+    w.memo.remove(BOOK);
+    FORCES.iter().chain(&TORQUES).chain(&BEFORE).for_each(|c| w.columns.remove(c));
+}
+
+/// Before the fixes of a step change forces.
+pub fn begin(w: &mut World, t: &Tick) {
+    if t.unchanged {
+        return;
+    }
+    if let Some(families) = &mut w.families {
+        families.counts_losses = true;
+    }
+    let n = w.n();
+    for name in FORCES.iter().chain(&TORQUES) {
+        let column = w.columns.vector(name, n);
+        column.clear();
+        column.resize(n, [0.0; 3]);
+    }
+    remember(w);
+}
+
+fn remember(w: &mut World) {
+    let n = w.n();
+    w.columns.vector(BEFORE[0], n).clone_from(&w.particles.f);
+    w.columns.vector(BEFORE[1], n).clone_from(&w.particles.torque);
+}
+
+/// After a fix has changed forces.
+pub fn mark(w: &mut World, t: &Tick, channel: Channel) {
+    if t.unchanged {
+        return;
+    }
+    let n = w.n();
+    for (names, k) in [(FORCES, 0), (TORQUES, 1)] {
+        let mut sum = std::mem::take(w.columns.vector(names[channel as usize], n));
+        let now = if k == 0 { &w.particles.f } else { &w.particles.torque };
+        let before = w.columns.get_vector(BEFORE[k]).unwrap_or(&[]);
+        for ((sum, now), before) in sum.iter_mut().zip(now).zip(before) {
+            (0..3).for_each(|d| sum[d] += now[d] - before[d]);
+        }
+        *w.columns.vector(names[channel as usize], n) = sum;
+    }
+    remember(w);
+}
+
+/// What forces and masses of a particle are to be multiplied with to be true ones.
+fn scale(w: &World, i: usize) -> f64 {
+    let dense = w.families.as_ref().is_some_and(|f| {
+        f.options.unit == ForceUnit::Density && f.place.get(i).is_some_and(|p| *p != u32::MAX)
+    });
+    if dense { w.volumes()[i] } else { 1.0 }
+}
+
+/// The kinetic energies of a scene [energy].
+fn kinetic(w: &World, who: impl Fn(usize) -> bool + Sync) -> [f64; 2] {
+    let (p, masses) = (&w.particles, super::matter::Masses::of(w));
+    let half = 0.5 * w.settings.units.constants().mvv2e;
+    let chunk = |range: std::ops::Range<usize>| {
+        range.filter(|&i| who(i)).fold([0.0; 2], |[straight, turning], i| {
+            let m = scale(w, i) * masses.get(i);
+            let inertia = match p.omega.get(i) {
+                Some(o) => 0.4 * m * p.radius[i] * p.radius[i] * dot(*o, *o),
+                None => 0.0,
+            };
+            [straight + m * dot(p.v[i], p.v[i]), turning + inertia]
+        })
+    };
+    par::reduce(p.len(), chunk, |a, b| [a[0] + b[0], a[1] + b[1]]).unwrap_or_default().map(|e| half * e)
+}
+
+/// What all pair styles say of contacts.
+fn balance(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Balance> {
+    let mut sum = Balance::default();
+    for probe in probes {
+        let b = probe.balance(w)?;
+        (0..2).for_each(|k| sum.stored[k] += b.stored[k]);
+        sum.damping += b.damping;
+        sum.across += b.across;
+    }
+    Ok(sum)
+}
+
+/// At the end of a step: work by the trapezoidal rule over the powers of two steps. `free` are the bits of groups that
+/// equations of motion move; all others are driven. The first step opens the book, as does every step before which a
+/// deck has changed the scene.
+///
+/// # Errors
+/// What is missing in the scene.
+pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32) -> Result<()> {
+    let contacts = balance(w, probes)?;
+    let p = &w.particles;
+    let power = |k: usize| {
+        let force = w.columns.get_vector(FORCES[k]).unwrap_or(&[]);
+        let torque = w.columns.get_vector(TORQUES[k]).unwrap_or(&[]);
+        let turns = |i: usize| torque.get(i).zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(*q, *o));
+        par::sum(p.len().min(force.len()), |i| scale(w, i) * dot(force[i], p.v[i]) + turns(i))
+    };
+    let held = |i: usize| p.mask[i] & free == 0;
+    let turns = |i: usize| p.torque.get(i).zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(*q, *o));
+    let forces = |i: usize| if held(i) { scale(w, i) * dot(p.f[i], p.v[i]) + turns(i) } else { 0.0 };
+    let driven = par::sum(p.len(), forces);
+    let now = [power(0), power(1), power(2), contacts.damping, contacts.across, driven];
+    let moving: f64 = kinetic(w, held).iter().sum();
+    let known = Book::read(w);
+    let mut book = known.unwrap_or_default();
+    if t.setup || known.is_none() {
+        (book.power, book.driven[0]) = (now, moving);
+        book.base = 0.0;
+        book.write(w);
+        if w.tally.step == Some(t.step) {
+            book.base = -sheet(w, probes)?.residual();
+            book.write(w);
+        }
+        return Ok(());
+    }
+    let half = 0.5 * t.dt;
+    let done: [f64; 6] = std::array::from_fn(|k| half * (book.power[k] + now[k]));
+    (0..6).for_each(|k| book.work[k] += done[k]);
+    // What moves driven particles against the forces on them.
+    book.driven[1] += moving - book.driven[0] - done[5];
+    (book.power, book.driven[0]) = (now, moving);
+    book.write(w);
+    Ok(())
+}
+
+/// A balance sheet [energy].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sheet {
+    /// Kinetic, rotational, strain, contact; damping, friction, fracture; walls, gravity, imposed.
+    pub channels: [f64; 10],
+    /// Heat of bonds that relax or flow.
+    pub heat: f64,
+    /// Strain energy by type.
+    pub strain: Vec<f64>,
+    base: f64,
+}
+
+impl Sheet {
+    /// What the scene holds.
+    pub fn held(&self) -> f64 {
+        self.channels[..4].iter().sum()
+    }
+
+    /// Held, plus what was turned into heat and cracks, less what came in, since the ledger was opened.
+    pub fn residual(&self) -> f64 {
+        let sum = |range: std::ops::Range<usize>| self.channels[range].iter().sum::<f64>();
+        self.held() + sum(4..7) + self.heat - sum(7..10) + self.base
+    }
+
+    /// What has gone in and out: the measure of errors where nothing is held.
+    pub fn turnover(&self) -> f64 {
+        self.channels[4..10].iter().map(|e| e.abs()).sum::<f64>() + self.heat.abs()
+    }
+}
+
+/// The sheet at the present step, whose energies have been tallied per particle.
+///
+/// # Errors
+/// Energies of another step.
+pub fn sheet(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Sheet> {
+    if w.tally.step.is_some_and(|step| step != w.clock.step) {
+        let text = format!("the energy is known for step {:?}, not for step {}", w.tally.step, w.clock.step);
+        return fail(Code::WRONG_ORDER, None, text);
+    }
+    let book = Book::read(w).unwrap_or_default();
+    let [straight, turning] = kinetic(w, |_| true);
+    let mut strain = vec![0.0; w.types];
+    for (i, energy) in w.tally.atom.iter().enumerate().take(w.n()) {
+        strain[usize::from(w.particles.kind[i]) - 1] += scale(w, i) * energy;
+    }
+    let contacts = balance(w, probes)?;
+    let bonds = strain.iter().sum::<f64>() + w.tally.bond;
+    let released = w.families.as_ref().map_or(0.0, |f| f.released);
+    let [walls, gravity, imposed, damping, across, _] = book.work;
+    let [normal, springs] = contacts.stored;
+    let channels = [
+        straight,
+        turning,
+        bonds,
+        normal + springs,
+        damping,
+        across - springs,
+        released,
+        walls,
+        gravity,
+        imposed + book.driven[1],
+    ];
+    let heat = w.families.as_ref().map_or(0.0, |f| f.heat);
+    Ok(Sheet { channels, heat, strain, base: book.base })
+}

@@ -1,0 +1,216 @@
+//! What many styles ask of the particles: who belongs to a group, what it weighs, where it is unwrapped.
+
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::par;
+use perigrain_plan::Tick;
+use perigrain_world::{AtomStyle, GroupId, Region, SlotId, World};
+
+/// The mass of each particle: its own where the atom style has one, else its type's.
+#[derive(Clone, Copy)]
+pub enum Masses<'a> {
+    /// Each its own.
+    Own(&'a [f64]),
+    /// By type (from 1).
+    ByType(&'a [u16], &'a [Option<f64>]),
+}
+
+impl<'a> Masses<'a> {
+    /// The masses of a world's particles.
+    pub fn of(w: &'a World) -> Self {
+        let p = &w.particles;
+        Self::new(p.style, &p.mass, &p.kind, &w.type_mass)
+    }
+
+    /// As `of`, where the world is borrowed in parts.
+    pub fn new(style: AtomStyle, own: &'a [f64], kind: &'a [u16], by_type: &'a [Option<f64>]) -> Self {
+        if style.own_mass() { Self::Own(own) } else { Self::ByType(kind, by_type) }
+    }
+
+    /// The mass of particle `i`; NaN where its type has none, which [`check_masses`] rules out.
+    #[inline]
+    pub fn get(&self, i: usize) -> f64 {
+        match self {
+            Self::Own(mass) => mass[i],
+            Self::ByType(kind, table) => {
+                table.get(usize::from(kind[i]) - 1).copied().flatten().unwrap_or(f64::NAN)
+            }
+        }
+    }
+}
+
+/// Checks that every particle has a mass.
+///
+/// # Errors
+/// A type in use without `mass`.
+pub fn check_masses(w: &World, span: Span) -> Result<()> {
+    if w.particles.style.own_mass() {
+        return Ok(());
+    }
+    let without = |k: &&u16| w.type_mass.get(usize::from(**k).wrapping_sub(1)).copied().flatten().is_none();
+    match w.particles.kind.iter().find(without) {
+        None => Ok(()),
+        Some(k) => Err(Diagnostic::error(Code::INCOMPLETE, span, format!("atom type {k} has no mass"))
+            .help(format!("write `mass {k} …` before the run"))
+            .into()),
+    }
+}
+
+/// How many particles belong to a group.
+pub fn count(w: &World, group: GroupId) -> usize {
+    let (mask, bit) = (&w.particles.mask, group.bit());
+    par::reduce(mask.len(), |r| r.filter(|&i| mask[i] & bit != 0).count(), |a, b| a + b).unwrap_or(0)
+}
+
+/// Adds up `term(i)` over the particles of a group: the same bits for any number of threads.
+pub fn sum<const N: usize>(
+    mask: &[u32],
+    group: GroupId,
+    term: impl Fn(usize) -> [f64; N] + Sync,
+) -> [f64; N] {
+    let bit = group.bit();
+    let chunk = |range: std::ops::Range<usize>| {
+        let mut total = [0.0; N];
+        for i in range.filter(|&i| mask[i] & bit != 0) {
+            let t = term(i);
+            (0..N).for_each(|k| total[k] += t[k]);
+        }
+        total
+    };
+    par::reduce(mask.len(), chunk, add).unwrap_or([0.0; N])
+}
+
+/// Element by element a + b.
+pub fn add<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
+/// Mass and centre of mass of a group, unwrapped; the centre of nothing is the origin.
+pub fn centre(w: &World, group: GroupId) -> (f64, [f64; 3]) {
+    let masses = Masses::of(w);
+    let [mass, moment @ ..] = sum::<4>(&w.particles.mask, group, |i| {
+        let (x, m) = (unwrapped(w, i), masses.get(i));
+        [m, m * x[0], m * x[1], m * x[2]]
+    });
+    (mass, if mass > 0.0 { moment.map(|a| a / mass) } else { [0.0; 3] })
+}
+
+/// Where particle `i` would be had it never been wrapped into a periodic box.
+pub fn unwrapped(w: &World, i: usize) -> [f64; 3] {
+    let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
+    let (x, image) = (w.particles.x[i], w.particles.image[i]);
+    std::array::from_fn(|k| x[k] + f64::from(image[k]) * lengths[k])
+}
+
+/// Keeps `what` of every particle of a group in a vector column, for those it does not hold yet; a scalar column of the
+/// same name says who they are.
+pub fn keep_places(w: &mut World, key: &str, group: GroupId, what: impl Fn(&World, usize) -> [f64; 3]) {
+    let (n, bit) = (w.n(), group.bit());
+    w.columns.vector(key, n);
+    let mut known = std::mem::take(w.columns.scalar(key, n));
+    for (i, known) in known.iter_mut().enumerate() {
+        if *known == 0.0 && w.particles.mask[i] & bit != 0 {
+            *known = 1.0;
+            let kept = what(w, i);
+            w.columns.vector(key, n)[i] = kept;
+        }
+    }
+    *w.columns.scalar(key, n) = known;
+}
+
+/// Who a force acts on: a group, or its members inside a region.
+#[derive(Clone)]
+pub struct Chosen {
+    bit: u32,
+    region: Option<String>,
+}
+
+impl Chosen {
+    /// A group, limited to the region of this name if one is given.
+    ///
+    /// # Errors
+    /// The region no longer exists.
+    pub fn new(w: &World, group: GroupId, region: Option<&str>, span: Span) -> Result<Self> {
+        if let Some(name) = region
+            && !w.regions.contains_key(name)
+        {
+            let text = format!("there is no region `{name}` any more");
+            return Err(Diagnostic::error(Code::UNKNOWN_NAME, span, text).into());
+        }
+        Ok(Self { bit: group.bit(), region: region.map(String::from) })
+    }
+
+    /// The bit of the group, if no region limits it.
+    pub fn bit_alone(&self) -> Option<u32> {
+        self.region.is_none().then_some(self.bit)
+    }
+
+    /// Who is meant at this moment: regions may move. Of a region that is gone nobody.
+    pub fn now<'w>(&self, w: &'w World) -> ChosenNow<'w> {
+        match &self.region {
+            None => ChosenNow { bit: self.bit, region: None },
+            Some(name) => {
+                let region = w.regions.get(name);
+                ChosenNow { bit: if region.is_some() { self.bit } else { 0 }, region }
+            }
+        }
+    }
+}
+
+/// Who is meant at one moment.
+#[derive(Clone, Copy)]
+pub struct ChosenNow<'w> {
+    bit: u32,
+    region: Option<&'w Region>,
+}
+
+impl ChosenNow<'_> {
+    /// Whether a particle with these group bits at this place is meant.
+    #[inline]
+    pub fn has(&self, mask: u32, x: [f64; 3]) -> bool {
+        mask & self.bit != 0 && self.region.is_none_or(|r| r.contains(x))
+    }
+}
+
+/// Changes the force on each chosen particle and adds up what `change(world, i, force)` returns; the world it sees
+/// lacks the forces.
+pub fn change_forces<const N: usize>(
+    w: &mut World,
+    chosen: &Chosen,
+    change: impl Fn(&World, usize, &mut [f64; 3]) -> [f64; N] + Sync,
+) -> [f64; N] {
+    let mut forces = std::mem::take(&mut w.particles.f);
+    let world = &*w;
+    let chosen = chosen.now(world);
+    let columns = (&mut forces[..], &world.particles.x[..], &world.particles.mask[..]);
+    let chunk = |start: usize, (f, x, mask): (&mut [[f64; 3]], &[[f64; 3]], &[u32])| {
+        let mut total = [0.0; N];
+        for (k, ((f, x), mask)) in f.iter_mut().zip(x).zip(mask).enumerate() {
+            if chosen.has(*mask, *x) {
+                let term = change(world, start + k, f);
+                (0..N).for_each(|k| total[k] += term[k]);
+            }
+        }
+        total
+    };
+    let total = par::reduce_each(columns, chunk, add).unwrap_or([0.0; N]);
+    w.particles.f = forces;
+    total
+}
+
+/// Writes a fix's global values into its slot.
+pub fn publish(w: &mut World, slot: SlotId, t: &Tick, scalar: f64, vector: &[f64]) {
+    let out = w.slots.get_mut(slot);
+    out.step = Some(t.step);
+    out.scalar = scalar;
+    out.vector.clear();
+    out.vector.extend_from_slice(vector);
+}
+
+/// Writes what a fix takes away in every one of several levels of steps into its slot: all levels together.
+pub fn publish_levels(w: &mut World, slot: SlotId, t: &Tick, taken: &[f64]) {
+    let mut sum = taken.to_vec();
+    if t.phase.level > 0 {
+        sum.iter_mut().zip(&w.slots.get(slot).vector).for_each(|(all, inner)| *all += inner);
+    }
+    publish(w, slot, t, 0.0, &sum);
+}

@@ -1,0 +1,156 @@
+//! Pairs of particles within a distance of each other, and clusters of them.
+
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::math::forest::find;
+use perigrain_neigh::list::{Pair, Reach, View, Wanted, difference, pairs};
+use perigrain_world::index::Index;
+use perigrain_world::{Allowed, Bond, GroupId, World};
+
+/// Every pair closer than `reach` that `keep` lets pass, once, in the order of their ids; pairs that
+/// exclusions and bonds take away are none.
+pub fn within(w: &World, reach: Reach, keep: &(impl Fn(usize, usize) -> bool + Sync)) -> Vec<Pair> {
+    search(w, reach, 0.0, keep)
+}
+
+/// Refuses a distance beyond which a particle would meet several images of another one: pairs are counted once.
+///
+/// # Errors
+/// The distance is longer than half of a periodic length.
+pub fn one_image(w: &World, cutoff: f64, at: Span) -> Result<()> {
+    let shortest = w.periods().into_iter().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+    if cutoff <= 0.5 * shortest {
+        return Ok(());
+    }
+    let text = format!(
+        "the cutoff {cutoff} is longer than half the periodic box, {}: several images of a particle would count as one",
+        0.5 * shortest
+    );
+    Err(Diagnostic::error(Code::BAD_VALUE, at, text)
+        .help("take a shorter cutoff, or `replicate` the scene")
+        .into())
+}
+
+fn search(w: &World, reach: Reach, skin: f64, keep: &(impl Fn(usize, usize) -> bool + Sync)) -> Vec<Pair> {
+    let p = &w.particles;
+    let mut wanted = Wanted::new(w.types);
+    for a in 1..=w.types as u16 {
+        (a..=w.types as u16).for_each(|b| wanted.set(a, b, reach));
+    }
+    let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
+    let allowed = Allowed::new(w);
+    pairs(&view, &wanted, skin, &|i, j| keep(i, j) && allowed.pair(i, j))
+}
+
+/// Every pair of spheres no further apart than the sum of their radii that `keep` lets pass, as `within`.
+pub fn touching(w: &World, keep: &(impl Fn(usize, usize) -> bool + Sync)) -> Vec<Pair> {
+    let p = &w.particles;
+    // What touches in one point is no closer than the sum of the radii: search a little further, then look.
+    let margin = 1e-9 * p.radius.iter().fold(0.0, |most: f64, r| most.max(*r));
+    let mut found = search(w, Reach::Touch, margin, keep);
+    let period = w.periods();
+    found.retain(|pair| {
+        let d = difference(&p.x, &period, pair);
+        let sum = p.radius[pair.i as usize] + p.radius[pair.j as usize];
+        d[0] * d[0] + d[1] * d[1] + d[2] * d[2] <= sum * sum
+    });
+    found
+}
+
+/// Sets that grow together: each has the smallest id of its members as its name.
+pub struct Clusters<'a> {
+    parent: Vec<u32>,
+    tag: &'a [u32],
+}
+
+impl<'a> Clusters<'a> {
+    /// Every particle by itself.
+    pub fn new(tag: &'a [u32]) -> Self {
+        Self { parent: (0..tag.len() as u32).collect(), tag }
+    }
+
+    /// Joins the sets of two particles.
+    pub fn join(&mut self, i: u32, j: u32) {
+        let (a, b) = (find(&mut self.parent, i), find(&mut self.parent, j));
+        let (low, high) = if self.tag[a as usize] <= self.tag[b as usize] { (a, b) } else { (b, a) };
+        self.parent[high as usize] = low;
+    }
+
+    /// The smallest id in the set of a particle.
+    pub fn name(&mut self, i: usize) -> f64 {
+        f64::from(self.tag[find(&mut self.parent, i as u32) as usize])
+    }
+}
+
+/// The bonds with both ends in a group, in the order of LAMMPS' lists.
+pub fn bonds_within(w: &World, group: GroupId) -> Vec<Bond> {
+    let p = &w.particles;
+    let index = Index::new(&p.tag);
+    let has = |tag: u32| index.find(tag, &p.tag).is_some_and(|i| p.mask[i] & group.bit() != 0);
+    let mut list = w.bonds.by_owner(&p.tag);
+    list.retain(|b| b.kind != 0 && b.ends.iter().all(|t| has(*t)));
+    list
+}
+
+/// Calls `f(i, j)` for every unbroken peridynamic bond, `i` < `j`.
+pub fn bonds(w: &World, mut f: impl FnMut(u32, u32)) {
+    let Some(families) = &w.families else { return };
+    for i in 0..w.n() {
+        for n in families.neighbours(i) {
+            if n.alive && n.partner > i as u32 {
+                f(i as u32, n.partner);
+            }
+        }
+    }
+}
+
+/// Calls `f(i, j)` for everything that holds two particles together: unbroken peridynamic bonds, and listed bonds that are
+/// not broken.
+pub fn held_together(w: &World, mut f: impl FnMut(u32, u32)) {
+    bonds(w, &mut f);
+    let tags = &w.particles.tag;
+    let index = Index::new(tags);
+    for bond in w.bonds.list.iter().filter(|b| b.kind != 0) {
+        if let [Some(i), Some(j)] = bond.ends.map(|t| index.find(t, tags)) {
+            f(i as u32, j as u32);
+        }
+    }
+}
+
+/// Refuses to change lengths of the box that bonds cross: those would keep the length they had.
+///
+/// # Errors
+/// The ids of two particles bonded across a periodic face of such a dimension.
+pub fn bonds_allow(w: &World, changes: [bool; 3]) -> Result<()> {
+    let (period, p) = (w.periods(), &w.particles);
+    let dims: Vec<usize> = (0..3).filter(|&d| changes[d] && period[d] > 0.0).collect();
+    let mut crossing = None;
+    if !dims.is_empty() {
+        bonds(w, |i, j| {
+            let (a, b) = (p.x0[i as usize], p.x0[j as usize]);
+            if dims.iter().any(|&d| (a[d] - b[d]).abs() > 0.5 * period[d]) {
+                crossing = Some([p.tag[i as usize], p.tag[j as usize]]);
+            }
+        });
+    }
+    let Some([a, b]) = crossing else { return Ok(()) };
+    let text = format!(
+        "peridynamic bonds cross this periodic face (of particles {a} and {b}): its length cannot change"
+    );
+    Err(Diagnostic::error(Code::NOT_SUPPORTED, None, text)
+        .help("make the boundary f, or pull at particles (`fix move`, `velocity`) instead of the box")
+        .into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clusters_are_named_by_their_smallest_id() {
+        let tag = [5, 3, 9, 1];
+        let mut c = Clusters::new(&tag);
+        c.join(0, 2);
+        c.join(2, 1);
+        assert_eq!([0, 1, 2, 3].map(|i| c.name(i)), [3.0, 3.0, 3.0, 1.0]);
+    }
+}

@@ -1,0 +1,161 @@
+//! What pairs of particles do to each other at a moment, asked of any pair style.
+
+use perigrain_base::diag::Result;
+use perigrain_base::math::vec3::{SIX, Vec3, dot, length, scale, sub};
+use perigrain_world::World;
+
+/// How many numbers of its own a pair style may give to each pair.
+pub const OWN: usize = 13;
+
+/// Two particles and what they do to each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Interaction {
+    /// The particle of smaller tag.
+    pub i: u32,
+    /// The other.
+    pub j: u32,
+    /// x_i − x_j, of the images that meet [length].
+    pub d: Vec3,
+    /// Force on i [force].
+    pub force: Vec3,
+    /// Energy of the pair [energy].
+    pub energy: f64,
+    /// What the style says of it besides (`p1`, `p2` … of compute pair/local).
+    pub own: [f64; OWN],
+}
+
+impl Interaction {
+    /// Distance of the two [length].
+    pub fn distance(&self) -> f64 {
+        length(self.d)
+    }
+
+    /// The part of the force along the line of centres, positive where it pushes apart [force].
+    pub fn central(&self) -> f64 {
+        dot(self.force, self.d) / self.distance()
+    }
+
+    /// The part of the force across the line of centres, on i [force].
+    pub fn across(&self) -> Vec3 {
+        sub(self.force, scale(self.central() / self.distance(), self.d))
+    }
+
+    /// d ⊗ F, the pair's virial: xx yy zz xy xz yz [energy].
+    pub fn virial(&self) -> [f64; 6] {
+        SIX.map(|(a, b)| self.d[a] * self.force[b])
+    }
+}
+
+/// What a probe is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ask {
+    /// Every pair that acts, with the forces that the particles felt in the evaluation just made; `setup`: it was that
+    /// of a run's setup.
+    Felt {
+        /// See above.
+        setup: bool,
+    },
+    /// Every pair that acts, with the forces that another evaluation gives. They are those felt, but for springs that
+    /// LAMMPS shortens wrongly: its pair styles give these numbers when they are asked about single pairs.
+    Acting,
+    /// The same, and pairs that do not touch but are within the cutoff of their types.
+    Idle,
+}
+
+impl Ask {
+    /// All pairs within the cutoff of their types, or only those that act.
+    pub fn idle(idle: bool) -> Self {
+        if idle { Ask::Idle } else { Ask::Acting }
+    }
+}
+
+/// The springs of one contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Springs {
+    /// Who touch.
+    pub ends: [u32; 2],
+    /// Unit vector between the centres.
+    pub normal: Vec3,
+    /// Stiffness along it and across it [force/length].
+    pub stiffness: [f64; 2],
+    /// How far from each centre they touch [length].
+    pub arms: [f64; 2],
+}
+
+/// What the contacts of a pair style hold and turn into heat at a moment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Balance {
+    /// Energy of overlaps and of tangential springs [energy].
+    pub stored: [f64; 2],
+    /// Power that dashpots along the normal take up [force length/time].
+    pub damping: f64,
+    /// Power of everything across the normal and of torques, springs included: what these do not keep is friction
+    /// [force length/time].
+    pub across: f64,
+}
+
+/// A pair style's answer about single pairs. It reads the world as it is after forces are computed: contact history
+/// has moved on already and is only looked at.
+pub trait Probe: Send {
+    /// The pair style.
+    fn name(&self) -> &'static str;
+
+    /// How many numbers of its own each pair has.
+    fn own(&self) -> usize;
+
+    /// The largest distance up to which pairs are looked at [length].
+    fn cutoff(&self, _w: &World) -> Option<f64> {
+        None
+    }
+
+    /// The pairs of its neighbour list, made when lists were last rebuilt, in the order of the two tags.
+    fn listed(&self, w: &World) -> Vec<[u32; 2]>;
+
+    /// The pairs that are asked for, in the order of the two tags.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn look(&mut self, w: &World, ask: Ask) -> Result<Vec<Interaction>>;
+
+    /// The springs of all contacts.
+    ///
+    /// # Errors
+    /// As `look`.
+    fn springs(&mut self, _w: &World) -> Result<Vec<Springs>> {
+        Ok(vec![])
+    }
+
+    /// What all contacts hold and take up at the present velocities.
+    ///
+    /// # Errors
+    /// As `look`.
+    fn balance(&mut self, _w: &World) -> Result<Balance> {
+        Ok(Balance::default())
+    }
+}
+
+/// What several styles say, pair by pair: forces, energies and numbers of their own of one pair add up.
+///
+/// # Errors
+/// As [`Probe::look`].
+pub fn look_all(probes: &mut [Box<dyn Probe>], w: &World, ask: Ask) -> Result<Vec<Interaction>> {
+    let mut all: Vec<Interaction> = vec![];
+    for p in probes.iter_mut() {
+        all.append(&mut p.look(w, ask)?);
+    }
+    if probes.len() < 2 {
+        return Ok(all);
+    }
+    let tag = |i: u32| w.particles.tag[i as usize];
+    all.sort_by_key(|p| (tag(p.i), tag(p.j)));
+    all.dedup_by(|later, first| {
+        let same = (later.i, later.j) == (first.i, first.j) && later.d == first.d;
+        if same {
+            (0..3).for_each(|k| first.force[k] += later.force[k]);
+            (0..OWN).for_each(|k| first.own[k] += later.own[k]);
+            first.energy += later.energy;
+        }
+        same
+    });
+    Ok(all)
+}

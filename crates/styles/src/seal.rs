@@ -1,0 +1,253 @@
+//! What styles may ask for while a run is sealed into a plan.
+
+use crate::BondForce;
+use crate::probe::Probe;
+use perigrain_base::diag::{Result, Span};
+use perigrain_lang::{Param, ValueRef};
+use perigrain_out::log::Log;
+use perigrain_plan::{Level, Op, Stage, When};
+use perigrain_world::adapted::Coefficient;
+use perigrain_world::{SlotId, World};
+
+/// Where an op finds a value while it runs; the plan makes sure it is fresh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reading {
+    /// A constant.
+    Const(f64),
+    /// A slot's single number.
+    Scalar(SlotId),
+    /// An element (from 0) of a slot's global vector.
+    Element(SlotId, usize),
+    /// A column (from 0) of a slot's per-particle values.
+    Atom(SlotId, usize),
+    /// Row and column (from 0) of a slot's global array.
+    Cell(SlotId, usize, usize),
+    /// A slot's whole global vector.
+    Vector(SlotId),
+    /// A column (from 0) of a slot's global array, as a vector.
+    Column(SlotId, usize),
+    /// A column (from 0) of a slot's local values.
+    Local(SlotId, usize),
+}
+
+impl Reading {
+    /// The number; of a per-particle reading the first particle's, of a vector its first element. 0 for an element that
+    /// a vector of varying length does not have at present, as in LAMMPS.
+    pub fn get(&self, w: &World) -> f64 {
+        match *self {
+            Reading::Const(a) => a,
+            Reading::Scalar(s) => w.slots.get(s).scalar,
+            Reading::Element(s, k) => w.slots.get(s).vector.get(k).copied().unwrap_or(0.0),
+            Reading::Atom(..) => self.atom(w, 0),
+            Reading::Cell(s, r, c) => w.slots.get(s).cell(r, c).unwrap_or(0.0),
+            Reading::Vector(..) | Reading::Column(..) | Reading::Local(..) => {
+                self.list(w).first().copied().unwrap_or(0.0)
+            }
+        }
+    }
+
+    /// How many elements (or rows) there are at present, where that is too few for the one this is to read.
+    pub fn too_few(&self, w: &World) -> Option<usize> {
+        let slot = match *self {
+            Reading::Element(s, _) | Reading::Cell(s, ..) => w.slots.get(s),
+            _ => return None,
+        };
+        let (wanted, there) = match *self {
+            Reading::Element(_, k) => (k, slot.vector.len()),
+            Reading::Cell(_, row, _) => (row, slot.array.len() / slot.array_cols.max(1)),
+            _ => return None,
+        };
+        (wanted >= there).then_some(there)
+    }
+
+    /// The number of particle `i`: its own, or the same for everyone.
+    pub fn atom(&self, w: &World, i: usize) -> f64 {
+        match *self {
+            Reading::Atom(s, c) => {
+                let slot = w.slots.get(s);
+                slot.atom.get(i * slot.cols + c).copied().unwrap_or(0.0)
+            }
+            _ => self.get(w),
+        }
+    }
+
+    /// All its values: a vector's elements, an array column's, local values, those of the particles by index; the one
+    /// number of everything else.
+    pub fn list(&self, w: &World) -> Vec<f64> {
+        match *self {
+            Reading::Vector(s) => w.slots.get(s).vector.clone(),
+            Reading::Column(s, c) => w.slots.get(s).array_column(c),
+            Reading::Local(s, c) => w.slots.get(s).local_column(c),
+            Reading::Atom(..) => (0..w.n()).map(|i| self.atom(w, i)).collect(),
+            _ => vec![self.get(w)],
+        }
+    }
+
+    /// How many values `list` gives.
+    pub fn len(&self, w: &World) -> usize {
+        let rows = |values: usize, cols: usize| values.checked_div(cols).unwrap_or(0);
+        match *self {
+            Reading::Vector(s) => w.slots.get(s).vector.len(),
+            Reading::Column(s, _) => rows(w.slots.get(s).array.len(), w.slots.get(s).array_cols),
+            Reading::Local(s, _) => rows(w.slots.get(s).local.len(), w.slots.get(s).local_cols),
+            Reading::Atom(..) => w.n(),
+            _ => 1,
+        }
+    }
+
+    /// Whether `list` gives no value.
+    pub fn is_empty(&self, w: &World) -> bool {
+        self.len(w) == 0
+    }
+
+    /// Whether particles differ.
+    pub fn per_atom(&self) -> bool {
+        matches!(self, Reading::Atom(..))
+    }
+}
+
+/// What kind of value a reader wants of a reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wants {
+    /// One number: `c_ID`, `c_ID[k]` of a vector, `c_ID[i][j]` of an array.
+    Number,
+    /// One number per particle: `c_ID`, `c_ID[k]`.
+    PerAtom,
+    /// A global vector: `c_ID`, or a column `c_ID[k]` of a global array.
+    Vector,
+    /// Local values: `c_ID`, or a column `c_ID[k]` of several.
+    Local,
+}
+
+/// A text whose values are put in anew at each call.
+pub type Text = Box<dyn FnMut(&World) -> Result<String> + Send>;
+
+/// Decides about a place: whether a variable is not zero there.
+pub type PlaceTest = Box<dyn FnMut(&World, [f64; 3]) -> Result<bool> + Send>;
+
+/// The acceleration that a fix gives to everyone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pull {
+    /// Always the same [acceleration in force/mass units].
+    Constant([f64; 3]),
+    /// As variables say.
+    Varying,
+}
+
+/// What a style may ask for while a run is sealed.
+pub trait SealCx {
+    /// The world as the run starts: columns may be made here.
+    fn world(&mut self) -> &mut World;
+    /// The line that declared the style.
+    fn span(&self) -> Span;
+    /// In which of several levels of steps the fix adds its force (`fix_modify respa`).
+    fn level(&self) -> Level {
+        Level::Outermost
+    }
+    /// The slot `f_ID`, `c_ID` … of this name.
+    fn slot(&mut self, name: &str) -> SlotId;
+    /// A reference's value, fresh whenever `when` fires, before the ops of this style at `stage`.
+    ///
+    /// # Errors
+    /// Unknown names, wrong kinds, circles.
+    fn value(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<Reading>;
+    /// As `value`, for a reader that wants this kind and no other: `c_ID` is a number, a whole vector or a value per
+    /// particle, and `c_ID[2]` an element, a column of an array, of per-particle or of local values.
+    ///
+    /// # Errors
+    /// As `value`.
+    fn reading(&mut self, r: &ValueRef, wants: Wants, stage: Stage, when: &When) -> Result<Reading>;
+    /// As `value` for a number or a reference.
+    ///
+    /// # Errors
+    /// As `value`.
+    fn param(&mut self, p: &Param, stage: Stage, when: &When) -> Result<Reading> {
+        match p {
+            Param::Number(a) => Ok(Reading::Const(*a)),
+            Param::Ref(r) => self.value(r, stage, when),
+        }
+    }
+    /// A thermo keyword's value (`temp`, `pe`, `vol` …), fresh as with `value`.
+    ///
+    /// # Errors
+    /// Unknown keywords.
+    fn keyword(&mut self, name: &str, span: Span, stage: Stage, when: &When) -> Result<Reading>;
+    /// A text with `$x`, `${name}` and `$(formula)` in it, its values fresh as with `value`.
+    ///
+    /// # Errors
+    /// Formulas that cannot be read, and what they name that is not there.
+    fn text(&mut self, text: &str, span: Span, stage: Stage, when: &When) -> Result<Text>;
+    /// The steps that a variable names one after another, each time from the step named before (`logfreq`, `stride` …).
+    ///
+    /// # Errors
+    /// Unknown variables, and a step that is not later than the one before.
+    fn steps(&mut self, r: &ValueRef) -> Result<When>;
+    /// A test of places: the internal-style variables `sets` take x, y, z, then the equal-style variable `r` decides.
+    ///
+    /// # Errors
+    /// Unknown variables, and those of other styles.
+    fn test(
+        &mut self,
+        r: &ValueRef,
+        sets: &[Option<ValueRef>; 3],
+        stage: Stage,
+        when: &When,
+    ) -> Result<PlaceTest>;
+    /// The accelerations of the fixes gravity in force.
+    fn pulls(&self) -> Vec<Pull>;
+    /// Of a fix of this ID, of which molecule template new copies become its rigid bodies; `None` without such a fix.
+    fn adopts(&self, _id: &str) -> Option<Option<String>> {
+        None
+    }
+    /// Where a run speaks.
+    fn log(&self) -> Log;
+    /// The op that gives a compute a new beginning after a snapshot (`dump_modify refresh`); `None` if it has none.
+    ///
+    /// # Errors
+    /// An unknown compute.
+    fn refresh(&mut self, _id: &str, _stage: Stage, _when: &When) -> Result<Option<Box<dyn Op>>> {
+        Ok(None)
+    }
+    /// The pair style in force and its sub-styles.
+    fn pair_styles(&self) -> Vec<&'static str> {
+        vec![]
+    }
+    /// What the deck's lines said of a coefficient of the pair or bond style in force.
+    fn coefficient(&self, _of: &Coefficient) -> Option<f64> {
+        None
+    }
+    /// The bond style in force.
+    fn bonds(&self) -> Option<Box<dyn BondForce>> {
+        None
+    }
+    /// The temperature that knows the flow which compute `r` takes away: itself, or that of its `bias`.
+    fn bias(&self, r: &ValueRef) -> Option<Box<dyn crate::Compute>>;
+    /// Energies must be tallied whenever `when` fires.
+    fn ask_energy(&mut self, when: &When);
+    /// The virial must be tallied whenever `when` fires.
+    fn ask_virial(&mut self, when: &When);
+    /// Per-particle energies must be tallied whenever `when` fires.
+    fn ask_atom_energy(&mut self, when: &When);
+    /// Per-particle virials must be tallied whenever `when` fires.
+    fn ask_atom_virial(&mut self, when: &When);
+    /// What the pair styles can be asked about single pairs. Whoever asks reads `contacts`.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn probes(&mut self) -> Result<Vec<Box<dyn Probe>>>;
+    /// Whom computes can ask about single pairs, as `probes` and where a solid can be asked.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn singles(&mut self) -> Result<Vec<Box<dyn Probe>>> {
+        self.probes()
+    }
+    /// The largest cutoff of forces of the pair style in force [length].
+    fn cutoff(&mut self) -> Option<f64> {
+        None
+    }
+    /// Slots of fixes whose energy counts (`fix_modify ID energy yes`), for the potential energy.
+    fn energy_fixes(&self) -> Vec<String>;
+    /// Says what this scene does without, and why.
+    fn leave_out(&mut self, what: &str, why: &str);
+}

@@ -1,0 +1,287 @@
+//! The state of a scene: everything that outlives a step, and nothing that decides.
+
+pub mod adapted;
+pub mod allowed;
+pub mod bonds;
+pub mod clock;
+pub mod columns;
+pub mod contacts;
+pub mod crack;
+pub mod domain;
+pub mod extent;
+pub mod groups;
+pub mod images;
+pub mod index;
+pub mod lattice;
+pub mod material;
+pub mod memory;
+pub mod minimizer;
+pub mod order;
+pub mod particles;
+pub mod potentials;
+pub mod promises;
+pub mod properties;
+pub mod rebuild;
+pub mod region;
+pub mod resume;
+pub mod settings;
+pub mod slots;
+pub mod surface;
+pub mod tally;
+pub mod template;
+pub mod travel;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use perigrain_peri::families::Families;
+
+pub use allowed::{Allowed, excluded};
+pub use bonds::{Bond, Bonds};
+pub use clock::{Clock, Halt};
+pub use columns::Columns;
+pub use crack::Crack;
+pub use domain::{Boundary, Domain, Face};
+pub use extent::Extent;
+pub use groups::{Dynamic, GroupId, Groups};
+pub use images::Images;
+pub use lattice::Lattice;
+pub use minimizer::Minimizer;
+pub use particles::{AtomStyle, Own, Particles};
+pub use promises::{Promise, Promises};
+pub use properties::Properties;
+pub use rebuild::{Kept, Rebuild};
+pub use region::Region;
+pub use resume::{Resume, Said};
+pub use settings::{Compat, NeighborSettings, Newton, Respa, RunStyle, Settings};
+pub use slots::{Offers, Slot, SlotId, Slots};
+pub use tally::Tally;
+pub use template::Template;
+pub use travel::{Seen, Travel};
+
+/// How names of `memo` end that hold the energy which a fix has taken from particles for a reservoir so far (`ecouple`).
+pub const COUPLED: &str = "/coupled";
+
+/// How names of columns end that hold the mass of the rigid body a particle belongs to, 0 for none.
+pub const CONTACT_MASS: &str = "/contact mass";
+
+/// Everything that outlives a step. It decides nothing: commands change it, ops advance it.
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub struct World {
+    /// Time, step and step size.
+    pub clock: Clock,
+    /// Choices of the deck that concern everybody: units, skin, compatibility.
+    pub settings: Settings,
+    /// The box; `None` before `create_box` or `read_data`.
+    pub domain: Option<Domain>,
+    /// The particles' core columns.
+    pub particles: Particles,
+    /// Further columns, owned by fixes and computes.
+    pub columns: Columns,
+    /// Groups of particles.
+    pub groups: Groups,
+    /// The latest `lattice`.
+    pub lattice: Lattice,
+    /// Named volumes.
+    pub regions: BTreeMap<String, Region>,
+    /// Number of particle types, from `create_box`.
+    pub types: usize,
+    /// Mass of each type (index type − 1) where `mass` set one.
+    pub type_mass: Vec<Option<f64>>,
+    /// Values that computes, fixes and variables have produced.
+    pub slots: Slots,
+    /// Energy and virial of the present step.
+    pub tally: Tally,
+    /// Small state of fixes that outlives a run, by `kind/ID`.
+    pub memo: BTreeMap<String, Vec<f64>>,
+    /// What fixes have set internal-style variables to in the present run.
+    #[serde(skip)]
+    pub controls: BTreeMap<String, f64>,
+    /// When neighbour lists were last rebuilt.
+    pub rebuild: Rebuild,
+    /// Bonds between particles by their ids.
+    pub bonds: Bonds,
+    /// Molecule templates by ID, one for each file; a restart file does not hold them, as in LAMMPS.
+    #[serde(skip)]
+    pub templates: BTreeMap<String, Arc<[Template]>>,
+    /// Peridynamic bonds, from the first run on.
+    pub families: Option<Families>,
+    /// Cracks that wait for bonds to be there.
+    pub cracks: Vec<Crack>,
+    /// What touching grains remember, by pair style.
+    pub contacts: BTreeMap<String, contacts::Contacts>,
+    /// What grains touching a wall remember, by the wall's fix.
+    pub wall_contacts: BTreeMap<String, contacts::Contacts>,
+    /// Materials by ID.
+    pub materials: BTreeMap<String, material::Material>,
+    /// What fixes property/atom give particles, in the order in which data files name it; the deck says it again after a restart.
+    #[serde(skip)]
+    pub properties: Vec<Properties>,
+    /// What the deck's folder is, for files beside it.
+    #[serde(skip)]
+    pub folder: PathBuf,
+    /// State that rooms above own: families, contact histories, materials.
+    #[serde(skip)]
+    pub parts: Parts,
+}
+
+/// State of one kind each, owned by the room that knows it.
+#[derive(Clone, Debug, Default)]
+pub struct Parts {
+    /// Half-open: set when the scene has changed so that forces must be computed anew at the next run.
+    pub changed: bool,
+    /// Forces and torques of the coming step have been set to zero already.
+    pub cleared: bool,
+    /// Text facts that styles leave for the log's end, by name.
+    pub facts: BTreeMap<String, Arc<str>>,
+    /// The first grains seen to overlap by more than a tenth of a radius during a run.
+    pub deep: Option<contacts::Deep>,
+    /// Springs of the contacts with each wall, by the fix's ID, at the last step; nothing where nobody has asked.
+    pub wall_springs: Option<BTreeMap<String, Vec<contacts::WallSpring>>>,
+    /// The fix freeze in force and its group: contact laws take these grains for infinitely heavy.
+    pub frozen: Option<(String, GroupId)>,
+    /// What the plastic grains of the pair style in force are made of (normal model `mdr`): E, ν, Y, ψ_b and restitution.
+    pub plastic: Option<[f64; 5]>,
+    /// What ops have to say about the deck; told when the run is over.
+    pub notes: perigrain_base::diag::Diagnostics,
+    /// While a deck is only checked: files that its lines so far would have written.
+    pub promised: Promises,
+    /// What came from a restart file and the deck may say again: `region/ID`, `material/ID`, and state of fixes and
+    /// computes as `STYLE/ID`.
+    pub restored: BTreeSet<String>,
+    /// The latest row of the step table, for dumps that repeat it.
+    pub row: Option<Arc<TableRow>>,
+    /// What a restart file said about the scene, until the first run after it.
+    pub resume: Option<Arc<Resume>>,
+}
+
+/// A row of the step table.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TableRow {
+    /// Its step.
+    pub step: i64,
+    /// The columns' usual names and the numbers.
+    pub values: Vec<(String, RowValue)>,
+}
+
+/// A number of the step table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RowValue {
+    /// A whole number.
+    Whole(i64),
+    /// Any other.
+    Real(f64),
+}
+
+impl World {
+    /// The box, for code that runs only when one exists.
+    ///
+    /// # Errors
+    /// When no box has been defined yet.
+    pub fn domain(&self) -> perigrain_base::diag::Result<&Domain> {
+        match &self.domain {
+            Some(d) => Ok(d),
+            None => perigrain_base::diag::fail(
+                perigrain_base::diag::Code::WRONG_ORDER,
+                None,
+                "the simulation box is not defined yet: a create_box must come first",
+            ),
+        }
+    }
+
+    /// Edge lengths of the box, zero where particles do not see images of each other: where it does not repeat, and along z
+    /// in a flat scene.
+    pub fn periods(&self) -> [f64; 3] {
+        self.domain.as_ref().map_or([0.0; 3], |d| {
+            let (lengths, periodic) = (d.lengths(), d.periodic());
+            std::array::from_fn(|k| if periodic[k] { lengths[k] } else { 0.0 })
+        })
+    }
+
+    /// The same, infinite where the box does not repeat.
+    pub fn repeats(&self) -> [f64; 3] {
+        self.periods().map(|length| if length > 0.0 { length } else { f64::INFINITY })
+    }
+
+    /// Number of particles.
+    pub fn n(&self) -> usize {
+        self.particles.len()
+    }
+
+    /// Volumes of the particles of peridynamic solids: their own, or the property `d_vfrac`; empty where there are none.
+    pub fn volumes(&self) -> &[f64] {
+        if self.particles.style.peri {
+            return &self.particles.volume;
+        }
+        let column = self.columns.custom(columns::VOLUME_PROPERTY);
+        column.and_then(|name| self.columns.get_scalar(&name)).unwrap_or(&[])
+    }
+
+    /// Positions at the last rebuild of neighbour lists; none before the first.
+    pub fn held(&self) -> &[[f64; 3]] {
+        if self.rebuild.unmoved { &self.particles.x0 } else { &self.rebuild.held }
+    }
+
+    /// The positions that lists of grains are made from: perhaps those of an earlier rebuild.
+    pub fn made(&self) -> &[[f64; 3]] {
+        let kept = &self.rebuild.kept.x;
+        if !kept.is_empty() && kept.len() == self.n() { kept } else { self.held() }
+    }
+
+    /// Keeps the particle `old[k]` at each new index `k`, with all that belongs to it; bonds of those
+    /// left out are gone.
+    pub fn gather(&mut self, old: &[usize]) {
+        let n = self.n();
+        self.particles.gather(old);
+        self.columns.gather(old);
+        if let Some(families) = &mut self.families {
+            let mut to = vec![None; n];
+            for (new, &k) in old.iter().enumerate() {
+                to[k] = Some(new as u32);
+            }
+            families.remap(&to);
+        }
+        if old.len() < n && !self.bonds.list.is_empty() {
+            self.bonds.forget_lone(&self.particles.tag);
+        }
+        self.slots.gather(old, n);
+        self.slots.invalidate();
+        self.rebuild.roster += 1;
+        self.touch();
+    }
+
+    /// Masses as contacts see them: particles of rigid bodies have that of the body.
+    pub fn contact_masses(&self) -> std::borrow::Cow<'_, [f64]> {
+        let own = &self.particles.mass;
+        let bodies: Vec<&[f64]> = self.columns.ending(CONTACT_MASS).collect();
+        if bodies.is_empty() {
+            return own.as_slice().into();
+        }
+        let mut masses = own.clone();
+        // The first one counts.
+        for body in bodies.iter().rev() {
+            for (mass, body) in masses.iter_mut().zip(*body) {
+                *mass = if *body > 0.0 { *body } else { *mass };
+            }
+        }
+        masses.into()
+    }
+
+    /// Copies the masses of types into the per-particle column where particles have none of their own.
+    pub fn spread_type_masses(&mut self) {
+        if self.particles.style.own_mass() {
+            return;
+        }
+        for (m, &kind) in self.particles.mass.iter_mut().zip(&self.particles.kind) {
+            if let Some(Some(mass)) = self.type_mass.get(kind as usize - 1) {
+                *m = *mass;
+            }
+        }
+    }
+
+    /// Marks that forces of the last run no longer belong to this scene.
+    pub fn touch(&mut self) {
+        self.parts.changed = true;
+    }
+}

@@ -1,0 +1,254 @@
+//! A material as engineering data, and how its file is read.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use perigrain_base::diag::{Code, Diagnostic, FileId, Result, Span};
+
+/// One material: in SI units when read from a file, in those of the deck once it is in the world.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Material {
+    /// What it is.
+    pub name: String,
+    /// Young's modulus E, Pa in SI.
+    pub young: f64,
+    /// Poisson's ratio ν.
+    pub nu: f64,
+    /// Density ρ, kg/m³ in SI.
+    pub density: f64,
+    /// When its bonds break; `None`: never.
+    pub strength: Option<Strength>,
+    /// How much compression strengthens a bond (α of the bond limit).
+    pub alpha: f64,
+    /// Where the numbers come from.
+    pub source: String,
+    /// When the record was last checked, `YYYY-MM-DD`.
+    pub date: String,
+}
+
+/// The two ways to say when a bond breaks.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum Strength {
+    /// Fracture energy G_c, J/m² in SI; the critical stretch depends on the horizon.
+    FractureEnergy(f64),
+    /// Critical stretch s00, whatever the horizon.
+    Stretch(f64),
+}
+
+/// A material file as written: numbers with units are still text.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(non_snake_case, reason = "the keys of the file, named as in the papers")]
+struct Record {
+    name: String,
+    source: String,
+    date: String,
+    E: Spanned<String>,
+    nu: Spanned<f64>,
+    rho: Spanned<String>,
+    Gc: Option<Spanned<String>>,
+    s00: Option<Spanned<f64>>,
+    alpha: Option<Spanned<f64>>,
+}
+
+/// Unit names of a quantity with what one of them is in SI.
+type Units = &'static [(&'static str, f64)];
+
+const PRESSURE: Units =
+    &[("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("N/m2", 1.0), ("N/mm2", 1e6), ("N/cm2", 1e4)];
+const DENSITY: Units = &[("kg/m3", 1.0), ("g/cm3", 1e3)];
+const ENERGY_PER_AREA: Units = &[("J/m2", 1.0), ("N/m", 1.0), ("N/mm", 1e3)];
+
+impl Material {
+    /// Reads a material file; problems are underlined in `file`, the place where `text` was registered.
+    pub fn parse(text: &str, file: FileId) -> Result<Material> {
+        let at = |r: std::ops::Range<usize>| Span::new(file, r.start, r.end);
+        let r: Record = toml::from_str(text).map_err(|e| {
+            let message = e.message().lines().next().unwrap_or("cannot be read").to_owned();
+            let code = if message.starts_with("unknown field") {
+                Code::UNKNOWN_KEYWORD
+            } else if message.starts_with("missing field") {
+                Code::MISSING_ARGUMENT
+            } else {
+                Code::SYNTAX
+            };
+            Diagnostic::error(code, e.span().map(at), format!("material file: {message}"))
+                .help("a material file has name, source, date, E, nu, rho and may have Gc or s00, and alpha")
+        })?;
+        let quantity = |q: &Spanned<String>, units| {
+            positive(q.get_ref(), units).map_err(|m| {
+                Diagnostic::error(Code::BAD_VALUE, at(q.span()), m)
+                    .help("write a number and a unit, as \"22.35 GPa\"")
+            })
+        };
+        let strength = match (&r.Gc, &r.s00) {
+            (Some(_), Some(s)) => {
+                return Err(Diagnostic::error(
+                    Code::CONFLICT,
+                    at(s.span()),
+                    "Gc and s00 both say when a bond breaks",
+                )
+                .help("keep one of them")
+                .into());
+            }
+            (Some(g), None) => Some(Strength::FractureEnergy(quantity(g, ENERGY_PER_AREA)?)),
+            (None, Some(s)) => Some(Strength::Stretch(*s.get_ref())),
+            (None, None) => None,
+        };
+        let material = Material {
+            name: r.name,
+            young: quantity(&r.E, PRESSURE)?,
+            nu: *r.nu.get_ref(),
+            density: quantity(&r.rho, DENSITY)?,
+            strength,
+            alpha: r.alpha.as_ref().map_or(0.0, |a| *a.get_ref()),
+            source: r.source,
+            date: r.date,
+        };
+        let place = |key: &str| match key {
+            "nu" => at(r.nu.span()),
+            "s00" => r.s00.as_ref().map_or(at(0..0), |s| at(s.span())),
+            "alpha" => r.alpha.as_ref().map_or(at(0..0), |s| at(s.span())),
+            _ => at(r.E.span()),
+        };
+        match material.implausible() {
+            None => Ok(material),
+            Some((key, why)) => Err(Diagnostic::error(Code::BAD_VALUE, place(key), why).into()),
+        }
+    }
+
+    /// From SI to units of which one length, mass and time is so many metres, kilograms and seconds.
+    #[must_use]
+    pub fn in_units(mut self, [length, mass, time]: [f64; 3]) -> Self {
+        let pressure = mass / (length * time * time);
+        self.young /= pressure;
+        self.density /= mass / length.powi(3);
+        if let Some(Strength::FractureEnergy(g)) = &mut self.strength {
+            *g /= pressure * length;
+        }
+        self
+    }
+
+    /// The first number that no material can have: its key and what is wrong with it.
+    pub fn implausible(&self) -> Option<(&'static str, &'static str)> {
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        if !positive(self.young) {
+            return Some(("E", "E must be positive"));
+        }
+        if !(self.nu > -1.0 && self.nu < 0.5) {
+            return Some(("nu", "nu must lie between -1 and 0.5"));
+        }
+        if !positive(self.density) {
+            return Some(("rho", "rho must be positive"));
+        }
+        match self.strength {
+            Some(Strength::FractureEnergy(g)) if !positive(g) => return Some(("Gc", "Gc must be positive")),
+            Some(Strength::Stretch(s)) if !positive(s) => return Some(("s00", "s00 must be positive")),
+            _ => {}
+        }
+        if !(self.alpha.is_finite() && self.alpha >= 0.0) {
+            return Some(("alpha", "alpha must not be negative"));
+        }
+        None
+    }
+}
+
+/// The value of `"22.35 GPa"` in SI.
+fn positive(text: &str, units: Units) -> std::result::Result<f64, String> {
+    let known = || units.iter().map(|u| u.0).collect::<Vec<_>>().join(", ");
+    let Some((number, unit)) = text.trim().split_once(char::is_whitespace) else {
+        return Err(format!("`{text}` has no unit; known are {}", known()));
+    };
+    let Some((_, factor)) = units.iter().find(|u| u.0 == unit.trim()) else {
+        return Err(format!("unknown unit `{}`; known are {}", unit.trim(), known()));
+    };
+    match number.parse::<f64>() {
+        Ok(v) if v.is_finite() && v > 0.0 => Ok(v * factor),
+        _ => Err(format!("`{number}` is not a positive number")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::potentials;
+    use perigrain_base::units::UnitSystem;
+
+    const MINIMAL: &str = "name='x'\nsource='y'\ndate='2026-01-01'\nE='2 GPa'\nnu=0.25\nrho='1.5 g/cm3'\n";
+
+    fn parse(text: &str) -> Result<Material> {
+        Material::parse(text, FileId(7))
+    }
+
+    /// The text that the first problem underlines, and its message.
+    fn refused(text: &str) -> (String, String) {
+        let d = parse(text).unwrap_err().0.remove(0);
+        let s = d.span.unwrap();
+        assert_eq!(s.file, FileId(7));
+        (text[s.start as usize..s.end as usize].to_owned(), d.message)
+    }
+
+    #[test]
+    fn units_become_si() {
+        let m = parse(MINIMAL).unwrap();
+        assert_eq!((m.young, m.nu, m.density, m.strength, m.alpha), (2e9, 0.25, 1500.0, None, 0.0));
+        let m = parse(&format!("{MINIMAL}Gc='0.01 N/mm'\nalpha=0.25")).unwrap();
+        assert_eq!((m.strength, m.alpha), (Some(Strength::FractureEnergy(10.0)), 0.25));
+    }
+
+    #[test]
+    fn deck_units() {
+        let m = parse(&format!("{MINIMAL}Gc='10 J/m2'")).unwrap();
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-14;
+        // 1 Pa = 10 dyn/cm², 1 kg/m³ = 1e-3 g/cm³, 1 J/m² = 1e3 erg/cm².
+        let cgs = m.clone().in_units(UnitSystem::Cgs.mechanical().unwrap());
+        assert!(near(cgs.young, 2e10) && near(cgs.density, 1.5));
+        assert!(matches!(cgs.strength, Some(Strength::FractureEnergy(g)) if near(g, 1e4)));
+        // One micro unit of pressure is 1e3 Pa, of density 1e3 kg/m³, of energy per area 1e-3 J/m².
+        let micro = m.in_units(UnitSystem::Micro.mechanical().unwrap());
+        assert!(near(micro.young, 2e6) && near(micro.density, 1.5));
+        assert!(matches!(micro.strength, Some(Strength::FractureEnergy(g)) if near(g, 1e4)));
+    }
+
+    #[test]
+    fn unknown_keys_are_refused_where_they_stand() {
+        let (word, message) = refused(&format!("{MINIMAL}G_c = '8 J/m2'\n"));
+        assert_eq!(word, "G_c");
+        assert!(message.contains("unknown field"), "{message}");
+    }
+
+    #[test]
+    fn wrong_units_and_values_are_refused_where_they_stand() {
+        let (word, message) = refused(&MINIMAL.replace("2 GPa", "2 Gpa"));
+        assert_eq!(word, "'2 Gpa'");
+        assert!(message.contains("unknown unit `Gpa`"), "{message}");
+        assert_eq!(refused(&MINIMAL.replace("2 GPa", "2e9")).0, "'2e9'");
+        assert_eq!(refused(&MINIMAL.replace("2 GPa", "-2 GPa")).0, "'-2 GPa'");
+        assert_eq!(refused(&MINIMAL.replace("0.25", "0.5")).0, "0.5");
+        assert_eq!(refused(&format!("{MINIMAL}s00=0.0")).0, "0.0");
+        assert_eq!(refused(&format!("{MINIMAL}Gc='8 J/m2'\ns00=0.001")).0, "0.001");
+    }
+
+    #[test]
+    fn missing_keys_are_named() {
+        let d = parse("name='x'").unwrap_err().0.remove(0);
+        assert_eq!(d.code, Code::MISSING_ARGUMENT);
+        assert!(d.message.contains("missing field"), "{}", d.message);
+    }
+
+    #[test]
+    fn every_embedded_file_is_a_material_with_a_source() {
+        for (name, text) in potentials::EMBEDDED {
+            let m = parse(text).unwrap_or_else(|d| panic!("{name}: {d}"));
+            assert!(!m.source.trim().is_empty() && m.date.len() == 10, "{name}");
+        }
+    }
+
+    #[test]
+    fn the_brittle_plate_is_the_paper_s() {
+        // Walayat et al. 2023, Table 3; 10.06 J/m^2 is assumed (potentials/brittle-plate.toml says why).
+        let m = parse(potentials::embedded("brittle-plate.toml").unwrap()).unwrap();
+        assert_eq!((m.young, m.nu, m.density, m.alpha), (22.35e9, 0.25, 2200.0, 0.25));
+        assert_eq!(m.strength, Some(Strength::FractureEnergy(10.06)));
+    }
+}

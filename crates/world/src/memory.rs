@@ -1,0 +1,80 @@
+//! How much memory a scene takes.
+
+use super::World;
+use perigrain_base::diag::{Code, Diagnostic, Result};
+
+/// Bytes of all columns and of the state that belongs to forces.
+pub fn bytes(w: &World) -> u64 {
+    fn of<T>(v: &Vec<T>) -> u64 {
+        (v.capacity() * size_of::<T>()) as u64
+    }
+    let p = &w.particles;
+    let columns =
+        of(&p.tag) + of(&p.kind) + of(&p.mask) + p.image.bytes() as u64 + of(&p.x) + of(&p.v) + of(&p.f);
+    let own = of(&p.mass)
+        + of(&p.radius)
+        + of(&p.omega)
+        + of(&p.torque)
+        + of(&p.volume)
+        + of(&p.x0)
+        + of(&p.density)
+        + of(&p.molecule)
+        + of(&w.bonds.list)
+        + of(&w.bonds.special);
+    let families = w.families.as_ref().map_or(0, |f| f.bytes() as u64);
+    columns + own + of(&w.rebuild.held) + of(&w.rebuild.kept.x) + of(&w.rebuild.kept.turns) + families
+}
+
+/// Bytes a particle needs besides its columns once forces act: rows of the lattice layout, or lists of contacts.
+const FORCES_PER_PARTICLE: f64 = 110.0;
+/// Particles from which a forecast is worth a line.
+const LARGE: f64 = 200_000.0;
+/// Time of one step per particle of a peridynamic body with 122 bonds, one thread [s] (benches/versus_lammps).
+const SECONDS_PER_PARTICLE: f64 = 1.5e-7;
+
+/// What `more` particles on top of the present ones would take: a line for the log when that is much, a refusal
+/// when it cannot fit.
+///
+/// # Errors
+/// The forecast exceeds the memory that is free now.
+pub fn forecast(w: &World, more: f64) -> Result<Option<String>> {
+    let style = w.particles.style;
+    let sphere = if style.sphere { 8 + 24 + 24 } else { 0 };
+    let peri = if style.peri { 8 + 24 } else { 0 };
+    let columns = 4 + 2 + 4 + 3 * 24 + 8 + 24 + 8 + sphere + peri;
+    let n = w.n() as f64 + more;
+    let bytes = n * (f64::from(columns) + FORCES_PER_PARTICLE);
+    if let Some(free) = available()
+        && bytes > free
+    {
+        let text = format!(
+            "about {n:.3e} particles would need {:.1} GB of memory; {:.1} GB are free",
+            bytes / 1e9,
+            free / 1e9
+        );
+        return Err(Diagnostic::error(Code::TOO_LARGE, None, text)
+            .help("use a coarser lattice or a smaller region")
+            .into());
+    }
+    let text = || {
+        let step = n * SECONDS_PER_PARTICLE / perigrain_base::par::threads() as f64;
+        format!(
+            "  forecast: about {n:.3e} particles, {:.0} MB, {step:.2} s per step if all of them interact",
+            bytes / 1e6
+        )
+    };
+    Ok((n >= LARGE).then(text))
+}
+
+/// Bytes of memory that are free, where the system tells.
+fn available() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find(|l| l.starts_with("MemAvailable:"))?;
+    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes * 1024.0)
+}
+
+/// Pairs in half neighbour lists, and entries of full lists (peridynamic families) if there are any.
+pub fn neighbors(w: &World) -> (u64, Option<u64>) {
+    (0, w.families.as_ref().map(|f| f.bonds() as u64))
+}

@@ -1,0 +1,280 @@
+//! The particles' core columns as plain fields.
+
+use super::Images;
+use perigrain_base::par;
+
+/// Which optional columns exist (`atom_style`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct AtomStyle {
+    /// A style has been chosen.
+    pub chosen: bool,
+    /// Radius, angular velocity, torque, mass per particle.
+    pub sphere: bool,
+    /// Volume, reference position, mass per particle.
+    pub peri: bool,
+    /// Masses start as those of spheres: `sphere`, unless `peri` follows it in `hybrid`.
+    pub sphere_mass: bool,
+    /// Molecule IDs.
+    pub molecules: bool,
+    /// Bonds between particles.
+    pub bonded: bool,
+    /// Named `molecular`, not `bond`: the two have the same columns here.
+    pub molecular: bool,
+    /// Named as `hybrid …`, which decides the columns of data files.
+    pub hybrid: bool,
+    /// The own columns of a hybrid in data files, in the order in which its styles name them.
+    pub own: [Option<Own>; 4],
+}
+
+/// A column of data files that only some atom styles have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Own {
+    /// Molecule ID.
+    Molecule,
+    /// Twice the radius.
+    Diameter,
+    /// Density.
+    Density,
+    /// Volume.
+    Volume,
+}
+
+impl AtomStyle {
+    /// Whether each particle has its own mass (else masses go by type).
+    pub fn own_mass(&self) -> bool {
+        self.sphere || self.peri
+    }
+
+    /// Whether types may be given masses that nobody uses: LAMMPS asks for them where spheres or peridynamic particles are in a
+    /// hybrid with bonds.
+    pub fn idle_type_mass(&self) -> bool {
+        self.own_mass() && self.hybrid && self.bonded
+    }
+
+    /// The word after `atom_style`.
+    pub fn name(&self) -> &'static str {
+        match (self.hybrid, self.sphere, self.peri, self.bonded) {
+            (false, true, false, false) => "sphere",
+            (false, true, false, true) => "bpm/sphere",
+            (false, false, true, false) => "peri",
+            (false, false, false, false) => "atomic",
+            (false, false, false, true) if self.molecular => "molecular",
+            (false, false, false, true) => "bond",
+            _ => "hybrid",
+        }
+    }
+
+    /// Adds a style of this name, as `hybrid` does; `false` if there is none.
+    pub fn add(&mut self, name: &str) -> bool {
+        let own: &[Own] = match name {
+            "atomic" => &[],
+            "sphere" | "bpm/sphere" => {
+                (self.sphere, self.sphere_mass) = (true, true);
+                self.bonded |= name == "bpm/sphere";
+                self.molecules |= self.bonded;
+                match name {
+                    "sphere" => &[Own::Diameter, Own::Density],
+                    _ => &[Own::Molecule, Own::Diameter, Own::Density],
+                }
+            }
+            "peri" => {
+                (self.peri, self.sphere_mass) = (true, false);
+                &[Own::Volume, Own::Density]
+            }
+            "bond" | "molecular" => {
+                (self.bonded, self.molecules) = (true, true);
+                self.molecular |= name == "molecular";
+                &[Own::Molecule]
+            }
+            _ => return false,
+        };
+        for &column in own {
+            if !self.own.contains(&Some(column))
+                && let Some(free) = self.own.iter_mut().find(|c| c.is_none())
+            {
+                *free = Some(column);
+            }
+        }
+        true
+    }
+}
+
+/// Structure of arrays; every non-empty column has one entry per particle.
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub struct Particles {
+    /// Which columns exist.
+    pub style: AtomStyle,
+    /// Identity, from 1.
+    pub tag: Vec<u32>,
+    /// Type, from 1.
+    pub kind: Vec<u16>,
+    /// Group bits.
+    pub mask: Vec<u32>,
+    /// Periodic image counts.
+    pub image: Images,
+    /// Position [length].
+    pub x: Vec<[f64; 3]>,
+    /// Velocity [length/time].
+    pub v: Vec<[f64; 3]>,
+    /// Force (force density for peridynamic particles in LAMMPS' convention).
+    pub f: Vec<[f64; 3]>,
+    /// Mass (LAMMPS' rmass: density for peridynamic particles in its convention).
+    pub mass: Vec<f64>,
+    /// Sphere: radius [length].
+    pub radius: Vec<f64>,
+    /// Sphere: angular velocity [1/time].
+    pub omega: Vec<[f64; 3]>,
+    /// Sphere: torque.
+    pub torque: Vec<[f64; 3]>,
+    /// Peridynamics: volume of the node [length³].
+    pub volume: Vec<f64>,
+    /// Peridynamics: position at creation [length].
+    pub x0: Vec<[f64; 3]>,
+    /// Density as the deck set it, NaN where it did not (peri and sphere styles).
+    pub density: Vec<f64>,
+    /// Molecule ID, 0 for none (styles with bonds, `fix property/atom mol`).
+    pub molecule: Vec<u32>,
+    /// The place in the order of creation, while particles stand in the order of space ([`World::line_up`]); else empty.
+    ///
+    /// [`World::line_up`]: super::World::line_up
+    pub rank: Vec<u32>,
+}
+
+impl Particles {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    /// Makes room for exactly `more` further particles.
+    pub fn reserve(&mut self, more: usize) {
+        self.tag.reserve_exact(more);
+        self.kind.reserve_exact(more);
+        self.mask.reserve_exact(more);
+        self.image.reserve_exact(more);
+        for column in [&mut self.x, &mut self.v, &mut self.f] {
+            column.reserve_exact(more);
+        }
+        self.mass.reserve_exact(more);
+        if self.style.sphere {
+            self.radius.reserve_exact(more);
+            self.omega.reserve_exact(more);
+            self.torque.reserve_exact(more);
+        }
+        if self.style.peri {
+            self.volume.reserve_exact(more);
+            self.x0.reserve_exact(more);
+        }
+        if self.style.own_mass() {
+            self.density.reserve_exact(more);
+        }
+        if self.style.molecules {
+            self.molecule.reserve_exact(more);
+        }
+    }
+
+    /// Adds a particle with LAMMPS' defaults (radius 0.5, density 1 → mass, volume 1).
+    pub fn push(&mut self, tag: u32, kind: u16, x: [f64; 3]) {
+        self.tag.push(tag);
+        self.kind.push(kind);
+        self.mask.push(1);
+        self.image.push([0; 3]);
+        self.x.push(x);
+        self.v.push([0.0; 3]);
+        self.f.push([0.0; 3]);
+        let AtomStyle { sphere, peri, sphere_mass, .. } = self.style;
+        self.mass.push(if sphere_mass { 4.0 * std::f64::consts::PI / 3.0 * 0.5 * 0.5 * 0.5 } else { 1.0 });
+        if sphere {
+            self.radius.push(0.5);
+            self.omega.push([0.0; 3]);
+            self.torque.push([0.0; 3]);
+        }
+        if peri {
+            self.volume.push(1.0);
+            self.x0.push(x);
+        }
+        if sphere || peri {
+            self.density.push(f64::NAN);
+        }
+        if self.style.molecules {
+            self.molecule.push(0);
+        }
+        // Whoever comes while the others are lined up was created last.
+        if let Some(last) = self.rank.iter().max() {
+            self.rank.push(last + 1);
+        }
+    }
+
+    /// Puts particles with the same columns behind the present ones.
+    pub fn append(&mut self, mut more: Particles) {
+        self.tag.append(&mut more.tag);
+        self.kind.append(&mut more.kind);
+        self.molecule.append(&mut more.molecule);
+        self.mask.append(&mut more.mask);
+        self.image.append(&mut more.image);
+        for (own, new) in [
+            (&mut self.x, &mut more.x),
+            (&mut self.v, &mut more.v),
+            (&mut self.f, &mut more.f),
+            (&mut self.omega, &mut more.omega),
+            (&mut self.torque, &mut more.torque),
+            (&mut self.x0, &mut more.x0),
+        ] {
+            own.append(new);
+        }
+        for (own, new) in [
+            (&mut self.mass, &mut more.mass),
+            (&mut self.radius, &mut more.radius),
+            (&mut self.volume, &mut more.volume),
+            (&mut self.density, &mut more.density),
+        ] {
+            own.append(new);
+        }
+    }
+
+    /// Keeps the particle `old[k]` at each new index `k`.
+    pub fn gather(&mut self, old: &[usize]) {
+        // Columns of one type take turns in one place more: memory that comes and goes costs more than the copies.
+        fn pick<T: Copy + Send + Sync>(columns: &mut [&mut Vec<T>], old: &[usize]) {
+            let mut spare = Vec::new();
+            for column in columns.iter_mut().filter(|c| !c.is_empty()) {
+                spare.resize(old.len(), column[0]);
+                par::each((&mut spare[..], old), |_, (spare, old)| {
+                    spare.iter_mut().zip(old).for_each(|(to, &k)| *to = column[k]);
+                });
+                std::mem::swap(*column, &mut spare);
+            }
+        }
+        self.image.gather(old);
+        pick(&mut [&mut self.kind], old);
+        pick(&mut [&mut self.tag, &mut self.mask, &mut self.molecule, &mut self.rank], old);
+        pick(&mut [&mut self.mass, &mut self.radius, &mut self.volume, &mut self.density], old);
+        let mut vectors =
+            [&mut self.x, &mut self.v, &mut self.f, &mut self.omega, &mut self.torque, &mut self.x0];
+        pick(&mut vectors, old);
+    }
+
+    /// The index of the particle with this tag.
+    pub fn index_of(&self, tag: u32) -> Option<usize> {
+        let guess = (tag as usize).wrapping_sub(1);
+        if self.tag.get(guess) == Some(&tag) {
+            return Some(guess);
+        }
+        self.tag.iter().position(|&t| t == tag)
+    }
+
+    /// Largest molecule ID in use (0 when there are none).
+    pub fn last_molecule(&self) -> u32 {
+        self.molecule.iter().copied().max().unwrap_or(0)
+    }
+
+    /// Largest tag in use (0 when empty).
+    pub fn last_tag(&self) -> u32 {
+        self.tag.iter().copied().max().unwrap_or(0)
+    }
+}

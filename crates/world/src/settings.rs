@@ -1,0 +1,183 @@
+//! Choices of a deck that concern everybody.
+
+use perigrain_base::units::UnitSystem;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Whose numbers are wanted where LAMMPS 22Jul2025 is wrong.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Compat {
+    /// The right ones.
+    #[default]
+    Perigrain,
+    /// LAMMPS' own, for comparison.
+    Lammps,
+}
+
+/// What `newton` has said; it changes nothing but the answers to formulas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Newton {
+    /// For pairs.
+    pub pair: bool,
+    /// For bonds.
+    pub bond: bool,
+}
+
+impl Default for Newton {
+    fn default() -> Self {
+        Self { pair: true, bond: true }
+    }
+}
+
+/// When neighbour lists are rebuilt (`neighbor`, `neigh_modify`).
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct NeighborSettings {
+    /// Extra reach of the lists [length].
+    pub skin: f64,
+    /// Earliest rebuild after the last one [steps].
+    pub delay: i64,
+    /// Consider a rebuild every so many steps.
+    pub every: i64,
+    /// Rebuild only if some particle moved more than half the skin.
+    pub check: bool,
+    /// Build at the first run's setup only.
+    pub once: bool,
+    /// Pairs of groups that never interact: `exclude group a b`.
+    pub exclude_groups: Vec<(u32, u32)>,
+    /// Pairs of types that never interact: `exclude type a b`.
+    pub exclude_types: Vec<(u16, u16)>,
+    /// Groups whose members do not interact within a molecule (`true`) or across molecules (`false`).
+    pub exclude_molecules: Vec<(u32, bool)>,
+}
+
+impl Default for NeighborSettings {
+    fn default() -> Self {
+        Self {
+            skin: 0.3,
+            delay: 0,
+            every: 1,
+            check: true,
+            once: false,
+            exclude_groups: vec![],
+            exclude_types: vec![],
+            exclude_molecules: vec![],
+        }
+    }
+}
+
+/// Levels of steps within each other and the forces in each (`run_style respa`); levels count from 0, the shortest steps.
+#[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Respa {
+    /// How many steps of a level one of the next holds.
+    pub loops: Vec<i64>,
+    /// The level of bonds' forces.
+    pub bond: usize,
+    /// The level of pairs' forces.
+    pub pair: usize,
+    /// Instead of that one the level of each sub-style of pair_style hybrid.
+    pub subs: Option<Vec<usize>>,
+}
+
+impl Respa {
+    /// How many steps of a level the longest step holds.
+    pub fn steps(&self, level: usize) -> i64 {
+        self.loops.iter().skip(level).product()
+    }
+
+    /// The level of sub-style `k`, or of the pair style.
+    pub fn of_pair(&self, k: usize) -> usize {
+        self.subs.as_ref().and_then(|s| s.get(k).copied()).unwrap_or(self.pair)
+    }
+}
+
+/// How steps are made (`run_style`).
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum RunStyle {
+    /// Velocity Verlet, one length of steps.
+    #[default]
+    Verlet,
+    /// Short steps for peridynamic solids, or rare ones where grains are the faster.
+    Staggered {
+        /// Short steps per long one; `None`: as many as the solids' stability asks for.
+        ratio: Option<i64>,
+        /// Grains are the faster ones: bonds act at each `ratio`-th step.
+        rare: bool,
+        /// Whose particles drift in the long step as well (the scheme as printed by Hartmann et al.).
+        twice: Option<super::GroupId>,
+    },
+    /// Levels of steps within each other.
+    Respa(Respa),
+}
+
+/// Choices of a deck that concern everybody.
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub struct Settings {
+    /// The deck's units.
+    pub units: UnitSystem,
+    /// Whose numbers.
+    pub compat: Compat,
+    /// Space dimension minus three is never printed; 3 or 2.
+    pub two_dimensional: bool,
+    /// Faces of the box to come.
+    pub boundary: super::Boundary,
+    /// Neighbour-list policy.
+    pub neighbor: NeighborSettings,
+    /// How steps are made.
+    pub run_style: RunStyle,
+    /// The list layout for every peridynamic body (`-layout list`).
+    #[serde(skip)]
+    pub force_list: bool,
+    /// Work also where everything is at rest (`-rest full`).
+    #[serde(skip)]
+    pub no_skipping: bool,
+    /// The portable kernels even where faster ones would run.
+    #[serde(skip)]
+    pub portable: bool,
+    /// `newton` of pairs and bonds, as formulas ask for it.
+    #[serde(skip)]
+    pub newton: Newton,
+    /// `comm_style tiled`, as formulas ask for it.
+    #[serde(skip)]
+    pub tiled: bool,
+    /// What `min_style` and `min_modify` have chosen.
+    #[serde(skip)]
+    pub minimizer: super::Minimizer,
+    /// Set from outside (Ctrl-C): end the run at the next whole step.
+    #[serde(skip)]
+    pub stop: Arc<AtomicBool>,
+    /// When runs have to end (`timer timeout`).
+    #[serde(skip)]
+    pub deadline: Option<Instant>,
+    /// Steps between two looks at the clock for that; 0 stands for 10, LAMMPS' own.
+    #[serde(skip)]
+    pub limit_every: i64,
+}
+
+impl Settings {
+    /// Seconds left until the limit of `timer timeout`: negative behind it, 0 without one.
+    pub fn time_left(&self) -> f64 {
+        let Some(end) = self.deadline else { return 0.0 };
+        let now = Instant::now();
+        match end.checked_duration_since(now) {
+            Some(left) => left.as_secs_f64(),
+            None => -now.duration_since(end).as_secs_f64(),
+        }
+    }
+
+    /// Whether the limit of `timer timeout` has passed.
+    pub fn timed_out(&self) -> bool {
+        self.deadline.is_some_and(|end| Instant::now() >= end)
+    }
+
+    /// Whether a run has to end before the step after `step`.
+    pub fn ends_at(&self, step: i64) -> bool {
+        let every = if self.limit_every > 0 { self.limit_every } else { 10 };
+        self.deadline.is_some() && step % every == 0 && self.timed_out()
+    }
+
+    /// Whether LAMMPS' artefacts are wanted.
+    pub fn lammps(&self) -> bool {
+        self.compat == Compat::Lammps
+    }
+}

@@ -1,6 +1,0 @@
-//! Who is near whom: cell grids, neighbour lists, peridynamic families.
-
-pub mod family;
-pub mod grid;
-pub mod list;
-pub mod slabs;

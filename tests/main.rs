@@ -1,0 +1,35 @@
+//! All tests that need the program or the whole library, in one binary.
+#![allow(clippy::unwrap_used)] // a test fails by panicking
+
+mod bytes;
+#[path = "checks.rs"]
+mod checks;
+mod cli;
+#[path = "computes/main.rs"]
+mod computes;
+#[path = "data/main.rs"]
+mod data;
+mod docs;
+#[path = "dumps/main.rs"]
+mod dumps;
+mod examples;
+#[path = "fixes/main.rs"]
+mod fixes;
+mod fuzz_loop;
+#[path = "grains/main.rs"]
+mod grains;
+mod impact;
+#[path = "installed_decks/main.rs"]
+mod installed_decks;
+#[path = "lammps.rs"]
+mod lammps;
+mod manual;
+#[path = "peri/main.rs"]
+mod peri;
+mod prompt;
+#[path = "restart/main.rs"]
+mod restart;
+mod rooms;
+#[path = "scripts.rs"]
+mod scripts;
+mod staggered;
