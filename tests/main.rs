@@ -1,4 +1,4 @@
-//! All tests that need the program or the whole library, in one binary.
+//! Tests that need the program or the whole library, in one binary.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
 mod bytes;
@@ -9,12 +9,9 @@ mod cli;
 mod computes;
 #[path = "data/main.rs"]
 mod data;
-mod docs;
 #[path = "dumps/main.rs"]
 mod dumps;
 mod examples;
-#[path = "fixes/main.rs"]
-mod fixes;
 mod fuzz_loop;
 #[path = "grains/main.rs"]
 mod grains;
@@ -23,7 +20,6 @@ mod impact;
 mod installed_decks;
 #[path = "lammps.rs"]
 mod lammps;
-mod manual;
 #[path = "peri/main.rs"]
 mod peri;
 mod prompt;
@@ -33,3 +29,5 @@ mod rooms;
 #[path = "scripts.rs"]
 mod scripts;
 mod staggered;
+#[path = "common/threads.rs"]
+mod threads;

@@ -8,7 +8,7 @@ use perigrain::session::{Mode, OWN, Options, Session};
 use std::fmt::Write as _;
 use std::io::Write;
 use std::process::Command;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 /// A bonded plate of type 1 and a sphere of type 2 above it, with everything that examples name.
 ///
@@ -120,9 +120,6 @@ const PRINTS: &[(&str, &str)] = &[
     ("clear", "a box of 8"),
 ];
 
-/// Relative file names refer to the working folder, which belongs to the whole process: one test at a time.
-static FOLDER: Mutex<()> = Mutex::new(());
-
 /// A folder of its own as the working folder, with the files that examples read.
 struct Folder {
     path: tempfile::TempDir,
@@ -131,7 +128,7 @@ struct Folder {
 
 impl Folder {
     fn new() -> Self {
-        let alone = FOLDER.lock().unwrap_or_else(PoisonError::into_inner);
+        let alone = super::folder();
         let path = tempfile::tempdir().unwrap();
         std::env::set_current_dir(&path).unwrap();
         for (name, text) in FILES {

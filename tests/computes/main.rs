@@ -93,6 +93,7 @@ fn a_gas_agrees() {
 
 #[test]
 fn threads_leave_every_bit_as_it_is() {
+    let _alone = super::threads::alone();
     let deck = include_str!("gas.in").replace("%.15g", "%.17g");
     set_threads(1);
     let (_, one) = run("one", &deck, false);

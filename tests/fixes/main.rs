@@ -8,21 +8,17 @@ mod thermo;
 use perigrain::session::set_threads;
 use std::fs;
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
 use thermo::{run, run_in};
 
 /// Differences, as shares of the largest number of a column, that the order of additions explains: a few ulp, times the
 /// some tens of steps that carry them on.
 const TOLERANCE: f64 = 1e-13;
 
-/// Decks write into the working folder, which belongs to the whole process: one at a time.
-static FOLDER: Mutex<()> = Mutex::new(());
-
 /// Compares a deck's thermo table with LAMMPS'; the files that the deck writes are in the folder returned.
 fn agrees(name: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     thermo::agrees("fixes", name, TOLERANCE, |deck| {
-        let _alone = FOLDER.lock().unwrap_or_else(PoisonError::into_inner);
+        let _alone = super::folder();
         std::env::set_current_dir(&folder).unwrap();
         let (_, ours) = run_in(folder.path(), name, deck, true);
         std::env::set_current_dir("/").unwrap();
@@ -136,6 +132,7 @@ fn threads_leave_every_bit_as_it_is() {
         fix t all dt/reset 2 NULL 0.01 0.02\nfix m all setforce NULL v_u NULL\ncompute r all reduce sumsq x vy fz v_u\n\
         compute e all ke/atom\ncompute s all reduce ave c_e\nthermo_style custom step time temp ke press f_i f_i[3] f_a \
         f_m[2] f_g c_r[*] c_s\nthermo_modify format float %.17g norm no\nthermo 2\nrun 10\n";
+    let _alone = super::threads::alone();
     set_threads(1);
     let (_, one) = run("one", deck, false);
     set_threads(3);
@@ -156,6 +153,7 @@ fn threads_leave_averages_and_springs_as_they_are() {
         fix h all ave/histo 1 2 2 -1 1 9 vx vy mode vector\ncompute r all reduce sumsq x vy fz f_st[1] f_st[2] f_m[1]\n\
         fix a all ave/time 1 2 2 c_r[*] ave running\nthermo_style custom step ke f_n f_te f_te[1] f_se f_av[3] f_dr[1] \
         f_re[1] c_r[*] f_a[*] f_h[3] f_h[5][2]\nthermo_modify format float %.17g norm no\nthermo 2\nrun 6\n";
+    let _alone = super::threads::alone();
     set_threads(1);
     let (_, one) = run("one", deck, false);
     set_threads(3);

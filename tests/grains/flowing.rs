@@ -57,6 +57,7 @@ fn a_flow_is_the_same_scene_at_rest() {
 
 #[test]
 fn the_same_bits_in_pieces_with_a_guard_and_for_any_number_of_threads() {
+    let _alone = super::super::threads::alone();
     let run = |more: &str, runs: &[i64], threads: usize| {
         par::set_threads(threads);
         let mut scene = scene(FAST, more);

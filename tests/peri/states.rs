@@ -216,6 +216,7 @@ fn influence_and_volume_rules() {
 
 #[test]
 fn bits_do_not_depend_on_threads_or_skipping() {
+    let _alone = super::super::threads::alone();
     for (kind, compat_lammps) in
         [(LawKind::Lps, false), (LawKind::Ves, false), (LawKind::Eps, false), (LawKind::Eps, true)]
     {

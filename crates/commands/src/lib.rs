@@ -1,4 +1,9 @@
-//! Commands that act on the world once, in order.
+//! Commands that act on the world once, in order: one file each, one line each in [`COMMANDS`].
+//!
+//! They know no fix, no compute and no force.
+
+// Units stand in brackets in doc comments, as [length]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 mod atom_modify;
 mod atom_style;

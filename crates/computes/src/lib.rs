@@ -1,4 +1,9 @@
-//! Computes: quantities read from the world, never changing it.
+//! Computes: quantities read from the world, never changing it; one file each, one line each in [`COMPUTES`].
+//!
+//! They know no fix: what fixes leave for them stands in the world.
+
+// Units stand in brackets in doc comments, as [length]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 mod bond_local;
 mod centro_atom;

@@ -3,6 +3,9 @@
 //! A law is a pure function of local data: [`Geometry`] of the contact, the [`Motion`] of both sides and
 //! the contact's history give a [`Wrench`]. Pair and wall drivers call the same laws.
 
+// Units stand in brackets in doc comments, as [length]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
+
 pub mod bodies;
 pub mod damping;
 pub mod driver;

@@ -1,4 +1,7 @@
-//! Dumps: snapshots of particles in files.
+//! Dumps: snapshots of particles in files; one file each, one line each in [`DUMPS`].
+
+// Units stand in brackets in doc comments, as [length]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 mod attribute;
 mod base;

@@ -1,4 +1,7 @@
-//! Fixes: what is done to particles during the steps besides their mutual forces.
+//! Fixes: what is done to particles during the steps besides their mutual forces; one file each, one line each in [`FIXES`].
+
+// Units stand in brackets in doc comments, as [length]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 mod adapt;
 mod addforce;

@@ -1,6 +1,10 @@
 //! What leaves the program: logs, tables, dumps, pictures.
 //!
-//! This room formats and writes; it computes nothing about the physics and takes plain slices and closures.
+//! The types that matter most: [`log::Log`], [`thermo::Layout`], [`rows::Row`]. It formats and writes; it computes nothing about the
+//! physics and takes plain slices and closures.
+
+// Units stand in brackets in doc comments, as [length]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod binary;
 pub mod dump;

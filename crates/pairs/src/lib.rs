@@ -1,4 +1,9 @@
-//! Pair styles: forces between particles.
+//! Forces between particles: pair styles, bond styles and the words of contact models, one line each in [`PAIRS`] and [`bond::BONDS`].
+//!
+//! They join the kernels of `peri` and `contact` to decks; they know no fix and no compute.
+
+// Units stand in brackets in doc comments, as [length]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod bond;
 mod bpm_peri;

@@ -1,4 +1,10 @@
-//! Peridynamic laws: what a bond does, and what engineering moduli mean for it.
+//! Peridynamic solids: their bonds (families), what a bond does, and what engineering moduli mean for it.
+//!
+//! The types that matter most: [`families::Families`], the bonds of a scene; [`families::PeriView`], the columns of particles they
+//! look at; [`families::Law`]. It knows no deck, no units and no other forces.
+
+// Units stand in brackets in doc comments, as [length]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 mod breaking;
 pub mod build;

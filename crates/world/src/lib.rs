@@ -1,4 +1,10 @@
 //! The state of a scene: everything that outlives a step, and nothing that decides.
+//!
+//! The types that matter most: [`World`]; [`Particles`], its core columns; [`Slots`], the values that computes, fixes and variables have
+//! produced. It knows no policy, no style and no deck.
+
+// Units stand in brackets in doc comments, as [length]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod adapted;
 pub mod allowed;
