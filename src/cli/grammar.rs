@@ -30,8 +30,7 @@ pub fn textmate() -> String {
     patterns
         .push(rule("constant.language.perigrain", "(?<!\\\\S)(INF|EDGE|NULL|SELF|yes|no|on|off)(?!\\\\S)"));
     let mut out = String::from("{\n  \"name\": \"perigrain\",\n  \"scopeName\": \"source.perigrain\",\n");
-    out +=
-        "  \"comment\": \"Written from the program's tables: PERIGRAIN_BLESS=1 cargo test --test folders docs::\",\n";
+    out += "  \"comment\": \"Written from the program's tables: PERIGRAIN_BLESS=1 cargo test --test folders docs::\",\n";
     out += "  \"fileTypes\": [\"perigrain\", \"lmp\", \"lammps\"],\n";
     let _ = write!(out, "  \"patterns\": [\n    {}\n  ],\n", patterns.join(",\n    "));
     let values = [

@@ -354,6 +354,9 @@ unsafe fn various<L: Lanes>(a: &Chunk, factor: L, to: isize, v: usize) -> (L, L)
 
 /// The kernels of one instruction set, chosen once per sweep.
 pub trait Kernels: Sync {
+    /// Whether there are forms without root and division for small stretches, and those without masks and tracking. Where
+    /// processors have AVX2, the portable kernels are there to compare with, and one form does.
+    const ALL_FORMS: bool = true;
     /// [`force`] for this instruction set.
     ///
     /// # Safety
@@ -372,6 +375,7 @@ pub trait Kernels: Sync {
 pub struct Plain;
 
 impl Kernels for Plain {
+    const ALL_FORMS: bool = !cfg!(target_arch = "x86_64");
     unsafe fn force<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
         a: &Chunk,
     ) -> (f64, f64) {
@@ -466,7 +470,15 @@ pub unsafe fn run<K: Kernels>(a: &Chunk, degree: usize, masked: bool, track: boo
         };
     }
     // SAFETY: the caller's promise.
-    unsafe { pick!(3 5 7 10 16) }
+    unsafe {
+        if const { !K::ALL_FORMS } {
+            return match a.various.is_some() {
+                false => K::force::<CLOSED, true, true, false>(a),
+                true => K::force::<CLOSED, true, true, true>(a),
+            };
+        }
+        pick!(3 5 7 10 16)
+    }
 }
 
 const _: () = assert!(constant::ENERGY < CONSTANTS && wide::FAR == 10 && wide::FARTHEST == 16);

@@ -12,6 +12,8 @@ use super::terms::Term;
 
 /// The kernels of one instruction set.
 pub trait StateKernels: Sync {
+    /// See [`Kernels::ALL_FORMS`](super::super::chunk::Kernels::ALL_FORMS).
+    const ALL_FORMS: bool;
     /// Adds forces; see [`pull`].
     ///
     /// # Safety
@@ -52,6 +54,7 @@ pub trait StateKernels: Sync {
 macro_rules! compiled_for {
     ($kernels:ty, $lanes:ty, $half:ty $(, $features:literal)?) => {
         impl StateKernels for $kernels {
+            const ALL_FORMS: bool = <$kernels as super::super::chunk::Kernels>::ALL_FORMS;
             unsafe fn pull<
                 W: BondLaw,
                 const DEGREE: usize,
@@ -157,6 +160,16 @@ pub unsafe fn run<K: StateKernels, W: BondLaw>(
         if a.various.is_some() {
             return pull!(CLOSED, true, true, true, false);
         }
+        if const { !K::ALL_FORMS } {
+            return pull!(CLOSED, true, true, false, false);
+        }
+        if const { !W::ALL_FORMS } {
+            return match degree {
+                3 | 5 | 7 => pull!(7, true, true, false, false),
+                10 | 16 => pull!(16, true, true, false, false),
+                _ => pull!(CLOSED, true, true, false, false),
+            };
+        }
         match (degree, masked, track, s.half) {
             (3, _, false, true) => pull!(3, true, false, false, true),
             (5, _, false, true) => pull!(5, true, false, false, true),
@@ -192,6 +205,9 @@ pub unsafe fn run_term<K: StateKernels, T: Term>(a: &Chunk, s: &Cells, degree: u
     unsafe {
         if a.various.is_some() {
             return add_up!(CLOSED, true, true, false);
+        }
+        if const { !K::ALL_FORMS } {
+            return add_up!(CLOSED, true, false, false);
         }
         match (degree, masked, s.half) {
             (3, _, true) => add_up!(3, true, false, true),

@@ -101,6 +101,9 @@ pub trait BondLaw: Sync {
     const MEMORY: usize;
     /// Whether it needs the stretch at the last step that advanced.
     const BACK: bool = false;
+    /// Whether it is worth kernels for each size of stretches and for whole chunks: each law has a share of the time that
+    /// this crate takes to compile.
+    const ALL_FORMS: bool = true;
     /// Whether what a bond remembers stays zero until one of its ends [`BondLaw::flows`].
     const LAZY: bool = false;
     /// The pull on the first end and on the second, over ω w V; `memory` is brought up to date.
@@ -322,6 +325,7 @@ pub struct Flattened;
 impl BondLaw for Flattened {
     const COLUMNS: usize = 0;
     const MEMORY: usize = 0;
+    const ALL_FORMS: bool = false;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(bond: &Stretch<L>, limit: L, _: &Ends<L>, _: &mut [L; 2], _: &Moment) -> (L, L) {
         // SAFETY: passed on to the caller.

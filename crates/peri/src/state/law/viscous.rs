@@ -64,6 +64,8 @@ impl<const BACK: bool, const LAMMPS: bool> BondLaw for Viscous<BACK, LAMMPS> {
     const COLUMNS: usize = if LAMMPS { 3 } else { 2 };
     const MEMORY: usize = 1;
     const BACK: bool = BACK;
+    // The form that looks back is that of a run's first steps.
+    const ALL_FORMS: bool = !BACK;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(
         bond: &Stretch<L>,
@@ -109,6 +111,7 @@ impl<const LAMMPS: bool> BondLaw for ViscousApart<LAMMPS> {
     const COLUMNS: usize = 6;
     const MEMORY: usize = 2;
     const BACK: bool = true;
+    const ALL_FORMS: bool = false;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(
         bond: &Stretch<L>,
