@@ -2,6 +2,7 @@
 
 use super::lattice::SQUEEZED;
 use crate::families::lattice::LANES;
+use crate::families::list::CLOSE;
 use crate::families::{Families, FamilyOptions, ForceUnit, Influence, PeriTally, PeriView, PmbTable};
 use perigrain_base::math::vec3::length;
 
@@ -141,9 +142,19 @@ pub fn repel(families: &Families, closer: [f64; 2], repulsion: &mut Repulsion) {
         }
     }
     let list = &families.list;
-    for i in (0..list.record.len()).filter(|&i| list.flagged[i] & SQUEEZED != 0) {
-        for b in list.own(i).filter(|&b| list.lives(b)) {
+    let mut pair = |i: usize, b: usize| {
+        if list.lives(b) {
             repulsion.pair(list.particle[i], list.particle[list.partner[b] as usize]);
+        }
+    };
+    for (i, &low) in list.lowest.iter().enumerate() {
+        if low < CLOSE {
+            list.own(i).for_each(|b| pair(i, b));
+            continue;
+        }
+        let close = &list.close[list.close_start[i] as usize..list.close_start[i + 1] as usize];
+        for &(_, b) in close.iter().take_while(|(z, _)| *z >= low) {
+            pair(i, b as usize);
         }
     }
 }

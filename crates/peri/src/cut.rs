@@ -34,7 +34,7 @@ impl Families {
             for b in list.own(record) {
                 let (i, j) = (list.particle[record], list.particle[list.partner[b] as usize]);
                 if list.lives(b) && crosses(i, j) {
-                    list.set(b, false);
+                    list.end(b);
                     ends.push([i, j]);
                 }
             }

@@ -2,10 +2,9 @@
 
 use super::chunk::{CELLS, Chunk, Kernels, SUMS};
 use super::contact::add;
-use super::list_kernel::{RowKernels, RowTask, dead};
+use super::list::{self, kernel::RowKernels};
 use super::pmb::stretch;
 use crate::families::lattice::{LANES, LatticeBody, PAD};
-use crate::families::list::ListBody;
 use crate::families::{Families, FamilyOptions, ForceUnit, PeriTally, PeriView};
 use perigrain_base::par::{self, Shared};
 
@@ -16,7 +15,7 @@ type Add<'a> = dyn FnMut((usize, f64), (usize, f64), f64, [f64; 3]) + 'a;
 pub(super) type Sums = [f64; SUMS];
 
 /// Rows per part when rows are summed.
-const ROWS: usize = 16;
+pub(super) const ROWS: usize = 16;
 
 /// Adds energy and virial of the bonds as they were during the force evaluation: LAMMPS gives each end half of
 /// 1/2 c w V s² |xi|, and the virial one factor V.
@@ -39,14 +38,8 @@ pub fn tally<K: Kernels + RowKernels>(
         }
         sum(body.rows.len(), &mut rows, t, |slot, f| lattice_row(body, slot, view, families, &options, f));
     }
-    let list = &families.list;
-    if !t.per_atom() {
-        list_rows::<K>(list, period, &options, &mut rows);
-        collect(&rows, t);
-    } else {
-        sum(list.record.len(), &mut rows, t, |i, f| list_row(list, i, period, &options, f));
-    }
     families.scratch.rows = rows;
+    list::energy::tally::<K>(families, t, (true, period));
 }
 
 /// Adds up `row(k, add)` for `k` below `n` in a fixed order, and per particle if asked for.
@@ -139,37 +132,6 @@ fn whole_row(
     lanes.map(|l| l.iter().sum())
 }
 
-/// Energy and virial of the list, a sum for every few records.
-fn list_rows<K: RowKernels>(
-    list: &ListBody,
-    period: [f64; 3],
-    options: &FamilyOptions,
-    rows: &mut Vec<Sums>,
-) {
-    let n = list.record.len();
-    let (periodic, newton) = (period.iter().any(|p| p.is_finite()), options.unit == ForceUnit::Newton);
-    let dead = dead(options);
-    rows.clear();
-    rows.resize(n.div_ceil(ROWS), [0.0; 7]);
-    let shared = Shared::new(rows);
-    par::for_rows(n.div_ceil(ROWS), |part| {
-        // SAFETY: each part has its own sum.
-        let sum = unsafe { &mut shared.get(part..part + 1)[0] };
-        for i in part * ROWS..n.min((part + 1) * ROWS) {
-            let task = RowTask { body: list, i, force: std::ptr::null_mut(), first: 0, period, dead };
-            // SAFETY: the kernels are those that the processor has.
-            let row = unsafe {
-                if periodic {
-                    K::row_sums::<true>(&task, newton)
-                } else {
-                    K::row_sums::<false>(&task, newton)
-                }
-            };
-            sum.iter_mut().zip(row).for_each(|(sum, row)| *sum += row);
-        }
-    });
-}
-
 /// Energies of both ends and the pull on the first, from z, |xi|, c w and the volumes.
 fn bond(z: f64, length: f64, cw: f64, (vi, vj): (f64, f64), options: &FamilyOptions) -> (f64, f64, f64) {
     if z.abs() < options.dead_band(length) {
@@ -213,24 +175,5 @@ fn lattice_row(
                 f((i, e_i), (j, e_j), pull, d);
             }
         }
-    }
-}
-
-fn list_row(list: &ListBody, i: usize, period: [f64; 3], options: &FamilyOptions, f: &mut Add) {
-    for b in list.own(i).filter(|&b| list.lives(b)) {
-        let j = list.partner[b] as usize;
-        let pair = list.constants(b);
-        let (z, length) = list.z(false, i, j, period);
-        let weight = (pair.weight[0] - pair.weight[1] * length).min(1.0);
-        let (own, other) = (&list.record[i], &list.record[j]);
-        let (e_i, e_j, pull) = bond(z, length, pair.c * weight, (own.volume, other.volume), options);
-        let d = [0, 1, 2].map(|k| {
-            let mut xi = other.reference[k] - own.reference[k];
-            if xi.abs() > 0.5 * period[k] {
-                xi -= period[k] * (xi / period[k]).round();
-            }
-            -(xi + other.u[k] - own.u[k])
-        });
-        f((list.particle[i] as usize, e_i), (list.particle[j] as usize, e_j), pull, d);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use super::breaking::{Periodic, break_bonds};
+use super::breaking::break_bonds;
 use super::chunk::{Kernels, Plain};
 #[cfg(target_arch = "x86_64")]
 use super::chunk::{Wide, Widest};
@@ -14,7 +14,7 @@ use super::lanes::has_avx2;
 use super::lanes512::has_avx512;
 use super::lattice::{self, ChunkColumns, Mode};
 use super::list;
-use super::list_kernel::RowKernels;
+use super::list::kernel::{RowKernels, Rules};
 use super::state::{self, kernels::StateKernels};
 use super::stretching::StretchKernels;
 use super::tables;
@@ -184,7 +184,14 @@ impl Families {
         for body in &mut self.lattices {
             tables::refresh(body, view, table, &self.options, &self.law);
         }
-        list::refresh(&mut self.list, view, table, &self.options, (&self.law, &self.of_bonds));
+        list::refresh(
+            &mut self.list,
+            view,
+            table,
+            &self.options,
+            (&self.law, &self.of_bonds),
+            periods(&view.bounds),
+        );
     }
 
     /// Takes in particles created since: they have no family, but short-range contact.
@@ -245,9 +252,10 @@ impl Families {
         let moved = list::gather(&mut self.list, view, presses);
         let states = self.law.kind.has_states();
         match states {
-            true => self.sweep_states::<K>(view, f, (advance, tallied.is_some()), period),
-            false => self.sweep::<K>(f, advance, period),
+            true => self.sweep_states::<K>(view, f, (advance, tallied.is_some())),
+            false => self.sweep::<K>(f, advance),
         }
+        self.sweep_list::<K>(view, f, (advance, tallied.is_some()), period);
         if advance && self.counts_losses {
             self.count_heat::<K>(view, period);
         }
@@ -264,15 +272,10 @@ impl Families {
     }
 
     /// Adds the forces of all bonds, slab by slab in two colours.
-    fn sweep<K: Kernels + RowKernels + StateKernels>(
-        &mut self,
-        f: &mut [[f64; 3]],
-        advance: bool,
-        period: [f64; 3],
-    ) {
+    fn sweep<K: Kernels + StateKernels>(&mut self, f: &mut [[f64; 3]], advance: bool) {
         let mode = Mode { advance, armed: self.armed, skip: self.options.skip_rest };
         let newton = self.options.unit == ForceUnit::Newton;
-        let Self { lattices, list, scratch, options, .. } = self;
+        let Self { lattices, scratch, .. } = self;
         scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
         let window = || {
             scratch.windows[par::slot() % scratch.windows.len()]
@@ -286,24 +289,22 @@ impl Families {
             par::two_colours(body.slabs(), |slab| sweep.slab::<K>(slab, &mut window(), &f));
             columns.give(body);
         }
-        let (mut tension, mut flagged) =
-            (std::mem::take(&mut list.tension), std::mem::take(&mut list.flagged));
-        let sweep = list::Sweep {
-            body: list,
-            tension: Shared::new(&mut tension),
-            flagged: Shared::new(&mut flagged),
-            mode,
-            options: *options,
-            period,
-        };
-        // A ring of an odd number of slabs cannot be coloured with two colours: its last one goes alone.
-        let slabs = list.slabs();
-        let odd = list.ring && slabs % 2 == 1;
-        par::two_colours(slabs - usize::from(odd), |slab| sweep.slab::<K>(slab, &mut window(), &f));
-        if odd {
-            sweep.slab::<K>(slabs - 1, &mut window(), &f);
-        }
-        (list.tension, list.flagged) = (tension, flagged);
+    }
+
+    /// Adds the forces of all bonds that are kept as a list.
+    pub(super) fn sweep_list<K: RowKernels>(
+        &mut self,
+        view: &PeriView,
+        f: &mut [[f64; 3]],
+        (advance, tallied): (bool, bool),
+        period: [f64; 3],
+    ) {
+        let Self { list, scratch, options, law, table, armed, counts_losses, .. } = self;
+        let mode = Mode { advance, armed: *armed, skip: options.skip_rest };
+        scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
+        let settling = state::settling((law, table), options, (advance, tallied, *counts_losses));
+        let f = Shared::new(f);
+        list::sweep::forces::<K>(list, view, &f, (mode, options), &settling, (&scratch.windows, period));
     }
 
     fn contact(
@@ -339,9 +340,10 @@ impl Families {
             body.u.swap(0, 1);
         }
         list::keep(&mut self.list);
+        list::breaking::roll(&mut self.list);
     }
 
-    pub(super) fn break_bonds<K: StretchKernels>(&mut self, view: &PeriView, period: [f64; 3]) {
+    pub(super) fn break_bonds<K: StretchKernels + RowKernels>(&mut self, view: &PeriView, period: [f64; 3]) {
         let mut found: Vec<Candidate> = std::mem::take(&mut self.scratch.candidates);
         let mut ends = std::mem::take(&mut self.scratch.ends);
         ends.clear();
@@ -351,7 +353,14 @@ impl Families {
             break_bonds::<K, _>(body, &self.options, &mut found, &spared);
             ends.extend(found.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
         }
-        break_bonds::<K, _>(&mut Periodic(&mut self.list, period), &self.options, &mut found, &spared);
+        let rules = Rules::new(period, &self.options, &self.law);
+        list::breaking::candidates::<K>(
+            &mut self.list,
+            (&rules, &self.options),
+            &self.scratch.windows,
+            &mut found,
+        );
+        self.list.break_all(&mut found, &spared);
         ends.extend(found.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
         for &[i, j] in &ends {
             self.hurt[i as usize] = true;

@@ -405,11 +405,11 @@ mod tests {
                 let (mut f, mut g) = (vec![[0.0; 3]; x.len()], vec![[0.0; 3]; x.len()]);
                 one.force(&view!(), &mut f, true, None);
                 other.lattices.iter_mut().for_each(|b| b.slackest = super::Slackest::default());
-                other.list.slackest.clear();
+                other.list.limits = Default::default();
                 other.force(&view!(), &mut g, true, None);
                 assert_eq!(f, g);
                 assert_eq!(at(&one), at(&other), "step {step}");
-                let bounds = one.lattices.iter().map(|b| &b.slackest.bound).chain([&one.list.bound]);
+                let bounds = one.lattices.iter().map(|b| &b.slackest.bound).chain([&one.list.limits.least]);
                 known = known.max(bounds.flatten().filter(|b| b.is_finite()).count());
             }
             assert!(known > 100 && one.live_bonds() < whole - 500 && one.live_bonds() > whole / 4);

@@ -27,7 +27,6 @@ mod leads;
 mod limit;
 pub mod linked;
 mod list;
-mod list_kernel;
 pub mod moduli;
 mod pmb;
 mod released;

@@ -48,7 +48,7 @@ impl Families {
             return fail(Code::NOT_SUPPORTED, None, text);
         }
         for (b, [i, j]) in ended {
-            self.list.set(b, false);
+            self.list.end(b);
             self.hurt[i as usize] = true;
             self.hurt[j as usize] = true;
             self.add_broken(view, i, j);

@@ -2,7 +2,7 @@
 
 use super::chunk::Kernels;
 use super::energy::tally;
-use super::list_kernel::RowKernels;
+use super::list::kernel::RowKernels;
 use super::state::{self, kernels::StateKernels};
 use super::stretching::StretchKernels;
 use crate::families::lattice::PAD;
@@ -130,7 +130,8 @@ impl Families {
     ) -> f64 {
         if !self.law.kind.bond_based() {
             let mut aside = vec![[0.0; 3]; view.x.len()];
-            self.sweep_states::<K>(view, &mut aside, (false, true), period);
+            self.sweep_states::<K>(view, &mut aside, (false, true));
+            self.sweep_list::<K>(view, &mut aside, (false, true), period);
         }
         self.bond_energy::<K>(view, period)
     }

@@ -45,8 +45,12 @@ pub unsafe fn stretch<L: Lanes, const DEGREE: usize>(z: L) -> L {
     }
 }
 
+/// Σ `terms[k]` z^k.
+///
+/// # Safety
+/// See [`Lanes`].
 #[inline(always)]
-unsafe fn polynomial<L: Lanes, const N: usize>(z: L, terms: &[f64; N]) -> L {
+pub unsafe fn polynomial<L: Lanes, const N: usize>(z: L, terms: &[f64; N]) -> L {
     // SAFETY: passed on to the caller.
     unsafe {
         let mut sum = L::splat(terms[N - 1]);

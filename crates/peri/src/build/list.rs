@@ -1,7 +1,7 @@
 //! Laying out bonds as a list: records by slabs, half of the bonds with each.
 
 use super::detect::{bonds, distance, reach};
-use crate::families::list::{GROUP, ListBody, Record};
+use crate::families::list::{CLOSE, GROUP, ListBody, Record};
 use crate::families::{FamilyOptions, PeriView, PmbTable};
 
 /// The list layout of the bonds among `members`, and the sums of initial partners' volumes and numbers.
@@ -32,7 +32,30 @@ pub fn lay_out(
     let mut body =
         gathered(view, members, (wraps, reach(table, options)), (family_volume, family_size), found);
     body.contact = contact;
+    find_close(&mut body, view, options);
     body
+}
+
+/// Finds the bonds whose ends touch first when they are pressed together.
+fn find_close(body: &mut ListBody, view: &PeriView, options: &FamilyOptions) {
+    body.close_start.push(0);
+    for i in 0..body.record.len() {
+        let from = body.close.len();
+        for b in body.own(i) {
+            if !body.lives(b) {
+                continue;
+            }
+            let (p, q) = (body.particle[i], body.particle[body.partner[b] as usize]);
+            let (range, (rsq, _)) = (options.contact_range(view, p, q), distance(view, p, q));
+            // Rounded up.
+            let z = (range * range / rsq - 1.0) as f32 + 1e-6;
+            if z >= CLOSE {
+                body.close.push((z, b as u32));
+            }
+        }
+        body.close[from..].sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        body.close_start.push(body.close.len() as u32);
+    }
 }
 
 /// The same of bonds that are known, by their ends and their type from 0, of which the longest is `far`.
@@ -55,6 +78,7 @@ pub fn lay_out_links(
     };
     let mut body = gathered(view, &members, (wraps, far), (family_volume, family_size), found);
     body.contact = f64::NEG_INFINITY;
+    body.close_start = vec![0; body.record.len() + 1];
     body
 }
 
@@ -119,8 +143,7 @@ fn gathered(
         .collect();
     body.last = vec![[0.0; 3]; n];
     body.moving = vec![false; body.slabs()];
-    body.tension = vec![0.0; n];
-    body.flagged = vec![0; n];
+    body.lowest = vec![0.0; n];
     body
 }
 
@@ -169,7 +192,7 @@ fn order(view: &PeriView, members: &[u32], wraps: bool, far: f64) -> ListBody {
     ListBody { particle: keyed.iter().map(|k| k.4).collect(), slab, ring, ..Default::default() }
 }
 
-/// Groups of four bonds from (owner, partner's local type, partner) in order.
+/// Groups of bonds from (owner, partner's local type, partner) in order.
 fn fill(body: &mut ListBody, pairs: &[(u32, u8, u32)]) {
     let n = body.particle.len();
     body.start = vec![0];
@@ -187,7 +210,7 @@ fn fill(body: &mut ListBody, pairs: &[(u32, u8, u32)]) {
                     body.back_start[rest[k].2 as usize + 1] += 1;
                 }
             }
-            body.alive.push((1 << count) - 1);
+            body.alive.push((0xffu16 >> (GROUP - count)) as u8);
             body.group_kind.push(kind);
             body.owner.push(i);
             rest = &rest[count..];

@@ -1,6 +1,5 @@
 //! Bonds of all bodies that sit on no lattice: records in slab order, each with its bonds to later ones.
 
-use super::Measures;
 use super::law::SiteState;
 
 /// What a bond needs to know of one end; one cache line.
@@ -17,17 +16,16 @@ pub struct Record {
     pub share: f64,
 }
 
-/// Bonds that share one row of constants: four partners.
-pub const GROUP: usize = 4;
-
-/// No bond.
-pub const UNKNOWN: u32 = u32::MAX;
+/// Bonds that share one row of constants, as many as there are lanes at most.
+pub const GROUP: usize = 8;
 
 /// Constants of a pair of local types.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PairConstants {
     /// Micromodulus.
     pub c: f64,
+    /// c times what turns the influence of a length into the shape of microelastic bonds.
+    pub shape: f64,
     /// Critical stretch.
     pub s00: f64,
     /// Its rise under compression.
@@ -40,7 +38,7 @@ pub struct PairConstants {
     pub weight: [f64; 2],
 }
 
-/// Records of particles in slab order, and for each the bonds to later ones in groups of four.
+/// Records of particles in slab order, and for each the bonds to later ones in groups of eight.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct ListBody {
     /// Particle of each record; `u32::MAX` once it is gone.
@@ -76,29 +74,45 @@ pub struct ListBody {
     pub back_start: Vec<u32>,
     /// Places in `partner` that lead to a record.
     pub back: Vec<u32>,
-    /// Largest z of each record's own bonds at the last step that advanced (tension).
-    pub tension: Vec<f32>,
-    /// What a record's bonds may need besides forces this step.
-    pub flagged: Vec<u8>,
+    /// Smallest z of each record's own bonds in the last force evaluation, or less; not above 0.
+    pub lowest: Vec<f32>,
     /// Largest z at which a bonded pair can be in short-range contact.
     pub contact: f64,
+    /// First entry of each record in `close`, and the end.
+    pub close_start: Vec<u32>,
+    /// The z below which bonds can be in short-range contact and their places in `partner`: those of at least [`CLOSE`], the
+    /// largest of each record first.
+    pub close: Vec<(f32, u32)>,
+    /// The influence of each bond where it takes an exponential; empty elsewhere.
+    pub influence: Vec<f64>,
     /// Place of the first record among all cells and records of all bodies.
     pub first_place: u32,
     /// Bonds (places in `partner`) that broke in the last step that advanced.
     pub broken: Vec<u32>,
-    /// Critical measures of families in the step before, by records.
+    /// What is known of bonds near their limits.
     #[serde(skip)]
-    pub measures: Measures,
-    /// The place in `partner` of the bond that was the least stretched one of each record's family when that was looked at
-    /// last, [`UNKNOWN`] before; empty until families are looked at. See [`Slackest`](super::lattice::Slackest).
-    #[serde(skip)]
-    pub slackest: Vec<u32>,
-    /// No less than the least stretch of each record's family in the step before; infinite where nothing is known.
-    #[serde(skip)]
-    pub bound: Vec<f64>,
+    pub limits: Limits,
     /// Under a state-based law: columns by records. Memory of bonds: number `k` of the bond at place `b` is
-    /// `b * numbers + k`.
+    /// `(b / GROUP * numbers + k) * GROUP + b % GROUP`; only records that are `touched` have any but zeros.
     pub state: SiteState,
+}
+
+/// Bonds whose z for contact is less are not in [`ListBody::close`]: they are looked at one by one when they are as short.
+pub const CLOSE: f32 = -0.5;
+
+/// What is known of the last step that advanced: saves work when bonds are judged, and nothing depends on it.
+#[derive(Clone, Debug, Default)]
+pub struct Limits {
+    /// The least measure of each record's family, see `laws::peri::list::breaking`; empty where not known.
+    pub least: Vec<f64>,
+    /// The same of the present step, and by slabs.
+    pub next: Vec<f64>,
+    /// Largest z of all bonds, if known.
+    pub top: Option<f64>,
+    /// Whether bonds are so near their limits that measures are to be kept.
+    pub near: bool,
+    /// By slabs: bonds that may break in the present step, with their z, and the largest z.
+    pub strained: Vec<(Vec<(u32, f64)>, f64)>,
 }
 
 impl ListBody {
@@ -126,6 +140,17 @@ impl ListBody {
         }
     }
 
+    /// Ends a bond by hand: what is known of families is no longer so.
+    pub fn end(&mut self, b: usize) {
+        self.set(b, false);
+        self.limits.least.clear();
+    }
+
+    /// Where the memory of the bond at a place in `partner` begins, for so many numbers; they are [`GROUP`] apart.
+    pub fn memory(b: usize, numbers: usize) -> usize {
+        b / GROUP * numbers * GROUP + b % GROUP
+    }
+
     /// The constants of the bond at a place in `partner`.
     #[inline]
     pub fn constants(&self, b: usize) -> &PairConstants {
@@ -149,12 +174,11 @@ impl ListBody {
 
     /// Memory held.
     pub fn bytes(&self) -> usize {
-        self.record.len() * (size_of::<Record>() + 24 + 4 + 1 + 4 + 4 + 4 + 1)
+        self.record.len() * (size_of::<Record>() + 24 + 4 + 1 + 4 + 4 + 4 + 4)
             + 4 * (self.partner.len() + self.back.len() + self.owner.len())
             + self.group_kind.len()
-            + 4 * self.slackest.len()
-            + 8 * self.bound.len()
-            + self.measures.bytes()
+            + 8 * (self.close.len() + self.influence.len())
+            + 8 * (self.limits.least.len() + self.limits.next.len())
             + self.state.bytes()
     }
 }

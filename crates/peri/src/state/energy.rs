@@ -1,15 +1,15 @@
 //! Energy and virial under state-based laws.
 
 use super::super::energy::{Sums, collect, whole_rows};
+use super::super::list::kernel::RowKernels;
 use super::super::single::Single;
 use super::kernels::StateKernels;
 use super::lattice::States;
 use super::law::{Angles, BondLaw, Ends, Moment, Stretch, of_law};
-use super::list::{Weighing, banded, bond};
 use super::settle::{columns_of, moment};
+use super::weighing::{Weighing, banded};
 use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::law::{COLUMNS, SiteState};
-use crate::families::list::ListBody;
 use crate::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
 use perigrain_base::par::Shared;
 
@@ -33,7 +33,7 @@ struct Bond<'a> {
 
 /// Adds energy and virial of all bonds as they were during the force evaluation, which has `advanced` bonds or not. The
 /// energy density of a particle is ½Kθ² + ½ 15G/m Σ ω w |xi|² ε² V; LAMMPS counts half of the second term.
-pub fn tally<K: StateKernels>(
+pub fn tally<K: StateKernels + RowKernels>(
     families: &mut Families,
     view: &PeriView,
     t: &mut PeriTally,
@@ -60,7 +60,7 @@ pub fn tally<K: StateKernels>(
     for (record, &p) in list.particle.iter().enumerate().filter(|(_, p)| **p != u32::MAX) {
         own(families, view, p as usize, list.state.theta[record], scale(p as usize), t);
     }
-    listed(families, list, (advanced, period), t);
+    super::super::list::energy::tally::<K>(families, t, (advanced, period));
 }
 
 /// Energy and virial of each row of a body of one volume, several cells at a time.
@@ -156,40 +156,6 @@ fn lattice(families: &Families, view: &PeriView, body: &LatticeBody, (advanced, 
                     t,
                 );
             }
-        }
-    }
-}
-
-fn listed(families: &Families, list: &ListBody, (advanced, period): (bool, [f64; 3]), t: &mut PeriTally) {
-    let (options, law) = (&families.options, &families.law);
-    let numbers = law.kind.memory();
-    for i in 0..list.record.len() {
-        for k in list.own(i).filter(|&k| list.lives(k)) {
-            let j = list.partner[k] as usize;
-            let mut b = bond(list, (i, j, k), period, Weighing::of(law), options);
-            if !advanced {
-                b.stretch.before = banded(list.z(true, i, j, period).0, b.length, options).s;
-            }
-            let ends = [i, j].map(|r| list.particle[r] as usize);
-            add(
-                families,
-                &Bond {
-                    ends,
-                    at: [i, j],
-                    volume: [i, j].map(|r| list.record[r].volume),
-                    y: b.y,
-                    length: b.length,
-                    omega: b.omega,
-                    share: b.share,
-                    stretch: b.stretch,
-                    memory: std::array::from_fn(|n| {
-                        Single(if n < numbers { list.state.remembered()[k * numbers + n] } else { 0.0 })
-                    }),
-                    state: &list.state,
-                    stride: list.record.len(),
-                },
-                t,
-            );
         }
     }
 }

@@ -88,7 +88,7 @@ macro_rules! of_law {
         }
     }};
 }
-pub(super) use of_law;
+pub(in super::super) use of_law;
 
 /// What both ends of a bond have in columns.
 pub type Ends<L> = [[L; COLUMNS]; 2];
@@ -99,6 +99,8 @@ pub trait BondLaw: Sync {
     const COLUMNS: usize;
     /// Numbers that a bond remembers, at most two.
     const MEMORY: usize;
+    /// Whether forces need s itself, not only s/(1 + s) and 1/(1 + s).
+    const STRETCHED: bool = true;
     /// Whether it needs the stretch at the last step that advanced.
     const BACK: bool = false;
     /// Whether it is worth kernels for each size of stretches and for whole chunks: each law has a share of the time that
@@ -176,12 +178,26 @@ unsafe fn deviatoric<L: Lanes>(s: L, ends: &[Angles<L>; 2], without: &[L; 2]) ->
     }
 }
 
+/// Prototype microelastic: half of c w s V at each end.
+pub struct Pmb;
+
+impl BondLaw for Pmb {
+    const COLUMNS: usize = 0;
+    const MEMORY: usize = 0;
+    const STRETCHED: bool = false;
+    #[inline(always)]
+    unsafe fn pull<L: Lanes>(bond: &Stretch<L>, _: L, _: &Ends<L>, _: &mut [L; 2], _: &Moment) -> (L, L) {
+        (bond.share, bond.share)
+    }
+}
+
 /// Linear elastic. Columns: A = (3K − 5G)θ/m, B = 15G/m; of microelastic bonds A = 0 and B = ½ or more near a surface.
 pub struct Elastic;
 
 impl BondLaw for Elastic {
     const COLUMNS: usize = 2;
     const MEMORY: usize = 0;
+    const STRETCHED: bool = false;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(
         bond: &Stretch<L>,

@@ -1,23 +1,22 @@
 //! Ordinary state-based materials: sweeps over all bonds for what sites have, then for forces.
 
 pub mod chunk;
-mod energy;
+pub mod energy;
 pub mod kernels;
 pub mod lattice;
-mod law;
-mod list;
-mod settle;
+pub mod law;
+pub mod settle;
 pub mod tables;
-mod terms;
+pub mod terms;
+mod weighing;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::chunk::Kernels;
 use super::lattice::{ChunkColumns, Mode, Sweep};
-use super::list_kernel::RowKernels;
 use crate::families::lattice::{LatticeBody, PAD};
 use crate::families::law::COLUMNS;
-use crate::families::{Families, FamilyOptions, ForceUnit, LawKind, PeriView, Window};
+use crate::families::{Families, FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable, Window};
 pub use energy::tally;
 use lattice::{States, Sum, find_active};
 use law::Moment;
@@ -34,26 +33,21 @@ impl Families {
     }
 
     /// Adds the forces of all bonds under a state-based law.
-    pub(super) fn sweep_states<K: Kernels + RowKernels + kernels::StateKernels>(
+    pub(super) fn sweep_states<K: Kernels + kernels::StateKernels>(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
         (advance, tallied): (bool, bool),
-        period: [f64; 3],
     ) {
-        let Self { lattices, list, scratch, options, law, table, armed, counts_losses, .. } = self;
+        let Self { lattices, scratch, options, law, table, armed, counts_losses, .. } = self;
         let mode = Mode { advance, armed: *armed, skip: options.skip_rest };
         scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
         let windows: &[Mutex<Window>] = &scratch.windows;
-        let now = moment(law, advance);
-        let compat = options.compat_lammps;
-        let counted = *counts_losses && advance;
-        let settling = Settling { law, table, moment: now, compat, advance, tallied, counted };
+        let settling = settling((law, table), options, (advance, tallied, *counts_losses));
         let f = Shared::new(f);
         for body in lattices {
             lattice_body::<K>(body, view, &f, (mode, options), &settling, windows);
         }
-        list::body(list, view, &f, (mode, options), &settling, (windows, period));
     }
 
     /// The dilatation of a particle at the last force evaluation.
@@ -80,9 +74,19 @@ impl Families {
     }
 }
 
+/// What turns sums into columns in an evaluation that advances or not, is tallied or not, with losses counted or not.
+pub fn settling<'a>(
+    (law, table): (&'a Law, &'a PmbTable),
+    options: &FamilyOptions,
+    (advance, tallied, counts): (bool, bool, bool),
+) -> Settling<'a> {
+    let (moment, compat) = (moment(law, advance), options.compat_lammps);
+    Settling { law, table, moment, compat, advance, tallied, counted: counts && advance }
+}
+
 /// LAMMPS takes the energy of plastic bonds from what they remembered before they flowed; ours is compared with that one
 /// where heat is counted.
-fn keep_earlier(state: &mut crate::families::law::SiteState, settling: &Settling) {
+pub fn keep_earlier(state: &mut crate::families::law::SiteState, settling: &Settling) {
     let flows = matches!(settling.law.kind, LawKind::Eps | LawKind::Yield);
     let asked = if settling.compat { settling.tallied } else { settling.counted };
     match flows && asked {
@@ -92,7 +96,7 @@ fn keep_earlier(state: &mut crate::families::law::SiteState, settling: &Settling
 }
 
 /// One thread's window.
-fn window(windows: &[Mutex<Window>]) -> MutexGuard<'_, Window> {
+pub fn window(windows: &[Mutex<Window>]) -> MutexGuard<'_, Window> {
     windows[par::slot() % windows.len()].lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -3,14 +3,14 @@
 use super::super::chunk::constant;
 use super::super::pmb::SERIES;
 use super::chunk::{FROM_TERM, OMEGA, TWICE_XI};
-use super::list::Weighing;
+use super::weighing::Weighing;
 use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, PAD};
 use crate::families::law::SiteState;
 use crate::families::list::ListBody;
 use crate::families::{FamilyOptions, ForceUnit, Law, PeriView, PmbTable};
 
 /// √(1 + z) − 1 = Σ `STRETCH[k]` z^(k + 1): the binomial series.
-const STRETCH: [f64; 8] = [
+pub const STRETCH: [f64; 8] = [
     1.0 / 2.0,
     -1.0 / 8.0,
     1.0 / 16.0,
@@ -122,6 +122,7 @@ pub fn weigh_list(body: &mut ListBody, period: [f64; 3], law: &Law) {
             }
         }
     }
+    state.touched = vec![0; body.record.len()];
     body.state = state;
 }
 

@@ -1,0 +1,237 @@
+//! Breaking in the list: bonds are judged where their stretch is found, by the least measures of the step before.
+//!
+//! The measure of a bond is its z, since a larger z is a larger stretch and alpha is not negative; under `compat lammps` with
+//! several pairs of types, whose limits differ, it is alpha s − s00. Forces keep the least of each family as they go along
+//! while bonds are near their limits; where they have not and a bond may break, a sweep over the last step's places finds
+//! the same numbers.
+
+use std::sync::Mutex;
+
+use super::super::lattice::Mode;
+use super::super::pmb::stretch;
+use super::kernel::{Block, Row, RowKernels, Rules};
+use super::sweep::{in_slabs, reach_of, ring_start};
+use crate::families::list::{GROUP, ListBody, PairConstants};
+use crate::families::{Candidate, FamilyOptions, Window};
+use perigrain_base::par::Shared;
+
+/// Bonds keep measures when the most stretched of them has come this close to its limit.
+const NEAR: f64 = 0.8;
+
+/// How the bonds of a body are judged in this evaluation.
+#[derive(Clone, Copy)]
+pub struct Judge {
+    /// Bonds may break.
+    armed: bool,
+    /// Measures of families are kept for the next step.
+    pub keeps: bool,
+    /// The measures of the last step are known, or not needed.
+    known: bool,
+    /// z below which no bond breaks.
+    floor: f64,
+    /// Measures are LAMMPS' critical stretches.
+    critical: bool,
+}
+
+impl Judge {
+    /// For the bonds of a body.
+    pub fn new(body: &ListBody, mode: Mode, options: &FamilyOptions) -> Self {
+        let critical = options.compat_lammps && body.pairs.len() > 1;
+        let measured = critical || body.pairs.iter().any(|p| p.alpha != 0.0);
+        let known = body.limits.least.len() == body.record.len();
+        let armed = mode.armed && mode.advance;
+        let floor = if armed { floor(body, (measured, known, critical)) } else { f64::INFINITY };
+        let keeps = mode.advance && measured && body.limits.near;
+        Self { armed, keeps, known: known || !measured, floor, critical }
+    }
+
+    /// The stretch at which the bond between two records breaks.
+    fn limit(&self, body: &ListBody, pair: &PairConstants, ends: [usize; 2]) -> f64 {
+        let measure = |i: usize| body.limits.least.get(i).copied().unwrap_or(f64::INFINITY);
+        let most = f64::max(measure(ends[0]), measure(ends[1]));
+        match self.critical {
+            true => -most,
+            false if pair.alpha == 0.0 => pair.s00,
+            false => pair.s00 - pair.alpha * stretch(most),
+        }
+    }
+
+    /// The measure of a bond.
+    fn measure(&self, pair: &PairConstants, z: f64) -> f64 {
+        if self.critical { pair.alpha * stretch(z) - pair.s00 } else { z }
+    }
+
+    /// Notes which of the bonds in hand may break; the first is at place `first`.
+    #[inline]
+    pub fn note(&self, row: &Row, first: usize, b: &Block, strained: &mut Vec<(u32, f64)>) {
+        if !self.armed || b.high < self.floor {
+            return;
+        }
+        let body = row.body;
+        for (at, &z) in b.z[..b.count].iter().enumerate().filter(|(_, z)| **z >= self.floor) {
+            let bond = first + at;
+            let ends = [row.i, body.partner[bond] as usize];
+            if body.lives(bond) && !(self.known && stretch(z) <= self.limit(body, body.constants(bond), ends))
+            {
+                strained.push((bond as u32, z));
+            }
+        }
+    }
+
+    /// Puts the measures of the bonds in hand, of which these are the z, where they are the least of a family so far: the
+    /// fourth numbers of the window's rows at `force`.
+    ///
+    /// # Safety
+    /// Every partner must lie in the window, untouched by others.
+    #[inline]
+    pub unsafe fn keep(&self, row: &Row, first: usize, (z, target): (&[f64], &[u32]), force: *mut f64) {
+        let body = row.body;
+        let mut least = f64::INFINITY;
+        for (k, (z, target)) in z.chunks_exact(GROUP).zip(target.chunks_exact(GROUP)).enumerate() {
+            let group = first / GROUP + k;
+            let (bits, pair) = (body.alive[group], body.constants(first + GROUP * k));
+            for lane in 0..GROUP {
+                let measure = if bits >> lane & 1 == 1 { self.measure(pair, z[lane]) } else { f64::INFINITY };
+                least = least.min(measure);
+                // SAFETY: the caller's promise.
+                let there = unsafe { &mut *force.wrapping_add(4 * target[lane] as usize + 3) };
+                *there = there.min(measure);
+            }
+        }
+        // SAFETY: the caller's promise.
+        let there = unsafe { &mut *force.wrapping_add(4 * row.i + 3) };
+        *there = there.min(least);
+    }
+}
+
+/// The z below which no bond of a body breaks. Limits are the lower the larger measures are.
+fn floor(body: &ListBody, (measured, known, critical): (bool, bool, bool)) -> f64 {
+    let finite = |a: f64, b: &f64| if b.is_finite() { a.max(*b) } else { a };
+    let most = match (known, body.limits.top) {
+        (true, _) => body.limits.least.iter().fold(f64::NEG_INFINITY, finite),
+        (false, Some(top)) => top,
+        (false, None) => f64::INFINITY,
+    };
+    let limit = |p: &PairConstants| match p.alpha {
+        0.0 => p.s00,
+        _ if most == f64::INFINITY => f64::NEG_INFINITY,
+        alpha => alpha.mul_add(-stretch(most.max(-1.0)), p.s00),
+    };
+    let s = match measured && known && critical {
+        true => -most,
+        false => body.pairs.iter().map(limit).fold(f64::INFINITY, f64::min),
+    };
+    // Rounding of limits takes far less.
+    let s = s - 1e-12 * s.abs();
+    if s > -1.0 { s * (2.0 + s) } else { f64::NEG_INFINITY }
+}
+
+/// Zero forces and no measures for so many records of a window.
+pub fn clear(window: &mut Window, records: usize) {
+    let length = 4 * records;
+    if window.force.len() < length {
+        window.force.resize(length, 0.0);
+    }
+    for row in window.force[..length].chunks_exact_mut(4) {
+        row.copy_from_slice(&[0.0, 0.0, 0.0, f64::INFINITY]);
+    }
+}
+
+/// Finds the bonds that break in this step.
+pub fn candidates<K: RowKernels>(
+    body: &mut ListBody,
+    (rules, options): (&Rules, &FamilyOptions),
+    windows: &[Mutex<Window>],
+    found: &mut Vec<Candidate>,
+) {
+    found.clear();
+    let mode = Mode { advance: true, armed: true, skip: false };
+    let judge = Judge::new(body, mode, options);
+    if body.limits.strained.iter().all(|(bonds, _)| bonds.is_empty()) {
+        return;
+    }
+    if !judge.known {
+        for b in body.broken.clone() {
+            body.set(b as usize, true);
+        }
+        body.limits.least = least::<K>(body, rules, &judge, windows);
+        for b in body.broken.clone() {
+            body.set(b as usize, false);
+        }
+    }
+    for &(bond, z) in body.limits.strained.iter().flat_map(|(bonds, _)| bonds) {
+        let (b, pair) = (bond as usize, *body.constants(bond as usize));
+        let ends = [body.owner[b / GROUP], body.partner[b]];
+        if stretch(z) > judge.limit(body, &pair, ends.map(|r| r as usize)) {
+            let PairConstants { s00, alpha, .. } = pair;
+            found.push(Candidate { ends, bond, stretch: stretch(z), s00, alpha });
+        }
+    }
+}
+
+impl ListBody {
+    /// Breaks bonds, except those of particles that are `spared`, and remembers them as those of this step.
+    pub(in super::super) fn break_all(&mut self, bonds: &mut Vec<Candidate>, spared: &dyn Fn(u32) -> bool) {
+        bonds.retain(|c| !c.ends.iter().any(|record| spared(self.particle[*record as usize])));
+        self.broken.clear();
+        for c in bonds {
+            self.broken.push(c.bond);
+            self.set(c.bond as usize, false);
+        }
+    }
+}
+
+/// The least measures of all families in the last step that advanced.
+fn least<K: RowKernels>(
+    body: &ListBody,
+    rules: &Rules,
+    judge: &Judge,
+    windows: &[Mutex<Window>],
+) -> Vec<f64> {
+    let mut least = vec![f64::INFINITY; body.record.len()];
+    let shared = Shared::new(&mut least);
+    in_slabs(body, windows, |slab, window| {
+        let (own, next) = reach_of(body, slab);
+        clear(window, own.len() + next.len());
+        let force = window.force.as_mut_ptr().wrapping_sub(4 * own.start);
+        let b = &mut Block::new();
+        for i in own.clone() {
+            let row = Row { body, i, first: ring_start(body, slab), rules };
+            for groups in row.blocks() {
+                let first = GROUP * groups.start;
+                // SAFETY: the kernels are those that the processor has; bonds lead to this slab or the next.
+                unsafe {
+                    row.take::<K, true>(groups, b);
+                    judge.keep(&row, first, (&b.before[..b.count], &b.target[..b.count]), force);
+                }
+            }
+        }
+        hand_back(own.chain(next), window, &shared);
+    });
+    least
+}
+
+/// Merges the measures of a window, those of `records` in their order.
+pub fn hand_back(records: impl Iterator<Item = usize>, window: &Window, least: &Shared<f64>) {
+    for (k, i) in records.enumerate() {
+        // SAFETY: slabs that reach a record run one after the other.
+        let least = unsafe { &mut least.get(i..i + 1)[0] };
+        *least = least.min(window.force[4 * k + 3]);
+    }
+}
+
+/// Makes the measures of this step, which has advanced, those of the last one.
+pub fn roll(body: &mut ListBody) {
+    let (s00, alpha) =
+        body.pairs.iter().fold((f64::INFINITY, 0.0f64), |l, p| (l.0.min(p.s00), l.1.max(p.alpha)));
+    let limits = &mut body.limits;
+    let kept = limits.next.len() == body.record.len();
+    std::mem::swap(&mut limits.least, &mut limits.next);
+    limits.next.clear();
+    if !kept {
+        limits.least.clear();
+    }
+    let top = limits.strained.iter().map(|s| s.1).fold(0.0, f64::max);
+    limits.near = 0.5 * top * (1.0 + alpha) >= NEAR * s00;
+    limits.top = Some(top);
+}

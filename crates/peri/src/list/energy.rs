@@ -1,0 +1,141 @@
+//! Energy and virial of the list's bonds under any law: asked for at some steps only, so a pass of its own.
+
+use super::super::energy::{ROWS, Sums, collect};
+use super::super::state::energy::shares;
+use super::super::state::law::{BondLaw, Moment, Pmb, of_law};
+use super::super::state::settle::{columns_of, moment};
+use super::kernel::{Block, Row, RowKernels, Rules};
+use super::laws::Acting;
+use super::sweep::in_rows;
+use crate::families::list::{GROUP, ListBody};
+use crate::families::{Families, ForceUnit, LawKind, PeriTally};
+use perigrain_base::math::vec3::SIX;
+use perigrain_base::par::{self, Shared};
+
+/// What energies need besides a record.
+struct Energies<'a> {
+    list: &'a ListBody,
+    rules: &'a Rules,
+    acting: &'a Acting<'a>,
+    angles: &'a [f64],
+    /// Forces are at the places of the last step that advanced as well.
+    advanced: bool,
+    newton: bool,
+    /// See [`shares`].
+    own: bool,
+    half: f64,
+}
+
+/// Adds energy and virial of the list's bonds as they were during the force evaluation, which has `advanced` bonds or not.
+pub fn tally<K: RowKernels>(
+    families: &mut Families,
+    t: &mut PeriTally,
+    (advanced, period): (bool, [f64; 3]),
+) {
+    let (law, options, n) = (&families.law, &families.options, families.list.record.len());
+    let (kind, compat) = (law.kind, options.compat_lammps);
+    let rules = Rules::new(period, options, law);
+    let list = &families.list;
+    let columns = if kind.has_states() { columns_of(kind, compat) } else { 0 };
+    let ends = in_rows(&list.state, n, columns);
+    let angles = if kind.bond_based() { vec![] } else { angles(list) };
+    let now = Moment { held: list.state.held, ..moment(law, false) };
+    // Nothing is written: `keep` is not set.
+    let memory = list.state.remembered().as_ptr().cast_mut();
+    let acting = Acting { ends: &ends, memory, known: kind.memory() > 0, keep: false, moment: now };
+    let (own, half) = shares(kind, compat);
+    let newton = options.unit == ForceUnit::Newton;
+    let e = Energies { list, rules: &rules, acting: &acting, angles: &angles, advanced, newton, own, half };
+    let rows = &mut families.scratch.rows;
+    match kind {
+        LawKind::Pmb => e.tally::<K, Pmb>(rows, t),
+        _ => of_law!(kind, compat, W => e.tally::<K, W>(rows, t)),
+    }
+}
+
+/// θ of each record and its unrelaxed part, in rows of four.
+fn angles(list: &ListBody) -> Vec<f64> {
+    let state = &list.state;
+    let both = state.theta.iter().zip(&state.unrelaxed).zip(&state.before);
+    both.flat_map(|((theta, unrelaxed), before)| [*theta, unrelaxed + (theta - before), 0.0, 0.0]).collect()
+}
+
+impl Energies<'_> {
+    fn tally<K: RowKernels, W: BondLaw>(&self, rows: &mut Vec<Sums>, t: &mut PeriTally) {
+        let n = self.list.record.len();
+        if t.per_atom() {
+            let b = &mut Block::new();
+            (0..n).for_each(|i| self.record::<K, W>(i, b, t));
+            return;
+        }
+        rows.clear();
+        rows.resize(n.div_ceil(ROWS), [0.0; 7]);
+        let shared = Shared::new(rows);
+        par::for_rows(n.div_ceil(ROWS), |part| {
+            let (b, mut sum) = (&mut Block::new(), PeriTally::default());
+            for i in part * ROWS..n.min((part + 1) * ROWS) {
+                self.record::<K, W>(i, b, &mut sum);
+            }
+            let v = sum.virial;
+            // SAFETY: each part has its own sum.
+            unsafe { shared.get(part..part + 1)[0] = [sum.energy, v[0], v[1], v[2], v[3], v[4], v[5]] };
+        });
+        collect(rows, t);
+    }
+
+    /// Adds a record's own bonds.
+    fn record<K: RowKernels, W: BondLaw>(&self, i: usize, b: &mut Block, t: &mut PeriTally) {
+        let list = self.list;
+        let row = Row { body: list, i, first: 0, rules: self.rules };
+        let volume = list.record[i].volume;
+        let shear = |record: usize| {
+            let stride = Acting::stride(W::COLUMNS);
+            if self.own { self.acting.ends[stride * record + 1] } else { 1.0 }
+        };
+        let (own_share, mut own_energy) = (self.half * shear(i), 0.0);
+        let mut virial = [0.0; 6];
+        for groups in row.blocks() {
+            let first = GROUP * groups.start;
+            // SAFETY: the kernels are those that the processor has.
+            unsafe {
+                if W::BACK && !self.advanced {
+                    row.take::<K, true>(groups.clone(), b);
+                }
+                row.take::<K, false>(groups, b);
+                if W::BACK && self.advanced {
+                    b.before = b.z;
+                }
+                K::energies::<W>(&row, self.acting, self.angles, first, b);
+            }
+            for at in (0..b.count).filter(|&at| b.weight[at] != 0.0) {
+                let j = list.partner[first + at] as usize;
+                let (near, far) = match self.newton {
+                    true => (volume * b.volume[at], volume * b.volume[at]),
+                    false => (b.volume[at], volume),
+                };
+                let near = own_share * b.out[0][at] * near;
+                let far = self.half * shear(j) * b.out[1][at] * far;
+                own_energy += near;
+                t.energy += near + far;
+                // Force density times the one volume of the virial, or the force itself: V_i V_j either way.
+                let pull = -b.out[2][at] * volume * b.volume[at];
+                let y = [b.y[0][at], b.y[1][at], b.y[2][at]];
+                let products = SIX.map(|(c, d)| pull * y[c] * y[d]);
+                virial.iter_mut().zip(products).for_each(|(v, p)| *v += p);
+                if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
+                    atoms[list.particle[j] as usize] += far;
+                }
+                if let Some(atoms) = t.per_atom_virial.as_deref_mut() {
+                    for record in [i, j] {
+                        let own = &mut atoms[list.particle[record] as usize];
+                        own.iter_mut().zip(products).for_each(|(v, p)| *v += 0.5 * p);
+                    }
+                }
+            }
+        }
+        t.virial.iter_mut().zip(virial).for_each(|(v, own)| *v += own);
+        if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
+            atoms[list.particle[i] as usize] += own_energy;
+        }
+    }
+}

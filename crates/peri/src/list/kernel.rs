@@ -1,0 +1,436 @@
+//! Bonds of a record in lanes, whatever their law: gathered, stretched, and what they give handed to the other ends.
+//!
+//! A record's bonds are taken [`MOST`] at a time, in steps that leave their results in a [`Block`]: the processor then has
+//! many independent bonds to work on, polynomials are chosen once for all of them, and a law is a short loop of its own.
+
+use std::ops::Range;
+use std::ptr::{null, null_mut};
+
+use super::super::chunk::{Plain, Wide, Widest};
+use super::super::lanes::{Avx2, Lanes, Portable};
+use super::super::lanes512::Avx512;
+use super::super::pmb::{SERIES, UP_TO_3, UP_TO_5, UP_TO_7};
+use super::super::rows::{self, Rows};
+use super::super::state::law::{BondLaw, closed};
+use super::super::state::tables::STRETCH;
+use super::super::state::terms::Term;
+use super::super::wide::{self, FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
+use super::laws::{self, Acting};
+use crate::families::list::{GROUP, ListBody};
+use crate::families::{FamilyOptions, Influence, Law};
+
+/// An expression for each partner that there is a lane for, else `$none`; see `chunk::xyz` for why this is no
+/// closure.
+macro_rules! partners {
+    ($lanes:ty, $none:expr, |$k:ident| $e:expr) => {
+        [
+            partners!(@ $lanes, $none, 0, $k, $e),
+            partners!(@ $lanes, $none, 1, $k, $e),
+            partners!(@ $lanes, $none, 2, $k, $e),
+            partners!(@ $lanes, $none, 3, $k, $e),
+            partners!(@ $lanes, $none, 4, $k, $e),
+            partners!(@ $lanes, $none, 5, $k, $e),
+            partners!(@ $lanes, $none, 6, $k, $e),
+            partners!(@ $lanes, $none, 7, $k, $e),
+        ]
+    };
+    (@ $lanes:ty, $none:expr, $n:literal, $k:ident, $e:expr) => {
+        if $n < <$lanes>::WIDTH {
+            let $k = $n as usize;
+            $e
+        } else {
+            $none
+        }
+    };
+}
+pub(super) use partners;
+
+/// So many bonds are in hand at once.
+pub const MOST: usize = 64;
+
+/// Bonds in hand: columns of which the first `count` places are in use.
+#[repr(C, align(64))]
+pub struct Block {
+    /// Places in use, with those where no bond lives.
+    pub count: usize,
+    /// z = |y|²/|xi|² − 1; 0 inside the dead band, and where no bond lives.
+    pub z: [f64; MOST],
+    /// The same at the last step that advanced.
+    pub before: [f64; MOST],
+    /// s.
+    pub s: [f64; MOST],
+    /// s/(1 + s).
+    pub share: [f64; MOST],
+    /// y = xi + eta.
+    pub y: [[f64; MOST]; 3],
+    /// |xi|².
+    pub square: [f64; MOST],
+    /// ω, or the stretch at which bonds flow.
+    pub omega: [f64; MOST],
+    /// ω w, of microelastic bonds c w/|xi|; 0 where no bond lives.
+    pub weight: [f64; MOST],
+    /// The partner's volume.
+    pub volume: [f64; MOST],
+    /// What comes out.
+    pub out: [[f64; MOST]; 3],
+    /// Places of partners in the window.
+    pub target: [u32; MOST],
+    /// The largest z, or 0.
+    pub high: f64,
+    /// The smallest z, or 0.
+    pub low: f64,
+}
+
+impl Block {
+    /// Nothing in hand.
+    pub fn new() -> Self {
+        let none = [0.0; MOST];
+        Self {
+            count: 0,
+            z: none,
+            before: none,
+            s: none,
+            share: none,
+            y: [none; 3],
+            square: none,
+            omega: none,
+            weight: none,
+            volume: none,
+            out: [none; 3],
+            target: [0; MOST],
+            high: 0.0,
+            low: 0.0,
+        }
+    }
+}
+
+/// What is the same for all bonds.
+#[derive(Clone, Copy)]
+pub struct Rules {
+    /// Periods of the box; infinite where it is open.
+    pub period: [f64; 3],
+    /// |z| below which there is no force: the first number plus the second over |xi|.
+    dead: [f64; 2],
+    influence: Influence,
+    /// Bonds are microelastic and count c times their shape over |xi|.
+    microelastic: bool,
+}
+
+impl Rules {
+    /// Those of a scene.
+    pub fn new(period: [f64; 3], options: &FamilyOptions, law: &Law) -> Self {
+        let band = options.dead_band(1.0);
+        let dead = if options.compat_lammps { [0.0, band] } else { [band, 0.0] };
+        Self { period, dead, influence: law.influence, microelastic: law.kind.bond_based() }
+    }
+}
+
+/// A record's own bonds, as kernels see them.
+#[derive(Clone, Copy)]
+pub struct Row<'a> {
+    /// The bonds.
+    pub body: &'a ListBody,
+    /// The record.
+    pub i: usize,
+    /// Records before this one come after all others: they close a ring.
+    pub first: usize,
+    /// See [`Rules`].
+    pub rules: &'a Rules,
+}
+
+impl Row<'_> {
+    /// The record's groups, a block at a time.
+    pub fn blocks(&self) -> impl Iterator<Item = Range<usize>> + use<> {
+        let [start, end] = [self.i, self.i + 1].map(|i| self.body.start[i] as usize);
+        (start..end).step_by(MOST / GROUP).map(move |first| first..end.min(first + MOST / GROUP))
+    }
+
+    /// Takes some groups in hand; with `LAST` only the z of the last step that advanced.
+    ///
+    /// # Safety
+    /// The processor must have what `K` needs.
+    #[inline]
+    pub unsafe fn take<K: RowKernels, const LAST: bool>(&self, groups: Range<usize>, b: &mut Block) {
+        // SAFETY: passed on to the caller.
+        unsafe {
+            match self.rules.period.iter().any(|p| p.is_finite()) {
+                false => K::shapes::<false, LAST>(self, groups, b),
+                true => K::shapes::<true, LAST>(self, groups, b),
+            }
+        }
+    }
+}
+
+#[inline(always)]
+unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(
+    row: &Row,
+    groups: Range<usize>,
+    b: &mut Block,
+) {
+    // SAFETY: groups, records and pairs are those of the body, blocks of no more than `MOST` bonds.
+    unsafe {
+        let (body, rules) = (row.body, row.rules);
+        let (record, last) = (body.record.as_ptr(), body.last.as_ptr());
+        let own = &*record.add(row.i);
+        let [x, u] = [own.reference, if LAST { *last.add(row.i) } else { own.u }];
+        let [x, u] = [x, u].map(|a| [L::splat(a[0]), L::splat(a[1]), L::splat(a[2])]);
+        let pairs = body.pairs.as_ptr().add(usize::from(*body.kind.get_unchecked(row.i)) * body.kinds.len());
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let dead = rules.dead.map(|a| L::splat(a));
+        let (mut high, mut low) = (zero, zero);
+        let start = groups.start;
+        b.count = GROUP * groups.len();
+        for group in groups {
+            let pair = &*pairs.add(usize::from(*body.group_kind.get_unchecked(group)));
+            let bits = *body.alive.get_unchecked(group);
+            let mut v = 0;
+            while v < GROUP {
+                let at = GROUP * (group - start) + v;
+                let place = GROUP * group + v;
+                let partner = body.partner.as_ptr().add(place);
+                let rows = partners!(L, null(), |k| record.add(*partner.add(k) as usize).cast::<f64>());
+                let [xj, yj, zj, volume] = L::quads(&rows);
+                let to = if LAST {
+                    let u = |d: usize| partners!(L, 0.0, |k| (*last.add(*partner.add(k) as usize))[d]);
+                    let [x, y, z] = [u(0), u(1), u(2)];
+                    [L::load(x.as_ptr()), L::load(y.as_ptr()), L::load(z.as_ptr())]
+                } else {
+                    let rows = partners!(L, null(), |k| rows[k].add(4));
+                    let [u, v, w, _] = L::quads(&rows);
+                    [u, v, w]
+                };
+                let mut xi = [xj.sub(x[0]), yj.sub(x[1]), zj.sub(x[2])];
+                if PERIODIC {
+                    xi[0] = nearest(xi[0], rules.period[0]);
+                    xi[1] = nearest(xi[1], rules.period[1]);
+                    xi[2] = nearest(xi[2], rules.period[2]);
+                }
+                let eta = [to[0].sub(u[0]), to[1].sub(u[1]), to[2].sub(u[2])];
+                let y = [xi[0].add(eta[0]), xi[1].add(eta[1]), xi[2].add(eta[2])];
+                let square = xi[0].fma(xi[0], xi[1].fma(xi[1], xi[2].mul(xi[2])));
+                let q = eta[1].fma(y[1].add(xi[1]), eta[2].mul(y[2].add(xi[2])));
+                let q = eta[0].fma(y[0].add(xi[0]), q);
+                let (inverse_square, length) = (one.div(square), square.sqrt());
+                let inverse = length.mul(inverse_square);
+                let alive = L::mask(bits >> v);
+                let z = q.mul(inverse_square);
+                let z = z.keep(z.abs().ge(inverse.fma(dead[1], dead[0]))).keep(alive);
+                v += L::WIDTH;
+                if LAST {
+                    z.store(b.before.as_mut_ptr().add(at));
+                    continue;
+                }
+                (high, low) = (z.max(high), z.min(low));
+                let weight = L::splat(pair.weight[1]).fnma(length, L::splat(pair.weight[0])).min(one);
+                let shape = match rules.influence {
+                    Influence::Inverse => inverse,
+                    Influence::One => one,
+                    Influence::Gaussian => L::load(body.influence.as_ptr().add(place)),
+                };
+                let (omega, weight) = if rules.microelastic {
+                    (L::splat(pair.yields), L::splat(pair.shape).mul(shape).mul(weight).mul(inverse))
+                } else {
+                    (shape, shape.mul(weight))
+                };
+                z.store(b.z.as_mut_ptr().add(at));
+                y[0].store(b.y[0].as_mut_ptr().add(at));
+                y[1].store(b.y[1].as_mut_ptr().add(at));
+                y[2].store(b.y[2].as_mut_ptr().add(at));
+                square.store(b.square.as_mut_ptr().add(at));
+                omega.keep(alive).store(b.omega.as_mut_ptr().add(at));
+                weight.keep(alive).store(b.weight.as_mut_ptr().add(at));
+                volume.store(b.volume.as_mut_ptr().add(at));
+            }
+            let target = b.target.as_mut_ptr().add(GROUP * (group - start));
+            body.partner.as_ptr().add(GROUP * group).copy_to_nonoverlapping(target, GROUP);
+        }
+        let mut ends = [[0.0f64; rows::MOST]; 2];
+        high.store(ends[0].as_mut_ptr());
+        low.store(ends[1].as_mut_ptr());
+        (b.high, b.low) = (ends[0].into_iter().fold(0.0, f64::max), ends[1].into_iter().fold(0.0, f64::min));
+        if row.first > 0 {
+            for target in &mut b.target[..b.count] {
+                if (*target as usize) < row.first {
+                    *target += body.record.len() as u32;
+                }
+            }
+        }
+    }
+}
+
+/// The shortest image of a difference.
+#[inline(always)]
+unsafe fn nearest<L: Lanes>(d: L, period: f64) -> L {
+    // SAFETY: passed on to the caller.
+    unsafe {
+        let half = L::splat(0.5 * period);
+        let full = L::splat(period);
+        let d = d.sub(full.keep(d.ge(half)));
+        d.add(full.keep(L::splat(0.0).sub(half).ge(d)))
+    }
+}
+
+/// Fills in s/(1 + s), or s with `S`, by the cheapest way that is exact for all bonds in hand.
+#[inline(always)]
+pub unsafe fn stretch<L: Lanes, const S: bool>(b: &mut Block) {
+    // SAFETY: columns hold `count` numbers, a multiple of the lanes.
+    unsafe {
+        let (z, count) = (b.z.as_ptr(), b.count);
+        let out = if S { b.s.as_mut_ptr() } else { b.share.as_mut_ptr() };
+        macro_rules! fill {
+            (|$z:ident| $e:expr) => {{
+                let mut at = 0;
+                while at < count {
+                    let $z = L::load(z.add(at));
+                    $e.store(out.add(at));
+                    at += L::WIDTH;
+                }
+            }};
+        }
+        macro_rules! series {
+            ($terms:literal) => {{
+                let terms = if S { &STRETCH } else { &SERIES };
+                fill!(|z| z.mul(wide::polynomial::<L, $terms>(z, terms.first_chunk().unwrap_unchecked())))
+            }};
+        }
+        macro_rules! far {
+            ($degree:expr) => {
+                fill!(|z| z.mul(if S {
+                    wide::stretch::<L, $degree>(z)
+                } else {
+                    wide::share::<L, $degree>(z)
+                }))
+            };
+        }
+        match b.high.max(-b.low) {
+            size if size < UP_TO_3 => series!(4),
+            size if size < UP_TO_5 => series!(6),
+            size if size < UP_TO_7 => series!(8),
+            size if size < UP_TO_FAR => far!(FAR),
+            size if size < UP_TO_FARTHEST => far!(FARTHEST),
+            _ if S => fill!(|z| closed(z).s),
+            _ => fill!(|z| closed(z).share),
+        }
+    }
+}
+
+/// Subtracts what comes out from the window's rows of four, which begin at `force`.
+#[inline(always)]
+pub unsafe fn scatter<L: Rows>(b: &Block, force: *mut f64) {
+    // SAFETY: partners lie in the window by the caller's promise.
+    unsafe {
+        let mut at = 0;
+        while at < b.count {
+            let target = b.target.as_ptr().add(at);
+            let rows = partners!(L, null_mut(), |k| force.wrapping_add(4 * *target.add(k) as usize));
+            let out = [
+                L::load(b.out[0].as_ptr().add(at)),
+                L::load(b.out[1].as_ptr().add(at)),
+                L::load(b.out[2].as_ptr().add(at)),
+            ];
+            L::subtract_transposed(out, &rows);
+            at += L::WIDTH;
+        }
+    }
+}
+
+/// The kernels of one instruction set. `groups` are groups of the row, one block's.
+///
+/// # Safety
+/// The processor must have the instruction set. Every partner must lie in the window, untouched by others.
+pub trait RowKernels: Sync {
+    /// See [`Row::take`].
+    #[allow(clippy::missing_safety_doc)] // above
+    unsafe fn shapes<const PERIODIC: bool, const LAST: bool>(row: &Row, groups: Range<usize>, b: &mut Block);
+    /// See [`laws::pull`].
+    #[allow(clippy::missing_safety_doc)] // above
+    unsafe fn pull<W: BondLaw>(row: &Row, a: &Acting, first: usize, b: &mut Block, force: *mut f64) -> bool;
+    /// See [`laws::add_up`].
+    #[allow(clippy::missing_safety_doc)] // above
+    unsafe fn add_up<T: Term>(row: &Row, a: &Acting, first: usize, b: &mut Block, sums: *mut f64);
+    /// See [`laws::energies`].
+    #[allow(clippy::missing_safety_doc)] // above
+    unsafe fn energies<W: BondLaw>(row: &Row, a: &Acting, angles: &[f64], first: usize, b: &mut Block);
+}
+
+/// Kernels of one instruction set from those for its lanes.
+macro_rules! compiled_for {
+    ($kernels:ty, $lanes:ty $(, $features:literal)?) => {
+        impl RowKernels for $kernels {
+            unsafe fn shapes<const PERIODIC: bool, const LAST: bool>(
+                row: &Row,
+                groups: Range<usize>,
+                b: &mut Block,
+            ) {
+                $(#[target_feature(enable = $features)])?
+                unsafe fn inner<const PERIODIC: bool, const LAST: bool>(
+                    row: &Row,
+                    groups: Range<usize>,
+                    b: &mut Block,
+                ) {
+                    // SAFETY: the caller's promise.
+                    unsafe { shapes::<$lanes, PERIODIC, LAST>(row, groups, b) }
+                }
+                // SAFETY: the caller's promise includes the instruction set.
+                unsafe { inner::<PERIODIC, LAST>(row, groups, b) }
+            }
+            unsafe fn pull<W: BondLaw>(
+                row: &Row,
+                a: &Acting,
+                first: usize,
+                b: &mut Block,
+                force: *mut f64,
+            ) -> bool {
+                $(#[target_feature(enable = $features)])?
+                unsafe fn inner<W: BondLaw>(
+                    row: &Row,
+                    a: &Acting,
+                    first: usize,
+                    b: &mut Block,
+                    force: *mut f64,
+                ) -> bool {
+                    // SAFETY: the caller's promise.
+                    unsafe { laws::pull::<$lanes, W>(row, a, first, b, force) }
+                }
+                // SAFETY: the caller's promise includes the instruction set.
+                unsafe { inner::<W>(row, a, first, b, force) }
+            }
+            unsafe fn add_up<T: Term>(row: &Row, a: &Acting, first: usize, b: &mut Block, sums: *mut f64) {
+                $(#[target_feature(enable = $features)])?
+                unsafe fn inner<T: Term>(row: &Row, a: &Acting, first: usize, b: &mut Block, sums: *mut f64) {
+                    // SAFETY: the caller's promise.
+                    unsafe { laws::add_up::<$lanes, T>(row, a, first, b, sums) }
+                }
+                // SAFETY: the caller's promise includes the instruction set.
+                unsafe { inner::<T>(row, a, first, b, sums) }
+            }
+            unsafe fn energies<W: BondLaw>(
+                row: &Row,
+                a: &Acting,
+                angles: &[f64],
+                first: usize,
+                b: &mut Block,
+            ) {
+                $(#[target_feature(enable = $features)])?
+                unsafe fn inner<W: BondLaw>(
+                    row: &Row,
+                    a: &Acting,
+                    angles: &[f64],
+                    first: usize,
+                    b: &mut Block,
+                ) {
+                    // SAFETY: the caller's promise.
+                    unsafe { laws::energies::<$lanes, W>(row, a, angles, first, b) }
+                }
+                // SAFETY: the caller's promise includes the instruction set.
+                unsafe { inner::<W>(row, a, angles, first, b) }
+            }
+        }
+    };
+}
+
+compiled_for!(Plain, Portable);
+#[cfg(target_arch = "x86_64")]
+compiled_for!(Wide, Avx2, "avx2,fma");
+#[cfg(target_arch = "x86_64")]
+compiled_for!(Widest, Avx512, "avx512f,avx512dq,avx512vl,avx2,fma");

@@ -1,0 +1,287 @@
+//! Bond laws over the bonds in hand: forces, sums of both ends, energies.
+
+use super::super::lanes::Lanes;
+use super::super::rows::Rows;
+use super::super::state::law::{Angles, BondLaw, Ends, Moment, Stretch, closed};
+use super::super::state::terms::Term;
+use super::kernel::{Block, Row, partners, scatter, stretch};
+use crate::families::law::COLUMNS;
+use crate::families::list::GROUP;
+use std::ptr::null;
+
+/// What laws need besides the bonds in hand.
+pub struct Acting<'a> {
+    /// What ends have: [`Acting::stride`] numbers for each record.
+    pub ends: &'a [f64],
+    /// Memory of all bonds; see [`crate::families::list::ListBody::state`].
+    pub memory: *mut f64,
+    /// Whether the bonds of this record remember anything but zeros.
+    pub known: bool,
+    /// Bonds remember from now on what they have come to.
+    pub keep: bool,
+    /// What is the same for all bonds.
+    pub moment: Moment,
+}
+
+// SAFETY: memory is reached by kernels only, whose callers promise that a bond is in the hands of one thread.
+unsafe impl Sync for Acting<'_> {}
+
+impl Acting<'_> {
+    /// How many numbers each end has for a law of so many columns.
+    pub fn stride(columns: usize) -> usize {
+        columns.next_multiple_of(4)
+    }
+}
+
+/// The first `count` numbers of the ends of some bonds, of which each record has them in a row.
+#[inline(always)]
+unsafe fn far<L: Rows>(ends: &[f64], count: usize, target: *const u32) -> [L; COLUMNS] {
+    // SAFETY: partners are records, and rows are filled up to four numbers.
+    unsafe {
+        let mut columns = [L::splat(0.0); COLUMNS];
+        let stride = Acting::stride(count);
+        let mut first = 0;
+        while first < count {
+            let ends = ends.as_ptr().add(first);
+            let rows = partners!(L, null(), |k| ends.add(stride * *target.add(k) as usize));
+            let four = L::quads(&rows);
+            let mut k = first;
+            while k < count && k < first + 4 {
+                columns[k] = four[k - first];
+                k += 1;
+            }
+            first += 4;
+        }
+        columns
+    }
+}
+
+/// The same of the record itself, in all lanes.
+#[inline(always)]
+unsafe fn near<L: Lanes>(ends: &[f64], count: usize, record: usize) -> [L; COLUMNS] {
+    // SAFETY: passed on to the caller.
+    unsafe {
+        let mut columns = [L::splat(0.0); COLUMNS];
+        let mut k = 0;
+        while k < count {
+            columns[k] = L::splat(*ends.get_unchecked(Acting::stride(count) * record + k));
+            k += 1;
+        }
+        columns
+    }
+}
+
+/// Where number `k` of `numbers` is that the bonds at a place remember.
+#[inline(always)]
+fn memory(a: &Acting, place: usize, numbers: usize, k: usize) -> *mut f64 {
+    a.memory.wrapping_add((place / GROUP * numbers + k) * GROUP + place % GROUP)
+}
+
+#[inline(always)]
+unsafe fn recall<L: Lanes>(a: &Acting, place: usize, numbers: usize) -> [L; 2] {
+    // SAFETY: places are those of bonds, each with `numbers` numbers.
+    unsafe {
+        let mut out = [L::splat(0.0); 2];
+        if a.known {
+            let mut k = 0;
+            while k < numbers {
+                out[k] = L::load(memory(a, place, numbers, k));
+                k += 1;
+            }
+        }
+        out
+    }
+}
+
+/// The stretch of some of the bonds in hand.
+#[inline(always)]
+unsafe fn stretched<L: Lanes>(b: &Block, at: usize, s: bool, back: bool) -> Stretch<L> {
+    // SAFETY: columns hold numbers at `at` and beyond.
+    unsafe {
+        let share = L::load(b.share.as_ptr().add(at));
+        let s = if s { L::load(b.s.as_ptr().add(at)) } else { share };
+        let before = if back { closed(L::load(b.before.as_ptr().add(at))).s } else { s };
+        Stretch { s, share, inverse: L::splat(1.0).sub(share), before }
+    }
+}
+
+/// Sums of eight lanes, in the same order whatever their width.
+#[derive(Clone, Copy)]
+struct Sum<L>([L; 2]);
+
+impl<L: Lanes> Sum<L> {
+    #[inline(always)]
+    unsafe fn none() -> Self {
+        // SAFETY: passed on to the caller.
+        Self([unsafe { L::splat(0.0) }; 2])
+    }
+
+    /// Adds `a b` of the bonds at a place.
+    #[inline(always)]
+    unsafe fn add(&mut self, at: usize, a: L, b: L) {
+        // SAFETY: passed on to the caller.
+        unsafe {
+            let half = at % GROUP / L::WIDTH;
+            self.0[half] = a.fma(b, self.0[half]);
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn total(&self) -> f64 {
+        // SAFETY: lanes fill eight places, or four each.
+        unsafe {
+            let mut f = [0.0; GROUP];
+            self.0[0].store(f.as_mut_ptr());
+            if L::WIDTH < GROUP {
+                self.0[1].store(f.as_mut_ptr().add(L::WIDTH));
+            }
+            let four = [f[0] + f[4], f[1] + f[5], f[2] + f[6], f[3] + f[7]];
+            (four[0] + four[1]) + (four[2] + four[3])
+        }
+    }
+}
+
+/// Adds the forces of the bonds in hand, the first of which is at the place `first` of all bonds, times the volumes of both
+/// ends; true if bonds remember something that had nothing to remember before.
+///
+/// # Safety
+/// Every partner must lie in the window of rows of four at `force`, untouched by others; the processor must have what `L`
+/// needs.
+#[inline(always)]
+pub unsafe fn pull<L: Rows, W: BondLaw>(
+    row: &Row,
+    a: &Acting,
+    first: usize,
+    b: &mut Block,
+    force: *mut f64,
+) -> bool {
+    // SAFETY: the caller's promise.
+    unsafe {
+        stretch::<L, false>(b);
+        if W::STRETCHED {
+            stretch::<L, true>(b);
+        }
+        let partner = row.body.partner.as_ptr().add(first);
+        let volume = L::splat(row.body.record.get_unchecked(row.i).volume);
+        let own = near::<L>(a.ends, W::COLUMNS, row.i);
+        let mut sum = [Sum::<L>::none(); 3];
+        let mut woken = false;
+        let mut at = 0;
+        while at < b.count {
+            let s = stretched::<L>(b, at, W::STRETCHED, W::BACK);
+            let ends: Ends<L> = [own, far(a.ends, W::COLUMNS, partner.add(at))];
+            let before = recall::<L>(a, first + at, W::MEMORY);
+            let mut now = before;
+            let omega = L::load(b.omega.as_ptr().add(at));
+            let (near, far) = W::pull(&s, omega, &ends, &mut now, &a.moment);
+            if W::MEMORY > 0 && a.keep && (a.known || W::flows(&ends).bits() != 0) {
+                woken = true;
+                let bits = *row.body.alive.get_unchecked((first + at) / GROUP) >> (at % GROUP);
+                let (alive, dead) = (L::mask(bits), L::mask(!bits));
+                let mut k = 0;
+                while k < W::MEMORY {
+                    let now = now[k].keep(alive).add(before[k].keep(dead));
+                    now.store(memory(a, first + at, W::MEMORY, k));
+                    k += 1;
+                }
+            }
+            let weight = L::load(b.weight.as_ptr().add(at));
+            let factor = weight.mul(volume.mul(L::load(b.volume.as_ptr().add(at))));
+            let (near, far) = (near.mul(factor), far.mul(factor));
+            let mut d = 0;
+            while d < 3 {
+                let y = L::load(b.y[d].as_ptr().add(at));
+                sum[d].add(at, near, y);
+                far.mul(y).store(b.out[d].as_mut_ptr().add(at));
+                d += 1;
+            }
+            at += L::WIDTH;
+        }
+        scatter::<L>(b, force);
+        let own = force.wrapping_add(4 * row.i);
+        *own += sum[0].total();
+        *own.add(1) += sum[1].total();
+        *own.add(2) += sum[2].total();
+        woken
+    }
+}
+
+/// Adds a term of the bonds in hand to the sums of both ends.
+///
+/// # Safety
+/// As for [`pull`], with one number of each record at `sums`.
+#[inline(always)]
+pub unsafe fn add_up<L: Rows, T: Term>(row: &Row, a: &Acting, first: usize, b: &mut Block, sums: *mut f64) {
+    // SAFETY: the caller's promise.
+    unsafe {
+        stretch::<L, true>(b);
+        let partner = row.body.partner.as_ptr().add(first);
+        let volume = L::splat(row.body.record.get_unchecked(row.i).volume);
+        let own = near::<L>(a.ends, T::COLUMNS, row.i);
+        let mut sum = Sum::<L>::none();
+        let mut at = 0;
+        while at < b.count {
+            let s = L::load(b.s.as_ptr().add(at));
+            let s = Stretch { s, share: s, inverse: s, before: s };
+            let ends: Ends<L> = [own, far(a.ends, T::COLUMNS, partner.add(at))];
+            let memory = recall::<L>(a, first + at, T::MEMORY);
+            let (near, far) = T::terms(&s, L::load(b.omega.as_ptr().add(at)), &ends, &memory);
+            let one = L::load(b.weight.as_ptr().add(at)).mul(L::load(b.square.as_ptr().add(at)));
+            sum.add(at, one.mul(L::load(b.volume.as_ptr().add(at))), near);
+            one.mul(volume).mul(far).store(b.out[0].as_mut_ptr().add(at));
+            at += L::WIDTH;
+        }
+        for (target, out) in b.target[..b.count].iter().zip(&b.out[0]) {
+            *sums.wrapping_add(*target as usize) += out;
+        }
+        *sums.wrapping_add(row.i) += sum.total();
+    }
+}
+
+/// Finds what [`BondLaw::squares`] of both ends weigh, ω w |xi|² times squares, and the pull along y over both volumes: the
+/// columns of what comes out. `angles`: θ and its unrelaxed part of each record, in rows of four.
+///
+/// # Safety
+/// The processor must have what `L` needs.
+#[inline(always)]
+pub unsafe fn energies<L: Rows, W: BondLaw>(
+    row: &Row,
+    a: &Acting,
+    angles: &[f64],
+    first: usize,
+    b: &mut Block,
+) {
+    // SAFETY: the caller's promise.
+    unsafe {
+        stretch::<L, false>(b);
+        stretch::<L, true>(b);
+        let partner = row.body.partner.as_ptr().add(first);
+        let own = near::<L>(a.ends, W::COLUMNS, row.i);
+        let turned = if angles.is_empty() { 0 } else { 2 };
+        let own_angles = near::<L>(angles, turned, row.i);
+        let mut at = 0;
+        while at < b.count {
+            let s = stretched::<L>(b, at, true, W::BACK);
+            let ends: Ends<L> = [own, far(a.ends, W::COLUMNS, partner.add(at))];
+            let other = far::<L>(angles, turned, partner.add(at));
+            let angles = [
+                Angles {
+                    now: own_angles[0],
+                    unrelaxed: own_angles[1],
+                    relaxing: W::relaxing(&ends[0], &a.moment),
+                },
+                Angles { now: other[0], unrelaxed: other[1], relaxing: W::relaxing(&ends[1], &a.moment) },
+            ];
+            let mut memory = recall::<L>(a, first + at, W::MEMORY);
+            let omega = L::load(b.omega.as_ptr().add(at));
+            let weight = L::load(b.weight.as_ptr().add(at));
+            let one = weight.mul(L::load(b.square.as_ptr().add(at)));
+            let squares = W::squares(&s, omega, &angles, &memory, &a.moment);
+            let (near, far) = W::pull(&s, omega, &ends, &mut memory, &a.moment);
+            squares.0.mul(one).store(b.out[0].as_mut_ptr().add(at));
+            squares.1.mul(one).store(b.out[1].as_mut_ptr().add(at));
+            near.add(far).mul(weight).mul(L::splat(0.5)).store(b.out[2].as_mut_ptr().add(at));
+            at += L::WIDTH;
+        }
+    }
+}
