@@ -12,11 +12,12 @@ pub trait Rows: Lanes {
     /// # Safety
     /// Each pointer must be readable for four numbers.
     unsafe fn quads(rows: &[*const f64; MOST]) -> [Self; 4];
-    /// Subtracts three columns from the first three numbers of each row (and zero from the fourth).
+    /// Subtracts three columns from the first three numbers of each row; with `LEAST` the fourth column comes in place of
+    /// the fourth number where it is less, else it is zero.
     ///
     /// # Safety
-    /// Each pointer must be writable for four numbers, different rows apart unless lanes are zero.
-    unsafe fn subtract_transposed(columns: [Self; 3], rows: &[*mut f64; MOST]);
+    /// Each pointer must be writable for four numbers, different rows apart unless lanes change nothing.
+    unsafe fn hand_over<const LEAST: bool>(columns: [Self; 4], rows: &[*mut f64; MOST]);
 }
 
 impl Rows for Portable {
@@ -27,11 +28,13 @@ impl Rows for Portable {
         [0, 1, 2, 3].map(|k| Self([r[0][k], r[1][k], r[2][k], r[3][k]]))
     }
     #[inline(always)]
-    unsafe fn subtract_transposed(columns: [Self; 3], rows: &[*mut f64; MOST]) {
+    unsafe fn hand_over<const LEAST: bool>(columns: [Self; 4], rows: &[*mut f64; MOST]) {
         for lane in 0..Self::WIDTH {
-            for (k, column) in columns.iter().enumerate() {
-                // SAFETY: writable by the caller's promise.
-                unsafe { *rows[lane].add(k) -= column.0[lane] };
+            // SAFETY: writable by the caller's promise.
+            let row = unsafe { &mut *rows[lane].cast::<[f64; 4]>() };
+            (0..3).for_each(|k| row[k] -= columns[k].0[lane]);
+            if LEAST {
+                row[3] = row[3].min(columns[3].0[lane]);
             }
         }
     }
@@ -62,24 +65,30 @@ mod x86 {
             }
         }
         #[inline(always)]
-        unsafe fn subtract_transposed(columns: [Self; 3], rows: &[*mut f64; MOST]) {
+        unsafe fn hand_over<const LEAST: bool>(columns: [Self; 4], rows: &[*mut f64; MOST]) {
             unsafe {
-                let [x, y, z] = columns;
-                let zero = _mm256_setzero_pd();
+                let [x, y, z, m] = columns;
                 let (xy0, xy1) = (_mm256_unpacklo_pd(x.0, y.0), _mm256_unpackhi_pd(x.0, y.0));
-                let (z0, z1) = (_mm256_unpacklo_pd(z.0, zero), _mm256_unpackhi_pd(z.0, zero));
-                take(rows[0], _mm256_permute2f128_pd::<0x20>(xy0, z0));
-                take(rows[1], _mm256_permute2f128_pd::<0x20>(xy1, z1));
-                take(rows[2], _mm256_permute2f128_pd::<0x31>(xy0, z0));
-                take(rows[3], _mm256_permute2f128_pd::<0x31>(xy1, z1));
+                let (zm0, zm1) = (_mm256_unpacklo_pd(z.0, m.0), _mm256_unpackhi_pd(z.0, m.0));
+                take::<LEAST>(rows[0], _mm256_permute2f128_pd::<0x20>(xy0, zm0));
+                take::<LEAST>(rows[1], _mm256_permute2f128_pd::<0x20>(xy1, zm1));
+                take::<LEAST>(rows[2], _mm256_permute2f128_pd::<0x31>(xy0, zm0));
+                take::<LEAST>(rows[3], _mm256_permute2f128_pd::<0x31>(xy1, zm1));
             }
         }
     }
 
-    /// Subtracts from four numbers.
+    /// See [`Rows::hand_over`].
     #[inline(always)]
-    unsafe fn take(row: *mut f64, f: __m256d) {
-        unsafe { _mm256_storeu_pd(row, _mm256_sub_pd(_mm256_loadu_pd(row), f)) }
+    unsafe fn take<const LEAST: bool>(row: *mut f64, f: __m256d) {
+        unsafe {
+            let there = _mm256_loadu_pd(row);
+            let mut new = _mm256_sub_pd(there, f);
+            if LEAST {
+                new = _mm256_blend_pd::<0b1000>(new, _mm256_min_pd(there, f));
+            }
+            _mm256_storeu_pd(row, new);
+        }
     }
 
     // SAFETY (all blocks): the caller promises that the processor has AVX-512 F and DQ, and that pointers are good.
@@ -110,20 +119,19 @@ mod x86 {
             }
         }
         #[inline(always)]
-        unsafe fn subtract_transposed(columns: [Self; 3], rows: &[*mut f64; MOST]) {
+        unsafe fn hand_over<const LEAST: bool>(columns: [Self; 4], rows: &[*mut f64; MOST]) {
             unsafe {
-                let [x, y, z] = columns;
-                let zero = _mm512_setzero_pd();
+                let [x, y, z, m] = columns;
                 let (xy0, xy1) = (_mm512_unpacklo_pd(x.0, y.0), _mm512_unpackhi_pd(x.0, y.0));
-                let (z0, z1) = (_mm512_unpacklo_pd(z.0, zero), _mm512_unpackhi_pd(z.0, zero));
+                let (z0, z1) = (_mm512_unpacklo_pd(z.0, m.0), _mm512_unpackhi_pd(z.0, m.0));
                 // Pairs 0 and 1, or 2 and 3, of both: two rows.
                 let low = _mm512_set_epi64(11, 10, 3, 2, 9, 8, 1, 0);
                 let high = _mm512_set_epi64(15, 14, 7, 6, 13, 12, 5, 4);
                 macro_rules! two_rows {
                     ($first:literal, $second:literal, $order:expr, $xy:expr, $z:expr) => {
                         let both = _mm512_permutex2var_pd($xy, $order, $z);
-                        take(rows[$first], _mm512_castpd512_pd256(both));
-                        take(rows[$second], _mm512_extractf64x4_pd::<1>(both));
+                        take::<LEAST>(rows[$first], _mm512_castpd512_pd256(both));
+                        take::<LEAST>(rows[$second], _mm512_extractf64x4_pd::<1>(both));
                     };
                 }
                 two_rows!(0, 2, low, xy0, z0);
@@ -154,11 +162,15 @@ mod tests {
             }
             let start = forces.as_mut_ptr();
             let rows = std::array::from_fn(|r| start.add(r).cast::<f64>());
-            L::subtract_transposed([columns[0], columns[1], columns[3]], &rows);
-        }
-        for r in 0..L::WIDTH {
-            let [_, _, _, a, b, _, c, _] = records[r];
-            assert_eq!(forces[r], [1000.0 - a, 1000.0 - b, 1000.0 - c, 1000.0]);
+            L::hand_over::<true>([columns[0], columns[1], columns[3], columns[2]], &rows);
+            for (r, (force, record)) in forces.iter().zip(&records).enumerate().take(L::WIDTH) {
+                let [_, _, _, a, b, m, c, _] = *record;
+                assert_eq!(*force, [1000.0 - a, 1000.0 - b, 1000.0 - c, m], "{r}");
+            }
+            let columns = [columns[0], columns[1], columns[3], L::splat(0.0)];
+            L::hand_over::<false>(columns, &rows);
+            let [_, _, _, a, b, m, c, _] = records[L::WIDTH - 1];
+            assert_eq!(forces[L::WIDTH - 1], [1000.0 - 2.0 * a, 1000.0 - 2.0 * b, 1000.0 - 2.0 * c, m]);
         }
     }
 

@@ -125,6 +125,11 @@ impl Law {
         self.yields.get(place).copied().unwrap_or(f64::NEG_INFINITY)
     }
 
+    /// How bonds count for their length in forces: under the plain microelastic law all alike.
+    pub fn shape(&self) -> Influence {
+        if self.kind == LawKind::Pmb { Influence::One } else { self.influence }
+    }
+
     /// What a bond adds to both families' weights, over the partner's volume: of the weighted volume ω w |xi|², or where
     /// bonds are microelastic of Σ c w |xi| V/c, which a solid of the same modulus has as πδ⁴ (its energy at an even
     /// growth, 9/2 K ε² = ¼ ε² Σ c w |xi| V).

@@ -56,9 +56,16 @@ impl Judge {
         }
     }
 
-    /// The measure of a bond.
-    fn measure(&self, pair: &PairConstants, z: f64) -> f64 {
-        if self.critical { pair.alpha * stretch(z) - pair.s00 } else { z }
+    /// Puts measures in the place of the z of the bonds in hand, where they are not the same; the first is at place `first`.
+    #[inline]
+    pub fn measure(&self, row: &Row, first: usize, b: &mut Block) {
+        if !self.critical {
+            return;
+        }
+        for at in (0..b.count).filter(|&at| row.body.lives(first + at)) {
+            let pair = row.body.constants(first + at);
+            b.measure[at] = pair.alpha * stretch(b.measure[at]) - pair.s00;
+        }
     }
 
     /// Notes which of the bonds in hand may break; the first is at place `first`.
@@ -71,36 +78,19 @@ impl Judge {
         for (at, &z) in b.z[..b.count].iter().enumerate().filter(|(_, z)| **z >= self.floor) {
             let bond = first + at;
             let ends = [row.i, body.partner[bond] as usize];
-            if body.lives(bond) && !(self.known && stretch(z) <= self.limit(body, body.constants(bond), ends))
-            {
+            if body.lives(bond) && !(self.known && self.bears(body, body.constants(bond), ends, z)) {
                 strained.push((bond as u32, z));
             }
         }
     }
 
-    /// Puts the measures of the bonds in hand, of which these are the z, where they are the least of a family so far: the
-    /// fourth numbers of the window's rows at `force`.
-    ///
-    /// # Safety
-    /// Every partner must lie in the window, untouched by others.
-    #[inline]
-    pub unsafe fn keep(&self, row: &Row, first: usize, (z, target): (&[f64], &[u32]), force: *mut f64) {
-        let body = row.body;
-        let mut least = f64::INFINITY;
-        for (k, (z, target)) in z.chunks_exact(GROUP).zip(target.chunks_exact(GROUP)).enumerate() {
-            let group = first / GROUP + k;
-            let (bits, pair) = (body.alive[group], body.constants(first + GROUP * k));
-            for lane in 0..GROUP {
-                let measure = if bits >> lane & 1 == 1 { self.measure(pair, z[lane]) } else { f64::INFINITY };
-                least = least.min(measure);
-                // SAFETY: the caller's promise.
-                let there = unsafe { &mut *force.wrapping_add(4 * target[lane] as usize + 3) };
-                *there = there.min(measure);
-            }
-        }
-        // SAFETY: the caller's promise.
-        let there = unsafe { &mut *force.wrapping_add(4 * row.i + 3) };
-        *there = there.min(least);
+    /// Whether a bond of this z is sure to bear it: s ≤ z/2 for its own stretch and that of the measure, and rounding takes
+    /// far less than 1e-12.
+    fn bears(&self, body: &ListBody, pair: &PairConstants, ends: [usize; 2], z: f64) -> bool {
+        let least = &body.limits.least;
+        let most = if pair.alpha == 0.0 { 0.0 } else { f64::max(least[ends[0]], least[ends[1]]) };
+        let limit = if self.critical { -most } else { pair.s00 - 0.5 * pair.alpha * most };
+        0.5 * z < limit - 1e-12 * limit.abs()
     }
 }
 
@@ -193,16 +183,19 @@ fn least<K: RowKernels>(
     in_slabs(body, windows, |slab, window| {
         let (own, next) = reach_of(body, slab);
         clear(window, own.len() + next.len());
-        let force = window.force.as_mut_ptr().wrapping_sub(4 * own.start);
         let b = &mut Block::new();
         for i in own.clone() {
             let row = Row { body, i, first: ring_start(body, slab), rules };
             for groups in row.blocks() {
                 let first = GROUP * groups.start;
-                // SAFETY: the kernels are those that the processor has; bonds lead to this slab or the next.
-                unsafe {
-                    row.take::<K, true>(groups, b);
-                    judge.keep(&row, first, (&b.before[..b.count], &b.target[..b.count]), force);
+                // SAFETY: the kernels are those that the processor has.
+                unsafe { row.take::<K, true>(groups, b) };
+                judge.measure(&row, first, b);
+                for (measure, target) in b.measure[..b.count].iter().zip(&b.target) {
+                    for row in [i, *target as usize] {
+                        let least = &mut window.force[4 * (row - own.start) + 3];
+                        *least = least.min(*measure);
+                    }
                 }
             }
         }

@@ -42,7 +42,8 @@ pub fn tally<K: RowKernels>(
     let now = Moment { held: list.state.held, ..moment(law, false) };
     // Nothing is written: `keep` is not set.
     let memory = list.state.remembered().as_ptr().cast_mut();
-    let acting = Acting { ends: &ends, memory, known: kind.memory() > 0, keep: false, moment: now };
+    let acting =
+        Acting { ends: &ends, memory, known: kind.memory() > 0, keep: false, least: false, moment: now };
     let (own, half) = shares(kind, compat);
     let newton = options.unit == ForceUnit::Newton;
     let e = Energies { list, rules: &rules, acting: &acting, angles: &angles, advanced, newton, own, half };

@@ -6,8 +6,13 @@
 use std::ops::Range;
 use std::ptr::{null, null_mut};
 
-use super::super::chunk::{Plain, Wide, Widest};
-use super::super::lanes::{Avx2, Lanes, Portable};
+use super::super::chunk::Plain;
+#[cfg(target_arch = "x86_64")]
+use super::super::chunk::{Wide, Widest};
+#[cfg(target_arch = "x86_64")]
+use super::super::lanes::Avx2;
+use super::super::lanes::{Lanes, Portable};
+#[cfg(target_arch = "x86_64")]
 use super::super::lanes512::Avx512;
 use super::super::pmb::{SERIES, UP_TO_3, UP_TO_5, UP_TO_7};
 use super::super::rows::{self, Rows};
@@ -57,6 +62,8 @@ pub struct Block {
     pub z: [f64; MOST],
     /// The same at the last step that advanced.
     pub before: [f64; MOST],
+    /// What the least of a family is kept of: z of living bonds, infinite where none lives.
+    pub measure: [f64; MOST],
     /// s.
     pub s: [f64; MOST],
     /// s/(1 + s).
@@ -89,6 +96,7 @@ impl Block {
             count: 0,
             z: none,
             before: none,
+            measure: none,
             s: none,
             share: none,
             y: [none; 3],
@@ -121,7 +129,7 @@ impl Rules {
     pub fn new(period: [f64; 3], options: &FamilyOptions, law: &Law) -> Self {
         let band = options.dead_band(1.0);
         let dead = if options.compat_lammps { [0.0, band] } else { [band, 0.0] };
-        Self { period, dead, influence: law.influence, microelastic: law.kind.bond_based() }
+        Self { period, dead, influence: law.shape(), microelastic: law.kind.bond_based() }
     }
 }
 
@@ -215,6 +223,8 @@ unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(
                 let alive = L::mask(bits >> v);
                 let z = q.mul(inverse_square);
                 let z = z.keep(z.abs().ge(inverse.fma(dead[1], dead[0]))).keep(alive);
+                let none = L::splat(f64::INFINITY).keep(L::mask(!bits >> v));
+                z.add(none).store(b.measure.as_mut_ptr().add(at));
                 v += L::WIDTH;
                 if LAST {
                     z.store(b.before.as_mut_ptr().add(at));
@@ -314,9 +324,10 @@ pub unsafe fn stretch<L: Lanes, const S: bool>(b: &mut Block) {
     }
 }
 
-/// Subtracts what comes out from the window's rows of four, which begin at `force`.
+/// Subtracts what comes out from the window's rows of four, which begin at `force`; with `LEAST` their fourth numbers are the
+/// least measures.
 #[inline(always)]
-pub unsafe fn scatter<L: Rows>(b: &Block, force: *mut f64) {
+pub unsafe fn scatter<L: Rows, const LEAST: bool>(b: &Block, force: *mut f64) {
     // SAFETY: partners lie in the window by the caller's promise.
     unsafe {
         let mut at = 0;
@@ -327,8 +338,9 @@ pub unsafe fn scatter<L: Rows>(b: &Block, force: *mut f64) {
                 L::load(b.out[0].as_ptr().add(at)),
                 L::load(b.out[1].as_ptr().add(at)),
                 L::load(b.out[2].as_ptr().add(at)),
+                if LEAST { L::load(b.measure.as_ptr().add(at)) } else { L::splat(0.0) },
             ];
-            L::subtract_transposed(out, &rows);
+            L::hand_over::<LEAST>(out, &rows);
             at += L::WIDTH;
         }
     }

@@ -19,6 +19,8 @@ pub struct Acting<'a> {
     pub known: bool,
     /// Bonds remember from now on what they have come to.
     pub keep: bool,
+    /// The least measures of families are kept, as fourth numbers of rows.
+    pub least: bool,
     /// What is the same for all bonds.
     pub moment: Moment,
 }
@@ -197,8 +199,14 @@ pub unsafe fn pull<L: Rows, W: BondLaw>(
             }
             at += L::WIDTH;
         }
-        scatter::<L>(b, force);
         let own = force.wrapping_add(4 * row.i);
+        if a.least {
+            scatter::<L, true>(b, force);
+            let least = b.measure[..b.count].iter().fold(f64::INFINITY, |a, b| if *b < a { *b } else { a });
+            *own.add(3) = least.min(*own.add(3));
+        } else {
+            scatter::<L, false>(b, force);
+        }
         *own += sum[0].total();
         *own.add(1) += sum[1].total();
         *own.add(2) += sum[2].total();

@@ -37,7 +37,7 @@ pub fn refresh(
     }
     body.limits.least.clear();
     body.influence.clear();
-    if law.influence == Influence::Gaussian {
+    if law.shape() == Influence::Gaussian {
         body.influence = vec![0.0; body.partner.len()];
         for i in 0..body.record.len() {
             for b in body.own(i) {
@@ -55,7 +55,7 @@ fn constants(k: &PmbCoeff, yields: f64, (options, law): (&FamilyOptions, &Law)) 
         VolumeRule::None => [1.0, 0.0],
         _ => [1.0 + (k.horizon - half) / (2.0 * half), 1.0 / (2.0 * half)],
     };
-    let shape = k.c * law.influence.shape(k.horizon, k.horizon) / law.influence.of(k.horizon, k.horizon);
+    let shape = k.c * law.shape().shape(k.horizon, k.horizon) / law.shape().of(k.horizon, k.horizon);
     PairConstants { c: k.c, shape, s00: k.s00, alpha: k.alpha, horizon: k.horizon, yields, weight }
 }
 

@@ -227,8 +227,8 @@ impl Sweep<'_> {
 
     /// What laws need besides bonds, of a record whose bonds remember or not.
     fn acting(&self, known: bool) -> Acting<'_> {
-        let keep = self.mode.advance;
-        Acting { ends: self.ends, memory: self.memory.as_ptr(), known, keep, moment: self.moment }
+        let (keep, least) = (self.mode.advance, self.judge.keeps);
+        Acting { ends: self.ends, memory: self.memory.as_ptr(), known, keep, least, moment: self.moment }
     }
 
     /// Whether bonds of a record remember anything under a law.
@@ -302,6 +302,7 @@ impl Sweep<'_> {
                         row.take::<K, true>(groups.clone(), b);
                     }
                     row.take::<K, false>(groups, b);
+                    self.judge.measure(&row, first, b);
                     K::pull::<W>(&row, &acting, first, b, force)
                 };
                 if woken && W::LAZY {
@@ -311,11 +312,6 @@ impl Sweep<'_> {
                 low = low.min(b.low);
                 *top = top.max(b.high);
                 self.judge.note(&row, first, b, strained);
-                if self.judge.keeps {
-                    let bonds = (&b.z[..b.count], &b.target[..b.count]);
-                    // SAFETY: as above.
-                    unsafe { self.judge.keep(&row, first, bonds, force) };
-                }
             }
             // Rounded down.
             *lowest = (low * (1.0 + 1e-6)) as f32;
