@@ -83,7 +83,11 @@ pub struct ListBody {
     /// The z below which bonds can be in short-range contact and their places in `partner`: those of at least [`CLOSE`], the
     /// largest of each record first.
     pub close: Vec<(f32, u32)>,
+    /// 1/|xi| of each bond.
+    #[serde(skip)]
+    pub inverse: Vec<f64>,
     /// The influence of each bond where it takes an exponential; empty elsewhere.
+    #[serde(skip)]
     pub influence: Vec<f64>,
     /// Place of the first record among all cells and records of all bodies.
     pub first_place: u32,
@@ -177,7 +181,7 @@ impl ListBody {
         self.record.len() * (size_of::<Record>() + 24 + 4 + 1 + 4 + 4 + 4 + 4)
             + 4 * (self.partner.len() + self.back.len() + self.owner.len())
             + self.group_kind.len()
-            + 8 * (self.close.len() + self.influence.len())
+            + 8 * (self.close.len() + self.inverse.len() + self.influence.len())
             + 8 * (self.limits.least.len() + self.limits.next.len())
             + self.state.bytes()
     }

@@ -56,27 +56,30 @@ impl Judge {
         }
     }
 
-    /// Puts measures in the place of the z of the bonds in hand, where they are not the same; the first is at place `first`.
+    /// Puts measures in the place of the z of the bonds in hand, where they are not the same.
     #[inline]
-    pub fn measure(&self, row: &Row, first: usize, b: &mut Block) {
+    pub fn measure(&self, row: &Row, b: &mut Block) {
         if !self.critical {
             return;
         }
-        for at in (0..b.count).filter(|&at| row.body.lives(first + at)) {
-            let pair = row.body.constants(first + at);
-            b.measure[at] = pair.alpha * stretch(b.measure[at]) - pair.s00;
+        for at in 0..b.count {
+            let place = b.place(at);
+            if row.body.lives(place) {
+                let pair = row.body.constants(place);
+                b.measure[at] = pair.alpha * stretch(b.measure[at]) - pair.s00;
+            }
         }
     }
 
-    /// Notes which of the bonds in hand may break; the first is at place `first`.
+    /// Notes which of the bonds in hand may break.
     #[inline]
-    pub fn note(&self, row: &Row, first: usize, b: &Block, strained: &mut Vec<(u32, f64)>) {
+    pub fn note(&self, row: &Row, b: &Block, strained: &mut Vec<(u32, f64)>) {
         if !self.armed || b.high < self.floor {
             return;
         }
         let body = row.body;
         for (at, &z) in b.z[..b.count].iter().enumerate().filter(|(_, z)| **z >= self.floor) {
-            let bond = first + at;
+            let bond = b.place(at);
             let ends = [row.i, body.partner[bond] as usize];
             if body.lives(bond) && !(self.known && self.bears(body, body.constants(bond), ends, z)) {
                 strained.push((bond as u32, z));
@@ -186,11 +189,11 @@ fn least<K: RowKernels>(
         let b = &mut Block::new();
         for i in own.clone() {
             let row = Row { body, i, first: ring_start(body, slab), rules };
-            for groups in row.blocks() {
-                let first = GROUP * groups.start;
+            let mut next = row.start();
+            while row.fill(&mut next, b) {
                 // SAFETY: the kernels are those that the processor has.
-                unsafe { row.take::<K, true>(groups, b) };
-                judge.measure(&row, first, b);
+                unsafe { row.shape::<K, true>(b) };
+                judge.measure(&row, b);
                 for (measure, target) in b.measure[..b.count].iter().zip(&b.target) {
                     for row in [i, *target as usize] {
                         let least = &mut window.force[4 * (row - own.start) + 3];

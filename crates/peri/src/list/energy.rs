@@ -7,7 +7,7 @@ use super::super::state::settle::{columns_of, moment};
 use super::kernel::{Block, Row, RowKernels, Rules};
 use super::laws::Acting;
 use super::sweep::in_rows;
-use crate::families::list::{GROUP, ListBody};
+use crate::families::list::ListBody;
 use crate::families::{Families, ForceUnit, LawKind, PeriTally};
 use perigrain_base::math::vec3::SIX;
 use perigrain_base::par::{self, Shared};
@@ -95,21 +95,21 @@ impl Energies<'_> {
         };
         let (own_share, mut own_energy) = (self.half * shear(i), 0.0);
         let mut virial = [0.0; 6];
-        for groups in row.blocks() {
-            let first = GROUP * groups.start;
+        let mut next = row.start();
+        while row.fill(&mut next, b) {
             // SAFETY: the kernels are those that the processor has.
             unsafe {
                 if W::BACK && !self.advanced {
-                    row.take::<K, true>(groups.clone(), b);
+                    row.shape::<K, true>(b);
                 }
-                row.take::<K, false>(groups, b);
+                row.shape::<K, false>(b);
                 if W::BACK && self.advanced {
                     b.before = b.z;
                 }
-                K::energies::<W>(&row, self.acting, self.angles, first, b);
+                K::energies::<W>(&row, self.acting, self.angles, b);
             }
             for at in (0..b.count).filter(|&at| b.weight[at] != 0.0) {
-                let j = list.partner[first + at] as usize;
+                let j = list.partner[b.place(at)] as usize;
                 let (near, far) = match self.newton {
                     true => (volume * b.volume[at], volume * b.volume[at]),
                     false => (b.volume[at], volume),

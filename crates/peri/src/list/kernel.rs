@@ -3,7 +3,6 @@
 //! A record's bonds are taken [`MOST`] at a time, in steps that leave their results in a [`Block`]: the processor then has
 //! many independent bonds to work on, polynomials are chosen once for all of them, and a law is a short loop of its own.
 
-use std::ops::Range;
 use std::ptr::{null, null_mut};
 
 use super::super::chunk::Plain;
@@ -53,11 +52,9 @@ pub(super) use partners;
 /// So many bonds are in hand at once.
 pub const MOST: usize = 64;
 
-/// Bonds in hand: columns of which the first `count` places are in use.
+/// Bonds in hand: columns of which the first `count` numbers are in use; each begins a cache line.
 #[repr(C, align(64))]
 pub struct Block {
-    /// Places in use, with those where no bond lives.
-    pub count: usize,
     /// z = |y|²/|xi|² − 1; 0 inside the dead band, and where no bond lives.
     pub z: [f64; MOST],
     /// The same at the last step that advanced.
@@ -82,6 +79,10 @@ pub struct Block {
     pub out: [[f64; MOST]; 3],
     /// Places of partners in the window.
     pub target: [u32; MOST],
+    /// Places of the first bonds of groups, among all bonds.
+    pub place: [u32; MOST / GROUP],
+    /// Places in use, with those where no bond lives.
+    pub count: usize,
     /// The largest z, or 0.
     pub high: f64,
     /// The smallest z, or 0.
@@ -93,7 +94,6 @@ impl Block {
     pub fn new() -> Self {
         let none = [0.0; MOST];
         Self {
-            count: 0,
             z: none,
             before: none,
             measure: none,
@@ -106,6 +106,8 @@ impl Block {
             volume: none,
             out: [none; 3],
             target: [0; MOST],
+            place: [0; MOST / GROUP],
+            count: 0,
             high: 0.0,
             low: 0.0,
         }
@@ -147,34 +149,52 @@ pub struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// The record's groups, a block at a time.
-    pub fn blocks(&self) -> impl Iterator<Item = Range<usize>> + use<> {
-        let [start, end] = [self.i, self.i + 1].map(|i| self.body.start[i] as usize);
-        (start..end).step_by(MOST / GROUP).map(move |first| first..end.min(first + MOST / GROUP))
+    /// The record's first group.
+    pub fn start(&self) -> usize {
+        self.body.start[self.i] as usize
     }
 
-    /// Takes some groups in hand; with `LAST` only the z of the last step that advanced.
+    /// Takes the next groups in which bonds live in hand, from group `next` on; false if there are none.
+    #[inline]
+    pub fn fill(&self, next: &mut usize, b: &mut Block) -> bool {
+        let end = self.body.start[self.i + 1] as usize;
+        b.count = 0;
+        while *next < end && b.count < MOST {
+            if self.body.alive[*next] != 0 {
+                b.place[b.count / GROUP] = (GROUP * *next) as u32;
+                b.count += GROUP;
+            }
+            *next += 1;
+        }
+        b.count > 0
+    }
+
+    /// Finds what is to know of the bonds in hand; with `LAST` only the z of the last step that advanced, and measures.
     ///
     /// # Safety
     /// The processor must have what `K` needs.
     #[inline]
-    pub unsafe fn take<K: RowKernels, const LAST: bool>(&self, groups: Range<usize>, b: &mut Block) {
+    pub unsafe fn shape<K: RowKernels, const LAST: bool>(&self, b: &mut Block) {
         // SAFETY: passed on to the caller.
         unsafe {
             match self.rules.period.iter().any(|p| p.is_finite()) {
-                false => K::shapes::<false, LAST>(self, groups, b),
-                true => K::shapes::<true, LAST>(self, groups, b),
+                false => K::shapes::<false, LAST>(self, b),
+                true => K::shapes::<true, LAST>(self, b),
             }
         }
     }
 }
 
+impl Block {
+    /// The place of a bond in hand among all bonds.
+    #[inline(always)]
+    pub fn place(&self, at: usize) -> usize {
+        self.place[at / GROUP] as usize + at % GROUP
+    }
+}
+
 #[inline(always)]
-unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(
-    row: &Row,
-    groups: Range<usize>,
-    b: &mut Block,
-) {
+unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(row: &Row, b: &mut Block) {
     // SAFETY: groups, records and pairs are those of the body, blocks of no more than `MOST` bonds.
     unsafe {
         let (body, rules) = (row.body, row.rules);
@@ -186,14 +206,14 @@ unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let dead = rules.dead.map(|a| L::splat(a));
         let (mut high, mut low) = (zero, zero);
-        let start = groups.start;
-        b.count = GROUP * groups.len();
-        for group in groups {
+        let mut first = 0;
+        while first < b.count {
+            let group = *b.place.get_unchecked(first / GROUP) as usize / GROUP;
             let pair = &*pairs.add(usize::from(*body.group_kind.get_unchecked(group)));
             let bits = *body.alive.get_unchecked(group);
             let mut v = 0;
             while v < GROUP {
-                let at = GROUP * (group - start) + v;
+                let at = first + v;
                 let place = GROUP * group + v;
                 let partner = body.partner.as_ptr().add(place);
                 let rows = partners!(L, null(), |k| record.add(*partner.add(k) as usize).cast::<f64>());
@@ -218,10 +238,10 @@ unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(
                 let square = xi[0].fma(xi[0], xi[1].fma(xi[1], xi[2].mul(xi[2])));
                 let q = eta[1].fma(y[1].add(xi[1]), eta[2].mul(y[2].add(xi[2])));
                 let q = eta[0].fma(y[0].add(xi[0]), q);
-                let (inverse_square, length) = (one.div(square), square.sqrt());
-                let inverse = length.mul(inverse_square);
+                let inverse = L::load(body.inverse.as_ptr().add(place));
+                let length = square.mul(inverse);
                 let alive = L::mask(bits >> v);
-                let z = q.mul(inverse_square);
+                let z = q.mul(inverse.mul(inverse));
                 let z = z.keep(z.abs().ge(inverse.fma(dead[1], dead[0]))).keep(alive);
                 let none = L::splat(f64::INFINITY).keep(L::mask(!bits >> v));
                 z.add(none).store(b.measure.as_mut_ptr().add(at));
@@ -251,13 +271,15 @@ unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(
                 weight.keep(alive).store(b.weight.as_mut_ptr().add(at));
                 volume.store(b.volume.as_mut_ptr().add(at));
             }
-            let target = b.target.as_mut_ptr().add(GROUP * (group - start));
+            let target = b.target.as_mut_ptr().add(first);
             body.partner.as_ptr().add(GROUP * group).copy_to_nonoverlapping(target, GROUP);
+            first += GROUP;
         }
         let mut ends = [[0.0f64; rows::MOST]; 2];
         high.store(ends[0].as_mut_ptr());
         low.store(ends[1].as_mut_ptr());
-        (b.high, b.low) = (ends[0].into_iter().fold(0.0, f64::max), ends[1].into_iter().fold(0.0, f64::min));
+        b.high = ends[0].into_iter().fold(0.0, |a, b| if b > a { b } else { a });
+        b.low = ends[1].into_iter().fold(0.0, |a, b| if b < a { b } else { a });
         if row.first > 0 {
             for target in &mut b.target[..b.count] {
                 if (*target as usize) < row.first {
@@ -325,11 +347,12 @@ pub unsafe fn stretch<L: Lanes, const S: bool>(b: &mut Block) {
 }
 
 /// Subtracts what comes out from the window's rows of four, which begin at `force`; with `LEAST` their fourth numbers are the
-/// least measures.
+/// least measures. The least measure in hand.
 #[inline(always)]
-pub unsafe fn scatter<L: Rows, const LEAST: bool>(b: &Block, force: *mut f64) {
+pub unsafe fn scatter<L: Rows, const LEAST: bool>(b: &Block, force: *mut f64) -> f64 {
     // SAFETY: partners lie in the window by the caller's promise.
     unsafe {
+        let mut least = L::splat(f64::INFINITY);
         let mut at = 0;
         while at < b.count {
             let target = b.target.as_ptr().add(at);
@@ -341,28 +364,36 @@ pub unsafe fn scatter<L: Rows, const LEAST: bool>(b: &Block, force: *mut f64) {
                 if LEAST { L::load(b.measure.as_ptr().add(at)) } else { L::splat(0.0) },
             ];
             L::hand_over::<LEAST>(out, &rows);
+            if LEAST {
+                least = out[3].min(least);
+            }
             at += L::WIDTH;
         }
+        let mut lanes = [f64::INFINITY; rows::MOST];
+        if LEAST {
+            least.store(lanes.as_mut_ptr());
+        }
+        lanes.into_iter().fold(f64::INFINITY, |a, b| if b < a { b } else { a })
     }
 }
 
-/// The kernels of one instruction set. `groups` are groups of the row, one block's.
+/// The kernels of one instruction set, for bonds of a row that are in hand.
 ///
 /// # Safety
 /// The processor must have the instruction set. Every partner must lie in the window, untouched by others.
 pub trait RowKernels: Sync {
-    /// See [`Row::take`].
+    /// See [`Row::shape`].
     #[allow(clippy::missing_safety_doc)] // above
-    unsafe fn shapes<const PERIODIC: bool, const LAST: bool>(row: &Row, groups: Range<usize>, b: &mut Block);
+    unsafe fn shapes<const PERIODIC: bool, const LAST: bool>(row: &Row, b: &mut Block);
     /// See [`laws::pull`].
     #[allow(clippy::missing_safety_doc)] // above
-    unsafe fn pull<W: BondLaw>(row: &Row, a: &Acting, first: usize, b: &mut Block, force: *mut f64) -> bool;
+    unsafe fn pull<W: BondLaw>(row: &Row, a: &Acting, b: &mut Block, force: *mut f64) -> bool;
     /// See [`laws::add_up`].
     #[allow(clippy::missing_safety_doc)] // above
-    unsafe fn add_up<T: Term>(row: &Row, a: &Acting, first: usize, b: &mut Block, sums: *mut f64);
+    unsafe fn add_up<T: Term>(row: &Row, a: &Acting, b: &mut Block, sums: *mut f64);
     /// See [`laws::energies`].
     #[allow(clippy::missing_safety_doc)] // above
-    unsafe fn energies<W: BondLaw>(row: &Row, a: &Acting, angles: &[f64], first: usize, b: &mut Block);
+    unsafe fn energies<W: BondLaw>(row: &Row, a: &Acting, angles: &[f64], b: &mut Block);
 }
 
 /// Kernels of one instruction set from those for its lanes.
@@ -371,25 +402,22 @@ macro_rules! compiled_for {
         impl RowKernels for $kernels {
             unsafe fn shapes<const PERIODIC: bool, const LAST: bool>(
                 row: &Row,
-                groups: Range<usize>,
                 b: &mut Block,
             ) {
                 $(#[target_feature(enable = $features)])?
                 unsafe fn inner<const PERIODIC: bool, const LAST: bool>(
                     row: &Row,
-                    groups: Range<usize>,
                     b: &mut Block,
                 ) {
                     // SAFETY: the caller's promise.
-                    unsafe { shapes::<$lanes, PERIODIC, LAST>(row, groups, b) }
+                    unsafe { shapes::<$lanes, PERIODIC, LAST>(row, b) }
                 }
                 // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<PERIODIC, LAST>(row, groups, b) }
+                unsafe { inner::<PERIODIC, LAST>(row, b) }
             }
             unsafe fn pull<W: BondLaw>(
                 row: &Row,
                 a: &Acting,
-                first: usize,
                 b: &mut Block,
                 force: *mut f64,
             ) -> bool {
@@ -397,30 +425,28 @@ macro_rules! compiled_for {
                 unsafe fn inner<W: BondLaw>(
                     row: &Row,
                     a: &Acting,
-                    first: usize,
                     b: &mut Block,
                     force: *mut f64,
                 ) -> bool {
                     // SAFETY: the caller's promise.
-                    unsafe { laws::pull::<$lanes, W>(row, a, first, b, force) }
+                    unsafe { laws::pull::<$lanes, W>(row, a, b, force) }
                 }
                 // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<W>(row, a, first, b, force) }
+                unsafe { inner::<W>(row, a, b, force) }
             }
-            unsafe fn add_up<T: Term>(row: &Row, a: &Acting, first: usize, b: &mut Block, sums: *mut f64) {
+            unsafe fn add_up<T: Term>(row: &Row, a: &Acting, b: &mut Block, sums: *mut f64) {
                 $(#[target_feature(enable = $features)])?
-                unsafe fn inner<T: Term>(row: &Row, a: &Acting, first: usize, b: &mut Block, sums: *mut f64) {
+                unsafe fn inner<T: Term>(row: &Row, a: &Acting, b: &mut Block, sums: *mut f64) {
                     // SAFETY: the caller's promise.
-                    unsafe { laws::add_up::<$lanes, T>(row, a, first, b, sums) }
+                    unsafe { laws::add_up::<$lanes, T>(row, a, b, sums) }
                 }
                 // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<T>(row, a, first, b, sums) }
+                unsafe { inner::<T>(row, a, b, sums) }
             }
             unsafe fn energies<W: BondLaw>(
                 row: &Row,
                 a: &Acting,
                 angles: &[f64],
-                first: usize,
                 b: &mut Block,
             ) {
                 $(#[target_feature(enable = $features)])?
@@ -428,14 +454,13 @@ macro_rules! compiled_for {
                     row: &Row,
                     a: &Acting,
                     angles: &[f64],
-                    first: usize,
                     b: &mut Block,
                 ) {
                     // SAFETY: the caller's promise.
-                    unsafe { laws::energies::<$lanes, W>(row, a, angles, first, b) }
+                    unsafe { laws::energies::<$lanes, W>(row, a, angles, b) }
                 }
                 // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<W>(row, a, angles, first, b) }
+                unsafe { inner::<W>(row, a, angles, b) }
             }
         }
     };

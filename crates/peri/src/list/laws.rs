@@ -143,47 +143,42 @@ impl<L: Lanes> Sum<L> {
     }
 }
 
-/// Adds the forces of the bonds in hand, the first of which is at the place `first` of all bonds, times the volumes of both
+/// Adds the forces of the bonds in hand times the volumes of both
 /// ends; true if bonds remember something that had nothing to remember before.
 ///
 /// # Safety
 /// Every partner must lie in the window of rows of four at `force`, untouched by others; the processor must have what `L`
 /// needs.
 #[inline(always)]
-pub unsafe fn pull<L: Rows, W: BondLaw>(
-    row: &Row,
-    a: &Acting,
-    first: usize,
-    b: &mut Block,
-    force: *mut f64,
-) -> bool {
+pub unsafe fn pull<L: Rows, W: BondLaw>(row: &Row, a: &Acting, b: &mut Block, force: *mut f64) -> bool {
     // SAFETY: the caller's promise.
     unsafe {
         stretch::<L, false>(b);
         if W::STRETCHED {
             stretch::<L, true>(b);
         }
-        let partner = row.body.partner.as_ptr().add(first);
+        let partner = row.body.partner.as_ptr();
         let volume = L::splat(row.body.record.get_unchecked(row.i).volume);
         let own = near::<L>(a.ends, W::COLUMNS, row.i);
         let mut sum = [Sum::<L>::none(); 3];
         let mut woken = false;
         let mut at = 0;
         while at < b.count {
+            let place = b.place(at);
             let s = stretched::<L>(b, at, W::STRETCHED, W::BACK);
-            let ends: Ends<L> = [own, far(a.ends, W::COLUMNS, partner.add(at))];
-            let before = recall::<L>(a, first + at, W::MEMORY);
+            let ends: Ends<L> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
+            let before = recall::<L>(a, place, W::MEMORY);
             let mut now = before;
             let omega = L::load(b.omega.as_ptr().add(at));
             let (near, far) = W::pull(&s, omega, &ends, &mut now, &a.moment);
             if W::MEMORY > 0 && a.keep && (a.known || W::flows(&ends).bits() != 0) {
                 woken = true;
-                let bits = *row.body.alive.get_unchecked((first + at) / GROUP) >> (at % GROUP);
+                let bits = *row.body.alive.get_unchecked(place / GROUP) >> (place % GROUP);
                 let (alive, dead) = (L::mask(bits), L::mask(!bits));
                 let mut k = 0;
                 while k < W::MEMORY {
                     let now = now[k].keep(alive).add(before[k].keep(dead));
-                    now.store(memory(a, first + at, W::MEMORY, k));
+                    now.store(memory(a, place, W::MEMORY, k));
                     k += 1;
                 }
             }
@@ -201,8 +196,7 @@ pub unsafe fn pull<L: Rows, W: BondLaw>(
         }
         let own = force.wrapping_add(4 * row.i);
         if a.least {
-            scatter::<L, true>(b, force);
-            let least = b.measure[..b.count].iter().fold(f64::INFINITY, |a, b| if *b < a { *b } else { a });
+            let least = scatter::<L, true>(b, force);
             *own.add(3) = least.min(*own.add(3));
         } else {
             scatter::<L, false>(b, force);
@@ -219,20 +213,21 @@ pub unsafe fn pull<L: Rows, W: BondLaw>(
 /// # Safety
 /// As for [`pull`], with one number of each record at `sums`.
 #[inline(always)]
-pub unsafe fn add_up<L: Rows, T: Term>(row: &Row, a: &Acting, first: usize, b: &mut Block, sums: *mut f64) {
+pub unsafe fn add_up<L: Rows, T: Term>(row: &Row, a: &Acting, b: &mut Block, sums: *mut f64) {
     // SAFETY: the caller's promise.
     unsafe {
         stretch::<L, true>(b);
-        let partner = row.body.partner.as_ptr().add(first);
+        let partner = row.body.partner.as_ptr();
         let volume = L::splat(row.body.record.get_unchecked(row.i).volume);
         let own = near::<L>(a.ends, T::COLUMNS, row.i);
         let mut sum = Sum::<L>::none();
         let mut at = 0;
         while at < b.count {
+            let place = b.place(at);
             let s = L::load(b.s.as_ptr().add(at));
             let s = Stretch { s, share: s, inverse: s, before: s };
-            let ends: Ends<L> = [own, far(a.ends, T::COLUMNS, partner.add(at))];
-            let memory = recall::<L>(a, first + at, T::MEMORY);
+            let ends: Ends<L> = [own, far(a.ends, T::COLUMNS, partner.add(place))];
+            let memory = recall::<L>(a, place, T::MEMORY);
             let (near, far) = T::terms(&s, L::load(b.omega.as_ptr().add(at)), &ends, &memory);
             let one = L::load(b.weight.as_ptr().add(at)).mul(L::load(b.square.as_ptr().add(at)));
             sum.add(at, one.mul(L::load(b.volume.as_ptr().add(at))), near);
@@ -252,26 +247,21 @@ pub unsafe fn add_up<L: Rows, T: Term>(row: &Row, a: &Acting, first: usize, b: &
 /// # Safety
 /// The processor must have what `L` needs.
 #[inline(always)]
-pub unsafe fn energies<L: Rows, W: BondLaw>(
-    row: &Row,
-    a: &Acting,
-    angles: &[f64],
-    first: usize,
-    b: &mut Block,
-) {
+pub unsafe fn energies<L: Rows, W: BondLaw>(row: &Row, a: &Acting, angles: &[f64], b: &mut Block) {
     // SAFETY: the caller's promise.
     unsafe {
         stretch::<L, false>(b);
         stretch::<L, true>(b);
-        let partner = row.body.partner.as_ptr().add(first);
+        let partner = row.body.partner.as_ptr();
         let own = near::<L>(a.ends, W::COLUMNS, row.i);
         let turned = if angles.is_empty() { 0 } else { 2 };
         let own_angles = near::<L>(angles, turned, row.i);
         let mut at = 0;
         while at < b.count {
+            let place = b.place(at);
             let s = stretched::<L>(b, at, true, W::BACK);
-            let ends: Ends<L> = [own, far(a.ends, W::COLUMNS, partner.add(at))];
-            let other = far::<L>(angles, turned, partner.add(at));
+            let ends: Ends<L> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
+            let other = far::<L>(angles, turned, partner.add(place));
             let angles = [
                 Angles {
                     now: own_angles[0],
@@ -280,7 +270,7 @@ pub unsafe fn energies<L: Rows, W: BondLaw>(
                 },
                 Angles { now: other[0], unrelaxed: other[1], relaxing: W::relaxing(&ends[1], &a.moment) },
             ];
-            let mut memory = recall::<L>(a, first + at, W::MEMORY);
+            let mut memory = recall::<L>(a, place, W::MEMORY);
             let omega = L::load(b.omega.as_ptr().add(at));
             let weight = L::load(b.weight.as_ptr().add(at));
             let one = weight.mul(L::load(b.square.as_ptr().add(at)));

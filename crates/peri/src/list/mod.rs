@@ -7,7 +7,7 @@ mod laws;
 pub mod sweep;
 
 use crate::families::lattice::RowMotion;
-use crate::families::list::{ListBody, PairConstants};
+use crate::families::list::{GROUP, ListBody, PairConstants};
 use crate::families::{FamilyOptions, ForceUnit, Influence, Law, PeriView, PmbCoeff, PmbTable, VolumeRule};
 use perigrain_base::par::{self, Shared};
 
@@ -36,14 +36,17 @@ pub fn refresh(
         }
     }
     body.limits.least.clear();
-    body.influence.clear();
-    if law.shape() == Influence::Gaussian {
-        body.influence = vec![0.0; body.partner.len()];
-        for i in 0..body.record.len() {
-            for b in body.own(i) {
-                let length = body.z(false, i, body.partner[b] as usize, period).1;
-                body.influence[b] = law.influence.of(length, body.constants(b).horizon);
-            }
+    let places = body.partner.len();
+    body.inverse.resize(places, 0.0);
+    body.influence.resize(if law.shape() == Influence::Gaussian { places } else { 0 }, 0.0);
+    for b in 0..places {
+        let [i, j] = [body.owner[b / GROUP], body.partner[b]].map(|r| r as usize);
+        // Fillers lead from a record to itself.
+        let length = if i == j { 1.0 } else { body.z(false, i, j, period).1 };
+        body.inverse[b] = 1.0 / length;
+        let horizon = body.constants(b).horizon;
+        if let Some(influence) = body.influence.get_mut(b) {
+            *influence = law.influence.of(length, horizon);
         }
     }
 }

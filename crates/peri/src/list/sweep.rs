@@ -12,7 +12,7 @@ use super::breaking::{self, Judge, clear};
 use super::kernel::{Block, Row, RowKernels, Rules};
 use super::laws::Acting;
 use crate::families::law::{COLUMNS, SiteState};
-use crate::families::list::{GROUP, ListBody, Record};
+use crate::families::list::{ListBody, Record};
 use crate::families::{FamilyOptions, LawKind, PeriView, Window};
 use perigrain_base::par::{self, Shared};
 
@@ -254,12 +254,12 @@ impl Sweep<'_> {
         for i in own.clone() {
             let row = Row { body, i, first: ring_start(body, slab), rules: self.rules };
             let acting = self.acting(self.known(i, (T::MEMORY, true)));
-            for groups in row.blocks() {
-                let first = GROUP * groups.start;
+            let mut next = row.start();
+            while row.fill(&mut next, b) {
                 // SAFETY: the kernels are those that the processor has; bonds lead to this slab or the next.
                 unsafe {
-                    row.take::<K, false>(groups, b);
-                    K::add_up::<T>(&row, &acting, first, b, sums);
+                    row.shape::<K, false>(b);
+                    K::add_up::<T>(&row, &acting, b, sums);
                 }
             }
         }
@@ -294,16 +294,16 @@ impl Sweep<'_> {
             let row = Row { body, i, first: ring_start(body, slab), rules: self.rules };
             let acting = self.acting(self.known(i, (W::MEMORY, W::LAZY)));
             let mut low = 0.0f64;
-            for groups in row.blocks() {
-                let first = GROUP * groups.start;
+            let mut next = row.start();
+            while row.fill(&mut next, b) {
                 // SAFETY: the kernels are those that the processor has; bonds lead to this slab or the next.
                 let woken = unsafe {
                     if W::BACK {
-                        row.take::<K, true>(groups.clone(), b);
+                        row.shape::<K, true>(b);
                     }
-                    row.take::<K, false>(groups, b);
-                    self.judge.measure(&row, first, b);
-                    K::pull::<W>(&row, &acting, first, b, force)
+                    row.shape::<K, false>(b);
+                    self.judge.measure(&row, b);
+                    K::pull::<W>(&row, &acting, b, force)
                 };
                 if woken && W::LAZY {
                     // SAFETY: a record belongs to one slab.
@@ -311,7 +311,7 @@ impl Sweep<'_> {
                 }
                 low = low.min(b.low);
                 *top = top.max(b.high);
-                self.judge.note(&row, first, b, strained);
+                self.judge.note(&row, b, strained);
             }
             // Rounded down.
             *lowest = (low * (1.0 + 1e-6)) as f32;
