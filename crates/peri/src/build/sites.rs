@@ -286,3 +286,127 @@ fn divisor(n: [i32; 3]) -> i32 {
         a
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::families::Bounds;
+    use perigrain_base::math::vec3::cross;
+
+    /// What carries points.
+    fn carrier_of(x: &[Vec3]) -> Carrier {
+        let bounds = Bounds { lo: [-1e3; 3], hi: [1e3; 3], periodic: [false; 3] };
+        let (kind, volume) = (vec![1; x.len()], vec![1.0; x.len()]);
+        let view = PeriView { x, x0: x, kind: &kind, volume: &volume, bounds, excluded: None };
+        let members: Vec<u32> = (0..x.len() as u32).collect();
+        let apart =
+            |p: &Vec3| x.iter().map(|q| length(sub(*p, *q))).filter(|d| *d > 0.0).fold(f64::MAX, f64::min);
+        carrier(&view, &members, x.iter().map(apart).fold(f64::MAX, f64::min))
+    }
+
+    /// A turned ball or disc of the points of a cell that repeats.
+    fn ball(sites: &[Vec3], edges: Vec3, shift: Vec3) -> Vec<Vec3> {
+        let mut x = vec![];
+        for cell in (0..17 * 17 * 17).map(|k| [k % 17 - 8, k / 17 % 17 - 8, k / 289 - 8].map(f64::from)) {
+            for site in sites {
+                let at = [0, 1, 2].map(|k| (cell[k] + site[k]) * edges[k]);
+                if dot(at, at) < 20.0 && (edges[2] > 0.0 || cell[2] == 0.0) {
+                    x.push([0.6 * at[0] - 0.8 * at[1], 0.8 * at[0] + 0.6 * at[1], at[2]]);
+                }
+            }
+        }
+        x.iter().map(|x| [0, 1, 2].map(|k| x[k] + shift[k])).collect()
+    }
+
+    const FACES: [Vec3; 4] = [[0.0; 3], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5]];
+
+    #[test]
+    fn lattices_are_found_wherever_they_are() {
+        let h = 3f64.sqrt();
+        let packed = [[0.0; 3], [0.5, 0.5, 0.0], [0.5, 5.0 / 6.0, 0.5], [0.0, 1.0 / 3.0, 0.5]];
+        let hexagonal = [[0.0; 3], [0.5, 0.5, 0.0]];
+        // The volume of a cell of the lattice: all sites of Bravais lattices are taken, a third of those of hcp.
+        let cases: [(&[Vec3], Vec3, f64); 5] = [
+            (&FACES, [1.0; 3], 0.25),
+            (&[[0.0; 3], [0.5; 3]], [1.0; 3], 0.5),
+            (&packed, [1.0, h, 1.7], 1.7 * h / 4.0 / 3.0),
+            (&hexagonal, [1.0, h, 0.0], h / 2.0),
+            (&[[0.0; 3]], [1.0, 1.0, 0.0], 1.0),
+        ];
+        for (sites, edges, volume) in cases {
+            let x = ball(sites, edges, [10.3, -200.0, 0.1]);
+            let Carrier::Lattice(found) = carrier_of(&x) else { panic!("{edges:?}") };
+            let [a, b, c] = found.basis;
+            let cell = dot(a, cross(b, c)).abs();
+            let flat = edges[2] == 0.0;
+            assert!(
+                (cell / if flat { volume * length(c) } else { volume } - 1.0).abs() < 1e-9,
+                "{edges:?} {cell}"
+            );
+            for (p, at) in x.iter().zip(&found.at) {
+                let d = sub(sub(*p, x[0]), sub(point(&found.basis, *at), point(&found.basis, found.at[0])));
+                // Places of 200 are known to 3e-14.
+                assert!(length(d) < 1e-12);
+            }
+            assert!(
+                found.directions.iter().all(|n| divisor(*n) == 1)
+                    && found.directions.len() >= 3 - usize::from(flat)
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_off_its_sites_is_measured() {
+        let moved = |by: f64| {
+            let mut x = ball(&FACES, [1.0; 3], [0.0; 3]);
+            x[17][1] += by * 0.5f64.sqrt();
+            x
+        };
+        assert!(matches!(carrier_of(&moved(1e-11)), Carrier::Lattice(_)));
+        // One of many moves the fit by a hundredth of its way.
+        for by in [1e-9, 1e-5, 9e-4] {
+            assert!(
+                matches!(carrier_of(&moved(by)), Carrier::Almost(off) if (off / by - 1.0).abs() < 0.02),
+                "{by}"
+            );
+        }
+        assert!(matches!(carrier_of(&moved(2e-3)), Carrier::Nothing));
+        assert!(matches!(carrier_of(&moved(0.4)), Carrier::Nothing));
+    }
+
+    #[test]
+    fn heaps_and_patchworks_are_on_none() {
+        let mut seed = 9u64;
+        let mut next = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let heap: Vec<Vec3> = (0..400).map(|_| [0; 3].map(|_| 8.0 * next())).collect();
+        assert!(matches!(carrier_of(&heap), Carrier::Nothing));
+        let jitter: Vec<Vec3> =
+            ball(&FACES, [1.0; 3], [0.0; 3]).iter().map(|x| x.map(|x| x + 0.1 * next())).collect();
+        assert!(matches!(carrier_of(&jitter), Carrier::Nothing));
+        // Two halves of one lattice, the one pushed along by a third of a spacing.
+        let halves: Vec<Vec3> = ball(&FACES, [1.0; 3], [0.0; 3])
+            .iter()
+            .map(|x| if x[2] > 0.1 { [x[0] + 0.3, x[1], x[2]] } else { *x })
+            .collect();
+        assert!(matches!(carrier_of(&halves), Carrier::Nothing));
+        // A few points are on some lattice by chance.
+        assert!(matches!(carrier_of(&heap[..4]), Carrier::Nothing));
+    }
+
+    /// A bar along a diagonal of the cells, far longer than thick: coordinates rise together.
+    #[test]
+    fn long_thin_bodies_are_found() {
+        let mut x = vec![];
+        for cell in (0..60 * 60 * 60).map(|k| [k % 60, k / 60 % 60, k / 3600].map(f64::from)) {
+            let along = (cell[0] + cell[1] + cell[2]) / 3.0;
+            let off = cell.map(|c| c - along);
+            if dot(off, off) < 3.0 {
+                x.extend(FACES.map(|s| [0, 1, 2].map(|k| 0.1 * (cell[k] + s[k]) + 3.0)));
+            }
+        }
+        assert!(matches!(carrier_of(&x), Carrier::Lattice(_)));
+    }
+}
