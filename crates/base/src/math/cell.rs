@@ -198,7 +198,7 @@ pub fn beside(basis: &Basis, first: [i32; 3]) -> Option<Turn> {
     }
     let along = point(basis, first);
     let mut others: Vec<(f64, f64, [i32; 3])> = vec![];
-    for n in (0..343).map(|k| [k % 7 - 3, k / 7 % 7 - 3, k / 49 - 3]) {
+    for n in (0..125).map(|k| [k % 5 - 2, k / 5 % 5 - 2, k / 25 - 2]) {
         let v = point(basis, n);
         let share = dot(v, along) / dot(along, along);
         let across = sub(v, scale(share, along));
