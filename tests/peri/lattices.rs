@@ -327,6 +327,7 @@ fn layouts_say_the_same_while_bonds_break() {
 
 #[test]
 fn bits_do_not_depend_on_threads_or_skipping() {
+    let _alone = super::super::threads::alone();
     for (name, turn, kind) in
         [("fcc", anyhow(), LawKind::Pmb), ("hcp", UPRIGHT, LawKind::Eps), ("bcc", UPRIGHT, LawKind::Ves)]
     {
