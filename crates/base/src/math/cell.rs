@@ -84,7 +84,7 @@ impl Span {
 
     /// Its shortest basis; vectors across stand for those that are missing.
     pub fn basis(&self) -> Option<Basis> {
-        let Some(&first) = self.basis.first() else { return None };
+        let &first = self.basis.first()?;
         let size = length(first);
         let second = self.basis.get(1).copied().unwrap_or_else(|| {
             let flattest = (0..3).min_by(|&j, &k| first[j].abs().total_cmp(&first[k].abs())).unwrap_or(0);
@@ -113,7 +113,7 @@ impl Span {
             };
             let Some(reciprocal) = reciprocal(&basis) else { return false };
             let at = coordinates(&reciprocal, vector);
-            let across = (rank..3).map(|k| scale(at[k], basis[k])).fold([0.0; 3], |sum, v| sub(sum, v));
+            let across = (rank..3).map(|k| scale(at[k], basis[k])).fold([0.0; 3], sub);
             if length(across) > self.error {
                 self.basis.push(vector);
                 reduce(&mut self.basis);
