@@ -63,6 +63,7 @@ const BOOK: [&str; 2] = [
      - [Decisions: state and plans](decisions/state.md)\n\
      - [Decisions: passes over particles](decisions/passes.md)\n\
      - [Decisions: loops over grains](decisions/grains.md)\n\
+     - [Decisions: bodies on lattices](decisions/lattices.md)\n\
      - [Decisions: which bonds break](decisions/breaking.md)\n\
      - [Decisions: lanes](decisions/lanes.md)\n\
      - [Decisions: threads and memory](decisions/threads.md)\n\

@@ -7,18 +7,18 @@ use super::scene::Scene;
 use super::textbook::Textbook;
 
 /// Numbers in [0, 1) that look random.
-struct Scatter(u64);
+pub struct Scatter(pub u64);
 
 impl Scatter {
-    fn next(&mut self) -> f64 {
+    pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 }
 
-const DX: f64 = 1e-3;
+pub const DX: f64 = 1e-3;
 
-fn coeff(k: f64, s00: f64, alpha: f64) -> PmbCoeff {
+pub fn coeff(k: f64, s00: f64, alpha: f64) -> PmbCoeff {
     let horizon = 3.015 * DX;
     PmbCoeff { c: 18.0 * k / (std::f64::consts::PI * horizon.powi(4)), horizon, s00, alpha }
 }
@@ -144,20 +144,23 @@ fn side_by_side(mut s: Scene, steps: usize) -> (f64, f64, f64) {
 
 /// Every layout, kernel and unit against the textbook.
 fn check(name: &str, scene: &Scene, steps: usize) {
-    for layout in [Layout::Auto, Layout::List] {
-        for (portable, unit) in [(false, ForceUnit::Density), (true, ForceUnit::Newton)] {
-            let mut s = scene.clone();
-            (s.options.layout, s.options.portable, s.options.unit) = (layout, portable, unit);
-            if unit == ForceUnit::Newton {
-                s.density.iter_mut().zip(&s.volume).for_each(|(m, v)| *m *= v);
-            }
-            let (dx, dv, damage) = side_by_side(s, steps);
-            println!("{name} {layout:?} portable {portable} {unit:?}: x {dx:e}, v {dv:e}, damage {damage}");
-            // Absolute lengths lose digits that displacements keep: stretches differ by some 1e-16 |x|/dx, and
-            // the motion after an impact multiplies that.
-            assert!(dx < 1e-11 && dv < 1e-10, "{name}: {dx:e} {dv:e}");
-            assert!(damage > 0.0);
+    [Layout::Auto, Layout::List].into_iter().for_each(|layout| check_in(layout, name, scene, steps));
+}
+
+/// Every kernel and unit of a layout against the textbook.
+pub fn check_in(layout: Layout, name: &str, scene: &Scene, steps: usize) {
+    for (portable, unit) in [(false, ForceUnit::Density), (true, ForceUnit::Newton)] {
+        let mut s = scene.clone();
+        (s.options.layout, s.options.portable, s.options.unit) = (layout, portable, unit);
+        if unit == ForceUnit::Newton {
+            s.density.iter_mut().zip(&s.volume).for_each(|(m, v)| *m *= v);
         }
+        let (dx, dv, damage) = side_by_side(s, steps);
+        println!("{name} {layout:?} portable {portable} {unit:?}: x {dx:e}, v {dv:e}, damage {damage}");
+        // Absolute lengths lose digits that displacements keep: stretches differ by some 1e-16 |x|/dx, and
+        // the motion after an impact multiplies that.
+        assert!(dx < 1e-11 && dv < 1e-10, "{name}: {dx:e} {dv:e}");
+        assert!(damage > 0.0);
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod endurance;
 mod golden;
+mod lattices;
 mod layouts;
 mod limits;
 mod patch;

@@ -9,7 +9,7 @@ use super::scene::Scene;
 const DX: f64 = 1e-3;
 const K: f64 = 14e9;
 const G: f64 = 6e9;
-const KINDS: [LawKind; 4] = [LawKind::Lps, LawKind::Ves, LawKind::Eps, LawKind::VesApart];
+pub const KINDS: [LawKind; 4] = [LawKind::Lps, LawKind::Ves, LawKind::Eps, LawKind::VesApart];
 
 fn moduli(kind: LawKind, factor: f64) -> Moduli {
     let (lambda, tau) = match kind {
@@ -22,7 +22,7 @@ fn moduli(kind: LawKind, factor: f64) -> Moduli {
 }
 
 /// Gives a scene a state-based law; types differ in their moduli.
-fn with_law(mut s: Scene, kind: LawKind) -> Scene {
+pub fn with_law(mut s: Scene, kind: LawKind) -> Scene {
     let types = s.table.types();
     s.law.kind = kind;
     s.law.moduli = (0..types).map(|k| moduli(kind, 1.0 + 0.3 * k as f64)).collect();
@@ -30,7 +30,7 @@ fn with_law(mut s: Scene, kind: LawKind) -> Scene {
 }
 
 /// No bond breaks.
-fn tough(mut s: Scene) -> Scene {
+pub fn tough(mut s: Scene) -> Scene {
     let types = s.table.types() as u16;
     for (a, b) in (1..=types).flat_map(|a| (1..=types).map(move |b| (a, b))) {
         if let Some(c) = s.table.get(a, b).copied() {
@@ -41,7 +41,7 @@ fn tough(mut s: Scene) -> Scene {
 }
 
 /// A block of any types under velocities that vary smoothly, so that nobody touches.
-fn shaken(mut s: Scene) -> Scene {
+pub fn shaken(mut s: Scene) -> Scene {
     for i in 0..s.x.len() {
         let x = s.x[i];
         s.v[i] = [0, 1, 2].map(|k| 6.0 * (400.0 * x[k] + 250.0 * x[(k + 1) % 3]).sin());
@@ -156,7 +156,7 @@ fn largest(f: &[[f64; 3]]) -> f64 {
 }
 
 /// Moves a scene and compares its forces with the plain ones in every step.
-fn check(name: &str, scene: &Scene) {
+pub fn check(name: &str, scene: &Scene) {
     for (layout, portable) in [(Layout::Auto, false), (Layout::Auto, true), (Layout::List, false)] {
         let mut s = scene.clone();
         (s.options.layout, s.options.portable) = (layout, portable);

@@ -18,11 +18,12 @@ use super::list::kernel::{RowKernels, Rules};
 use super::state::{self, kernels::StateKernels};
 use super::stretching::StretchKernels;
 use super::tables;
+use crate::build::sites::{Carrier, carrier};
 use crate::build::{detect, lattice as cells, list as records};
 use crate::families::lattice::RowMotion;
 use crate::families::{
-    Bounds, Candidate, Families, FamilyOptions, ForceUnit, Law, LawKind, Layout, NearPairs, PeriTally,
-    PeriView, PmbCoeff, PmbTable, Scratch,
+    AlmostLattice, Bounds, Candidate, Families, FamilyOptions, ForceUnit, Law, LawKind, Layout, NearPairs,
+    PeriTally, PeriView, PmbCoeff, PmbTable, Scratch,
 };
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par::{self, Shared};
@@ -110,6 +111,7 @@ impl Families {
             heat: 0.0,
             relaxing: None,
             counts_losses: false,
+            almost: vec![],
             scratch: Scratch::default(),
         }
     }
@@ -122,11 +124,18 @@ impl Families {
         for (k, members) in bodies.members.iter().enumerate() {
             let free =
                 self.options.layout == Layout::Auto && !bodies.wraps[k] && self.suits_lattice(view, members);
-            let sites = if free { detect::sites(view, members, bodies.nearest[k]) } else { None };
+            let carrier = if free { carrier(view, members, bodies.nearest[k]) } else { Carrier::Nothing };
             let (volume, size) = (&mut self.family_volume, &mut self.family_size);
-            let body = sites.and_then(|sites| {
-                cells::lay_out(view, members, &sites, &self.table, &self.options, volume, size)
-            });
+            let body = match carrier {
+                Carrier::Lattice(sites) => {
+                    cells::lay_out(view, members, &sites, &self.table, &self.options, volume, size)
+                }
+                Carrier::Almost(off) => {
+                    self.almost.push(AlmostLattice { first: members[0], count: members.len(), off });
+                    None
+                }
+                Carrier::Nothing => None,
+            };
             match body {
                 Some(body) => self.lattices.push(body),
                 None => {

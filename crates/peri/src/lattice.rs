@@ -180,7 +180,7 @@ impl<'a> Sweep<'a> {
             Some(motion) if spread.is_none() => (motion.lo, motion.hi),
             _ => self.reached(slot),
         };
-        let active = (at.0.saturating_sub(body.reach), at.1.saturating_add(body.reach));
+        let active = (at.0.saturating_sub(body.reach[0]), at.1.saturating_add(body.reach[0]));
         RowPlan { active, growth: *growth, limit: row_limit(body, slot) }
     }
 
@@ -310,7 +310,7 @@ impl<'a> Sweep<'a> {
 /// The planes of a slab, and the cells that its bonds touch: those of the slab and of what it reaches.
 pub(super) fn extent(body: &LatticeBody, slab: usize) -> (std::ops::Range<usize>, usize, usize) {
     let own = slab * body.thickness..((slab + 1) * body.thickness).min(body.planes);
-    let end = (own.end + body.reach as usize).min(body.planes);
+    let end = (own.end + body.reach[2] as usize).min(body.planes);
     let first = body.rows[body.slot(own.start, 0)].start as usize;
     let last = body.rows[body.slot(end, 0)].start as usize;
     (own, first, last)

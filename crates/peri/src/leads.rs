@@ -1,5 +1,7 @@
 //! Where the bonds of a lattice's rows lead: found once, looked up in every step.
 
+use std::collections::VecDeque;
+
 use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, Lead, Leads, MIXED};
 
 /// The row slot that bonds with a row step lead to.
@@ -31,21 +33,33 @@ pub(super) fn row_limit(body: &LatticeBody, slot: usize) -> (f64, f64) {
     limit
 }
 
+/// Rows before that are looked at for one that meets others alike: on most lattices every second or third does.
+const RECENT: usize = 8;
+
 /// Finds where the bonds of all rows lead, if that has not been found yet.
 pub(super) fn find_leads(body: &mut LatticeBody) {
     if body.leads.of_row.len() == body.rows.len() {
         return;
     }
-    let (mut leads, mut meets, mut to) = (Leads::default(), vec![], vec![]);
+    let mut leads = Leads::default();
+    let mut recent: VecDeque<(Vec<Met>, (u32, u32))> = VecDeque::new();
     leads.of_row.resize(body.rows.len(), (0, 0));
-    let mut begin = 0;
     for slot in (0..body.rows.len()).filter(|&slot| body.rows[slot].len > 0) {
-        partners_beside(body, slot, &mut meets, &mut to);
-        if leads.to.get(begin..) != Some(&to) {
-            begin = leads.to.len();
-            leads.to.extend_from_slice(&to);
-        }
-        leads.of_row[slot] = (begin as u32, leads.to.len() as u32);
+        let meets = met_by(body, slot);
+        let known = recent.iter().find(|(before, _)| *before == meets).map(|(_, range)| *range);
+        leads.of_row[slot] = known.unwrap_or_else(|| {
+            let begin = leads.to.len() as u32;
+            for (e, (vector, &step)) in body.stencil.iter().zip(&body.step_of).enumerate() {
+                if let Some((offset, pair)) = meets[usize::from(step)] {
+                    let table = pair + (e * CONSTANTS) as u32;
+                    leads.to.push(Lead { to: offset + vector[0], table, e: e as u32 });
+                }
+            }
+            let range = (begin, leads.to.len() as u32);
+            recent.truncate(RECENT - 1);
+            recent.push_front((meets, range));
+            range
+        });
     }
     for (slot, row) in body.rows.iter().enumerate() {
         leads.slot.resize((row.start + row.len) as usize / LANES, slot as u32);
@@ -56,30 +70,20 @@ pub(super) fn find_leads(body: &mut LatticeBody) {
     body.growth.resize(body.rows.len(), 0.0);
 }
 
-/// Finds where the bonds of a row's cells lead, after another row of this body or with no `meets`: where rows beside each other
-/// meet theirs alike, nothing has to be found anew.
-fn partners_beside(body: &LatticeBody, slot: usize, meets: &mut Vec<Option<(i32, u32)>>, to: &mut Vec<Lead>) {
-    let known = meets.len() == body.steps.len();
-    meets.resize(body.steps.len(), None);
+/// How many cells further a row begins, coordinates being counted too, and the place of the first table of its pair of
+/// types; nothing where there is no row.
+type Met = Option<(i32, u32)>;
+
+/// What a row meets along the row steps.
+fn met_by(body: &LatticeBody, slot: usize) -> Vec<Met> {
     let row = &body.rows[slot];
     let various = !body.cell_kind.is_empty();
-    let mut same = known;
-    for (meets, &step) in meets.iter_mut().zip(&body.steps) {
+    let met = |&step: &(i32, usize)| {
         let (other, uniform) = meet(body, slot, step);
         let other = &body.rows[other];
         let offset = other.start as i32 - row.start as i32 + row.lo - other.lo;
         let table = if various { 0 } else { uniform.unwrap_or(0) * body.stencil.len() };
-        let new = (other.len > 0).then_some((offset, (table * CONSTANTS) as u32));
-        same &= *meets == new;
-        *meets = new;
-    }
-    if same {
-        return;
-    }
-    to.clear();
-    for (e, (vector, &step)) in body.stencil.iter().zip(&body.step_of).enumerate() {
-        if let Some((offset, pair)) = meets[usize::from(step)] {
-            to.push(Lead { to: offset + vector[0], table: pair + (e * CONSTANTS) as u32, e: e as u32 });
-        }
-    }
+        (other.len > 0).then_some((offset, (table * CONSTANTS) as u32))
+    };
+    body.steps.iter().map(met).collect()
 }

@@ -73,12 +73,9 @@ fn fill_tables(body: &mut LatticeBody, table: &PmbTable, options: &FamilyOptions
             ForceUnit::Newton => volume * volume,
         };
         let c = if various { 1.0 } else { coeff.map_or(0.0, |k| k.c) * volumes };
-        for step in &body.stencil {
+        for e in 0..body.stencil.len() {
             let mut row = [0.0; CONSTANTS];
-            let mut xi = [0.0; 3];
-            for k in 0..3 {
-                xi[body.axes[k]] = f64::from(step[k]) * body.spacing;
-            }
+            let xi = body.xi(e);
             row[constant::XI..constant::XI + 3].copy_from_slice(&xi);
             let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
             let inverse = 1.0 / (length * length);

@@ -1,6 +1,7 @@
 //! Small vectors and matrices, decompositions, random numbers.
 
 pub mod body;
+pub mod cell;
 pub mod cformat;
 #[cfg(target_arch = "x86_64")]
 mod eight;

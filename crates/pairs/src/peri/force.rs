@@ -142,6 +142,7 @@ impl Force {
                 let families = Families::build_of(&view(w)?, &table, self.options, law)?;
                 self.tell_lone(w, &families);
                 self.tell_doubles(w, &families);
+                tell_almost(w, &families);
                 families
             }
         };
@@ -236,4 +237,25 @@ impl Force {
         }
         Ok(())
     }
+}
+
+/// Warns once of bodies that were meant to be on a lattice and are a little off it.
+fn tell_almost(w: &mut World, families: &Families) {
+    let count: usize = families.almost.iter().map(|body| body.count).sum();
+    let Some(worst) = families.almost.iter().max_by(|a, b| a.off.total_cmp(&b.off)) else { return };
+    let bodies = match families.almost.len() {
+        1 => "a body".to_string(),
+        n => format!("{n} bodies"),
+    };
+    let tag = w.particles.tag[worst.first as usize];
+    let text = format!(
+        "{bodies} of {count} particles (the one with particle {tag}) would be on a lattice, but for particles up to {:.1e} of the \
+         distance of neighbours off their sites: bonds are computed one by one, as a list",
+        worst.off
+    );
+    w.parts.notes.push(
+        Diagnostic::warning(Code::SUSPICIOUS, None, text)
+            .help("results are as good; on a lattice (sites hit to 1e-10 of that distance) steps take a fraction of the time")
+            .help("places with more digits, or particles made by `create_atoms`, are on their lattice"),
+    );
 }

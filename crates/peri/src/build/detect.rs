@@ -1,4 +1,4 @@
-//! Bodies: which particles hang together by bonds, and which of them sit on a lattice.
+//! Bodies: which particles hang together by bonds.
 
 use crate::families::{Cells, FamilyOptions, PeriView, PmbTable};
 use perigrain_base::math::forest::{find, join};
@@ -86,44 +86,4 @@ pub fn bodies(view: &PeriView, table: &PmbTable, options: &FamilyOptions) -> Bod
         found.wraps[b] |= crosses[i];
     }
     found
-}
-
-/// A lattice that carries a body.
-#[derive(Debug)]
-pub struct Sites {
-    /// Spacing.
-    pub spacing: f64,
-    /// Lattice coordinates of the body's particles, from 0.
-    pub at: Vec<[i32; 3]>,
-    /// Number of sites in each direction.
-    pub size: [i32; 3],
-}
-
-/// The sites of a body if all its particles are within 1e-10 spacings of a simple cubic lattice along the
-/// axes whose spacing is `nearest`.
-pub fn sites(view: &PeriView, members: &[u32], nearest: f64) -> Option<Sites> {
-    let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for &i in members {
-        for k in 0..3 {
-            lo[k] = lo[k].min(view.x[i as usize][k]);
-            hi[k] = hi[k].max(view.x[i as usize][k]);
-        }
-    }
-    // The longest extent gives the spacing with the fewest digits lost.
-    let longest = [0, 1, 2].map(|k| hi[k] - lo[k]).into_iter().fold(0.0, f64::max);
-    let steps = (longest / nearest).round();
-    if !(1.0..1e6).contains(&steps) {
-        return None;
-    }
-    let spacing = longest / steps;
-    let size = [0, 1, 2].map(|k| ((hi[k] - lo[k]) / spacing).round() as i32 + 1);
-    let mut at = Vec::with_capacity(members.len());
-    for &i in members {
-        let c = [0, 1, 2].map(|k| (view.x[i as usize][k] - lo[k]) / spacing);
-        if c.iter().any(|c| (c - c.round()).abs() > 1e-10) {
-            return None;
-        }
-        at.push(c.map(|c| c.round() as i32));
-    }
-    Some(Sites { spacing, at, size })
 }

@@ -1,8 +1,11 @@
 //! Laying out a body on a lattice: rows, slabs, half stencil, alive bits.
 
-use super::detect::{Sites, distance};
+use super::detect::distance;
+use super::sites::Sites;
 use crate::families::lattice::{LANES, LatticeBody, Row, RowMotion, staggered};
 use crate::families::{FamilyOptions, PeriView, PmbTable};
+use perigrain_base::math::cell::{Basis, Turn, beside, point, reciprocal};
+use perigrain_base::math::vec3::{dot, length};
 
 /// Types mixed in a row cost this many cells' worth each when the direction of rows is chosen.
 const TYPE_CHANGE: usize = 64;
@@ -26,22 +29,16 @@ pub fn lay_out(
 ) -> Option<LatticeBody> {
     let horizon = one_horizon(view, members, table)?;
     let cut = options.volume.reach(horizon, options.lattice_spacing);
-    let volume: usize = sites.size.iter().map(|&n| n as usize).product();
-    if cut > FARTHEST * sites.spacing || volume > SPARSEST * members.len() + 65_536 {
+    if cut > FARTHEST * sites.nearest {
         return None;
     }
-    let axes = (0..3).map(|row| axes(row, sites.size)).min_by_key(|&axes| {
-        let (cells, changes) = cost(view, members, sites, axes);
-        // Along x, LAMMPS' creation order makes gathering cheaper.
-        (cells + TYPE_CHANGE * changes) * if axes[0] == 0 { 20 } else { 23 }
-    })?;
-    let (cells, _) = cost(view, members, sites, axes);
-    if cells > 4 * members.len() + 512 || cells > u32::MAX as usize / 32 {
-        return None;
-    }
-    let mut body = LatticeBody { spacing: sites.spacing, axes, horizon, ..Default::default() };
-    stencil(&mut body, cut);
-    rows(&mut body, members, sites);
+    let frames = sites.directions.iter().filter_map(|&along| Frame::of(view, members, sites, along));
+    let frame = frames.min_by_key(|frame| frame.cost)?;
+    let mut body = LatticeBody { spacing: sites.nearest, basis: frame.basis, horizon, ..Default::default() };
+    stencil(&mut body, cut)?;
+    rows(&mut body, members, &frame);
+    prune(&mut body);
+    columns(&mut body);
     connect(&mut body, view, table, options, (family_volume, family_size));
     Some(body)
 }
@@ -56,78 +53,135 @@ fn one_horizon(view: &PeriView, members: &[u32], table: &PmbTable) -> Option<f64
     (kinds.len() < 256 && horizons.all(|h| h == first)).then_some(first)
 }
 
-/// Rows along `row`; of the other two directions planes follow each other along the longer one.
-fn axes(row: usize, size: [i32; 3]) -> [usize; 3] {
-    let (a, b) = ((row + 1) % 3, (row + 2) % 3);
-    if size[a] > size[b] { [row, b, a] } else { [row, a, b] }
+/// Sites as (along rows, across rows, across planes) from 0, with rows in one direction.
+struct Frame {
+    basis: Basis,
+    at: Vec<[i32; 3]>,
+    size: [usize; 3],
+    /// Cells with padding.
+    cells: usize,
+    /// What a sweep over them costs.
+    cost: usize,
 }
 
-/// Cells with padding, and type changes along rows.
-fn cost(view: &PeriView, members: &[u32], sites: &Sites, axes: [usize; 3]) -> (usize, usize) {
-    let [along, across, up] = axes.map(|a| sites.size[a] as usize);
-    let mut extent = vec![(i32::MAX, i32::MIN); across * up];
-    for at in &sites.at {
-        let e = &mut extent[at[axes[1]] as usize + across * at[axes[2]] as usize];
-        *e = (e.0.min(at[axes[0]]), e.1.max(at[axes[0]]));
+impl Frame {
+    /// `None` where the box around the body would have too many rows, or rows too many vacant cells.
+    fn of(view: &PeriView, members: &[u32], sites: &Sites, along: [i32; 3]) -> Option<Self> {
+        let mut turn = beside(&sites.basis, along)?;
+        let extent = |turn: &Turn| {
+            let (mut lo, mut hi) = ([i32::MAX; 3], [i32::MIN; 3]);
+            for at in sites.at.iter().map(|at| turn.of(*at)) {
+                (lo, hi) = ([0, 1, 2].map(|k| lo[k].min(at[k])), [0, 1, 2].map(|k| hi[k].max(at[k])));
+            }
+            (lo, [0, 1, 2].map(|k| (hi[k] - lo[k] + 1) as usize))
+        };
+        let (mut lo, mut size) = extent(&turn);
+        // Planes follow each other along the longer direction.
+        if size[1] > size[2] {
+            turn = turn.exchanged();
+            (lo, size) = extent(&turn);
+        }
+        let slots = size[1].checked_mul(size[2])?;
+        if slots > SPARSEST * members.len() + 65_536 {
+            return None;
+        }
+        let at = sites.at.iter().map(|at| turn.of(*at)).map(|at| [0, 1, 2].map(|k| at[k] - lo[k])).collect();
+        let mut frame = Self { basis: turn.basis(&sites.basis), at, size, cells: 0, cost: 0 };
+        let changes = frame.count(view, members)?;
+        // Along x, LAMMPS' creation order makes gathering cheaper.
+        let [x, y, z] = frame.basis[0];
+        let easy = x > 0.0 && y == 0.0 && z == 0.0;
+        frame.cost = (frame.cells + TYPE_CHANGE * changes) * if easy { 20 } else { 23 };
+        Some(frame)
     }
-    let length =
-        |e: &(i32, i32)| if e.0 > e.1 { 0 } else { ((e.1 - e.0 + 1) as usize).next_multiple_of(LANES) };
-    let cells = extent.iter().map(length).sum();
-    let first = view.kind[members[0] as usize];
-    if members.iter().all(|&i| view.kind[i as usize] == first) {
-        return (cells, 0);
+
+    /// Counts cells with padding; returns how often types change along rows, or `None` if too many cells are vacant.
+    fn count(&mut self, view: &PeriView, members: &[u32]) -> Option<usize> {
+        let slot = |at: &[i32; 3]| at[1] as usize + self.size[1] * at[2] as usize;
+        let mut extent = vec![(i32::MAX, i32::MIN); self.size[1] * self.size[2]];
+        for at in &self.at {
+            let e = &mut extent[slot(at)];
+            *e = (e.0.min(at[0]), e.1.max(at[0]));
+        }
+        let length = |e: &(i32, i32)| if e.0 > e.1 { 0 } else { (e.1 - e.0 + 1) as usize };
+        self.cells = extent.iter().map(|e| length(e).next_multiple_of(LANES)).sum();
+        if self.cells > 4 * members.len() + 512 || self.cells > u32::MAX as usize / 32 {
+            return None;
+        }
+        let first = view.kind[members[0] as usize];
+        if members.iter().all(|&i| view.kind[i as usize] == first) {
+            return Some(0);
+        }
+        let mut start = vec![0];
+        start.extend(extent.iter().scan(0, |sum, e| {
+            *sum += length(e);
+            Some(*sum)
+        }));
+        let mut kind = vec![0u16; start[extent.len()]];
+        for (&i, at) in members.iter().zip(&self.at) {
+            kind[start[slot(at)] + (at[0] - extent[slot(at)].0) as usize] = view.kind[i as usize];
+        }
+        let rows = start.windows(2).map(|ends| &kind[ends[0]..ends[1]]);
+        Some(rows.map(|row| row.windows(2).filter(|w| w[0] != w[1] && w[0] != 0 && w[1] != 0).count()).sum())
     }
-    let mut kind = vec![0u16; along * across * up];
-    for (&i, at) in members.iter().zip(&sites.at) {
-        let [x, y, z] = axes.map(|a| at[a] as usize);
-        kind[x + along * (y + across * z)] = view.kind[i as usize];
-    }
-    let changes = kind
-        .chunks(along)
-        .map(|row| row.windows(2).filter(|w| w[0] != w[1] && w[0] != 0 && w[1] != 0).count())
-        .sum();
-    (cells, changes)
 }
 
-/// Half of all lattice vectors within the cut, and the row steps among them.
-fn stencil(body: &mut LatticeBody, cut: f64) {
-    let reach = (cut / body.spacing * (1.0 + 1e-9)).floor() as i32;
-    let most = (cut / body.spacing).powi(2) * (1.0 + 2e-9);
+/// Half of all lattice vectors within the cut; `None` if there are more than can be numbered.
+fn stencil(body: &mut LatticeBody, cut: f64) -> Option<()> {
+    // n is the product of a vector with a reciprocal one.
+    let reach = reciprocal(&body.basis)?.map(|r| (cut * length(r) * (1.0 + 1e-9)).floor() as i32);
+    let most = cut * cut * (1.0 + 2e-9);
     body.reach = reach;
-    for along in -reach..=reach {
-        for up in 0..=reach {
-            for across in -reach..=reach {
-                let after = (up, across, along) > (0, 0, 0);
-                if !after || f64::from(up * up + across * across + along * along) > most {
-                    continue;
-                }
-                body.stencil.push([along, across, up]);
-                let step = (across, up as usize);
-                let known = body.steps.iter().position(|&s| s == step);
-                body.step_of.push(known.unwrap_or(body.steps.len()) as u16);
-                if known.is_none() {
-                    body.steps.push(step);
+    for along in -reach[0]..=reach[0] {
+        for up in 0..=reach[2] {
+            for across in -reach[1]..=reach[1] {
+                let xi = point(&body.basis, [along, across, up]);
+                if (up, across, along) > (0, 0, 0) && dot(xi, xi) <= most {
+                    body.stencil.push([along, across, up]);
                 }
             }
         }
     }
+    (body.stencil.len() < usize::from(u16::MAX)).then_some(())
 }
 
-fn rows(body: &mut LatticeBody, members: &[u32], sites: &Sites) {
-    let [_, across, up] = body.axes.map(|a| sites.size[a] as usize);
-    let reach = body.reach as usize;
-    body.planes = up;
-    body.width = across + 2 * reach;
-    // Thick slabs hand over fewer forces twice, many slabs keep threads equally busy.
-    body.thickness = up.div_ceil(16).clamp(reach, 2 * reach).max(1);
-    let mut extent = vec![(i32::MAX, i32::MIN); body.width * (up + reach + 1)];
-    let slot = |at: &[i32; 3]| {
-        let [_, y, z] = body.axes.map(|a| at[a] as usize);
-        z * body.width + y + reach
+/// Leaves of the stencil what leads from rows to rows, and finds the row steps in it.
+fn prune(body: &mut LatticeBody) {
+    let slots: Vec<usize> = (0..body.planes * body.width).filter(|&slot| body.rows[slot].len > 0).collect();
+    let mut steps: Vec<((i32, usize), bool)> = vec![];
+    let mut step_of = |vector: &[i32; 3]| {
+        let step = (vector[1], vector[2] as usize);
+        let known = steps.iter().position(|s| s.0 == step).unwrap_or_else(|| {
+            let ahead = |slot: &usize| (slot + step.1 * body.width).wrapping_add_signed(step.0 as isize);
+            steps.push((step, slots.iter().any(|slot| body.rows[ahead(slot)].len > 0)));
+            steps.len() - 1
+        });
+        steps[known]
     };
-    for at in &sites.at {
+    let kept: Vec<[i32; 3]> = body.stencil.iter().copied().filter(|vector| step_of(vector).1).collect();
+    for vector in &kept {
+        let step = (vector[1], vector[2] as usize);
+        let known = body.steps.iter().position(|&s| s == step);
+        body.step_of.push(known.unwrap_or(body.steps.len()) as u16);
+        if known.is_none() {
+            body.steps.push(step);
+        }
+    }
+    body.stencil = kept;
+}
+
+fn rows(body: &mut LatticeBody, members: &[u32], frame: &Frame) {
+    let [_, across, up] = frame.size;
+    let [_, beside, above] = body.reach.map(|r| r as usize);
+    body.planes = up;
+    body.width = across + 2 * beside;
+    // Thick slabs hand over fewer forces twice, many slabs keep threads equally busy.
+    body.thickness = up.div_ceil(16).clamp(above, 2 * above).max(1);
+    let mut extent = vec![(i32::MAX, i32::MIN); body.width * (up + above + 1)];
+    let slot = |at: &[i32; 3]| at[2] as usize * body.width + at[1] as usize + beside;
+    for at in &frame.at {
         let e = &mut extent[slot(at)];
-        *e = (e.0.min(at[body.axes[0]]), e.1.max(at[body.axes[0]]));
+        *e = (e.0.min(at[0]), e.1.max(at[0]));
     }
     let mut start = 0;
     body.rows = Vec::with_capacity(extent.len());
@@ -136,12 +190,16 @@ fn rows(body: &mut LatticeBody, members: &[u32], sites: &Sites) {
         body.rows.push(Row { start, len, lo: if len > 0 { lo } else { 0 }, kind: 0 });
         start += len;
     }
-    let cells = start as usize;
-    body.particle = vec![u32::MAX; cells];
-    for (&i, at) in members.iter().zip(&sites.at) {
+    body.particle = vec![u32::MAX; start as usize];
+    for (&i, at) in members.iter().zip(&frame.at) {
         let row = &body.rows[slot(at)];
-        body.particle[row.start as usize + (at[body.axes[0]] - row.lo) as usize] = i;
+        body.particle[row.start as usize + (at[0] - row.lo) as usize] = i;
     }
+}
+
+/// Columns by cells, chunks and rows.
+fn columns(body: &mut LatticeBody) {
+    let cells = body.particle.len();
     let chunks = cells / LANES;
     body.stride = staggered(cells);
     body.u = [(); 2].map(|()| vec![0.0; 3 * body.stride]);

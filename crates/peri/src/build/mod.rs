@@ -4,3 +4,4 @@ pub mod detect;
 pub mod lattice;
 pub mod list;
 pub mod near;
+pub mod sites;

@@ -1,7 +1,8 @@
-//! A peridynamic body on a simple cubic lattice: cells in rows, rows in planes, one bit per bond.
+//! A peridynamic body on a lattice: cells in rows, rows in planes, one bit per bond.
 
 use super::Measures;
 use super::law::SiteState;
+use perigrain_base::math::cell::{Basis, point};
 
 /// Cells per chunk: alive bits of a chunk's bonds along one stencil vector are one byte.
 pub const LANES: usize = 8;
@@ -67,16 +68,17 @@ pub fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// A body on a lattice. Bond `e` of cell `c` goes to the cell one stencil vector further; half the stencil
-/// is kept, so each bond once.
+/// A body on a lattice: simple cubic, face- or body-centred, square, hexagonal or any other, in any direction. Rows follow one of
+/// its vectors; where its sites are not all taken (hexagonal close packing, diamond), whole rows are left out. Bond `e` of
+/// cell `c` goes to the cell one stencil vector further; half the stencil is kept, so each bond once.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct LatticeBody {
-    /// Lattice spacing.
+    /// Distance of nearest neighbours.
     pub spacing: f64,
-    /// Which coordinate runs along rows, across rows, across planes.
-    pub axes: [usize; 3],
-    /// The stencil's reach in cells.
-    pub reach: i32,
+    /// The lattice's vectors: along rows, to the next row, to the next plane.
+    pub basis: Basis,
+    /// The stencil's reach along rows, across rows, across planes.
+    pub reach: [i32; 3],
     /// The horizon of all its bonds.
     pub horizon: f64,
     /// Stencil vectors (along, across, up): the half with (up, across, along) after (0, 0, 0), ordered by
@@ -87,11 +89,11 @@ pub struct LatticeBody {
     pub steps: Vec<(i32, usize)>,
     /// Which of the steps each stencil vector takes.
     pub step_of: Vec<u16>,
-    /// Planes, not counting `reach` empty ones above.
+    /// Planes, not counting as many empty ones above as bonds reach.
     pub planes: usize,
-    /// Row slots per plane: those with particles, between `reach` empty ones on both sides.
+    /// Row slots per plane: those with particles, between as many empty ones on both sides as bonds reach.
     pub width: usize,
-    /// `(planes + reach) * width` rows.
+    /// Rows of all planes and of the empty ones.
     pub rows: Vec<Row>,
     /// Planes per slab.
     pub thickness: usize,
@@ -325,11 +327,7 @@ impl LatticeBody {
 
     /// The reference bond of a stencil vector.
     pub fn xi(&self, e: usize) -> [f64; 3] {
-        let mut xi = [0.0; 3];
-        for k in 0..3 {
-            xi[self.axes[k]] = f64::from(self.stencil[e][k]) * self.spacing;
-        }
-        xi
+        point(&self.basis, self.stencil[e])
     }
 
     /// z = |xi + eta|^2/|xi|^2 - 1 of the bond from cell `i` to cell `j`, from displacements `u[which]`.

@@ -332,9 +332,23 @@ pub struct Families {
     /// Count both.
     #[serde(skip)]
     pub counts_losses: bool,
+    /// Bodies that were meant to be on a lattice, when families were built.
+    #[serde(skip)]
+    pub almost: Vec<AlmostLattice>,
     /// Scratch that is not state.
     #[serde(skip)]
     pub scratch: Scratch,
+}
+
+/// A body of which some particles are a little off the sites of a lattice: its bonds are kept as a list.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AlmostLattice {
+    /// Its first particle.
+    pub first: u32,
+    /// How many it has.
+    pub count: usize,
+    /// The largest distance of a particle from its site, in distances of nearest neighbours.
+    pub off: f64,
 }
 
 /// Pairs without a living bond that may come into short-range contact before they are looked for again.

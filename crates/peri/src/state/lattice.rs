@@ -187,7 +187,7 @@ pub fn find_active(body: &mut LatticeBody, remembers: bool) {
             join(ahead, own.lo, own.hi);
         }
     }
-    let reach = body.reach;
+    let reach = body.reach[0];
     for at in active.iter_mut().filter(|at| at.0 <= at.1) {
         *at = (at.0.saturating_sub(reach), at.1.saturating_add(reach));
     }
