@@ -226,8 +226,8 @@ impl<'a> Sealer<'a> {
 
     /// What formulas may ask about declarations.
     pub fn declared(&mut self) -> Arc<Declared> {
-        let graph = self.graph;
-        self.declared.get_or_insert_with(|| Arc::new(Declared::new(graph))).clone()
+        let (w, graph) = (self.w, self.graph);
+        self.declared.get_or_insert_with(|| Arc::new(Declared::new(w, graph))).clone()
     }
 
     /// A variable's value; each use is evaluated by itself.
