@@ -7,7 +7,7 @@ use perigrain_dumps::DUMPS;
 use perigrain_fixes::FIXES;
 use perigrain_pairs::PAIRS;
 use perigrain_pairs::bond::BONDS;
-use perigrain_world::MinStyle;
+use perigrain_world::minimizer::MinStyle;
 
 /// Commands of the session and of the cursor through the deck, which stand in no table.
 pub const SESSION_COMMANDS: [&str; 25] = [

@@ -189,6 +189,7 @@ impl DeckEnv<'_> {
         let mut sealer = Sealer::new(self.w, self.graph, Arc::new(vars.clone()));
         sealer.at(span);
         let answer = ask(&mut sealer)?;
+        let word = sealer.tallies.unwrap_or(span);
         let mut plan = sealer.plan;
         let t = Tick::between_runs(&self.w.clock);
         let mut wanted = t.clone();
@@ -202,7 +203,7 @@ impl DeckEnv<'_> {
         if short {
             return Err(Diagnostic::error(
                 Code::WRONG_ORDER,
-                span,
+                word,
                 "energies or pressures of the present state have not been computed",
             )
             .help(

@@ -2,11 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
-use perigrain_base::par;
 use perigrain_base::par;
 use perigrain_lang::Word;
-use perigrain_world::World;
 use perigrain_world::{GroupId, Region, World};
 
 /// The names of all group functions.

@@ -4,7 +4,7 @@ use super::env::RunEnv;
 use super::keywords::{self, Sources};
 use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_lang::{Clock, Dep, Env, Expr, RefKind, Value, ValueRef, Vars, substitute};
+use perigrain_lang::{Clock, Dep, Env, Expr, RefKind, Value, ValueRef, Vars, Word, substitute};
 use perigrain_plan::{Stage, When};
 use perigrain_styles::{PlaceTest, SealCx, Text};
 use perigrain_world::{SlotId, World};
