@@ -207,6 +207,17 @@ impl<'a> Sealer<'a> {
         Ok(())
     }
 
+    /// The same in the last step for those that have values after a run only if that step has tallied for them.
+    ///
+    /// # Errors
+    /// As `begin_computes`.
+    pub fn end_computes(&mut self) -> Result<()> {
+        for node in self.graph.computes.iter().filter(|c| c.compute.tallied()) {
+            self.compute(&node.id, node.span, Stage::Output, &When::Last)?;
+        }
+        Ok(())
+    }
+
     /// Places what evaluates a variable or keyword into a slot. A compute that is asked again asks again for what it reads: that
     /// is not evaluated once more, but at these times too.
     fn evaluate(
