@@ -272,7 +272,7 @@ impl<'a> Program<'a> {
         let (rest, body) = body.unwrap_or(("", inside));
         let rest = self.close(rest, place(self.text, inside) - 1)?;
         let range = at..place(self.text, rest);
-        let args = self.names(body);
+        let args = Self::names(body, place(self.text, inside));
         let least = 1 + usize::from(!g.words.is_empty());
         if args.len() < least || args.len() > least + 1 || args.iter().any(|a| a.text.is_empty()) {
             let usage = if least == 1 { "group" } else { "group,component" };
@@ -294,13 +294,14 @@ impl<'a> Program<'a> {
         let (rest, body) = balanced(inside).unwrap_or(("", inside));
         let rest = self.close(rest, place(self.text, inside) - 1)?;
         let range = at..place(self.text, rest);
-        let mut args = self.names(body);
+        let from = place(self.text, inside);
+        let mut args = Self::names(body, from);
         if row.usage.is_empty() && body.trim().is_empty() {
             args.clear();
         }
         // a pattern may hold commas of its own
         if row.what == special::Special::IsOs {
-            args = vec![self.name(body)];
+            args = vec![Self::name(body, from)];
         }
         if args.len() != row.usage.len() || args.iter().any(|a| a.text.is_empty()) {
             let message = format!("{0}() reads {0}({1})", row.name, row.usage.join(","));
@@ -310,14 +311,20 @@ impl<'a> Program<'a> {
         Ok(rest)
     }
 
-    /// Names between commas, each with its bytes of the formula.
-    fn names(&self, body: &'a str) -> Vec<Name> {
-        body.split(',').map(|part| self.name(part)).collect()
+    /// Names between commas, each with its bytes of the formula; `from` is the first byte of the list.
+    fn names(list: &str, from: usize) -> Vec<Name> {
+        let mut at = from;
+        let mut names = vec![];
+        for part in list.split(',') {
+            names.push(Self::name(part, at));
+            at += part.len() + 1;
+        }
+        names
     }
 
-    fn name(&self, part: &'a str) -> Name {
+    fn name(part: &str, from: usize) -> Name {
         let text = part.trim();
-        let at = place(self.text, text);
+        let at = from + part.len() - part.trim_start().len();
         Name { text: text.to_owned(), range: at..at + text.len() }
     }
 
