@@ -1,73 +1,18 @@
 //! What formulas ask about the session itself: masks, settings, which features exist and are in use.
 
-use super::build::DECLARATIONS;
 use super::node::Graph;
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, nearest};
-use perigrain_commands::COMMANDS;
-use perigrain_computes::COMPUTES;
-use perigrain_fixes::FIXES;
-use perigrain_lang::{Question, Value};
-use perigrain_pairs::PAIRS;
+use super::{catalogue, measure};
+use perigrain_base::diag::{Code, Diagnostic, Result, nearest};
+use perigrain_lang::{Question, Value, Word};
 use perigrain_world::{Newton, World};
-
-/// Commands of the session and of the cursor through the deck, which stand in no table.
-pub const SESSION_COMMANDS: [&str; 25] = [
-    "print",
-    "log",
-    "echo",
-    "clear",
-    "compat",
-    "run",
-    "variable",
-    "if",
-    "jump",
-    "label",
-    "next",
-    "include",
-    "quit",
-    "suffix",
-    "package",
-    "write_restart",
-    "read_restart",
-    "rerun",
-    "minimize",
-    "shell",
-    "info",
-    "timer",
-    "partition",
-    "balance",
-    "comm_style",
-];
 
 /// 1 for every particle in the group and in the region, else 0.
 ///
 /// # Errors
 /// Unknown names.
-pub fn mask(w: &World, group: Option<&str>, region: Option<&str>, span: Span) -> Result<Vec<f64>> {
-    let missing = |what: &str, name: &str, known: Option<&str>| {
-        let d = Diagnostic::error(Code::UNKNOWN_NAME, span, format!("there is no {what} `{name}`"));
-        match known {
-            Some(n) => d.help(format!("did you mean `{n}`?")),
-            None => d,
-        }
-    };
-    let bit = match group {
-        None => None,
-        Some(g) => match w.groups.find(g) {
-            Some(id) => Some(id.bit()),
-            None => return Err(missing("group", g, nearest(g, w.groups.names())).into()),
-        },
-    };
-    let region = match region {
-        None => None,
-        Some(r) => match w.regions.get(r) {
-            Some(region) => Some(region),
-            None => {
-                let known = nearest(r, w.regions.keys().map(String::as_str));
-                return Err(missing("region", r, known).into());
-            }
-        },
-    };
+pub fn mask(w: &World, group: Option<&Word>, region: Option<&Word>) -> Result<Vec<f64>> {
+    let bit = group.map(|name| measure::group(w, name)).transpose()?.map(|id| id.bit());
+    let region = region.map(|name| measure::region(w, name)).transpose()?;
     let p = &w.particles;
     let inside =
         |i: usize| bit.is_none_or(|b| p.mask[i] & b != 0) && region.is_none_or(|r| r.contains(p.x[i]));
@@ -106,7 +51,10 @@ pub fn setting(w: &World, checking: bool, name: &str) -> Option<Value> {
 /// What a deck has declared, by name: enough to answer for it inside a step.
 #[derive(Clone, Debug, Default)]
 pub struct Declared {
-    pair: Option<String>,
+    pair: Option<&'static str>,
+    /// The pair style can be asked about single pairs of particles.
+    single: bool,
+    bond: Option<&'static str>,
     computes: Vec<String>,
     fixes: Vec<String>,
     dumps: Vec<String>,
@@ -114,9 +62,13 @@ pub struct Declared {
 
 impl Declared {
     /// What stands in the graph now.
-    pub fn new(graph: &Graph) -> Self {
+    pub fn new(w: &World, graph: &Graph) -> Self {
+        let pair = graph.pair.as_ref().map(|p| &p.pair);
         Self {
-            pair: graph.pair.as_ref().map(|p| p.pair.name().to_owned()),
+            pair: pair.map(|p| p.name()),
+            // One that still lacks coefficients has something to tell.
+            single: pair.is_some_and(|p| p.singles(w).map_or(true, |probes| !probes.is_empty())),
+            bond: graph.bond.as_ref().map(|b| b.force.name()),
             computes: graph.computes.iter().map(|c| c.id.clone()).collect(),
             fixes: graph.fixes.iter().map(|f| f.id.clone()).collect(),
             dumps: graph.dumps.iter().map(|d| d.id.clone()).collect(),
@@ -127,32 +79,32 @@ impl Declared {
 /// `is_active`, `is_available`, `is_defined`.
 ///
 /// # Errors
-/// Categories and names that do not exist.
+/// Categories and features that do not exist.
 pub fn answer(
     w: &World,
     declared: &Declared,
     question: Question,
-    category: &str,
-    name: &str,
-    span: Span,
+    category: &Word,
+    name: &Word,
 ) -> Result<bool> {
     match question {
-        Question::Active => active(w, declared, category, name, span),
-        Question::Available => available(category, name, span),
-        Question::Defined => defined(w, declared, category, name, span),
+        Question::Active => active(w, declared, category, name),
+        Question::Available => available(category, name),
+        Question::Defined => defined(w, declared, category, &name.text),
     }
 }
 
-fn among<T>(what: &str, word: &str, known: &[&str], span: Span) -> Result<T> {
-    let d = Diagnostic::error(Code::UNKNOWN_NAME, span, format!("there is no {what} `{word}`"));
-    Err(match nearest(word, known.iter().copied()) {
-        Some(n) => d.help(format!("did you mean `{n}`?")),
-        None => d.help(format!("one of {}", known.join(" "))),
+/// "There is no such …", with all there are.
+fn among<T>(what: &str, word: &Word, known: &[&str]) -> Result<T> {
+    let text = format!("there is no {what} `{}`", word.text);
+    let mut d = Diagnostic::error(Code::UNKNOWN_NAME, word.span, text);
+    if let Some(n) = nearest(&word.text, known.iter().copied()) {
+        d = d.help(format!("did you mean `{n}`?"));
     }
-    .into())
+    Err(d.help(format!("one of {}", known.join(" "))).into())
 }
 
-fn active(w: &World, declared: &Declared, category: &str, name: &str, span: Span) -> Result<bool> {
+fn active(w: &World, declared: &Declared, category: &Word, name: &Word) -> Result<bool> {
     const CATEGORIES: &[&str] = &[
         "package",
         "newton",
@@ -168,62 +120,52 @@ fn active(w: &World, declared: &Declared, category: &str, name: &str, span: Span
         "improper_style",
         "kspace_style",
     ];
-    let named = |known: &[&str], yes: bool| match known.contains(&name) {
+    let word = name.text.as_str();
+    let named = |known: &[&str], yes: bool| match known.contains(&word) {
         true => Ok(yes),
-        false => among(&format!("feature of {category}"), name, known, span),
+        false => among(&format!("feature of {}", category.text), name, known),
     };
-    match category {
+    match category.text.as_str() {
+        // Commands about packages are read and without effect.
         "package" => named(&["gpu", "intel", "kokkos", "omp"], false),
         "newton" => {
             let Newton { pair, bond } = w.settings.newton;
-            let yes = (name != "bond" && pair) || (name != "pair" && bond);
+            let yes = (word != "bond" && pair) || (word != "pair" && bond);
             named(&["pair", "bond", "any"], yes)
         }
-        "pair" => named(
-            &["single", "respa", "manybody", "tail", "shift"],
-            name == "single" && declared.pair.is_some(),
-        ),
-        "comm_style" => named(&["brick", "tiled"], (name == "tiled") == w.settings.tiled),
-        "min_style" => Ok(name == w.settings.minimizer.style.name()),
-        "run_style" => Ok(name == "verlet"),
-        "atom_style" => Ok(name == atom_style(w)),
-        "pair_style" => Ok(name == declared.pair.as_deref().unwrap_or("none")),
-        "bond_style" | "angle_style" | "dihedral_style" | "improper_style" | "kspace_style" => {
-            Ok(name == "none")
+        "pair" => {
+            named(&["single", "respa", "manybody", "tail", "shift"], word == "single" && declared.single)
         }
-        _ => among("category of is_active()", category, CATEGORIES, span),
+        "comm_style" => named(&["brick", "tiled"], (word == "tiled") == w.settings.tiled),
+        "min_style" => Ok(word == w.settings.minimizer.style.name()),
+        "run_style" => Ok(word == w.settings.run_style.name()),
+        "atom_style" => Ok(word == w.particles.style.name()),
+        "pair_style" => Ok(word == declared.pair.unwrap_or("none")),
+        "bond_style" => Ok(word == declared.bond.unwrap_or("none")),
+        "angle_style" | "dihedral_style" | "improper_style" | "kspace_style" => Ok(word == "none"),
+        _ => among("category of is_active()", category, CATEGORIES),
     }
 }
 
-fn atom_style(w: &World) -> &'static str {
-    match (w.particles.style.sphere, w.particles.style.peri) {
-        (true, true) => "hybrid",
-        (true, false) => "sphere",
-        (false, true) => "peri",
-        (false, false) => "atomic",
+fn available(category: &Word, name: &Word) -> Result<bool> {
+    let (category_name, name) = (category.text.as_str(), name.text.as_str());
+    if category_name == "feature" {
+        return Ok(["gzip", "png", "exceptions"].contains(&name));
+    }
+    // LAMMPS' manual says `pair_style` where LAMMPS knows `pair`.
+    let of = if category_name == "pair_style" { "pair" } else { category_name };
+    match catalogue::styles(of) {
+        Some(names) => Ok(names.contains(&name)),
+        None => {
+            let known: Vec<&str> =
+                catalogue::CATEGORIES.into_iter().chain(["pair_style", "feature"]).collect();
+            among("category of is_available()", category, &known)
+        }
     }
 }
 
-fn available(category: &str, name: &str, span: Span) -> Result<bool> {
-    Ok(match category {
-        "command" => {
-            COMMANDS.iter().any(|c| c.name() == name)
-                || DECLARATIONS.contains(&name)
-                || SESSION_COMMANDS.contains(&name)
-        }
-        "compute" => COMPUTES.iter().any(|c| c.name() == name),
-        "fix" => FIXES.iter().any(|f| f.name() == name),
-        "pair_style" => PAIRS.iter().any(|p| p.name() == name),
-        "feature" => ["png", "exceptions"].contains(&name),
-        _ => {
-            let known = ["command", "compute", "fix", "pair_style", "feature"];
-            return among("category of is_available()", category, &known, span);
-        }
-    })
-}
-
-fn defined(w: &World, declared: &Declared, category: &str, name: &str, span: Span) -> Result<bool> {
-    Ok(match category {
+fn defined(w: &World, declared: &Declared, category: &Word, name: &str) -> Result<bool> {
+    Ok(match category.text.as_str() {
         "compute" => {
             let own = ["thermo_temp", "thermo_press", "thermo_pe"].contains(&name);
             own || declared.computes.iter().any(|c| c == name)
@@ -234,7 +176,7 @@ fn defined(w: &World, declared: &Declared, category: &str, name: &str, span: Spa
         "region" => w.regions.contains_key(name),
         _ => {
             let known = ["compute", "dump", "fix", "group", "region", "variable"];
-            return among("category of is_defined()", category, &known, span);
+            return among("category of is_defined()", category, &known);
         }
     })
 }

@@ -89,7 +89,7 @@ pub struct RunEnv<'a> {
 }
 
 impl Env for RunEnv<'_> {
-    fn keyword(&mut self, name: &str, _: &Vars) -> Option<Result<Value>> {
+    fn keyword(&mut self, name: &str, _: Span, _: &Vars) -> Option<Result<Value>> {
         let slot = self.from.get(name)?;
         Some(Ok(Value::Number(self.w.slots.get(*slot).scalar)))
     }
@@ -111,7 +111,7 @@ impl Env for RunEnv<'_> {
     fn column(&mut self, attribute: &str) -> Option<Result<Vec<f64>>> {
         column(self.w, attribute)
     }
-    fn group_function(&mut self, name: &str, args: &[String], span: Span, _: &Vars) -> Result<Value> {
+    fn group_function(&mut self, name: &str, args: &[Word], span: Span, _: &Vars) -> Result<Value> {
         measure::group_function(self.w, name, args, span).map(Value::Number)
     }
     fn vector(&mut self, r: &ValueRef, _: &Vars) -> Result<Value> {
@@ -120,14 +120,14 @@ impl Env for RunEnv<'_> {
             None => fail(Code::UNKNOWN_NAME, r.span, format!("`{r}` is not available in this step")),
         }
     }
-    fn mask(&mut self, group: Option<&str>, region: Option<&str>, span: Span, _: &Vars) -> Result<Value> {
-        answers::mask(self.w, group, region, span).map(Value::Atom)
+    fn mask(&mut self, group: Option<&Word>, region: Option<&Word>, _: &Vars) -> Result<Value> {
+        answers::mask(self.w, group, region).map(Value::Atom)
     }
     fn setting(&self, name: &str) -> Option<Value> {
         answers::setting(self.w, false, name)
     }
-    fn answer(&self, question: Question, category: &str, name: &str, span: Span) -> Result<bool> {
-        answers::answer(self.w, self.declared, question, category, name, span)
+    fn answer(&self, question: Question, category: &Word, name: &Word) -> Result<bool> {
+        answers::answer(self.w, self.declared, question, category, name)
     }
     fn timed_out(&self) -> bool {
         self.w.settings.timed_out()
@@ -189,6 +189,7 @@ impl DeckEnv<'_> {
         let mut sealer = Sealer::new(self.w, self.graph, Arc::new(vars.clone()));
         sealer.at(span);
         let answer = ask(&mut sealer)?;
+        let word = sealer.tallies.unwrap_or(span);
         let mut plan = sealer.plan;
         let t = Tick::between_runs(&self.w.clock);
         let mut wanted = t.clone();
@@ -202,7 +203,7 @@ impl DeckEnv<'_> {
         if short {
             return Err(Diagnostic::error(
                 Code::WRONG_ORDER,
-                span,
+                word,
                 "energies or pressures of the present state have not been computed",
             )
             .help(
@@ -232,7 +233,7 @@ impl DeckEnv<'_> {
 }
 
 impl Env for DeckEnv<'_> {
-    fn keyword(&mut self, name: &str, vars: &Vars) -> Option<Result<Value>> {
+    fn keyword(&mut self, name: &str, span: Span, vars: &Vars) -> Option<Result<Value>> {
         let (name, _, needs) = keywords::find(name)?;
         let particles = ["atoms", "bonds", "density", "fmax", "fnorm"].contains(name);
         // A deck may loop until a time is reached; no run of a check ever reaches it.
@@ -240,7 +241,6 @@ impl Env for DeckEnv<'_> {
         if self.checking && (!needs.is_empty() || particles || clock) {
             return Some(Ok(Value::Unknown));
         }
-        let span = Span::default();
         let reading = self.now(span, vars, |s| s.keyword(name, span, Stage::Output, &When::Always));
         Some(reading.map(|r| Value::Number(r.get(self.w))))
     }
@@ -262,9 +262,11 @@ impl Env for DeckEnv<'_> {
         column(self.w, attribute)
     }
 
-    fn group_function(&mut self, name: &str, args: &[String], span: Span, vars: &Vars) -> Result<Value> {
+    fn group_function(&mut self, name: &str, args: &[Word], span: Span, vars: &Vars) -> Result<Value> {
         self.w.spread_type_masses();
-        regions::place_now(self.w, self.graph, vars, self.checking, |name| args.iter().any(|a| a == name))?;
+        regions::place_now(self.w, self.graph, vars, self.checking, |name| {
+            args.iter().any(|a| a.text == name)
+        })?;
         let value = measure::group_function(self.w, name, args, span)?;
         Ok(if self.checking { Value::Unknown } else { Value::Number(value) })
     }
@@ -278,9 +280,10 @@ impl Env for DeckEnv<'_> {
         whole_vector(self.w, slot, r)
     }
 
-    fn mask(&mut self, group: Option<&str>, region: Option<&str>, span: Span, vars: &Vars) -> Result<Value> {
-        regions::place_now(self.w, self.graph, vars, self.checking, |name| region == Some(name))?;
-        let list = answers::mask(self.w, group, region, span)?;
+    fn mask(&mut self, group: Option<&Word>, region: Option<&Word>, vars: &Vars) -> Result<Value> {
+        let named = |name: &str| region.is_some_and(|r| r.text == name);
+        regions::place_now(self.w, self.graph, vars, self.checking, named)?;
+        let list = answers::mask(self.w, group, region)?;
         Ok(if self.checking { Value::Unknown } else { Value::Atom(list) })
     }
 
@@ -288,8 +291,8 @@ impl Env for DeckEnv<'_> {
         answers::setting(self.w, self.checking, name)
     }
 
-    fn answer(&self, question: Question, category: &str, name: &str, span: Span) -> Result<bool> {
-        answers::answer(self.w, &Declared::new(self.graph), question, category, name, span)
+    fn answer(&self, question: Question, category: &Word, name: &Word) -> Result<bool> {
+        answers::answer(self.w, &Declared::new(self.w, self.graph), question, category, name)
     }
 
     fn timed_out(&self) -> bool {

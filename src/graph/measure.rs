@@ -3,7 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_base::par;
-use perigrain_world::World;
+use perigrain_lang::Word;
+use perigrain_world::{GroupId, Region, World};
 
 /// The names of all group functions.
 pub const NAMES: [&str; 13] = [
@@ -15,55 +16,47 @@ pub const NAMES: [&str; 13] = [
 ///
 /// # Errors
 /// Unknown groups, regions, directions; `charge`, which no atom style here has.
-pub fn group_function(w: &World, name: &str, args: &[String], span: Span) -> Result<f64> {
+pub fn group_function(w: &World, name: &str, args: &[Word], span: Span) -> Result<f64> {
     let extra = match name {
         "count" | "mass" | "charge" | "gyration" | "ke" => 0,
         _ => 1,
     };
-    let group = args.first().map(String::as_str).unwrap_or("");
-    let Some(id) = w.groups.find(group) else {
-        let mut d = Diagnostic::error(Code::UNKNOWN_GROUP, span, format!("there is no group `{group}`"));
-        if let Some(n) = nearest(group, w.groups.names()) {
-            d = d.help(format!("did you mean `{n}`?"));
-        }
-        return Err(d.into());
-    };
-    let region = match args.get(1 + extra) {
-        None => None,
-        Some(r) => match w.regions.get(r) {
-            Some(region) => Some(region.clone()),
-            None => return fail(Code::UNKNOWN_REGION, span, format!("there is no region `{r}`")),
-        },
-    };
+    // The formula's grammar has counted the words.
+    let none = Word::new("", span);
+    let word = |k: usize| args.get(k).unwrap_or(&none);
+    let id = group(w, word(0))?;
+    let region = args.get(1 + extra).map(|r| region(w, r)).transpose()?;
     let p = &w.particles;
     let members: Vec<usize> = (0..p.len())
         .filter(|&i| p.mask[i] & id.bit() != 0)
-        .filter(|&i| region.as_ref().is_none_or(|r| r.contains(p.x[i])))
+        .filter(|&i| region.is_none_or(|r| r.contains(p.x[i])))
         .collect();
-    let direction = |word: Option<&String>| direction(word.map_or("", String::as_str), span);
+    let direction = |k: usize| direction(word(k));
     let m = Members { w, list: &members };
     Ok(match name {
         "count" => members.len() as f64,
         "mass" => m.mass(),
         "charge" => return fail(Code::NOT_SUPPORTED, span, "charge(): no atom style here has charges"),
-        "xcm" => m.xcm()[direction(args.get(1))?],
-        "vcm" => m.vcm()[direction(args.get(1))?],
-        "fcm" => m.total(|i| p.f[i])[direction(args.get(1))?],
-        "bound" => m.bound(args.get(1).map_or("", String::as_str), span)?,
+        "xcm" => m.xcm()[direction(1)?],
+        "vcm" => m.vcm()[direction(1)?],
+        "fcm" => m.total(|i| p.f[i])[direction(1)?],
+        "bound" => m.bound(word(1))?,
         "gyration" => m.gyration(),
         "ke" => m.ke(),
-        "angmom" => m.angmom()[direction(args.get(1))?],
-        "torque" => m.torque()[direction(args.get(1))?],
-        "omega" => m.omega()[direction(args.get(1))?],
+        "angmom" => m.angmom()[direction(1)?],
+        "torque" => m.torque()[direction(1)?],
+        "omega" => m.omega()[direction(1)?],
         "inertia" => {
-            let (a, b) = match args.get(1).map(String::as_str) {
-                Some("xx") => (0, 0),
-                Some("yy") => (1, 1),
-                Some("zz") => (2, 2),
-                Some("xy") => (0, 1),
-                Some("yz") => (1, 2),
-                Some("xz") => (0, 2),
-                _ => return fail(Code::BAD_VALUE, span, "inertia() takes xx, yy, zz, xy, yz or xz"),
+            let (a, b) = match word(1).text.as_str() {
+                "xx" => (0, 0),
+                "yy" => (1, 1),
+                "zz" => (2, 2),
+                "xy" => (0, 1),
+                "yz" => (1, 2),
+                "xz" => (0, 2),
+                _ => {
+                    return fail(Code::BAD_VALUE, word(1).span, "inertia() takes xx, yy, zz, xy, yz or xz");
+                }
             };
             m.inertia()[(a, b)]
         }
@@ -71,12 +64,44 @@ pub fn group_function(w: &World, name: &str, args: &[String], span: Span) -> Res
     })
 }
 
-fn direction(word: &str, span: Span) -> Result<usize> {
-    match word {
+/// The group of this name.
+///
+/// # Errors
+/// There is none.
+pub fn group(w: &World, name: &Word) -> Result<GroupId> {
+    if let Some(id) = w.groups.find(&name.text) {
+        return Ok(id);
+    }
+    let text = format!("there is no group `{}`", name.text);
+    missing(Code::UNKNOWN_GROUP, name, text, nearest(&name.text, w.groups.names()))
+}
+
+/// The region of this name.
+///
+/// # Errors
+/// There is none.
+pub fn region<'a>(w: &'a World, name: &Word) -> Result<&'a Region> {
+    if let Some(region) = w.regions.get(&name.text) {
+        return Ok(region);
+    }
+    let known = nearest(&name.text, w.regions.keys().map(String::as_str));
+    missing(Code::UNKNOWN_REGION, name, format!("there is no region `{}`", name.text), known)
+}
+
+fn missing<T>(code: Code, name: &Word, text: String, known: Option<&str>) -> Result<T> {
+    let mut d = Diagnostic::error(code, name.span, text);
+    if let Some(n) = known {
+        d = d.help(format!("did you mean `{n}`?"));
+    }
+    Err(d.into())
+}
+
+fn direction(word: &Word) -> Result<usize> {
+    match word.text.as_str() {
         "x" => Ok(0),
         "y" => Ok(1),
         "z" => Ok(2),
-        _ => fail(Code::BAD_VALUE, span, format!("a direction is x, y or z, not `{word}`")),
+        other => fail(Code::BAD_VALUE, word.span, format!("a direction is x, y or z, not `{other}`")),
     }
 }
 
@@ -139,15 +164,18 @@ impl Members<'_> {
         0.5 * mvv2e * self.sum(|i| self.m(i) * (v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]))
     }
 
-    fn bound(&self, which: &str, span: Span) -> Result<f64> {
-        let axis = match which.as_bytes() {
+    fn bound(&self, which: &Word) -> Result<f64> {
+        let axis = match which.text.as_bytes() {
             [a @ b'x'..=b'z', b'm', b'i' | b'a', b'n' | b'x'] => (a - b'x') as usize,
-            _ => return fail(Code::BAD_VALUE, span, "bound() takes xmin, xmax, ymin, ymax, zmin or zmax"),
+            _ => {
+                let text = "bound() takes xmin, xmax, ymin, ymax, zmin or zmax";
+                return fail(Code::BAD_VALUE, which.span, text);
+            }
         };
         let x = self.list.iter().map(|&i| self.w.particles.x[i][axis]);
         // LAMMPS' value for a bound of nothing.
         const BIG: f64 = 1e20;
-        Ok(if which.ends_with("min") { x.fold(BIG, f64::min) } else { x.fold(-BIG, f64::max) })
+        Ok(if which.text.ends_with("min") { x.fold(BIG, f64::min) } else { x.fold(-BIG, f64::max) })
     }
 
     fn gyration(&self) -> f64 {

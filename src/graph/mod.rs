@@ -3,6 +3,7 @@
 pub mod answers;
 pub mod bonds;
 pub mod build;
+pub mod catalogue;
 pub mod dumps;
 pub mod dynamic;
 mod elsewhere;

@@ -51,7 +51,10 @@ fn choose(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Re
     }
     let style = style(PAIRS, "pair", args)?;
     let pair = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
-    args.finish()?;
+    match args.peek() {
+        Some(word) if !style.options().is_empty() => return Err(args.unknown(word, style.options())),
+        _ => args.finish()?,
+    }
     graph.pair = Some(PairNode { pair, span: cx.span, lines: vec![] });
     w.set_anew(false, None);
     w.touch();

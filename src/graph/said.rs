@@ -4,7 +4,7 @@ use super::env::RunEnv;
 use super::keywords::{self, Sources};
 use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_lang::{Clock, Dep, Env, Expr, RefKind, Value, ValueRef, Vars, substitute};
+use perigrain_lang::{Clock, Dep, Env, Expr, RefKind, Value, ValueRef, Vars, Word, substitute};
 use perigrain_plan::{Stage, When};
 use perigrain_styles::{PlaceTest, SealCx, Text};
 use perigrain_world::{SlotId, World};
@@ -172,13 +172,13 @@ impl ClockEnv<'_> {
 }
 
 impl Env for ClockEnv<'_> {
-    fn keyword(&mut self, name: &str, _: &Vars) -> Option<Result<Value>> {
+    fn keyword(&mut self, name: &str, span: Span, _: &Vars) -> Option<Result<Value>> {
         let (name, ..) = keywords::find(name)?;
         Some(match *name {
             "step" | "elapsed" | "elaplong" | "dt" | "time" => {
                 Ok(Value::Number(keywords::value(name, self.0, &Sources::default())))
             }
-            _ => Self::no(name, None),
+            _ => Self::no(name, span.into()),
         })
     }
     fn reference(&mut self, r: &ValueRef, _: &Vars) -> Result<Value> {
@@ -193,7 +193,7 @@ impl Env for ClockEnv<'_> {
     fn column(&mut self, attribute: &str) -> Option<Result<Vec<f64>>> {
         Some(Self::no(attribute, None))
     }
-    fn group_function(&mut self, name: &str, _args: &[String], span: Span, _: &Vars) -> Result<Value> {
+    fn group_function(&mut self, name: &str, _args: &[Word], span: Span, _: &Vars) -> Result<Value> {
         Self::no(name, span.into())
     }
     fn clock(&self) -> Clock {

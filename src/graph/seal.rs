@@ -34,6 +34,10 @@ pub struct Sealer<'a> {
     pub log: Log,
     /// What formulas may ask about declarations.
     declared: Option<Arc<Declared>>,
+    /// The word outside computes and variables whose value is being planned.
+    asking: Span,
+    /// The first such word that wants energies or pressures.
+    pub tallies: Option<Span>,
     /// The level of steps that the present fix has been given.
     chosen: Option<usize>,
 }
@@ -52,6 +56,8 @@ impl<'a> Sealer<'a> {
             uses: 0,
             log: Log::silent(),
             declared: None,
+            asking: Span::default(),
+            tallies: None,
             chosen: None,
         }
     }
@@ -138,6 +144,13 @@ impl<'a> Sealer<'a> {
         self.at_fix(span, None);
     }
 
+    /// What follows is planned for the word at `span`, unless it is for a compute or variable that is being planned itself.
+    fn ask(&mut self, span: Span) {
+        if self.trail.is_empty() {
+            self.asking = span;
+        }
+    }
+
     /// Places a provider so that it runs before what is added to `stage` next.
     fn provide(&mut self, op: Box<dyn Op>, when: When, provides: String) {
         let mut placed = Placed::new(op, Some(self.span));
@@ -162,6 +175,7 @@ impl<'a> Sealer<'a> {
         let Some(node) = graph.find_compute(id) else {
             return fail(Code::UNKNOWN_COMPUTE, span, format!("there is no compute `{id}`"));
         };
+        self.ask(span);
         let key = format!("c_{id}");
         let slot = self.world.slots.id(&key);
         self.world.slots.get_mut(slot).offers = node.compute.shape().offers();
@@ -189,6 +203,17 @@ impl<'a> Sealer<'a> {
     pub fn begin_computes(&mut self) -> Result<()> {
         for node in self.graph.computes.iter().filter(|c| c.compute.begins()) {
             self.compute(&node.id, node.span, Stage::Output, &When::First)?;
+        }
+        Ok(())
+    }
+
+    /// The same in the last step for those that have values after a run only if that step has tallied for them.
+    ///
+    /// # Errors
+    /// As `begin_computes`.
+    pub fn end_computes(&mut self) -> Result<()> {
+        for node in self.graph.computes.iter().filter(|c| c.compute.tallied()) {
+            self.compute(&node.id, node.span, Stage::Output, &When::Last)?;
         }
         Ok(())
     }
@@ -226,8 +251,8 @@ impl<'a> Sealer<'a> {
 
     /// What formulas may ask about declarations.
     pub fn declared(&mut self) -> Arc<Declared> {
-        let graph = self.graph;
-        self.declared.get_or_insert_with(|| Arc::new(Declared::new(graph))).clone()
+        let (w, graph) = (&*self.world, self.graph);
+        self.declared.get_or_insert_with(|| Arc::new(Declared::new(w, graph))).clone()
     }
 
     /// A variable's value; each use is evaluated by itself.
@@ -236,6 +261,7 @@ impl<'a> Sealer<'a> {
         if vars.kind(&r.name).is_none() {
             return fail(Code::UNKNOWN_VARIABLE, r.span, format!("there is no variable `{}`", r.name));
         }
+        self.ask(r.span);
         self.enter(format!("v_{}", r.name), r.span)?;
         let deps = vars.expr(&r.name).map_or(vec![], |e| e.depends(&vars));
         let mut from = BTreeMap::new();

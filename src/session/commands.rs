@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The session's own commands and those of the cursor, for "did you mean".
-pub use crate::graph::answers::SESSION_COMMANDS as OWN;
+pub use crate::graph::catalogue::SESSION_COMMANDS as OWN;
 
 /// LAMMPS commands that come with later issues, named so that nobody searches for a typo.
 pub const LAMMPS_ONLY: &[&str] = &[
@@ -147,6 +147,8 @@ impl Session {
                 let compat = if mode == "lammps" { Compat::Lammps } else { Compat::Perigrain };
                 self.options.compat = compat == Compat::Lammps;
                 self.world.settings.compat = compat;
+                let lammps = self.world.settings.lammps();
+                self.world.regions.values_mut().for_each(|region| region.open_holds_all(lammps));
                 self.world.touch();
             }
             "shell" => self.shell(cmd)?,

@@ -1,16 +1,9 @@
 //! `info`: what the session holds, in LAMMPS' categories.
 
 use super::{Session, timer};
-use crate::graph::answers::SESSION_COMMANDS;
-use crate::graph::build::DECLARATIONS;
+use crate::graph::catalogue;
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_commands::COMMANDS;
-use perigrain_computes::COMPUTES;
-use perigrain_dumps::DUMPS;
-use perigrain_fixes::FIXES;
 use perigrain_lang::{Args, Word};
-use perigrain_pairs::PAIRS;
-use perigrain_pairs::bond::BONDS;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -249,28 +242,19 @@ fn category(word: &Word) -> Result<&'static str> {
     .into())
 }
 
-const STYLES: [&str; 8] = ["all", "atom", "bond", "command", "compute", "dump", "fix", "pair"];
-
 /// The category of styles that may follow.
 fn styles(args: &mut Args) -> &'static str {
     let next = args.peek_text();
-    let Some(found) = STYLES.iter().find(|s| **s == next) else { return "all" };
+    let mut known = catalogue::CATEGORIES.into_iter().chain(["all"]);
+    let Some(found) = known.find(|s| *s == next) else { return "all" };
     args.next();
     found
 }
 
 fn list_of_styles(which: &str) -> String {
-    let table: [(&str, Vec<&str>); 7] = [
-        ("atom", vec!["atomic", "bond", "bpm/sphere", "hybrid", "molecular", "peri", "sphere"]),
-        ("command", COMMANDS.iter().map(|s| s.name()).chain(DECLARATIONS).chain(SESSION_COMMANDS).collect()),
-        ("compute", COMPUTES.iter().map(|s| s.name()).collect()),
-        ("dump", DUMPS.iter().map(|s| s.name()).collect()),
-        ("fix", FIXES.iter().map(|s| s.name()).collect()),
-        ("bond", BONDS.iter().map(|s| s.name()).collect()),
-        ("pair", PAIRS.iter().map(|s| s.name()).collect()),
-    ];
     let mut text = "\nStyles information:\n".to_owned();
-    for (kind, mut names) in table.into_iter().filter(|(kind, _)| which == "all" || which == *kind) {
+    for kind in catalogue::CATEGORIES.into_iter().filter(|kind| which == "all" || which == *kind) {
+        let mut names = catalogue::styles(kind).unwrap_or_default();
         names.sort_unstable();
         let title = kind[..1].to_uppercase() + &kind[1..];
         let _ = writeln!(text, "\n{title} styles:\n\n{}", names.join(" "));

@@ -219,6 +219,9 @@ impl Session {
             s.add(vec![row], span);
         }
         s.at(span);
+        if !minimizing {
+            s.end_computes()?;
+        }
         crate::graph::virials::seal(&mut s)?;
         if !minimizing {
             crate::graph::guard::seal(&mut s)?;

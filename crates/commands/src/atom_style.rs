@@ -27,7 +27,8 @@ const ELSEWHERE: [&str; 13] = [
     "tri",
 ];
 
-const KNOWN: [&str; 7] = ["atomic", "sphere", "peri", "bond", "molecular", "bpm/sphere", "hybrid"];
+/// The styles.
+pub const ATOM_STYLES: [&str; 7] = ["atomic", "sphere", "peri", "bond", "molecular", "bpm/sphere", "hybrid"];
 
 impl Style for AtomStyleCommand {
     fn name(&self) -> &'static str {
@@ -90,7 +91,7 @@ fn add(style: &mut AtomStyle, word: &Word, before: &mut Vec<String>) -> Result<(
     match word.text.as_str() {
         name if style.add(name) => Ok(()),
         name if ELSEWHERE.contains(&name) => Err(not_here(word, "atom_style")),
-        _ => Err(unknown_style(word, "atom_style", &KNOWN)),
+        _ => Err(unknown_style(word, "atom_style", &ATOM_STYLES)),
     }
 }
 

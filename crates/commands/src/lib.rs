@@ -49,7 +49,10 @@ mod units;
 mod velocity;
 mod write_data;
 
+pub use atom_style::ATOM_STYLES;
 pub use perigrain_styles::command::{Act, CommandStyle};
+pub use region::SHAPES;
+pub use run_style::RUN_STYLES;
 
 /// Every command that acts.
 pub const COMMANDS: &[&dyn CommandStyle] = &[

@@ -19,7 +19,7 @@ pub struct RegionCommand;
 const ELSEWHERE: [&str; 3] = ["grid", "mesh", "tri"];
 
 /// The shapes and what combines them, with the faces that `open` can name.
-const SHAPES: [(&str, u8); 9] = [
+pub const SHAPES: [(&str, u8); 9] = [
     ("block", 6),
     ("cone", 3),
     ("cylinder", 3),
@@ -55,7 +55,9 @@ impl Style for RegionCommand {
                    The displacement is in box units.\n\n\
                    `union` and `intersect` combine regions as they are declared now, their motions included; they cannot \
                    move by themselves. `open` names faces that walls made of the region leave open: for a block or prism 1 \
-                   to 6 (xlo xhi ylo yhi zlo zhi), for a cylinder or cone 1 (lower end) 2 (upper end) 3 (mantle).",
+                   to 6 (xlo xhi ylo yhi zlo zhi), for a cylinder or cone 1 (lower end) 2 (upper end) 3 (mantle). Whatever asks \
+                   which particles are in a region takes it as if it were closed, as LAMMPS' manual says; LAMMPS 22Jul2025 takes \
+                   all particles there are, and so does `compat lammps`.",
             example: "variable lift equal 0.001*step\n\
                       region disc cylinder z 0.0 0.0 0.037 EDGE EDGE units box move NULL NULL v_lift",
         }
@@ -104,8 +106,9 @@ impl CommandStyle for RegionCommand {
         if let Some(fault) = shape.fault() {
             return fail(Code::BAD_VALUE, style.span, format!("this is no {}: {fault}", style.text));
         }
-        let region =
-            Region { shape, outside: options.outside, open: options.open, given, motion: options.motion };
+        let Options { outside, open, motion, .. } = options;
+        let mut region = Region { outside, open, given, motion, ..Region::inside(shape) };
+        region.open_holds_all(cx.world.settings.lammps());
         Ok(setting(move |cx| {
             cx.world.parts.restored.remove(&format!("region/{name}"));
             cx.world.regions.insert(name, region);

@@ -12,6 +12,9 @@ use perigrain_world::{RunStyle, World};
 /// The command.
 pub struct RunStyleCommand;
 
+/// The styles.
+pub const RUN_STYLES: [&str; 3] = ["verlet", "respa", "staggered"];
+
 impl Style for RunStyleCommand {
     fn name(&self) -> &'static str {
         "run_style"
@@ -79,7 +82,7 @@ impl Style for RunStyleCommand {
 
 impl CommandStyle for RunStyleCommand {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let style = match a.choice("run style", &["verlet", "respa", "staggered"])? {
+        let style = match a.choice("run style", &RUN_STYLES)? {
             "respa" => {
                 let (style, said) = respa::read(a)?;
                 return Ok(setting(move |cx| {

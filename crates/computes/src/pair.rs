@@ -84,6 +84,10 @@ impl Compute for Declared {
         }))
     }
 
+    fn tallied(&self) -> bool {
+        true
+    }
+
     fn boxed(&self) -> Box<dyn Compute> {
         Box::new(self.clone())
     }

@@ -241,6 +241,15 @@ impl<'a> Args<'a> {
         rest
     }
 
+    /// Takes the words before the first one that `ends` knows, or all, as a line of their own.
+    pub fn until(&mut self, ends: impl Fn(&str) -> bool) -> Args<'a> {
+        let rest = &self.words[self.at.min(self.words.len())..];
+        let count = rest.iter().position(|word| ends(&word.text)).unwrap_or(rest.len());
+        self.at += count;
+        let end = rest.get(count).map_or(self.end, |word| word.span);
+        Args { name: self.name, words: &rest[..count], at: 0, end }
+    }
+
     /// The end of the line: every word left over is an error at its place.
     ///
     /// # Errors

@@ -25,7 +25,7 @@ mod vars;
 #[cfg(test)]
 mod tests;
 
-pub use args::Args;
+pub use args::{Args, blame};
 pub use command::{Command, Line, Word};
 pub use expr::{Dep, Expr};
 pub use flow::{Files, Flow};

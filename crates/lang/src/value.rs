@@ -1,5 +1,6 @@
 //! Values of formulas, and what a formula asks of the world around it.
 
+use super::command::Word;
 use super::reference::ValueRef;
 use super::vars::Vars;
 use perigrain_base::diag::{Code, Result, Span, fail};
@@ -60,7 +61,7 @@ pub enum Question {
 /// `vars` is the variable table of the formula at hand: what is computed for it may read variables too.
 pub trait Env {
     /// A thermo keyword (`step`, `pe`, `vol` …); `None` if there is no such keyword.
-    fn keyword(&mut self, name: &str, vars: &Vars) -> Option<Result<Value>>;
+    fn keyword(&mut self, name: &str, span: Span, vars: &Vars) -> Option<Result<Value>>;
     /// The value of a compute or fix.
     fn reference(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value>;
     /// The same in a formula of one value per particle: where there are both, the particles' own values.
@@ -76,18 +77,18 @@ pub trait Env {
     /// An attribute of every particle, in storage order; `None` if there is no such attribute.
     fn column(&mut self, attribute: &str) -> Option<Result<Vec<f64>>>;
     /// `count(group)`, `xcm(group,dim[,region])` …; number and form of the arguments have been checked.
-    fn group_function(&mut self, name: &str, args: &[String], span: Span, vars: &Vars) -> Result<Value>;
+    fn group_function(&mut self, name: &str, args: &[Word], span: Span, vars: &Vars) -> Result<Value>;
     /// For every particle 1 if it is in the group and in the region, else 0.
-    fn mask(&mut self, _group: Option<&str>, _region: Option<&str>, span: Span, _: &Vars) -> Result<Value> {
-        fail(Code::WRONG_ORDER, span, "there are no particles here")
+    fn mask(&mut self, group: Option<&Word>, region: Option<&Word>, _: &Vars) -> Result<Value> {
+        fail(Code::WRONG_ORDER, group.or(region).map(|w| w.span), "there are no particles here")
     }
     /// `extract_setting(name)`; `None` if there is no such setting.
     fn setting(&self, _name: &str) -> Option<Value> {
         None
     }
     /// `is_active`, `is_available`, `is_defined`; variables are looked up by the caller.
-    fn answer(&self, _question: Question, _category: &str, _name: &str, span: Span) -> Result<bool> {
-        fail(Code::UNKNOWN_NAME, span, "there is no scene here")
+    fn answer(&self, _question: Question, category: &Word, _name: &Word) -> Result<bool> {
+        fail(Code::UNKNOWN_NAME, category.span, "there is no scene here")
     }
     /// What a fix has set an internal-style variable to in the run going on.
     fn control(&self, _name: &str) -> Option<f64> {

@@ -31,4 +31,8 @@ impl PairStyle for GranHertzHistory {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
         granular::classic(self.name(), true, true, args, cx)
     }
+
+    fn options(&self) -> &'static [&'static str] {
+        &["limit_damping"]
+    }
 }

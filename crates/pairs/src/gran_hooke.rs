@@ -29,4 +29,8 @@ impl PairStyle for GranHooke {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
         granular::classic(self.name(), false, false, args, cx)
     }
+
+    fn options(&self) -> &'static [&'static str] {
+        &["limit_damping"]
+    }
 }

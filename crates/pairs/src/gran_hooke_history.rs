@@ -35,4 +35,8 @@ impl PairStyle for GranHookeHistory {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
         granular::classic(self.name(), false, true, args, cx)
     }
+
+    fn options(&self) -> &'static [&'static str] {
+        &["limit_damping"]
+    }
 }

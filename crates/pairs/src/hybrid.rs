@@ -1,8 +1,8 @@
 //! `pair_style hybrid` and `hybrid/overlay`: several pair styles, each for its own pairs of types.
 
 use super::{ByPart, PAIRS, Pair, PairStyle, TypePairs};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_lang::Args;
+use perigrain_base::diag::{Code, Diagnostic, Result, fail, nearest};
+use perigrain_lang::{Args, Word, blame};
 use perigrain_plan::Op;
 use perigrain_styles::probe::Probe;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
@@ -70,8 +70,11 @@ fn build(name: &'static str, overlay: bool, args: &mut Args, cx: &BuildCx) -> Re
         PAIRS.iter().map(|s| s.name()).filter(|n| !n.starts_with("hybrid")).collect();
     let mut subs: Vec<Box<dyn Pair>> = vec![];
     while subs.is_empty() || !args.is_empty() {
-        let word = args.peek().map_or(cx.span, |w| w.span);
-        let sub = args.choice("sub-style", &known)?;
+        let first = args.expect("a sub-style")?;
+        let Some(style) = PAIRS.iter().find(|s| s.name() == first.text && known.contains(&s.name())) else {
+            return Err(unknown(first, None, &known).into());
+        };
+        let (sub, word) = (style.name(), first.span);
         if subs.iter().any(|s| s.name() == sub) {
             return Err(Diagnostic::error(Code::NOT_SUPPORTED, word, format!("`{sub}` is named twice"))
                 .help("one is enough: coefficients may differ for every pair of types")
@@ -84,10 +87,31 @@ fn build(name: &'static str, overlay: bool, args: &mut Args, cx: &BuildCx) -> Re
                 .help("coefficients may differ for every pair of types; LAMMPS crashes here without a word")
                 .into());
         }
-        let Some(style) = PAIRS.iter().find(|s| s.name() == sub) else { continue };
-        subs.push(style.build(args, cx)?);
+        let mut own = args.until(|word| known.contains(&word));
+        subs.push(style.build(&mut own, cx)?);
+        if let Some(word) = own.next() {
+            return Err(unknown(word, Some(*style), &known).into());
+        }
     }
     Ok(Declared { name, overlay, subs, users: BTreeMap::new() })
+}
+
+/// The error for a word that is no sub-style, nor one of those of the sub-style `before` it.
+fn unknown(word: &Word, before: Option<&dyn PairStyle>, known: &[&'static str]) -> Diagnostic {
+    let own = before.map_or(&[][..], |style| style.options());
+    let text = match before {
+        Some(style) => format!("`{}` is neither a word of `{}` nor a sub-style", word.text, style.name()),
+        None => format!("unknown sub-style: `{}`", word.text),
+    };
+    let d = blame(word, Code::UNKNOWN_KEYWORD, text);
+    if let Some(n) = nearest(&word.text, own.iter().chain(known).copied()) {
+        return d.help(format!("did you mean `{n}`?"));
+    }
+    let d = match own {
+        [] => d,
+        _ => d.help(format!("may stand here: {}", own.join(" "))),
+    };
+    d.help(format!("sub-styles: {}", known.join(" ")))
 }
 
 struct Declared {

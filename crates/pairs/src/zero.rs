@@ -30,14 +30,18 @@ impl PairStyle for ZeroStyle {
     fn build(&self, args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Pair>> {
         let cutoff = args.positive("the cutoff")?;
         let mut any = false;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "nocoeff" => any = true,
-                "full" => {}
-                _ => return Err(args.unknown(word, &["nocoeff", "full"])),
+        loop {
+            if args.eat("nocoeff") {
+                any = true;
+            } else if !args.eat("full") {
+                break;
             }
         }
         Ok(Box::new(Zero { any, cutoff, pairs: BTreeMap::new() }))
+    }
+
+    fn options(&self) -> &'static [&'static str] {
+        &["nocoeff", "full"]
     }
 }
 

@@ -45,6 +45,12 @@ pub trait Compute: Send {
         false
     }
 
+    /// Whether it reads what forces add up only in steps that are asked for it: energies, stresses. They are asked for in the last
+    /// step of every run, so that the compute has values until the scene changes.
+    fn tallied(&self) -> bool {
+        false
+    }
+
     /// The op that takes the present state as a new beginning after a snapshot of a dump (`dump_modify refresh`), for
     /// computes that have one.
     ///

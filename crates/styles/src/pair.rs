@@ -20,6 +20,11 @@ pub trait PairStyle: Style {
     /// # Errors
     /// Every mistake in the line.
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>>;
+
+    /// The words that may end its line, for messages.
+    fn options(&self) -> &'static [&'static str] {
+        &[]
+    }
 }
 
 /// A declared pair style with its coefficients.

@@ -27,6 +27,8 @@ pub struct Region {
     pub given: Vec<Given>,
     /// How the shape moves.
     pub motion: Option<Motion>,
+    /// It holds every point, as LAMMPS' regions with open faces do for all but walls.
+    pub everywhere: bool,
 }
 
 /// A number of a shape that an equal-style variable gives anew whenever the region is used.
@@ -46,17 +48,28 @@ pub type Ask<'a> = dyn FnMut(&Variable) -> Result<Option<f64>> + 'a;
 impl Region {
     /// The inside of a shape, all faces closed, at rest.
     pub fn inside(shape: Shape) -> Self {
-        Self { shape, outside: false, open: 0, given: vec![], motion: None }
+        Self { shape, outside: false, open: 0, given: vec![], motion: None, everywhere: false }
     }
 
     /// Whether the point belongs to the region.
     #[inline]
     pub fn contains(&self, x: [f64; 3]) -> bool {
+        if self.everywhere {
+            return true;
+        }
         let x = match &self.motion {
             Some(motion) => motion.undo(x),
             None => x,
         };
         self.shape.contains(x) != self.outside
+    }
+
+    /// Lets open faces mean what they mean in LAMMPS, where a region that has some holds every point, or for walls alone.
+    pub fn open_holds_all(&mut self, yes: bool) {
+        self.everywhere = yes && self.open != 0;
+        if let Shape::Union(parts) | Shape::Intersect(parts) = &mut self.shape {
+            parts.iter_mut().for_each(|part| part.open_holds_all(yes));
+        }
     }
 
     /// A box that holds the region, if a finite description gives one (`side out` and what follows variables do not).

@@ -110,6 +110,17 @@ pub enum RunStyle {
     Respa(Respa),
 }
 
+impl RunStyle {
+    /// The name in a deck.
+    pub fn name(&self) -> &'static str {
+        match self {
+            RunStyle::Verlet => "verlet",
+            RunStyle::Staggered { .. } => "staggered",
+            RunStyle::Respa(_) => "respa",
+        }
+    }
+}
+
 /// Choices of a deck that concern everybody.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Settings {

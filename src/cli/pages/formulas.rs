@@ -37,14 +37,15 @@ const TEXT: &str = "**Operators**, from loose to tight: `||` and `|^` (exclusive
     `logfreq(x,y,z)` `logfreq2(x,y,z)` `logfreq3(x,y,z)`.\n\n\
     **Groups**: `count(g)` `mass(g)` `ke(g)` `gyration(g)`; with a direction `xcm(g,x)` `vcm(g,x)` `fcm(g,x)` \
     `angmom(g,x)` `torque(g,x)` `omega(g,x)`; `inertia(g,xx)` (xx yy zz xy yz xz); `bound(g,xmin)` (xmin xmax ymin ymax \
-    zmin zmax). A region as last argument counts only the group's particles in it, as in `count(plate,notch)`.\n\n\
+    zmin zmax). A region as last argument counts only the group's particles in it, as in `count(plate,notch)`; its open faces \
+    are closed here ([region](region.md)).\n\n\
     **Particles**: `id type mass radius x y z vx vy vz fx fy fz omegax omegay omegaz` are values per particle in an \
     `atom` formula; `x[7]` or `x[v_n]` is that of the particle with this id, a number.\n\n\
     **The scene**: every keyword of [thermo_style](thermo_style.md); `c_ID`, `c_ID[i]`, `c_ID[i][j]` of a compute, `f_ID` \
     likewise of a fix, `C_ID[i]` (`C_ID[i][j]`) the value of particle i of a compute with values per particle (`F_ID` of a \
     fix), `v_NAME` another variable, `v_NAME[i]` the value of particle i of an `atom` variable. A formula evaluated while the \
-    deck is read computes what it needs of the present state; energies and pressures must have been computed in the last \
-    step or by `run 0`.\n\n\
+    deck is read computes what it needs of the present state. Energies, stresses and pressures are those of the last step of the \
+    run before, and of computes declared before that run; where the scene has changed since, `run 0` computes them.\n\n\
     **Vectors**: `sum(v)` `min(v)` `max(v)` `ave(v)` `trap(v)` (the sum with half the first and last element) `slope(v)` \
     (of the straight line through the elements, numbered from 1) yield a number, `sort(v)` and `rsort(v)` (falling) a vector; \
     v is `c_ID`, `f_ID`, a column `c_ID[i]` or `f_ID[i]` of a global array, or `v_NAME` of a vector-style variable. Operators \
@@ -52,8 +53,9 @@ const TEXT: &str = "**Operators**, from loose to tight: `||` and `|^` (exclusive
     **Masks**, one value per particle: `gmask(group)` `rmask(region)` `grmask(group,region)` are 1 inside, else 0.\n\n\
     **Files and the session**: `next(NAME)` is the present value of a file- or atomfile-style variable, which then moves on; \
     `is_file(path)` `is_os(pattern)` (a regular expression, as `is_os(^Linux)`) `is_timeout()` (whether `timer timeout` has \
-    passed) `is_defined(category,name)` (compute dump fix group region variable) `is_available(category,name)` (command compute \
-    fix pair_style feature) `is_active(category,name)` (package newton pair comm_style min_style run_style atom_style pair_style \
-    bond_style …) yield 1 or 0; `extract_setting(name)` knows LAMMPS' settings such as `dimension box_exist ntypes nlocal \
+    passed) `is_defined(category,name)` (compute dump fix group region variable) `is_available(category,name)` (atom integrate \
+    minimize pair bond angle dihedral improper kspace fix compute region dump command, pair_style for pair as LAMMPS' manual has \
+    it, feature: gzip png exceptions; 0 for a name that is not there, where LAMMPS 22Jul2025 ends) `is_active(category,name)` \
+    (package newton pair comm_style min_style run_style atom_style pair_style bond_style …; packages never are) yield 1 or 0; `extract_setting(name)` knows LAMMPS' settings such as `dimension box_exist ntypes nlocal \
     nthreads`. `label2type` and `is_typelabel` are refused: there are no label maps. `charge(g)` is refused: no atom style here \
     has charges.";

@@ -73,6 +73,7 @@ impl SealCx for Sealer<'_> {
     }
 
     fn keyword(&mut self, name: &str, span: Span, stage: Stage, when: &When) -> Result<Reading> {
+        self.ask(span);
         let norm = self.graph.thermo.normalized(self.world);
         self.keyword_as(name, span, stage, when, norm)
     }
@@ -135,18 +136,22 @@ impl SealCx for Sealer<'_> {
     }
 
     fn ask_energy(&mut self, when: &When) {
+        self.tallies.get_or_insert(self.asking);
         self.plan.energy.push(when.clone());
     }
 
     fn ask_virial(&mut self, when: &When) {
+        self.tallies.get_or_insert(self.asking);
         self.plan.virial.push(when.clone());
     }
 
     fn ask_atom_energy(&mut self, when: &When) {
+        self.tallies.get_or_insert(self.asking);
         self.plan.atom_energy.push(when.clone());
     }
 
     fn ask_atom_virial(&mut self, when: &When) {
+        self.tallies.get_or_insert(self.asking);
         self.plan.atom_virial.push(when.clone());
     }
 

@@ -130,7 +130,7 @@ impl Expr {
                 if name.contains("cpu") || name == "timeremain" {
                     vars.event();
                 }
-                match env.keyword(name, vars) {
+                match env.keyword(name, span, vars) {
                     Some(v) => v.map_err(|d| d.at(span)),
                     None => Err(unknown_word(name, span, env).into()),
                 }
@@ -144,9 +144,11 @@ impl Expr {
                 None => Ok(Value::Unknown),
             },
             Op::Special(row, args) => {
-                special::value(row, args, span, vars, env, trail).map_err(|d| d.at(span))
+                special::value(row, &self.words(args), span, vars, env, trail).map_err(|d| d.at(span))
             }
-            Op::Group(name, args) => env.group_function(name, args, span, vars).map_err(|d| d.at(span)),
+            Op::Group(name, args) => {
+                env.group_function(name, &self.words(args), span, vars).map_err(|d| d.at(span))
+            }
             Op::Reference(kind, name, indices) => {
                 let mut index = Vec::with_capacity(indices.len());
                 for i in indices {

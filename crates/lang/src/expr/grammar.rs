@@ -6,7 +6,7 @@
 use super::super::number;
 use super::super::scan::{place, taken};
 use super::functions::{self, Group};
-use super::{ATTRIBUTES, Binary, Index, Op, RefKind, Step, attribute, special};
+use super::{ATTRIBUTES, Binary, Index, Name, Op, RefKind, Step, attribute, special};
 use nom::branch::alt;
 use nom::bytes::complete::{tag, take_till, take_while};
 use nom::character::complete::{char, digit1, multispace0, one_of, satisfy};
@@ -272,16 +272,16 @@ impl<'a> Program<'a> {
         let (rest, body) = body.unwrap_or(("", inside));
         let rest = self.close(rest, place(self.text, inside) - 1)?;
         let range = at..place(self.text, rest);
-        let args: Vec<String> = body.split(',').map(|a| a.trim().to_owned()).collect();
+        let args = Self::names(body, place(self.text, inside));
         let least = 1 + usize::from(!g.words.is_empty());
-        if args.len() < least || args.len() > least + 1 || args.iter().any(String::is_empty) {
+        if args.len() < least || args.len() > least + 1 || args.iter().any(|a| a.text.is_empty()) {
             let usage = if least == 1 { "group" } else { "group,component" };
             let message = format!("{0}() reads {0}({usage}) or {0}({usage},region)", g.name);
             return Err(self.fault(Code::SYNTAX, range, message));
         }
-        if least == 2 && !g.words.contains(&args[1].as_str()) {
-            let message = format!("`{}` is no component of {}()", args[1], g.name);
-            let mut f = self.fault(Code::BAD_VALUE, range, message);
+        if least == 2 && !g.words.contains(&args[1].text.as_str()) {
+            let message = format!("`{}` is no component of {}()", args[1].text, g.name);
+            let mut f = self.fault(Code::BAD_VALUE, args[1].range.clone(), message);
             f.help.push(format!("one of {}", g.words.join(" ")));
             return Err(f);
         }
@@ -294,20 +294,38 @@ impl<'a> Program<'a> {
         let (rest, body) = balanced(inside).unwrap_or(("", inside));
         let rest = self.close(rest, place(self.text, inside) - 1)?;
         let range = at..place(self.text, rest);
-        let mut args: Vec<String> = body.split(',').map(|a| a.trim().to_owned()).collect();
+        let from = place(self.text, inside);
+        let mut args = Self::names(body, from);
         if row.usage.is_empty() && body.trim().is_empty() {
             args.clear();
         }
         // a pattern may hold commas of its own
         if row.what == special::Special::IsOs {
-            args = vec![body.trim().to_owned()];
+            args = vec![Self::name(body, from)];
         }
-        if args.len() != row.usage.len() || args.iter().any(String::is_empty) {
+        if args.len() != row.usage.len() || args.iter().any(|a| a.text.is_empty()) {
             let message = format!("{0}() reads {0}({1})", row.name, row.usage.join(","));
             return Err(self.fault(Code::SYNTAX, range, message));
         }
         self.emit(Op::Special(row, args), range)?;
         Ok(rest)
+    }
+
+    /// Names between commas, each with its bytes of the formula; `from` is the first byte of the list.
+    fn names(list: &str, from: usize) -> Vec<Name> {
+        let mut at = from;
+        let mut names = vec![];
+        for part in list.split(',') {
+            names.push(Self::name(part, at));
+            at += part.len() + 1;
+        }
+        names
+    }
+
+    fn name(part: &str, from: usize) -> Name {
+        let text = part.trim();
+        let at = from + part.len() - part.trim_start().len();
+        Name { text: text.to_owned(), range: at..at + text.len() }
     }
 
     /// `[1,3,7]`: numbers between commas.

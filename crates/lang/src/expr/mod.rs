@@ -10,6 +10,7 @@ mod time;
 #[cfg(test)]
 mod tests;
 
+use super::command::Word;
 use super::reference::{RefKind, ValueRef};
 use super::text::within;
 use super::value::{Env, Value};
@@ -55,13 +56,20 @@ enum Op {
     Column(String),
     Particle(String, Index),
     Reference(RefKind, String, Vec<Index>),
-    Group(String, Vec<String>),
-    Special(&'static special::Row, Vec<String>),
+    Group(String, Vec<Name>),
+    Special(&'static special::Row, Vec<Name>),
     Vector(Vec<f64>),
     Negate,
     Not,
     Binary(Binary),
     Call(&'static Function),
+}
+
+/// An argument that is a name and no formula, and its bytes of the formula.
+#[derive(Clone, Debug)]
+struct Name {
+    text: String,
+    range: Range<usize>,
 }
 
 /// An index in brackets: `[3]` or `[v_name]`.
@@ -202,7 +210,7 @@ impl Expr {
                 }
                 Op::Particle(_, index) => names.extend(index.variable().cloned()),
                 Op::Special(row, args) if matches!(row.what, special::Special::Reduce(_)) => {
-                    match special::vector_of(args, self.place(&step.range)) {
+                    match special::vector_of(&self.words(args), self.place(&step.range)) {
                         Some(r) if r.kind == RefKind::Variable => names.push(r.name),
                         Some(r) => add(Dep::Ref(r)),
                         None => {}
@@ -225,6 +233,11 @@ impl Expr {
 
     fn place(&self, range: &Range<usize>) -> Span {
         within(self.at, self.text.len(), range.clone())
+    }
+
+    /// Names with their places in the deck.
+    fn words(&self, names: &[Name]) -> Vec<Word> {
+        names.iter().map(|n| Word::new(n.text.as_str(), self.place(&n.range))).collect()
     }
 }
 

@@ -1,5 +1,6 @@
 //! Functions whose arguments are names: of vectors, groups, regions, files, settings and features.
 
+use super::super::command::Word;
 use super::super::reference::{RefKind, ValueRef};
 use super::super::value::{Env, Question, Value};
 use super::super::vars::Vars;
@@ -83,8 +84,8 @@ pub(super) fn find(name: &str) -> Option<&'static Row> {
 }
 
 /// The vector that `sum(c_ID[2])` and its kin name.
-pub(super) fn vector_of(args: &[String], span: Span) -> Option<ValueRef> {
-    let r = ValueRef::parse(args.first()?, span).ok().flatten()?;
+pub(super) fn vector_of(args: &[Word], span: Span) -> Option<ValueRef> {
+    let r = ValueRef::parse(&args.first()?.text, span).ok().flatten()?;
     let wanted = matches!(r.kind, RefKind::Compute | RefKind::Fix) && r.index.len() <= 1;
     (wanted || (r.kind == RefKind::Variable && r.index.is_empty())).then_some(r)
 }
@@ -92,18 +93,21 @@ pub(super) fn vector_of(args: &[String], span: Span) -> Option<ValueRef> {
 /// The value of the function `row` with these arguments.
 pub(super) fn value(
     row: &Row,
-    args: &[String],
+    args: &[Word],
     span: Span,
     vars: &Vars,
     env: &mut dyn Env,
     trail: &mut super::Trail,
 ) -> Result<Value> {
-    let word = |k: usize| args.get(k).map_or("", String::as_str);
+    // The grammar has counted them.
+    let none = Word::new("", span);
+    let name = |k: usize| args.get(k).unwrap_or(&none);
+    let word = |k: usize| name(k).text.as_str();
     match row.what {
         Special::Reduce(how) => reduce(row, how, args, span, vars, env, trail),
-        Special::GroupMask => env.mask(Some(word(0)), None, span, vars),
-        Special::RegionMask => env.mask(None, Some(word(0)), span, vars),
-        Special::BothMask => env.mask(Some(word(0)), Some(word(1)), span, vars),
+        Special::GroupMask => env.mask(Some(name(0)), None, vars),
+        Special::RegionMask => env.mask(None, Some(name(0)), vars),
+        Special::BothMask => env.mask(Some(name(0)), Some(name(1)), vars),
         Special::Next => vars.take_next(word(0), span, env),
         Special::IsFile => {
             vars.event();
@@ -111,11 +115,13 @@ pub(super) fn value(
         }
         Special::IsOs => match pattern::matches(word(0), &pattern::os_info()) {
             Ok(found) => Ok(truth(found)),
-            Err(why) => fail(Code::SYNTAX, span, format!("is_os(): {why}")),
+            Err(why) => fail(Code::SYNTAX, name(0).span, format!("is_os(): {why}")),
         },
         Special::Setting => match env.setting(word(0)) {
             Some(v) => Ok(v),
-            None => fail(Code::UNKNOWN_NAME, span, format!("extract_setting() knows no `{}`", word(0))),
+            None => {
+                fail(Code::UNKNOWN_NAME, name(0).span, format!("extract_setting() knows no `{}`", word(0)))
+            }
         },
         Special::TypeLabel => {
             let message = format!("{}() needs a labelmap, which perigrain does not have", row.name);
@@ -126,7 +132,7 @@ pub(super) fn value(
             Ok(truth(env.timed_out()))
         }
         Special::Ask(Question::Defined) if word(0) == "variable" => Ok(truth(vars.kind(word(1)).is_some())),
-        Special::Ask(q) => env.answer(q, word(0), word(1), span).map(truth),
+        Special::Ask(q) => env.answer(q, name(0), name(1)).map(truth),
     }
 }
 
@@ -137,14 +143,14 @@ fn truth(b: bool) -> Value {
 fn reduce(
     row: &Row,
     how: Reduction,
-    args: &[String],
+    args: &[Word],
     span: Span,
     vars: &Vars,
     env: &mut dyn Env,
     trail: &mut super::Trail,
 ) -> Result<Value> {
     let Some(r) = vector_of(args, span) else {
-        let given = args.first().map_or("", String::as_str);
+        let given = args.first().map_or("", |w| w.text.as_str());
         let message = format!("{}() reads c_ID, c_ID[i], f_ID, f_ID[i] or v_name, not `{given}`", row.name);
         return fail(Code::SYNTAX, span, message);
     };

@@ -15,7 +15,7 @@ pub(super) struct World {
 }
 
 impl Env for World {
-    fn keyword(&mut self, name: &str, _: &Vars) -> Option<Result<Value>> {
+    fn keyword(&mut self, name: &str, _: Span, _: &Vars) -> Option<Result<Value>> {
         let v = match name {
             "step" => self.clock.step as f64,
             "vol" => 8.0,
@@ -49,7 +49,7 @@ impl Env for World {
             _ => return None,
         }))
     }
-    fn group_function(&mut self, name: &str, args: &[String], _: Span, _: &Vars) -> Result<Value> {
+    fn group_function(&mut self, name: &str, args: &[Word], _: Span, _: &Vars) -> Result<Value> {
         if self.check {
             return Ok(Value::Unknown);
         }
