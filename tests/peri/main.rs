@@ -8,6 +8,7 @@ mod limits;
 mod patch;
 mod released;
 mod scene;
+mod softening;
 mod states;
 mod textbook;
 mod waves;

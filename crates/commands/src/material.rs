@@ -16,12 +16,13 @@ impl Style for MaterialStyle {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "material ID E value nu value rho value [Gc value | s00 value] [alpha value]\n\
-                     material ID file NAME [E value] [nu value] [rho value] [Gc value | s00 value] [alpha value]",
+            syntax: "material ID E value nu value rho value [Gc value | s00 value] [alpha value] [ft value]\n\
+                     material ID file NAME [E value] [nu value] [rho value] [Gc value | s00 value] [alpha value] [ft value]",
             summary: "Gives engineering data a name, so that pair_coeff can turn them into coefficients.",
             text: "Young's modulus `E`, Poisson's ratio `nu` and density `rho` are needed; the fracture energy `Gc` or the \
                 critical stretch `s00` says when bonds break (without either they never do), and `alpha` how much \
-                compression strengthens them (0).\n\nNumbers in the line are in the deck's units. A file carries its own \
+                compression strengthens them (0). The tensile strength `ft` is where bonds of `peri/pmb/softening` have their \
+                peak.\n\nNumbers in the line are in the deck's units. A file carries its own \
                 units and is converted (`units si cgs micro nano`). It is looked for beside the deck, in the working \
                 folder, then among the files built into perigrain: alumina.toml, brittle-plate.toml, \
                 impactor-steel.toml, laminate-impactor.toml, laminate-ply-1.toml to laminate-ply-4.toml, \
@@ -31,7 +32,7 @@ impl Style for MaterialStyle {
     }
 }
 
-const KEYS: [&str; 6] = ["E", "nu", "rho", "Gc", "s00", "alpha"];
+const KEYS: [&str; 7] = ["E", "nu", "rho", "Gc", "s00", "alpha", "ft"];
 
 impl CommandStyle for MaterialStyle {
     fn parse(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
@@ -82,6 +83,7 @@ fn read(args: &mut Args, base: Option<Material>, id: &str) -> Result<Material> {
             "rho" => m.density = value,
             "Gc" => m.strength = Some(Strength::FractureEnergy(value)),
             "s00" => m.strength = Some(Strength::Stretch(value)),
+            "ft" => m.tensile = Some(value),
             _ => m.alpha = value,
         }
         if let Some((_, why)) = m.implausible().filter(|(bad, _)| *bad == key && !unknown) {
@@ -107,6 +109,7 @@ fn blank(id: &str) -> Material {
         density: 1.0,
         strength: None,
         alpha: 0.0,
+        tensile: None,
         source: String::new(),
         date: String::new(),
     }

@@ -37,6 +37,7 @@ pub const PAIRS: &[&dyn PairStyle] = &[
     &peri::PeriLps,
     &peri::PeriPmb,
     &peri::PeriPmbPlastic,
+    &peri::PeriPmbSoftening,
     &peri::PeriVes,
     &zero::ZeroStyle,
 ];

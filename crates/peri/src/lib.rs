@@ -33,6 +33,10 @@ mod released;
 mod rows;
 mod single;
 mod state;
+/// What bonds that soften leave of their peak where they break.
+pub mod softening {
+    pub use super::state::REST;
+}
 pub mod stretches;
 mod stretching;
 mod tables;

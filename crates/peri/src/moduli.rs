@@ -85,6 +85,12 @@ pub fn fracture_energy(critical_stretch: f64, micro_modulus: f64, horizon: f64) 
     PI * micro_modulus * horizon.powi(5) * critical_stretch * critical_stretch / 10.0
 }
 
+/// The area under the curve g(s) of bonds c g(s) that release this energy for each area of a crack:
+/// 5 G/(π c δ⁵) (Silling & Askari 2005, equation 21, where it is ½ s₀²).
+pub fn curve_area(fracture_energy: f64, micro_modulus: f64, horizon: f64) -> f64 {
+    0.5 * critical_stretch(fracture_energy, micro_modulus, horizon).powi(2)
+}
+
 /// The same for a linear peridynamic solid: s_c = √(G_c/((3G + (3/4)⁴ (K − 5G/3)) δ)) (Madenci and Oterkus 2014); at
 /// ν = 1/4 that of bonds.
 pub fn critical_stretch_of_states(fracture_energy: f64, solid: Elastic, horizon: f64) -> f64 {

@@ -33,7 +33,7 @@ impl Families {
     }
 
     /// Adds what has become heat since the last step: at the present places plastic bonds have lost the difference of the
-    /// energies before and after they flowed; the dashpots of viscous ones take up 2/τ times the energy of their springs, by
+    /// energies before and after they flowed; what softening bonds have lost counts with that of broken ones; the dashpots of viscous ones take up 2/τ times the energy of their springs, by
     /// the trapezoidal rule. Nothing under LAMMPS' laws, whose forces have no energy.
     pub(super) fn count_heat<K: Kernels + RowKernels + StateKernels>(
         &mut self,
@@ -49,6 +49,16 @@ impl Families {
                 let before = self.bond_energy::<K>(view, period);
                 self.forget_earlier();
                 self.heat += before - self.bond_energy::<K>(view, period);
+            }
+            kind if kind.softens() => {
+                if !self.flowed() {
+                    return self.forget_earlier();
+                }
+                self.law.lost = true;
+                let before = self.bond_energy::<K>(view, period);
+                self.forget_earlier();
+                self.released += self.bond_energy::<K>(view, period) - before;
+                self.law.lost = false;
             }
             LawKind::Ves => {
                 let own = self.law.moduli.iter().find(|m| m.tau > 0.0).copied().unwrap_or_default();

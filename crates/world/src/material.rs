@@ -20,6 +20,8 @@ pub struct Material {
     pub strength: Option<Strength>,
     /// How much compression strengthens a bond (α of the bond limit).
     pub alpha: f64,
+    /// Tensile strength f_t, Pa in SI: where bonds that soften have their peak.
+    pub tensile: Option<f64>,
     /// Where the numbers come from.
     pub source: String,
     /// When the record was last checked, `YYYY-MM-DD`.
@@ -49,6 +51,7 @@ struct Record {
     Gc: Option<Spanned<String>>,
     s00: Option<Spanned<f64>>,
     alpha: Option<Spanned<f64>>,
+    ft: Option<Spanned<String>>,
 }
 
 /// Unit names of a quantity with what one of them is in SI.
@@ -72,8 +75,9 @@ impl Material {
             } else {
                 Code::SYNTAX
             };
-            Diagnostic::error(code, e.span().map(at), format!("material file: {message}"))
-                .help("a material file has name, source, date, E, nu, rho and may have Gc or s00, and alpha")
+            Diagnostic::error(code, e.span().map(at), format!("material file: {message}")).help(
+                "a material file has name, source, date, E, nu, rho and may have Gc or s00, alpha and ft",
+            )
         })?;
         let quantity = |q: &Spanned<String>, units| {
             positive(q.get_ref(), units).map_err(|m| {
@@ -102,6 +106,7 @@ impl Material {
             density: quantity(&r.rho, DENSITY)?,
             strength,
             alpha: r.alpha.as_ref().map_or(0.0, |a| *a.get_ref()),
+            tensile: r.ft.as_ref().map(|f| quantity(f, PRESSURE)).transpose()?,
             source: r.source,
             date: r.date,
         };
@@ -123,6 +128,7 @@ impl Material {
         let pressure = mass / (length * time * time);
         self.young /= pressure;
         self.density /= mass / length.powi(3);
+        self.tensile = self.tensile.map(|f| f / pressure);
         if let Some(Strength::FractureEnergy(g)) = &mut self.strength {
             *g /= pressure * length;
         }
@@ -148,6 +154,9 @@ impl Material {
         }
         if !(self.alpha.is_finite() && self.alpha >= 0.0) {
             return Some(("alpha", "alpha must not be negative"));
+        }
+        if self.tensile.is_some_and(|f| !positive(f)) {
+            return Some(("ft", "ft must be positive"));
         }
         None
     }
@@ -192,17 +201,18 @@ mod tests {
     fn units_become_si() {
         let m = parse(MINIMAL).unwrap();
         assert_eq!((m.young, m.nu, m.density, m.strength, m.alpha), (2e9, 0.25, 1500.0, None, 0.0));
-        let m = parse(&format!("{MINIMAL}Gc='0.01 N/mm'\nalpha=0.25")).unwrap();
+        let m = parse(&format!("{MINIMAL}Gc='0.01 N/mm'\nalpha=0.25\nft='3 MPa'")).unwrap();
         assert_eq!((m.strength, m.alpha), (Some(Strength::FractureEnergy(10.0)), 0.25));
+        assert_eq!(m.tensile, Some(3e6));
     }
 
     #[test]
     fn deck_units() {
-        let m = parse(&format!("{MINIMAL}Gc='10 J/m2'")).unwrap();
+        let m = parse(&format!("{MINIMAL}Gc='10 J/m2'\nft='3 MPa'")).unwrap();
         let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-14;
         // 1 Pa = 10 dyn/cm², 1 kg/m³ = 1e-3 g/cm³, 1 J/m² = 1e3 erg/cm².
         let cgs = m.clone().in_units(UnitSystem::Cgs.mechanical().unwrap());
-        assert!(near(cgs.young, 2e10) && near(cgs.density, 1.5));
+        assert!(near(cgs.young, 2e10) && near(cgs.density, 1.5) && near(cgs.tensile.unwrap(), 3e7));
         assert!(matches!(cgs.strength, Some(Strength::FractureEnergy(g)) if near(g, 1e4)));
         // One micro unit of pressure is 1e3 Pa, of density 1e3 kg/m³, of energy per area 1e-3 J/m².
         let micro = m.in_units(UnitSystem::Micro.mechanical().unwrap());

@@ -207,7 +207,11 @@ mod tests {
     fn commands_and_styles() {
         check("pair_sty", &["pair_style"]);
         check(":pl", &[":plan", ":plot"]);
-        check("pair_style peri/pm", &["pair_style peri/pmb", "pair_style peri/pmb/plastic"]);
+        let solids = ["peri/pmb", "peri/pmb/plastic", "peri/pmb/softening"];
+        check(
+            "pair_style peri/pm",
+            &solids.map(|style| format!("pair_style {style}")).each_ref().map(|s| &**s),
+        );
         check("fix 1 all nve/sph", &["fix 1 all nve/sphere"]);
         check("compute d all dam", &["compute d all damage/atom"]);
         check("dump d all im", &["dump d all image"]);

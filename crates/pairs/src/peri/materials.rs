@@ -1,5 +1,6 @@
 //! Coefficients of peridynamic bonds from materials: `pair_coeff … material ID …` and `pair_coeff … mix RULE`.
 
+use super::softening::last_stretch;
 use super::{Coeff, below_zero, short_range};
 use crate::TypePairs;
 use perigrain_base::diag::{Code, Diagnostic, Result, Severity, Span, fail, nearest};
@@ -17,6 +18,7 @@ struct Stuff {
     density: f64,
     strength: Option<Strength>,
     alpha: f64,
+    tensile: Option<f64>,
     form: Form,
     horizon: f64,
     law: LawKind,
@@ -46,11 +48,12 @@ impl Materials {
         match args.peek_text() {
             "material" => {
                 args.next();
+                let at = args.here();
                 let stuff = stuff(law, args, cx)?;
                 for &(i, _) in pairs.iter().filter(|(i, j)| i == j) {
                     self.types.insert(i, stuff.clone());
                 }
-                Ok(Some((stuff.coeff(), stuff.moduli())))
+                stuff.told(at).map(Some)
             }
             "mix" => {
                 args.next();
@@ -86,7 +89,7 @@ impl Materials {
         };
         let (a, b) = (find(i)?, find(j)?);
         let between = a.mixed(b, rule, word)?;
-        Ok((between.coeff(), between.moduli()))
+        between.told(word)
     }
 }
 
@@ -107,6 +110,20 @@ impl Stuff {
             Some(Strength::FractureEnergy(g)) => moduli::critical_stretch(g, c, self.horizon),
         };
         PmbCoeff { c, horizon: self.horizon, s00, alpha: self.alpha }
+    }
+
+    /// The same of bonds that soften: c, horizon, and where nothing is left.
+    fn softening(&self, at: Span) -> Result<PmbCoeff> {
+        let c = self.form.micro_modulus(self.solid, self.horizon);
+        let curve = (self.extra.peak, self.fracture_energy());
+        let s00 = last_stretch(self.law, curve, (c, self.horizon), at)?;
+        Ok(PmbCoeff { c, horizon: self.horizon, s00, alpha: 0.0 })
+    }
+
+    /// What bonds are told, of whatever law.
+    fn told(&self, at: Span) -> Result<Coeff> {
+        let coeff = if self.law.softens() { self.softening(at)? } else { self.coeff() };
+        Ok((coeff, self.moduli()))
     }
 
     /// What the ends of bonds have under a state-based law.
@@ -143,7 +160,11 @@ impl Stuff {
             density: rule.mean(self.density, other.density),
             strength,
             alpha: rule.mean(self.alpha, other.alpha),
-            extra: Moduli { syc: -rule.mean(-self.extra.syc, -other.extra.syc), ..self.extra },
+            extra: Moduli {
+                syc: -rule.mean(-self.extra.syc, -other.extra.syc),
+                peak: rule.mean(self.extra.peak, other.extra.peak),
+                ..self.extra
+            },
             ..*self
         })
     }
@@ -171,6 +192,7 @@ fn keywords(law: LawKind) -> &'static [&'static str] {
         LawKind::Ves | LawKind::VesApart => &["lambda", "tau"],
         LawKind::Eps => &["yield"],
         LawKind::Yield | LawKind::Flat => &["form", "syc"],
+        LawKind::Softening | LawKind::Decaying => &["form", "peak"],
     }
 }
 
@@ -190,8 +212,10 @@ fn stuff(law: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
     let mut horizon = None;
     let mut s = of(m, law);
     let mut chosen = false;
-    let mut missing: Vec<&str> = keywords(law).iter().copied().filter(|k| *k != "form").collect();
-    let known: Vec<&'static str> = [&["horizon", "s00", "alpha"], keywords(law)].concat();
+    let mut missing: Vec<&str> =
+        keywords(law).iter().copied().filter(|k| !matches!(*k, "form" | "peak")).collect();
+    let common: &[&str] = if law.softens() { &["horizon"] } else { &["horizon", "s00", "alpha"] };
+    let known: Vec<&'static str> = [common, keywords(law)].concat();
     while let Some(word) = args.peek().filter(|w| !matches!(w.text.as_str(), "plastic" | "nonlinear")) {
         let key = args.choice("keyword of a material", &known)?;
         missing.retain(|k| *k != key);
@@ -221,6 +245,7 @@ fn stuff(law: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
                 s.extra.syc = args.number("syc")?;
                 below_zero(s.extra.syc, at)?;
             }
+            "peak" => s.extra.peak = args.positive("the stretch at the peak")?,
             "tau" => s.extra.tau = args.positive("tau")?,
             "yield" => s.extra.yield_stress = args.positive("the yield stress")?,
             _ => s.alpha = args.non_negative("alpha")?,
@@ -242,12 +267,34 @@ fn stuff(law: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
         let text = format!("this style needs `{key}` beside the material");
         return fail(Code::MISSING_ARGUMENT, args.here(), text);
     }
+    if law.softens() {
+        softens(&mut s, id.span, &id.text)?;
+    }
     if law.bond_based() && s.solid.defies_bonds() {
         let said = poisson(&id.text, &s, id.span);
         // Who names the modulus to keep knows that the others are off.
         cx.note(if chosen { Diagnostic { severity: Severity::Note, ..said } } else { said });
     }
     Ok(s)
+}
+
+/// Checks that a material says where its bonds soften and how far.
+fn softens(s: &mut Stuff, at: Span, id: &str) -> Result<()> {
+    let missing = |what: &str, help: &str| {
+        let text = format!("material `{id}` has no {what}, which bonds that soften need");
+        Err(Diagnostic::error(Code::MISSING_ARGUMENT, at, text).help(help).into())
+    };
+    if !matches!(s.strength, Some(Strength::FractureEnergy(_))) {
+        return missing("fracture energy Gc", "give it with `material ID … Gc value`, or in its file");
+    }
+    if s.extra.peak > 0.0 {
+        return Ok(());
+    }
+    let Some(tensile) = s.tensile else {
+        return missing("tensile strength ft", "say `peak value` here, or `ft` in the material or its file");
+    };
+    s.extra.peak = tensile / s.solid.young;
+    Ok(())
 }
 
 /// A material before its horizon is known.
@@ -257,6 +304,7 @@ fn of(m: &Material, law: LawKind) -> Stuff {
         density: m.density,
         strength: m.strength,
         alpha: m.alpha,
+        tensile: m.tensile,
         form: Form::default(),
         horizon: 0.0,
         law,
@@ -297,6 +345,7 @@ mod tests {
             density: 1400.0,
             strength: Some(strength),
             alpha: 0.25,
+            tensile: None,
             form: Form::Shear,
             horizon: 1.5e-3,
             law: LawKind::Pmb,

@@ -11,6 +11,7 @@ mod options;
 mod plastic;
 mod pmb;
 mod reunion;
+mod softening;
 mod ves;
 
 use super::{Pair, TypePairs};
@@ -32,6 +33,7 @@ use perigrain_styles::{BuildCx, SealCx};
 use perigrain_world::{Region, World};
 pub use plastic::PeriPmbPlastic;
 pub use pmb::PeriPmb;
+pub use softening::PeriPmbSoftening;
 pub use ves::PeriVes;
 
 /// A peridynamic style with its coefficients.
@@ -104,7 +106,16 @@ type Coeff = (PmbCoeff, Moduli);
 fn numbers(kind: LawKind, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
     let (mut c, mut moduli) = stiffness(kind, args)?;
     let span = args.here();
-    let (horizon, s00, alpha) = lasting(args)?;
+    let (horizon, s00, alpha) = match kind.softens() {
+        true => {
+            let horizon = args.positive("the horizon")?;
+            moduli.peak = args.positive("the stretch at the peak")?;
+            let at = args.here();
+            let energy = args.positive("the fracture energy G")?;
+            (horizon, softening::last_stretch(kind, (moduli.peak, energy), (c, horizon), at)?, 0.0)
+        }
+        false => lasting(args)?,
+    };
     beyond_elastic(kind, args, &mut moduli)?;
     if !kind.bond_based() {
         c = short_range(moduli.bulk, horizon);
@@ -258,12 +269,15 @@ impl Pair for Solid {
                 self.law.moduli[usize::from(i) - 1] = moduli;
             }
             let types = self.table.types();
-            if matches!(self.law.kind, LawKind::Yield | LawKind::Flat) {
-                self.law.yields.resize(types * types, f64::NEG_INFINITY);
-                let (a, b) = (usize::from(i) - 1, usize::from(j) - 1);
-                self.law.yields[a * types + b] = moduli.syc;
-                self.law.yields[b * types + a] = moduli.syc;
-            }
+            let edge = match self.law.kind {
+                LawKind::Yield | LawKind::Flat => moduli.syc,
+                LawKind::Softening | LawKind::Decaying => moduli.peak,
+                _ => continue,
+            };
+            self.law.yields.resize(types * types, f64::NEG_INFINITY);
+            let (a, b) = (usize::from(i) - 1, usize::from(j) - 1);
+            self.law.yields[a * types + b] = edge;
+            self.law.yields[b * types + a] = edge;
         }
         Ok(())
     }
@@ -310,7 +324,12 @@ impl Pair for Solid {
     }
 
     fn coefficients(&self) -> &'static [&'static str] {
-        if self.law.kind.bond_based() { &["c", "s00", "alpha"] } else { &["s00", "alpha"] }
+        match self.law.kind {
+            // Peak, last stretch and energy belong together.
+            kind if kind.softens() => &[],
+            kind if kind.bond_based() => &["c", "s00", "alpha"],
+            _ => &["s00", "alpha"],
+        }
     }
 
     fn coefficient(&self, name: &str, (i, j): (u16, u16)) -> Option<f64> {

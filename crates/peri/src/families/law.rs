@@ -55,6 +55,9 @@ pub struct Moduli {
     pub yield_stress: f64,
     /// Stretch at which microelastic bonds flow, below zero.
     pub syc: f64,
+    /// Stretch beyond which microelastic bonds soften.
+    #[serde(default)]
+    pub peak: f64,
 }
 
 /// What bonds do.
@@ -77,6 +80,10 @@ pub enum LawKind {
     Shaped,
     /// As [`LawKind::Ves`] where types relax differently: each end of a bond remembers its own stretch.
     VesApart,
+    /// Microelastic bonds that soften linearly beyond a peak.
+    Softening,
+    /// The same exponentially.
+    Decaying,
 }
 
 impl LawKind {
@@ -87,15 +94,25 @@ impl LawKind {
 
     /// Whether a bond's force depends on nothing but the bond.
     pub fn bond_based(self) -> bool {
-        matches!(self, Self::Pmb | Self::Yield | Self::Flat | Self::Shaped)
+        matches!(self, Self::Pmb | Self::Yield | Self::Flat | Self::Shaped | Self::Softening | Self::Decaying)
+    }
+
+    /// Whether bonds lose energy for good while they live.
+    pub fn flows(self) -> bool {
+        self.softens() || matches!(self, Self::Eps | Self::Yield)
+    }
+
+    /// Whether bonds soften beyond a peak.
+    pub fn softens(self) -> bool {
+        matches!(self, Self::Softening | Self::Decaying)
     }
 
     /// Numbers that each bond remembers.
     pub fn memory(self) -> usize {
         match self {
             Self::Pmb | Self::Lps | Self::Flat | Self::Shaped => 0,
-            Self::Yield | Self::Ves => 1,
-            Self::Eps | Self::VesApart => 2,
+            Self::Yield | Self::Ves | Self::Softening => 1,
+            Self::Eps | Self::VesApart | Self::Decaying => 2,
         }
     }
 }
@@ -109,16 +126,19 @@ pub struct Law {
     pub influence: Influence,
     /// Moduli by type − 1.
     pub moduli: Vec<Moduli>,
-    /// Stretches below which bonds flow, by pair of types (row by row); empty where none do.
+    /// Stretches below which bonds flow or beyond which they soften, by pair of types (row by row); empty where none do.
     pub yields: Vec<f64>,
     /// Bonds of [`LawKind::Shaped`] are stiffer near surfaces (`peri_modify surface energy`).
     pub surface: bool,
     /// The time step of the last force evaluation: relaxation depends on it.
     pub dt: f64,
+    /// Energies asked for are those that damage of softening bonds has taken.
+    #[serde(skip)]
+    pub lost: bool,
 }
 
 impl Law {
-    /// The (negative) stretch at which bonds between two types begin to flow.
+    /// The (negative) stretch at which bonds between two types begin to flow, or the one beyond which they soften.
     pub fn yields(&self, a: u16, b: u16) -> f64 {
         let types = self.moduli.len();
         let place = (usize::from(a) - 1) * types + usize::from(b) - 1;

@@ -71,6 +71,8 @@ pub struct Block {
     pub square: [f64; MOST],
     /// ω, or the stretch at which bonds flow.
     pub omega: [f64; MOST],
+    /// The critical stretch, of softening bonds; 0 where none lives.
+    pub limit: [f64; MOST],
     /// ω w, of microelastic bonds c w/|xi|; 0 where no bond lives.
     pub weight: [f64; MOST],
     /// The partner's volume.
@@ -102,6 +104,7 @@ impl Block {
             y: [none; 3],
             square: none,
             omega: none,
+            limit: none,
             weight: none,
             volume: none,
             out: [none; 3],
@@ -124,6 +127,8 @@ pub struct Rules {
     influence: Influence,
     /// Bonds are microelastic and count c times their shape over |xi|.
     microelastic: bool,
+    /// Laws ask for critical stretches.
+    limited: bool,
 }
 
 impl Rules {
@@ -131,7 +136,13 @@ impl Rules {
     pub fn new(period: [f64; 3], options: &FamilyOptions, law: &Law) -> Self {
         let band = options.dead_band(1.0);
         let dead = if options.compat_lammps { [0.0, band] } else { [band, 0.0] };
-        Self { period, dead, influence: law.shape(), microelastic: law.kind.bond_based() }
+        Self {
+            period,
+            dead,
+            influence: law.shape(),
+            microelastic: law.kind.bond_based(),
+            limited: law.kind.softens(),
+        }
     }
 }
 
@@ -268,6 +279,9 @@ unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(row: &Row, b: 
                 y[2].store(b.y[2].as_mut_ptr().add(at));
                 square.store(b.square.as_mut_ptr().add(at));
                 omega.keep(alive).store(b.omega.as_mut_ptr().add(at));
+                if rules.limited {
+                    L::splat(pair.s00).keep(alive).store(b.limit.as_mut_ptr().add(at));
+                }
                 weight.keep(alive).store(b.weight.as_mut_ptr().add(at));
                 volume.store(b.volume.as_mut_ptr().add(at));
             }

@@ -97,13 +97,14 @@ unsafe fn recall<L: Lanes>(a: &Acting, place: usize, numbers: usize) -> [L; 2] {
 
 /// The stretch of some of the bonds in hand.
 #[inline(always)]
-unsafe fn stretched<L: Lanes>(b: &Block, at: usize, s: bool, back: bool) -> Stretch<L> {
+unsafe fn stretched<L: Lanes>(b: &Block, at: usize, s: bool, back: bool, limited: bool) -> Stretch<L> {
     // SAFETY: columns hold numbers at `at` and beyond.
     unsafe {
         let share = L::load(b.share.as_ptr().add(at));
         let s = if s { L::load(b.s.as_ptr().add(at)) } else { share };
         let before = if back { closed(L::load(b.before.as_ptr().add(at))).s } else { s };
-        Stretch { s, share, inverse: L::splat(1.0).sub(share), before }
+        let limit = if limited { L::load(b.limit.as_ptr().add(at)) } else { s };
+        Stretch { s, share, inverse: L::splat(1.0).sub(share), before, limit }
     }
 }
 
@@ -165,7 +166,7 @@ pub unsafe fn pull<L: Rows, W: BondLaw>(row: &Row, a: &Acting, b: &mut Block, fo
         let mut at = 0;
         while at < b.count {
             let place = b.place(at);
-            let s = stretched::<L>(b, at, W::STRETCHED, W::BACK);
+            let s = stretched::<L>(b, at, W::STRETCHED, W::BACK, W::LIMITED);
             let ends: Ends<L> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
             let before = recall::<L>(a, place, W::MEMORY);
             let mut now = before;
@@ -225,7 +226,7 @@ pub unsafe fn add_up<L: Rows, T: Term>(row: &Row, a: &Acting, b: &mut Block, sum
         while at < b.count {
             let place = b.place(at);
             let s = L::load(b.s.as_ptr().add(at));
-            let s = Stretch { s, share: s, inverse: s, before: s };
+            let s = Stretch { s, share: s, inverse: s, before: s, limit: s };
             let ends: Ends<L> = [own, far(a.ends, T::COLUMNS, partner.add(place))];
             let memory = recall::<L>(a, place, T::MEMORY);
             let (near, far) = T::terms(&s, L::load(b.omega.as_ptr().add(at)), &ends, &memory);
@@ -259,7 +260,7 @@ pub unsafe fn energies<L: Rows, W: BondLaw>(row: &Row, a: &Acting, angles: &[f64
         let mut at = 0;
         while at < b.count {
             let place = b.place(at);
-            let s = stretched::<L>(b, at, true, W::BACK);
+            let s = stretched::<L>(b, at, true, W::BACK, W::LIMITED);
             let ends: Ends<L> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
             let other = far::<L>(angles, turned, partner.add(place));
             let angles = [

@@ -17,6 +17,8 @@ pub use energies::{Looking, sums};
 pub const OMEGA: usize = constant::ENERGY;
 /// In the table of dilatations: one over [`constant::FACTOR`].
 pub const FROM_TERM: usize = constant::ENERGY + 1;
+/// In the table of forces: the pair's critical stretch.
+pub const LIMIT: usize = FROM_TERM;
 /// In the table of dilatations: twice the reference bond, three components.
 pub const TWICE_XI: usize = constant::XI;
 
@@ -78,13 +80,19 @@ unsafe fn stretch<L: Lanes, const DEGREE: usize>((q, live): (L, L), c: *const f6
         if DEGREE == CLOSED {
             let s = closed(q.mul(L::splat(*c.add(constant::INVERSE))));
             let stretch = s.s.keep(live);
-            return Stretch { s: stretch, share: s.share.keep(live), inverse: s.inverse, before: stretch };
+            return Stretch {
+                s: stretch,
+                share: s.share.keep(live),
+                inverse: s.inverse,
+                before: stretch,
+                limit: stretch,
+            };
         }
         if DEGREE > CLOSED {
             let z = q.mul(L::splat(*c.add(constant::INVERSE)));
             let share = z.mul(wide::share::<L, DEGREE>(z)).keep(live);
             let s = z.mul(wide::stretch::<L, DEGREE>(z)).keep(live);
-            return Stretch { s, share, inverse: L::splat(1.0).sub(share), before: s };
+            return Stretch { s, share, inverse: L::splat(1.0).sub(share), before: s, limit: s };
         }
         let share = series::<L, DEGREE>(q, c).keep(live);
         // s = p/(1 − p) for p = s/(1 + s): below the first term left out, p^(DEGREE + 2), is 1e-16 of p.
@@ -96,7 +104,7 @@ unsafe fn stretch<L: Lanes, const DEGREE: usize>((q, live): (L, L), c: *const f6
             k += 1;
         }
         let s = s.mul(share);
-        Stretch { s, share, inverse: one.sub(share), before: s }
+        Stretch { s, share, inverse: one.sub(share), before: s, limit: s }
     }
 }
 
@@ -193,6 +201,9 @@ pub(super) unsafe fn pull<
                 if W::BACK {
                     let last = bonds::<L, MASKED>(&s.last, &back[v], other, c, bits);
                     now.before = stretch::<L, DEGREE>((last.q, last.live), c).s;
+                }
+                if W::LIMITED {
+                    now.limit = L::splat(*c.add(LIMIT));
                 }
                 let ends: Ends<L> = [own[v], read::<L>(s, W::COLUMNS, other)];
                 let mut memory = if known { recall::<L>(s, W::MEMORY, vector, here) } else { [zero; 2] };
@@ -324,7 +335,7 @@ unsafe fn term_of<L: Lanes, T: Term, const DEGREE: usize, const MASKED: bool>(
             stretch::<L, DEGREE>((q, live), c)
         } else {
             let s = series::<L, DEGREE>(q, c).keep(live).mul(L::splat(*c.add(FROM_TERM)));
-            Stretch { s, share: s, inverse: s, before: s }
+            Stretch { s, share: s, inverse: s, before: s, limit: s }
         };
         let ends: Ends<L> = [*own, read::<L>(s, T::COLUMNS, other)];
         let memory = if known { recall::<L>(s, T::MEMORY, vector, here) } else { [L::splat(0.0); 2] };

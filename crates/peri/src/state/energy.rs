@@ -133,7 +133,8 @@ fn lattice(families: &Families, view: &PeriView, body: &LatticeBody, (advanced, 
                 let first = (cell / LANES * entries + e) * numbers * LANES + cell % LANES;
                 let ends = [body.particle[cell] as usize, body.particle[to] as usize];
                 let (a, b) = (view.kind[ends[0]], view.kind[ends[1]]);
-                let c = families.table.get(a, b).map_or(0.0, |k| k.c);
+                let (c, limit) = families.table.get(a, b).map_or((0.0, 0.0), |k| (k.c, k.s00));
+                stretch.limit = Single(limit);
                 let (omega, share) =
                     Weighing::of(law).weigh(length, weight, (c, body.horizon, law.yields(a, b)));
                 add(

@@ -5,10 +5,12 @@
 //! Mitchell 2011). Both ends act along y/|y|; y = xi + eta and |y| = |xi| (1 + s), so that a law returns
 //! (t_i + t_j)/(ω |y|).
 
+mod softening;
 mod viscous;
 
 use super::super::lanes::Lanes;
 use crate::families::law::{COLUMNS, Held};
+pub use softening::{REST, Softening};
 pub use viscous::{Viscous, ViscousApart};
 
 /// A bond's stretch s in the forms that laws need.
@@ -22,6 +24,8 @@ pub struct Stretch<L> {
     pub inverse: L,
     /// s at the last step that advanced; only for laws that look [`BondLaw::BACK`].
     pub before: L,
+    /// The pair's critical stretch; only for laws that are [`BondLaw::LIMITED`].
+    pub limit: L,
 }
 
 /// What is the same for all bonds during one evaluation.
@@ -39,6 +43,8 @@ pub struct Moment {
     pub held: Held,
     /// The form in which they shall.
     pub hold: Held,
+    /// Energies asked for are those that damage has taken.
+    pub lost: bool,
 }
 
 impl Moment {
@@ -83,6 +89,8 @@ macro_rules! of_law {
             (LawKind::Ves, true) => with!(law::Viscous<true, true>),
             (LawKind::VesApart, false) => with!(law::ViscousApart),
             (LawKind::VesApart, true) => with!(law::ViscousApart<true>),
+            (LawKind::Softening, _) => with!(law::Softening<false>),
+            (LawKind::Decaying, _) => with!(law::Softening<true>),
             (LawKind::Eps, false) => with!(law::Plastic),
             (LawKind::Eps, true) => with!(law::PlasticLammps),
         }
@@ -106,6 +114,8 @@ pub trait BondLaw: Sync {
     /// Whether it is worth kernels for each size of stretches and for whole chunks: each law has a share of the time that
     /// this crate takes to compile.
     const ALL_FORMS: bool = true;
+    /// Whether it needs the critical stretch of the pair.
+    const LIMITED: bool = false;
     /// Whether what a bond remembers stays zero until one of its ends [`BondLaw::flows`].
     const LAZY: bool = false;
     /// The pull on the first end and on the second, over ω w V; `memory` is brought up to date.
@@ -381,7 +391,7 @@ pub unsafe fn closed<L: Lanes>(z: L) -> Stretch<L> {
         let more = one.add(root);
         let inverse = one.div(root.mul(more));
         let s = z.mul(root).mul(inverse);
-        Stretch { s, share: z.mul(inverse), inverse: more.mul(inverse), before: s }
+        Stretch { s, share: z.mul(inverse), inverse: more.mul(inverse), before: s, limit: s }
     }
 }
 

@@ -20,6 +20,7 @@ use crate::families::{Families, FamilyOptions, ForceUnit, Law, LawKind, PeriView
 pub use energy::tally;
 use lattice::{States, Sum, find_active};
 use law::Moment;
+pub use law::REST;
 use perigrain_base::par::{self, Shared};
 use settle::{Settling, Sites, moment};
 
@@ -87,7 +88,7 @@ pub fn settling<'a>(
 /// LAMMPS takes the energy of plastic bonds from what they remembered before they flowed; ours is compared with that one
 /// where heat is counted.
 pub fn keep_earlier(state: &mut crate::families::law::SiteState, settling: &Settling) {
-    let flows = matches!(settling.law.kind, LawKind::Eps | LawKind::Yield);
+    let flows = settling.law.kind.flows();
     let asked = if settling.compat { settling.tallied } else { settling.counted };
     match flows && asked {
         true => state.earlier.clone_from(&state.memory),

@@ -222,7 +222,7 @@ fn elastic(own: &Stiffness, state: &mut SiteState, sites: &Sites) {
 /// Columns that a law uses.
 pub fn columns_of(kind: LawKind, compat: bool) -> usize {
     match (kind, compat) {
-        (LawKind::Yield | LawKind::Flat, _) => 0,
+        (LawKind::Yield | LawKind::Flat | LawKind::Softening | LawKind::Decaying, _) => 0,
         (LawKind::Pmb | LawKind::Lps | LawKind::Shaped, _) | (LawKind::Ves, false) => 2,
         (LawKind::Ves, true) => 3,
         (LawKind::Eps, false) => 4,
@@ -253,6 +253,7 @@ pub fn moment(law: &Law, advance: bool) -> Moment {
         flow,
         held: Held::default(),
         hold: Held::for_steps(decay, fresh),
+        lost: law.lost,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::super::chunk::constant;
 use super::super::pmb::SERIES;
-use super::chunk::{FROM_TERM, OMEGA, TWICE_XI};
+use super::chunk::{FROM_TERM, LIMIT, OMEGA, TWICE_XI};
 use super::weighing::Weighing;
 use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, PAD};
 use crate::families::law::SiteState;
@@ -31,7 +31,7 @@ pub fn fill(body: &mut LatticeBody, table: &PmbTable, options: &FamilyOptions, l
     let n = body.kinds.len();
     for pair in 0..n * n {
         let (a, b) = (body.kinds[pair / n], body.kinds[pair % n]);
-        let c = table.get(a, b).map_or(0.0, |k| k.c);
+        let (c, limit) = table.get(a, b).map_or((0.0, 0.0), |k| (k.c, k.s00));
         for e in 0..body.stencil.len() {
             let xi = body.xi(e);
             let square = xi.iter().map(|x| x * x).sum::<f64>();
@@ -43,6 +43,7 @@ pub fn fill(body: &mut LatticeBody, table: &PmbTable, options: &FamilyOptions, l
             row[constant::DEAD] = options.dead_band(length) * square;
             row[constant::INVERSE] = 1.0 / square;
             row[OMEGA] = omega;
+            row[LIMIT] = limit;
             let series = |row: &mut [f64; CONSTANTS], terms: &[f64; 8], factor: f64, first: f64| {
                 row[constant::FACTOR] = factor;
                 let mut scale = first / square;

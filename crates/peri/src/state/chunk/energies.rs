@@ -3,7 +3,7 @@
 use super::super::super::chunk::{CELLS, CLOSED, Chunk, SUMS, bonds, constant, place, put_sums, with_virial};
 use super::super::super::lanes::Lanes;
 use super::super::law::{Angles, BondLaw, Ends};
-use super::{Cells, OMEGA, read, recall, stretch};
+use super::{Cells, LIMIT, OMEGA, read, recall, stretch};
 use crate::families::lattice::Lead;
 
 /// What energies need besides.
@@ -69,6 +69,9 @@ pub unsafe fn sums<L: Lanes, W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -
                 if W::BACK && !look.advanced {
                     let last = bonds::<L, true>(&s.last, &last, other, c, bits);
                     now.before = stretch::<L, CLOSED>((last.q, last.live), c).s;
+                }
+                if W::LIMITED {
+                    now.limit = L::splat(*c.add(LIMIT));
                 }
                 let ends: Ends<L> = [own, read::<L>(s, W::COLUMNS, other)];
                 let mut memory =

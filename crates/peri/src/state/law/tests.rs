@@ -19,7 +19,8 @@ fn end(values: [f64; COLUMNS]) -> [Single; COLUMNS] {
 
 /// Memory is the element's stretch itself.
 const ITSELF: Held = Held { decay: 1.0, fresh: 0.0 };
-const NOW: Moment = Moment { decay: 0.8, fresh: 0.9, lambda: 0.4, flow: 1.0, held: ITSELF, hold: ITSELF };
+const NOW: Moment =
+    Moment { decay: 0.8, fresh: 0.9, lambda: 0.4, flow: 1.0, held: ITSELF, hold: ITSELF, lost: false };
 
 #[test]
 fn forms_of_the_stretch() {
@@ -85,7 +86,7 @@ fn both_forms_of_viscous_memory_give_the_same_pulls() {
         let (decay, fresh) = if (20..40).contains(&step) { (0.7, 0.84) } else { (0.9, 0.95) };
         d = decay * d + fresh * (s - before);
         let hold = Held::for_steps(decay, fresh);
-        let moment = Moment { decay, fresh, lambda: 0.4, flow: 1.0, held, hold };
+        let moment = Moment { decay, fresh, lambda: 0.4, flow: 1.0, held, hold, lost: false };
         assert_eq!(moment.steady(), ![0, 20, 40].contains(&step));
         let b = Stretch { before: Single(before), ..bond(s) };
         let mut looking = memory;
