@@ -1,4 +1,4 @@
-//! Which bonds break: after the forces of a step, from stretches of this step and families of the one before.
+//! Which bonds of lattices break: after the forces of a step, from stretches of this step and families of the one before.
 //!
 //! A bond breaks when its stretch exceeds s00 − alpha max(s_min,i, s_min,j), s_min being the smallest stretch
 //! among the bonds a particle had in the previous step, those that broke in it included. Under `compat lammps`

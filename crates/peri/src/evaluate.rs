@@ -312,6 +312,10 @@ impl Families {
         let mode = Mode { advance, armed: *armed, skip: options.skip_rest };
         scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
         let settling = state::settling((law, table), options, (advance, tallied, *counts_losses));
+        if list.inverse.len() != list.partner.len() {
+            // Read from a restart file.
+            list::measure(list, law, period);
+        }
         let f = Shared::new(f);
         list::sweep::forces::<K>(list, view, &f, (mode, options), &settling, (&scratch.windows, period));
     }

@@ -107,7 +107,7 @@ pub const CLOSE: f32 = -0.5;
 /// What is known of the last step that advanced: saves work when bonds are judged, and nothing depends on it.
 #[derive(Clone, Debug, Default)]
 pub struct Limits {
-    /// The least measure of each record's family, see `laws::peri::list::breaking`; empty where not known.
+    /// The least measure of each record's family, see `crate::list::breaking`; empty where not known.
     pub least: Vec<f64>,
     /// The same of the present step, and by slabs.
     pub next: Vec<f64>,

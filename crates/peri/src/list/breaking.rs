@@ -40,9 +40,21 @@ impl Judge {
         let measured = critical || body.pairs.iter().any(|p| p.alpha != 0.0);
         let known = body.limits.least.len() == body.record.len();
         let armed = mode.armed && mode.advance;
-        let floor = if armed { floor(body, (measured, known, critical)) } else { f64::INFINITY };
         let keeps = mode.advance && measured && body.limits.near;
+        let most = if known { f64::INFINITY } else { body.limits.top.unwrap_or(f64::INFINITY) };
+        let floor = floor(body, most);
         Self { armed, keeps, known: known || !measured, floor, critical }
+    }
+
+    /// The same for bonds between some records alone.
+    pub fn among(self, body: &ListBody, records: impl Iterator<Item = usize>) -> Self {
+        let least = &body.limits.least;
+        if !self.armed || least.is_empty() {
+            return self;
+        }
+        let finite = |a: f64, i: usize| if least[i].is_finite() { a.max(least[i]) } else { a };
+        let most = records.fold(f64::NEG_INFINITY, finite);
+        Self { floor: if self.critical { lowered(-most) } else { floor(body, most) }, ..self }
     }
 
     /// The stretch at which the bond between two records breaks.
@@ -91,30 +103,25 @@ impl Judge {
     /// far less than 1e-12.
     fn bears(&self, body: &ListBody, pair: &PairConstants, ends: [usize; 2], z: f64) -> bool {
         let least = &body.limits.least;
-        let most = if pair.alpha == 0.0 { 0.0 } else { f64::max(least[ends[0]], least[ends[1]]) };
+        let alone = pair.alpha == 0.0 && !self.critical;
+        let most = if alone { 0.0 } else { f64::max(least[ends[0]], least[ends[1]]) };
         let limit = if self.critical { -most } else { pair.s00 - 0.5 * pair.alpha * most };
         0.5 * z < limit - 1e-12 * limit.abs()
     }
 }
 
-/// The z below which no bond of a body breaks. Limits are the lower the larger measures are.
-fn floor(body: &ListBody, (measured, known, critical): (bool, bool, bool)) -> f64 {
-    let finite = |a: f64, b: &f64| if b.is_finite() { a.max(*b) } else { a };
-    let most = match (known, body.limits.top) {
-        (true, _) => body.limits.least.iter().fold(f64::NEG_INFINITY, finite),
-        (false, Some(top)) => top,
-        (false, None) => f64::INFINITY,
-    };
+/// The z below which no bond breaks where no family's least z is larger than `most`: limits are the lower the larger that is.
+fn floor(body: &ListBody, most: f64) -> f64 {
     let limit = |p: &PairConstants| match p.alpha {
         0.0 => p.s00,
         _ if most == f64::INFINITY => f64::NEG_INFINITY,
-        alpha => alpha.mul_add(-stretch(most.max(-1.0)), p.s00),
+        alpha => p.s00 - alpha * stretch(most.max(-1.0)),
     };
-    let s = match measured && known && critical {
-        true => -most,
-        false => body.pairs.iter().map(limit).fold(f64::INFINITY, f64::min),
-    };
-    // Rounding of limits takes far less.
+    lowered(body.pairs.iter().map(limit).fold(f64::INFINITY, f64::min))
+}
+
+/// The z of a limit, or less: rounding of limits takes far less.
+fn lowered(s: f64) -> f64 {
     let s = s - 1e-12 * s.abs();
     if s > -1.0 { s * (2.0 + s) } else { f64::NEG_INFINITY }
 }

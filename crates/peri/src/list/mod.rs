@@ -36,6 +36,11 @@ pub fn refresh(
         }
     }
     body.limits.least.clear();
+    measure(body, law, period);
+}
+
+/// Keeps the lengths of bonds, and what takes an exponential of them.
+pub fn measure(body: &mut ListBody, law: &Law, period: [f64; 3]) {
     let places = body.partner.len();
     body.inverse.resize(places, 0.0);
     body.influence.resize(if law.shape() == Influence::Gaussian { places } else { 0 }, 0.0);

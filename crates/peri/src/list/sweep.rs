@@ -289,6 +289,7 @@ impl Sweep<'_> {
         }
         clear(window, own.len() + next.len());
         let force = window.force.as_mut_ptr().wrapping_sub(4 * own.start);
+        let judge = self.judge.among(body, own.clone().chain(next.clone()));
         let b = &mut Block::new();
         for (i, lowest) in own.clone().zip(lowest) {
             let row = Row { body, i, first: ring_start(body, slab), rules: self.rules };
@@ -302,7 +303,7 @@ impl Sweep<'_> {
                         row.shape::<K, true>(b);
                     }
                     row.shape::<K, false>(b);
-                    self.judge.measure(&row, b);
+                    judge.measure(&row, b);
                     K::pull::<W>(&row, &acting, b, force)
                 };
                 if woken && W::LAZY {
@@ -311,7 +312,7 @@ impl Sweep<'_> {
                 }
                 low = low.min(b.low);
                 *top = top.max(b.high);
-                self.judge.note(&row, b, strained);
+                judge.note(&row, b, strained);
             }
             // Rounded down.
             *lowest = (low * (1.0 + 1e-6)) as f32;
