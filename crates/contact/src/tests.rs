@@ -101,7 +101,7 @@ impl Duel {
 }
 
 fn material(young: f64, eta: f64, poisson: f64) -> Normal {
-    Normal::HertzMaterial { young, eta, poisson }
+    Normal::new(&normal::HERTZ_MATERIAL, &[young, eta, poisson])
 }
 
 fn mindlin(x_gamma: f64, mu: f64) -> Tangential {

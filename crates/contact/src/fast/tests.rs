@@ -2,7 +2,9 @@
 
 use super::*;
 use crate::driver::{Average, Curvature, Rule, Rules, Sweep};
-use crate::{Classic, Damping, Friction, Granular, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting};
+use crate::{
+    Classic, Damping, Friction, Granular, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting, normal,
+};
 use perigrain_base::math::lanes::place;
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_neigh::list::{Reach, View, Wanted, pairs};
@@ -79,7 +81,7 @@ fn uneven(period: [f64; 3]) -> Scene {
 /// The law of two types: there are three, one of them with all that contacts can remember.
 fn between(a: u16, b: u16) -> Granular {
     let stiffness = 200.0 * f64::from(a + b);
-    let normal = Normal::Hertz { stiffness, eta: 3.0 };
+    let normal = Normal::new(&normal::HERTZ, &[stiffness, 3.0]);
     let friction = |kind| Tangential::new(kind, Some(stiffness), 0.4, 0.1 * f64::from(a + b));
     let sds = |stiffness| Sds { stiffness, damping: 0.3, mu: 0.2 };
     let mindlin = Model::new(normal, Damping::Viscoelastic, friction(Friction::Mindlin));
@@ -100,7 +102,7 @@ fn sticky(a: u16, b: u16) -> Granular {
         return between(a, b);
     }
     // Grains of radius 0.5 hold across 0.026 with these, an eighth of the skin.
-    let normal = Normal::Jkr { young: 150.0 * f64::from(a + b), poisson: 0.3, cohesion: 1.0, eta: 0.5 };
+    let normal = Normal::new(&normal::JKR, &[150.0 * f64::from(a + b), 0.5, 0.3, 1.0]);
     let friction = Tangential::new(Friction::Mindlin, Some(300.0), 0.4, 0.2);
     let model = Model::new(normal, Damping::Viscoelastic, friction);
     Model { heat: Heat::Area(0.7), ..model }.law(Compat::Perigrain)
