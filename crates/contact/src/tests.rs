@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod oblique;
+mod plastic;
 
 use super::*;
 use perigrain_base::math::vec3::{add, cross, length, scale};

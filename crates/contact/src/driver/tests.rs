@@ -1,7 +1,7 @@
 //! Sharing, curvature, momentum and thread counts of the loop over contacts.
 
 use super::*;
-use crate::{Damping, Friction, Granular, Model, Normal, Tangential};
+use crate::{Damping, Friction, Granular, Model, Normal, Tangential, normal};
 use perigrain_neigh::list::{Reach, View, Wanted, pairs};
 use perigrain_world::Compat;
 

@@ -108,6 +108,20 @@ fn sticky(a: u16, b: u16) -> Granular {
     Model { heat: Heat::Area(0.7), ..model }.law(Compat::Perigrain)
 }
 
+/// The same where grains of type 1 flow and stick to each other and to those of type 2: of all that contacts can remember.
+fn plastic(a: u16, b: u16) -> Granular {
+    if a + b == 4 {
+        return between(a, b);
+    }
+    let numbers = [200.0 * f64::from(a + b), 0.5, 0.3, 0.6, 0.2, 1.0, 1.5, f64::from(a + b) / 2.0];
+    let friction = Tangential::new(Friction::MindlinRescale, Some(300.0), 0.4, 0.2);
+    let sds = |stiffness| Sds { stiffness, damping: 0.3, mu: 0.2 };
+    let model = Model::new(Normal::new(&normal::EEPA, &numbers), Damping::Viscoelastic, friction);
+    let turning = Model { rolling: Rolling::Sds(sds(50.0)), twisting: Twisting::Sds(sds(5.0)), ..model };
+    let law = if a == b { turning } else { model };
+    Model { heat: Heat::Radius(0.7), ..law }.law(Compat::Perigrain)
+}
+
 /// A table of laws by types.
 type Table = fn(u16, u16) -> Granular;
 
@@ -257,7 +271,8 @@ const PERIODS: [[f64; 3]; 3] = [[0.0; 3], [10.45, 9.5, 0.0], [10.45, 9.5, 11.4]]
 
 #[test]
 fn the_numbers_of_the_plain_driver() {
-    let scenes = PERIODS.into_iter().flat_map(|p| [(scene(p), between as Table), (scene(p), sticky)]);
+    let scenes =
+        PERIODS.into_iter().flat_map(|p| [between as Table, sticky, plastic].map(|law| (scene(p), law)));
     // With large grains reaching farther, only boxes that do not repeat or are wide enough.
     let large = [uneven(PERIODS[0]), uneven([10.45, 0.0, 0.0])].map(|s| (s, between as Table));
     for (mut s, law) in scenes.chain(large) {
@@ -295,7 +310,8 @@ fn the_numbers_of_the_plain_driver() {
 
 #[test]
 fn the_same_bits_for_threads_and_across_the_world() {
-    for (first, law) in [(scene(PERIODS[2]), sticky as Table), (uneven([10.45, 0.0, 0.0]), between)] {
+    let dense = [sticky as Table, plastic].map(|law| (scene(PERIODS[2]), law));
+    for (first, law) in dense.into_iter().chain([(uneven([10.45, 0.0, 0.0]), between as Table)]) {
         same_bits(&first, law);
     }
 }
@@ -319,6 +335,7 @@ fn same_bits(first: &Scene, law: Table) {
     let one = run(false, 1);
     assert!(one.2.len() > 300);
     assert_eq!(one, run(false, 2));
+    assert_eq!(one, run(false, 7));
     assert_eq!(one, run(true, 1));
 }
 
@@ -360,7 +377,7 @@ fn end(first: &Scene, mut fast: FastLoop) -> (Vec<Vec3>, Vec<Vec3>, Got) {
 #[test]
 fn all_forms_have_the_same_bits() {
     let first = scene(PERIODS[1]);
-    for law in [between as Table, sticky] {
+    for law in [between as Table, sticky, plastic] {
         let run = |form| {
             let mut fast = FastLoop::new(false, law);
             fast.fast.form = form;

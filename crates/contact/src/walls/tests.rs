@@ -1,7 +1,7 @@
 //! Walls: who is listed, who touches, what springs remember, what the wall feels.
 
 use super::*;
-use crate::{Damping, Friction, Granular, Model, Normal, Rolling, Sds, Tangential};
+use crate::{Damping, Friction, Granular, Model, Normal, Rolling, Sds, Tangential, normal};
 use perigrain_world::Compat;
 
 fn law(mu: f64) -> Granular {

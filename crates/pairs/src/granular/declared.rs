@@ -78,7 +78,9 @@ impl Declared {
         }
         let (Some(a), Some(b)) = (self.given.get(&(i, i)), self.given.get(&(j, j))) else { return Ok(None) };
         let refuse = |one: &str, other: &str| {
-            let text = format!("types {i} and {j} cannot be mixed: `{one}` and `{other}` differ");
+            let what =
+                if one == other { format!("{one} differs") } else { format!("`{one}` and `{other}` differ") };
+            let text = format!("types {i} and {j} cannot be mixed: {what}");
             Diagnostic::error(Code::CONFLICT, b.span, text)
                 .label(a.span, "the other one")
                 .help(format!("give this pair a line of its own: `pair_coeff {i} {j} …`"))
