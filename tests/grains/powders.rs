@@ -91,6 +91,7 @@ fn force(law: &Granular, overlap: f64, curvature: f64, history: &mut [f64]) -> f
 
 #[test]
 fn a_pile_has_the_same_bits_for_any_number_of_threads() {
+    let _alone = super::super::threads::alone();
     let words = "eepa 2e4 0.5 0.3 0.6 1e-3 0.05 1.5 1.5 damping coeff_restitution \
                  tangential mindlin NULL 0.7 0.5 rolling sds 2000.0 5.0 0.2 twisting marshall";
     let deck = format!(

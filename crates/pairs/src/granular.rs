@@ -28,7 +28,10 @@ impl Style for GranularStyle {
             summary: "Contacts of spheres: a law along the normal, damping, friction, rolling and twisting resistance.",
             text: &PAGE[1],
             example: "pair_style granular\n\
-                      pair_coeff * * hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4",
+                      pair_coeff * * hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4\n\n\
+                      pair_style granular\n\
+                      pair_coeff * * eepa 5.0e7 0.7 0.3 0.6 0.0 2.0 1.5 1.5 damping coeff_restitution \
+                      tangential mindlin NULL 1.0 0.4",
         }
     }
 }
