@@ -67,6 +67,7 @@ const BOOK: [&str; 2] = [
      - [Decisions: which bonds break](decisions/breaking.md)\n\
      - [Decisions: lanes](decisions/lanes.md)\n\
      - [Decisions: threads and memory](decisions/threads.md)\n\
+     - [Decisions: adding laws](decisions/adding-laws.md)\n\
      - [Decisions: dependencies](decisions/dependencies.md)\n",
 ];
 

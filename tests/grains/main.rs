@@ -6,6 +6,7 @@ mod flowing;
 mod impacts;
 mod looking;
 mod oblique;
+mod powders;
 mod restitution;
 mod rolling;
 mod scene;

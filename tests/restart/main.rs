@@ -55,6 +55,15 @@ const OLDER_AGAIN: &str = "pair_style gran/hertz/history 5000.0 NULL 20.0 NULL 0
     fix 2 all gravity 1.0 vector 0.2 0 -1\ntimestep 0.001\ncompute er all erotate/sphere\n\
     thermo_style custom step time ke c_er press\nthermo_modify format float %24.17g norm no\nthermo 5\n";
 
+/// The same pile of grains that flow and stick, between walls: contacts remember their largest overlap and adhesion.
+const STICKY_AGAIN: &str = "pair_style granular\n\
+    pair_coeff * * eepa 9000.0 0.5 0.3 0.6 0.01 0.5 1.5 1.5 damping coeff_restitution tangential mindlin NULL 0.7 0.5 rolling sds 2000.0 5.0 0.2\n\
+    region floor plane 0 0 0.6 0 0 1 units box\n\
+    fix low all wall/gran/region granular eepa 9000.0 0.5 0.3 0.6 0.01 0.5 1.0 1.5 damping velocity tangential linear_history 2000.0 0.5 0.4 region floor\n\
+    neighbor 0.1 bin\nneigh_modify every 1 delay 0 check yes\nfix 1 all nve/sphere\n\
+    fix 2 all gravity 1.0 vector 0.2 0 -1\ntimestep 0.001\ncompute er all erotate/sphere\n\
+    thermo_style custom step time ke c_er press\nthermo_modify format float %24.17g norm no\nthermo 5\n";
+
 /// The same pile with steps of two lengths, a floor that follows a variable, pairs left out and forces kept.
 const LEVELS_AGAIN: &str = "pair_style gran/hooke/history 5000.0 NULL 20.0 NULL 0.5 1\npair_coeff * *\n\
     neighbor 0.1 bin\nneigh_modify every 1 delay 0 check yes\nneigh_modify exclude type 1 2\n\
@@ -147,7 +156,7 @@ const AVERAGES_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.00300
     f_h[4] f_h[3][2] c_ra[1] c_ra[2] c_rs[2] c_mc[1][4] c_vc[1][4] c_vv[4] c_least\n\
     thermo_modify format float %24.17g\nthermo 10\n";
 
-const SCENES: [Scene; 15] = [
+const SCENES: [Scene; 16] = [
     Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
     Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
     Scene { name: "lps", make: BLOCK, again: LPS_AGAIN, steps: 60, list: false },
@@ -158,6 +167,7 @@ const SCENES: [Scene; 15] = [
     Scene { name: "pile", make: PILE, again: PILE_AGAIN, steps: 400, list: false },
     Scene { name: "bath pile", make: PILE, again: BATH_AGAIN, steps: 400, list: false },
     Scene { name: "stiff pile", make: PILE, again: STIFF_AGAIN, steps: 200, list: false },
+    Scene { name: "sticky pile", make: PILE, again: STICKY_AGAIN, steps: 300, list: false },
     Scene { name: "older pile", make: PILE, again: OLDER_AGAIN, steps: 200, list: false },
     Scene { name: "levels pile", make: PAIR_OF_PILES, again: LEVELS_AGAIN, steps: 200, list: false },
     Scene { name: "powder pile", make: POWDER, again: POWDER_AGAIN, steps: 400, list: false },

@@ -18,8 +18,8 @@ pub enum Damping {
     Viscoelastic,
     /// `tsuji` (Tsuji et al. 1992): η = √2 α_T(e) √(m̄ k), k = F/δ; for `hooke` 2/√5 of that.
     Tsuji,
-    /// `coeff_restitution`: η = α √(m̄ k) with β = −ln e/√(π² + ln² e): α = √5 β for forces ∝ δ^(3/2), 2 β for
-    /// `hooke`; exact for both.
+    /// `coeff_restitution`: η = α √(m̄ k), k = F/δ, with β = −ln e/√(π² + ln² e): α = √(2 (n + 1)) β for forces ∝ δⁿ, which is
+    /// √5 β for Hertz' and 2 β for `hooke`; exact for all.
     CoeffRestitution,
     /// `mdr 1`: η = η₀ √(m̄ k) with the k of plastic grains.
     Mdr,
@@ -57,10 +57,11 @@ impl Damping {
         matches!(self, Damping::Tsuji | Damping::CoeffRestitution)
     }
 
-    /// The constant in front: η₀ itself, or α(e), for normal forces ∝ δ where `linear`, else ∝ δ^(3/2).
+    /// The constant in front: η₀ itself, or α(e) for normal forces ∝ δⁿ, n the `exponent`. There −ln e = π β/√(1 − β²) with
+    /// α = √(2 (n + 1)) β: the impact is that of a spring in δ^((n+1)/2), whatever the velocity.
     /// LAMMPS 22Jul2025 leaves out the √2 of `tsuji` (it returns e = 0.78 where 0.70 is asked for), which `compat`
     /// reproduces.
-    pub fn constant(self, eta: f64, linear: bool, compat: Compat) -> f64 {
+    pub fn constant(self, eta: f64, exponent: f64, compat: Compat) -> f64 {
         match self {
             Damping::None => 0.0,
             Damping::Velocity
@@ -69,12 +70,12 @@ impl Damping {
             | Damping::Mdr
             | Damping::MdrConstant => eta,
             Damping::Tsuji if compat == Compat::Lammps => tsuji(eta),
-            // Tsuji's curve is that of forces ∝ δ^(3/2), where √5 β makes e; for linear ones 2 β does.
-            Damping::Tsuji if linear => 2.0 * (2.0_f64 / 5.0).sqrt() * tsuji(eta),
-            Damping::Tsuji => std::f64::consts::SQRT_2 * tsuji(eta),
+            // Tsuji's curve is that of forces ∝ δ^(3/2), where √5 β makes e.
+            Damping::Tsuji if exponent == 1.0 => 2.0 * (2.0_f64 / 5.0).sqrt() * tsuji(eta),
+            Damping::Tsuji => std::f64::consts::SQRT_2 * (0.4 * (exponent + 1.0)).sqrt() * tsuji(eta),
             Damping::CoeffRestitution => {
                 let log = eta.ln();
-                let front = if linear { 2.0 } else { 5.0_f64.sqrt() };
+                let front = (2.0 * (exponent + 1.0)).sqrt();
                 -front * log / (PI * PI + log * log).sqrt()
             }
         }

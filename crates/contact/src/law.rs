@@ -1,13 +1,12 @@
 //! The granular law: normal, damping, tangential, rolling and twisting models, mixed for a pair of types.
 
-use super::elastic::{Elastic, Form, Push};
-use super::powder;
+use super::normal::{Force, Push, geometric};
 use super::slider::Look;
 use super::tangential::{Drag, Friction, Spring};
 use super::turning::{Rolling, Twisting};
 use super::{
-    Advance, ContactLaw, Damping, Geometry, Heat, Loop, Motion, Normal, Stored, Tangential, Wrench,
-    split_velocity,
+    Advance, ContactLaw, Damping, Geometry, Heat, Loop, MOST_MEMORY, Motion, Normal, Stored, Tangential,
+    Wrench, normal, split_velocity,
 };
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{add, cross, scale, sub};
@@ -81,11 +80,12 @@ impl Model {
     pub fn classic(hertz: bool, history: bool, c: &Classic) -> Self {
         let [stiffness, kt] = c.stiffness;
         let [eta, gamma_t] = c.gamma;
-        let (normal, damping, spring) = if hertz {
-            (Normal::Hertz { stiffness, eta }, Damping::Viscoelastic, Friction::MindlinClassic)
+        let (style, damping, spring) = if hertz {
+            (&normal::HERTZ, Damping::Viscoelastic, Friction::MindlinClassic)
         } else {
-            (Normal::Hooke { stiffness, eta }, Damping::MassVelocity, Friction::LinearHistoryClassic)
+            (&normal::HOOKE, Damping::MassVelocity, Friction::LinearHistoryClassic)
         };
+        let normal = Normal::new(style, &[stiffness, eta]);
         let kind = if history { spring } else { Friction::LinearNohistory };
         let tangential = Tangential { kind, stiffness: Some(kt), drag: Drag::Own(gamma_t), mu: c.mu };
         Self { limit_damping: c.limit_damping, arm: Arm::Radius, ..Self::new(normal, damping, tangential) }
@@ -107,6 +107,9 @@ impl Model {
                 return Err(Unmixable(a, b));
             }
         }
+        if let Some(number) = self.normal.unlike(&other.normal) {
+            return Err(Unmixable(number, number));
+        }
         Ok(self.pair(other, true, compat))
     }
 
@@ -123,18 +126,18 @@ impl Model {
     }
 
     fn pair(&self, other: &Model, mixed: bool, compat: Compat) -> Granular {
-        let eta = super::normal::geometric(self.normal.eta(), other.normal.eta());
-        let eta = self.damping.constant(eta, self.normal.linear(), compat);
+        let eta = geometric(self.normal.eta(), other.normal.eta());
+        let eta = self.damping.constant(eta, self.normal.exponent(), compat);
         let normals = [&self.normal, &other.normal];
-        let elastic = self.normal.elastic(&other.normal);
+        let normal = self.normal.force(&other.normal);
         let twisting = self.twisting.mixed(&other.twisting);
         let spring = self.tangential.spring(&other.tangential, normals, eta, mixed, compat);
-        let by_radius = !matches!(elastic.form, Form::None | Form::Hooke)
+        let by_radius = normal.by_radius()
             || self.damping == Damping::Viscoelastic
             || spring.by_radius()
             || twisting == Twisting::Marshall;
         Granular {
-            elastic,
+            normal,
             damping: self.damping,
             damping_constant: eta,
             limit_damping: self.limit_damping || other.limit_damping,
@@ -154,7 +157,7 @@ impl Model {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Granular {
     /// Along the normal.
-    pub elastic: Elastic,
+    pub normal: Force,
     /// How η is made.
     pub damping: Damping,
     /// Its constant.
@@ -178,37 +181,37 @@ pub struct Granular {
 }
 
 impl ContactLaw for Granular {
-    /// The tangential spring of i against j, then the rolling displacement, then the angle of twisting.
+    /// The tangential spring of i against j, then the rolling displacement, then the angle of twisting, then what the
+    /// normal law remembers.
     #[inline(always)]
     fn memory(&self) -> usize {
-        self.before_told() + self.told()
+        self.before_normal() + self.normal.memory()
     }
 
     fn in_lanes(&self) -> bool {
-        self.elastic.form != Form::Mdr
+        self.normal.in_lanes()
     }
 
     fn gap(&self, curvature: f64) -> f64 {
-        self.elastic.gap(curvature)
+        self.normal.gap(curvature)
     }
 
     fn conductance(&self, g: &Geometry) -> Option<f64> {
-        (self.heat != Heat::None).then(|| self.heat.conductance(self.elastic.radius(g)))
+        (self.heat != Heat::None).then(|| self.heat.conductance(self.normal.radius(g)))
     }
 
     fn springs(&self, g: &Geometry) -> [f64; 2] {
-        [self.elastic.tangent(g).max(0.0), self.spring.present(self.elastic.radius(g))]
+        [self.normal.tangent(g).max(0.0), self.spring.present(self.normal.radius(g))]
     }
 
     fn stored(&self, g: &Geometry, history: &[f64]) -> Stored {
-        if self.elastic.form == Form::Mdr {
-            let push = history.get(self.before_told()).copied().unwrap_or(0.0);
-            let a = self.elastic.radius(g);
-            return Stored { push, normal: 0.0, across: self.spring.energy(a, history) };
-        }
-        let a = self.elastic.radius(g);
-        let push = self.elastic.push(g, a).force;
-        Stored { push, normal: self.elastic.energy(g), across: self.spring.energy(a, history) }
+        let mut memory = [0.0; MOST_MEMORY];
+        let own = history.get(self.before_normal()..).unwrap_or(&[]);
+        memory.iter_mut().zip(own).for_each(|(to, from)| *to = *from);
+        let a = self.normal.radius(g);
+        let normal = self.normal.energy(g, &memory);
+        let push = self.normal.push(g, a, &mut memory).force;
+        Stored { push, normal, across: self.spring.energy(a, history) }
     }
 
     #[inline(always)]
@@ -221,12 +224,9 @@ impl ContactLaw for Granular {
         step: Advance,
     ) -> Wrench<R> {
         let zero = g.overlap.like(0.0);
-        let a = if self.by_radius { self.elastic.radius(g) } else { zero };
-        let mut push = self.elastic.push(g, a);
-        if self.elastic.form == Form::Mdr {
-            let told = &history[self.before_told()..];
-            push = Push { force: told[0], secant: told[1], pull_off: zero };
-        }
+        let a = if self.by_radius { self.normal.radius(g) } else { zero };
+        let (history, remembered) = history.split_at_mut(self.before_normal());
+        let push: Push<R> = self.normal.push(g, a, remembered);
         let form = self.damping.form(a, push.secant, g.mass);
 
         let (v_n, v_across) = split_velocity(g, i, j);
@@ -234,9 +234,7 @@ impl ContactLaw for Granular {
         if self.limit_damping {
             normal_force = normal_force.most(zero);
         }
-        // Friction of grains that stick together counts from where they would let go (Thornton 1991).
-        let sticky = matches!(self.elastic.form, Form::Dmt | Form::Jkr);
-        let carried = if sticky { push.force + push.pull_off * 2.0 } else { normal_force }.abs();
+        let carried = if self.normal.sticks() { push.force + push.hold } else { normal_force }.abs();
 
         // Slip of the two surfaces: v_t − (R_i ω_i + R_j ω_j) × n, full radii as in LAMMPS.
         let spin = add(scale(g.radii[0], i.spin), scale(g.radii[1], j.spin));
@@ -262,38 +260,58 @@ impl ContactLaw for Granular {
 
     #[inline(always)]
     fn within(&self, work: impl Loop<Self>) {
-        use {Damping::*, Form::*, Friction::*};
-        if let Some(law) = self.known(Hertz, Viscoelastic, MindlinClassic, Arm::Radius) {
+        use {Damping::*, Friction::*};
+        if let Some(law) = self.known(hertz, Viscoelastic, MindlinClassic, Arm::Radius) {
             return work.run(&law);
         }
-        if let Some(law) = self.known(Hooke, MassVelocity, LinearHistoryClassic, Arm::Radius) {
+        if let Some(law) = self.known(hooke, MassVelocity, LinearHistoryClassic, Arm::Radius) {
             return work.run(&law);
         }
-        if let Some(law) = self.known(Hertz, Tsuji, Mindlin, Arm::Middle) {
+        if let Some(law) = self.known(hertz, Tsuji, Mindlin, Arm::Middle) {
             return work.run(&law);
         }
         work.run(self);
     }
 }
 
+/// Hertz' force, if it is that.
+#[inline(always)]
+fn hertz(force: &Force) -> Option<Force> {
+    let Force::Hertz(law) = force else { return None };
+    Some(Force::Hertz(*law))
+}
+
+/// Hooke's force, if it is that.
+#[inline(always)]
+fn hooke(force: &Force) -> Option<Force> {
+    let Force::Hooke(law) = force else { return None };
+    Some(Force::Hooke(*law))
+}
+
 impl Granular {
     /// Itself, where it has this form and no resistance to rolling and twisting; the form is then known to the compiler.
     #[inline(always)]
-    fn known(&self, form: Form, damping: Damping, kind: Friction, arm: Arm) -> Option<Self> {
+    fn known(
+        &self,
+        normal: impl Fn(&Force) -> Option<Force>,
+        damping: Damping,
+        kind: Friction,
+        arm: Arm,
+    ) -> Option<Self> {
+        let normal = normal(&self.normal)?;
         let plain = self.rolling == Rolling::None && self.twisting == Twisting::None;
-        let same = self.elastic.form == form
-            && self.damping == damping
+        let same = self.damping == damping
             && self.spring.kind == kind
             && self.arm == arm
             && self.spring.look == Look::First;
         (same && plain).then_some(Self {
-            elastic: Elastic { form, ..self.elastic },
+            normal,
             damping,
             spring: Spring { kind, look: Look::First, ..self.spring },
             rolling: Rolling::None,
             twisting: Twisting::None,
             arm,
-            by_radius: kind.by_radius() || form == Form::Hertz,
+            by_radius: kind.by_radius() || normal.by_radius(),
             ..*self
         })
     }
@@ -307,18 +325,12 @@ impl Granular {
         }
     }
 
-    /// How many numbers stand before those that plastic grains are told.
+    /// How many numbers stand before those of the normal law, which are the same seen from j: at least the three that are
+    /// not.
     #[inline(always)]
-    fn before_told(&self) -> usize {
+    fn before_normal(&self) -> usize {
         let own = self.before_turning() + self.rolling.memory() + self.twisting.memory();
-        // The first three are mirrored.
-        if self.elastic.form == Form::Mdr { own.max(3) } else { own }
-    }
-
-    /// How many numbers plastic grains are told.
-    #[inline(always)]
-    fn told(&self) -> usize {
-        if self.elastic.form == Form::Mdr { powder::TOLD } else { 0 }
+        if self.normal.memory() > 0 { own.max(3) } else { own }
     }
 
     /// How many numbers stand before those of rolling and twisting, which are the same seen from j: at least the

@@ -9,7 +9,6 @@
 pub mod bodies;
 pub mod damping;
 pub mod driver;
-pub mod elastic;
 pub mod fast;
 pub mod heat;
 pub mod law;
@@ -28,8 +27,11 @@ pub use normal::Normal;
 pub use tangential::{Drag, Friction, Tangential};
 pub use turning::{Rolling, Sds, Twisting};
 
-use perigrain_base::math::real::Real;
+pub use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, sub};
+
+/// How many numbers at most a contact remembers where several are evaluated at once, and at most of a normal law.
+pub const MOST_MEMORY: usize = 11;
 
 /// Where and how two spheres i and j touch; a wall is a j of radius 0 and infinite mass.
 #[derive(Clone, Copy, Debug, PartialEq)]

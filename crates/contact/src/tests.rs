@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod oblique;
+mod plastic;
 
 use super::*;
 use perigrain_base::math::vec3::{add, cross, length, scale};
@@ -101,7 +102,7 @@ impl Duel {
 }
 
 fn material(young: f64, eta: f64, poisson: f64) -> Normal {
-    Normal::HertzMaterial { young, eta, poisson }
+    Normal::new(&normal::HERTZ_MATERIAL, &[young, eta, poisson])
 }
 
 fn mindlin(x_gamma: f64, mu: f64) -> Tangential {

@@ -2,8 +2,8 @@
 
 mod together;
 
-use super::fast::{Form, MOST_MEMORY};
-use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
+use super::fast::Form;
+use super::{Advance, ContactLaw, Geometry, MOST_MEMORY, Motion, Wrench};
 use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
 use perigrain_base::par;
 use perigrain_world::contacts::{Contacts, WallSpring};

@@ -9,8 +9,10 @@ pub use declared::{Declared, classic};
 
 use super::{Pair, PairStyle};
 use perigrain_base::diag::Result;
+use perigrain_contact::normal::{STYLES, Style as Normal};
 use perigrain_lang::Args;
 use perigrain_styles::{BuildCx, Doc, Style};
+use std::sync::LazyLock;
 
 /// The style.
 pub struct GranularStyle;
@@ -22,85 +24,14 @@ impl Style for GranularStyle {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "pair_style granular [cutoff]\n\
-                     pair_coeff i j normal … tangential … [damping …] [rolling …] [twisting …] [heat …] [limit_damping] \
-                     [cutoff C] [average none|particle|body] [curvature both|impactor]\n\
-                     normal: none | hooke kn eta | hertz kn eta | hertz/material E eta nu | dmt E eta nu gamma | \
-                     jkr E eta nu gamma | mdr E nu Y gamma psi_b e\n\
-                     damping: none | velocity | mass_velocity | viscoelastic | tsuji | coeff_restitution | mdr 1|2\n\
-                     tangential: none | linear_nohistory x_gamma mu | linear_history kt x_gamma mu | \
-                     linear_history_classic kt x_gamma mu | mindlin_classic kt x_gamma mu | \
-                     mindlin[/force] kt|NULL x_gamma mu | mindlin_rescale[/force] kt|NULL x_gamma mu\n\
-                     rolling: none | sds k gamma mu\n\
-                     twisting: none | marshall | sds k gamma mu\n\
-                     heat: none | area h | radius k",
+            syntax: &PAGE[0],
             summary: "Contacts of spheres: a law along the normal, damping, friction, rolling and twisting resistance.",
-            text: "Spheres with overlap δ = R_i + R_j − r > 0 push each other along the normal with F_n − η v_n; \
-                R̄ = R_i R_j/(R_i + R_j), m̄ = m_i m_j/(m_i + m_j), a = √(R̄ δ). `limit_damping` cuts this force off at \
-                zero.\n\n\
-                Normal: `hooke` F_n = kn δ; `hertz` kn a δ; `hertz/material` 4/3 E* a δ with \
-                1/E* = (1−ν_i²)/E_i + (1−ν_j²)/E_j; `dmt` 4/3 E* a δ − 4π γ R̄; `jkr` 4/3 E* a³/R̄ − 4 a √(π γ E* a) \
-                with δ = a²/R̄ − 2 √(π γ a/E*): a contact that has been made lasts until it is torn off at −3π γ R̄, \
-                beyond touch. `eta` is a damping coefficient or a coefficient of restitution e, as `damping` says.\n\n\
-                `damping`: η = eta (`velocity`), eta m̄ (`mass_velocity`), eta a m̄ (`viscoelastic`, the default), \
-                √2 α_T(e) √(m̄ k) (`tsuji`; for hooke 2/√5 of it), 2β √(m̄ k) for hooke and √5 β √(m̄ k) for the others \
-                (`coeff_restitution`, β = −ln e/√(π²+ln²e)); k = F_n/δ. For the last two 0 < e ≤ 1; they do not go \
-                with dmt and jkr.\n\n\
-                `mdr` (Zunker & Kamrin 2024, doi 10.1016/j.jmps.2023.105492 and .105493; 2025, doi 10.31224/4289) is for powders \
-                under pressure: grains that yield, flow and grow. Each grain is pressed by a rigid plane through the circle \
-                in which the spheres cut each other; the force is the mean of both sides. Elastic, it is Hertz' with \
-                E_c = E/(1−ν²). Where Hertz' mean pressure reaches the hardness p_Y = Y (1.75 exp(−4.4 δ/R) + 1) the grain \
-                yields, and from then on F = p_Y π a², a² = 2δR − δ² + δ_Y² − δ_Y R, while the contact gets deeper. Unloading is \
-                that of a plane on springs under an ellipse of height 2 p_Y a/E_c; with `gamma` the surfaces stick as \
-                those of Johnson, Kendall & Roberts, but no contact reaches beyond δ = 0. What flow displaces raises the \
-                whole free surface: the radius of a grain grows (its mass stays). Where the free part of its surface falls below \
-                `psi_b` (0 … 1; 0: never) the grain grows no more, and the mean approach of all its planes \
-                squeezes it with the bulk modulus E/(3 (1−2ν)). A contact that reaches through a third grain pushes less. All \
-                grains have the same numbers; walls too, but for `gamma`, and LAMMPS wants those of fix wall/gran/region. \
-                `damping mdr` alone goes with it: η = e √(m̄ k) with k = 2 E_c (a_i + a_j), on walls E_c a/2 (`1`), or η = e \
-                (`2`). Friction takes a = √(R̄ δ) as everywhere. Decks can read `d_Ro` (first radius), `d_Velas`, \
-                `d_Acon1` (area of contact), `d_psi`, `d_eps_bar`, `d_sigmaxx` `…yy` `…zz` (mean stress, also `…xy` `…xz` `…yz`) and others of LAMMPS' \
-                names by compute property/atom, dump or formula. Heat, `average` and `curvature` do not go with it. Large overlaps are what it is made for.\n\n\
-                Which damping makes a wanted e: `coeff_restitution` does, exactly and at any velocity, `tsuji` as \
-                well as its polynomial (0.2 %, 0.5 % at e = 0.1). \
-                A constant `eta` does so only for hooke: 2β √(m̄ kn) as `velocity`, 2β √(kn/m̄) as `mass_velocity` \
-                (and as gamma_n of pair_style gran/hooke). With hertz and a constant eta, and with `viscoelastic`, e \
-                falls as grains get faster. `limit_damping` takes the pull at the end of a contact away, so that grains \
-                leave faster than asked. Measured:\n\n\
-                | e asked | 0.1 | 0.2 | 0.3 | 0.4 | 0.5 | 0.7 | 0.8 | 0.9 | 0.95 |\n\
-                |---|---|---|---|---|---|---|---|---|---|\n\
-                | coeff_restitution | 0.100 | 0.200 | 0.300 | 0.400 | 0.500 | 0.700 | 0.800 | 0.900 | 0.950 |\n\
-                | the same with limit_damping | 0.253 | 0.325 | 0.397 | 0.472 | 0.550 | 0.718 | 0.808 | 0.902 | 0.951 |\n\
-                | tsuji | 0.100 | 0.200 | 0.300 | 0.399 | 0.500 | 0.700 | 0.799 | 0.900 | 0.951 |\n\
-                | the same with limit_damping | 0.252 | 0.325 | 0.397 | 0.472 | 0.550 | 0.718 | 0.807 | 0.902 | 0.952 |\n\
-                | tsuji of LAMMPS 22Jul2025, hertz | 0.235 | 0.343 | 0.440 | 0.530 | 0.616 | 0.778 | 0.853 | 0.928 | 0.965 |\n\
-                | the same with limit_damping | 0.350 | 0.429 | 0.503 | 0.574 | 0.646 | 0.788 | 0.858 | 0.929 | 0.965 |\n\n\
-                `tangential`: F_t = −k_t ξ − x_gamma η v_t, at most `mu` |F_n|, for dmt and jkr mu |F_n + 2 F_pulloff| \
-                with F_n before damping. ξ is the slip accumulated while the contact lasts, turned with the tangent \
-                plane and shortened to what slides (Luding 2008). `linear_nohistory` has no spring; `mindlin…` take \
-                k_t a for k_t, and with `NULL` k_t = 8 G*, 1/G* = (2−ν_i)/G_i + (2−ν_j)/G_j. `…/force` remembers the \
-                force, dF = −k_t a v_t dt; `…_rescale` shrinks what is remembered with a when the contact unloads, so \
-                that unloading makes no energy (Thornton et al. 2013). `…_classic` drops the part of ξ along the \
-                normal, as pair_style gran/*. Torques act at the middle of the overlap.\n\n\
-                `rolling sds`: a spring, dashpot and slider for the rolling velocity R̄ (ω_i − ω_j) × n; its force, at \
-                most mu times the normal force, acts only as a torque with arm R̄. `twisting`: the same for the spin \
-                about the normal; `marshall` takes k_t a²/2, x_gamma η a²/2 and 2/3 a mu of the tangential model \
-                (k_t before any factor a).\n\n\
-                `heat`: between particles of temperatures T flows h π a² (T_j − T_i) (`area`) or 2 k a (T_j − T_i) \
-                (`radius`), see fix heat/flow.\n\n\
-                Type pairs without a line of their own mix those of the like pairs, of which the words must be the \
-                same: geometric means, E* and G* as above. `cutoff` sets the reach of the neighbour list by hand.\n\n\
-                Not in LAMMPS: `none` for normal, damping and tangential; `average` divides the force of each contact \
-                by the number N of simultaneous ones, of the two particles (the larger number) or of the two bodies; \
-                action and reaction stay equal. `curvature impactor` takes R̄ = R of the grain where it meets a \
-                peridynamic solid, whose surface counts as flat (Walayat et al., table 1).\n\n\
-                `-compat lammps` has LAMMPS' faults: tsuji without its √2 (and its 2/√5 for hooke); the shear stiffness of mixed types from E* \
-                in the place of both moduli; springs of `…_rescale` that shrink twice, in the setup and in the first step, where grains have \
-                been moved apart between two runs; a sliding twist that takes the direction of the spin even where its \
-                spring pushes the other way; for mdr a contact that sticks only where a step takes more than a hundredth of its radius, and \
-                neither yielding nor (of new contacts) damping in the setup of a run.",
+            text: &PAGE[1],
             example: "pair_style granular\n\
-                      pair_coeff * * hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4",
+                      pair_coeff * * hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4\n\n\
+                      pair_style granular\n\
+                      pair_coeff * * eepa 5.0e7 0.7 0.3 0.6 0.0 2.0 1.5 1.5 damping coeff_restitution \
+                      tangential mindlin NULL 1.0 0.4",
         }
     }
 }
@@ -113,3 +44,80 @@ impl PairStyle for GranularStyle {
         Ok(Box::new(Declared::new(self.name(), cutoff)))
     }
 }
+
+const SYNTAX: &str = "pair_style granular [cutoff]\n\
+    pair_coeff i j normal … tangential … [damping …] [rolling …] [twisting …] [heat …] [limit_damping] \
+    [cutoff C] [average none|particle|body] [curvature both|impactor]\n\
+    normal: {normals}\n\
+    damping: none | velocity | mass_velocity | viscoelastic | tsuji | coeff_restitution | mdr 1|2\n\
+    tangential: none | linear_nohistory x_gamma mu | linear_history kt x_gamma mu | \
+    linear_history_classic kt x_gamma mu | mindlin_classic kt x_gamma mu | \
+    mindlin[/force] kt|NULL x_gamma mu | mindlin_rescale[/force] kt|NULL x_gamma mu\n\
+    rolling: none | sds k gamma mu\n\
+    twisting: none | marshall | sds k gamma mu\n\
+    heat: none | area h | radius k";
+
+const TEXT: &str = "Spheres with overlap δ = R_i + R_j − r > 0 push each other along the normal with F_n − η v_n; \
+    R̄ = R_i R_j/(R_i + R_j), m̄ = m_i m_j/(m_i + m_j), a = √(R̄ δ). `limit_damping` cuts this force off at \
+    zero.\n\n\
+    Normal: {formulas}. `eta` is a damping coefficient or a coefficient of restitution e, as `damping` says.\n\n\
+    `damping`: η = eta (`velocity`), eta m̄ (`mass_velocity`), eta a m̄ (`viscoelastic`, the default), \
+    √2 α_T(e) √(m̄ k) (`tsuji`; for hooke 2/√5 of it), 2β √(m̄ k) for hooke and √5 β √(m̄ k) for the others \
+    (`coeff_restitution`, β = −ln e/√(π²+ln²e)); k = F_n/δ. For the last two 0 < e ≤ 1; they do not go \
+    with dmt and jkr.\n\n\
+    {paragraphs}\n\n\
+    Which damping makes a wanted e: `coeff_restitution` does, exactly and at any velocity, `tsuji` as \
+    well as its polynomial (0.2 %, 0.5 % at e = 0.1). \
+    A constant `eta` does so only for hooke: 2β √(m̄ kn) as `velocity`, 2β √(kn/m̄) as `mass_velocity` \
+    (and as gamma_n of pair_style gran/hooke). With hertz and a constant eta, and with `viscoelastic`, e \
+    falls as grains get faster. `limit_damping` takes the pull at the end of a contact away, so that grains \
+    leave faster than asked. Measured:\n\n\
+    | e asked | 0.1 | 0.2 | 0.3 | 0.4 | 0.5 | 0.7 | 0.8 | 0.9 | 0.95 |\n\
+    |---|---|---|---|---|---|---|---|---|---|\n\
+    | coeff_restitution | 0.100 | 0.200 | 0.300 | 0.400 | 0.500 | 0.700 | 0.800 | 0.900 | 0.950 |\n\
+    | the same with limit_damping | 0.253 | 0.325 | 0.397 | 0.472 | 0.550 | 0.718 | 0.808 | 0.902 | 0.951 |\n\
+    | tsuji | 0.100 | 0.200 | 0.300 | 0.399 | 0.500 | 0.700 | 0.799 | 0.900 | 0.951 |\n\
+    | the same with limit_damping | 0.252 | 0.325 | 0.397 | 0.472 | 0.550 | 0.718 | 0.807 | 0.902 | 0.952 |\n\
+    | tsuji of LAMMPS 22Jul2025, hertz | 0.235 | 0.343 | 0.440 | 0.530 | 0.616 | 0.778 | 0.853 | 0.928 | 0.965 |\n\
+    | the same with limit_damping | 0.350 | 0.429 | 0.503 | 0.574 | 0.646 | 0.788 | 0.858 | 0.929 | 0.965 |\n\n\
+    `tangential`: F_t = −k_t ξ − x_gamma η v_t, at most `mu` |F_n|, for dmt and jkr mu |F_n + 2 F_pulloff| \
+    with F_n before damping. ξ is the slip accumulated while the contact lasts, turned with the tangent \
+    plane and shortened to what slides (Luding 2008). `linear_nohistory` has no spring; `mindlin…` take \
+    k_t a for k_t, and with `NULL` k_t = 8 G*, 1/G* = (2−ν_i)/G_i + (2−ν_j)/G_j. `…/force` remembers the \
+    force, dF = −k_t a v_t dt; `…_rescale` shrinks what is remembered with a when the contact unloads, so \
+    that unloading makes no energy (Thornton et al. 2013). `…_classic` drops the part of ξ along the \
+    normal, as pair_style gran/*. Torques act at the middle of the overlap.\n\n\
+    `rolling sds`: a spring, dashpot and slider for the rolling velocity R̄ (ω_i − ω_j) × n; its force, at \
+    most mu times the normal force, acts only as a torque with arm R̄. `twisting`: the same for the spin \
+    about the normal; `marshall` takes k_t a²/2, x_gamma η a²/2 and 2/3 a mu of the tangential model \
+    (k_t before any factor a).\n\n\
+    `heat`: between particles of temperatures T flows h π a² (T_j − T_i) (`area`) or 2 k a (T_j − T_i) \
+    (`radius`), see fix heat/flow.\n\n\
+    Type pairs without a line of their own mix those of the like pairs, of which the words must be the \
+    same: geometric means, E* and G* as above. `cutoff` sets the reach of the neighbour list by hand.\n\n\
+    Not in LAMMPS: `none` for normal, damping and tangential; `average` divides the force of each contact \
+    by the number N of simultaneous ones, of the two particles (the larger number) or of the two bodies; \
+    action and reaction stay equal. `curvature impactor` takes R̄ = R of the grain where it meets a \
+    peridynamic solid, whose surface counts as flat (Walayat et al., table 1).\n\n\
+    `-compat lammps` has LAMMPS' faults: tsuji without its √2 (and its 2/√5 for hooke); the shear stiffness of mixed types from E* \
+    in the place of both moduli; springs of `…_rescale` that shrink twice, in the setup and in the first step, where grains have \
+    been moved apart between two runs; a sliding twist that takes the direction of the spin even where its \
+    spring pushes the other way; for mdr a contact that sticks only where a step takes more than a hundredth of its radius, and \
+    neither yielding nor (of new contacts) damping in the setup of a run.";
+
+/// Syntax and text of the page, with what normal models say of themselves.
+static PAGE: LazyLock<[String; 2]> = LazyLock::new(|| {
+    let line = |style: &&Normal| {
+        [style.name].into_iter().chain(style.numbers.iter().map(|n| n.word)).collect::<Vec<_>>().join(" ")
+    };
+    let formula = |style: &&Normal| format!("`{}` {}", style.name, style.formula);
+    let normals: Vec<String> = STYLES.iter().map(line).collect();
+    let formulas: Vec<String> = STYLES.iter().filter(|style| style.name != "none").map(formula).collect();
+    let paragraphs: Vec<&str> =
+        STYLES.iter().map(|style| style.text).filter(|text| !text.is_empty()).collect();
+    let text = TEXT.replace("{formulas}", &formulas.join("; "));
+    [
+        SYNTAX.replace("{normals}", &normals.join(" | ")),
+        text.replace("{paragraphs}", &paragraphs.join("\n\n")),
+    ]
+});

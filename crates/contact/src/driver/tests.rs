@@ -1,7 +1,7 @@
 //! Sharing, curvature, momentum and thread counts of the loop over contacts.
 
 use super::*;
-use crate::{Damping, Friction, Granular, Model, Normal, Tangential};
+use crate::{Damping, Friction, Granular, Model, Normal, Tangential, normal};
 use perigrain_neigh::list::{Reach, View, Wanted, pairs};
 use perigrain_world::Compat;
 
@@ -40,7 +40,7 @@ fn scene() -> Scene {
 }
 
 fn law() -> Granular {
-    let normal = Normal::HertzMaterial { young: 1e6, eta: 0.8, poisson: 0.25 };
+    let normal = Normal::new(&normal::HERTZ_MATERIAL, &[1e6, 0.8, 0.25]);
     let friction = Tangential::new(Friction::Mindlin, None, 0.5, 0.3);
     Model::new(normal, Damping::Tsuji, friction).law(Compat::Perigrain)
 }

@@ -159,7 +159,8 @@ impl<L: ContactLaw> Fast<L> {
                 }
             }
             (None, 4) => carry::<4>(old, self.now, new),
-            _ => carry::<8>(old, self.now, new),
+            (None, 8) => carry::<8>(old, self.now, new),
+            _ => carry::<12>(old, self.now, new),
         }
         new.history[new.t.len() * width..].fill(-1.0);
     }

@@ -2,7 +2,7 @@
 
 use super::Fast;
 use super::lists::Short;
-use crate::ContactLaw;
+use crate::{ContactLaw, MOST_MEMORY};
 use perigrain_base::math::lanes::place;
 use perigrain_world::contacts::{Contacts, mirror};
 use std::ops::Range;
@@ -100,7 +100,7 @@ impl<L: ContactLaw> Fast<L> {
     /// Calls `f` with the tags of both grains, the smaller first, and what their contact remembers.
     fn each_live(&self, mut f: impl FnMut([u32; 2], &[f64])) {
         let memory = self.width - 1;
-        let mut turned = [0.0; super::MOST_MEMORY];
+        let mut turned = [0.0; MOST_MEMORY];
         for list in &self.lists {
             let short = &list.short;
             for k in (0..short.i.len()).filter(|k| short.history[(k + 1) * self.width - 1] == self.now) {

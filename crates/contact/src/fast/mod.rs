@@ -20,7 +20,7 @@ mod uneven;
 mod warmth;
 
 use super::driver::Grains;
-use super::{Advance, ContactLaw};
+use super::{Advance, ContactLaw, MOST_MEMORY};
 pub use form::{Form, InLanes};
 use lists::{Short, Slab};
 use memory::Book;
@@ -33,8 +33,6 @@ use perigrain_neigh::slabs::{Slabs, edges, shift_of};
 use perigrain_world::contacts::Contacts;
 use stray::Strays;
 
-/// How many numbers at most a contact of the fast loop remembers.
-pub const MOST_MEMORY: usize = 7;
 /// How many grains at most: a place and an image share 32 bits.
 pub const MOST_GRAINS: usize = (1 << PLACE_BITS) - 1;
 /// The second skin in units of the first.
@@ -170,7 +168,8 @@ pub struct Fast<L> {
 impl<L: ContactLaw> Fast<L> {
     /// Without grains.
     pub fn new(laws: Laws<L>) -> Self {
-        let width = if laws.memory() <= 3 { 4 } else { 8 };
+        // With the number of the step, in rows of four.
+        let width = (laws.memory() + 1).next_multiple_of(4).min(MOST_MEMORY + 1);
         Self {
             laws,
             form: Form::here(),

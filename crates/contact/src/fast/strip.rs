@@ -1,8 +1,8 @@
 //! Contacts that are evaluated together, stage by stage: who they are, where they touch, what the law says, sums to memory.
 
+use super::Alike;
 use super::lists::{Short, Slab};
 use super::sweep::Cx;
-use super::{Alike, MOST_MEMORY};
 use crate::driver::DEEP;
 use crate::{ContactLaw, Geometry, Motion};
 use perigrain_base::math::four::Four;
@@ -258,7 +258,7 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
             let other = Motion { velocity: V::vectors(v, w), spin: V::vectors(spin, w) };
 
             let past = short.history.as_mut_ptr();
-            let mut history = [V::all(0.0); MOST_MEMORY + 1];
+            let mut history = [V::all(0.0); W];
             for part in (0..W).step_by(4) {
                 let lanes = Self::records(past, W, part, k);
                 [history[part], history[part + 1], history[part + 2], history[part + 3]] = lanes;
@@ -380,10 +380,10 @@ pub(super) unsafe fn one<L: ContactLaw, const W: usize>(cx: &Cx<L>, law: &L, sla
     let mass = if cx.frozen { beside_frozen(mi, mj, None) } else { reduced(mi, mj) };
     let g = geometry(d, &Sizes::of([cx.radius[i], cx.radius[j]]), mass);
     let motion = |i: usize| Motion { velocity: cx.v[i], spin: cx.omega[i] };
-    let mut row = [0.0; MOST_MEMORY + 1];
+    let mut row = [0.0; W];
     let past = &mut slab.short.history[k * W..][..W];
     if past[W - 1] == cx.now {
-        row[..W].copy_from_slice(past);
+        row.copy_from_slice(past);
     }
     let wrench = law.contact(&g, &motion(i), &motion(j), &mut row[..law.memory()], cx.step);
     slab.deep |= too_deep(&g);

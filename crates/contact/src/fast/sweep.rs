@@ -119,7 +119,8 @@ impl<L: ContactLaw> Fast<L> {
                 let slab = &mut slabs.get(k..k + 1)[0];
                 match width {
                     4 => form.run(Contacts::<L, 4> { cx: &cx, slab }),
-                    _ => form.run(Contacts::<L, 8> { cx: &cx, slab }),
+                    8 => form.run(Contacts::<L, 8> { cx: &cx, slab }),
+                    _ => form.run(Contacts::<L, 12> { cx: &cx, slab }),
                 }
             }
         };

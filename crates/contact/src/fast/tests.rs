@@ -2,7 +2,9 @@
 
 use super::*;
 use crate::driver::{Average, Curvature, Rule, Rules, Sweep};
-use crate::{Classic, Damping, Friction, Granular, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting};
+use crate::{
+    Classic, Damping, Friction, Granular, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting, normal,
+};
 use perigrain_base::math::lanes::place;
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_neigh::list::{Reach, View, Wanted, pairs};
@@ -79,7 +81,7 @@ fn uneven(period: [f64; 3]) -> Scene {
 /// The law of two types: there are three, one of them with all that contacts can remember.
 fn between(a: u16, b: u16) -> Granular {
     let stiffness = 200.0 * f64::from(a + b);
-    let normal = Normal::Hertz { stiffness, eta: 3.0 };
+    let normal = Normal::new(&normal::HERTZ, &[stiffness, 3.0]);
     let friction = |kind| Tangential::new(kind, Some(stiffness), 0.4, 0.1 * f64::from(a + b));
     let sds = |stiffness| Sds { stiffness, damping: 0.3, mu: 0.2 };
     let mindlin = Model::new(normal, Damping::Viscoelastic, friction(Friction::Mindlin));
@@ -100,10 +102,24 @@ fn sticky(a: u16, b: u16) -> Granular {
         return between(a, b);
     }
     // Grains of radius 0.5 hold across 0.026 with these, an eighth of the skin.
-    let normal = Normal::Jkr { young: 150.0 * f64::from(a + b), poisson: 0.3, cohesion: 1.0, eta: 0.5 };
+    let normal = Normal::new(&normal::JKR, &[150.0 * f64::from(a + b), 0.5, 0.3, 1.0]);
     let friction = Tangential::new(Friction::Mindlin, Some(300.0), 0.4, 0.2);
     let model = Model::new(normal, Damping::Viscoelastic, friction);
     Model { heat: Heat::Area(0.7), ..model }.law(Compat::Perigrain)
+}
+
+/// The same where grains of type 1 flow and stick to each other and to those of type 2: of all that contacts can remember.
+fn plastic(a: u16, b: u16) -> Granular {
+    if a + b == 4 {
+        return between(a, b);
+    }
+    let numbers = [200.0 * f64::from(a + b), 0.5, 0.3, 0.6, 0.2, 1.0, 1.5, f64::from(a + b) / 2.0];
+    let friction = Tangential::new(Friction::MindlinRescale, Some(300.0), 0.4, 0.2);
+    let sds = |stiffness| Sds { stiffness, damping: 0.3, mu: 0.2 };
+    let model = Model::new(Normal::new(&normal::EEPA, &numbers), Damping::Viscoelastic, friction);
+    let turning = Model { rolling: Rolling::Sds(sds(50.0)), twisting: Twisting::Sds(sds(5.0)), ..model };
+    let law = if a == b { turning } else { model };
+    Model { heat: Heat::Radius(0.7), ..law }.law(Compat::Perigrain)
 }
 
 /// A table of laws by types.
@@ -255,7 +271,8 @@ const PERIODS: [[f64; 3]; 3] = [[0.0; 3], [10.45, 9.5, 0.0], [10.45, 9.5, 11.4]]
 
 #[test]
 fn the_numbers_of_the_plain_driver() {
-    let scenes = PERIODS.into_iter().flat_map(|p| [(scene(p), between as Table), (scene(p), sticky)]);
+    let scenes =
+        PERIODS.into_iter().flat_map(|p| [between as Table, sticky, plastic].map(|law| (scene(p), law)));
     // With large grains reaching farther, only boxes that do not repeat or are wide enough.
     let large = [uneven(PERIODS[0]), uneven([10.45, 0.0, 0.0])].map(|s| (s, between as Table));
     for (mut s, law) in scenes.chain(large) {
@@ -293,7 +310,8 @@ fn the_numbers_of_the_plain_driver() {
 
 #[test]
 fn the_same_bits_for_threads_and_across_the_world() {
-    for (first, law) in [(scene(PERIODS[2]), sticky as Table), (uneven([10.45, 0.0, 0.0]), between)] {
+    let dense = [sticky as Table, plastic].map(|law| (scene(PERIODS[2]), law));
+    for (first, law) in dense.into_iter().chain([(uneven([10.45, 0.0, 0.0]), between as Table)]) {
         same_bits(&first, law);
     }
 }
@@ -317,6 +335,7 @@ fn same_bits(first: &Scene, law: Table) {
     let one = run(false, 1);
     assert!(one.2.len() > 300);
     assert_eq!(one, run(false, 2));
+    assert_eq!(one, run(false, 7));
     assert_eq!(one, run(true, 1));
 }
 
@@ -358,7 +377,7 @@ fn end(first: &Scene, mut fast: FastLoop) -> (Vec<Vec3>, Vec<Vec3>, Got) {
 #[test]
 fn all_forms_have_the_same_bits() {
     let first = scene(PERIODS[1]);
-    for law in [between as Table, sticky] {
+    for law in [between as Table, sticky, plastic] {
         let run = |form| {
             let mut fast = FastLoop::new(false, law);
             fast.fast.form = form;

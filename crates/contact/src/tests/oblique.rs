@@ -77,8 +77,8 @@ fn rolls(stiffness: f64, damping: f64, mu: f64) -> Rolling {
 #[test]
 fn every_granular_model_agrees_with_lammps() {
     let spring = |kind, k, x_gamma, mu| Tangential::new(kind, k, x_gamma, mu);
-    let hooke = |stiffness, eta| Normal::Hooke { stiffness, eta };
-    let hertz = |stiffness, eta| Normal::Hertz { stiffness, eta };
+    let hooke = |stiffness, eta| Normal::new(&normal::HOOKE, &[stiffness, eta]);
+    let hertz = |stiffness, eta| Normal::new(&normal::HERTZ, &[stiffness, eta]);
     let of = |m: Model| m.law(Compat::Lammps);
 
     let m = model(material(5.0e7, 3.0e5, NU), Damping::Viscoelastic, mindlin(0.5, 0.4));
@@ -106,10 +106,10 @@ fn every_granular_model_agrees_with_lammps() {
 #[test]
 fn sticky_models_agree_with_lammps() {
     let turning = |m| Model { rolling: rolls(3.0e4, 10.0, 0.3), twisting: Twisting::Marshall, ..m };
-    let dmt = Normal::Dmt { young: 5.0e7, eta: 3.0e5, poisson: NU, cohesion: 2.0 };
+    let dmt = Normal::new(&normal::DMT, &[5.0e7, 3.0e5, NU, 2.0]);
     let m = model(dmt, Damping::Viscoelastic, mindlin(1.0, 0.4));
     agrees(golden!("g_dmt"), turning(m).law(Compat::Lammps));
-    let jkr = Normal::Jkr { young: 5.0e7, eta: 100.0, poisson: NU, cohesion: 5.0 };
+    let jkr = Normal::new(&normal::JKR, &[5.0e7, 100.0, NU, 5.0]);
     let m = model(jkr, Damping::MassVelocity, mindlin(1.0, 0.4));
     agrees(golden!("g_jkr"), turning(m).law(Compat::Lammps));
 }

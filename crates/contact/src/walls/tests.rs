@@ -1,11 +1,11 @@
 //! Walls: who is listed, who touches, what springs remember, what the wall feels.
 
 use super::*;
-use crate::{Damping, Friction, Granular, Model, Normal, Rolling, Sds, Tangential};
+use crate::{Damping, Friction, Granular, Model, Normal, Rolling, Sds, Tangential, normal};
 use perigrain_world::Compat;
 
 fn law(mu: f64) -> Granular {
-    let normal = Normal::HertzMaterial { young: 1e6, eta: 0.0, poisson: 0.25 };
+    let normal = Normal::new(&normal::HERTZ_MATERIAL, &[1e6, 0.0, 0.25]);
     let friction = Tangential::new(Friction::Mindlin, None, 0.0, mu);
     Model::new(normal, Damping::Velocity, friction).law(Compat::Perigrain)
 }
@@ -130,9 +130,9 @@ fn contacts_several_at_a_time_are_contacts_one_by_one() {
     let mut s = Scene::new(&places, [0.2, -0.7, 0.1]);
     (0..13).for_each(|k| s.omega[k] = [0.1 * k as f64, 1.0, -0.5]);
     (0..13).for_each(|k| s.radius[k] = 1.0 + 0.003 * k as f64);
-    let jkr = Normal::Jkr { young: 1e6, eta: 0.1, poisson: 0.25, cohesion: 20.0 };
-    let soft = Normal::HertzMaterial { young: 1e6, eta: 0.3, poisson: 0.25 };
-    let hooke = Normal::Hooke { stiffness: 1e5, eta: 20.0 };
+    let jkr = Normal::new(&normal::JKR, &[1e6, 0.1, 0.25, 20.0]);
+    let soft = Normal::new(&normal::HERTZ_MATERIAL, &[1e6, 0.3, 0.25]);
+    let hooke = Normal::new(&normal::HOOKE, &[1e5, 20.0]);
     let springs = Tangential::new(Friction::Mindlin, None, 1.0, 0.5);
     let linear = Tangential::new(Friction::LinearHistory, Some(1e4), 1.0, 0.5);
     for (normal, damping, friction) in [

@@ -1,8 +1,8 @@
 //! What touching spheres do, several contacts at a time: one by one a drum's wall takes a quarter of its step.
 
 use super::{Spheres, Touch, geometry};
-use crate::fast::{InLanes, MOST_MEMORY};
-use crate::{Advance, ContactLaw, Geometry, Motion, Wrench};
+use crate::fast::InLanes;
+use crate::{Advance, ContactLaw, Geometry, MOST_MEMORY, Motion, Wrench};
 use perigrain_base::math::lanes::Lanes;
 
 /// Contacts of one law.

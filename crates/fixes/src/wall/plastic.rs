@@ -1,9 +1,10 @@
 //! What walls do to plastic grains (normal model `mdr`).
 
 use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_contact::Model;
+use perigrain_contact::normal::{plastic, plastic_grain};
 use perigrain_contact::powder::{self, Manner, Material, State, TOLD, WALL};
 use perigrain_contact::walls::WallSweep;
-use perigrain_contact::{Model, Normal};
 use perigrain_plan::Tick;
 use perigrain_styles::SealCx;
 use perigrain_world::World;
@@ -19,7 +20,7 @@ const NUMBERS: [&str; 5] = ["E", "nu", "Y", "psi_b", "the restitution"];
 /// Another normal model, or another number.
 pub fn suits(model: &Model, cx: &mut dyn SealCx) -> Result<()> {
     let Some(grains) = cx.world().parts.plastic else { return Ok(()) };
-    let Some(wall) = model.normal.plastic() else {
+    let Some(wall) = plastic_grain(&model.normal) else {
         let text = format!("the grains are plastic (`mdr`), the wall is `{}`", model.normal.name());
         let d = Diagnostic::error(Code::CONFLICT, cx.span(), text);
         return Err(d.help("give the wall the model and the numbers of the grains").into());
@@ -42,8 +43,7 @@ pub struct Plastic {
 impl Plastic {
     /// For walls whose normal model is `mdr`.
     pub fn of(model: &Model) -> Option<Self> {
-        let Normal::Mdr { material, .. } = model.normal else { return None };
-        Some(Self { material, spare: vec![] })
+        Some(Self { material: plastic(&model.normal)?, spare: vec![] })
     }
 
     /// Under which name their memory is kept.

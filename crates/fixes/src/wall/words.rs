@@ -3,7 +3,7 @@
 use super::Common;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_contact::driver::{Average, Curvature};
-use perigrain_contact::{Arm, Damping, Drag, Friction, Granular, Heat, Model, Normal};
+use perigrain_contact::{Arm, Damping, Drag, Friction, Granular, Heat, Model};
 use perigrain_lang::{Args, Word};
 use perigrain_pairs::contact::{classic, words};
 use perigrain_styles::BuildCx;
@@ -134,16 +134,11 @@ fn own_material(word: &Word, args: &mut Args, model: &Model) -> Result<Model> {
         let text = format!("Poisson's ratio lies between -1 and 0.5, {poisson} does not");
         return fail(Code::BAD_VALUE, at, text);
     }
-    let normal = match model.normal {
-        Normal::HertzMaterial { eta, .. } => Normal::HertzMaterial { young, eta, poisson },
-        Normal::Dmt { eta, cohesion, .. } => Normal::Dmt { young, eta, poisson, cohesion },
-        Normal::Jkr { eta, cohesion, .. } => Normal::Jkr { young, eta, poisson, cohesion },
-        other => {
-            let text =
-                format!("a wall of another material needs a normal model with one, not {}", other.name());
-            let d = Diagnostic::error(Code::CONFLICT, word.span, text);
-            return Err(d.help("take `granular hertz/material E eta nu …`").into());
-        }
+    let Some(normal) = model.normal.with_material(young, poisson) else {
+        let name = model.normal.name();
+        let text = format!("a wall of another material needs a normal model with one, not {name}");
+        let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+        return Err(d.help("take `granular hertz/material E eta nu …`").into());
     };
     Ok(Model { normal, ..*model })
 }

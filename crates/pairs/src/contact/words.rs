@@ -3,7 +3,7 @@
 use super::Coeff;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use perigrain_contact::driver::{Average, Curvature};
-use perigrain_contact::powder::Material;
+use perigrain_contact::normal::{Bound, Number, STYLES};
 use perigrain_contact::{Damping, Friction, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting};
 use perigrain_lang::{Args, Word};
 
@@ -81,61 +81,27 @@ pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
 }
 
 fn normal(word: &Word, args: &mut Args) -> Result<Normal> {
-    let eta = |args: &mut Args| args.non_negative("the damping eta");
-    match word.text.as_str() {
-        "none" => Ok(Normal::None),
-        "hooke" => Ok(Normal::Hooke { stiffness: args.non_negative("the stiffness kn")?, eta: eta(args)? }),
-        "hertz" => Ok(Normal::Hertz { stiffness: args.non_negative("the stiffness kn")?, eta: eta(args)? }),
-        "hertz/material" | "dmt" | "jkr" => {
-            let young = args.positive("Young's modulus E")?;
-            let eta = eta(args)?;
-            let poisson = poisson(args)?;
-            if word.text == "hertz/material" {
-                return Ok(Normal::HertzMaterial { young, eta, poisson });
-            }
-            let cohesion = args.non_negative("the surface energy gamma")?;
-            Ok(match word.text.as_str() {
-                "dmt" => Normal::Dmt { young, eta, poisson, cohesion },
-                _ => Normal::Jkr { young, eta, poisson, cohesion },
-            })
-        }
-        "mdr" => powder(args),
-        _ => Err(unknown(word, "normal model of granular contacts", &Normal::NAMES)),
-    }
+    let Some(style) = Normal::style(&word.text) else {
+        let names: Vec<&str> = STYLES.iter().map(|style| style.name).collect();
+        return Err(unknown(word, "normal model of granular contacts", &names));
+    };
+    let numbers = style.numbers.iter().map(|number| self::number(number, args));
+    Ok(Normal::new(style, &numbers.collect::<Result<Vec<f64>>>()?))
 }
 
-/// The numbers of plastic grains.
-fn powder(args: &mut Args) -> Result<Normal> {
-    let young = args.positive("Young's modulus E")?;
+fn number(number: &Number, args: &mut Args) -> Result<f64> {
+    let (ok, wrong, help) = match number.bound {
+        Bound::Positive => return args.positive(number.name),
+        Bound::NonNegative => return args.non_negative(number.name),
+        Bound::Where { ok, wrong, help } => (ok, wrong, help),
+    };
     let at = args.here();
-    let poisson = args.number("Poisson's ratio nu")?;
-    if !(0.0..0.5).contains(&poisson) {
-        let text = format!("Poisson's ratio of `mdr` is at least 0 and below 0.5, {poisson} is not");
-        return Err(Diagnostic::error(Code::BAD_VALUE, at, text)
-            .help("at 0.5 the bulk modulus E/(3 (1 - 2 nu)) is infinite")
-            .into());
+    let a = args.number(number.name)?;
+    if ok(a) {
+        return Ok(a);
     }
-    let yield_stress = args.positive("the yield stress Y")?;
-    let cohesion = args.non_negative("the surface energy gamma")?;
-    let at = args.here();
-    let confinement = args.number("psi_b")?;
-    if !(0.0..=1.0).contains(&confinement) {
-        let text = format!("psi_b is a part of the surface, between 0 and 1: {confinement} is not");
-        return Err(Diagnostic::error(Code::BAD_VALUE, at, text).into());
-    }
-    let eta = args.non_negative("the damping coefficient")?;
-    let material = Material { young, poisson, yield_stress, cohesion, confinement };
-    Ok(Normal::Mdr { material, eta })
-}
-
-fn poisson(args: &mut Args) -> Result<f64> {
-    let at = args.here();
-    let poisson = args.number("Poisson's ratio nu")?;
-    if !(-1.0..=0.5).contains(&poisson) {
-        let text = format!("Poisson's ratio lies between -1 and 0.5, {poisson} does not");
-        return Err(Diagnostic::error(Code::BAD_VALUE, at, text).into());
-    }
-    Ok(poisson)
+    let wrong = Diagnostic::error(Code::BAD_VALUE, at, wrong.replace("{}", &a.to_string()));
+    Err(help.into_iter().fold(wrong, |d, help| d.help(help)).into())
 }
 
 fn tangential(normal: &Normal, args: &mut Args) -> Result<Tangential> {
@@ -228,13 +194,13 @@ fn heat(args: &mut Args) -> Result<Heat> {
 /// `mdr` goes with its own damping, that damping with nothing else.
 fn check_powder(normal: &Word, c: &Coeff) -> Result<()> {
     let own = matches!(c.model.damping, Damping::Mdr | Damping::MdrConstant);
-    let text = match (&c.model.normal, own) {
-        (Normal::Mdr { .. }, false) => "the normal model mdr goes with `damping mdr` alone",
-        (Normal::Mdr { .. }, true) if c.average != Average::None || c.curvature != Curvature::Both => {
+    let text = match (c.model.normal.in_grains(), own) {
+        (true, false) => "the normal model mdr goes with `damping mdr` alone",
+        (true, true) if c.average != Average::None || c.curvature != Curvature::Both => {
             "the normal model mdr knows no `average` and no `curvature`"
         }
-        (Normal::Mdr { .. }, true) | (_, false) => return Ok(()),
-        (_, true) => "damping mdr goes with the normal model mdr alone",
+        (true, true) | (false, false) => return Ok(()),
+        (false, true) => "damping mdr goes with the normal model mdr alone",
     };
     Err(Diagnostic::error(Code::CONFLICT, normal.span, text)
         .help("write `mdr E nu Y gamma psi_b e … damping mdr 1`")
@@ -259,17 +225,14 @@ fn check_restitution(normal: &Word, model: &Model) -> Result<()> {
 /// What does not go with grains that stick together.
 fn check_cohesion(normal: &Word, model: &Model, limit: Option<Span>) -> Result<()> {
     let name = model.normal.name();
-    if model.normal.cohesion().is_none() {
-        return Ok(());
-    }
-    if model.damping.wants_restitution() {
+    if model.damping.wants_restitution() && !model.normal.takes_restitution() {
         let text =
             format!("damping {} is made for grains that only push, {name} pulls", model.damping.name());
         return Err(Diagnostic::error(Code::CONFLICT, normal.span, text)
             .help("use damping velocity, mass_velocity or viscoelastic")
             .into());
     }
-    if let Some(span) = limit {
+    if let Some(span) = limit.filter(|_| model.normal.pulls()) {
         let text = format!("limit_damping would cut off the attraction of {name}");
         return Err(Diagnostic::error(Code::CONFLICT, span, text).help("leave the word out").into());
     }

@@ -7,8 +7,9 @@ use crate::contact_probe::{ContactProbe, Own};
 use crate::{Pair, TypePairs};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::driver::{Average, Curvature, Rule, Rules};
+use perigrain_contact::normal::{plastic, plastic_grain};
 use perigrain_contact::powder::{Material, State};
-use perigrain_contact::{Damping, Granular, Model, Normal, Twisting};
+use perigrain_contact::{Damping, Granular, Model, Twisting};
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Reach, Wanted};
 use perigrain_plan::Op;
@@ -77,7 +78,9 @@ impl Declared {
         }
         let (Some(a), Some(b)) = (self.given.get(&(i, i)), self.given.get(&(j, j))) else { return Ok(None) };
         let refuse = |one: &str, other: &str| {
-            let text = format!("types {i} and {j} cannot be mixed: `{one}` and `{other}` differ");
+            let what =
+                if one == other { format!("{one} differs") } else { format!("`{one}` and `{other}` differ") };
+            let text = format!("types {i} and {j} cannot be mixed: {what}");
             Diagnostic::error(Code::CONFLICT, b.span, text)
                 .label(a.span, "the other one")
                 .help(format!("give this pair a line of its own: `pair_coeff {i} {j} …`"))
@@ -104,10 +107,8 @@ impl Declared {
     /// What plastic grains are made of: all of one kind, and nothing else in the style.
     fn powder(&self) -> Result<Option<(Material, Span)>> {
         let normal = |c: &Coeff| c.model.normal;
-        let Some(first) = self.given.values().find(|c| matches!(normal(c), Normal::Mdr { .. })) else {
-            return Ok(None);
-        };
-        let Normal::Mdr { material, .. } = normal(first) else { return Ok(None) };
+        let first = self.given.values().find_map(|c| Some((c, plastic(&normal(c))?)));
+        let Some((first, material)) = first else { return Ok(None) };
         let Some(other) = self.given.values().find(|c| normal(c) != normal(first)) else {
             return Ok(Some((material, first.span)));
         };
@@ -158,7 +159,7 @@ impl Pair for Declared {
     }
 
     fn declare(&self, w: &mut World) {
-        if self.given.values().any(|c| c.model.normal.plastic().is_some()) {
+        if self.given.values().any(|c| c.model.normal.in_grains()) {
             State::declare(w);
         }
     }
@@ -184,7 +185,7 @@ impl Pair for Declared {
         }
         if let Some((material, span)) = self.powder()? {
             // Walls look it up: pair styles are sealed before fixes.
-            cx.world().parts.plastic = self.given.values().find_map(|c| c.model.normal.plastic());
+            cx.world().parts.plastic = self.given.values().find_map(|c| plastic_grain(&c.model.normal));
             return Ok(vec![Box::new(Powder::new(self.name, rules, wanted, material, span))]);
         }
         Ok(vec![Box::new(Force::new(self.name, rules, wanted, cx.world().types))])
