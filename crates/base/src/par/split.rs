@@ -83,7 +83,7 @@ split_tuples! { (A) (A B) (A B C) (A B C D) (A B C D E) (A B C D E G) }
 ///
 /// ```
 /// let (mut x, v) = (vec![0.0; 5000], vec![2.0; 5000]);
-/// perigrain::par::each((&mut x[..], &v[..]), |_, (x, v)| {
+/// perigrain_base::par::each((&mut x[..], &v[..]), |_, (x, v)| {
 ///     for (x, v) in x.iter_mut().zip(v) {
 ///         *x += v;
 ///     }
