@@ -90,11 +90,17 @@ impl Judge {
             return;
         }
         let body = row.body;
-        for (at, &z) in b.z[..b.count].iter().enumerate().filter(|(_, z)| **z >= self.floor) {
-            let bond = b.place(at);
-            let ends = [row.i, body.partner[bond] as usize];
-            if body.lives(bond) && !(self.known && self.bears(body, body.constants(bond), ends, z)) {
-                strained.push((bond as u32, z));
+        for (k, z) in b.z[..b.count].chunks_exact(GROUP).enumerate() {
+            // Most groups have none: compared all together.
+            if !z.iter().fold(false, |any, z| any | (*z >= self.floor)) {
+                continue;
+            }
+            for (lane, &z) in z.iter().enumerate().filter(|(_, z)| **z >= self.floor) {
+                let bond = b.place[k] as usize + lane;
+                let ends = [row.i, body.partner[bond] as usize];
+                if body.lives(bond) && !(self.known && self.bears(body, body.constants(bond), ends, z)) {
+                    strained.push((bond as u32, z));
+                }
             }
         }
     }
