@@ -9,7 +9,7 @@ use std::sync::Mutex;
 
 use super::super::lattice::Mode;
 use super::super::pmb::stretch;
-use super::kernel::{Block, Row, RowKernels, Rules};
+use super::kernel::{Block, LAST, Row, RowKernels, Rules};
 use super::sweep::{in_slabs, reach_of, ring_start};
 use crate::families::list::{GROUP, ListBody, PairConstants};
 use crate::families::{Candidate, FamilyOptions, Window};
@@ -205,7 +205,7 @@ fn least<K: RowKernels>(
             let mut next = row.start();
             while row.fill(&mut next, b) {
                 // SAFETY: the kernels are those that the processor has.
-                unsafe { row.shape::<K, true>(b) };
+                unsafe { row.shape::<K, LAST>(b) };
                 judge.measure(&row, b);
                 for (measure, target) in b.measure[..b.count].iter().zip(&b.target) {
                     for row in [i, *target as usize] {

@@ -72,7 +72,7 @@ fn shaken<K: RowKernels>(law: &Law, compat_lammps: bool, periodic: bool) -> Outc
 #[test]
 fn bits_do_not_depend_on_how_many_lanes_there_are() {
     let own =
-        Moduli { bulk: 1.0, shear: 0.6, lambda: 0.5, tau: 3.0, yield_stress: 0.02, ..Moduli::default() };
+        Moduli { bulk: 1.0, shear: 0.6, lambda: 0.5, tau: 3.0, yield_stress: 0.001, ..Moduli::default() };
     let kinds = [
         (LawKind::Pmb, Influence::Inverse),
         (LawKind::Lps, Influence::Gaussian),
