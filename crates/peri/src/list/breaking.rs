@@ -9,7 +9,7 @@ use std::sync::Mutex;
 
 use super::super::lattice::Mode;
 use super::super::pmb::stretch;
-use super::kernel::{Block, Row, RowKernels, Rules};
+use super::kernel::{Block, LAST, Row, RowKernels, Rules};
 use super::sweep::{in_slabs, reach_of, ring_start};
 use crate::families::list::{GROUP, ListBody, PairConstants};
 use crate::families::{Candidate, FamilyOptions, Window};
@@ -90,11 +90,17 @@ impl Judge {
             return;
         }
         let body = row.body;
-        for (at, &z) in b.z[..b.count].iter().enumerate().filter(|(_, z)| **z >= self.floor) {
-            let bond = b.place(at);
-            let ends = [row.i, body.partner[bond] as usize];
-            if body.lives(bond) && !(self.known && self.bears(body, body.constants(bond), ends, z)) {
-                strained.push((bond as u32, z));
+        for (k, z) in b.z[..b.count].chunks_exact(GROUP).enumerate() {
+            // Most groups have none: compared all together.
+            if !z.iter().fold(false, |any, z| any | (*z >= self.floor)) {
+                continue;
+            }
+            for (lane, &z) in z.iter().enumerate().filter(|(_, z)| **z >= self.floor) {
+                let bond = b.place[k] as usize + lane;
+                let ends = [row.i, body.partner[bond] as usize];
+                if body.lives(bond) && !(self.known && self.bears(body, body.constants(bond), ends, z)) {
+                    strained.push((bond as u32, z));
+                }
             }
         }
     }
@@ -199,7 +205,7 @@ fn least<K: RowKernels>(
             let mut next = row.start();
             while row.fill(&mut next, b) {
                 // SAFETY: the kernels are those that the processor has.
-                unsafe { row.shape::<K, true>(b) };
+                unsafe { row.shape::<K, LAST>(b) };
                 judge.measure(&row, b);
                 for (measure, target) in b.measure[..b.count].iter().zip(&b.target) {
                     for row in [i, *target as usize] {

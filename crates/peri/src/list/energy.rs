@@ -4,7 +4,7 @@ use super::super::energy::{ROWS, Sums, collect};
 use super::super::state::energy::shares;
 use super::super::state::law::{BondLaw, Moment, Pmb, of_law};
 use super::super::state::settle::{columns_of, moment};
-use super::kernel::{Block, Row, RowKernels, Rules};
+use super::kernel::{Block, FULL, LAST, Row, RowKernels, Rules};
 use super::laws::Acting;
 use super::sweep::in_rows;
 use crate::families::list::ListBody;
@@ -87,6 +87,10 @@ impl Energies<'_> {
     /// Adds a record's own bonds.
     fn record<K: RowKernels, W: BondLaw>(&self, i: usize, b: &mut Block, t: &mut PeriTally) {
         let list = self.list;
+        if list.particle[i] == u32::MAX {
+            // Nothing is bonded to where a particle was.
+            return;
+        }
         let row = Row { body: list, i, first: 0, rules: self.rules };
         let volume = list.record[i].volume;
         let shear = |record: usize| {
@@ -100,9 +104,9 @@ impl Energies<'_> {
             // SAFETY: the kernels are those that the processor has.
             unsafe {
                 if W::BACK && !self.advanced {
-                    row.shape::<K, true>(b);
+                    row.shape::<K, LAST>(b);
                 }
-                row.shape::<K, false>(b);
+                row.shape::<K, FULL>(b);
                 if W::BACK && self.advanced {
                     b.before = b.z;
                 }

@@ -49,6 +49,13 @@ macro_rules! partners {
 }
 pub(super) use partners;
 
+/// What [`Row::shape`] finds: z at the last step that advanced, and measures.
+pub const LAST: u8 = 0;
+/// What it takes to pull microelastic bonds.
+pub const PLAIN: u8 = 1;
+/// Everything.
+pub const FULL: u8 = 2;
+
 /// So many bonds are in hand at once.
 pub const MOST: usize = 64;
 
@@ -129,6 +136,8 @@ pub struct Rules {
     microelastic: bool,
     /// Laws ask for critical stretches.
     limited: bool,
+    /// Measures are wanted beside forces.
+    pub measures: bool,
 }
 
 impl Rules {
@@ -142,6 +151,7 @@ impl Rules {
             influence: law.shape(),
             microelastic: law.kind.bond_based(),
             limited: law.kind.softens(),
+            measures: false,
         }
     }
 }
@@ -180,17 +190,17 @@ impl Row<'_> {
         b.count > 0
     }
 
-    /// Finds what is to know of the bonds in hand; with `LAST` only the z of the last step that advanced, and measures.
+    /// Finds what is to know of the bonds in hand; as much as `WHAT` says.
     ///
     /// # Safety
     /// The processor must have what `K` needs.
     #[inline]
-    pub unsafe fn shape<K: RowKernels, const LAST: bool>(&self, b: &mut Block) {
+    pub unsafe fn shape<K: RowKernels, const WHAT: u8>(&self, b: &mut Block) {
         // SAFETY: passed on to the caller.
         unsafe {
             match self.rules.period.iter().any(|p| p.is_finite()) {
-                false => K::shapes::<false, LAST>(self, b),
-                true => K::shapes::<true, LAST>(self, b),
+                false => K::shapes::<false, WHAT>(self, b),
+                true => K::shapes::<true, WHAT>(self, b),
             }
         }
     }
@@ -205,13 +215,13 @@ impl Block {
 }
 
 #[inline(always)]
-unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(row: &Row, b: &mut Block) {
+unsafe fn shapes<L: Rows, const PERIODIC: bool, const WHAT: u8>(row: &Row, b: &mut Block) {
     // SAFETY: groups, records and pairs are those of the body, blocks of no more than `MOST` bonds.
     unsafe {
         let (body, rules) = (row.body, row.rules);
         let (record, last) = (body.record.as_ptr(), body.last.as_ptr());
         let own = &*record.add(row.i);
-        let [x, u] = [own.reference, if LAST { *last.add(row.i) } else { own.u }];
+        let [x, u] = [own.reference, if WHAT == LAST { *last.add(row.i) } else { own.u }];
         let [x, u] = [x, u].map(|a| [L::splat(a[0]), L::splat(a[1]), L::splat(a[2])]);
         let pairs = body.pairs.as_ptr().add(usize::from(*body.kind.get_unchecked(row.i)) * body.kinds.len());
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
@@ -229,7 +239,7 @@ unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(row: &Row, b: 
                 let partner = body.partner.as_ptr().add(place);
                 let rows = partners!(L, null(), |k| record.add(*partner.add(k) as usize).cast::<f64>());
                 let [xj, yj, zj, volume] = L::quads(&rows);
-                let to = if LAST {
+                let to = if WHAT == LAST {
                     let u = |d: usize| partners!(L, 0.0, |k| (*last.add(*partner.add(k) as usize))[d]);
                     let [x, y, z] = [u(0), u(1), u(2)];
                     [L::load(x.as_ptr()), L::load(y.as_ptr()), L::load(z.as_ptr())]
@@ -254,10 +264,12 @@ unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(row: &Row, b: 
                 let alive = L::mask(bits >> v);
                 let z = q.mul(inverse.mul(inverse));
                 let z = z.keep(z.abs().ge(inverse.fma(dead[1], dead[0]))).keep(alive);
-                let none = L::splat(f64::INFINITY).keep(L::mask(!bits >> v));
-                z.add(none).store(b.measure.as_mut_ptr().add(at));
+                if rules.measures || WHAT == LAST {
+                    let none = L::splat(f64::INFINITY).keep(L::mask(!bits >> v));
+                    z.add(none).store(b.measure.as_mut_ptr().add(at));
+                }
                 v += L::WIDTH;
-                if LAST {
+                if WHAT == LAST {
                     z.store(b.before.as_mut_ptr().add(at));
                     continue;
                 }
@@ -277,13 +289,15 @@ unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(row: &Row, b: 
                 y[0].store(b.y[0].as_mut_ptr().add(at));
                 y[1].store(b.y[1].as_mut_ptr().add(at));
                 y[2].store(b.y[2].as_mut_ptr().add(at));
-                square.store(b.square.as_mut_ptr().add(at));
-                omega.keep(alive).store(b.omega.as_mut_ptr().add(at));
-                if rules.limited {
-                    L::splat(pair.s00).keep(alive).store(b.limit.as_mut_ptr().add(at));
-                }
                 weight.keep(alive).store(b.weight.as_mut_ptr().add(at));
                 volume.store(b.volume.as_mut_ptr().add(at));
+                if WHAT == FULL {
+                    square.store(b.square.as_mut_ptr().add(at));
+                    omega.keep(alive).store(b.omega.as_mut_ptr().add(at));
+                    if rules.limited {
+                        L::splat(pair.s00).keep(alive).store(b.limit.as_mut_ptr().add(at));
+                    }
+                }
             }
             let target = b.target.as_mut_ptr().add(first);
             body.partner.as_ptr().add(GROUP * group).copy_to_nonoverlapping(target, GROUP);
@@ -292,8 +306,10 @@ unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(row: &Row, b: 
         let mut ends = [[0.0f64; rows::MOST]; 2];
         high.store(ends[0].as_mut_ptr());
         low.store(ends[1].as_mut_ptr());
-        b.high = ends[0].into_iter().fold(0.0, |a, b| if b > a { b } else { a });
-        b.low = ends[1].into_iter().fold(0.0, |a, b| if b < a { b } else { a });
+        (b.high, b.low) = (
+            most(&ends[0], |a, b| if b > a { b } else { a }),
+            most(&ends[1], |a, b| if b < a { b } else { a }),
+        );
         if row.first > 0 {
             for target in &mut b.target[..b.count] {
                 if (*target as usize) < row.first {
@@ -302,6 +318,13 @@ unsafe fn shapes<L: Rows, const PERIODIC: bool, const LAST: bool>(row: &Row, b: 
             }
         }
     }
+}
+
+/// The most of eight numbers, in three steps.
+#[inline(always)]
+fn most(l: &[f64; rows::MOST], of: impl Fn(f64, f64) -> f64) -> f64 {
+    let four = [of(l[0], l[4]), of(l[1], l[5]), of(l[2], l[6]), of(l[3], l[7])];
+    of(of(four[0], four[2]), of(four[1], four[3]))
 }
 
 /// The shortest image of a difference.
@@ -387,7 +410,7 @@ pub unsafe fn scatter<L: Rows, const LEAST: bool>(b: &Block, force: *mut f64) ->
         if LEAST {
             least.store(lanes.as_mut_ptr());
         }
-        lanes.into_iter().fold(f64::INFINITY, |a, b| if b < a { b } else { a })
+        most(&lanes, |a, b| if b < a { b } else { a })
     }
 }
 
@@ -398,7 +421,7 @@ pub unsafe fn scatter<L: Rows, const LEAST: bool>(b: &Block, force: *mut f64) ->
 pub trait RowKernels: Sync {
     /// See [`Row::shape`].
     #[allow(clippy::missing_safety_doc)] // above
-    unsafe fn shapes<const PERIODIC: bool, const LAST: bool>(row: &Row, b: &mut Block);
+    unsafe fn shapes<const PERIODIC: bool, const WHAT: u8>(row: &Row, b: &mut Block);
     /// See [`laws::pull`].
     #[allow(clippy::missing_safety_doc)] // above
     unsafe fn pull<W: BondLaw>(row: &Row, a: &Acting, b: &mut Block, force: *mut f64) -> bool;
@@ -414,20 +437,20 @@ pub trait RowKernels: Sync {
 macro_rules! compiled_for {
     ($kernels:ty, $lanes:ty $(, $features:literal)?) => {
         impl RowKernels for $kernels {
-            unsafe fn shapes<const PERIODIC: bool, const LAST: bool>(
+            unsafe fn shapes<const PERIODIC: bool, const WHAT: u8>(
                 row: &Row,
                 b: &mut Block,
             ) {
                 $(#[target_feature(enable = $features)])?
-                unsafe fn inner<const PERIODIC: bool, const LAST: bool>(
+                unsafe fn inner<const PERIODIC: bool, const WHAT: u8>(
                     row: &Row,
                     b: &mut Block,
                 ) {
                     // SAFETY: the caller's promise.
-                    unsafe { shapes::<$lanes, PERIODIC, LAST>(row, b) }
+                    unsafe { shapes::<$lanes, PERIODIC, WHAT>(row, b) }
                 }
                 // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<PERIODIC, LAST>(row, b) }
+                unsafe { inner::<PERIODIC, WHAT>(row, b) }
             }
             unsafe fn pull<W: BondLaw>(
                 row: &Row,

@@ -9,7 +9,7 @@ use super::super::state::settle::{Settling, Sites, columns_of};
 use super::super::state::terms::{Dilatation, Norm, NormLammps, Term};
 use super::super::state::{keep_earlier, window};
 use super::breaking::{self, Judge, clear};
-use super::kernel::{Block, Row, RowKernels, Rules};
+use super::kernel::{Block, FULL, LAST, PLAIN, Row, RowKernels, Rules};
 use super::laws::Acting;
 use crate::families::law::{COLUMNS, SiteState};
 use crate::families::list::{ListBody, Record};
@@ -32,8 +32,9 @@ pub fn forces<K: RowKernels>(
         return;
     }
     let kind = settling.law.kind;
-    let rules = Rules::new(period, options, settling.law);
     let judge = Judge::new(list, mode, options);
+    let mut rules = Rules::new(period, options, settling.law);
+    rules.measures = judge.keeps;
     if mode.advance {
         list.limits.strained.resize_with(list.slabs(), Default::default);
         list.limits.next.clear();
@@ -258,7 +259,7 @@ impl Sweep<'_> {
             while row.fill(&mut next, b) {
                 // SAFETY: the kernels are those that the processor has; bonds lead to this slab or the next.
                 unsafe {
-                    row.shape::<K, false>(b);
+                    row.shape::<K, FULL>(b);
                     K::add_up::<T>(&row, &acting, b, sums);
                 }
             }
@@ -300,9 +301,12 @@ impl Sweep<'_> {
                 // SAFETY: the kernels are those that the processor has; bonds lead to this slab or the next.
                 let woken = unsafe {
                     if W::BACK {
-                        row.shape::<K, true>(b);
+                        row.shape::<K, LAST>(b);
                     }
-                    row.shape::<K, false>(b);
+                    match W::PLAIN {
+                        true => row.shape::<K, PLAIN>(b),
+                        false => row.shape::<K, FULL>(b),
+                    }
                     judge.measure(&row, b);
                     K::pull::<W>(&row, &acting, b, force)
                 };

@@ -109,6 +109,8 @@ pub trait BondLaw: Sync {
     const MEMORY: usize;
     /// Whether forces need s itself, not only s/(1 + s) and 1/(1 + s).
     const STRETCHED: bool = true;
+    /// Whether forces need nothing of a bond but z, its direction and its weight.
+    const PLAIN: bool = false;
     /// Whether it needs the stretch at the last step that advanced.
     const BACK: bool = false;
     /// Whether it is worth kernels for each size of stretches and for whole chunks: each law has a share of the time that
@@ -194,6 +196,7 @@ pub struct Pmb;
 impl BondLaw for Pmb {
     const COLUMNS: usize = 0;
     const MEMORY: usize = 0;
+    const PLAIN: bool = true;
     const STRETCHED: bool = false;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(bond: &Stretch<L>, _: L, _: &Ends<L>, _: &mut [L; 2], _: &Moment) -> (L, L) {
