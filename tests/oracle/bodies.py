@@ -1,6 +1,12 @@
 """Random decks of one block of peridynamic particles: styles, cuts, indenters."""
 from levels import levels
 
+# With neighbours 0.001 apart, upright, turned by whole directions and by odd angles.
+LATTICES = ["fcc 0.0014142135623731 origin 0.1 0.2 0", "bcc 0.0011547005383793 origin 0.3 0 0.1", "hcp 0.001", "diamond 0.0023094010767585",
+            "fcc 0.0014142135623731 orient x 1 1 0 orient y -1 1 0", "fcc 0.0014142135623731 orient x 1 1 1 orient y 1 -1 0 orient z 1 1 -2",
+            "bcc 0.0011547005383793 orient x 1 1 0 orient y -1 1 0", "sc 0.001 orient x 3 4 0 orient y -4 3 0",
+            "custom 0.001 a1 1 0 0 a2 0.3 1.1 0 a3 0.2 -0.1 1.2 basis 0 0 0"]
+
 
 def bodies(r):
     """A deck of one block of peridynamic particles."""
@@ -36,4 +42,8 @@ def bodies(r):
     deck += ["compute dmg all damage/atom", "compute ds all reduce sum c_dmg", "compute mx all reduce max vx vy vz",
              "thermo_style custom step atoms pe ke c_ds c_mx[*]", "thermo_modify norm no lost ignore format float %20.13g",
              "timestep 5.0e-8", "thermo 25", "run 0", "run 75"]
-    return levels(r, deck + r.choice([[], ["run 25"]]), 0.2)
+    deck = levels(r, deck + r.choice([[], ["run 25"]]), 0.2)
+    if not any(repeats) and r.random() < 0.6:
+        at = deck.index("create_atoms 1 region body")
+        deck[at:at + 1] = [f"lattice {r.choice(LATTICES)}", deck[at], "lattice sc 0.001"]
+    return deck

@@ -89,8 +89,7 @@ impl Frame {
         let mut frame = Self { basis: turn.basis(&sites.basis), at, size, cells: 0, cost: 0 };
         let changes = frame.count(view, members)?;
         // Along x, LAMMPS' creation order makes gathering cheaper.
-        let [x, y, z] = frame.basis[0];
-        let easy = x > 0.0 && y == 0.0 && z == 0.0;
+        let easy = frame.basis[0][0] > (1.0 - 1e-9) * length(frame.basis[0]);
         frame.cost = (frame.cells + TYPE_CHANGE * changes) * if easy { 20 } else { 23 };
         Some(frame)
     }

@@ -264,7 +264,8 @@ fn directions(samples: &Samples, basis: &Basis) -> Vec<[i32; 3]> {
     let mut found: Vec<[i32; 3]> = vec![];
     for v in &samples.vectors {
         let n = coordinates(&across, *v).map(|n| n.round() as i32);
-        let ahead = n.iter().find(|n| **n != 0).is_some_and(|n| *n > 0);
+        // Ahead in x, or else in y, or else in z.
+        let ahead = v.iter().find(|x| x.abs() > 1e-6 * length(*v)).is_some_and(|x| *x > 0.0);
         let n = if ahead { n } else { n.map(|n| -n) };
         if divisor(n) == 1 && !found.contains(&n) {
             found.push(n);
