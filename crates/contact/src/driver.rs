@@ -231,6 +231,8 @@ pub struct Sweep {
     counts: Vec<u32>,
     names: Vec<[u64; 2]>,
     wrenches: Vec<Wrench>,
+    /// Heat that flows through each contact, over the difference of temperatures.
+    conductances: Vec<f64>,
     deep: Option<Pair>,
     spare: Vec<f64>,
 }
@@ -273,15 +275,20 @@ impl Sweep {
         self.share(grains, rules);
         self.wrenches.clear();
         self.wrenches.resize(self.touching.len(), Wrench::default());
+        self.conductances.clear();
+        self.conductances.resize(self.touching.len(), 0.0);
         let history = par::Rows { data: &mut memory.history[..], width };
-        let columns = (&mut self.wrenches[..], history, &self.touching[..], &self.shares[..]);
-        par::each(columns, |_, (wrenches, history, pairs, shares)| {
-            for (k, ((w, p), share)) in wrenches.iter_mut().zip(pairs).zip(shares).enumerate() {
+        let done = (&mut self.wrenches[..], &mut self.conductances[..]);
+        let columns = (done, history, &self.touching[..], &self.shares[..]);
+        par::each(columns, |_, ((wrenches, conductances), history, pairs, shares)| {
+            let done = wrenches.iter_mut().zip(conductances);
+            for (k, (((w, conductance), p), share)) in done.zip(pairs).zip(shares).enumerate() {
                 let (a, b) = (grains.kind[p.i as usize], grains.kind[p.j as usize]);
                 let Some(rule) = rules.get(a, b) else { continue };
                 let Some(g) = grains.geometry(p, rule) else { continue };
                 let remembered = &mut history.data[k * width..][..width];
                 *w = rule.law.contact(&g, &grains.motion(p.i), &grains.image_motion(p), remembered, step);
+                *conductance = rule.law.conductance(&g);
                 if *share != 1.0 {
                     *w = w.scaled(*share);
                 }
@@ -347,18 +354,9 @@ impl Sweep {
     }
 
     /// Adds the heat that flows through the contacts to `flow`, from the temperatures of all particles.
-    pub fn conduct<L: ContactLaw>(
-        &self,
-        grains: &Grains,
-        rules: &Rules<L>,
-        temperature: &[f64],
-        flow: &mut [f64],
-    ) {
-        for p in &self.touching {
+    pub fn conduct(&self, temperature: &[f64], flow: &mut [f64]) {
+        for (p, conductance) in self.touching.iter().zip(&self.conductances) {
             let (i, j) = (p.i as usize, p.j as usize);
-            let Some(rule) = rules.get(grains.kind[i], grains.kind[j]) else { continue };
-            let Some(g) = grains.geometry(p, rule) else { continue };
-            let Some(conductance) = rule.law.conductance(&g) else { continue };
             let into = conductance * (temperature[j] - temperature[i]);
             flow[i] += into;
             flow[j] -= into;

@@ -1,6 +1,7 @@
 //! Conduction of heat through the area of contact.
 
 use super::normal::geometric;
+use perigrain_base::math::real::Real;
 
 /// How much heat flows for a difference of temperatures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,11 +35,12 @@ impl Heat {
     }
 
     /// Heat flow over difference of temperatures for a contact of radius `a` [energy/(time temperature)].
-    pub fn conductance(&self, a: f64) -> f64 {
+    #[inline(always)]
+    pub fn conductance<R: Real>(&self, a: R) -> R {
         match *self {
-            Heat::None => 0.0,
-            Heat::Area(h) => h * std::f64::consts::PI * a * a,
-            Heat::Radius(k) => 2.0 * k * a,
+            Heat::None => a.like(0.0),
+            Heat::Area(h) => a * (h * std::f64::consts::PI) * a,
+            Heat::Radius(k) => a * (2.0 * k),
         }
     }
 }

@@ -196,8 +196,12 @@ impl ContactLaw for Granular {
         self.normal.gap(curvature)
     }
 
-    fn conductance(&self, g: &Geometry) -> Option<f64> {
-        (self.heat != Heat::None).then(|| self.heat.conductance(self.normal.radius(g)))
+    #[inline(always)]
+    fn conductance<R: Real>(&self, g: &Geometry<R>) -> R {
+        if self.heat == Heat::None {
+            return g.overlap.like(0.0);
+        }
+        self.heat.conductance(self.normal.radius(g))
     }
 
     fn springs(&self, g: &Geometry) -> [f64; 2] {

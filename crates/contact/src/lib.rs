@@ -135,7 +135,8 @@ pub trait ContactLaw: Copy + Sync {
     /// first three are negative, the others the same (`world::contacts::mirror`).
     fn memory(&self) -> usize;
 
-    /// Whether `contact` may be asked for several lanes at once; else it is asked for single contacts only.
+    /// Whether `contact` may be asked for several lanes at once; else it is asked for single contacts only, and not by the
+    /// fast loop.
     fn in_lanes(&self) -> bool {
         true
     }
@@ -146,9 +147,10 @@ pub trait ContactLaw: Copy + Sync {
     }
 
     /// Heat that flows from the warmer to the colder side, over the difference of temperatures
-    /// [energy/(time temperature)]; `None` where the law knows no heat.
-    fn conductance(&self, _g: &Geometry) -> Option<f64> {
-        None
+    /// [energy/(time temperature)].
+    #[inline(always)]
+    fn conductance<R: Real>(&self, g: &Geometry<R>) -> R {
+        g.overlap.like(0.0)
     }
 
     /// Stiffness of the contact along and across the normal as it is now, dF/dδ and k_t [force/length].

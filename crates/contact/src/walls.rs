@@ -231,7 +231,7 @@ impl WallSweep {
         for t in &self.touching {
             let i = t.grain as usize;
             let conductance = law.conductance(&geometry(&t.near, grains.radius[i], grains.mass[i]));
-            let into = conductance.unwrap_or(0.0) * (wall - temperature[i]);
+            let into = conductance * (wall - temperature[i]);
             flow[i] += into;
             self.heat.push(into);
         }

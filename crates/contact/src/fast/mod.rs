@@ -17,7 +17,6 @@ mod strip;
 mod sweep;
 mod turned;
 mod uneven;
-mod warmth;
 
 use super::driver::Grains;
 use super::{Advance, ContactLaw, MOST_MEMORY};
@@ -110,6 +109,16 @@ pub struct Frame {
     pub reach: f64,
     /// How far beyond touching lists reach that are made at every rebuild [length].
     pub skin: f64,
+}
+
+/// What contacts add to, a row for each grain.
+pub struct Sums<'a> {
+    /// Forces.
+    pub force: &'a mut [Vec3],
+    /// Torques about the centres.
+    pub torque: &'a mut [Vec3],
+    /// Temperatures and, to be added to, the heat that flows into each grain [energy/time].
+    pub heat: Option<(&'a [f64], &'a mut [f64])>,
 }
 
 /// What all grains have in common: nobody looks it up for each of them.
@@ -265,17 +274,11 @@ impl<L: ContactLaw> Fast<L> {
     }
 
     /// Evaluates all contacts for the grains' present state and adds forces and torques to `f` and `torque`. With `store`
-    /// contacts remember, else nothing is changed but forces. With `virial` returns Σ d ⊗ F: xx yy zz xy xz yz.
-    pub fn run(
-        &mut self,
-        grains: &Grains,
-        [f, torque]: [&mut [Vec3]; 2],
-        step: Advance,
-        store: bool,
-        virial: bool,
-    ) -> [f64; 6] {
+    /// contacts remember, else nothing is changed but forces. With `virial` returns Σ d ⊗ F: xx yy zz xy xz yz. Heat goes where
+    /// `heat` is given.
+    pub fn run(&mut self, grains: &Grains, sums: Sums, step: Advance, store: bool, virial: bool) -> [f64; 6] {
         self.begin(grains);
-        self.sweep(grains, [f, torque], step, (store, virial), None);
+        self.sweep(grains, sums, step, (store, virial), None);
         if self.deep.is_none() && self.lists.iter().any(|l| l.deep) {
             self.deep = self.find_deep(grains, &self.lists);
         }

@@ -3,7 +3,7 @@
 //! Columns of 32,000 grains do not fit the second cache. Who moves all of them after all contacts has them brought from the third one
 //! twice in a step, and a pass over the columns takes twice as long from there.
 
-use super::Fast;
+use super::{Fast, Sums};
 use crate::driver::Grains;
 use crate::{Advance, ContactLaw};
 use perigrain_base::math::vec3::Vec3;
@@ -51,7 +51,8 @@ impl<L: ContactLaw> Fast<L> {
             return None;
         };
         p.done += 1;
-        self.sweep(grains, wrench, p.step, (p.store, false), Some(k));
+        let [force, torque] = wrench;
+        self.sweep(grains, Sums { force, torque, heat: None }, p.step, (p.store, false), Some(k));
         if self.deep.is_none() && self.lists[k].deep {
             let found = self.find_deep(grains, &self.lists[k..k + 1]);
             p.deep = p.deep.into_iter().chain(found).min_by_key(|(ids, _)| *ids);

@@ -37,6 +37,8 @@ pub(super) struct Strip<V, const N: usize> {
     force: Room<Outgoing<N>>,
     /// On i and on j, each about its centre [force × length].
     torque: Room<[Outgoing<N>; 2]>,
+    /// Heat into i, where it is asked for [energy/time].
+    heat: Room<[f64; N]>,
 }
 
 /// Room for something of each group, not cleared: that would take longer than the contacts of a slab of few.
@@ -144,6 +146,7 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
             mass,
             force: Room::new(),
             torque: Room::new(),
+            heat: Room::new(),
         }
     }
 
@@ -272,6 +275,11 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
             let wrench = law.contact(g, &own, &other, &mut history[..memory], cx.step);
             self.force.put(group, Outgoing::of(wrench.force));
             self.torque.put(group, [Outgoing::of(wrench.torque_i), Outgoing::of(wrench.torque_j)]);
+            if let Some((temperature, _)) = &cx.heat {
+                let t = temperature.as_ptr();
+                let into = law.conductance(g) * (V::pick(t, w) - V::pick(t, i));
+                self.heat.put(group, into.numbers());
+            }
             if !cx.store {
                 return;
             }
@@ -299,6 +307,11 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
             let [own, other] = self.torque.at(group);
             own.add::<V::Pair>(t, lane, i);
             other.add::<V::Pair>(t, lane, j);
+            if let Some((_, flow)) = &cx.heat {
+                let (flow, into) = (flow.as_ptr(), self.heat.at(group)[lane]);
+                *flow.add(i as usize) += into;
+                *flow.add(j as usize) -= into;
+            }
         }
     }
 
@@ -370,38 +383,4 @@ fn beside_frozen<R: Real>(mi: R, mj: R, free: Option<R>) -> R {
         None => reduced(a, b),
     };
     R::choose(zero.above(mj), a, R::choose(zero.above(mi), b, free))
-}
-
-/// A single contact in plain numbers.
-pub(super) unsafe fn one<L: ContactLaw, const W: usize>(cx: &Cx<L>, law: &L, slab: &mut Slab, k: usize) {
-    let (i, w) = (slab.short.i[k] as usize, slab.short.w[k]);
-    let (j, d) = (place(w), cx.places().between(i, w));
-    let (mi, mj) = (cx.mass[i], cx.mass[j]);
-    let mass = if cx.frozen { beside_frozen(mi, mj, None) } else { reduced(mi, mj) };
-    let g = geometry(d, &Sizes::of([cx.radius[i], cx.radius[j]]), mass);
-    let motion = |i: usize| Motion { velocity: cx.v[i], spin: cx.omega[i] };
-    let mut row = [0.0; W];
-    let past = &mut slab.short.history[k * W..][..W];
-    if past[W - 1] == cx.now {
-        row.copy_from_slice(past);
-    }
-    let wrench = law.contact(&g, &motion(i), &motion(j), &mut row[..law.memory()], cx.step);
-    slab.deep |= too_deep(&g);
-    if cx.store {
-        past[..W - 1].copy_from_slice(&row[..W - 1]);
-        past[W - 1] = cx.now + 1.0;
-    }
-    // SAFETY: entries are grains; the caller keeps other threads away.
-    unsafe {
-        let (f, t) = (cx.force.as_ptr(), cx.torque.as_ptr());
-        (0..3).for_each(|d| (*f.add(i))[d] += wrench.force[d]);
-        (0..3).for_each(|d| (*f.add(j))[d] -= wrench.force[d]);
-        (0..3).for_each(|d| (*t.add(i))[d] += wrench.torque_i[d]);
-        (0..3).for_each(|d| (*t.add(j))[d] += wrench.torque_j[d]);
-    }
-    if cx.virial {
-        for (s, (a, b)) in slab.virial.iter_mut().zip(SIX) {
-            *s += d[a] * wrench.force[b];
-        }
-    }
 }

@@ -3,8 +3,8 @@
 use super::form::InLanes;
 use super::lists::{FILL, Short, Slab, weights};
 use super::near::Places;
-use super::strip::{STRIP, Strip, one};
-use super::{Alike, Fast, Laws, NONE};
+use super::strip::{STRIP, Strip};
+use super::{Alike, Fast, Laws, NONE, Sums};
 use crate::driver::Grains;
 use crate::{Advance, ContactLaw, Loop};
 use perigrain_base::math::four::Four;
@@ -32,6 +32,8 @@ pub(super) struct Cx<'a, L> {
     pub shifts: &'a [[f64; 4]; 32],
     pub force: par::Shared<'a, Vec3>,
     pub torque: par::Shared<'a, Vec3>,
+    /// Temperatures and heat into the grains.
+    pub heat: Option<(&'a [f64], par::Shared<'a, f64>)>,
     pub step: Advance,
     pub now: f64,
     pub store: bool,
@@ -84,7 +86,7 @@ impl<L: ContactLaw> Fast<L> {
     pub(super) fn sweep(
         &mut self,
         grains: &Grains,
-        [f, torque]: [&mut [Vec3]; 2],
+        sums: Sums,
         step: Advance,
         (store, virial): (bool, bool),
         only: Option<usize>,
@@ -103,8 +105,9 @@ impl<L: ContactLaw> Fast<L> {
             alike: self.alike,
             kind: grains.kind,
             shifts: &self.shifts,
-            force: par::Shared::new(f),
-            torque: par::Shared::new(torque),
+            force: par::Shared::new(sums.force),
+            torque: par::Shared::new(sums.torque),
+            heat: sums.heat.map(|(temperature, flow)| (temperature, par::Shared::new(flow))),
             step,
             now: self.now,
             store,
@@ -244,7 +247,10 @@ unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     }
 }
 
-/// Contacts of one law: several at a time or, where the law wants that, one by one.
+/// Contacts of one law.
+///
+/// # Safety
+/// They must be pairs of the list, and its entries grains.
 #[inline(always)]
 unsafe fn of_law<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     cx: &Cx<L>,
@@ -253,17 +259,8 @@ unsafe fn of_law<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     strip: &mut Strip<V, N>,
     hits: &[u32],
 ) {
-    // SAFETY: passed on.
-    unsafe {
-        if !law.in_lanes() {
-            for k in hits {
-                one::<L, W>(cx, law, slab, *k as usize);
-            }
-            return;
-        }
-        let many = Many::<N, V, L, W> { cx, slab, strip, hits };
-        if W == 4 && V::Row::FAST { law.within(many) } else { many.run(law) }
-    }
+    let many = Many::<N, V, L, W> { cx, slab, strip, hits };
+    if W == 4 && V::Row::FAST { law.within(many) } else { many.run(law) }
 }
 
 /// The loop over contacts of one law, several at a time.

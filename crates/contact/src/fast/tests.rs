@@ -222,7 +222,7 @@ impl Loop for PlainLoop {
         let (mut f, mut torque) = (s.zeros(), s.zeros());
         self.sweep.scatter(&mut f, &mut torque);
         let (mut heat, virial) = (vec![0.0; s.x.len()], self.sweep.virial(&s.x, &s.period));
-        self.sweep.conduct(&s.grains(), &rules, &s.temperatures(), &mut heat);
+        self.sweep.conduct(&s.temperatures(), &mut heat);
         Got { f, torque, heat, contacts: self.memory.clone(), virial }
     }
 }
@@ -258,11 +258,18 @@ impl Loop for FastLoop {
         }
         let step = Advance { dt: DT, history: true };
         // An evaluation that stores nothing changes nothing.
-        self.fast.run(&s.grains(), [&mut s.zeros(), &mut s.zeros()], step, false, false);
         let (mut f, mut torque) = (s.zeros(), s.zeros());
-        let virial = self.fast.run(&s.grains(), [&mut f, &mut torque], step, true, true);
-        let mut heat = vec![0.0; s.x.len()];
-        self.fast.conduct(&s.grains(), &s.temperatures(), &mut heat);
+        self.fast.run(
+            &s.grains(),
+            Sums { force: &mut f, torque: &mut torque, heat: None },
+            step,
+            false,
+            false,
+        );
+        let (mut f, mut torque) = (s.zeros(), s.zeros());
+        let (temperatures, mut heat) = (s.temperatures(), vec![0.0; s.x.len()]);
+        let sums = Sums { force: &mut f, torque: &mut torque, heat: Some((&temperatures, &mut heat)) };
+        let virial = self.fast.run(&s.grains(), sums, step, true, true);
         Got { f, torque, heat, contacts: self.fast.contacts(), virial }
     }
 }

@@ -58,7 +58,8 @@ pub const EEPA: Style = Style {
            smaller δ_max. `n` and `chi` are at least 1 (1.5, 1.5: Hertz'; 1, 1: linear), `lambda_p` at least 0 (elastic) and \
            below 1. Friction, and what rolls and twists, is limited by mu |F_n + f0 + k_adh δ^chi| with F_n before damping \
            (Thakur et al., eq. 13). `tsuji` and `coeff_restitution` take k = k_1 δ^(n−1) and mean the e of such grains without \
-           plasticity and adhesion; what these take comes on top. The slope of k_2 decides on time steps. With gamma the surface \
+           plasticity and adhesion; what these take comes on top. The slope of k_2 decides on time steps. What \
+           plasticity and adhesion take is the residual of compute energy/ledger. With gamma the surface \
            energy of the interface, both surfaces together. Some authors take the circle in which the spheres cut each other, \
            a_p = √(2 R̄ δ_p): gamma is then larger by √2 here. Types are mixed only with the same n and chi. Not in LAMMPS 22Jul2025.",
     exponent: |numbers| numbers[6],

@@ -7,7 +7,7 @@ use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
-use perigrain_contact::fast::{Fast, Frame, Laws, MOST_GRAINS};
+use perigrain_contact::fast::{Fast, Frame, Laws, MOST_GRAINS, Sums};
 use perigrain_contact::{Advance, ContactLaw, Granular, Heat, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
 use perigrain_neigh::slabs::{edges, shift_of};
@@ -114,24 +114,23 @@ impl Force {
         let step = Advance { dt: t.dt, history: !t.setup };
         let p = &mut w.particles;
         let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
+        let mut heat = Heating::take(w, &self.rules);
         let masses = w.contact_masses();
         let grains = Grains { mass: &masses, ..grains(w, period, &[], &self.frozen)? };
         if anew || matches!(masses, Cow::Owned(_)) {
             fast.weigh(&grains);
         }
-        let virial = fast.run(&grains, [&mut f, &mut torque], step, store, t.virial);
+        let heating = heat.as_mut().map(|heat| (&heat.temperature[..], &mut heat.flow[..]));
+        let sums = Sums { force: &mut f, torque: &mut torque, heat: heating };
+        let virial = fast.run(&grains, sums, step, store, t.virial);
         let deep = fast.deep;
         drop(masses);
         (w.particles.f, w.particles.torque) = (f, torque);
+        if let Some(heat) = heat {
+            heat.give(w);
+        }
         if t.virial {
             add_virial(w, virial);
-        }
-        if conducts(&self.rules) {
-            let (fast, frozen) = (&*fast, &self.frozen);
-            conduct(w, |w, temperature, flow| {
-                fast.conduct(&self::grains(w, period, &[], frozen)?, temperature, flow);
-                Ok(())
-            })?;
         }
         if t.contacts {
             w.contacts.insert(self.style.to_string(), fast.contacts());
@@ -212,12 +211,10 @@ impl Force {
         let step = Advance { dt: t.dt, history: !t.setup };
         plain.sweep.run(&plain.list, &grains, &self.rules, &mut memory, step);
         let deep = plain.sweep.deep(&grains);
-        if conducts(&self.rules) {
-            conduct(w, |w, temperature, flow| {
-                let grains = self::grains(w, period, &plain.body, &self.frozen)?;
-                plain.sweep.conduct(&grains, &self.rules, temperature, flow);
-                Ok(())
-            })?;
+        drop(masses);
+        if let Some(mut heat) = Heating::take(w, &self.rules) {
+            plain.sweep.conduct(&heat.temperature, &mut heat.flow);
+            heat.give(w);
         }
         report(w, t, deep);
         plain.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
@@ -355,16 +352,36 @@ pub fn grains<'a>(w: &'a World, period: Vec3, body: &'a [u32], frozen: &'a [bool
     })
 }
 
-/// Gives temperatures and heat flows to who adds those through contacts, if particles have both.
-fn conduct(w: &mut World, through: impl FnOnce(&World, &[f64], &mut [f64]) -> Result<()>) -> Result<()> {
-    let names = [TEMPERATURE, HEATFLOW].map(|name| w.columns.custom(name));
-    let [Some(temperature), Some(heat)] = names else { return Ok(()) };
-    let n = w.particles.len();
-    let mut flow = std::mem::take(w.columns.scalar(&heat, n));
-    let temperature = w.columns.scalar(&temperature, n).clone();
-    through(w, &temperature, &mut flow)?;
-    *w.columns.scalar(&heat, n) = flow;
-    Ok(())
+/// Temperatures of particles, and the heat that flows into them.
+pub struct Heating {
+    /// Temperatures.
+    pub temperature: Vec<f64>,
+    /// Heat [energy/time].
+    pub flow: Vec<f64>,
+    /// The names of both columns.
+    names: [String; 2],
+}
+
+impl Heating {
+    /// Taken out of the world, if some contacts conduct heat and particles have both.
+    pub fn take(w: &mut World, rules: &Rules<Granular>) -> Option<Self> {
+        let [Some(temperature), Some(flow)] = [TEMPERATURE, HEATFLOW].map(|name| w.columns.custom(name))
+        else {
+            return None;
+        };
+        let (n, names) = (w.n(), [temperature, flow]);
+        conducts(rules).then(|| {
+            let [temperature, flow] = [0, 1].map(|k| std::mem::take(w.columns.scalar(&names[k], n)));
+            Self { temperature, flow, names }
+        })
+    }
+
+    /// Put back.
+    pub fn give(self, w: &mut World) {
+        let n = w.n();
+        *w.columns.scalar(&self.names[0], n) = self.temperature;
+        *w.columns.scalar(&self.names[1], n) = self.flow;
+    }
 }
 
 /// Whether some contacts conduct heat.

@@ -1,16 +1,14 @@
 //! The op of plastic grains (normal model `mdr`): growth, contacts on both sides, forces and torques.
 
 use super::super::shared::{add_virial, built_at, find_frozen, near};
-use super::force::{conducts, grains};
+use super::force::{Heating, grains};
 use super::reach::reaching;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
-use perigrain_base::math::vec3::Vec3;
 use perigrain_contact::driver::{Grains, Rules, Sweep};
 use perigrain_contact::powder::{Manner, Material, Meetings, PAIR, TOLD, begin, undo};
 use perigrain_contact::{Advance, Granular};
 use perigrain_neigh::list::{Pair, Wanted, difference};
 use perigrain_plan::{Access, Op, Stage, Tick};
-use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::contacts::{Contacts, PLASTIC};
 use perigrain_world::{Allowed, World};
 
@@ -74,15 +72,10 @@ impl Powder {
     }
 
     /// Adds the heat that flows through the contacts.
-    fn conduct(&self, w: &mut World, period: Vec3) -> Result<()> {
-        let names = [TEMPERATURE, HEATFLOW].map(|name| w.columns.custom(name));
-        let (true, [Some(temperature), Some(heat)]) = (conducts(&self.rules), names) else { return Ok(()) };
-        let n = w.n();
-        let mut flow = std::mem::take(w.columns.scalar(&heat, n));
-        let temperature = w.columns.scalar(&temperature, n).clone();
-        self.sweep.conduct(&grains(w, period, &[], &self.frozen)?, &self.rules, &temperature, &mut flow);
-        *w.columns.scalar(&heat, n) = flow;
-        Ok(())
+    fn conduct(&self, w: &mut World) {
+        let Some(mut heat) = Heating::take(w, &self.rules) else { return };
+        self.sweep.conduct(&heat.temperature, &mut heat.flow);
+        heat.give(w);
     }
 
     fn check(&self, w: &World, t: &Tick) -> Result<()> {
@@ -150,7 +143,7 @@ impl Op for Powder {
         self.sweep.act(&grains, &self.rules, &mut memory, step);
         drop(masses);
         self.check(w, t)?;
-        self.conduct(w, period)?;
+        self.conduct(w);
         self.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
         if t.virial {
             let part = self.sweep.virial(&w.particles.x, &period);
