@@ -40,8 +40,9 @@ pub fn forces<K: RowKernels>(
         list.limits.next.clear();
         list.limits.next.resize(if judge.keeps { n } else { 0 }, f64::INFINITY);
     }
-    let active = if kind.has_states() { find_active(list, kind.memory() > 0) } else { list.moving.clone() };
-    let moving = list.moving.clone();
+    let awake = kind.has_states().then(|| find_active(list, kind.memory() > 0));
+    let moving = std::mem::take(&mut list.moving);
+    let active = awake.as_deref().unwrap_or(&moving);
     let now = Moment { held: list.state.held, ..settling.moment };
     if kind.has_states() {
         list.state.columns.resize(COLUMNS * n, 0.0);
@@ -95,15 +96,15 @@ pub fn forces<K: RowKernels>(
     if kind == LawKind::Eps {
         clear_sums(list);
         sweep(list, Norm::COLUMNS, &|s, slab, w| match settling.compat {
-            true => s.add_up::<K, NormLammps>(slab, &active, w),
-            false => s.add_up::<K, Norm>(slab, &active, w),
+            true => s.add_up::<K, NormLammps>(slab, active, w),
+            false => s.add_up::<K, Norm>(slab, active, w),
         });
         settling.flow(&mut list.state, &sites);
     }
     let columns = if kind.has_states() { columns_of(kind, settling.compat) } else { 0 };
     let pulls = |s: &Sweep, slab: usize, w: &mut Window| match kind {
-        LawKind::Pmb => s.pull::<K, Pmb>(slab, &active, w),
-        _ => of_law!(kind, settling.compat, now, W => s.pull::<K, W>(slab, &active, w)),
+        LawKind::Pmb => s.pull::<K, Pmb>(slab, active, w),
+        _ => of_law!(kind, settling.compat, now, W => s.pull::<K, W>(slab, active, w)),
     };
     sweep(list, columns, &|s, slab, w| {
         if pulls(s, slab, w) {
@@ -111,7 +112,7 @@ pub fn forces<K: RowKernels>(
             hand_back(s.body, &particle, own.chain(next), w, f);
         }
     });
-    list.particle = particle;
+    (list.particle, list.moving) = (particle, moving);
     settling.held(&mut list.state);
 }
 
