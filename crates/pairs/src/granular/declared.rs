@@ -1,7 +1,7 @@
 //! Granular pair styles with their coefficients: rules by pair of types, given or mixed.
 
 use super::force::{Force, conducts};
-use super::powder::Powder;
+use super::powder::Press;
 use crate::contact::{Coeff, durations, words};
 use crate::contact_probe::{ContactProbe, Own};
 use crate::{Pair, TypePairs};
@@ -183,12 +183,13 @@ impl Pair for Declared {
                 .help("add `fix ID all property/atom temperature heatflow` and `set group all temperature …`")
                 .into());
         }
-        if let Some((material, span)) = self.powder()? {
+        let press = self.powder()?.map(|(material, span)| Press::new(material, span));
+        if press.is_some() {
             // Walls look it up: pair styles are sealed before fixes.
             cx.world().parts.plastic = self.given.values().find_map(|c| plastic_grain(&c.model.normal));
-            return Ok(vec![Box::new(Powder::new(self.name, rules, wanted, material, span))]);
         }
-        Ok(vec![Box::new(Force::new(self.name, rules, wanted, cx.world().types))])
+        let types = cx.world().types;
+        Ok(vec![Box::new(Force::new(self.name, rules, wanted, types, press))])
     }
 
     fn probes(&self, w: &World) -> Result<Vec<Box<dyn Probe>>> {

@@ -1,6 +1,7 @@
 //! The op of granular contacts: list when it is due, contacts, forces and torques.
 
 use super::super::shared::{add_virial, built_at, find_frozen, made_at, near};
+use super::powder::Press;
 use super::reach::reaching;
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::Vec3;
@@ -8,6 +9,7 @@ use perigrain_base::par;
 use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
 use perigrain_contact::fast::{Fast, Frame, Laws, MOST_GRAINS, Sums};
+use perigrain_contact::powder::Manner;
 use perigrain_contact::{Advance, ContactLaw, Granular, Heat, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
 use perigrain_neigh::slabs::{edges, shift_of};
@@ -37,6 +39,8 @@ pub struct Force {
     fast: Option<Fast<Granular>>,
     /// Whether the fast loop has the contacts now.
     is_fast: bool,
+    /// What presses plastic grains, which go by the plain loop.
+    press: Option<Press>,
 }
 
 /// The plain loop: knows every rule.
@@ -51,12 +55,27 @@ struct Plain {
 
 impl Force {
     /// With nothing computed yet.
-    pub fn new(style: &'static str, rules: Rules<Granular>, wanted: Wanted, types: usize) -> Self {
+    pub fn new(
+        style: &'static str,
+        rules: Rules<Granular>,
+        wanted: Wanted,
+        types: usize,
+        press: Option<Press>,
+    ) -> Self {
         let fast = laws(&rules, &wanted, types).map(Fast::new);
-        let (name, plain) = (format!("pair {style}"), Plain::default());
-        let frozen = vec![];
-        let steady = false;
-        Self { rules, wanted, style, name, frozen, steady, generation: None, plain, fast, is_fast: false }
+        Self {
+            rules,
+            wanted,
+            style,
+            name: format!("pair {style}"),
+            frozen: vec![],
+            steady: false,
+            generation: None,
+            plain: Plain::default(),
+            fast,
+            is_fast: false,
+            press,
+        }
     }
 
     /// Which solid each particle belongs to, where some rule asks.
@@ -185,8 +204,8 @@ impl Force {
         if renewed {
             self.renew(w)?;
         }
-        // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
-        let store = !t.setup || w.settings.lammps();
+        // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide, but not of plastic grains.
+        let store = !t.setup || (w.settings.lammps() && self.press.is_none());
         let anew = renewed || t.setup || !self.steady;
         if anew {
             find_frozen(w, &mut self.frozen);
@@ -205,13 +224,27 @@ impl Force {
     fn run_plain(&mut self, w: &mut World, t: &Tick, period: Vec3, store: bool) -> Result<()> {
         let mut memory = w.contacts.remove(self.style).unwrap_or_default();
         let kept: Option<Contacts> = (!store).then(|| memory.clone());
-        let plain = &mut self.plain;
+        let manner = Manner { lammps: w.settings.lammps(), setup: t.setup };
+        let (plain, press) = (&mut self.plain, &mut self.press);
         let masses = w.contact_masses();
         let grains = Grains { mass: &masses, ..grains(w, period, &plain.body, &self.frozen)? };
         let step = Advance { dt: t.dt, history: !t.setup };
-        plain.sweep.run(&plain.list, &grains, &self.rules, &mut memory, step);
-        let deep = plain.sweep.deep(&grains);
+        plain.sweep.meet(&plain.list, &grains, &self.rules, &mut memory);
+        if let Some(press) = press {
+            press.act(&grains, &plain.sweep, &mut memory, manner);
+        }
+        plain.sweep.act(&grains, &self.rules, &mut memory, step);
+        // Plastic grains are made for deep contacts.
+        let deep = if press.is_none() { plain.sweep.deep(&grains) } else { None };
         drop(masses);
+        let kept = match press {
+            Some(press) => {
+                press.check(w, &plain.sweep, t)?;
+                press.end(w);
+                kept.map(|before| press.told(before, &memory))
+            }
+            None => kept,
+        };
         if let Some(mut heat) = Heating::take(w, &self.rules) {
             plain.sweep.conduct(&heat.temperature, &mut heat.flow);
             heat.give(w);
@@ -237,10 +270,19 @@ impl Op for Force {
     }
 
     fn access(&self) -> Access {
-        Access::new("x v omega radius mass type", "f torque contacts tally")
+        let writes = if self.press.is_some() {
+            "f torque contacts tally radius columns"
+        } else {
+            "f torque contacts tally"
+        };
+        Access::new("x v omega radius mass type", writes)
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if let Some(press) = &mut self.press {
+            // Grains grow before lists are made.
+            press.begin(w, t);
+        }
         let how = self.prepare(w, t)?;
         self.act(w, t, how)
     }
@@ -251,6 +293,9 @@ impl Op for Force {
         t: &Tick,
         ready: &mut dyn FnMut(&mut World, Range<usize>),
     ) -> Result<bool> {
+        if self.fast.is_none() {
+            return self.run(w, t).map(|()| false);
+        }
         let how = self.prepare(w, t)?;
         let told = self.run_piecewise(w, t, how, ready)?;
         if !told {
@@ -276,14 +321,18 @@ impl Op for Force {
             return (fast.pairs()[1] * 44 + w.n() * 250) as u64;
         }
         // Pairs read with both ends (12 + 2 × 32 bytes); per contact both ends' state, wrench and history.
-        (self.plain.list.len() * 76 + self.plain.sweep.len() * 400) as u64
+        let contact = if self.press.is_some() { 900 } else { 400 };
+        (self.plain.list.len() * 76 + self.plain.sweep.len() * contact) as u64
     }
 }
 
 /// The laws as the fast loop wants them; `None` where some rule is not for it.
 fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<Granular>> {
     let plain = rules.any(|r| {
-        r.average != Average::None || r.curvature != Curvature::Both || r.law.memory() > MOST_MEMORY
+        !r.law.in_lanes()
+            || r.average != Average::None
+            || r.curvature != Curvature::Both
+            || r.law.memory() > MOST_MEMORY
     });
     let touch = |a, b| wanted.get(a, b).is_none_or(|r| r == Reach::Touch);
     let all = 1..=types as u16;

@@ -1,69 +1,70 @@
-//! The op of plastic grains (normal model `mdr`): growth, contacts on both sides, forces and torques.
+//! What presses plastic grains (normal model `mdr`) in the loop over contacts: growth, depths on both sides, forces.
 
-use super::super::shared::{add_virial, built_at, find_frozen, near};
-use super::force::{Heating, grains};
-use super::reach::reaching;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
-use perigrain_contact::driver::{Grains, Rules, Sweep};
-use perigrain_contact::powder::{Manner, Material, Meetings, PAIR, TOLD, begin, undo};
-use perigrain_contact::{Advance, Granular};
-use perigrain_neigh::list::{Pair, Wanted, difference};
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_contact::driver::{Grains, Sweep};
+use perigrain_contact::powder::{Manner, Material, Meetings, PAIR, State, TOLD, begin, undo};
+use perigrain_neigh::list::{Pair, difference};
+use perigrain_plan::Tick;
+use perigrain_world::World;
 use perigrain_world::contacts::{Contacts, PLASTIC};
-use perigrain_world::{Allowed, World};
 
-/// Forces and torques among plastic grains.
-pub struct Powder {
-    rules: Rules<Granular>,
-    wanted: Wanted,
+/// Plastic grains of one pair style.
+pub struct Press {
     material: Material,
-    style: &'static str,
-    name: String,
     span: Span,
-    /// Whether fix freeze holds a particle; empty without one.
-    frozen: Vec<bool>,
-    /// The rebuild the list was made at.
-    generation: Option<u64>,
-    list: Vec<Pair>,
-    sweep: Sweep,
     meetings: Meetings,
+    /// The grains while a step is under way.
+    state: State,
+    /// What contacts remember on both sides, likewise.
+    plastic: Contacts,
     spare: Vec<f64>,
 }
 
-impl Powder {
-    /// With nothing computed yet.
-    pub fn new(
-        style: &'static str,
-        rules: Rules<Granular>,
-        wanted: Wanted,
-        material: Material,
-        span: Span,
-    ) -> Self {
-        Self {
-            rules,
-            wanted,
-            material,
-            style,
-            name: format!("pair {style}"),
-            span,
-            frozen: vec![],
-            generation: None,
-            list: vec![],
-            sweep: Sweep::default(),
-            meetings: Meetings::default(),
-            spare: vec![],
+impl Press {
+    /// Grains of this material, said there.
+    pub fn new(material: Material, span: Span) -> Self {
+        let (state, plastic) = (State::default(), Contacts::default());
+        Self { material, span, meetings: Meetings::default(), state, plastic, spare: vec![] }
+    }
+
+    /// Begins a step: grains grow.
+    pub fn begin(&mut self, w: &mut World, t: &Tick) {
+        self.plastic = w.contacts.remove(PLASTIC).unwrap_or_default();
+        self.state = begin(w, (t.step, t.setup), &self.material);
+    }
+
+    /// Presses the contacts that were found; the law reads in `memory` what comes of it.
+    pub fn act(&mut self, grains: &Grains, sweep: &Sweep, memory: &mut Contacts, manner: Manner) {
+        // In setup forces are only evaluated.
+        let kept = manner.setup.then(|| self.state.clone());
+        let (touching, keys) = sweep.touching();
+        let distance = |p: &Pair| difference(grains.x, &grains.period, p);
+        let (state, plastic) = (&mut self.state, &mut self.plastic);
+        self.meetings.meet(touching, keys, grains.radius, state, plastic, distance, manner.lammps);
+        if manner.setup {
+            // Nothing has moved.
+            state.mean.fill(0.0);
+        }
+        let before = manner.setup.then(|| plastic.history.clone());
+        let width = memory.width;
+        let told = (&mut memory.history[..], width);
+        self.meetings.press(&self.material, grains.radius, state, plastic, told, manner);
+        if let Some(before) = before {
+            undo(&before, &mut plastic.history, PAIR, manner.lammps);
+        }
+        if let Some(kept) = kept {
+            self.state = kept;
         }
     }
 
-    /// The list from the positions of the last rebuild.
-    fn renew(&mut self, w: &World) {
-        self.generation = Some(w.rebuild.generation);
-        let wanted = reaching(&self.rules, &self.wanted, w);
-        self.list = near(w, built_at(w), &wanted, w.settings.neighbor.skin, &Allowed::new(w));
+    /// Ends a step: what grains and contacts remember goes back into the world.
+    pub fn end(&mut self, w: &mut World) {
+        w.contacts.insert(PLASTIC.to_string(), std::mem::take(&mut self.plastic));
+        std::mem::take(&mut self.state).put(&mut w.columns);
     }
 
     /// What contacts remembered `before` a setup, and what they were told in it: whoever asks for single pairs needs that.
-    fn still(&mut self, mut before: Contacts, after: &Contacts) -> Contacts {
+    pub fn told(&mut self, mut before: Contacts, after: &Contacts) -> Contacts {
         let width = after.width;
         before.carry(&after.keys, width, &mut self.spare);
         let rows = before.history.chunks_exact_mut(width).zip(after.history.chunks_exact(width));
@@ -71,15 +72,12 @@ impl Powder {
         before
     }
 
-    /// Adds the heat that flows through the contacts.
-    fn conduct(&self, w: &mut World) {
-        let Some(mut heat) = Heating::take(w, &self.rules) else { return };
-        self.sweep.conduct(&heat.temperature, &mut heat.flow);
-        heat.give(w);
-    }
-
-    fn check(&self, w: &World, t: &Tick) -> Result<()> {
-        let mut forces = self.sweep.contacts();
+    /// Refuses forces that are no numbers.
+    ///
+    /// # Errors
+    /// The pair that is pressed too far.
+    pub fn check(&self, w: &World, sweep: &Sweep, t: &Tick) -> Result<()> {
+        let mut forces = sweep.contacts();
         let Some((pair, _)) = forces.find(|(_, wrench)| !wrench.force.iter().all(|f| f.is_finite())) else {
             return Ok(());
         };
@@ -89,86 +87,5 @@ impl Powder {
             t.step
         );
         Err(Diagnostic::error(Code::SUSPICIOUS, self.span, text).help("take a shorter time step").into())
-    }
-}
-
-impl Op for Powder {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn stage(&self) -> Stage {
-        Stage::Force
-    }
-
-    fn access(&self) -> Access {
-        Access::new("x v omega radius mass type", "f torque contacts tally radius columns")
-    }
-
-    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let mut state = begin(w, (t.step, t.setup), &self.material);
-        if self.generation != Some(w.rebuild.generation) {
-            self.renew(w);
-        }
-        find_frozen(w, &mut self.frozen);
-        let period = w.periods();
-        let mut memory = w.contacts.remove(self.style).unwrap_or_default();
-        let mut plastic = w.contacts.remove(PLASTIC).unwrap_or_default();
-        // In setup forces are only evaluated.
-        let kept = t.setup.then(|| (memory.clone(), state.clone()));
-        let masses = w.contact_masses();
-        let grains = Grains { mass: &masses, ..grains(w, period, &[], &self.frozen)? };
-        self.sweep.meet(&self.list, &grains, &self.rules, &mut memory);
-        let (touching, keys) = self.sweep.touching();
-        let distance = |p: &Pair| difference(grains.x, &period, p);
-        self.meetings.meet(
-            touching,
-            keys,
-            grains.radius,
-            &mut state,
-            &mut plastic,
-            distance,
-            w.settings.lammps(),
-        );
-        if t.setup {
-            // Nothing has moved.
-            state.mean.fill(0.0);
-        }
-        let manner = Manner { lammps: w.settings.lammps(), setup: t.setup };
-        let width = self.rules.memory();
-        let before = t.setup.then(|| plastic.history.clone());
-        let told = (&mut memory.history[..], width);
-        self.meetings.press(&self.material, grains.radius, &mut state, &mut plastic, told, manner);
-        let step = Advance { dt: t.dt, history: !t.setup };
-        self.sweep.act(&grains, &self.rules, &mut memory, step);
-        drop(masses);
-        self.check(w, t)?;
-        self.conduct(w);
-        self.sweep.scatter(&mut w.particles.f, &mut w.particles.torque);
-        if t.virial {
-            let part = self.sweep.virial(&w.particles.x, &period);
-            add_virial(w, part);
-        }
-        if let Some(before) = before {
-            undo(&before, &mut plastic.history, PAIR, manner.lammps);
-        }
-        let (memory, state) = match kept {
-            Some((before, state)) => (self.still(before, &memory), state),
-            None => (memory, state),
-        };
-        w.contacts.insert(self.style.to_string(), memory);
-        w.contacts.insert(PLASTIC.to_string(), plastic);
-        state.put(&mut w.columns);
-        Ok(())
-    }
-
-    fn finish(&mut self, _w: &mut World) -> Result<()> {
-        self.generation = None;
-        Ok(())
-    }
-
-    fn bytes(&self, _w: &World) -> u64 {
-        // Pairs read with both ends (12 + 2 × 32 bytes); per contact both ends' state, wrench and history.
-        (self.list.len() * 76 + self.sweep.len() * 900) as u64
     }
 }
