@@ -9,9 +9,13 @@ use perigrain_contact::driver::{Grains, Rules, Sweep};
 use perigrain_contact::powder::{Manner, Material, Meetings, PAIR, TOLD, begin, undo};
 use perigrain_contact::{Advance, Granular};
 use perigrain_neigh::list::{Pair, Wanted, difference};
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::contacts::{Contacts, PLASTIC};
+use perigrain_world::field::{
+    BONDS, BOX, COLUMNS, CONTACTS, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA,
+    RADIUS, TAG, TALLY, TORQUE, TRAVEL, V, X,
+};
 use perigrain_world::{Allowed, World};
 
 /// Forces and torques among plastic grains.
@@ -108,8 +112,27 @@ impl Op for Powder {
         Stage::Force
     }
 
-    fn access(&self) -> Access {
-        Access::new("x v omega radius mass type", "f torque contacts tally radius columns")
+    fn needs(&self) -> Needs {
+        Needs::new()
+            .read(
+                X | V
+                    | OMEGA
+                    | RADIUS
+                    | MASS
+                    | KIND
+                    | BOX
+                    | LISTS
+                    | TAG
+                    | TRAVEL
+                    | FACTS
+                    | MASK
+                    | MOLECULE
+                    | FAMILIES
+                    | BONDS,
+            )
+            .add(F | TORQUE)
+            .write(CONTACTS | TALLY | RADIUS)
+            .keep(COLUMNS | MEMO)
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
