@@ -22,6 +22,7 @@ mod installed_decks;
 mod lammps;
 #[path = "peri/main.rs"]
 mod peri;
+mod plans;
 mod prompt;
 #[path = "restart/main.rs"]
 mod restart;

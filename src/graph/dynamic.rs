@@ -4,10 +4,11 @@ use super::node::{FixNode, Graph};
 use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
 use perigrain_lang::{RefKind, ValueRef};
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::surface::choose;
 use perigrain_styles::{Reading, SealCx};
+use perigrain_world::field::{FAMILIES, MASK, REGIONS, SLOTS, VOLUME, X};
 use perigrain_world::{Dynamic, GroupId, World};
 
 /// Adds the ops that choose the members of dynamic groups.
@@ -36,14 +37,18 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
     for (group, surface) in surfaces {
         let Some(every) = surface.every else { continue };
         let title = format!("group {} surface", s.world().groups.name(group));
-        let op =
-            StepOp::new(title, Stage::EndOfStep, Access::new("x volume families", "mask"), move |w, _| {
+        let op = StepOp::new(
+            title,
+            Stage::EndOfStep,
+            Needs::new().read(X | VOLUME | FAMILIES).write(MASK),
+            move |w, _| {
                 if choose(w, group.bit(), &surface) {
                     // Contacts are looked for anew in the next step.
                     w.rebuild.due = true;
                 }
                 Ok(())
-            });
+            },
+        );
         let when = When::First.or(When::Every(every));
         let span = s.span();
         s.add(vec![op.when(when).in_setup(true).boxed()], span);
@@ -98,8 +103,8 @@ impl Op for Choose {
     fn stage(&self) -> Stage {
         Stage::PostForce
     }
-    fn access(&self) -> Access {
-        Access::new("x regions", "mask")
+    fn needs(&self) -> Needs {
+        Needs::new().read(X | REGIONS | SLOTS).write(MASK)
     }
     fn when(&self) -> When {
         self.when.clone()

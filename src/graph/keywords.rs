@@ -205,7 +205,7 @@ fn time_value(name: &str, c: &Clock) -> f64 {
 }
 
 fn volume(w: &World) -> f64 {
-    let Some(d) = &w.domain else { return 0.0 };
+    let Some(d) = &*w.domain else { return 0.0 };
     if w.settings.two_dimensional { d.lengths()[0] * d.lengths()[1] } else { d.volume() }
 }
 

@@ -3,10 +3,14 @@
 use super::node::FixNode;
 use super::seal::Sealer;
 use perigrain_base::diag::Result;
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::SealCx;
 use perigrain_styles::ledger::{self, Channel};
 use perigrain_styles::step_op::StepOp;
+use perigrain_world::field::{
+    COLUMNS, CONTACTS, F, FAMILIES, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, TALLY, TORQUE, TYPE_MASS, V,
+    VOLUME, X,
+};
 
 /// Whether somebody keeps the ledger.
 pub fn wanted(s: &Sealer) -> bool {
@@ -17,7 +21,7 @@ pub fn wanted(s: &Sealer) -> bool {
 
 /// Before the fixes of a step.
 pub fn begin(s: &mut Sealer) {
-    let access = Access::new("f torque", "columns");
+    let access = Needs::new().read(F | TORQUE).write(FAMILIES).keep(COLUMNS);
     let op = StepOp::new("ledger begins", Stage::PostForce, access, |w, t| {
         ledger::begin(w, t);
         Ok(())
@@ -36,7 +40,7 @@ pub fn mark(s: &mut Sealer, f: &FixNode, ops: &[Stage]) {
         style if style.starts_with("wall/") => Channel::Walls,
         _ => Channel::Imposed,
     };
-    let access = Access::new("f torque", "columns");
+    let access = Needs::new().read(F | TORQUE).keep(COLUMNS);
     let op = StepOp::new(format!("ledger of fix {}", f.id), Stage::PostForce, access, move |w, t| {
         ledger::mark(w, t, channel);
         Ok(())
@@ -54,7 +58,12 @@ pub fn end(s: &mut Sealer) -> Result<()> {
     let mut probes = s.probes()?;
     s.ask_energy(&When::First);
     s.ask_atom_energy(&When::First);
-    let access = Access::new("x v omega radius mass type f torque contacts", "memory");
+    let access = Needs::new()
+        .read(TALLY)
+        .read(
+            X | V | OMEGA | RADIUS | MASS | KIND | CONTACTS | MASK | COLUMNS | FAMILIES | VOLUME | TYPE_MASS,
+        )
+        .keep(MEMO);
     let op = StepOp::new("ledger", Stage::FinalIntegrate, access, move |w, t| {
         ledger::account(w, t, &mut probes, free)
     });

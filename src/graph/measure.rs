@@ -129,7 +129,7 @@ impl Members<'_> {
     /// Position with periodic images unfolded.
     fn unfolded(&self, i: usize) -> [f64; 3] {
         let p = &self.w.particles;
-        let Some(domain) = &self.w.domain else { return p.x[i] };
+        let Some(domain) = &*self.w.domain else { return p.x[i] };
         let l = domain.lengths();
         [0, 1, 2].map(|d| p.x[i][d] + p.image[i][d] as f64 * l[d])
     }

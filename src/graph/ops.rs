@@ -3,9 +3,10 @@
 use super::spatial;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
-use perigrain_plan::{Access, Act, Gist, Level, Op, Stage, Tick};
+use perigrain_plan::{Act, Gist, Level, Needs, Op, Stage, Tick};
 use perigrain_world::bonds::LostBond;
 use perigrain_world::columns::HEATFLOW;
+use perigrain_world::field::{COLUMNS, F, FACTS, FAMILIES, Fields, TAG, TALLY, TORQUE, TRAVEL, X, X0};
 use perigrain_world::index::Index;
 use perigrain_world::{Domain, Extent, Kept, Particles, Seen, World};
 
@@ -36,8 +37,9 @@ impl Op for Reneighbor {
     fn stage(&self) -> Stage {
         Stage::Neighbor
     }
-    fn access(&self) -> Access {
-        Access::new("x", "x image box lists")
+    fn needs(&self) -> Needs {
+        // Grains are put in the order of space, with all that belongs to them.
+        Needs::new().read(X | TRAVEL | FAMILIES | TAG | X0).write(Fields::ALL)
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if t.setup {
@@ -58,12 +60,12 @@ impl Op for Reneighbor {
         }
         if s.check {
             let half = 0.5 * (w.rebuild.room(s.skin) - corners_moved(w)).max(0.0);
-            if w.rebuild.seen.within(w.rebuild.travel, half) {
+            if w.rebuild.seen.within(*w.travel, half) {
                 debug_assert!(farthest(w, t)? <= half * half, "somebody moves particles without a word");
                 return Ok(());
             }
             let moved = farthest(w, t)?;
-            w.rebuild.seen = Seen::now(w.rebuild.travel, moved.sqrt());
+            w.rebuild.seen = Seen::now(*w.travel, moved.sqrt());
             if moved <= half * half {
                 return Ok(());
             }
@@ -79,7 +81,7 @@ impl Op for Reneighbor {
 
 /// How far the two corners of the box have moved since the last rebuild, together.
 fn corners_moved(w: &World) -> f64 {
-    let (Some(domain), Some([lo, hi])) = (&w.domain, w.rebuild.corners) else { return 0.0 };
+    let (Some(domain), Some([lo, hi])) = (&*w.domain, w.rebuild.corners) else { return 0.0 };
     let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum::<f64>().sqrt();
     apart(domain.lo, lo) + apart(domain.hi, hi)
 }
@@ -133,7 +135,7 @@ fn not_finite(w: &World, i: usize, t: &Tick) -> perigrain_base::diag::Diagnostic
 fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> {
     let n = w.n();
     let before = w.rebuild.generation;
-    let Some(domain) = &mut w.domain else { return Ok(()) };
+    let Some(domain) = &mut *w.domain else { return Ok(()) };
     let p = &mut w.particles;
     let extent = Extent::of(&p.x, domain);
     if let Some(bad) = extent.as_ref().and_then(|e| e.bad) {
@@ -179,7 +181,7 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> 
 fn lose(w: &mut World) {
     w.fall_back();
     for d in 0..3 {
-        let Some(domain) = &w.domain else { return };
+        let Some(domain) = &*w.domain else { return };
         let marked: Vec<bool> = w.particles.x.iter().map(|x| !domain.keeps_along(d, x)).collect();
         if marked.contains(&true) {
             w.delete(&marked, false);
@@ -224,8 +226,8 @@ fn too_far(w: &World, lost: &[usize], t: &Tick) -> perigrain_base::diag::Diagnos
 
 /// Keeps the present positions; those of creation are kept already.
 fn hold(w: &mut World) {
-    let (p, rebuild) = (&w.particles, &mut w.rebuild);
-    rebuild.seen = Seen::now(rebuild.travel, 0.0);
+    let (p, rebuild) = (&w.particles, &mut *w.rebuild);
+    rebuild.seen = Seen::now(*w.travel, 0.0);
     rebuild.corners = w.domain.as_ref().map(|d| [d.lo, d.hi]);
     rebuild.unmoved = p.x == p.x0;
     if rebuild.unmoved {
@@ -247,8 +249,8 @@ impl Op for ClearForces {
     fn stage(&self) -> Stage {
         Stage::PreForce
     }
-    fn access(&self) -> Access {
-        Access::new("", "f torque columns tally")
+    fn needs(&self) -> Needs {
+        Needs::new().write(F | TORQUE | COLUMNS | TALLY | FACTS)
     }
     fn level(&self) -> Level {
         Level::Every

@@ -5,8 +5,9 @@ use super::node::Graph;
 use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{RefKind, Value, ValueRef, Vars};
-use perigrain_plan::{Access, Level, Op, Stage, Tick, When};
+use perigrain_plan::{Level, Needs, Op, Stage, Tick, When};
 use perigrain_styles::{Reading, SealCx};
+use perigrain_world::field::{REGIONS, SLOTS};
 use perigrain_world::region::Variable;
 use perigrain_world::{Region, World};
 
@@ -110,8 +111,8 @@ impl Op for PlaceRegion {
     fn stage(&self) -> Stage {
         self.stage
     }
-    fn access(&self) -> Access {
-        Access::new("", "regions")
+    fn needs(&self) -> Needs {
+        Needs::new().read(SLOTS).write(REGIONS)
     }
     fn in_setup(&self) -> bool {
         true

@@ -6,10 +6,11 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, ValueRef};
 use perigrain_out::file::Pattern;
 use perigrain_out::restart::{Saving, write};
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::{BuildCx, SealCx, Use, UseKind};
 use perigrain_world::adapted;
 use perigrain_world::columns::{LEVEL, PLASTIC_BEGUN, PLASTIC_COLUMNS};
+use perigrain_world::field::{Fields, MEMO};
 use perigrain_world::{Said, World};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -159,8 +160,8 @@ impl Op for Write {
     fn stage(&self) -> Stage {
         Stage::Output
     }
-    fn access(&self) -> Access {
-        Access::new("everything", "restart file")
+    fn needs(&self) -> Needs {
+        Needs::new().read(Fields::ALL).keep(MEMO)
     }
     fn when(&self) -> When {
         self.when.clone()

@@ -4,8 +4,9 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::Value;
 use perigrain_out::log::Log;
 use perigrain_out::thermo::{Column, Kind, Layout, memory_line};
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::Reading;
+use perigrain_world::field::{FACTS, SLOTS};
 use perigrain_world::{RowValue, TableRow, World};
 use std::sync::Arc;
 
@@ -68,8 +69,8 @@ impl Op for Row {
     fn stage(&self) -> Stage {
         Stage::Output
     }
-    fn access(&self) -> Access {
-        Access::new("slots", "log")
+    fn needs(&self) -> Needs {
+        Needs::new().read(SLOTS).write(FACTS)
     }
     fn when(&self) -> When {
         self.when.clone()

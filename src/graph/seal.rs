@@ -5,7 +5,7 @@ mod context;
 use super::answers::Declared;
 use super::keywords::{self, Need, Sources};
 use super::node::Graph;
-use super::values::{Evaluate, Keyword, Once};
+use super::values::{Evaluate, Keyword, Once, asks_forces};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Dep, RefKind, ValueRef, Vars};
 use perigrain_out::log::Log;
@@ -280,8 +280,9 @@ impl<'a> Sealer<'a> {
         let shape = self.graph.variables.get(&r.name).copied().unwrap_or_default();
         let declared = self.declared();
         let (name, variable, span) = (format!("variable {}", r.name), r.name.clone(), r.span);
+        let asks_forces = asks_forces(&vars, &variable);
         let slot = self.evaluate(&format!("v_{}", r.name), stage, when, |slot| {
-            Box::new(Evaluate { declared, name, variable, span, vars, from, slot, stage })
+            Box::new(Evaluate { declared, name, variable, span, vars, from, slot, stage, asks_forces })
         });
         self.world.slots.get_mut(slot).offers = shape.offers();
         Ok(match r.index.as_slice() {

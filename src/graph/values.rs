@@ -5,8 +5,12 @@ use super::env::RunEnv;
 use super::keywords::{self, Sources};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Value, Vars};
-use perigrain_plan::{Access, Op, OpClass, Stage, Tick};
-use perigrain_world::{SlotId, World};
+use perigrain_plan::{Needs, Op, OpClass, Stage, Tick};
+use perigrain_world::field::{
+    BONDS, BOX, COLUMNS, CONTROLS, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, REGIONS,
+    SLOTS, TAG, TALLY, TORQUE, TYPE_MASS, V, X,
+};
+use perigrain_world::{Fields, SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -27,8 +31,8 @@ impl Op for Once {
     fn stage(&self) -> Stage {
         self.stage
     }
-    fn access(&self) -> Access {
-        self.op.access()
+    fn needs(&self) -> Needs {
+        self.op.needs()
     }
     fn in_setup(&self) -> bool {
         true
@@ -64,8 +68,9 @@ impl Op for Keyword {
     fn stage(&self) -> Stage {
         self.stage
     }
-    fn access(&self) -> Access {
-        Access::default()
+    fn needs(&self) -> Needs {
+        let forces = if self.name.starts_with('f') { F } else { Fields::NONE };
+        Needs::new().read(BONDS | BOX | LISTS | MASS | MEMO | TALLY | SLOTS | forces).write(SLOTS)
     }
     fn in_setup(&self) -> bool {
         true
@@ -100,6 +105,44 @@ pub(super) struct Evaluate {
     pub(super) slot: SlotId,
     /// The stage of its reader.
     pub(super) stage: Stage,
+    /// Whether its formula names forces or torques.
+    pub(super) asks_forces: bool,
+}
+
+/// What formulas may read besides forces and torques.
+const FORMULAS: Fields = X
+    .and(V)
+    .and(OMEGA)
+    .and(RADIUS)
+    .and(MASS)
+    .and(KIND)
+    .and(TYPE_MASS)
+    .and(MASK)
+    .and(IMAGE)
+    .and(TAG)
+    .and(MOLECULE)
+    .and(COLUMNS)
+    .and(CONTROLS)
+    .and(MEMO)
+    .and(BOX)
+    .and(REGIONS)
+    .and(SLOTS);
+
+/// Whether a variable's formula, or that of one it names, has a word for forces or torques in it.
+pub(super) fn asks_forces(vars: &Vars, name: &str) -> bool {
+    fn looks(vars: &Vars, name: &str, seen: &mut Vec<String>) -> bool {
+        if seen.iter().any(|s| s == name) {
+            return false;
+        }
+        seen.push(name.to_string());
+        let text = vars.definition(name).unwrap_or_default();
+        let mut words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+        words.any(|word| {
+            ["fx", "fy", "fz", "fcm", "torque", "tqx", "tqy", "tqz"].contains(&word)
+                || word.strip_prefix("v_").is_some_and(|other| looks(vars, other, seen))
+        })
+    }
+    looks(vars, name, &mut vec![])
 }
 
 impl Op for Evaluate {
@@ -109,8 +152,8 @@ impl Op for Evaluate {
     fn stage(&self) -> Stage {
         self.stage
     }
-    fn access(&self) -> Access {
-        Access::default()
+    fn needs(&self) -> Needs {
+        Needs::new().read(FORMULAS | if self.asks_forces { F | TORQUE } else { Fields::NONE }).write(SLOTS)
     }
     fn in_setup(&self) -> bool {
         true

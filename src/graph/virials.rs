@@ -2,9 +2,13 @@
 
 use super::seal::Sealer;
 use perigrain_base::diag::Result;
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::SealCx;
 use perigrain_styles::probe::{Ask, Probe, look_all};
+use perigrain_world::field::{
+    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
+    TALLY, TRAVEL, V, X,
+};
 use perigrain_world::{RunStyle, World};
 
 /// Adds the op that asks pair styles for the virials of particles; after everything that may read them.
@@ -44,9 +48,26 @@ impl Op for Virials {
     fn stage(&self) -> Stage {
         Stage::Force
     }
-    fn access(&self) -> Access {
+    fn needs(&self) -> Needs {
         // Contacts are there whenever virials of particles are asked for.
-        Access::new("x v omega radius mass type", "tally")
+        Needs::new()
+            .read(MASK | MOLECULE | BONDS)
+            .read(
+                BOX | COLUMNS
+                    | CONTACTS
+                    | FACTS
+                    | FAMILIES
+                    | TAG
+                    | LISTS
+                    | TRAVEL
+                    | X
+                    | V
+                    | OMEGA
+                    | RADIUS
+                    | MASS
+                    | KIND,
+            )
+            .write(TALLY)
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if !t.atom_virial {

@@ -2,9 +2,10 @@
 
 use super::seal::Sealer;
 use perigrain_base::diag::Result;
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::{Compute, Fix, SealCx};
 use perigrain_world::World;
+use perigrain_world::field::{COLUMNS, IMAGE, LISTS, X};
 
 /// Adds the op, where some fix makes particles.
 pub fn seal(s: &mut Sealer) {
@@ -34,8 +35,8 @@ impl Op for Welcome {
     fn stage(&self) -> Stage {
         Stage::Exchange
     }
-    fn access(&self) -> Access {
-        Access::new("x image", "columns")
+    fn needs(&self) -> Needs {
+        Needs::new().read(X | IMAGE | LISTS).keep(COLUMNS)
     }
     fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
         if self.roster != w.rebuild.roster {

@@ -131,7 +131,7 @@ impl Session {
             w.types,
             if w.settings.two_dimensional { 2 } else { 3 },
         );
-        match &w.domain {
+        match &*w.domain {
             None => text += "\nBox has not yet been created\n",
             Some(d) => {
                 let l = d.lengths();

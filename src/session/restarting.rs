@@ -148,7 +148,7 @@ impl Session {
         (settings.deadline, settings.limit_every) = (now.deadline, now.limit_every);
         (settings.force_list, settings.no_skipping) = (now.force_list, now.no_skipping);
         (settings.portable, settings.compat) = (now.portable, now.compat);
-        if let Some(families) = &mut world.families {
+        if let Some(families) = &mut *world.families {
             (families.options.skip_rest, families.options.portable) = (!now.no_skipping, now.portable);
         }
         world.folder = std::mem::take(&mut old.folder);
@@ -194,7 +194,7 @@ impl Session {
         let (log, w) = (&self.options.log, &self.world);
         log.line(&format!("Reading restart file {} ...", path.display()))?;
         log.line(&format!("  restoring atom style {} from restart", w.particles.style.name()))?;
-        if let Some(d) = &w.domain {
+        if let Some(d) = &*w.domain {
             let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
             log.line(&format!("  orthogonal box = ({}) to ({})", text(d.lo), text(d.hi)))?;
         }
@@ -278,7 +278,7 @@ fn latest(pattern: &Path) -> Option<PathBuf> {
 /// `perigrain check` keeps no particles.
 fn without_particles(w: &mut World) {
     w.particles = Particles { style: w.particles.style, ..Particles::default() };
-    w.families = None;
+    w.families = None.into();
     w.contacts.clear();
     w.wall_contacts.clear();
     w.columns = Default::default();

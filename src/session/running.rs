@@ -267,7 +267,7 @@ impl Session {
         spatial::line_up_again(&mut self.world);
         let outcome = self.steps(&mut plan, unchanged, &pace);
         self.world.clock.running = false;
-        for (name, value) in std::mem::take(&mut self.world.controls) {
+        for (name, value) in std::mem::take(&mut *self.world.controls) {
             self.vars.set_internal(&name, value);
         }
         // What is put back at the end of a run changes the scene again.

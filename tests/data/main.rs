@@ -160,7 +160,7 @@ fn a_packed_file_is_the_same() {
     assert_eq!(plain.particles.v, [[1.0, 2.0, 3.0], [0.0, 0.0, 1e-3], [4.0, 5.0, 6.0]]);
     assert_eq!(plain.type_mass, [Some(1.5)]);
     // As in LAMMPS: 1e-4 of the edge beyond the outermost particles.
-    let domain = plain.domain.unwrap();
+    let domain = plain.domain.into_inner().unwrap();
     assert_eq!((domain.lo[1], domain.hi[1]), (-0.0002, 1.5002));
 }
 
@@ -177,7 +177,7 @@ fn more_particles_into_a_box() {
     assert_eq!(w.particles.tag, [1, 2, 3, 4, 5, 6, 101, 102, 103]);
     assert_eq!(w.particles.kind[3..6], [2, 2, 2]);
     assert_eq!(w.particles.x[3], [3.0, 0.0, 0.0]);
-    assert_eq!((w.types, w.type_mass.clone()), (3, vec![Some(1.5), Some(1.5), None]));
+    assert_eq!((w.types, w.type_mass.to_vec()), (3, vec![Some(1.5), Some(1.5), None]));
     let domain = w.domain.as_ref().unwrap();
     assert_eq!((domain.lo[0], domain.hi[0]), (0.0, 5.0));
     let bit = w.groups.find("new").unwrap().bit();
@@ -215,10 +215,10 @@ fn numbers_survive_a_file_to_the_last_bit() {
         let before = world(folder.path(), &format!("{head}{scene}write_data DIR/x.data"));
         let after = world(folder.path(), &format!("{head}read_data DIR/x.data\nwrite_data DIR/y.data"));
         let (a, b) = (&before.particles, &after.particles);
-        assert_eq!((&a.tag, &a.kind, &a.image), (&b.tag, &b.kind, &b.image), "{style}");
+        assert_eq!((&*a.tag, &*a.kind, &*a.image), (&*b.tag, &*b.kind, &*b.image), "{style}");
         assert_eq!((&a.x, &a.v, &a.omega), (&b.x, &b.v, &b.omega), "{style}");
         assert_eq!((&a.mass, &a.radius, &a.volume), (&b.mass, &b.radius, &b.volume), "{style}");
-        assert_eq!(before.domain.unwrap().hi, after.domain.unwrap().hi);
+        assert_eq!(before.domain.as_ref().unwrap().hi, after.domain.as_ref().unwrap().hi);
         let text = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
         assert_eq!(text("x.data"), text("y.data"), "{style}");
     }

@@ -92,7 +92,7 @@ impl CommandStyle for ChangeBox {
             // A check has no particles for faces to follow, but later lines depend on what the faces are.
             let faces = Boundary(*faces);
             return Ok(common::setting(move |cx| {
-                if let Some(domain) = &mut cx.world.domain {
+                if let Some(domain) = &mut *cx.world.domain {
                     common::check_flat(faces, (domain.lo[2], domain.hi[2]), domain.flat)?;
                     domain.boundary = faces;
                 }
@@ -169,13 +169,13 @@ fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span:
     bonds_allow(cx.world, [0, 1, 2].map(|d| before[d] != domain.lengths()[d])).map_err(|e| e.at(span))?;
     cx.say("Changing box ...");
     for domain in boxes {
-        cx.world.domain = Some(domain);
+        cx.world.domain = Some(domain).into();
         say_box(cx)?;
     }
     unwind(cx, unwound);
     // What is read into the box later finds these faces in force.
     cx.world.settings.boundary = domain.boundary;
-    cx.world.domain = Some(domain);
+    cx.world.domain = Some(domain).into();
     cx.world.particles.x = x;
     common::settle(cx.world);
     cx.world.touch();
@@ -262,7 +262,7 @@ mod tests {
         let mut w =
             scene("units si\nregion b block 0 4 0 2 0 1\ncreate_box 1 b\ncreate_atoms 1 single 1 1 0.5");
         more(&mut w, "change_box all x scale 2 y volume");
-        let domain = w.domain.clone().unwrap();
+        let domain = w.domain.clone().into_inner().unwrap();
         // By hand: x about 2 from -2 to 6; y halves about 1.
         assert_eq!((domain.lo, domain.hi), ([-2.0, 0.5, 0.0], [6.0, 1.5, 1.0]));
         assert_eq!(w.particles.x[0], [1.0, 1.0, 0.5]);

@@ -89,10 +89,10 @@ impl CommandStyle for CreateBox {
             cx.say(format!("Created orthogonal box = ({}) to ({})", text(domain.lo), text(domain.hi)));
             cx.say("  1 by 1 by 1 MPI processor grid");
             domain.open_shrinking_faces();
-            cx.world.domain = Some(domain);
+            cx.world.domain = Some(domain).into();
             cx.world.types = types as usize;
             cx.world.bonds.types = bond_types;
-            cx.world.type_mass = vec![None; types as usize];
+            cx.world.type_mass = vec![None; types as usize].into();
             Ok(())
         }))
     }
@@ -112,9 +112,9 @@ fn guessed_box(region: &Region, types: usize, bond_types: usize) -> Box<dyn Act>
     }
     setting(move |cx| {
         let flat = cx.world.settings.two_dimensional;
-        cx.world.domain = Some(Domain { flat, ..Domain::new(lo, hi, cx.world.settings.boundary) });
+        cx.world.domain = Some(Domain { flat, ..Domain::new(lo, hi, cx.world.settings.boundary) }).into();
         (cx.world.types, cx.world.bonds.types) = (types, bond_types);
-        cx.world.type_mass = vec![None; types];
+        cx.world.type_mass = vec![None; types].into();
         Ok(())
     })
 }

@@ -180,7 +180,7 @@ mod tests {
     fn moves_wrap_and_shrink_like_lammps() {
         let mut w = bar();
         more(&mut w, "displace_atoms all move 0.1 0 0.2 units box");
-        let domain = w.domain.clone().unwrap();
+        let domain = w.domain.clone().into_inner().unwrap();
         assert_eq!((domain.lo[0], domain.hi[0]), (0.099600000000000008, 4.1003999999999996));
         more(&mut w, "displace_atoms all random 0.1 0.02 0 332 units box");
         assert_eq!(w.particles.x[0], [0.039815216995689656, 0.014870409311200681, 0.2]);

@@ -87,7 +87,7 @@ impl Act for Cut {
             return Ok(());
         };
         let cut = view(w).map(|view| families.cut(&view, |a, b| self.crack.cuts(a, b)));
-        w.families = Some(families);
+        w.families = Some(families).into();
         match cut? {
             0 => Err(Crack::missed(&self.crack).into()),
             n => {

@@ -227,9 +227,9 @@ impl Reading {
 
     /// The box of a file that an earlier line of a checked deck would have written.
     fn promised(&self, cx: &mut ActCx, scene: &World) -> Result<()> {
-        let Some(domain) = &scene.domain else { return Ok(()) };
+        let Some(domain) = &*scene.domain else { return Ok(()) };
         let boundary = cx.world.settings.boundary;
-        cx.world.domain = Some(Domain { boundary, ..domain.clone() });
+        cx.world.domain = Some(Domain { boundary, ..domain.clone() }).into();
         cx.world.types = cx.world.types.max(scene.types + self.extra_types);
         cx.world.type_mass = scene.type_mass.clone();
         cx.world.type_mass.resize(cx.world.types, None);
@@ -297,7 +297,7 @@ impl Reading {
     fn domain(&self, world: &World, data: &DataFile) -> Domain {
         let mut lo: [f64; 3] = std::array::from_fn(|d| data.header.lo[d] + self.shift[d]);
         let mut hi: [f64; 3] = std::array::from_fn(|d| data.header.hi[d] + self.shift[d]);
-        if let Some(old) = &world.domain {
+        if let Some(old) = &*world.domain {
             for d in 0..3 {
                 (lo[d], hi[d]) = (lo[d].min(old.lo[d]), hi[d].max(old.hi[d]));
             }
@@ -329,7 +329,7 @@ impl Reading {
         let bit = self.group(cx)?;
         self.tell(cx, data, &domain);
         let w = &mut *cx.world;
-        w.domain = Some(domain);
+        w.domain = Some(domain).into();
         w.types = data.types;
         w.type_mass.resize(data.types, None);
         w.bonds.types = data.bond_types;

@@ -107,10 +107,10 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
     }
     world.bonds.special.sort_unstable();
     world.bonds.changes += 1;
-    world.domain = Some(domain);
+    world.domain = Some(domain).into();
     world.touch();
     say_box(cx)?;
-    if let Some(domain) = &mut cx.world.domain {
+    if let Some(domain) = &mut *cx.world.domain {
         domain.open_shrinking_faces();
     }
     cx.say("  1 by 1 by 1 MPI processor grid");

@@ -10,6 +10,7 @@ use perigrain_styles::near::bonds_within;
 use perigrain_styles::pull::{Pull, Stretched, apart};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BONDS, BOX, KIND, MASK, MASS, MEMO, TAG, TYPE_MASS, V, X};
 use perigrain_world::index::Index;
 use perigrain_world::{GroupId, SlotId};
 
@@ -162,31 +163,39 @@ impl Compute for Declared {
         if needed && style.is_none() {
             return fail(Code::INCOMPLETE, span, "energies and forces of bonds need a bond_style");
         }
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x v bonds mask", move |w, _, out| {
-            let p = &w.particles;
-            let (index, lengths, masses) = (Index::new(&p.tag), w.periods(), Masses::of(w));
-            let mvv2e = w.settings.units.constants().mvv2e;
-            out.local_cols = me.values.len();
-            out.local.clear();
-            for bond in bonds_within(w, me.group) {
-                let [Some(a), Some(b)] = bond.ends.map(|t| index.find(t, &p.tag)) else { continue };
-                let d = apart(w, &lengths, [a, b]);
-                let mut pull = Pull::default();
-                if let (true, true, Some(style)) = (needed, bond.is_on(), &style) {
-                    let v = sub(p.v[a], p.v[b]);
-                    let now = Stretched { kind: bond.kind as u16, d, v, rest: bond.length };
-                    let Some(found) = style.single(w, &now) else {
-                        let text =
-                            format!("the force of bond_style {} is not of its two ends alone", style.name());
-                        return fail(Code::CONFLICT, span, text);
-                    };
-                    pull = found;
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | V | BONDS | MASK | BOX | TAG | MASS | MEMO | KIND | TYPE_MASS,
+            move |w, _, out| {
+                let p = &w.particles;
+                let (index, lengths, masses) = (Index::new(&p.tag), w.periods(), Masses::of(w));
+                let mvv2e = w.settings.units.constants().mvv2e;
+                out.local_cols = me.values.len();
+                out.local.clear();
+                for bond in bonds_within(w, me.group) {
+                    let [Some(a), Some(b)] = bond.ends.map(|t| index.find(t, &p.tag)) else { continue };
+                    let d = apart(w, &lengths, [a, b]);
+                    let mut pull = Pull::default();
+                    if let (true, true, Some(style)) = (needed, bond.is_on(), &style) {
+                        let v = sub(p.v[a], p.v[b]);
+                        let now = Stretched { kind: bond.kind as u16, d, v, rest: bond.length };
+                        let Some(found) = style.single(w, &now) else {
+                            let text = format!(
+                                "the force of bond_style {} is not of its two ends alone",
+                                style.name()
+                            );
+                            return fail(Code::CONFLICT, span, text);
+                        };
+                        pull = found;
+                    }
+                    let row =
+                        Row { d, pull, mass: [masses.get(a), masses.get(b)], v: [p.v[a], p.v[b]], mvv2e };
+                    out.local.extend(me.values.iter().map(|v| row.get(*v)));
                 }
-                let row = Row { d, pull, mass: [masses.get(a), masses.get(b)], v: [p.v[a], p.v[b]], mvv2e };
-                out.local.extend(me.values.iter().map(|v| row.get(*v)));
-            }
-            Ok(())
-        }))
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

@@ -10,6 +10,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::within;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -110,23 +111,28 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (me, at) = (self.clone(), cx.span());
         let cutoff = reach(&self.id, None, at, cx)?;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x mask box", move |w, _, out| {
-            let (p, period) = (&w.particles, w.periods());
-            let of = |i: usize| p.mask[i] & me.group.bit() != 0;
-            let mut around: Vec<Vec<(u32, Vec3)>> = vec![vec![]; w.n()];
-            for pair in within(w, Reach::Fixed(cutoff), &|i, j| of(i) || of(j)) {
-                let (i, j, d) = (pair.i as usize, pair.j as usize, difference(&p.x, &period, &pair));
-                around[i].push((p.tag[j], scale(-1.0, d)));
-                around[j].push((p.tag[i], d));
-            }
-            out.cols = if me.axes { 10 } else { 1 };
-            out.atom.clear();
-            for (i, around) in around.into_iter().enumerate() {
-                let around = if of(i) { around } else { vec![] };
-                out.atom.extend(me.measure(around));
-            }
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | MASK | BOX | BONDS | FAMILIES | TAG | MOLECULE | RADIUS | KIND,
+            move |w, _, out| {
+                let (p, period) = (&w.particles, w.periods());
+                let of = |i: usize| p.mask[i] & me.group.bit() != 0;
+                let mut around: Vec<Vec<(u32, Vec3)>> = vec![vec![]; w.n()];
+                for pair in within(w, Reach::Fixed(cutoff), &|i, j| of(i) || of(j)) {
+                    let (i, j, d) = (pair.i as usize, pair.j as usize, difference(&p.x, &period, &pair));
+                    around[i].push((p.tag[j], scale(-1.0, d)));
+                    around[j].push((p.tag[i], d));
+                }
+                out.cols = if me.axes { 10 } else { 1 };
+                out.atom.clear();
+                for (i, around) in around.into_iter().enumerate() {
+                    let around = if of(i) { around } else { vec![] };
+                    out.atom.extend(me.measure(around));
+                }
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

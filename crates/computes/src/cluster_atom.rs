@@ -8,6 +8,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::{Clusters, held_together, within};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
 use perigrain_world::{GroupId, SlotId};
 
 /// `compute … cluster/atom`.
@@ -124,28 +125,33 @@ impl Compute for Declared {
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let me = self.clone();
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x mask families bonds", move |w, _, out| {
-            let p = &w.particles;
-            let of = |i: usize| p.mask[i] & me.group.bit() != 0;
-            let mut clusters = Clusters::new(&p.tag);
-            let mut bonded = vec![me.single; w.n()];
-            if let Some(cutoff) = me.cutoff {
-                let near = within(w, Reach::Fixed(cutoff), &|i, j| of(i) && of(j));
-                near.iter().for_each(|pair| clusters.join(pair.i, pair.j));
-            }
-            if me.bonds {
-                held_together(w, |i, j| {
-                    if of(i as usize) && of(j as usize) {
-                        clusters.join(i, j);
-                        (bonded[i as usize], bonded[j as usize]) = (true, true);
-                    }
-                });
-            }
-            out.cols = 1;
-            out.atom.clear();
-            out.atom.extend((0..w.n()).map(|i| if of(i) && bonded[i] { clusters.name(i) } else { 0.0 }));
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | MASK | FAMILIES | BONDS | BOX | TAG | MOLECULE | RADIUS | KIND,
+            move |w, _, out| {
+                let p = &w.particles;
+                let of = |i: usize| p.mask[i] & me.group.bit() != 0;
+                let mut clusters = Clusters::new(&p.tag);
+                let mut bonded = vec![me.single; w.n()];
+                if let Some(cutoff) = me.cutoff {
+                    let near = within(w, Reach::Fixed(cutoff), &|i, j| of(i) && of(j));
+                    near.iter().for_each(|pair| clusters.join(pair.i, pair.j));
+                }
+                if me.bonds {
+                    held_together(w, |i, j| {
+                        if of(i as usize) && of(j as usize) {
+                            clusters.join(i, j);
+                            (bonded[i as usize], bonded[j as usize]) = (true, true);
+                        }
+                    });
+                }
+                out.cols = 1;
+                out.atom.clear();
+                out.atom.extend((0..w.n()).map(|i| if of(i) && bonded[i] { clusters.name(i) } else { 0.0 }));
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

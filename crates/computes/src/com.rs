@@ -7,6 +7,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, sum, unwrapped};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, X};
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -48,16 +49,21 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, span) = (self.group, cx.span());
         check_masses(cx.world(), span)?;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x image mass mask", move |w, _, out| {
-            let masses = Masses::of(w);
-            let [x, y, z, m] = sum(&w.particles.mask, group, |i| {
-                let (m, [x, y, z]) = (masses.get(i), unwrapped(w, i));
-                [x * m, y * m, z * m, m]
-            });
-            out.vector.clear();
-            out.vector.extend([x, y, z].map(|k| if m > 0.0 { k / m } else { 0.0 }));
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | IMAGE | MASS | MASK | BOX | KIND | TYPE_MASS,
+            move |w, _, out| {
+                let masses = Masses::of(w);
+                let [x, y, z, m] = sum(&w.particles.mask, group, |i| {
+                    let (m, [x, y, z]) = (masses.get(i), unwrapped(w, i));
+                    [x * m, y * m, z * m, m]
+                });
+                out.vector.clear();
+                out.vector.extend([x, y, z].map(|k| if m > 0.0 { k / m } else { 0.0 }));
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {
@@ -74,7 +80,7 @@ mod tests {
     #[test]
     fn unwrapped_mean() {
         let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &[[1.0; 3], [2.0; 3]]);
-        b.world.particles.mass = vec![1.0, 3.0];
+        b.world.particles.mass = vec![1.0, 3.0].into();
         b.world.particles.image[1] = [1, 0, -1]; // The box is 20 wide.
         let c = b.compute(&Com, "").unwrap();
         assert_eq!(b.evaluate(&*c).unwrap().vector, [16.75, 1.75, -13.25]);

@@ -7,6 +7,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::touching;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -53,19 +54,24 @@ impl Compute for Declared {
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, among) = (self.group.bit(), self.among.bit());
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x radius mask", move |w, _, out| {
-            let mask = &w.particles.mask;
-            let counts = |i: usize, j: usize| mask[i] & group != 0 && mask[j] & among != 0;
-            out.cols = 1;
-            out.atom.clear();
-            out.atom.resize(w.n(), 0.0);
-            for pair in touching(w, &|i, j| counts(i, j) || counts(j, i)) {
-                for (i, j) in [(pair.i, pair.j), (pair.j, pair.i)] {
-                    out.atom[i as usize] += f64::from(u8::from(counts(i as usize, j as usize)));
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | RADIUS | MASK | BONDS | BOX | FAMILIES | TAG | MOLECULE | KIND,
+            move |w, _, out| {
+                let mask = &w.particles.mask;
+                let counts = |i: usize, j: usize| mask[i] & group != 0 && mask[j] & among != 0;
+                out.cols = 1;
+                out.atom.clear();
+                out.atom.resize(w.n(), 0.0);
+                for pair in touching(w, &|i, j| counts(i, j) || counts(j, i)) {
+                    for (i, j) in [(pair.i, pair.j), (pair.j, pair.i)] {
+                        out.atom[i as usize] += f64::from(u8::from(counts(i as usize, j as usize)));
+                    }
                 }
-            }
-            Ok(())
-        }))
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

@@ -8,6 +8,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::{one_image, within};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -75,27 +76,32 @@ impl Compute for Declared {
         let at = cx.span();
         one_image(cx.world(), self.cutoff, at)?;
         let me = self.clone();
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x type mask", move |w, _, out| {
-            let p = &w.particles;
-            let has = |i: usize, g: GroupId| p.mask[i] & g.bit() != 0;
-            let counts = |i: usize, j: usize| has(i, me.group) && has(j, me.among);
-            let near = within(w, Reach::Fixed(me.cutoff), &|i, j| counts(i, j) || counts(j, i));
-            let columns = me.types.len();
-            out.cols = columns;
-            out.atom.clear();
-            out.atom.resize(columns * w.n(), 0.0);
-            for pair in near {
-                let (i, j) = (pair.i as usize, pair.j as usize);
-                for (i, j) in [(i, j), (j, i)] {
-                    for (c, (lo, hi)) in me.types.iter().enumerate() {
-                        if counts(i, j) && (*lo..=*hi).contains(&p.kind[j]) {
-                            out.atom[i * columns + c] += 1.0;
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | KIND | MASK | BONDS | BOX | FAMILIES | TAG | MOLECULE | RADIUS,
+            move |w, _, out| {
+                let p = &w.particles;
+                let has = |i: usize, g: GroupId| p.mask[i] & g.bit() != 0;
+                let counts = |i: usize, j: usize| has(i, me.group) && has(j, me.among);
+                let near = within(w, Reach::Fixed(me.cutoff), &|i, j| counts(i, j) || counts(j, i));
+                let columns = me.types.len();
+                out.cols = columns;
+                out.atom.clear();
+                out.atom.resize(columns * w.n(), 0.0);
+                for pair in near {
+                    let (i, j) = (pair.i as usize, pair.j as usize);
+                    for (i, j) in [(i, j), (j, i)] {
+                        for (c, (lo, hi)) in me.types.iter().enumerate() {
+                            if counts(i, j) && (*lo..=*hi).contains(&p.kind[j]) {
+                                out.atom[i * columns + c] += 1.0;
+                            }
                         }
                     }
                 }
-            }
-            Ok(())
-        }))
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

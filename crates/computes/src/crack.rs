@@ -10,6 +10,7 @@ use perigrain_styles::near::Clusters;
 use perigrain_styles::peri_view::view;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{FAMILIES, MASK, VOLUME, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -128,7 +129,7 @@ impl Declared {
 
     /// The vector; `kept` is what stays from one evaluation to the next: time, length, speed, where the crack began.
     fn measure(&self, w: &World, kept: &mut Vec<f64>) -> Result<Vec<f64>> {
-        let Some(families) = &w.families else { return Ok(vec![0.0; 8]) };
+        let Some(families) = &*w.families else { return Ok(vec![0.0; 8]) };
         let view = view(w)?;
         let at = families.reference.as_deref().unwrap_or(view.x0);
         let cracked = self.cracked(w, families);
@@ -170,7 +171,7 @@ impl Compute for Declared {
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let me = self.clone();
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x families volume mask", move |w, _, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, X | FAMILIES | VOLUME | MASK, move |w, _, out| {
             out.vector = me.measure(w, &mut out.inner)?;
             Ok(())
         }))
@@ -193,13 +194,13 @@ mod tests {
         let places: Vec<[f64; 3]> =
             (0..400).map(|i| [f64::from(i % 20) - 9.5, f64::from(i / 20) - 9.5, 0.0]).collect();
         let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &places);
-        b.world.particles.volume = vec![1.0; 400];
+        b.world.particles.volume = vec![1.0; 400].into();
         b.world.lattice.spacing = [1.0; 3];
-        b.world.domain = Some(perigrain_world::Domain::new([-99.0; 3], [99.0; 3], Default::default()));
+        b.world.domain = Some(perigrain_world::Domain::new([-99.0; 3], [99.0; 3], Default::default())).into();
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 1.0, horizon: 3.015, s00: 1.0, alpha: 0.0 }).unwrap();
         let families = Families::build(&view(&b.world).unwrap(), &table, FamilyOptions::new(1.0)).unwrap();
-        b.world.families = Some(families);
+        b.world.families = Some(families).into();
         grow(&mut b, to);
         b
     }
@@ -207,7 +208,7 @@ mod tests {
     fn grow(b: &mut Bench, to: f64) {
         let mut families = b.world.families.take().unwrap();
         families.cut(&view(&b.world).unwrap(), |p, q| p[1] * q[1] < 0.0 && 0.5 * (p[0] + q[0]) < to);
-        b.world.families = Some(families);
+        b.world.families = Some(families).into();
     }
 
     #[test]
@@ -237,7 +238,7 @@ mod tests {
         let crosses =
             |p: [f64; 3], q: [f64; 3], y: f64| (p[1] - y) * (q[1] - y) < 0.0 && 0.5 * (p[0] + q[0]) < 2.0;
         families.cut(&view(&b.world).unwrap(), |p, q| crosses(p, q, 6.0) || crosses(p, q, -6.0));
-        b.world.families = Some(families);
+        b.world.families = Some(families).into();
         let c = b.compute(&CrackTip, "1 0 0").unwrap();
         let found = b.evaluate(&*c).unwrap().vector.clone();
         assert_eq!((found[6], found[3], found[5]), (2.0, 0.0, 0.0));

@@ -5,6 +5,7 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_styles::{BuildCx, Doc, Style};
+use perigrain_world::field::{FAMILIES, MASK, VOLUME};
 
 /// The style.
 pub struct DamageAtom;
@@ -31,7 +32,7 @@ impl ComputeStyle for DamageAtom {
         let known = Known {
             name: self.name(),
             by: &["peri/pmb", "peri/pmb/plastic", "peri/lps", "peri/ves", "peri/eps"],
-            reads: "families volume mask",
+            reads: FAMILIES | VOLUME | MASK,
             value: |w, f| {
                 let damages = f.damages(w.volumes());
                 Box::new(move |i| damages.of(i))
@@ -53,7 +54,7 @@ mod tests {
         let places = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &places);
         let c = b.compute(&DamageAtom, "").unwrap();
-        b.world.particles.volume = vec![1.0, 2.0, 6.0];
+        b.world.particles.volume = vec![1.0, 2.0, 6.0].into();
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 1.0, horizon: 1.2, s00: 1.0, alpha: 0.0 }).unwrap();
         let p = &b.world.particles;
@@ -63,7 +64,7 @@ mod tests {
         // Only 1-2 and 1-3 are within 1.2; without particle 2 they end: 2 of 8 volumes lost.
         families.remap(&[Some(0), None, Some(1)]);
         b.world.particles.gather(&[0, 2]);
-        b.world.families = Some(families);
+        b.world.families = Some(families).into();
         assert_eq!(b.evaluate(&*c).unwrap().atom, [0.25, 0.0]);
         b.world.particles.mask[0] = 0;
         assert_eq!(b.evaluate(&*c).unwrap().atom, [0.0, 0.0]);

@@ -4,10 +4,11 @@ use super::{Compute, ComputeStyle, origin};
 use perigrain_base::diag::Result;
 use perigrain_base::par;
 use perigrain_lang::{Args, RefKind, ValueRef};
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::unwrapped;
 use perigrain_styles::step_op::{StepOp, Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
+use perigrain_world::field::{BOX, COLUMNS, IMAGE, MASK, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -76,23 +77,28 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         self.welcome(cx.world());
         let (id, group) = (self.id.clone(), self.group);
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x image mask", move |w, _, out| {
-            let (bit, start) = (group.bit(), origin::places(w, &id));
-            out.cols = 4;
-            out.atom.resize(4 * w.n(), 0.0);
-            par::each(out.atom.as_chunks_mut::<4>().0, |first, rows| {
-                for (k, row) in rows.iter_mut().enumerate() {
-                    let i = first + k;
-                    *row = [0.0; 4];
-                    if w.particles.mask[i] & bit != 0 {
-                        let x = unwrapped(w, i);
-                        let d: [f64; 3] = std::array::from_fn(|k| x[k] - start[i][k]);
-                        *row = [d[0], d[1], d[2], (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()];
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | IMAGE | MASK | BOX | COLUMNS,
+            move |w, _, out| {
+                let (bit, start) = (group.bit(), origin::places(w, &id));
+                out.cols = 4;
+                out.atom.resize(4 * w.n(), 0.0);
+                par::each(out.atom.as_chunks_mut::<4>().0, |first, rows| {
+                    for (k, row) in rows.iter_mut().enumerate() {
+                        let i = first + k;
+                        *row = [0.0; 4];
+                        if w.particles.mask[i] & bit != 0 {
+                            let x = unwrapped(w, i);
+                            let d: [f64; 3] = std::array::from_fn(|k| x[k] - start[i][k]);
+                            *row = [d[0], d[1], d[2], (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()];
+                        }
                     }
-                }
-            });
-            Ok(())
-        }))
+                });
+                Ok(())
+            },
+        ))
     }
 
     fn refresh(&self, cx: &mut dyn SealCx, stage: Stage, when: &When) -> Result<Option<Box<dyn Op>>> {
@@ -100,7 +106,7 @@ impl Compute for Declared {
         let reading = cx.reading(r, Wants::PerAtom, stage, when)?;
         let (id, group) = (self.id.clone(), self.group);
         let name = format!("compute {id} refresh");
-        let op = StepOp::new(name, stage, Access::new("x image mask", ""), move |w: &mut World, _| {
+        let op = StepOp::new(name, stage, Needs::new().read(X | IMAGE | MASK), move |w: &mut World, _| {
             let chosen = |i: &usize| w.particles.mask[*i] & group.bit() != 0 && reading.atom(w, *i) != 0.0;
             let new: Vec<(usize, [f64; 3])> =
                 (0..w.n()).filter(chosen).map(|i| (i, unwrapped(w, i))).collect();

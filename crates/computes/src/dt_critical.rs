@@ -7,6 +7,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::critical::{self, Estimate};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{CONTACTS, FAMILIES, KIND, MASS, RADIUS, V, VOLUME, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -76,7 +77,7 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let mut probes = if self.grains { cx.probes()? } else { vec![] };
         let (how, safety, counts) = (self.how, self.safety, self.grains);
-        let reads = "x v radius mass type volume families contacts";
+        let reads = X | V | RADIUS | MASS | KIND | VOLUME | FAMILIES | CONTACTS;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let solids = safety * critical::solids(w, how)?;
             let grains = if counts { safety * critical::grains(w, &mut probes)? } else { f64::INFINITY };
@@ -113,8 +114,8 @@ mod tests {
     fn two_bonded_particles() {
         let places = [[0.0; 3], [1.0, 0.0, 0.0]];
         let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &places);
-        b.world.particles.volume = vec![1.0, 3.0];
-        b.world.particles.mass = vec![2.0, 6.0];
+        b.world.particles.volume = vec![1.0, 3.0].into();
+        b.world.particles.mass = vec![2.0, 6.0].into();
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 5.0, horizon: 1.2, s00: 1.0, alpha: 0.0 }).unwrap();
         let p = &b.world.particles;
@@ -122,7 +123,7 @@ mod tests {
         let view = PeriView { x: &p.x, x0: &p.x0, kind: &p.kind, volume: &p.volume, bounds, excluded: None };
         let options = FamilyOptions { unit: ForceUnit::Newton, ..FamilyOptions::new(1.0) };
         // |ξ| = 1 is within half a spacing of the horizon: weight (1.2 + 0.5 − 1)/1 = 0.7.
-        b.world.families = Some(Families::build(&view, &table, options).unwrap());
+        b.world.families = Some(Families::build(&view, &table, options).unwrap()).into();
         let value = |b: &mut Bench, words: &str| {
             let c = b.compute(&DtCritical, words).unwrap();
             b.evaluate(&*c).unwrap().vector.clone()

@@ -7,6 +7,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::ledger;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{CONTACTS, FAMILIES, KIND, MASS, OMEGA, RADIUS, TALLY, V, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -73,7 +74,7 @@ impl Compute for Declared {
         cx.ask_energy(when);
         cx.ask_atom_energy(when);
         let mut probes = cx.probes()?;
-        let reads = "x v omega radius mass type families contacts tally";
+        let reads = X | V | OMEGA | RADIUS | MASS | KIND | FAMILIES | CONTACTS | TALLY;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let sheet = ledger::sheet(w, &mut probes)?;
             out.scalar = sheet.residual();

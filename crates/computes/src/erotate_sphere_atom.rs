@@ -8,6 +8,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill, per_particle};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{MASK, MASS, OMEGA, RADIUS};
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -49,7 +50,7 @@ impl Compute for Declared {
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let group = self.group;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "omega radius mass mask", move |w, _, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, OMEGA | RADIUS | MASS | MASK, move |w, _, out| {
             let p = &w.particles;
             let half = 0.5 * w.settings.units.constants().mvv2e * INERTIA;
             per_particle(w, group, out, |i| {
@@ -74,8 +75,8 @@ mod tests {
     #[test]
     fn each_its_own() {
         let mut b = Bench::new(AtomStyle { sphere: true, ..AtomStyle::default() }, &[[0.0; 3]; 3]);
-        b.world.particles.radius = vec![0.5, 0.0, 1.0];
-        b.world.particles.omega = vec![[1.0, 2.0, 0.0], [9.0; 3], [0.0, 0.0, 3.0]];
+        b.world.particles.radius = vec![0.5, 0.0, 1.0].into();
+        b.world.particles.omega = vec![[1.0, 2.0, 0.0], [9.0; 3], [0.0, 0.0, 3.0]].into();
         let c = b.compute(&ErotateSphereAtom, "").unwrap();
         // m = 2: ½ · 0.4 · 2 · (0.25 · 5, 0, 1 · 9) by hand.
         let got = &b.evaluate(&*c).unwrap().atom;

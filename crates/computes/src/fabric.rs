@@ -9,6 +9,10 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::probe::{Ask, Interaction, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{
+    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
+    TRAVEL, V, X,
+};
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -129,7 +133,23 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let mut probes = answering(&self.id, cx)?;
         let me = self.clone();
-        let reads = "x v omega radius mass type mask contacts";
+        let reads = X
+            | V
+            | OMEGA
+            | RADIUS
+            | MASS
+            | KIND
+            | MASK
+            | CONTACTS
+            | BONDS
+            | BOX
+            | COLUMNS
+            | FACTS
+            | FAMILIES
+            | TAG
+            | LISTS
+            | MOLECULE
+            | TRAVEL;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let mut pairs = look_all(&mut probes, w, Ask::idle(!me.touching))?;
             let kind = |i: u32| w.particles.kind[i as usize];

@@ -7,6 +7,7 @@ use perigrain_peri::families::Families;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill, per_particle};
 use perigrain_styles::{BuildCx, SealCx, Shape};
+use perigrain_world::field::Fields;
 use perigrain_world::{GroupId, SlotId, World};
 
 /// What the families of a world know of the particle of an index, after they have been looked at.
@@ -20,7 +21,7 @@ pub(super) struct Known {
     /// The pair styles that know it. `bond_style bpm/peri` knows whatever its laws know.
     pub by: &'static [&'static str],
     /// What it reads.
-    pub reads: &'static str,
+    pub reads: Fields,
     /// The value.
     pub value: Value,
 }

@@ -9,6 +9,7 @@ use perigrain_styles::matter::{Masses, check_masses, unwrapped};
 use perigrain_styles::near::{Clusters, bonds};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, FAMILIES, IMAGE, KIND, MASK, MASS, TAG, TYPE_MASS, V, VOLUME, X};
 use perigrain_world::{GroupId, SlotId, World};
 use std::collections::BTreeMap;
 
@@ -103,7 +104,7 @@ fn pieces(w: &World, group: GroupId, damage: Option<f64>) -> Vec<Piece> {
     let p = &w.particles;
     let of = |i: usize| p.mask[i] & group.bit() != 0;
     let mut lost = vec![];
-    if let (Some(_), Some(families)) = (damage, &w.families) {
+    if let (Some(_), Some(families)) = (damage, &*w.families) {
         lost.resize(w.n(), 0.0);
         families.damage_all(w.volumes(), &mut lost);
     }
@@ -169,7 +170,7 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, least, damage, span) = (self.group, self.least, self.damage, cx.span());
         check_masses(cx.world(), span)?;
-        let reads = "x v image mass volume mask families";
+        let reads = KIND | TAG | TYPE_MASS | BOX | X | V | IMAGE | MASS | VOLUME | MASK | FAMILIES;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let list = pieces(w, group, damage);
             out.vector = spectrum(&list, least);
@@ -201,7 +202,7 @@ mod tests {
     fn row() -> Bench {
         let places: Vec<[f64; 3]> = (0..6).map(|i| [f64::from(i), 0.0, 0.0]).collect();
         let mut b = Bench::new(AtomStyle { peri: true, ..AtomStyle::default() }, &places);
-        b.world.particles.volume = vec![3.0; 6];
+        b.world.particles.volume = vec![3.0; 6].into();
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 1.0, horizon: 1.5, s00: 1.0, alpha: 0.0 }).unwrap();
         let options = FamilyOptions { unit: ForceUnit::Newton, ..FamilyOptions::new(1.0) };
@@ -210,7 +211,7 @@ mod tests {
             let middle = 0.5 * (p[0] + q[0]);
             middle == 2.5 || middle == 4.5
         });
-        b.world.families = Some(families);
+        b.world.families = Some(families).into();
         b.world.particles.v[5] = [0.0, 0.0, 4.0];
         b.world.particles.v[3] = [0.0, 2.0, 0.0];
         b

@@ -8,6 +8,10 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::probe::{Ask, Interaction, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{
+    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
+    TRAVEL, V, VOLUME, X, X0,
+};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -104,7 +108,25 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let mut probes = answering(&self.id, cx)?;
         let me = self.clone();
-        let reads = "x v omega radius mass type mask contacts";
+        let reads = X
+            | V
+            | OMEGA
+            | RADIUS
+            | MASS
+            | KIND
+            | MASK
+            | CONTACTS
+            | BOX
+            | COLUMNS
+            | FACTS
+            | FAMILIES
+            | TAG
+            | LISTS
+            | MOLECULE
+            | TRAVEL
+            | VOLUME
+            | X0
+            | BONDS;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let pairs = if me.pair { look_all(&mut probes, w, Ask::Acting)? } else { vec![] };
             let is = |i: u32, g: GroupId| w.particles.mask[i as usize] & g.bit() != 0;

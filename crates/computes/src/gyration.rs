@@ -7,6 +7,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, sum, unwrapped};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, X};
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -49,31 +50,36 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, span) = (self.group, cx.span());
         check_masses(cx.world(), span)?;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x image mass mask", move |w, _, out| {
-            let masses = Masses::of(w);
-            let [x, y, z, mass] = sum(&w.particles.mask, group, |i| {
-                let (m, [x, y, z]) = (masses.get(i), unwrapped(w, i));
-                [x * m, y * m, z * m, m]
-            });
-            let over = |a: f64| if mass > 0.0 { a / mass } else { 0.0 };
-            let center = [x, y, z].map(over);
-            let [all, tensor @ ..] = sum::<7>(&w.particles.mask, group, |i| {
-                let (m, u) = (masses.get(i), unwrapped(w, i));
-                let [x, y, z]: [f64; 3] = std::array::from_fn(|d| u[d] - center[d]);
-                [
-                    (x * x + y * y + z * z) * m,
-                    m * x * x,
-                    m * y * y,
-                    m * z * z,
-                    m * x * y,
-                    m * x * z,
-                    m * y * z,
-                ]
-            });
-            out.scalar = over(all).sqrt();
-            out.vector = tensor.map(over).to_vec();
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | IMAGE | MASS | MASK | BOX | KIND | TYPE_MASS,
+            move |w, _, out| {
+                let masses = Masses::of(w);
+                let [x, y, z, mass] = sum(&w.particles.mask, group, |i| {
+                    let (m, [x, y, z]) = (masses.get(i), unwrapped(w, i));
+                    [x * m, y * m, z * m, m]
+                });
+                let over = |a: f64| if mass > 0.0 { a / mass } else { 0.0 };
+                let center = [x, y, z].map(over);
+                let [all, tensor @ ..] = sum::<7>(&w.particles.mask, group, |i| {
+                    let (m, u) = (masses.get(i), unwrapped(w, i));
+                    let [x, y, z]: [f64; 3] = std::array::from_fn(|d| u[d] - center[d]);
+                    [
+                        (x * x + y * y + z * z) * m,
+                        m * x * x,
+                        m * y * y,
+                        m * z * z,
+                        m * x * y,
+                        m * x * z,
+                        m * y * z,
+                    ]
+                });
+                out.scalar = over(all).sqrt();
+                out.vector = tensor.map(over).to_vec();
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

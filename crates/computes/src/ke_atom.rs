@@ -7,6 +7,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::{Wanted, fill, per_particle};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{KIND, MASK, MASS, TYPE_MASS, V};
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -47,15 +48,20 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, span) = (self.group, cx.span());
         check_masses(cx.world(), span)?;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "v mass mask", move |w, _, out| {
-            let (p, masses) = (&w.particles, Masses::of(w));
-            let half = 0.5 * w.settings.units.constants().mvv2e;
-            per_particle(w, group, out, |i| {
-                let v = p.v[i];
-                half * masses.get(i) * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-            });
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            V | MASS | MASK | KIND | TYPE_MASS,
+            move |w, _, out| {
+                let (p, masses) = (&w.particles, Masses::of(w));
+                let half = 0.5 * w.settings.units.constants().mvv2e;
+                per_particle(w, group, out, |i| {
+                    let v = p.v[i];
+                    half * masses.get(i) * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+                });
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {
@@ -72,7 +78,7 @@ mod tests {
     #[test]
     fn each_its_own() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 3]);
-        b.world.particles.v = vec![[1.0, 2.0, 0.0], [0.0, 0.0, 4.0], [9.0, 9.0, 9.0]];
+        b.world.particles.v = vec![[1.0, 2.0, 0.0], [0.0, 0.0, 4.0], [9.0, 9.0, 9.0]].into();
         b.world.particles.mask[2] = 0;
         let c = b.compute(&KeAtom, "").unwrap();
         // m = 2, by hand.

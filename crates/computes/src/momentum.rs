@@ -7,6 +7,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, sum};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{KIND, MASK, MASS, TYPE_MASS, V};
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -47,13 +48,18 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, span) = (self.group, cx.span());
         check_masses(cx.world(), span)?;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "v mass mask", move |w, _, out| {
-            let (p, masses) = (&w.particles, Masses::of(w));
-            let total = sum(&p.mask, group, |i| p.v[i].map(|v| masses.get(i) * v));
-            out.vector.clear();
-            out.vector.extend(total);
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            V | MASS | MASK | KIND | TYPE_MASS,
+            move |w, _, out| {
+                let (p, masses) = (&w.particles, Masses::of(w));
+                let total = sum(&p.mask, group, |i| p.v[i].map(|v| masses.get(i) * v));
+                out.vector.clear();
+                out.vector.extend(total);
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {
@@ -70,7 +76,7 @@ mod tests {
     #[test]
     fn mass_times_velocity() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
-        b.world.particles.v = vec![[1.0, 2.0, 0.0], [-1.0, 0.0, 4.0]];
+        b.world.particles.v = vec![[1.0, 2.0, 0.0], [-1.0, 0.0, 4.0]].into();
         let c = b.compute(&Momentum, "").unwrap();
         assert_eq!(b.evaluate(&*c).unwrap().vector, [0.0, 4.0, 8.0]); // m = 2
     }

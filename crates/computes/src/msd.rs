@@ -3,10 +3,11 @@
 use super::{Compute, ComputeStyle, origin};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, count, sum, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, COLUMNS, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -99,36 +100,44 @@ impl Compute for Declared {
             check_masses(cx.world(), span)?;
         }
         let name = format!("compute {}", self.id);
-        let op = StepOp::new(name, stage, Access::new("x image mass mask", ""), move |w: &mut World, t| {
-            let (shift, bit) = (me.shift(w), me.group.bit());
-            if me.average {
-                let uses = w.memo.entry(me.key()).or_insert_with(|| vec![0.0]);
-                uses[0] += 1.0;
-                let (uses, part) = (uses[0], 1.0 / (uses[0] + 1.0));
-                let mut places = std::mem::take(origin::places_mut(w, &me.id));
-                for (i, place) in
-                    places.iter_mut().enumerate().filter(|(i, _)| w.particles.mask[*i] & bit != 0)
-                {
-                    let x = unwrapped(w, i);
-                    *place = std::array::from_fn(|d| (place[d] * uses + (x[d] - shift[d])) * part);
+        let op = StepOp::new(
+            name,
+            stage,
+            Needs::new()
+                .read(X | IMAGE | MASS | MASK | BOX | TYPE_MASS | KIND)
+                .write(SLOTS)
+                .keep(COLUMNS | MEMO),
+            move |w: &mut World, t| {
+                let (shift, bit) = (me.shift(w), me.group.bit());
+                if me.average {
+                    let uses = w.memo.entry(me.key()).or_insert_with(|| vec![0.0]);
+                    uses[0] += 1.0;
+                    let (uses, part) = (uses[0], 1.0 / (uses[0] + 1.0));
+                    let mut places = std::mem::take(origin::places_mut(w, &me.id));
+                    for (i, place) in
+                        places.iter_mut().enumerate().filter(|(i, _)| w.particles.mask[*i] & bit != 0)
+                    {
+                        let x = unwrapped(w, i);
+                        *place = std::array::from_fn(|d| (place[d] * uses + (x[d] - shift[d])) * part);
+                    }
+                    *origin::places_mut(w, &me.id) = places;
                 }
-                *origin::places_mut(w, &me.id) = places;
-            }
-            let start = origin::places(w, &me.id);
-            let [x, y, z, all] = sum(&w.particles.mask, me.group, |i| {
-                let x = unwrapped(w, i);
-                let [a, b, c]: [f64; 3] = std::array::from_fn(|d| {
-                    let d = x[d] - shift[d] - start[i][d];
-                    d * d
+                let start = origin::places(w, &me.id);
+                let [x, y, z, all] = sum(&w.particles.mask, me.group, |i| {
+                    let x = unwrapped(w, i);
+                    let [a, b, c]: [f64; 3] = std::array::from_fn(|d| {
+                        let d = x[d] - shift[d] - start[i][d];
+                        d * d
+                    });
+                    [a, b, c, a + b + c]
                 });
-                [a, b, c, a + b + c]
-            });
-            let n = count(w, me.group) as f64;
-            let out = w.slots.get_mut(slot);
-            out.step = Some(t.step);
-            out.vector = [x, y, z, all].map(|a| if n > 0.0 { a / n } else { 0.0 }).to_vec();
-            Ok(())
-        });
+                let n = count(w, me.group) as f64;
+                let out = w.slots.get_mut(slot);
+                out.step = Some(t.step);
+                out.vector = [x, y, z, all].map(|a| if n > 0.0 { a / n } else { 0.0 }).to_vec();
+                Ok(())
+            },
+        );
         Ok(op.when(when.clone()).in_setup(true).boxed())
     }
 
@@ -147,7 +156,7 @@ mod tests {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0; 3]]);
         let c = b.compute(&Msd, words).unwrap();
         c.declare(&mut b.world).unwrap();
-        b.world.particles.x = vec![[2.0, 0.0, 0.0], [1.0, 1.0, 5.0]];
+        b.world.particles.x = vec![[2.0, 0.0, 0.0], [1.0, 1.0, 5.0]].into();
         b.evaluate(&*c).unwrap().vector.clone()
     }
 

@@ -7,6 +7,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::SlotId;
+use perigrain_world::field::TALLY;
 
 /// The style.
 pub struct PairEnergy;
@@ -71,7 +72,7 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         cx.ask_energy(when);
         let me = self.clone();
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "tally", move |w, t, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, TALLY, move |w, t, out| {
             let tally = &w.tally;
             if tally.step.is_some_and(|s| s != t.step) {
                 let text = format!("the energy is not known at step {}", t.step);

@@ -7,6 +7,10 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::probe::{Ask, Interaction, OWN, Probe, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{
+    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
+    TRAVEL, V, VOLUME, X, X0,
+};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -155,7 +159,25 @@ impl Compute for Declared {
         let mut probes = answering(&self.id, cx)?;
         self.check(&probes, cx)?;
         let me = self.clone();
-        let reads = "x v omega radius mass type mask contacts";
+        let reads = X
+            | V
+            | OMEGA
+            | RADIUS
+            | MASS
+            | KIND
+            | MASK
+            | CONTACTS
+            | BONDS
+            | BOX
+            | COLUMNS
+            | FACTS
+            | FAMILIES
+            | TAG
+            | LISTS
+            | MOLECULE
+            | TRAVEL
+            | VOLUME
+            | X0;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let pairs = look_all(&mut probes, w, Ask::idle(!me.touching))?;
             out.local_cols = me.values.len();

@@ -6,6 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::TALLY;
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -56,7 +57,7 @@ impl Compute for Declared {
         }
         let names = if fix { cx.energy_fixes() } else { vec![] };
         let fixes: Vec<SlotId> = names.iter().map(|n| cx.slot(n)).collect();
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "tally", move |w, t, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, TALLY, move |w, t, out| {
             let mut energy = 0.0;
             if pair || bond {
                 match w.tally.step {

@@ -6,6 +6,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill, per_particle};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{MASK, TALLY};
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -51,7 +52,7 @@ impl Compute for Declared {
         if pair || bond {
             cx.ask_atom_energy(when);
         }
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "tally mask", move |w, t, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, TALLY | MASK, move |w, t, out| {
             let tally = &w.tally;
             if (pair || bond)
                 && (tally.step.is_some_and(|s| s != t.step) || (tally.step.is_some() && !tally.with_atoms))

@@ -7,6 +7,7 @@ use perigrain_peri::families::ForceUnit;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill, per_particle};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{FAMILIES, MASK, TALLY, VOLUME};
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -51,22 +52,27 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let group = self.group;
         cx.ask_atom_energy(when);
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "tally families volume mask", move |w, t, out| {
-            let tally = &w.tally;
-            if tally.step.is_some_and(|s| s != t.step || !tally.with_atoms) {
-                let text = format!("energies per particle are not known at step {}", t.step);
-                return fail(Code::WRONG_ORDER, None, text);
-            }
-            let Some(families) = &w.families else {
-                per_particle(w, group, out, |_| 0.0);
-                return Ok(());
-            };
-            let densities = families.options.unit == ForceUnit::Density;
-            let volumes = w.volumes();
-            let volume = |i: usize| if densities { volumes[i] } else { 1.0 };
-            per_particle(w, group, out, |i| tally.atom.get(i).map_or(0.0, |e| e * volume(i)));
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            TALLY | FAMILIES | VOLUME | MASK,
+            move |w, t, out| {
+                let tally = &w.tally;
+                if tally.step.is_some_and(|s| s != t.step || !tally.with_atoms) {
+                    let text = format!("energies per particle are not known at step {}", t.step);
+                    return fail(Code::WRONG_ORDER, None, text);
+                }
+                let Some(families) = &*w.families else {
+                    per_particle(w, group, out, |_| 0.0);
+                    return Ok(());
+                };
+                let densities = families.options.unit == ForceUnit::Density;
+                let volumes = w.volumes();
+                let volume = |i: usize| if densities { volumes[i] } else { 1.0 };
+                per_particle(w, group, out, |i| tally.atom.get(i).map_or(0.0, |e| e * volume(i)));
+                Ok(())
+            },
+        ))
     }
 
     fn tallied(&self) -> bool {

@@ -6,6 +6,7 @@ use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, TALLY};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -135,7 +136,7 @@ impl Compute for Declared {
             Some(r) => Some((cx.value(r, stage, when)?, r.clone())),
             None => None,
         };
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "tally box", move |w, t, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, TALLY | BOX, move |w, t, out| {
             let virial = if parts.any() { virial(w, t.step, parts)? } else { [0.0; 6] };
             let (trace, tensor) = match &kinetic {
                 Some((reading, r)) => kinetic_part(w, reading, r)?,

@@ -11,6 +11,10 @@ use perigrain_styles::peri_view::view;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
+use perigrain_world::field::{
+    BOX, COLUMNS, F, FAMILIES, IMAGE, KIND, MASK, MASS, OMEGA, RADIUS, TAG, TORQUE, TYPE_MASS, V, VOLUME, X,
+    X0,
+};
 use perigrain_world::index::Index;
 use perigrain_world::{AtomStyle, GroupId, SlotId, World};
 use std::borrow::Cow;
@@ -291,19 +295,39 @@ impl Compute for Declared {
         let w = &*cx.world();
         let getters: Result<Vec<Getter>> = self.getters.iter().map(|g| g.present(w, self.span)).collect();
         let (group, getters) = (self.group, getters?);
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "particles", move |w, _, out| {
-            let (bit, columns) = (group.bit(), getters.len());
-            out.cols = columns;
-            out.atom.resize(w.n() * columns, 0.0);
-            let values: Vec<Values> = getters.iter().map(|g| g.now(w)).collect();
-            par::each(&mut out.atom[..], |start, all| {
-                for (k, value) in all.iter_mut().enumerate() {
-                    let (i, column) = ((start + k) / columns, (start + k) % columns);
-                    *value = if w.particles.mask[i] & bit != 0 { values[column].get(i) } else { 0.0 };
-                }
-            });
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | BOX
+                | COLUMNS
+                | FAMILIES
+                | TAG
+                | IMAGE
+                | MASK
+                | MASS
+                | OMEGA
+                | RADIUS
+                | TORQUE
+                | KIND
+                | TYPE_MASS
+                | VOLUME
+                | X0
+                | F
+                | V,
+            move |w, _, out| {
+                let (bit, columns) = (group.bit(), getters.len());
+                out.cols = columns;
+                out.atom.resize(w.n() * columns, 0.0);
+                let values: Vec<Values> = getters.iter().map(|g| g.now(w)).collect();
+                par::each(&mut out.atom[..], |start, all| {
+                    for (k, value) in all.iter_mut().enumerate() {
+                        let (i, column) = ((start + k) / columns, (start + k) % columns);
+                        *value = if w.particles.mask[i] & bit != 0 { values[column].get(i) } else { 0.0 };
+                    }
+                });
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

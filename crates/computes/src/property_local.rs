@@ -10,6 +10,10 @@ use perigrain_styles::near::{bonds, bonds_within, within};
 use perigrain_styles::probe::{Ask, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{
+    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
+    TRAVEL, V, VOLUME, X, X0,
+};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -158,7 +162,28 @@ impl Compute for Declared {
         let me = self.clone();
         let alone = me.of == Of::Bond || (me.of == Of::Contact && me.touching);
         let mut probes = if alone { vec![] } else { answering(&self.id, cx)? };
-        let reads = if alone { "x radius mask families" } else { "x v omega radius mass type mask contacts" };
+        let reads = if alone {
+            X | RADIUS | MASK | FAMILIES | TAG | BOX | BONDS | KIND | MOLECULE
+        } else {
+            X | V
+                | OMEGA
+                | RADIUS
+                | MASS
+                | KIND
+                | MASK
+                | CONTACTS
+                | BONDS
+                | BOX
+                | COLUMNS
+                | FACTS
+                | FAMILIES
+                | TAG
+                | LISTS
+                | MOLECULE
+                | TRAVEL
+                | VOLUME
+                | X0
+        };
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let has = |i: usize| w.particles.mask[i] & me.group.bit() != 0;
             let mut rows: Vec<Row> = vec![];

@@ -9,6 +9,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::{one_image, within};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
 use perigrain_world::{GroupId, SlotId, World};
 use std::f64::consts::PI;
 
@@ -163,10 +164,15 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (me, at) = (self.clone(), cx.span());
         let cutoff = reach(&self.id, self.cutoff, at, cx)?;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x type mask box", move |w, _, out| {
-            (out.array, out.array_cols) = (me.rows(w, cutoff)?, 1 + 2 * me.pairs.len());
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | KIND | MASK | BOX | BONDS | FAMILIES | TAG | MOLECULE | RADIUS,
+            move |w, _, out| {
+                (out.array, out.array_cols) = (me.rows(w, cutoff)?, 1 + 2 * me.pairs.len());
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

@@ -8,6 +8,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::Chosen;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
+use perigrain_world::field::{F, MASK, REGIONS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// `compute … reduce`.
@@ -322,7 +323,7 @@ impl Compute for Declared {
             });
         }
         let (group, region) = (self.group, self.region.clone());
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x v f mask", move |w, _, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, X | V | F | MASK | REGIONS, move |w, _, out| {
             let chosen = Chosen::new(w, group, region.as_deref(), span)?;
             let chosen = chosen.now(w);
             let p = &w.particles;

@@ -9,6 +9,7 @@ use perigrain_styles::rigid_bodies::{Body, bodies};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, UseKind};
 use perigrain_world::SlotId;
+use perigrain_world::field::MEMO;
 
 /// `compute ke/rigid`.
 pub struct KeRigid;
@@ -110,7 +111,7 @@ impl Compute for Energy {
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let me = self.clone();
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "bodies", move |w, _, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, MEMO, move |w, _, out| {
             let twice: f64 = bodies(w, me.fix.style, &me.fix.id).iter().map(me.twice).sum();
             out.scalar = 0.5 * w.settings.units.constants().mvv2e * twice;
             Ok(())

@@ -6,11 +6,12 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::body::{axes, from_axes};
 use perigrain_base::math::vec3::{Vec3, dot, scale, sub};
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::unwrapped;
 use perigrain_styles::rigid_bodies::{Body, bodies, body_column};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, COLUMNS, IMAGE, MASK, MEMO, MOLECULE, SLOTS, TAG, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -177,17 +178,26 @@ impl Compute for Declared {
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let me = self.clone();
         let name = format!("compute {}", self.id);
-        let op = StepOp::new(name, stage, Access::new("x image mask bodies", ""), move |w: &mut World, t| {
-            let bodies: Vec<Body> = bodies(w, me.fix.style, &me.fix.id).into_iter().map(ascending).collect();
-            let mut owners = w.memo.remove(&me.key()).unwrap_or_default();
-            owners.truncate(bodies.len());
-            owners.extend(me.owners(w, owners.len(), bodies.len() - owners.len()));
-            let rows = me.rows(w, &owners, &bodies);
-            w.memo.insert(me.key(), owners);
-            let out = w.slots.get_mut(slot);
-            (out.step, out.local, out.local_cols) = (Some(t.step), rows, me.list.len());
-            Ok(())
-        });
+        let op = StepOp::new(
+            name,
+            stage,
+            Needs::new()
+                .read(X | IMAGE | MASK | MEMO | BOX | COLUMNS | MOLECULE | TAG)
+                .write(SLOTS)
+                .keep(MEMO),
+            move |w: &mut World, t| {
+                let bodies: Vec<Body> =
+                    bodies(w, me.fix.style, &me.fix.id).into_iter().map(ascending).collect();
+                let mut owners = w.memo.remove(&me.key()).unwrap_or_default();
+                owners.truncate(bodies.len());
+                owners.extend(me.owners(w, owners.len(), bodies.len() - owners.len()));
+                let rows = me.rows(w, &owners, &bodies);
+                w.memo.insert(me.key(), owners);
+                let out = w.slots.get_mut(slot);
+                (out.step, out.local, out.local_cols) = (Some(t.step), rows, me.list.len());
+                Ok(())
+            },
+        );
         Ok(op.when(when.clone()).in_setup(true).boxed())
     }
 

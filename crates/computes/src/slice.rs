@@ -7,6 +7,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::SlotId;
+use perigrain_world::field::SLOTS;
 
 /// The style.
 pub struct Slice;
@@ -112,7 +113,7 @@ impl Compute for Declared {
             readings.push((cx.reading(r, Wants::Vector, stage, when)?, r.clone()));
         }
         let (first, skip, count) = (self.start - 1, self.skip, self.count());
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "slots", move |w, t, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, SLOTS, move |w, t, out| {
             let mut columns = vec![];
             for (reading, r) in &readings {
                 let list = reading.list(w);

@@ -9,6 +9,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{KIND, MASK, MASS, TALLY, TYPE_MASS, V};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -66,32 +67,37 @@ impl Compute for Declared {
         if ke {
             check_masses(cx.world(), span)?;
         }
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "v mass mask tally", move |w, t, out| {
-            known(w, parts, t.step)?;
-            let (p, masses, units) = (&w.particles, Masses::of(w), w.settings.units.constants());
-            let of = |list: &[[f64; 6]], yes: bool, i: usize| match list.get(i) {
-                Some(virial) if yes => *virial,
-                _ => [0.0; 6],
-            };
-            let stress = |i: usize| -> [f64; 6] {
-                let pair = of(&w.tally.atom_virial, parts.pair, i);
-                let bond = of(&w.tally.atom_bonds, parts.bond, i);
-                let fix = of(&w.tally.atom_fixes, parts.fix, i);
-                let [x, y, z] = p.v[i];
-                let m = if ke { units.mvv2e * masses.get(i) } else { 0.0 };
-                let kinetic = [x * x, y * y, z * z, x * y, x * z, y * z];
-                std::array::from_fn(|k| -(pair[k] + bond[k] + fix[k] + m * kinetic[k]) * units.nktv2p)
-            };
-            out.cols = 6;
-            out.atom.resize(6 * w.n(), 0.0);
-            let rows = par::Rows { data: &mut out.atom[..], width: 6 };
-            par::each((rows, &p.mask[..]), |start, (rows, mask)| {
-                for (k, (row, mask)) in rows.data.chunks_exact_mut(6).zip(mask).enumerate() {
-                    row.copy_from_slice(&if mask & bit != 0 { stress(start + k) } else { [0.0; 6] });
-                }
-            });
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            V | MASS | MASK | TALLY | KIND | TYPE_MASS,
+            move |w, t, out| {
+                known(w, parts, t.step)?;
+                let (p, masses, units) = (&w.particles, Masses::of(w), w.settings.units.constants());
+                let of = |list: &[[f64; 6]], yes: bool, i: usize| match list.get(i) {
+                    Some(virial) if yes => *virial,
+                    _ => [0.0; 6],
+                };
+                let stress = |i: usize| -> [f64; 6] {
+                    let pair = of(&w.tally.atom_virial, parts.pair, i);
+                    let bond = of(&w.tally.atom_bonds, parts.bond, i);
+                    let fix = of(&w.tally.atom_fixes, parts.fix, i);
+                    let [x, y, z] = p.v[i];
+                    let m = if ke { units.mvv2e * masses.get(i) } else { 0.0 };
+                    let kinetic = [x * x, y * y, z * z, x * y, x * z, y * z];
+                    std::array::from_fn(|k| -(pair[k] + bond[k] + fix[k] + m * kinetic[k]) * units.nktv2p)
+                };
+                out.cols = 6;
+                out.atom.resize(6 * w.n(), 0.0);
+                let rows = par::Rows { data: &mut out.atom[..], width: 6 };
+                par::each((rows, &p.mask[..]), |start, (rows, mask)| {
+                    for (k, (row, mask)) in rows.data.chunks_exact_mut(6).zip(mask).enumerate() {
+                        row.copy_from_slice(&if mask & bit != 0 { stress(start + k) } else { [0.0; 6] });
+                    }
+                });
+                Ok(())
+            },
+        ))
     }
 
     fn tallied(&self) -> bool {
@@ -122,7 +128,7 @@ mod tests {
     #[test]
     fn terms_by_keyword() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
-        b.world.particles.v = vec![[1.0, 2.0, 3.0], [9.0; 3]];
+        b.world.particles.v = vec![[1.0, 2.0, 3.0], [9.0; 3]].into();
         b.world.particles.mask[1] = 0;
         b.world.tally.clear(0, true, false, 2);
         b.world.tally.clear_atom_virial(true, 2);

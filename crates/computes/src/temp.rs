@@ -7,6 +7,7 @@ use perigrain_plan::{Op, Stage, Tick, When};
 use perigrain_styles::matter::{Masses, check_masses, count, sum};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{KIND, MASK, MASS, TYPE_MASS, V};
 use perigrain_world::{GroupId, Slot, SlotId, World};
 
 /// The style.
@@ -118,18 +119,24 @@ impl Compute for Declared {
         let (group, extra, span) = (self.group, self.rules.extra, cx.span());
         check_masses(cx.world(), span)?;
         let mut freedom = self.rules.freedom();
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "v mass mask", move |w, t, out| {
-            let (p, masses) = (&w.particles, Masses::of(w));
-            let [mv2, tensor @ ..] = sum::<7>(&p.mask, group, |i| {
-                let ([x, y, z], m) = (p.v[i], masses.get(i));
-                let mv2 = (x * x + y * y + z * z) * m;
-                [mv2, m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z]
-            });
-            let dimension = if w.settings.two_dimensional { 2.0 } else { 3.0 };
-            let dof = freedom.now(w, t, dimension * count(w, group) as f64 - extra.unwrap_or(dimension), out);
-            offer(w, out, mv2, tensor, dof);
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            V | MASS | MASK | KIND | TYPE_MASS,
+            move |w, t, out| {
+                let (p, masses) = (&w.particles, Masses::of(w));
+                let [mv2, tensor @ ..] = sum::<7>(&p.mask, group, |i| {
+                    let ([x, y, z], m) = (p.v[i], masses.get(i));
+                    let mv2 = (x * x + y * y + z * z) * m;
+                    [mv2, m * x * x, m * y * y, m * z * z, m * x * y, m * x * z, m * y * z]
+                });
+                let dimension = if w.settings.two_dimensional { 2.0 } else { 3.0 };
+                let dof =
+                    freedom.now(w, t, dimension * count(w, group) as f64 - extra.unwrap_or(dimension), out);
+                offer(w, out, mv2, tensor, dof);
+                Ok(())
+            },
+        ))
     }
 
     fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
@@ -150,7 +157,7 @@ mod tests {
     #[test]
     fn temperature_tensor_and_freedom() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 3]);
-        b.world.particles.v = vec![[1.0, 2.0, 0.0], [0.0, 0.0, 4.0], [0.0, 0.0, 1.0]];
+        b.world.particles.v = vec![[1.0, 2.0, 0.0], [0.0, 0.0, 4.0], [0.0, 0.0, 1.0]].into();
         let mut c = b.compute(&Temp, "").unwrap();
         let slot = b.evaluate(&*c).unwrap();
         // By hand, m = 2: Σ m v² = 44 over 3 · 3 − 3 degrees of freedom.

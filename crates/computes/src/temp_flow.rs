@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn what_is_left_without_a_flow() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
-        b.world.particles.v = vec![[1.0, 2.0, 0.0], [4.0, 2.0, 0.0], [4.0, 5.0, 0.0]];
+        b.world.particles.v = vec![[1.0, 2.0, 0.0], [4.0, 2.0, 0.0], [4.0, 5.0, 0.0]].into();
         // By hand, m = 2: without the drift (3, 3, 0) Σ m v² = 2 (5 + 2 + 5) over 9 − 3 degrees of freedom.
         let c = b.compute(&TempCom, "").unwrap();
         assert!((b.evaluate(&*c).unwrap().scalar - 24.0 / 6.0).abs() < 1e-14);

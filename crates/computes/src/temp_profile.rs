@@ -114,7 +114,7 @@ impl Streams for Profile {
     }
 
     fn bin(&self, w: &World, i: usize) -> usize {
-        let Some(domain) = &w.domain else { return 0 };
+        let Some(domain) = &*w.domain else { return 0 };
         let (lengths, mut bin) = (domain.lengths(), 0);
         for d in [2, 1, 0] {
             let (mut x, bins) = (w.particles.x[i][d], self.bins[d]);
@@ -147,7 +147,7 @@ mod tests {
         let x = [[-1.0, 0.0, 0.0], [-2.0, 0.0, 0.0], [2.0, 0.0, 0.0], [12.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
         let mut b = Bench::new(AtomStyle::default(), &x);
         b.world.particles.v =
-            vec![[1.0, 2.0, 0.0], [3.0, 0.0, 0.0], [5.0, 5.0, 0.0], [7.0, 5.0, 0.0], [6.0, 2.0, 0.0]];
+            vec![[1.0, 2.0, 0.0], [3.0, 0.0, 0.0], [5.0, 5.0, 0.0], [7.0, 5.0, 0.0], [6.0, 2.0, 0.0]].into();
         let c = b.compute(&TempProfile, "1 0 0 x 2").unwrap();
         // By hand, m = 2; the fourth is at -8: means 11/3 and 11/2.
         let (left, right) = (64.0 / 9.0 + 4.0 / 9.0 + 100.0 / 9.0 + 29.0, 0.5 + 29.0);

@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn who_is_inside_counts() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
-        b.world.particles.v = vec![[1.0, 2.0, 0.0], [4.0, 2.0, 0.0], [4.0, 5.0, 0.0]];
+        b.world.particles.v = vec![[1.0, 2.0, 0.0], [4.0, 2.0, 0.0], [4.0, 5.0, 0.0]].into();
         let block = Shape::Block { lo: [-1.0; 3], hi: [1.5; 3] };
         b.world.regions.insert("left".into(), Region::inside(block));
         let mut c = b.compute(&TempRegion, "left").unwrap();

@@ -10,6 +10,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::sum;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, Flow, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -98,7 +99,7 @@ impl Compute for Declared {
             None => None,
         };
         let mut freedom = self.rules.freedom();
-        let reads = "x v omega radius mass mask";
+        let reads = X | V | OMEGA | RADIUS | MASS | MASK | BOX | MEMO | REGIONS | KIND | TYPE_MASS;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, t, out| {
             let p = &w.particles;
             let flow = bias.as_ref().and_then(|b| b.flow(w));
@@ -141,7 +142,7 @@ mod tests {
     #[test]
     fn freedom_of_points_and_spheres() {
         let mut b = Bench::new(AtomStyle { sphere: true, ..AtomStyle::default() }, &[[0.0; 3]; 3]);
-        b.world.particles.radius = vec![0.5, 0.0, 1.0];
+        b.world.particles.radius = vec![0.5, 0.0, 1.0].into();
         b.world.particles.v[0] = [1.0, 2.0, 0.0];
         b.world.particles.omega[2] = [0.0, 0.0, 3.0];
         let whole = b.compute(&TempSphere, "").unwrap();

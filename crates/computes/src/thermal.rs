@@ -9,6 +9,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, sum};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Flow, SealCx, Shape};
+use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, REGIONS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The velocity that is taken away from a particle of the group.
@@ -114,7 +115,7 @@ impl<S: Streams> Compute for Thermal<S> {
         self.flow.check(cx)?;
         let me = self.clone();
         let mut freedom = self.rules.freedom();
-        let reads = "x v mass mask regions box";
+        let reads = X | V | MASS | MASK | REGIONS | BOX | MEMO | KIND | TYPE_MASS;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, t, out| {
             let (p, masses, taken) = (&w.particles, Masses::of(w), me.flow.taken(w, me.group));
             let tensor: [f64; 6] = sum(&p.mask, me.group, |i| {

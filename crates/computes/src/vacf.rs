@@ -7,6 +7,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{count, keep_places, sum};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{COLUMNS, MASK, V};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -60,7 +61,8 @@ impl Compute for Declared {
     }
 
     fn welcome(&self, w: &mut World) {
-        w.columns.resize(w.n());
+        let n = w.n();
+        w.columns.resize(n);
         keep_places(w, &self.key(), GroupId::ALL, |w, i| w.particles.v[i]);
     }
 
@@ -71,7 +73,7 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         self.welcome(cx.world());
         let me = self.clone();
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "v mask columns", move |w, _, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, V | MASK | COLUMNS, move |w, _, out| {
             let first = w.columns.get_vector(&me.key()).unwrap_or(&[]);
             let [x, y, z] = sum(&w.particles.mask, me.group, |i| {
                 let (now, then) = (w.particles.v[i], first.get(i).copied().unwrap_or_default());
@@ -97,11 +99,11 @@ mod tests {
     #[test]
     fn then_and_now() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0; 3]]);
-        b.world.particles.v = vec![[1.0, 2.0, 0.0], [3.0, 0.0, 4.0]];
+        b.world.particles.v = vec![[1.0, 2.0, 0.0], [3.0, 0.0, 4.0]].into();
         let c = b.compute(&Vacf, "").unwrap();
         c.declare(&mut b.world).unwrap();
         assert_eq!(b.evaluate(&*c).unwrap().vector, [5.0, 2.0, 8.0, 15.0]);
-        b.world.particles.v = vec![[2.0, -1.0, 7.0], [0.0, 5.0, 0.5]];
+        b.world.particles.v = vec![[2.0, -1.0, 7.0], [0.0, 5.0, 0.5]].into();
         // By hand: (2 + 0)/2, (-2 + 0)/2, (0 + 2)/2.
         assert_eq!(b.evaluate(&*c).unwrap().vector, [1.0, -1.0, 1.0, 1.0]);
         assert!(b.compute(&Vacf, "com yes").is_err());

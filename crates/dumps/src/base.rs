@@ -16,11 +16,14 @@ use perigrain_out::dump::{Data, Target, sort_rows};
 use perigrain_out::file::{Pattern, trouble};
 use perigrain_out::image::View;
 use perigrain_out::vtu::Series;
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, SealCx, Wants};
 
 pub use keywords::{column, unknown};
+use perigrain_world::field::{
+    BOX, COLUMNS, F, FACTS, IMAGE, KIND, MASK, MASS, OMEGA, RADIUS, REGIONS, SLOTS, TAG, TORQUE, V, VOLUME, X,
+};
 use perigrain_world::{Domain, GroupId, World};
 
 /// What outlives a run: open files and what belongs to them.
@@ -250,10 +253,18 @@ impl Base {
             refresh.as_mut().map_or(Ok(()), |op| op.run(w, t))
         };
         let name = format!("dump {} {}", self.id, self.style);
-        let reads = "x v f image mask tag kind mass radius omega torque volume";
+        let reads = X | V | F | IMAGE | MASK | TAG | KIND | MASS | RADIUS | OMEGA | TORQUE | VOLUME;
         // A file is there from the first step on, as in LAMMPS.
         let when = if self.state().target.pattern.many() { when } else { when.or(When::First) };
-        Ok(StepOp::new(name, Stage::Output, Access::new(reads, ""), act).when(when).in_setup(true).boxed())
+        Ok(StepOp::new(
+            name,
+            Stage::Output,
+            Needs::new().read(reads | BOX | FACTS | REGIONS | SLOTS).keep(COLUMNS),
+            act,
+        )
+        .when(when)
+        .in_setup(true)
+        .boxed())
     }
 
     /// Tells the file what `dump_modify` asks of it.

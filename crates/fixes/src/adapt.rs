@@ -7,8 +7,9 @@ use super::{Fix, FixStyle};
 use coefficients::Follows;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef};
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
+use perigrain_world::field::{COLUMNS, LISTS, MASK, MASS, MEMO, RADIUS, SLOTS};
 use perigrain_world::{GroupId, World};
 use std::f64::consts::PI;
 
@@ -225,8 +226,8 @@ impl Op for Change {
     fn stage(&self) -> Stage {
         Stage::PreForce
     }
-    fn access(&self) -> Access {
-        Access::new("slots mask", "radius mass columns")
+    fn needs(&self) -> Needs {
+        Needs::new().read(SLOTS | MASK).write(LISTS | RADIUS | MASS).keep(COLUMNS | MEMO)
     }
     fn when(&self) -> When {
         self.when.clone()
@@ -244,8 +245,8 @@ impl Op for Change {
         let [radius, mass] = fix.columns();
         if t.setup && fix.reset && !w.memo.contains_key(&radius) {
             let (radii, masses) = (w.particles.radius.clone(), w.particles.mass.clone());
-            *w.columns.scalar(&radius, n) = radii;
-            *w.columns.scalar(&mass, n) = masses;
+            *w.columns.scalar(&radius, n) = radii.to_vec();
+            *w.columns.scalar(&mass, n) = masses.to_vec();
             w.memo.insert(radius, vec![]);
         }
         let before = w.memo.insert(fix.factor(), vec![value]).and_then(|m| m.first().copied()).unwrap_or(1.0);
@@ -271,7 +272,7 @@ impl Op for Change {
         }
         let n = w.n();
         let (radii, masses) = (w.columns.scalar(&radius, n).clone(), w.columns.scalar(&mass, n).clone());
-        (w.particles.radius, w.particles.mass) = (radii, masses);
+        (*w.particles.radius, *w.particles.mass) = (radii, masses);
         w.columns.remove(&radius);
         w.columns.remove(&mass);
         w.memo.insert(self.fix.factor(), vec![1.0]);
@@ -291,7 +292,7 @@ mod tests {
     fn sizes_follow_and_come_back() {
         let style = AtomStyle { sphere: true, sphere_mass: true, ..AtomStyle::default() };
         let mut b = Bench::new(style, &[[0.0; 3], [5.0; 3]]);
-        b.world.particles.mass = vec![2.0; 2];
+        b.world.particles.mass = vec![2.0; 2].into();
         b.world.particles.mask[1] = 0;
         b.equal.insert("d".into(), 3.0);
         for (words, radius, mass) in [

@@ -3,11 +3,12 @@
 use super::{Fix, FixStyle, Minimizing, region_keyword};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Param, RefKind, ValueRef};
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::common::variable_param;
 use perigrain_styles::matter::{Chosen, ChosenNow, change_forces, publish, sum, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, F, IMAGE, MASK, SLOTS, TALLY, X};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -109,7 +110,7 @@ impl Fix for Declared {
             None => None,
         };
         let (slot, virial) = (cx.slot(&format!("f_{}", self.id)), self.virial);
-        let access = Access::new("f x image mask", "f");
+        let access = Needs::new().read(X | IMAGE | MASK | BOX).add(F | TALLY).write(SLOTS);
         let op = StepOp::new(format!("fix {} addforce", self.id), Stage::PostForce, access, move |w, t| {
             if virial && t.virial {
                 let added = virial_of(w, &chosen, &force);
@@ -197,7 +198,7 @@ mod tests {
 
     fn scene() -> Bench {
         let mut b = Bench::new(AtomStyle::default(), &[[1.0, 0.0, 0.0], [5.0, 1.0, 0.0]]);
-        b.world.particles.f = vec![[1.0, 2.0, 3.0], [10.0, 20.0, 30.0]];
+        b.world.particles.f = vec![[1.0, 2.0, 3.0], [10.0, 20.0, 30.0]].into();
         b.atom.insert("a".into(), vec![-1.0, -2.0]);
         b.equal.insert("e".into(), 7.0);
         b

@@ -5,13 +5,14 @@ use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, scale, sub};
 use perigrain_commands::momentum::rotation;
 use perigrain_lang::{Args, Param};
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::common::variable_param;
 use perigrain_styles::matter::{
     Chosen, Masses, centre, change_forces, check_masses, publish, sum, unwrapped,
 };
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, F, IMAGE, KIND, MASK, MASS, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -61,7 +62,8 @@ impl Fix for Declared {
         let mut read = |p: &Param| cx.param(p, Stage::PostForce, &When::Always);
         let torque = [read(x)?, read(y)?, read(z)?];
         let slot = cx.slot(&format!("f_{}", self.id));
-        let access = Access::new("f x v image mass mask", "f");
+        let access =
+            Needs::new().read(X | V | IMAGE | MASS | MASK | BOX | TYPE_MASS | KIND).add(F).write(SLOTS);
         let op = StepOp::new(format!("fix {} addtorque", self.id), Stage::PostForce, access, move |w, t| {
             if t.unchanged {
                 return Ok(());

@@ -5,9 +5,10 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::{Result, fail};
 use perigrain_base::par;
 use perigrain_lang::{Args, ValueRef, Word};
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
+use perigrain_world::field::{COLUMNS, F, MASK, MEMO, SLOTS, V, X};
 use perigrain_world::{GroupId, Slot, World};
 
 /// The style.
@@ -160,7 +161,7 @@ impl Fix for Declared {
             sources.push(input.source(cx, Wants::PerAtom, Stage::EndOfStep, &when)?);
         }
         let (me, key, slot) = (self.clone(), self.key(), cx.slot(&format!("f_{}", self.id)));
-        let access = Access::new("slots x v f mask", "slots memo columns");
+        let access = Needs::new().read(SLOTS | X | V | F | MASK).write(SLOTS).keep(MEMO | COLUMNS);
         let op = StepOp::new(format!("fix {} ave/atom", self.id), Stage::EndOfStep, access, move |w, t| {
             let Some(due) = me.schedule.due(w, &key, t.step) else { return Ok(()) };
             let (n, cols, bit) = (w.n(), sources.len(), me.group.bit());
@@ -215,7 +216,7 @@ mod tests {
         let mut ops = b.seal(&*fix).unwrap();
         for step in 1..5 {
             b.world.clock.step = step;
-            b.world.particles.v = vec![[0.0, step as f64, 0.0]; 2];
+            b.world.particles.v = vec![[0.0, step as f64, 0.0]; 2].into();
             b.stage(&mut ops, Stage::EndOfStep).unwrap();
             let wanted = [0.0, 0.0, 1.5, 1.5, 3.5][step as usize];
             assert_eq!(b.slot_of("f_f").atom[0], wanted, "step {step}");

@@ -10,10 +10,11 @@ use perigrain_base::math::vec3::sub;
 use perigrain_computes::chunk::{ChunkRef, Chunks, hold, let_go};
 use perigrain_computes::temp_flow;
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Flow, SealCx, Shape, Style, Wants};
+use perigrain_world::field::{BOX, F, KIND, MASK, MASS, MEMO, REGIONS, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
 use std::fmt::Write;
 use std::path::Path;
@@ -375,7 +376,10 @@ impl Fix for Declared {
         let mut sheet = self.output.sheet(cx.world(), &key);
         // Averages come here whole: each is joined with those before it.
         let averager = Averager { key: key.clone(), repeat: 1, ave: self.ave, off: vec![] };
-        let access = Access::new("x v f mass mask slots", "slots memo");
+        let access = Needs::new()
+            .read(X | V | F | MASS | MASK | SLOTS | BOX | REGIONS | TYPE_MASS | KIND)
+            .write(SLOTS)
+            .keep(MEMO);
         let op = StepOp::new(
             format!("fix {} ave/chunk", self.id),
             Stage::EndOfStep,

@@ -9,9 +9,10 @@ use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_base::math::cformat::{general, shortest};
 use perigrain_computes::reduce::BIG;
 use perigrain_lang::{Args, ValueRef, Word};
-use perigrain_plan::{Access, Op, Stage};
+use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
+use perigrain_world::field::{F, MASK, MEMO, SLOTS, V, X};
 use perigrain_world::{GroupId, Slot, World};
 use std::fmt::Write;
 use std::path::Path;
@@ -345,7 +346,7 @@ impl Fix for Declared {
         let so_far = format!("{key}/bins");
         let mut sheet = self.output.sheet(cx.world(), &key);
         let averager = Averager { key: key.clone(), repeat: 1, ave: self.ave, off: vec![] };
-        let access = Access::new("slots x v f mask", "slots memo");
+        let access = Needs::new().read(SLOTS | X | V | F | MASK).write(SLOTS).keep(MEMO);
         let op = StepOp::new(format!("fix {} ave/histo", self.id), Stage::EndOfStep, access, move |w, t| {
             let Some(due) = me.schedule.due(w, &key, t.step) else { return Ok(()) };
             let before = w.memo.remove(&so_far).filter(|_| !due.first);

@@ -7,9 +7,10 @@ use perigrain_base::math::cformat::{Format, Value};
 use perigrain_computes::chunk::{behind, hold, let_go};
 use perigrain_lang::{Args, ValueRef};
 use perigrain_out::Sheet;
-use perigrain_plan::{Access, Op, Stage};
+use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
+use perigrain_world::field::{MEMO, SLOTS};
 use perigrain_world::{SlotId, World};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -333,7 +334,7 @@ impl Fix for Declared {
         let mut sheet = self.output.sheet(cx.world(), &key);
         let (repeat, ave, off) = (self.schedule.repeat, self.ave, self.off.clone());
         let averager = Averager { key: key.clone(), repeat, ave, off };
-        let access = Access::new("slots", "slots memo");
+        let access = Needs::new().read(SLOTS).write(SLOTS).keep(MEMO);
         let op = StepOp::new(format!("fix {} ave/time", self.id), Stage::EndOfStep, access, move |w, t| {
             let Some(due) = me.schedule.due(w, &key, t.step) else { return Ok(()) };
             if due.first {

@@ -4,10 +4,11 @@ use super::components::Components;
 use super::{Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage};
+use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::matter::{change_forces, publish_levels};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{F, MASK, SLOTS, X};
 
 /// The style.
 pub struct AveForce;
@@ -47,7 +48,7 @@ impl Fix for Declared {
         let (chosen, force) = self.components.seal(cx)?;
         let level = cx.level();
         let slot = cx.slot(&format!("f_{}", self.id));
-        let access = Access::new("x mask", "f");
+        let access = Needs::new().read(X | MASK).write(F | SLOTS);
         let op = StepOp::new(format!("fix {} aveforce", self.id), Stage::PostForce, access, move |w, t| {
             if t.unchanged {
                 return Ok(());
@@ -96,7 +97,7 @@ mod tests {
     #[test]
     fn the_mean_of_the_group() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 3]);
-        b.world.particles.f = vec![[1.0, 2.0, 3.0], [3.0, 4.0, 5.0], [9.0; 3]];
+        b.world.particles.f = vec![[1.0, 2.0, 3.0], [3.0, 4.0, 5.0], [9.0; 3]].into();
         b.world.particles.mask[2] = 0;
         b.equal.insert("e".into(), 10.0);
         let fix = b.fix(&AveForce, "0 NULL v_e").unwrap();

@@ -4,10 +4,11 @@ use super::window::forget;
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef};
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::World;
+use perigrain_world::field::{CONTROLS, MEMO, SLOTS};
 
 /// The style.
 pub struct Controller;
@@ -92,7 +93,7 @@ impl Fix for Declared {
         let control = cx.value(&self.control, Stage::EndOfStep, &when)?;
         let slot = cx.slot(&format!("f_{}", self.id));
         let fix = self.clone();
-        let access = Access::new("slots", "slots memo");
+        let access = Needs::new().read(SLOTS).write(SLOTS | CONTROLS).keep(MEMO);
         let op = StepOp::new(format!("fix {} controller", self.id), Stage::EndOfStep, access, move |w, t| {
             let error = value.get(w) - fix.setpoint;
             let (sum, change) = match w.memo.get(&fix.key()).map(Vec::as_slice) {

@@ -5,12 +5,13 @@ mod track;
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::{not_here, scales, units_lattice};
 use perigrain_styles::near::bonds_allow;
 use perigrain_styles::stretching::RATES;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::domain::Flow;
+use perigrain_world::field::{BOX, FAMILIES, MASK, MEMO, SLOTS, X};
 use perigrain_world::{Face, GroupId, World};
 use track::{Track, tracks};
 
@@ -118,7 +119,7 @@ impl FixStyle for Deform {
 
 /// Refuses dimensions whose faces follow the particles.
 fn check_faces(cx: &BuildCx, word: &Word, d: usize) -> Result<()> {
-    let Some(domain) = &cx.world.domain else { return Ok(()) };
+    let Some(domain) = &*cx.world.domain else { return Ok(()) };
     if cx.world.settings.two_dimensional && d == 2 {
         return fail(Code::CONFLICT, word.span, "a flat scene cannot be deformed along z");
     }
@@ -198,7 +199,7 @@ impl Declared {
 
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
-        let Some(d) = &w.domain else { return Ok(()) };
+        let Some(d) = &*w.domain else { return Ok(()) };
         w.memo.insert(self.key(), [d.lo, d.hi].concat());
         tell(w, &format!("{}{RATES}", self.key()), [[0.0; 3]; 2], self.remap);
         Ok(())
@@ -262,8 +263,8 @@ impl Op for Move {
     fn stage(&self) -> Stage {
         Stage::EndOfStep
     }
-    fn access(&self) -> Access {
-        Access::new("x mask slots", "x box")
+    fn needs(&self) -> Needs {
+        Needs::new().read(MASK | SLOTS | FAMILIES).write(X | BOX).keep(MEMO)
     }
     fn when(&self) -> When {
         self.when.clone()
@@ -275,14 +276,14 @@ impl Op for Move {
         let (lo, hi, rate) = track::faces(&self.tracks, w, t)?;
         tell(w, &self.stretch, track::streaming(&self.tracks, w, rate, t.setup), self.remap);
         if self.remap == Remap::Velocities
-            && let Some(domain) = &mut w.domain
+            && let Some(domain) = &mut *w.domain
         {
             domain.flow = Some(Flow { rate, group: self.group });
         }
         if t.setup {
             return bonds_allow(w, self.tracks.each_ref().map(Track::moves));
         }
-        let Some(domain) = &mut w.domain else { return Ok(()) };
+        let Some(domain) = &mut *w.domain else { return Ok(()) };
         let (from, length) = (domain.lo, domain.lengths());
         (domain.lo, domain.hi) = (lo, hi);
         if self.remap == Remap::Positions {

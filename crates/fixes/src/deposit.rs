@@ -6,11 +6,13 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::{Args, ValueRef};
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::publish;
 use perigrain_styles::molecules::{Copy, Molecules};
 use perigrain_styles::newcomers::{Account, Ids, Newcomer, admit};
 use perigrain_styles::{BuildCx, Doc, PlaceTest, SealCx, Shape, Style};
+use perigrain_world::Fields;
+use perigrain_world::field::X;
 use perigrain_world::{GroupId, Region, SlotId, World};
 
 /// The style.
@@ -262,8 +264,8 @@ impl Op for Drop {
     fn stage(&self) -> Stage {
         Stage::Exchange
     }
-    fn access(&self) -> Access {
-        Access::new("x", "everything")
+    fn needs(&self) -> Needs {
+        Needs::new().read(X).write(Fields::ALL)
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let (fix, key) = (&self.fix, self.fix.key());

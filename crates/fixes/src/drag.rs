@@ -3,12 +3,13 @@
 use super::{Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage};
+use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::common::number_or_null;
 use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::GroupId;
+use perigrain_world::field::{BOX, F, MASK, SLOTS, X};
 
 /// The style.
 pub struct Drag;
@@ -54,7 +55,7 @@ impl Fix for Declared {
         let chosen = Chosen::new(cx.world(), self.group, None, span)?;
         let (target, strength, delta) = (self.target, self.strength, self.delta);
         let slot = cx.slot(&format!("f_{}", self.id));
-        let access = Access::new("x mask", "f");
+        let access = Needs::new().read(X | MASK | BOX).add(F).write(SLOTS);
         let op = StepOp::new(format!("fix {} drag", self.id), Stage::PostForce, access, move |w, t| {
             if t.unchanged {
                 return Ok(());
@@ -106,7 +107,7 @@ mod tests {
     #[test]
     fn towards_a_line() {
         let mut b = Bench::new(AtomStyle::default(), &[[3.0, 4.0, 7.0], [0.5, 0.0, 0.0], [9.0, 0.0, 0.0]]);
-        b.world.particles.f = vec![[0.0; 3]; 3];
+        b.world.particles.f = vec![[0.0; 3]; 3].into();
         let fix = b.fix(&Drag, "0 0 NULL 10 1").unwrap();
         let mut ops = b.seal(&*fix).unwrap();
         b.stage(&mut ops, Stage::PostForce).unwrap();

@@ -7,6 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::critical::{self, Estimate};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{CONTACTS, FAMILIES, KIND, MASS, RADIUS, V, VOLUME, X};
 use perigrain_world::{GroupId, RunStyle, World};
 
 /// The style.
@@ -106,7 +107,7 @@ impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let rule = self.rule;
         let mut probes = cx.probes()?;
-        let reads = "x v radius mass type volume families contacts";
+        let reads = X | V | RADIUS | MASS | KIND | VOLUME | FAMILIES | CONTACTS;
         Ok(self.follower.ops(cx, reads, move |w| {
             let (solids, grains) = (critical::solids(w, rule.how)?, critical::grains(w, &mut probes)?);
             Ok(rule.step(w, solids, grains))

@@ -9,6 +9,7 @@ use perigrain_plan::Op;
 use perigrain_styles::common::{scales, units_lattice};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{F, MASK, MASS, V};
 use perigrain_world::{GroupId, RunStyle, World};
 
 /// The style.
@@ -155,7 +156,7 @@ impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let (rule, span) = (self.rule, cx.span());
         check_masses(cx.world(), span)?;
-        Ok(self.follower.ops(cx, "v f mass mask", move |w| Ok(rule.step(w))))
+        Ok(self.follower.ops(cx, V | F | MASS | MASK, move |w| Ok(rule.step(w))))
     }
 
     fn shape(&self) -> Shape {
@@ -192,7 +193,7 @@ mod tests {
     #[test]
     fn the_fastest_decides() {
         let mut b = scene();
-        b.world.particles.v = vec![[3.0, 0.0, 4.0], [0.0; 3]];
+        b.world.particles.v = vec![[3.0, 0.0, 4.0], [0.0; 3]].into();
         assert_eq!(step(&mut b, "1 NULL NULL 0.5 units box"), 0.1);
         assert_eq!(step(&mut b, "1 NULL NULL 1"), 0.1); // lattice spacings of 0.5
         assert_eq!(step(&mut b, "1 NULL 0.05 0.5 units box"), 0.05);

@@ -4,10 +4,11 @@ use super::{Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage};
+use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::GroupId;
+use perigrain_world::field::{F, MASK, OMEGA, TORQUE, V};
 
 /// The style.
 pub struct Enforce2d;
@@ -49,7 +50,7 @@ struct Declared {
 
 impl Fix for Declared {
     fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let (bit, access) = (self.group.bit(), Access::new("mask", "v f omega torque"));
+        let (bit, access) = (self.group.bit(), Needs::new().read(MASK).write(V | F | OMEGA | TORQUE));
         let op = StepOp::new(format!("fix {} enforce2d", self.id), Stage::PostForce, access, move |w, t| {
             if t.unchanged {
                 return Ok(());
@@ -95,10 +96,10 @@ mod tests {
         assert!(b.fix(&Enforce2d, "").is_err());
         b.world.settings.two_dimensional = true;
         for column in [&mut b.world.particles.v, &mut b.world.particles.f] {
-            *column = vec![[1.0, 2.0, 3.0]; 2];
+            *column = vec![[1.0, 2.0, 3.0]; 2].into();
         }
-        b.world.particles.omega = vec![[1.0, 2.0, 3.0]; 2];
-        b.world.particles.torque = vec![[1.0, 2.0, 3.0]; 2];
+        b.world.particles.omega = vec![[1.0, 2.0, 3.0]; 2].into();
+        b.world.particles.torque = vec![[1.0, 2.0, 3.0]; 2].into();
         b.world.particles.mask[1] = 0;
         let fix = b.fix(&Enforce2d, "").unwrap();
         let mut ops = b.seal(&*fix).unwrap();

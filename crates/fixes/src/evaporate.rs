@@ -3,12 +3,14 @@
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::common::seed;
 use perigrain_styles::matter::{Chosen, publish};
 use perigrain_styles::newcomers::Account;
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::Fields;
+use perigrain_world::field::{MASK, X};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -109,7 +111,7 @@ impl Fix for Declared {
         let w = cx.world();
         w.slots.get_mut(slot).scalar = Account::load(w, &self.key()).map_or(0.0, |a| a.done as f64);
         let me = self.clone();
-        let access = Access::new("x mask", "everything");
+        let access = Needs::new().read(X | MASK).write(Fields::ALL);
         let act = move |w: &mut World, t: &Tick| {
             let key = me.key();
             let Some(mut account) = Account::load(w, &key).filter(|_| t.step % me.every == 0) else {

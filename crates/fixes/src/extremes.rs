@@ -3,8 +3,9 @@
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Result, fail};
 use perigrain_lang::{Args, Param};
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use perigrain_world::field::{MEMO, SLOTS};
 use perigrain_world::{SlotId, World};
 
 /// The style.
@@ -115,8 +116,8 @@ impl Op for Watch {
         Stage::EndOfStep
     }
 
-    fn access(&self) -> Access {
-        Access::new("slots", "slots memo")
+    fn needs(&self) -> Needs {
+        Needs::new().read(SLOTS).write(SLOTS).keep(MEMO)
     }
 
     fn when(&self) -> When {

@@ -93,7 +93,7 @@ pub fn check(faces: &[Face], through: bool, args: &Args, cx: &BuildCx) -> Result
         let text = "there is no wall: name at least one of xlo xhi ylo yhi zlo zhi";
         return fail(Code::MISSING_ARGUMENT, args.here(), text);
     }
-    let Some(domain) = &cx.world.domain else { return Ok(()) };
+    let Some(domain) = &*cx.world.domain else { return Ok(()) };
     let round = faces.iter().find(|f| domain.periodic()[f.axis]).filter(|_| !through);
     let Some(face) = round else { return Ok(()) };
     let axis = ["x", "y", "z"][face.axis];

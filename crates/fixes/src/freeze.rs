@@ -4,10 +4,11 @@ use super::{Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Act, Gist, Op, Stage, Stretch, Tick};
+use perigrain_plan::{Act, Gist, Needs, Op, Stage, Stretch, Tick};
 use perigrain_styles::matter::publish_levels;
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{F, MASK, SLOTS, TORQUE};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -83,11 +84,12 @@ impl Fix for Declared {
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let (slot, bit) = (cx.slot(&format!("f_{}", self.id)), self.group.bit());
-        let access = Access::new("f torque mask", "f torque");
+        let access = Needs::new().read(MASK).write(F | TORQUE | SLOTS);
         let hold = move |_: &World, t: &Tick, _: bool| -> Option<Act> {
             let act = move |s: &mut Stretch<'_>| {
                 let mut gist = Gist::default();
-                hold(s.f, s.torque, s.mask, bit, &mut gist.sums);
+                let mask = s.mask();
+                hold(&mut s.f, &mut s.torque, mask, bit, &mut gist.sums);
                 gist
             };
             (!t.unchanged).then(|| Act::hold(bit, act))
@@ -121,8 +123,8 @@ mod tests {
     fn forces_and_torques_vanish_and_their_sum_is_told() {
         let style = AtomStyle { sphere: true, ..AtomStyle::default() };
         let mut b = Bench::new(style, &[[0.0; 3], [5.0; 3], [7.0; 3]]);
-        b.world.particles.f = vec![[1.0, 2.0, 3.0], [10.0, 20.0, 30.0], [4.0; 3]];
-        b.world.particles.torque = vec![[1.0; 3]; 3];
+        b.world.particles.f = vec![[1.0, 2.0, 3.0], [10.0, 20.0, 30.0], [4.0; 3]].into();
+        b.world.particles.torque = vec![[1.0; 3]; 3].into();
         b.world.particles.mask[2] = 0;
         let fix = b.fix(&Freeze, "").unwrap();
         fix.declare(&mut b.world).unwrap();

@@ -7,11 +7,12 @@ use perigrain_base::math::lanes::Lanes;
 use perigrain_base::math::threes::{self, Threes};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::{Args, Param};
-use perigrain_plan::{Access, Act, Gist, Op, Stage, Tick, When};
+use perigrain_plan::{Act, Gist, Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::{choice_or_refuse, variable_param};
 use perigrain_styles::matter::{check_masses, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Pull, Reading, SealCx, Shape, Style};
+use perigrain_world::field::{F, MASK, MASS, SLOTS, X};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -209,7 +210,7 @@ impl Fix for Declared {
             Direction::Vector(x, y, z) => Pointer::Vector([read(x)?, read(y)?, read(z)?]),
         };
         let (slot, disabled) = (cx.slot(&format!("f_{}", self.id)), self.disabled);
-        let access = Access::new("f x mass mask", "f");
+        let access = Needs::new().read(X | MASS | MASK).add(F).write(SLOTS);
         let pull = move |w: &World, t: &Tick, _: bool| -> Option<Act> {
             if t.unchanged || disabled {
                 return None;
@@ -217,8 +218,8 @@ impl Fix for Declared {
             let (g, unit) = (magnitude.get(w), pointer.unit(w, w.settings.two_dimensional));
             let a = unit.map(|e| g * e);
             Some(Act::pull(perigrain_plan::Pull { bit, a }, move |s| {
-                let mass = &s.all.mass[s.start..][..s.x.len()];
-                let energy = pulled(s.f, s.x, mass, s.mask, bit, a);
+                let (mass, mask) = (&s.all.mass[s.start..][..s.x.len()], s.mask());
+                let energy = pulled(&mut s.f, &s.x, mass, mask, bit, a);
                 Gist { sums: [energy, 0.0, 0.0], most: 0.0 }
             }))
         };
@@ -278,7 +279,7 @@ mod tests {
     use perigrain_world::AtomStyle;
 
     fn force(b: &mut Bench, words: &str) -> [f64; 3] {
-        b.world.particles.f = vec![[0.0; 3]; 2];
+        b.world.particles.f = vec![[0.0; 3]; 2].into();
         let fix = b.fix(&Gravity, words).unwrap();
         let mut ops = b.seal(&*fix).unwrap();
         b.stage(&mut ops, Stage::PostForce).unwrap();

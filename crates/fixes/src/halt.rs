@@ -4,9 +4,10 @@ use super::{Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::shortest;
 use perigrain_lang::{Args, Param, RefKind, ValueRef};
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
+use perigrain_world::field::{CLOCK, SLOTS};
 use perigrain_world::{Halt, World};
 use std::path::{Path, PathBuf};
 
@@ -140,7 +141,7 @@ impl Fix for Declared {
             Attribute::Variable(r) => Some(cx.param(&Param::Ref(r.clone()), Stage::EndOfStep, &when)?),
             _ => None,
         };
-        let (me, log, access) = (self.clone(), cx.log(), Access::new("slots", "clock"));
+        let (me, log, access) = (self.clone(), cx.log(), Needs::new().read(SLOTS).write(CLOCK));
         let op = StepOp::new(format!("fix {} halt", self.id), Stage::EndOfStep, access, move |w, t| {
             let value = me.now(w, reading)?;
             if !(me.compare)(value, me.value) {

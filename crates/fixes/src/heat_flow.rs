@@ -4,12 +4,13 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage};
+use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::GroupId;
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
+use perigrain_world::field::{COLUMNS, KIND, MASK, MASS, TYPE_MASS};
 
 /// The style.
 pub struct HeatFlow;
@@ -64,7 +65,7 @@ impl Fix for Declared {
                 .help("write `fix ID all property/atom temperature heatflow` before the run")
                 .into());
         };
-        let access = Access::new("columns mass type mask", "columns");
+        let access = Needs::new().read(COLUMNS | MASS | KIND | MASK | TYPE_MASS).keep(COLUMNS);
         let op =
             StepOp::new(format!("fix {} heat/flow", self.id), Stage::FinalIntegrate, access, move |w, t| {
                 let n = w.n();

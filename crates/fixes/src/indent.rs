@@ -6,12 +6,13 @@ use super::{Fix, FixStyle, Minimizing};
 use form::{Form, check_ends};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Param, Word};
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::common::{axis, scales, units_lattice, variable_param};
 use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::GroupId;
+use perigrain_world::field::{BOX, F, MASK, SLOTS, X};
 
 /// The style.
 pub struct Indent;
@@ -145,7 +146,7 @@ impl Fix for Declared {
         let form = self.form.map(|p, _| cx.param(p, Stage::PostForce, &When::Always))?;
         let (k, inside) = (self.stiffness, self.inside);
         let slot = cx.slot(&format!("f_{}", self.id));
-        let access = Access::new("x mask", "f");
+        let access = Needs::new().read(X | MASK | BOX).add(F).write(SLOTS);
         let op = StepOp::new(format!("fix {} indent", self.id), Stage::PostForce, access, move |w, t| {
             if t.unchanged {
                 return Ok(());
@@ -193,7 +194,7 @@ mod tests {
 
     /// The force on a particle at (3, 0, 1), and the indenter's energy and force.
     fn force(b: &mut Bench, words: &str) -> ([f64; 3], f64, Vec<f64>) {
-        b.world.particles.f = vec![[0.0; 3]];
+        b.world.particles.f = vec![[0.0; 3]].into();
         let fix = b.fix(&Indent, words).unwrap();
         let mut ops = b.seal(&*fix).unwrap();
         b.stage(&mut ops, Stage::PostForce).unwrap();

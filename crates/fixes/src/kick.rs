@@ -70,7 +70,7 @@ fn some(
 ) -> f64 {
     let (mut from, mut most) = (0, 0.0);
     while from < s.x.len() {
-        let (kind, mask) = (&s.all.kind[s.start + from..s.start + s.x.len()], &s.mask[from..]);
+        let (kind, mask) = (&s.all.kind[s.start + from..s.start + s.x.len()], &s.mask()[from..]);
         let own = from..from + alike(kind, mask);
         let solid = solids.has(kind[0]);
         let drifts = short || !solid || mask[0] & solids.twice != 0;
@@ -101,5 +101,5 @@ fn alike(kind: &[u16], mask: &[u32]) -> usize {
 
 /// Tells the account of ways what came of a part.
 fn went(w: &mut World, t: &Tick, gist: Gist) {
-    w.rebuild.travel.went(t.dt.abs() * gist.most.sqrt());
+    w.travel.went(t.dt.abs() * gist.most.sqrt());
 }

@@ -5,11 +5,14 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::rng::Marsaglia;
 use perigrain_base::math::vec3::{Vec3, dot};
 use perigrain_lang::{Args, Param, RefKind, ValueRef};
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::variable_param;
 use perigrain_styles::matter::{Masses, check_masses, publish, sum};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use perigrain_world::field::{
+    COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, SLOTS, TORQUE, TYPE_MASS, V,
+};
 use perigrain_world::{COUPLED, GroupId, SlotId, World};
 
 /// The style.
@@ -312,9 +315,13 @@ impl Fix for Declared {
         let slot = cx.slot(&format!("f_{}", self.id));
         let me = self.clone();
         let name = format!("fix {} langevin", self.id);
-        let access = Access::new("v omega mass radius type mask memo", "f torque memo");
+        let access = Needs::new()
+            .read(V | OMEGA | MASS | RADIUS | KIND | MASK | MEMO | TYPE_MASS | SLOTS)
+            .add(F | TORQUE)
+            .keep(MEMO | COLUMNS);
         let push = StepOp::new(name.clone(), Stage::PostForce, access, move |w, t| me.act(w, t, start, span));
-        let (me, access) = (self.clone(), Access::new("v mask memo", "memo"));
+        let (me, access) =
+            (self.clone(), Needs::new().read(V | MASK | MEMO | COLUMNS).write(SLOTS).keep(MEMO));
         let count = StepOp::new(name, Stage::EndOfStep, access, move |w, t| {
             match me.tally {
                 true => me.count(w, t, slot),
@@ -364,8 +371,8 @@ mod tests {
     #[test]
     fn drag_and_pushes_by_hand() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0; 3], [2.0; 3]]);
-        b.world.particles.v = vec![[1.0, 0.0, -2.0]; 3];
-        b.world.particles.f = vec![[0.0; 3]; 3];
+        b.world.particles.v = vec![[1.0, 0.0, -2.0]; 3].into();
+        b.world.particles.f = vec![[0.0; 3]; 3].into();
         b.world.particles.mask[1] = 0;
         let fix = b.fix(&Langevin, "1.5 1.5 4 12345").unwrap();
         let mut ops = b.seal(&*fix).unwrap();

@@ -5,10 +5,11 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::vec3::{Vec3, dot};
 use perigrain_base::par;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage};
+use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::GroupId;
+use perigrain_world::field::{F, MASK};
 
 /// The style.
 pub struct LineForce;
@@ -69,7 +70,7 @@ impl Fix for Held {
     fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let (bit, n, plane) = (self.group.bit(), self.along, self.plane);
         let name = format!("fix {} {}", self.id, self.name);
-        let op = StepOp::new(name, Stage::PostForce, Access::new("mask", "f"), move |w, t| {
+        let op = StepOp::new(name, Stage::PostForce, Needs::new().read(MASK).write(F), move |w, t| {
             if t.unchanged {
                 return Ok(());
             }
@@ -108,7 +109,7 @@ mod tests {
             (&PlaneForce, [[1.0, 2.0, 0.0], [1.0, 2.0, 3.0]]),
         ] {
             let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
-            b.world.particles.f = vec![[1.0, 2.0, 4.0], [1.0, 2.0, 3.0]];
+            b.world.particles.f = vec![[1.0, 2.0, 4.0], [1.0, 2.0, 3.0]].into();
             b.world.particles.mask[1] = 0;
             let fix = b.fix(style, "0 0 -2").unwrap();
             let mut ops = b.seal(&*fix).unwrap();

@@ -6,10 +6,11 @@ use perigrain_base::math::vec3::{Vec3, cross, dot, sub};
 use perigrain_base::par;
 use perigrain_commands::momentum::rotation;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{Masses, centre, check_masses, sum, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -82,7 +83,8 @@ impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let span = cx.span();
         check_masses(cx.world(), span)?;
-        let (me, access) = (self.clone(), Access::new("x image mass mask", "v"));
+        let (me, access) =
+            (self.clone(), Needs::new().read(X | IMAGE | MASS | MASK | BOX | TYPE_MASS | KIND).write(V));
         let op = StepOp::new(format!("fix {} momentum", self.id), Stage::EndOfStep, access, move |w, _| {
             let before = if me.rescale { energy(w, me.group) } else { 0.0 };
             if me.linear.contains(&true) {

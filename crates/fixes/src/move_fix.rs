@@ -8,11 +8,12 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::par;
 use perigrain_lang::{Args, Param, ValueRef};
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::{number_or_null, param_or_null, scales, units_lattice};
 use perigrain_styles::matter::{Masses, check_masses, keep_places, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
 use std::f64::consts::PI;
 
@@ -176,7 +177,10 @@ impl Fix for Declared {
         }
         let slot = cx.slot(&format!("f_{}", self.id));
         let name = format!("fix {} move", self.id);
-        let access = Access::new("f mass mask", "x v");
+        let access = Needs::new()
+            .read(F | MASS | MASK | BOX | COLUMNS | SLOTS | TYPE_MASS | KIND)
+            .write(X | V | OMEGA | SLOTS)
+            .keep(MEMO);
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access, move |w, t| {
             if t.setup {
                 show_starts(w, &key, slot, t);
@@ -187,7 +191,7 @@ impl Fix for Declared {
         });
         let mut ops = vec![first.in_setup(true).boxed()];
         if free.contains(&true) {
-            let access = Access::new("f mass mask", "v");
+            let access = Needs::new().read(F | MASS | MASK | TYPE_MASS | KIND).write(V);
             let second = StepOp::new(name, Stage::FinalIntegrate, access, move |w, t| {
                 kick(w, group, free, t.dt);
                 Ok(())

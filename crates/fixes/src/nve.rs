@@ -4,10 +4,11 @@ use super::kick;
 use super::{Fix, FixStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::check_masses;
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::field::{F, KIND, MASK, MASS, TRAVEL, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -49,9 +50,18 @@ impl Fix for Declared {
         check_masses(cx.world(), span)?;
         let name = format!("fix {} nve", self.id);
         let idle = |_: &mut World, _: &Tick| Ok(());
-        let first =
-            StepOp::new(name.clone(), Stage::InitialIntegrate, Access::new("f mass mask", "x v"), idle);
-        let second = StepOp::new(name, Stage::FinalIntegrate, Access::new("f mass mask", "v"), idle);
+        let first = StepOp::new(
+            name.clone(),
+            Stage::InitialIntegrate,
+            Needs::new().read(F | MASS | MASK | TYPE_MASS | KIND).add(TRAVEL).write(X | V),
+            idle,
+        );
+        let second = StepOp::new(
+            name,
+            Stage::FinalIntegrate,
+            Needs::new().read(F | MASS | MASK | TYPE_MASS | KIND).add(TRAVEL).write(V | X),
+            idle,
+        );
         let first = kick::first(first.in_every_level().reporting(), group, None);
         let second = kick::second(second.in_every_level().reporting(), group, None);
         Ok(vec![first.boxed(), second.boxed()])
@@ -83,8 +93,8 @@ mod tests {
         for peri in [false, true] {
             let mut b = Bench::new(AtomStyle { peri, ..AtomStyle::default() }, &[[1.0, 0.0, 0.0]; 2]);
             b.world.clock.dt = 0.5;
-            b.world.particles.f = vec![[4.0, 0.0, -8.0]; 2];
-            b.world.particles.v = vec![[1.0, 0.0, 0.0]; 2];
+            b.world.particles.f = vec![[4.0, 0.0, -8.0]; 2].into();
+            b.world.particles.v = vec![[1.0, 0.0, 0.0]; 2].into();
             b.world.particles.mask[1] = 0;
             let fix = b.fix(&Nve, "").unwrap();
             let mut ops = b.seal(&*fix).unwrap();
@@ -99,7 +109,7 @@ mod tests {
     #[test]
     fn every_type_needs_a_mass() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
-        b.world.type_mass = vec![None];
+        b.world.type_mass = vec![None].into();
         let fix = b.fix(&Nve, "").unwrap();
         let e = b.seal(&*fix).err().unwrap();
         assert_eq!(e.0[0].message, "atom type 1 has no mass");

@@ -6,10 +6,11 @@ use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::dot;
 use perigrain_base::par;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::{Masses, add, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{F, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -101,7 +102,10 @@ impl Fix for Declared {
         check_masses(cx.world(), span)?;
         let slot = cx.slot(&format!("f_{}", self.id));
         let half = |stage, drift, me: Self| {
-            let (name, access) = (format!("fix {} nve/limit", me.id), Access::new("f mass mask", "x v memo"));
+            let (name, access) = (
+                format!("fix {} nve/limit", me.id),
+                Needs::new().read(F | MASS | MASK | TYPE_MASS | KIND).write(X | V | SLOTS).keep(MEMO),
+            );
             let key = me.key();
             StepOp::new(name, stage, access, move |w: &mut World, t: &Tick| {
                 // In steps of two lengths solids alone move in the short ones, and none of them by this fix.
@@ -149,8 +153,8 @@ mod tests {
     fn fast_ones_are_slowed_and_counted() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
         b.world.clock.dt = 0.5;
-        b.world.particles.f = vec![[40.0, 0.0, 0.0], [8.0, 0.0, 0.0]];
-        b.world.particles.v = vec![[0.0; 3]; 2];
+        b.world.particles.f = vec![[40.0, 0.0, 0.0], [8.0, 0.0, 0.0]].into();
+        b.world.particles.v = vec![[0.0; 3]; 2].into();
         let fix = b.fix(&NveLimit, "1").unwrap();
         fix.declare(&mut b.world).unwrap();
         let mut ops = b.seal(&*fix).unwrap();

@@ -4,10 +4,11 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::Result;
 use perigrain_base::par;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage};
+use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::GroupId;
+use perigrain_world::field::{MASK, V, X};
 
 /// The style.
 pub struct NveNoForce;
@@ -40,7 +41,7 @@ struct Declared {
 
 impl Fix for Declared {
     fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let (bit, access) = (self.group.bit(), Access::new("v mask", "x"));
+        let (bit, access) = (self.group.bit(), Needs::new().read(V | MASK).write(X));
         let name = format!("fix {} nve/noforce", self.id);
         let op = StepOp::new(name, Stage::InitialIntegrate, access, move |w, t| {
             let p = &mut w.particles;

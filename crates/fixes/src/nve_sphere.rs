@@ -4,9 +4,10 @@ use super::kick as kicks;
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::field::{F, KIND, MASK, MASS, OMEGA, RADIUS, TORQUE, TRAVEL, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, World};
 
 /// I / (m R²) of a solid sphere.
@@ -84,7 +85,12 @@ impl Fix for Declared {
                 .into());
         }
         let name = format!("fix {} nve/sphere", self.id);
-        let access = || Access::new("f torque mass radius mask", "x v omega");
+        let access = || {
+            Needs::new()
+                .read(F | TORQUE | MASS | RADIUS | MASK | KIND | TYPE_MASS)
+                .add(TRAVEL)
+                .write(X | V | OMEGA)
+        };
         let idle = |_: &mut World, _: &Tick| Ok(());
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), idle);
         let second = StepOp::new(name, Stage::FinalIntegrate, access(), idle);
@@ -110,7 +116,7 @@ mod tests {
 
     fn bench() -> Bench {
         let mut b = Bench::new(AtomStyle { sphere: true, ..AtomStyle::default() }, &[[1.0, 0.0, 0.0]; 2]);
-        b.world.particles.radius = vec![0.5; 2];
+        b.world.particles.radius = vec![0.5; 2].into();
         b
     }
 
@@ -118,8 +124,8 @@ mod tests {
     fn spheres_turn_with_the_inertia_of_solid_ones() {
         let mut b = bench();
         b.world.clock.dt = 0.5;
-        b.world.particles.f = vec![[4.0, 0.0, 0.0]; 2];
-        b.world.particles.torque = vec![[0.0, 0.4, 0.0]; 2];
+        b.world.particles.f = vec![[4.0, 0.0, 0.0]; 2].into();
+        b.world.particles.torque = vec![[0.0, 0.4, 0.0]; 2].into();
         b.world.particles.mask[1] = 0;
         let fix = b.fix(&NveSphere, "").unwrap();
         let mut ops = b.seal(&*fix).unwrap();

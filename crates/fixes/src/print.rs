@@ -4,10 +4,11 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::{Result, Span};
 use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_out::Sheet;
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
+use perigrain_world::field::{SLOTS, TAG, V};
 use std::path::{Path, PathBuf};
 
 /// The style.
@@ -129,7 +130,7 @@ impl Fix for Declared {
         let mut text = cx.text(&self.text, self.place, Stage::Output, &when)?;
         let mut sheet = self.file.as_ref().map(|(path, _)| Sheet::new(path, None));
         let (log, screen) = (cx.log(), self.screen);
-        let access = Access::new("slots", "log");
+        let access = Needs::new().read(SLOTS | TAG | V);
         let op = StepOp::new(format!("fix {} print", self.id), Stage::Output, access, move |w, t| {
             // `pre no` leaves out the line that a setup prints.
             if t.setup && w.clock.onward {

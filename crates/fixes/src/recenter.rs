@@ -5,11 +5,12 @@ use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::length;
 use perigrain_base::par;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage};
+use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::common::scales;
 use perigrain_styles::matter::{centre, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, X};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -113,7 +114,10 @@ impl Fix for Declared {
         let span = cx.span();
         check_masses(cx.world(), span)?;
         let slot = cx.slot(&format!("f_{}", self.id));
-        let (me, access) = (self.clone(), Access::new("image mass mask", "x"));
+        let (me, access) = (
+            self.clone(),
+            Needs::new().read(IMAGE | MASS | MASK | BOX | TYPE_MASS | MEMO | KIND).write(X | SLOTS),
+        );
         let op =
             StepOp::new(format!("fix {} recenter", self.id), Stage::InitialIntegrate, access, move |w, t| {
                 let shift = me.shift(w);

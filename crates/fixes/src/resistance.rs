@@ -3,7 +3,7 @@
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::par;
 use perigrain_lang::{Args, Param};
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::common::variable_param;
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Reading, SealCx};
@@ -28,8 +28,11 @@ pub struct Resistance {
     scale: Scale,
 }
 
-/// A column that resists and the column of what it resists.
-pub type Columns = fn(&mut Particles) -> (&mut Vec<[f64; 3]>, &mut Vec<[f64; 3]>);
+/// The column that loses.
+pub type Against = fn(&mut Particles) -> &mut Vec<[f64; 3]>;
+
+/// The column that it loses by.
+pub type Motion = fn(&Particles) -> &[[f64; 3]];
 
 impl Resistance {
     /// Reads `gamma [scale type ratio]…`, and `scale v_name` where particles may differ (`each`).
@@ -63,29 +66,34 @@ impl Resistance {
         Ok(Self { name: format!("fix {} {style}", cx.id), group: cx.group, gamma, scale })
     }
 
-    /// The op: the first of `columns` loses γ times the second.
+    /// The op: the first column loses γ times the second.
     ///
     /// # Errors
     /// A variable that is gone.
-    pub fn op(&self, access: Access, columns: Columns, cx: &mut dyn SealCx) -> Result<Box<dyn Op>> {
+    pub fn op(
+        &self,
+        needs: Needs,
+        (against_in, motion_in): (Against, Motion),
+        cx: &mut dyn SealCx,
+    ) -> Result<Box<dyn Op>> {
         let (gamma, bit) = (self.gamma, self.group.bit());
         let (kinds, each) = match &self.scale {
             Scale::Kinds(ratio) => (ratio.clone(), None),
             Scale::Each(by) => (vec![], Some(cx.param(by, Stage::PostForce, &When::Always)?)),
         };
-        let op = StepOp::new(self.name.clone(), Stage::PostForce, access, move |w, t| {
+        let op = StepOp::new(self.name.clone(), Stage::PostForce, needs, move |w, t| {
             if t.unchanged {
                 return Ok(());
             }
-            let (against, motion) = columns(&mut w.particles);
-            let (mut against, motion) = (std::mem::take(against), std::mem::take(motion));
+            let mut against = std::mem::take(against_in(&mut w.particles));
             let world = &*w;
+            let motion = motion_in(&world.particles);
             let p = &world.particles;
             let factor = |i: usize| match each {
                 Some(reading) => Reading::atom(&reading, world, i),
                 None => kinds[usize::from(p.kind[i]) - 1],
             };
-            par::each((&mut against[..], &motion[..], &p.mask[..]), |start, (against, motion, mask)| {
+            par::each((&mut against[..], motion, &p.mask[..]), |start, (against, motion, mask)| {
                 for (k, ((against, motion), mask)) in against.iter_mut().zip(motion).zip(mask).enumerate() {
                     if mask & bit != 0 {
                         let drag = gamma * factor(start + k);
@@ -93,8 +101,7 @@ impl Resistance {
                     }
                 }
             });
-            let (a, m) = columns(&mut w.particles);
-            (*a, *m) = (against, motion);
+            *against_in(&mut w.particles) = against;
             Ok(())
         });
         Ok(op.boxed())

@@ -13,12 +13,16 @@ use bodies::Split;
 use motion::Crew;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Word};
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::range_from;
 use perigrain_styles::matter::check_masses;
 use perigrain_styles::molecules::named;
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
+use perigrain_world::field::{
+    self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, SLOTS, TORQUE, TRAVEL,
+    TYPE_MASS, V, X,
+};
 use perigrain_world::{GroupId, World};
 
 /// Columns of the array: centre, velocity, force, torque, image counts.
@@ -300,7 +304,11 @@ impl Fix for Declared {
         let bodies = StepOp::new(
             name.clone(),
             Stage::Neighbor,
-            Access::new("x v omega mass", "bodies"),
+            Needs::new()
+                .read(
+                    X | V | OMEGA | MASS | LISTS | MASK | KIND | RADIUS | BOX | MOLECULE | IMAGE | TYPE_MASS,
+                )
+                .keep(MEMO | field::COLUMNS),
             move |w, t| {
                 if t.setup && !t.unchanged {
                     me.begin(w, span)?;
@@ -315,7 +323,24 @@ impl Fix for Declared {
             },
         );
         let (me, mut crew) = (self.clone(), Crew::of(self));
-        let access = || Access::new("f torque mass mask bodies", "x v omega");
+        let access = || {
+            Needs::new()
+                .add(TRAVEL)
+                .read(
+                    F | TORQUE
+                        | MASS
+                        | MEMO
+                        | BOX
+                        | field::COLUMNS
+                        | LISTS
+                        | RADIUS
+                        | TYPE_MASS
+                        | IMAGE
+                        | KIND,
+                )
+                .write(X | V | OMEGA | SLOTS)
+                .keep(MEMO)
+        };
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), move |w, t| {
             me.advance(w, t, &mut crew);
             Ok(())

@@ -4,11 +4,12 @@ use super::components::Components;
 use super::{Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Act, Gist, Op, Stage, Stretch, Tick};
+use perigrain_plan::{Act, Gist, Needs, Op, Stage, Stretch, Tick};
 use perigrain_styles::matter::{change_forces, publish_levels};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::World;
+use perigrain_world::field::{F, MASK, REGIONS, SLOTS, X};
 
 /// The style.
 pub struct SetForce;
@@ -49,7 +50,7 @@ impl Fix for Declared {
         let (chosen, force) = self.components.seal(cx)?;
         let level = cx.level();
         let slot = cx.slot(&format!("f_{}", self.id));
-        let access = Access::new("f x mask", "f");
+        let access = Needs::new().read(X | MASK | REGIONS).write(F | SLOTS);
         let numbers = chosen.bit_alone().zip(numbers(&force));
         let hold = move |_: &World, t: &Tick, _: bool| {
             let (bit, values) = numbers.filter(|_| !t.unchanged)?;
@@ -113,7 +114,7 @@ fn numbers(force: &[Option<Reading>; 3]) -> Option<[Option<f64>; 3]> {
 fn replace(s: &mut Stretch, bit: u32, values: &[Option<f64>; 3]) -> Gist {
     let mut gist = Gist::default();
     // Particles that are held lie together: most eights have none.
-    for (k, eight) in s.mask.chunks(8).enumerate() {
+    for (k, eight) in s.mask().chunks(8).enumerate() {
         if eight.iter().fold(0, |all, m| all | m) & bit == 0 {
             continue;
         }
@@ -136,7 +137,7 @@ mod tests {
 
     fn scene() -> Bench {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [5.0, 0.0, 0.0]]);
-        b.world.particles.f = vec![[1.0, 2.0, 3.0], [10.0, 20.0, 30.0]];
+        b.world.particles.f = vec![[1.0, 2.0, 3.0], [10.0, 20.0, 30.0]].into();
         b.atom.insert("a".into(), vec![-1.0, -2.0]);
         b.equal.insert("e".into(), 7.0);
         b.world.regions.insert("r".into(), Region::inside(Shape::Sphere { center: [0.0; 3], radius: 1.0 }));

@@ -4,12 +4,13 @@ use super::{Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::vec3::length;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage};
+use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::common::number_or_null;
 use perigrain_styles::matter::{Chosen, Masses, centre, change_forces, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::GroupId;
+use perigrain_world::field::{BOX, F, IMAGE, KIND, MASK, MASS, SLOTS, TYPE_MASS, X};
 
 /// The style.
 pub struct Spring;
@@ -98,7 +99,10 @@ impl Fix for Declared {
             None => None,
         };
         let slot = cx.slot(&format!("f_{}", self.id));
-        let (me, access) = (self.clone(), Access::new("x image mass mask", "f"));
+        let (me, access) = (
+            self.clone(),
+            Needs::new().read(X | IMAGE | MASS | MASK | BOX | TYPE_MASS | KIND).add(F).write(SLOTS),
+        );
         let op = StepOp::new(format!("fix {} spring", self.id), Stage::PostForce, access, move |w, t| {
             if t.unchanged {
                 return Ok(());
@@ -162,7 +166,7 @@ mod tests {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0, 0.0, 3.0], [2.0, 0.0, 3.0]]);
         let fix = b.fix(&Spring, "tether 2 4 4 NULL 1").unwrap();
         let mut ops = b.seal(&*fix).unwrap();
-        b.world.particles.f = vec![[0.0; 3]; 2];
+        b.world.particles.f = vec![[0.0; 3]; 2].into();
         b.stage(&mut ops, Stage::PostForce).unwrap();
         let close = |a: f64, b: f64| (a - b).abs() < 1e-14;
         for f in &b.world.particles.f {
@@ -180,7 +184,7 @@ mod tests {
         let h = b.world.groups.find_or_add("h").unwrap();
         (b.world.particles.mask[0], b.world.particles.mask[1]) = (1 | g.bit(), 1 | h.bit());
         let fix = b.fix(&Spring, "couple h 2 0 0 1 4").unwrap();
-        b.world.particles.f = vec![[0.0; 3]; 2];
+        b.world.particles.f = vec![[0.0; 3]; 2].into();
         let mut ops = b.seal(&*fix).unwrap();
         // The group here is `all`, whose centre is (0, 0, 1.5): 1.5 − 1 − 4 shorter than at rest.
         b.stage(&mut ops, Stage::PostForce).unwrap();

@@ -3,11 +3,12 @@
 use super::{Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, Param};
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::common::variable_param;
 use perigrain_styles::matter::{Chosen, change_forces, keep_places, publish, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, COLUMNS, F, IMAGE, MASK, SLOTS, X};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -85,7 +86,7 @@ impl Fix for Declared {
         keep_places(cx.world(), &key, self.group, unwrapped);
         let stiffness = cx.param(&self.stiffness, Stage::PostForce, &When::Always)?;
         let slot = cx.slot(&format!("f_{}", self.id));
-        let access = Access::new("x image mask", "f");
+        let access = Needs::new().read(X | IMAGE | MASK | BOX | COLUMNS).add(F).write(SLOTS);
         let op =
             StepOp::new(format!("fix {} spring/self", self.id), Stage::PostForce, access, move |w, t| {
                 if t.unchanged {
@@ -141,7 +142,7 @@ mod tests {
         let fix = b.fix(&SpringSelf, "2 xz").unwrap();
         fix.declare(&mut b.world).unwrap();
         b.world.particles.x[0] = [1.0, 1.0, -2.0];
-        b.world.particles.f = vec![[0.0; 3]; 2];
+        b.world.particles.f = vec![[0.0; 3]; 2].into();
         let mut ops = b.seal(&*fix).unwrap();
         b.stage(&mut ops, Stage::PostForce).unwrap();
         assert_eq!(b.world.particles.f, [[-2.0, 0.0, 4.0], [0.0; 3]]);

@@ -3,9 +3,10 @@
 use super::{Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage};
+use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{F, MASK, SLOTS};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -53,22 +54,23 @@ impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let (slot, bit) = (cx.slot(&format!("f_{}", self.id)), self.group.bit());
         let name = format!("fix {} store/force", self.id);
-        let op = StepOp::new(name, Stage::PostForce, Access::new("f mask", "slots"), move |w, t| {
-            if t.unchanged {
-                return Ok(());
-            }
-            let (forces, mask) = (&w.particles.f, &w.particles.mask);
-            let out = w.slots.get_mut(slot);
-            (out.step, out.cols) = (Some(t.step), 3);
-            // Of several levels of steps the longer ones add up.
-            if t.phase.level == 0 {
-                out.atom.clear();
-            }
-            out.atom.resize(3 * forces.len(), 0.0);
-            let kept = forces.iter().zip(mask).map(|(f, m)| if m & bit != 0 { *f } else { [0.0; 3] });
-            out.atom.iter_mut().zip(kept.flatten()).for_each(|(sum, f)| *sum += f);
-            Ok(())
-        });
+        let op =
+            StepOp::new(name, Stage::PostForce, Needs::new().read(F | MASK).write(SLOTS), move |w, t| {
+                if t.unchanged {
+                    return Ok(());
+                }
+                let (forces, mask) = (&w.particles.f, &w.particles.mask);
+                let out = w.slots.get_mut(slot);
+                (out.step, out.cols) = (Some(t.step), 3);
+                // Of several levels of steps the longer ones add up.
+                if t.phase.level == 0 {
+                    out.atom.clear();
+                }
+                out.atom.resize(3 * forces.len(), 0.0);
+                let kept = forces.iter().zip(mask).map(|(f, m)| if m & bit != 0 { *f } else { [0.0; 3] });
+                out.atom.iter_mut().zip(kept.flatten()).for_each(|(sum, f)| *sum += f);
+                Ok(())
+            });
         Ok(vec![op.in_every_level().boxed()])
     }
 
@@ -94,7 +96,7 @@ mod tests {
     #[test]
     fn forces_of_the_group() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
-        b.world.particles.f = vec![[1.0, 2.0, 3.0]; 2];
+        b.world.particles.f = vec![[1.0, 2.0, 3.0]; 2].into();
         b.world.particles.mask[0] = 0;
         let fix = b.fix(&StoreForce, "").unwrap();
         fix.declare(&mut b.world).unwrap();

@@ -4,10 +4,11 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_computes::property_atom::{Getter, find_attribute, read_attribute};
 use perigrain_lang::{Args, ValueRef, Word};
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::centre;
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
+use perigrain_world::field::{BOX, COLUMNS, F, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Slot, World};
 
 /// The style.
@@ -189,7 +190,10 @@ impl Fix for Declared {
                 Input::Value(r) => Some(cx.reading(r, Wants::PerAtom, Stage::EndOfStep, &when)?),
             });
         }
-        let access = Access::new("slots x v f", "slots columns");
+        let access = Needs::new()
+            .read(SLOTS | X | V | F | MASK | MASS | IMAGE | TYPE_MASS | KIND | BOX)
+            .write(SLOTS)
+            .keep(COLUMNS | MEMO);
         let op =
             StepOp::new(format!("fix {} store/state", self.id), Stage::EndOfStep, access, move |w, t| {
                 if !t.setup {

@@ -1,11 +1,13 @@
 //! Fixes that set the time step: when they look, and what they remember.
 
 use perigrain_base::diag::Result;
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::SealCx;
 use perigrain_styles::matter::publish;
 use perigrain_styles::step_op::StepOp;
 use perigrain_world::World;
+use perigrain_world::field::Fields;
+use perigrain_world::field::{BOX, CLOCK, COLUMNS, FACTS, KIND, MEMO, SLOTS, TYPE_MASS, X0};
 
 /// What such fixes share: their name, how often they look, and as scalar the last step at which the step changed.
 #[derive(Clone)]
@@ -41,7 +43,7 @@ impl Follower {
     pub fn ops(
         &self,
         cx: &mut dyn SealCx,
-        reads: &'static str,
+        reads: Fields,
         mut step: impl FnMut(&mut World) -> Result<f64> + Send + 'static,
     ) -> Vec<Box<dyn Op>> {
         let (memo, slot) = (self.memo(), cx.slot(&format!("f_{}", self.id)));
@@ -59,7 +61,15 @@ impl Follower {
             publish(w, slot, t, last, &[]);
             Ok(())
         };
-        let op = StepOp::new(name, Stage::EndOfStep, Access::new(reads, "dt"), look);
+        let op = StepOp::new(
+            name,
+            Stage::EndOfStep,
+            Needs::new()
+                .read(reads | BOX | COLUMNS | TYPE_MASS | FACTS | KIND | X0)
+                .write(CLOCK | SLOTS)
+                .keep(MEMO),
+            look,
+        );
         vec![op.when(When::Every(self.every).or(When::First)).in_setup(true).boxed()]
     }
 }

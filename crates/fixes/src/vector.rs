@@ -5,9 +5,10 @@ use super::window::forget;
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, ValueRef};
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
+use perigrain_world::field::{MEMO, SLOTS};
 use perigrain_world::{Slot, World};
 
 /// The style.
@@ -99,7 +100,7 @@ impl Fix for Declared {
         }
         let slot = cx.slot(&format!("f_{}", self.id));
         let (most, cols, key) = (self.most, self.values.len(), self.key());
-        let access = Access::new("slots", "slots memo");
+        let access = Needs::new().read(SLOTS).write(SLOTS).keep(MEMO);
         let op = StepOp::new(format!("fix {} vector", self.id), Stage::EndOfStep, access, move |w, t| {
             // The setup of a run stands at a step that the run before may have kept already.
             let last = format!("{key}/last");

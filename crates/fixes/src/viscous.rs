@@ -4,8 +4,9 @@ use super::resistance::Resistance;
 use super::{Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op};
+use perigrain_plan::{Needs, Op};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::field::{F, KIND, MASK, V};
 
 /// The style.
 pub struct Viscous;
@@ -37,8 +38,8 @@ struct Declared(Resistance);
 
 impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let access = Access::new("f v type mask", "f");
-        Ok(vec![self.0.op(access, |p| (&mut p.f, &mut p.v), cx)?])
+        let needs = Needs::new().read(V | KIND | MASK).add(F);
+        Ok(vec![self.0.op(needs, (|p| &mut p.f, |p| &p.v), cx)?])
     }
 
     fn minimizing(&self) -> Minimizing {
@@ -66,7 +67,7 @@ mod tests {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
         b.world.types = 3;
         b.world.particles.kind[1] = 3;
-        b.world.particles.v = vec![[1.0, 0.0, -2.0]; 2];
+        b.world.particles.v = vec![[1.0, 0.0, -2.0]; 2].into();
         let fix = b.fix(&Viscous, "2 scale 2* 0.25").unwrap();
         let mut ops = b.seal(&*fix).unwrap();
         b.stage(&mut ops, Stage::PostForce).unwrap();

@@ -4,8 +4,9 @@ use super::resistance::Resistance;
 use super::{Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op};
+use perigrain_plan::{Needs, Op};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::field::{KIND, MASK, OMEGA, TORQUE};
 
 /// The style.
 pub struct ViscousSphere;
@@ -42,8 +43,8 @@ struct Declared(Resistance);
 
 impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let access = Access::new("omega torque type mask", "torque");
-        Ok(vec![self.0.op(access, |p| (&mut p.torque, &mut p.omega), cx)?])
+        let needs = Needs::new().read(OMEGA | KIND | MASK).add(TORQUE);
+        Ok(vec![self.0.op(needs, (|p| &mut p.torque, |p| &p.omega), cx)?])
     }
 
     fn minimizing(&self) -> Minimizing {
@@ -76,8 +77,8 @@ mod tests {
             ("2 scale 2* 0.25", [[-2.0, 0.0, 4.0], [-0.5, 0.0, 1.0]]),
             ("2 scale v_a", [[-6.0, 0.0, 12.0], [-1.0, 0.0, 2.0]]),
         ] {
-            b.world.particles.omega = vec![[1.0, 0.0, -2.0]; 2];
-            b.world.particles.torque = vec![[0.0; 3]; 2];
+            b.world.particles.omega = vec![[1.0, 0.0, -2.0]; 2].into();
+            b.world.particles.torque = vec![[0.0; 3]; 2].into();
             let fix = b.fix(&ViscousSphere, words).unwrap();
             let mut ops = b.seal(&*fix).unwrap();
             b.stage(&mut ops, Stage::PostForce).unwrap();

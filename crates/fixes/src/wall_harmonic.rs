@@ -4,11 +4,12 @@ use super::faces::{Face, Spot, check};
 use super::{Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Param};
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::{scales, units_lattice, variable_param};
 use perigrain_styles::matter::{Chosen, change_forces, publish, sum};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
+use perigrain_world::field::{F, MASK, SLOTS, TALLY, X};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -237,7 +238,7 @@ impl Fix for Declared {
         let chosen = Chosen::new(cx.world(), self.group, None, span)?;
         let walls = self.seal(cx)?;
         let (slot, virial) = (cx.slot(&format!("f_{}", self.id)), self.virial);
-        let access = Access::new("x mask", "f");
+        let access = Needs::new().read(X | MASK).add(F | TALLY).write(SLOTS);
         let op =
             StepOp::new(format!("fix {} wall/harmonic", self.id), Stage::PostForce, access, move |w, t| {
                 let mut now = vec![];
@@ -302,7 +303,7 @@ mod tests {
 
     fn scene() -> Bench {
         let mut b = Bench::new(AtomStyle::default(), &[[3.0, 0.0, 1.0], [5.0, 0.0, 1.0]]);
-        b.world.particles.f = vec![[0.0; 3]; 2];
+        b.world.particles.f = vec![[0.0; 3]; 2].into();
         b.equal.insert("n".into(), -1.0);
         b.equal.insert("e".into(), 6.0);
         b

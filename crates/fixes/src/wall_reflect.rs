@@ -5,10 +5,11 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage};
+use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::common::{scales, units_lattice};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::field::{MASK, SLOTS, V, X};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -92,7 +93,7 @@ impl Fix for Declared {
             walls.push((face.clone(), face.seal(cx, stage, self.scale)?));
         }
         let bit = self.group.bit();
-        let access = Access::new("mask", "x v");
+        let access = Needs::new().read(MASK | SLOTS).write(X | V);
         let op = StepOp::new(format!("fix {} wall/reflect", self.id), stage, access, move |w, _| {
             for (face, spot) in &walls {
                 let at = spot.get(w);
@@ -122,8 +123,8 @@ mod tests {
         let mut b = Bench::new(AtomStyle::default(), &[[3.0, -9.5, 1.0], [-11.0, 12.0, 0.0]]);
         let mut faces = Boundary::default();
         (faces.0[0], faces.0[1]) = ([Side::Fixed; 2], [Side::Fixed; 2]);
-        b.world.domain = Some(Domain::new([-10.0; 3], [10.0; 3], faces));
-        b.world.particles.v = vec![[1.0, -2.0, 3.0]; 2];
+        b.world.domain = Some(Domain::new([-10.0; 3], [10.0; 3], faces)).into();
+        b.world.particles.v = vec![[1.0, -2.0, 3.0]; 2].into();
         b.equal.insert("h".into(), 1.0);
         b.world.lattice = Lattice::none(0.5);
         b

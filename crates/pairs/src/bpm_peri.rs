@@ -7,9 +7,10 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::vec3::dot;
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference};
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::columns::VOLUME_PROPERTY;
+use perigrain_world::field::{BONDS, BOX, COLUMNS, F, KIND, LISTS, MASK, MOLECULE, RADIUS, TAG, TALLY, X};
 use perigrain_world::{Allowed, World};
 use std::collections::BTreeMap;
 
@@ -140,8 +141,12 @@ impl Op for Repulsion {
     fn stage(&self) -> Stage {
         Stage::Force
     }
-    fn access(&self) -> Access {
-        Access::new("x type bonds", "f tally")
+    fn needs(&self) -> Needs {
+        Needs::new()
+            .read(X | KIND | BONDS | BOX | TAG | LISTS | RADIUS | MASK | MOLECULE)
+            .add(F)
+            .write(TALLY)
+            .keep(COLUMNS)
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let range = CONTACT * w.lattice.spacing[0];

@@ -6,9 +6,12 @@ use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{dot, sub};
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference};
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::adapted::Coefficient;
+use perigrain_world::field::{
+    BONDS, BOX, F, FAMILIES, KIND, LISTS, MASK, MEMO, MOLECULE, RADIUS, TAG, TALLY, V, X, X0,
+};
 use perigrain_world::{Allowed, World};
 use std::collections::BTreeMap;
 
@@ -130,8 +133,11 @@ impl Op for Repulsion {
     fn stage(&self) -> Stage {
         Stage::Force
     }
-    fn access(&self) -> Access {
-        Access::new("x v type bonds", "f tally")
+    fn needs(&self) -> Needs {
+        Needs::new()
+            .read(X | V | KIND | BONDS | BOX | MEMO | LISTS | RADIUS | FAMILIES | TAG | MOLECULE | X0 | MASK)
+            .add(F)
+            .write(TALLY)
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let period = w.periods();

@@ -55,7 +55,7 @@ impl<L: ContactLaw> ContactProbe<L> {
         read: impl FnOnce(&Grains, &Rules<L>, &Sweep, &Contacts) -> T,
     ) -> Result<T> {
         let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
-        let body = match &w.families {
+        let body = match &*w.families {
             Some(families) if asked => solids(families, w.n()),
             _ => vec![],
         };

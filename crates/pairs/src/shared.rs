@@ -46,8 +46,9 @@ pub fn push(w: &mut World, t: &Tick, ends: [usize; 2], d: Vec3, f: Vec3, energy:
         ends.iter().for_each(|&i| w.tally.atom[i] += 0.5 * energy);
     }
     if t.virial {
-        let atoms = t.atom_virial.then_some(&mut w.tally.atom_virial[..]);
-        add_share(&mut w.tally.virial, atoms, ends, d, f);
+        let tally = &mut *w.tally;
+        let atoms = t.atom_virial.then_some(&mut tally.atom_virial[..]);
+        add_share(&mut tally.virial, atoms, ends, d, f);
     }
 }
 

@@ -1,6 +1,7 @@
 //! What acts in a step, without asking everybody in every step.
 
 use super::{Placed, Stage, StepPlan, Tick, When};
+use perigrain_world::field::{F, TORQUE};
 use std::sync::Arc;
 
 /// Forces and what follows them in a step.
@@ -70,10 +71,7 @@ impl StepPlan {
     fn clears_early(&mut self) -> Option<usize> {
         let first = self.ops.iter().position(|p| p.stage >= Stage::PreForce)?;
         let clears = self.ops[first].stage == Stage::PreForce && self.ops[first].when == When::Always;
-        let reads = |p: &Placed| {
-            let access = p.op.access();
-            p.stage > Stage::InitialIntegrate && (access.reads("f") || access.reads("torque"))
-        };
+        let reads = |p: &Placed| p.stage > Stage::InitialIntegrate && p.needs.reads(F | TORQUE);
         let before = &self.ops[..first];
         let unread = *self.unread.get_or_insert_with(|| !before.iter().any(reads));
         (clears && unread).then_some(first)

@@ -14,7 +14,6 @@ pub fn text(plan: &StepPlan, measured: bool) -> String {
         }
         let _ = writeln!(s, "{}", stage.name());
         for p in ops {
-            let a = p.op.access();
             let _ = write!(s, "  {:<34} {:<22}", p.op.name(), p.when.to_string());
             if let Some(levels) = plan.levels.filter(|_| stage < Stage::EndOfStep) {
                 let _ = write!(s, " {:<12}", p.level.told(levels));
@@ -31,7 +30,7 @@ pub fn text(plan: &StepPlan, measured: bool) -> String {
                     );
                 }
             } else {
-                let _ = write!(s, " reads {:<26} writes {}", a.reads.join(" "), a.writes.join(" "));
+                let _ = write!(s, " {}", p.needs);
             }
             let _ = writeln!(s);
         }

@@ -1,9 +1,9 @@
 //! What a step is made of: ops, their stage, what they read and write, and when they act.
 
 use super::stretch::{Act, Gist};
-use super::{Level, Phase};
+use super::{Level, Needs, Phase};
 use perigrain_base::diag::Result;
-use perigrain_world::World;
+use perigrain_world::{Fields, World};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -243,35 +243,6 @@ impl Tick {
     }
 }
 
-/// What an op reads and writes, by column or state name (`x`, `v`, `f`, `families`, `c_dmg`).
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Access {
-    /// Read.
-    pub reads: Vec<&'static str>,
-    /// Written.
-    pub writes: Vec<&'static str>,
-}
-
-impl Access {
-    /// Reads and writes, each as words separated by blanks.
-    pub fn new(reads: &'static str, writes: &'static str) -> Self {
-        Self {
-            reads: reads.split(' ').filter(|s| !s.is_empty()).collect(),
-            writes: writes.split(' ').filter(|s| !s.is_empty()).collect(),
-        }
-    }
-
-    /// Whether this is written.
-    pub fn writes(&self, what: &str) -> bool {
-        self.writes.iter().any(|w| *w == what || *w == "everything")
-    }
-
-    /// Whether this is read.
-    pub fn reads(&self, what: &str) -> bool {
-        self.reads.iter().any(|r| *r == what || *r == "everything")
-    }
-}
-
 /// The row of LAMMPS' timing table an op's time goes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum OpClass {
@@ -293,8 +264,10 @@ pub trait Op: Send {
     fn name(&self) -> &str;
     /// Where in the step.
     fn stage(&self) -> Stage;
-    /// What it reads and writes.
-    fn access(&self) -> Access;
+    /// Which fields it touches, and how; the whole scene if it does not say.
+    fn needs(&self) -> Needs {
+        Needs::all()
+    }
     /// At which steps. Providers of values get the union of their consumers' times instead.
     fn when(&self) -> When {
         When::Always
@@ -311,8 +284,8 @@ pub trait Op: Send {
     fn reports_travel(&self) -> bool {
         false
     }
-    /// Told once all ops of a plan are known: which columns and states some of them write by name.
-    fn settle(&mut self, _written: &dyn Fn(&str) -> bool) {}
+    /// Told once all ops of a plan are known: which fields some of them change by name.
+    fn settle(&mut self, _changed: Fields) {}
     /// Acts at the end of this step and, in the same pass, as its fix does at the beginning of the next one, which nobody
     /// looks in between of; `false` if it cannot, and has then done nothing.
     ///

@@ -1,9 +1,11 @@
 //! Ops in the order of a step, with what was left out and why.
 
 use super::ending::Ending;
+use super::needs::{self, Needs};
 use super::{Act, Gist, Guard, Level, Meter, Op, OpClass, Stage, Tick, Turns, When, take_turns};
 use perigrain_base::diag::{Diagnostics, Result, Span};
-use perigrain_world::World;
+use perigrain_world::field::{CONTACTS, RADIUS, X};
+use perigrain_world::{Fields, World};
 use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -20,8 +22,8 @@ pub struct Placed {
     pub from: Option<Span>,
     /// The value it provides, as `c_dmg`; empty for ops that provide none to others.
     pub provides: String,
-    /// Whether it reads the world's contacts.
-    pub reads_contacts: bool,
+    /// Which fields it touches.
+    pub needs: Needs,
     /// Where in the step it acts.
     pub stage: Stage,
     /// Whether it acts in the setup of a run.
@@ -33,9 +35,31 @@ pub struct Placed {
 impl Placed {
     /// An op at its own times.
     pub fn new(op: Box<dyn Op>, from: Option<Span>) -> Self {
-        let (when, level, reads_contacts) = (op.when(), op.level(), op.access().reads("contacts"));
+        let (when, level, needs) = (op.when(), op.level(), op.needs());
         let (stage, in_setup, provides) = (op.stage(), op.in_setup(), String::new());
-        Self { op, when, level, from, provides, reads_contacts, stage, in_setup, meter: Meter::default() }
+        Self { op, when, level, from, provides, needs, stage, in_setup, meter: Meter::default() }
+    }
+
+    /// Its name and what it states.
+    fn stated(&self) -> (&str, Needs) {
+        (self.op.name(), self.needs)
+    }
+
+    /// Lets the op act by itself, see [`Placed::timed`]; it touches what it states.
+    fn alone<T>(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        clock: &mut Instant,
+        act: impl FnOnce(&mut dyn Op, &mut World) -> Result<T>,
+    ) -> Result<T> {
+        let needs = self.needs;
+        self.timed(w, t, clock, |op, w| {
+            begin_watch(w);
+            let outcome = act(op, w);
+            end_watch(w, std::iter::once((op.name(), needs)));
+            outcome
+        })
     }
 
     /// Lets the op act, and adds up what that costs; `clock` is when the one before was done.
@@ -53,6 +77,23 @@ impl Placed {
         self.meter.bytes += self.op.bytes(w);
         outcome.map_err(|e| placed_error(e, self, t))
     }
+}
+
+/// Forgets what has been touched so far.
+fn begin_watch(w: &World) {
+    #[cfg(debug_assertions)]
+    w.touched();
+    let _ = w;
+}
+
+/// What ops have touched since is what they state, together: our own checks see to that, a release does not ask.
+fn end_watch<'a>(w: &World, ops: impl Iterator<Item = (&'a str, Needs)>) {
+    #[cfg(debug_assertions)]
+    if let Some(lie) = needs::lie(ops, w.touched()) {
+        panic!("{lie}");
+    }
+    #[cfg(not(debug_assertions))]
+    let _ = (w, ops);
 }
 
 /// Something the plan does without, and why.
@@ -107,8 +148,8 @@ impl StepPlan {
 
     /// Tells every op what all of them write, now that they are known.
     pub fn settle(&mut self) {
-        let written: Vec<&str> = self.ops.iter().flat_map(|p| p.op.access().writes).collect();
-        self.ops.iter_mut().for_each(|p| p.op.settle(&|what| written.contains(&what)));
+        let changed = self.ops.iter().fold(Fields::NONE, |all, p| all | p.needs.written_by_name());
+        self.ops.iter_mut().for_each(|p| p.op.settle(changed));
     }
 
     /// Fills in which sums are asked for at this tick.
@@ -117,7 +158,10 @@ impl StepPlan {
         let any = |list: &[When]| list.iter().any(|w| t.ending || self.fires(w, t));
         let (energy, virial, atoms) = (any(&self.energy), any(&self.virial), any(&self.atom_energy));
         let atom_virial = any(&self.atom_virial);
-        let reads = |p: &Placed| p.reads_contacts && (t.ending || self.fires(&p.when, t));
+        // Those of this step are there when all forces are.
+        let reads = |p: &Placed| {
+            p.stage != Stage::Force && p.needs.reads(CONTACTS) && (t.ending || self.fires(&p.when, t))
+        };
         let contacts = atom_virial || self.ops.iter().any(reads);
         t.energy = energy || atoms;
         t.virial = virial || atom_virial;
@@ -144,7 +188,8 @@ impl StepPlan {
             }
             let ends = t.ending && p.stage == Stage::Output && p.when != When::Never;
             if ends || self.fires(&p.when, t) {
-                self.ops[k].timed(w, t, clock.get_or_insert_with(Instant::now), |op, w| op.run(w, t))?;
+                let clock = clock.get_or_insert_with(Instant::now);
+                self.ops[k].alone(w, t, clock, |op, w| op.run(w, t))?;
             }
         }
         Ok(())
@@ -159,7 +204,7 @@ impl StepPlan {
         for p in self.ops.iter_mut().filter(|p| p.stage == Stage::EndOfStep) {
             let t = if p.in_setup { t } else { &later };
             if p.when.fires(t) {
-                p.timed(w, t, &mut Instant::now(), |op, w| op.run(w, t))?;
+                p.alone(w, t, &mut Instant::now(), |op, w| op.run(w, t))?;
             }
         }
         Ok(())
@@ -167,7 +212,7 @@ impl StepPlan {
 
     /// Whether all that move particles report how far, and none grows; who adds or wraps particles has lists made anew.
     pub fn reports_travel(&self) -> bool {
-        let moves = |p: &&Placed| ["x", "radius"].iter().any(|what| p.op.access().writes(what));
+        let moves = |p: &&Placed| p.needs.changes(X | RADIUS);
         let anew = |p: &Placed| matches!(p.op.stage(), Stage::Exchange | Stage::Neighbor);
         self.ops.iter().filter(moves).all(|p| anew(p) || p.op.reports_travel())
     }
@@ -203,6 +248,10 @@ impl StepPlan {
         let Some(force) = ending.force else { return Ok(false) };
         let (order, clears) = (&ending.order[..], ending.clears);
         let last = ending.last.filter(|_| more(w));
+        if needs::collecting() {
+            return Ok(false);
+        }
+        begin_watch(w);
         let acts = self.offers(w, t, order, [last, clears]);
         let turns = Turns::new(&acts, w.n()).filter(|_| !acts.is_empty() && acts.len() == order.len());
         let Some(mut turns) = turns else { return Ok(false) };
@@ -219,6 +268,7 @@ impl StepPlan {
         p.meter.time = p.meter.time.saturating_sub(moving);
         let gists = if told { turns.finish() } else { take_turns(w, &acts) };
         self.took_turns(w, t, (order, last), gists, moving + clock.elapsed());
+        end_watch(w, std::iter::once(&force).chain(order).map(|&k| self.ops[k].stated()));
         Ok(true)
     }
 
@@ -265,13 +315,15 @@ impl StepPlan {
         let (mut at, mut clock) = (0, Instant::now());
         while at < order.len() {
             let last = ending.last.filter(|_| self.begun || more(w));
-            let acts = self.offers(w, t, &order[at..], [last, clears]);
+            begin_watch(w);
+            let mut acts = self.offers(w, t, &order[at..], [last, clears]);
+            acts.truncate(if needs::collecting() { 1 } else { acts.len() });
             if acts.is_empty() {
                 let (k, p) = (order[at], &mut self.ops[order[at]]);
                 let whole = last == Some(k) && t.phase.levels == 1;
-                self.begun |= whole && p.timed(w, t, &mut clock, |op, w| op.run_on(w, t))?;
+                self.begun |= whole && p.alone(w, t, &mut clock, |op, w| op.run_on(w, t))?;
                 if !self.begun && clears != Some(k) {
-                    p.timed(w, t, &mut clock, |op, w| op.run(w, t))?;
+                    p.alone(w, t, &mut clock, |op, w| op.run(w, t))?;
                 }
                 if !self.begun && last == Some(k) {
                     return Ok(());
@@ -282,6 +334,7 @@ impl StepPlan {
             let gists = take_turns(w, &acts);
             let elapsed = std::mem::replace(&mut clock, Instant::now()).elapsed();
             self.took_turns(w, t, (&order[at..], last), gists, elapsed);
+            end_watch(w, order[at..at + acts.len()].iter().map(|&k| self.ops[k].stated()));
             at += acts.len();
         }
         Ok(())

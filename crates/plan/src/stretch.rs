@@ -2,7 +2,7 @@
 
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par::{self, CHUNK, Split};
-use perigrain_world::{AtomStyle, World};
+use perigrain_world::{AtomStyle, Lent, Tracked, World};
 use std::ops::Range;
 
 /// Most ops that take turns.
@@ -15,19 +15,25 @@ pub struct Stretch<'a> {
     /// The first particle.
     pub start: usize,
     /// Positions.
-    pub x: &'a mut [Vec3],
+    pub x: Lent<'a, Vec3>,
     /// Velocities.
-    pub v: &'a mut [Vec3],
+    pub v: Lent<'a, Vec3>,
     /// Forces.
-    pub f: &'a mut [Vec3],
+    pub f: Lent<'a, Vec3>,
     /// Angular velocities; empty where nothing spins.
-    pub omega: &'a mut [Vec3],
+    pub omega: Lent<'a, Vec3>,
     /// Torques; empty where nothing spins.
-    pub torque: &'a mut [Vec3],
-    /// Group bits.
-    pub mask: &'a [u32],
+    pub torque: Lent<'a, Vec3>,
     /// What is read, of all particles.
     pub all: Known<'a>,
+}
+
+impl<'a> Stretch<'a> {
+    /// Group bits.
+    #[inline]
+    pub fn mask(&self) -> &'a [u32] {
+        &self.all.mask[self.start..self.start + self.x.len()]
+    }
 }
 
 /// What ops on stretches can read of all particles.
@@ -35,14 +41,16 @@ pub struct Stretch<'a> {
 pub struct Known<'a> {
     /// What particles have.
     pub style: AtomStyle,
+    /// Group bits.
+    pub mask: &'a Tracked<Vec<u32>>,
     /// Types.
-    pub kind: &'a [u16],
+    pub kind: &'a Tracked<Vec<u16>>,
     /// Radii.
-    pub radius: &'a [f64],
+    pub radius: &'a Tracked<Vec<f64>>,
     /// Masses, where each has its own.
-    pub mass: &'a [f64],
+    pub mass: &'a Tracked<Vec<f64>>,
     /// Masses by type.
-    pub type_mass: &'a [Option<f64>],
+    pub type_mass: &'a Tracked<Vec<Option<f64>>>,
 }
 
 /// What came of a stretch: sums, and a largest value.
@@ -200,17 +208,22 @@ fn some(w: &mut World, acts: &[Act]) -> [Gist; MOST] {
     par::reduce_each(columns, |start, rows| chunk(&passes, all, start, rows), join).unwrap_or_default()
 }
 
-type Columns<'a> =
-    (&'a mut [Vec3], &'a mut [Vec3], &'a mut [Vec3], &'a [u32], Option<(&'a mut [Vec3], &'a mut [Vec3])>);
+type Columns<'a> = (Lent<'a, Vec3>, Lent<'a, Vec3>, Lent<'a, Vec3>, Option<(Lent<'a, Vec3>, Lent<'a, Vec3>)>);
 
 /// What ops read of all particles, and the columns that are cut.
 fn columns(w: &mut World) -> (Known<'_>, Columns<'_>) {
     let p = &mut w.particles;
-    let all =
-        Known { style: p.style, kind: &p.kind, radius: &p.radius, mass: &p.mass, type_mass: &w.type_mass };
+    let all = Known {
+        style: p.style,
+        mask: &p.mask,
+        kind: &p.kind,
+        radius: &p.radius,
+        mass: &p.mass,
+        type_mass: &w.type_mass,
+    };
     let spins = p.omega.len() == p.x.len() && p.torque.len() == p.x.len();
-    let turned = spins.then_some((&mut p.omega[..], &mut p.torque[..]));
-    (all, (&mut p.x[..], &mut p.v[..], &mut p.f[..], &p.mask[..], turned))
+    let turned = spins.then_some((p.omega.lend(), p.torque.lend()));
+    (all, (p.x.lend(), p.v.lend(), p.f.lend(), turned))
 }
 
 /// All passes over one stretch after the other.
@@ -218,9 +231,9 @@ fn chunk(passes: &[Pass<'_>], all: Known<'_>, mut start: usize, mut rest: Column
     let mut gists = [Gist::default(); MOST];
     while rest.rows() > 0 {
         let n = rest.rows().min(STRETCH);
-        let ((x, v, f, mask, turned), later) = rest.cut(n);
-        let (omega, torque) = turned.unwrap_or_default();
-        let mut stretch = Stretch { start, x, v, f, omega, torque, mask, all };
+        let ((x, v, f, turned), later) = rest.cut(n);
+        let (omega, torque) = turned.unwrap_or_else(|| (Lent::none(), Lent::none()));
+        let mut stretch = Stretch { start, x, v, f, omega, torque, all };
         let mut came = [Gist::default(); MOST];
         for pass in passes {
             match pass {
@@ -319,7 +332,7 @@ mod tests {
             let mut w = World::default();
             let p = &mut w.particles;
             p.x = (0..n).map(|i| [1.0 / (i as f64 + 1.0), 0.5, -3.0]).collect();
-            (p.v, p.f, p.mask, p.tag) = (p.x.clone(), p.x.clone(), vec![1; n], (0..n as u32).collect());
+            (p.v, p.f, *p.mask, p.tag) = (p.x.clone(), p.x.clone(), vec![1; n], (0..n as u32).collect());
             w
         };
         let acts = [

@@ -152,7 +152,7 @@ pub fn domain<'a>(cx: &BuildCx<'a>) -> Result<&'a Domain> {
 
 /// Refuses a line that must come before the box exists.
 pub fn before_box(cx: &BuildCx, command: &str) -> Result<()> {
-    match cx.world.domain {
+    match *cx.world.domain {
         Some(_) => fail(
             Code::WRONG_ORDER,
             cx.span,
@@ -244,7 +244,7 @@ pub fn ramp(at: f64, between: [f64; 2], by: [f64; 2]) -> f64 {
 
 /// Wraps particles into the box and lets shrink-wrapped faces follow, as LAMMPS does after it has moved them.
 pub fn settle(world: &mut World) {
-    let Some(domain) = &mut world.domain else { return };
+    let Some(domain) = &mut *world.domain else { return };
     let p = &mut world.particles;
     if let Some(extent) = Extent::of(&p.x, domain) {
         p.image.wrap(domain, &mut p.x, &extent.out);

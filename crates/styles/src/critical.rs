@@ -41,7 +41,7 @@ impl Estimate {
 /// # Errors
 /// Without a box.
 pub fn solids(w: &World, how: Estimate) -> Result<f64> {
-    let Some(families) = &w.families else { return Ok(f64::INFINITY) };
+    let Some(families) = &*w.families else { return Ok(f64::INFINITY) };
     let (p, ftm2v, view) = (&w.particles, w.settings.units.constants().ftm2v, view(w)?);
     if families.place.len() != p.len() {
         return Ok(f64::INFINITY);

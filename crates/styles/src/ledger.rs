@@ -68,7 +68,7 @@ pub fn begin(w: &mut World, t: &Tick) {
     if t.unchanged {
         return;
     }
-    if let Some(families) = &mut w.families {
+    if let Some(families) = &mut *w.families {
         families.counts_losses = true;
     }
     let n = w.n();

@@ -93,7 +93,7 @@ pub fn bonds_within(w: &World, group: GroupId) -> Vec<Bond> {
 
 /// Calls `f(i, j)` for every unbroken peridynamic bond, `i` < `j`.
 pub fn bonds(w: &World, mut f: impl FnMut(u32, u32)) {
-    let Some(families) = &w.families else { return };
+    let Some(families) = &*w.families else { return };
     for i in 0..w.n() {
         for n in families.neighbours(i) {
             if n.alive && n.partner > i as u32 {

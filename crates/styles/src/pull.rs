@@ -3,8 +3,9 @@
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::{Vec3, add, dot, sub};
 use perigrain_base::par;
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_world::bonds::LostBond;
+use perigrain_world::field::{BONDS, BOX, F, LISTS, MEMO, TAG, TALLY, X};
 use perigrain_world::index::Index;
 use perigrain_world::tally::add_share;
 use perigrain_world::{Bond, World};
@@ -129,8 +130,8 @@ impl<F: Law> Op for Along<F> {
     fn stage(&self) -> Stage {
         Stage::Force
     }
-    fn access(&self) -> Access {
-        Access::new("x bonds", "f tally")
+    fn needs(&self) -> Needs {
+        Needs::new().read(X | BONDS | BOX | MEMO | LISTS | TAG).add(F).write(TALLY)
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if self.adapted != w.adaptations() {
@@ -174,7 +175,8 @@ pub fn tally(w: &mut World, t: &Tick, ends: [usize; 2], d: &Vec3, force: &Vec3, 
         ends.iter().for_each(|&i| w.tally.bond_atom[i] += 0.5 * energy);
     }
     if t.virial {
-        let atoms = t.atom_virial.then_some(&mut w.tally.atom_bonds[..]);
-        add_share(&mut w.tally.bond_virial, atoms, ends, *d, *force);
+        let tally = &mut *w.tally;
+        let atoms = t.atom_virial.then_some(&mut tally.atom_bonds[..]);
+        add_share(&mut tally.bond_virial, atoms, ends, *d, *force);
     }
 }

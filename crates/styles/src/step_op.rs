@@ -2,14 +2,16 @@
 
 use perigrain_base::diag::Result;
 use perigrain_base::par;
-use perigrain_plan::{Access, Act, Gist, Level, Op, Stage, Tick, When, take_turns};
+use perigrain_plan::{Act, Gist, Level, Needs, Op, Stage, Tick, When, take_turns};
+use perigrain_world::field::Fields;
+use perigrain_world::field::SLOTS;
 use perigrain_world::{GroupId, Slot, SlotId, World};
 
 /// An op whose whole work is one closure at one stage.
 pub struct StepOp<F> {
     name: String,
     stage: Stage,
-    access: Access,
+    access: Needs,
     when: When,
     in_setup: bool,
     level: Level,
@@ -36,7 +38,7 @@ where
     F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
 {
     /// Acts every step at `stage`, and in the setup of a run where that stage usually does.
-    pub fn new(name: impl Into<String>, stage: Stage, access: Access, act: F) -> Self {
+    pub fn new(name: impl Into<String>, stage: Stage, access: Needs, act: F) -> Self {
         Self {
             name: name.into(),
             stage,
@@ -121,7 +123,7 @@ where
     fn stage(&self) -> Stage {
         self.stage
     }
-    fn access(&self) -> Access {
+    fn needs(&self) -> Needs {
         self.access.clone()
     }
     fn when(&self) -> When {
@@ -170,7 +172,8 @@ pub struct Wanted<'a> {
 }
 
 /// The op of a compute: reads the world and fills the slot.
-pub fn fill<F>(name: &str, wanted: &Wanted, reads: &'static str, mut read: F) -> Box<dyn Op>
+#[track_caller]
+pub fn fill<F>(name: &str, wanted: &Wanted, reads: Fields, mut read: F) -> Box<dyn Op>
 where
     F: FnMut(&World, &Tick, &mut Slot) -> Result<()> + Send + 'static,
 {
@@ -181,7 +184,7 @@ where
         w.slots.put(slot, out, t.step);
         outcome
     };
-    StepOp::new(format!("compute {name}"), wanted.stage, Access::new(reads, ""), act)
+    StepOp::new(format!("compute {name}"), wanted.stage, Needs::new().read(reads).write(SLOTS), act)
         .when(wanted.when.clone())
         .in_setup(true)
         .boxed()

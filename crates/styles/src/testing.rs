@@ -35,8 +35,8 @@ pub struct Bench {
 impl Bench {
     /// Particles of type 1 and mass 2 at these places, in a periodic box from -10 to 10.
     pub fn new(style: AtomStyle, places: &[[f64; 3]]) -> Self {
-        let mut world = World { types: 1, type_mass: vec![Some(2.0)], ..World::default() };
-        world.domain = Some(Domain::new([-10.0; 3], [10.0; 3], Boundary::default()));
+        let mut world = World { types: 1, type_mass: vec![Some(2.0)].into(), ..World::default() };
+        world.domain = Some(Domain::new([-10.0; 3], [10.0; 3], Boundary::default())).into();
         world.particles.style = style;
         for (k, x) in places.iter().enumerate() {
             world.particles.push(k as u32 + 1, 1, *x);

@@ -15,6 +15,7 @@ pub mod contacts;
 pub mod crack;
 pub mod domain;
 pub mod extent;
+pub mod field;
 pub mod groups;
 pub mod images;
 pub mod index;
@@ -35,6 +36,8 @@ pub mod slots;
 pub mod surface;
 pub mod tally;
 pub mod template;
+pub mod touched;
+pub mod tracked;
 pub mod travel;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -50,6 +53,7 @@ pub use columns::Columns;
 pub use crack::Crack;
 pub use domain::{Boundary, Domain, Face};
 pub use extent::Extent;
+pub use field::Fields;
 pub use groups::{Dynamic, GroupId, Groups};
 pub use images::Images;
 pub use lattice::Lattice;
@@ -64,6 +68,8 @@ pub use settings::{Compat, NeighborSettings, Newton, Respa, RunStyle, Settings};
 pub use slots::{Offers, Slot, SlotId, Slots};
 pub use tally::Tally;
 pub use template::Template;
+pub use touched::Touched;
+pub use tracked::{Lent, Tracked};
 pub use travel::{Seen, Travel};
 
 /// How names of `memo` end that hold the energy which a fix has taken from particles for a reservoir so far (`ecouple`).
@@ -76,49 +82,52 @@ pub const CONTACT_MASS: &str = "/contact mass";
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct World {
     /// Time, step and step size.
-    pub clock: Clock,
+    pub clock: Tracked<Clock>,
     /// Choices of the deck that concern everybody: units, skin, compatibility.
     pub settings: Settings,
     /// The box; `None` before `create_box` or `read_data`.
-    pub domain: Option<Domain>,
+    pub domain: Tracked<Option<Domain>>,
     /// The particles' core columns.
     pub particles: Particles,
     /// Further columns, owned by fixes and computes.
-    pub columns: Columns,
+    pub columns: Tracked<Columns>,
     /// Groups of particles.
     pub groups: Groups,
     /// The latest `lattice`.
     pub lattice: Lattice,
     /// Named volumes.
-    pub regions: BTreeMap<String, Region>,
+    pub regions: Tracked<BTreeMap<String, Region>>,
     /// Number of particle types, from `create_box`.
     pub types: usize,
     /// Mass of each type (index type − 1) where `mass` set one.
-    pub type_mass: Vec<Option<f64>>,
+    pub type_mass: Tracked<Vec<Option<f64>>>,
     /// Values that computes, fixes and variables have produced.
-    pub slots: Slots,
+    pub slots: Tracked<Slots>,
     /// Energy and virial of the present step.
-    pub tally: Tally,
+    pub tally: Tracked<Tally>,
     /// Small state of fixes that outlives a run, by `kind/ID`.
-    pub memo: BTreeMap<String, Vec<f64>>,
+    pub memo: Tracked<BTreeMap<String, Vec<f64>>>,
     /// What fixes have set internal-style variables to in the present run.
     #[serde(skip)]
-    pub controls: BTreeMap<String, f64>,
+    pub controls: Tracked<BTreeMap<String, f64>>,
     /// When neighbour lists were last rebuilt.
-    pub rebuild: Rebuild,
+    pub rebuild: Tracked<Rebuild>,
+    /// How far particles may have gone in this run.
+    #[serde(skip)]
+    pub travel: Tracked<Travel>,
     /// Bonds between particles by their ids.
-    pub bonds: Bonds,
+    pub bonds: Tracked<Bonds>,
     /// Molecule templates by ID, one for each file; a restart file does not hold them, as in LAMMPS.
     #[serde(skip)]
     pub templates: BTreeMap<String, Arc<[Template]>>,
     /// Peridynamic bonds, from the first run on.
-    pub families: Option<Families>,
+    pub families: Tracked<Option<Families>>,
     /// Cracks that wait for bonds to be there.
     pub cracks: Vec<Crack>,
     /// What touching grains remember, by pair style.
-    pub contacts: BTreeMap<String, contacts::Contacts>,
+    pub contacts: Tracked<BTreeMap<String, contacts::Contacts>>,
     /// What grains touching a wall remember, by the wall's fix.
-    pub wall_contacts: BTreeMap<String, contacts::Contacts>,
+    pub wall_contacts: Tracked<BTreeMap<String, contacts::Contacts>>,
     /// Materials by ID.
     pub materials: BTreeMap<String, material::Material>,
     /// What fixes property/atom give particles, in the order in which data files name it; the deck says it again after a restart.
@@ -129,7 +138,7 @@ pub struct World {
     pub folder: PathBuf,
     /// State that rooms above own: families, contact histories, materials.
     #[serde(skip)]
-    pub parts: Parts,
+    pub parts: Tracked<Parts>,
 }
 
 /// State of one kind each, owned by the room that knows it.
@@ -186,7 +195,7 @@ impl World {
     /// # Errors
     /// When no box has been defined yet.
     pub fn domain(&self) -> perigrain_base::diag::Result<&Domain> {
-        match &self.domain {
+        match &*self.domain {
             Some(d) => Ok(d),
             None => perigrain_base::diag::fail(
                 perigrain_base::diag::Code::WRONG_ORDER,
@@ -241,7 +250,7 @@ impl World {
         let n = self.n();
         self.particles.gather(old);
         self.columns.gather(old);
-        if let Some(families) = &mut self.families {
+        if let Some(families) = &mut *self.families {
             let mut to = vec![None; n];
             for (new, &k) in old.iter().enumerate() {
                 to[k] = Some(new as u32);
@@ -264,7 +273,7 @@ impl World {
         if bodies.is_empty() {
             return own.as_slice().into();
         }
-        let mut masses = own.clone();
+        let mut masses = own.to_vec();
         // The first one counts.
         for body in bodies.iter().rev() {
             for (mass, body) in masses.iter_mut().zip(*body) {

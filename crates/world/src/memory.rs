@@ -9,20 +9,30 @@ pub fn bytes(w: &World) -> u64 {
         (v.capacity() * size_of::<T>()) as u64
     }
     let p = &w.particles;
-    let columns =
-        of(&p.tag) + of(&p.kind) + of(&p.mask) + p.image.bytes() as u64 + of(&p.x) + of(&p.v) + of(&p.f);
-    let own = of(&p.mass)
-        + of(&p.radius)
-        + of(&p.omega)
-        + of(&p.torque)
-        + of(&p.volume)
-        + of(&p.x0)
-        + of(&p.density)
-        + of(&p.molecule)
-        + of(&w.bonds.list)
-        + of(&w.bonds.special);
-    let families = w.families.as_ref().map_or(0, |f| f.bytes() as u64);
-    columns + own + of(&w.rebuild.held) + of(&w.rebuild.kept.x) + of(&w.rebuild.kept.turns) + families
+    let columns = of(p.tag.past())
+        + of(p.kind.past())
+        + of(p.mask.past())
+        + p.image.past().bytes() as u64
+        + of(p.x.past())
+        + of(p.v.past())
+        + of(p.f.past());
+    let own = of(p.mass.past())
+        + of(p.radius.past())
+        + of(p.omega.past())
+        + of(p.torque.past())
+        + of(p.volume.past())
+        + of(p.x0.past())
+        + of(p.density.past())
+        + of(p.molecule.past())
+        + of(&w.bonds.past().list)
+        + of(&w.bonds.past().special);
+    let families = w.families.past().as_ref().map_or(0, |f| f.bytes() as u64);
+    columns
+        + own
+        + of(&w.rebuild.past().held)
+        + of(&w.rebuild.past().kept.x)
+        + of(&w.rebuild.past().kept.turns)
+        + families
 }
 
 /// Bytes a particle needs besides its columns once forces act: rows of the lattice layout, or lists of contacts.

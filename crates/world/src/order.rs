@@ -44,7 +44,7 @@ impl World {
         let mut order: Vec<usize> = (0..rank.len()).collect();
         order.sort_unstable_by_key(|&k| rank[k]);
         self.line_up(&order);
-        self.particles.rank = Vec::new();
+        *self.particles.rank = Vec::new();
     }
 
     /// Gives every particle its place in storage + 1 as id; contacts and bonds follow.
@@ -54,7 +54,7 @@ impl World {
 
     /// Gives particles these ids, in storage order; contacts and bonds follow.
     pub fn rename(&mut self, ids: Vec<u32>) {
-        let old = std::mem::replace(&mut self.particles.tag, ids);
+        let old = std::mem::replace(&mut *self.particles.tag, ids);
         if self.contacts.is_empty() && self.wall_contacts.is_empty() && self.bonds.list.is_empty() {
             return;
         }
@@ -109,7 +109,7 @@ mod tests {
     fn who_lined_up_falls_back_with_all_that_is_his() {
         let mut w = World::default();
         (1..=4).for_each(|tag| w.particles.push(10 * tag, 1, [f64::from(tag); 3]));
-        w.rebuild.held = w.particles.x.clone();
+        w.rebuild.held = w.particles.x.to_vec();
         *w.columns.scalar("own", 4) = vec![1.0, 2.0, 3.0, 4.0];
         let before = format!("{:?} {:?} {:?}", w.particles, w.columns, w.rebuild.held);
         w.line_up(&[2, 0, 3, 1]);

@@ -1,6 +1,6 @@
 //! The particles' core columns as plain fields.
 
-use super::Images;
+use super::{Images, Tracked};
 use perigrain_base::par;
 
 /// Which optional columns exist (`atom_style`).
@@ -105,39 +105,39 @@ pub struct Particles {
     /// Which columns exist.
     pub style: AtomStyle,
     /// Identity, from 1.
-    pub tag: Vec<u32>,
+    pub tag: Tracked<Vec<u32>>,
     /// Type, from 1.
-    pub kind: Vec<u16>,
+    pub kind: Tracked<Vec<u16>>,
     /// Group bits.
-    pub mask: Vec<u32>,
+    pub mask: Tracked<Vec<u32>>,
     /// Periodic image counts.
-    pub image: Images,
+    pub image: Tracked<Images>,
     /// Position [length].
-    pub x: Vec<[f64; 3]>,
+    pub x: Tracked<Vec<[f64; 3]>>,
     /// Velocity [length/time].
-    pub v: Vec<[f64; 3]>,
+    pub v: Tracked<Vec<[f64; 3]>>,
     /// Force (force density for peridynamic particles in LAMMPS' convention).
-    pub f: Vec<[f64; 3]>,
+    pub f: Tracked<Vec<[f64; 3]>>,
     /// Mass (LAMMPS' rmass: density for peridynamic particles in its convention).
-    pub mass: Vec<f64>,
+    pub mass: Tracked<Vec<f64>>,
     /// Sphere: radius [length].
-    pub radius: Vec<f64>,
+    pub radius: Tracked<Vec<f64>>,
     /// Sphere: angular velocity [1/time].
-    pub omega: Vec<[f64; 3]>,
+    pub omega: Tracked<Vec<[f64; 3]>>,
     /// Sphere: torque.
-    pub torque: Vec<[f64; 3]>,
+    pub torque: Tracked<Vec<[f64; 3]>>,
     /// Peridynamics: volume of the node [length³].
-    pub volume: Vec<f64>,
+    pub volume: Tracked<Vec<f64>>,
     /// Peridynamics: position at creation [length].
-    pub x0: Vec<[f64; 3]>,
+    pub x0: Tracked<Vec<[f64; 3]>>,
     /// Density as the deck set it, NaN where it did not (peri and sphere styles).
-    pub density: Vec<f64>,
+    pub density: Tracked<Vec<f64>>,
     /// Molecule ID, 0 for none (styles with bonds, `fix property/atom mol`).
-    pub molecule: Vec<u32>,
+    pub molecule: Tracked<Vec<u32>>,
     /// The place in the order of creation, while particles stand in the order of space ([`World::line_up`]); else empty.
     ///
     /// [`World::line_up`]: super::World::line_up
-    pub rank: Vec<u32>,
+    pub rank: Tracked<Vec<u32>>,
 }
 
 impl Particles {
@@ -205,7 +205,7 @@ impl Particles {
             self.molecule.push(0);
         }
         // Whoever comes while the others are lined up was created last.
-        if let Some(last) = self.rank.iter().max() {
+        if let Some(last) = self.rank.iter().max().copied() {
             self.rank.push(last + 1);
         }
     }
@@ -254,7 +254,7 @@ impl Particles {
         pick(&mut [&mut self.kind], old);
         pick(&mut [&mut self.tag, &mut self.mask, &mut self.molecule, &mut self.rank], old);
         pick(&mut [&mut self.mass, &mut self.radius, &mut self.volume, &mut self.density], old);
-        let mut vectors =
+        let mut vectors: [&mut Vec<_>; 6] =
             [&mut self.x, &mut self.v, &mut self.f, &mut self.omega, &mut self.torque, &mut self.x0];
         pick(&mut vectors, old);
     }

@@ -1,6 +1,6 @@
 //! When neighbour lists were last rebuilt, and where everybody was then.
 
-use super::travel::{Seen, Travel};
+use super::travel::Seen;
 
 /// The state behind LAMMPS' reneighbouring rule.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -37,9 +37,6 @@ pub struct Rebuild {
     /// What lists of grains are made from.
     #[serde(default)]
     pub kept: Kept,
-    /// How far particles may have gone in this run.
-    #[serde(skip)]
-    pub travel: Travel,
     /// How far they were from where they were at the last rebuild.
     #[serde(skip)]
     pub seen: Seen,

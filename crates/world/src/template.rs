@@ -99,7 +99,7 @@ impl World {
         let first = numbers.tag;
         for (k, x) in at.iter().enumerate() {
             let (mut x, mut image) = (*x, [0; 3]);
-            if let Some(domain) = &self.domain {
+            if let Some(domain) = &*self.domain {
                 domain.wrap(&mut x, &mut image);
             }
             numbers.tag += 1;

@@ -29,7 +29,7 @@ pub fn write(out: &mut dyn Write, w: &World, with: With) -> Result<()> {
         writeln!(out, "{} bonds\n{} bond types", w.bonds.len(), w.bonds.types)?;
     }
     writeln!(out)?;
-    if let Some(domain) = &w.domain {
+    if let Some(domain) = &*w.domain {
         for (d, axis) in ["x", "y", "z"].into_iter().enumerate() {
             writeln!(out, "{} {} {axis}lo {axis}hi", shortest(domain.lo[d]), shortest(domain.hi[d]))?;
         }

@@ -219,7 +219,7 @@ fn read(cx: &mut ActCx, file: &Word, step: i64, at: Span, wish: &Wish) -> Result
 fn tell(cx: &mut ActCx, s: &Snapshot, before: usize, [purged, replaced, trimmed, added]: [usize; 4]) {
     cx.say("Scanning dump file ...");
     cx.say("Reading snapshot from dump file ...");
-    if let Some(d) = &cx.world.domain {
+    if let Some(d) = &*cx.world.domain {
         let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
         let line = format!("  orthogonal box = ({}) to ({})", text(d.lo), text(d.hi));
         cx.say(line);

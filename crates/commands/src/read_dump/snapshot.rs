@@ -63,7 +63,7 @@ pub(super) fn enter(w: &mut World, s: &Snapshot, list: &[Particle], wish: &Wish)
         let flat = w.settings.two_dimensional;
         let mut domain = Domain { flat, ..Domain::new(s.lo, s.hi, w.settings.boundary) };
         domain.open_shrinking_faces();
-        w.domain = Some(domain);
+        w.domain = Some(domain).into();
     }
     let tags: Vec<u32> = list.iter().map(|p| p.tag).collect();
     let index = Index::new(&tags);

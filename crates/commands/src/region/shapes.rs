@@ -81,7 +81,7 @@ impl<'r, 'a> Reader<'r, 'a> {
         let Some(word) = self.a.peek().filter(|w| w.text == "INF" || w.text == "EDGE") else {
             return self.number(what, self.spacing[d]);
         };
-        let Some(domain) = &self.cx.world.domain else {
+        let Some(domain) = &*self.cx.world.domain else {
             let text = format!("`{}` means nothing before the simulation box is defined", word.text);
             return fail(Code::WRONG_ORDER, word.span, text);
         };

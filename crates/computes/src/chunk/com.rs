@@ -8,6 +8,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, unwrapped};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -55,19 +56,24 @@ impl Compute for Means {
         let (group, kind, of, span) = (self.group, self.chunks.kind, self.of, cx.span());
         check_masses(cx.world(), span)?;
         let chunks = self.chunks.seal(cx, stage, when)?;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x v image mass mask", move |w, _, out| {
-            let masses = Masses::of(w);
-            let rows = sums(w, group, &Chunks::of(w, chunks, kind), |i| {
-                let (m, [x, y, z]) = (masses.get(i), of(w, i));
-                [x * m, y * m, z * m, m]
-            });
-            (out.array_cols, out.chunks) = (3, varying(chunks, kind));
-            out.array.clear();
-            for [x, y, z, m] in rows {
-                out.array.extend([x, y, z].map(|a| if m > 0.0 { a / m } else { 0.0 }));
-            }
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | V | IMAGE | MASS | MASK | BOX | KIND | TYPE_MASS,
+            move |w, _, out| {
+                let masses = Masses::of(w);
+                let rows = sums(w, group, &Chunks::of(w, chunks, kind), |i| {
+                    let (m, [x, y, z]) = (masses.get(i), of(w, i));
+                    [x * m, y * m, z * m, m]
+                });
+                (out.array_cols, out.chunks) = (3, varying(chunks, kind));
+                out.array.clear();
+                for [x, y, z, m] in rows {
+                    out.array.extend([x, y, z].map(|a| if m > 0.0 { a / m } else { 0.0 }));
+                }
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

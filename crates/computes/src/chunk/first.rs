@@ -6,10 +6,11 @@ use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{Vec3, sub};
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage, When};
+use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{check_masses, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// `compute msd/chunk`.
@@ -130,21 +131,26 @@ impl Compute for SinceFirst {
         check_masses(cx.world(), span)?;
         let (chunks, kind) = (self.chunks.seal(cx, stage, when)?, self.chunks.kind);
         let name = format!("compute {}", self.id);
-        let op = StepOp::new(name, stage, Access::new("x v image mass mask", ""), move |w: &mut World, t| {
-            let now = weighted(w, me.group, &Chunks::of(w, chunks, kind), me.of);
-            let now: Vec<Vec3> = now.into_iter().map(mean).collect();
-            let first = w.memo.entry(me.key()).or_insert_with(|| now.concat());
-            me.same_number(now.len(), first.len() / 3)?;
-            let rows = now.iter().zip(first.chunks_exact(3)).flat_map(|(now, then)| {
-                let [x, y, z] = (me.compare)(*now, [then[0], then[1], then[2]]);
-                [x, y, z, x + y + z]
-            });
-            let rows: Vec<f64> = rows.collect();
-            let out = w.slots.get_mut(slot);
-            (out.step, out.array, out.array_cols) = (Some(t.step), rows, 4);
-            out.chunks = varying(chunks, kind);
-            Ok(())
-        });
+        let op = StepOp::new(
+            name,
+            stage,
+            Needs::new().read(X | V | IMAGE | MASS | MASK | BOX | TYPE_MASS | KIND).write(SLOTS).keep(MEMO),
+            move |w: &mut World, t| {
+                let now = weighted(w, me.group, &Chunks::of(w, chunks, kind), me.of);
+                let now: Vec<Vec3> = now.into_iter().map(mean).collect();
+                let first = w.memo.entry(me.key()).or_insert_with(|| now.concat());
+                me.same_number(now.len(), first.len() / 3)?;
+                let rows = now.iter().zip(first.chunks_exact(3)).flat_map(|(now, then)| {
+                    let [x, y, z] = (me.compare)(*now, [then[0], then[1], then[2]]);
+                    [x, y, z, x + y + z]
+                });
+                let rows: Vec<f64> = rows.collect();
+                let out = w.slots.get_mut(slot);
+                (out.step, out.array, out.array_cols) = (Some(t.step), rows, 4);
+                out.chunks = varying(chunks, kind);
+                Ok(())
+            },
+        );
         Ok(op.when(when.clone()).in_setup(true).boxed())
     }
 

@@ -8,6 +8,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, unwrapped};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{SealCx, Shape};
+use perigrain_world::field::{BOX, F, IMAGE, KIND, MASK, MASS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// Some particles in chunks.
@@ -106,15 +107,20 @@ impl Compute for Rows {
         let (me, span) = (self.clone(), cx.span());
         check_masses(cx.world(), span)?;
         let (chunks, kind) = (self.chunks.seal(cx, stage, when)?, self.chunks.kind);
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "x v f image mass mask", move |w, _, out| {
-            let rows = (me.of)(w, &Members::new(w, me.group, Chunks::of(w, chunks, kind)));
-            out.chunks = varying(chunks, kind);
-            match me.columns {
-                1 => out.vector = rows,
-                n => (out.array, out.array_cols) = (rows, n),
-            }
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | V | F | IMAGE | MASS | MASK | BOX | KIND | TYPE_MASS,
+            move |w, _, out| {
+                let rows = (me.of)(w, &Members::new(w, me.group, Chunks::of(w, chunks, kind)));
+                out.chunks = varying(chunks, kind);
+                match me.columns {
+                    1 => out.vector = rows,
+                    n => (out.array, out.array_cols) = (rows, n),
+                }
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

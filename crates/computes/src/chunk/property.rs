@@ -7,6 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::MASK;
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -91,7 +92,7 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, kind, list) = (self.group, self.chunks.kind, self.list.clone());
         let chunks = self.chunks.seal(cx, stage, when)?;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "mask", move |w, _, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, MASK, move |w, _, out| {
             out.chunks = varying(chunks, kind);
             let chunks = Chunks::of(w, chunks, kind);
             let counts = match list.iter().any(|a| matches!(a, Attribute::Count)) {

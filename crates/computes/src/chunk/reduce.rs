@@ -7,6 +7,7 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
+use perigrain_world::field::MASK;
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -103,7 +104,7 @@ impl Compute for Declared {
         let chunks = self.chunks.seal(cx, stage, when)?;
         let inputs: Vec<Reading> =
             self.inputs.iter().map(|r| cx.reading(r, Wants::PerAtom, stage, when)).collect::<Result<_>>()?;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "mask", move |w, _, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, MASK, move |w, _, out| {
             out.chunks = varying(chunks, kind);
             let chunks = Chunks::of(w, chunks, kind);
             let columns = inputs.len();

@@ -7,6 +7,7 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
+use perigrain_world::field::MASK;
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -76,7 +77,7 @@ impl Compute for Declared {
         let chunks = self.chunks.seal(cx, stage, when)?;
         let inputs: Vec<Reading> =
             self.inputs.iter().map(|r| cx.reading(r, Wants::Vector, stage, when)).collect::<Result<_>>()?;
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, "mask", move |w, _, out| {
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, MASK, move |w, _, out| {
             let chunks = Chunks::of(w, chunks, kind);
             let lists: Vec<Vec<f64>> = inputs.iter().map(|r| r.list(w)).collect();
             out.cols = lists.len();

@@ -11,6 +11,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, REGIONS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -130,7 +131,7 @@ impl Compute for Declared {
         check_masses(cx.world(), span)?;
         let bias = self.bias.as_ref().map(|r| temp_flow::known(r, cx)).transpose()?;
         let (slot_of_chunks, kind) = (self.chunks.seal(cx, stage, when)?, self.chunks.kind);
-        let reads = "x v image mass mask";
+        let reads = X | V | MASS | MASK | BOX | MEMO | REGIONS | KIND | TYPE_MASS;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let (p, masses, chunks) = (&w.particles, Masses::of(w), Chunks::of(w, slot_of_chunks, kind));
             let flow = bias.as_ref().and_then(|b| b.flow(w));

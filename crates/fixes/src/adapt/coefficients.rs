@@ -3,10 +3,11 @@
 use super::variable;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, ValueRef, Word};
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::World;
 use perigrain_world::adapted::Coefficient;
+use perigrain_world::field::{MEMO, SLOTS};
 
 /// `pair STYLE PARAMETER I J v_name` or `bond STYLE PARAMETER I v_name`.
 #[derive(Clone)]
@@ -123,8 +124,8 @@ impl Op for Change {
     fn stage(&self) -> Stage {
         Stage::PreForce
     }
-    fn access(&self) -> Access {
-        Access::new("slots", "coefficients")
+    fn needs(&self) -> Needs {
+        Needs::new().read(SLOTS).keep(MEMO)
     }
     fn when(&self) -> When {
         self.when.clone()

@@ -65,7 +65,7 @@ impl Form<Reading> {
     /// Where the indenter is now, wrapped into a periodic box.
     pub fn now(&self, w: &World) -> Result<Body> {
         let wrapped = |mut x: [f64; 3]| {
-            if let Some(d) = &w.domain {
+            if let Some(d) = &*w.domain {
                 d.wrap(&mut x, &mut [0; 3]);
             }
             x

@@ -112,7 +112,7 @@ impl Kick {
         beside: &Beside,
     ) -> [Gist; 3] {
         let (masses, start, own) = (Masses::Own(mass), s.start, 0..s.x.len());
-        let came = self.stretch(chunk(s, own), spins, part, &masses, start, beside);
+        let came = self.stretch(chunk(s, own, (spins, part), beside), spins, part, &masses, start, beside);
         let sums = |sums| Gist { sums, most: 0.0 };
         [sums([came.energy, 0.0, 0.0]), sums(came.held), Gist { most: came.most, ..Gist::default() }]
     }
@@ -127,7 +127,10 @@ impl Kick {
         masses: &Masses,
     ) -> f64 {
         let first = s.start + own.start;
-        self.stretch(chunk(s, own), spins, part, masses, first, &Beside::default()).most
+        {
+            let alone = Beside::default();
+            self.stretch(chunk(s, own, (spins, part), &alone), spins, part, masses, first, &alone).most
+        }
     }
 
     /// The particles from `start` on.
@@ -348,17 +351,36 @@ impl Kick {
     }
 }
 
-/// Particles of a stretch as the loops see them.
-fn chunk<'a>(s: &'a mut Stretch<'_>, own: Range<usize>) -> Chunk<'a> {
-    let first = s.start + own.start;
+/// Particles of a stretch as the loops see them: what they do not touch here is handed to them all the same, past all marks.
+fn chunk<'a>(
+    s: &'a mut Stretch<'_>,
+    own: Range<usize>,
+    (spins, part): (bool, Part),
+    beside: &Beside,
+) -> Chunk<'a> {
+    let rows = s.start + own.start..s.start + own.end;
+    let mask = &s.mask()[own.clone()];
     let (omega, torque, radius) = match s.omega.is_empty() {
         true => (&mut [][..], &mut [][..], &[][..]),
         false => {
-            (&mut s.omega[own.clone()], &mut s.torque[own.clone()], &s.all.radius[first..first + own.len()])
+            let zeroes = beside.held != 0 || beside.clears;
+            let omega = if spins { &mut s.omega[..] } else { s.omega.past_mut() };
+            let torque = match (zeroes, spins) {
+                (true, _) => &mut s.torque[..],
+                (false, true) => s.torque.read_mut(),
+                (false, false) => s.torque.past_mut(),
+            };
+            let radius = if spins { &s.all.radius[..] } else { s.all.radius.past() };
+            (&mut omega[own.clone()], &mut torque[own.clone()], &radius[rows])
         }
     };
-    let (x, v, f) = (&mut s.x[own.clone()], &mut s.v[own.clone()], &mut s.f[own.clone()]);
-    Chunk { x, v, f, mask: &s.mask[own], omega, torque, radius }
+    let x = match (part, beside.pull) {
+        (Part::Second, None) => s.x.past_mut(),
+        (Part::Second, Some(_)) => s.x.read_mut(),
+        _ => &mut s.x[..],
+    };
+    let f = if *beside == Beside::default() { s.f.read_mut() } else { &mut s.f[..] };
+    Chunk { x: &mut x[own.clone()], v: &mut s.v[own.clone()], f: &mut f[own], mask, omega, torque, radius }
 }
 
 /// v += by · f, `KICKS` times.

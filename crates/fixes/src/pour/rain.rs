@@ -4,10 +4,12 @@ use super::{Pouring, Sizes};
 use crate::crowd::Crowd;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_out::log::Log;
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::publish;
 use perigrain_styles::molecules::{Copy, Molecules};
 use perigrain_styles::newcomers::{Account, Newcomer, admit};
+use perigrain_world::Fields;
+use perigrain_world::field::{RADIUS, X};
 use perigrain_world::{SlotId, World};
 
 /// Pours.
@@ -170,8 +172,8 @@ impl Op for Rain {
     fn stage(&self) -> Stage {
         Stage::Exchange
     }
-    fn access(&self) -> Access {
-        Access::new("x radius", "everything")
+    fn needs(&self) -> Needs {
+        Needs::new().read(X | RADIUS).write(Fields::ALL)
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let Some(mut account) = Account::load(w, &self.key).filter(|a| a.next == Some(t.step)) else {

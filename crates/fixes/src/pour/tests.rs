@@ -19,7 +19,8 @@ fn scene() -> Bench {
     ] {
         b.world.regions.insert(name.into(), Region::inside(shape));
     }
-    b.world.regions.insert("out".into(), Region { outside: true, ..b.world.regions["slab"].clone() });
+    let out = Region { outside: true, ..b.world.regions["slab"].clone() };
+    b.world.regions.insert("out".into(), out);
     b
 }
 

@@ -164,7 +164,7 @@ impl Declared {
     /// Counts anew in which image of the box the centres are.
     pub fn wrap(&self, w: &mut World) {
         let mut bodies = self.load(w);
-        if let Some(domain) = &w.domain {
+        if let Some(domain) = &*w.domain {
             let lengths = domain.lengths();
             for body in &mut bodies {
                 body.image = [0, 1, 2].map(|d| match domain.boundary.periodic(d) {

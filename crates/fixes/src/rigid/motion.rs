@@ -174,7 +174,7 @@ impl Declared {
         let both = |a: ([f64; 6], f64), b: ([f64; 6], f64)| (matter::add(a.0, b.0), farther(a.1, b.1));
         let (virial, farthest) = par::reduce_each(columns, follow, both).unwrap_or_default();
         if moving {
-            w.rebuild.travel.went(farthest.sqrt());
+            w.travel.went(farthest.sqrt());
         }
         virial
     }

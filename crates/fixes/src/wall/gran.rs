@@ -151,7 +151,7 @@ fn planes(axis: usize, args: &mut Args) -> Result<Place> {
 impl Flat {
     /// Warns of walls that no grain will ever meet.
     fn warn(&self, cx: &BuildCx, span: Span) {
-        let Some(d) = &cx.world.domain else { return };
+        let Some(d) = &*cx.world.domain else { return };
         let fixed = |axis: usize, side: usize| d.boundary.0[axis][side] == Face::Fixed;
         let text = match self.place {
             Place::Planes(a, lo, hi) => {

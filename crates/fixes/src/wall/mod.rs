@@ -134,7 +134,7 @@ fn needs_spheres(cx: &BuildCx, style: &str) -> Result<()> {
 
 /// Refuses a wall across a direction in which the box repeats.
 fn not_across_periodic(cx: &BuildCx, axes: &[usize], span: Span) -> Result<()> {
-    let Some(domain) = &cx.world.domain else {
+    let Some(domain) = &*cx.world.domain else {
         let text = "the simulation box is not defined yet: a create_box must come first";
         return Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, text).into());
     };

@@ -8,10 +8,14 @@ use perigrain_base::par;
 use perigrain_contact::driver::DEEP;
 use perigrain_contact::walls::{Spheres, WallSweep};
 use perigrain_contact::{Advance, Granular};
-use perigrain_plan::{Access, Op, Stage, Tick, When};
+use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::{Reading, SealCx};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::contacts::Contacts;
+use perigrain_world::field::{
+    self, BOX, F, FACTS, LISTS, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, SLOTS, TAG, TORQUE, V,
+    WALL_CONTACTS, X,
+};
 use perigrain_world::{SlotId, World};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -275,11 +279,24 @@ impl Op for Half {
         if self.early { Stage::PreForce } else { Stage::PostForce }
     }
 
-    fn access(&self) -> Access {
-        Access::new(
-            "x v omega radius mass mask wall_contacts columns",
-            "f torque wall_contacts radius columns",
-        )
+    fn needs(&self) -> Needs {
+        Needs::new()
+            .read(
+                X | V
+                    | OMEGA
+                    | RADIUS
+                    | MASS
+                    | MASK
+                    | WALL_CONTACTS
+                    | field::COLUMNS
+                    | TAG
+                    | REGIONS
+                    | LISTS
+                    | BOX,
+            )
+            .add(F | TORQUE)
+            .write(WALL_CONTACTS | RADIUS | FACTS | SLOTS)
+            .keep(field::COLUMNS | MEMO)
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
@@ -309,8 +326,12 @@ impl Op for WallOp {
         Stage::PostForce
     }
 
-    fn access(&self) -> Access {
-        Access::new("x v omega radius mass mask wall_contacts", "f torque wall_contacts")
+    fn needs(&self) -> Needs {
+        Needs::new()
+            .read(BOX | X | V | OMEGA | RADIUS | MASS | MASK | field::COLUMNS | TAG | REGIONS | LISTS)
+            .add(F | TORQUE)
+            .write(WALL_CONTACTS | FACTS | SLOTS)
+            .keep(MEMO)
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {

@@ -6,9 +6,9 @@ use proptest::prelude::*;
 use std::path::PathBuf;
 
 fn world(n: u32) -> World {
-    let mut w = World { types: 2, type_mass: vec![None, Some(0.5)], ..World::default() };
+    let mut w = World { types: 2, type_mass: vec![None, Some(0.5)].into(), ..World::default() };
     w.particles.style = AtomStyle { chosen: true, sphere: true, peri: true, ..AtomStyle::default() };
-    w.domain = Some(Domain::new([0.0; 3], [1.0; 3], Boundary::default()));
+    w.domain = Some(Domain::new([0.0; 3], [1.0; 3], Boundary::default())).into();
     for k in 1..=n {
         let a = f64::from(k);
         w.particles.push(k, 1 + (k % 2) as u16, [0.1 / a, a.sqrt() * 1e-3, -0.0]);
@@ -35,7 +35,7 @@ fn everything_comes_back() {
     assert_eq!(back.declared, ["fix 1 all nve"]);
     let bits = |w: &World| w.particles.x.iter().flatten().map(|a| a.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&back.world), bits(&w));
-    assert_eq!((&back.world.memo, back.world.clock.step), (&w.memo, w.clock.step));
+    assert_eq!((&*back.world.memo, back.world.clock.step), (&*w.memo, w.clock.step));
     // A density that was never set is NaN, and that comes back too.
     assert!(back.world.particles.density.iter().all(|d| d.is_nan()));
     let before = resume(&w, vec![]);

@@ -5,10 +5,11 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_base::math::vec3::{dot, sub};
 use perigrain_lang::Args;
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::pull::{Found, apart, find, periods, tally};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
+use perigrain_world::field::{BONDS, BOX, F, LISTS, TAG, TALLY, V, X};
 use std::collections::BTreeMap;
 
 /// The style.
@@ -149,8 +150,8 @@ impl Op for Springs {
     fn stage(&self) -> Stage {
         Stage::Force
     }
-    fn access(&self) -> Access {
-        Access::new("x v bonds", "f bonds tally")
+    fn needs(&self) -> Needs {
+        Needs::new().read(X | V | BONDS | BOX | LISTS | TAG).add(F).write(BONDS | TALLY)
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let now = (w.rebuild.generation, w.bonds.changes);

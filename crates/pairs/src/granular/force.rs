@@ -13,9 +13,14 @@ use perigrain_contact::powder::Manner;
 use perigrain_contact::{Advance, ContactLaw, Granular, Heat, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
 use perigrain_neigh::slabs::{edges, shift_of};
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_world::Fields;
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::contacts::{Contacts, Deep};
+use perigrain_world::field::{
+    BONDS, BOX, COLUMNS, CONTACTS, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA,
+    RADIUS, TAG, TALLY, TORQUE, TRAVEL, V, X, X0,
+};
 use perigrain_world::{Allowed, World};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -82,7 +87,7 @@ impl Force {
     fn find_bodies(&mut self, w: &World) {
         self.plain.body.clear();
         let asked = self.rules.any(|r| r.average == Average::Body || r.curvature == Curvature::Impactor);
-        if let (true, Some(families)) = (asked, &w.families) {
+        if let (true, Some(families)) = (asked, &*w.families) {
             self.plain.body = solids(families, w.n());
         }
     }
@@ -269,13 +274,49 @@ impl Op for Force {
         Stage::Force
     }
 
-    fn access(&self) -> Access {
-        let writes = if self.press.is_some() {
-            "f torque contacts tally radius columns"
-        } else {
-            "f torque contacts tally"
-        };
-        Access::new("x v omega radius mass type", writes)
+    fn needs(&self) -> Needs {
+        if self.press.is_some() {
+            return Needs::new()
+                .read(
+                    X | V
+                        | OMEGA
+                        | RADIUS
+                        | MASS
+                        | KIND
+                        | BOX
+                        | LISTS
+                        | TAG
+                        | TRAVEL
+                        | FACTS
+                        | MASK
+                        | MOLECULE
+                        | FAMILIES
+                        | BONDS,
+                )
+                .add(F | TORQUE)
+                .write(CONTACTS | TALLY | RADIUS)
+                .keep(COLUMNS | MEMO);
+        }
+        Needs::new()
+            .read(
+                X | V
+                    | OMEGA
+                    | RADIUS
+                    | MASS
+                    | KIND
+                    | BOX
+                    | COLUMNS
+                    | LISTS
+                    | TAG
+                    | TRAVEL
+                    | MASK
+                    | MOLECULE
+                    | FAMILIES
+                    | X0
+                    | BONDS,
+            )
+            .add(F | TORQUE)
+            .write(FACTS | CONTACTS | TALLY)
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
@@ -304,9 +345,9 @@ impl Op for Force {
         Ok(told)
     }
 
-    fn settle(&mut self, written: &dyn Fn(&str) -> bool) {
+    fn settle(&mut self, changed: Fields) {
         // Who comes or goes has lists made anew, and all is read again.
-        self.steady = !["mass", "mask", "radius"].into_iter().any(written);
+        self.steady = !changed.has(MASS | MASK | RADIUS);
     }
 
     fn finish(&mut self, w: &mut World) -> Result<()> {
@@ -397,7 +438,7 @@ pub fn grains<'a>(w: &'a World, period: Vec3, body: &'a [u32], frozen: &'a [bool
         flow: w.domain()?.flow.map(|flow| (flow, &p.mask[..])),
         body,
         frozen,
-        travel: w.rebuild.travel,
+        travel: *w.travel,
     })
 }
 

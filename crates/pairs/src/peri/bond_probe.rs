@@ -67,7 +67,7 @@ impl Probe for BondProbe {
     }
 
     fn look(&mut self, w: &World, ask: Ask) -> Result<Vec<Interaction>> {
-        let Some(families) = &w.families else { return Ok(vec![]) };
+        let Some(families) = &*w.families else { return Ok(vec![]) };
         let view = view(w)?;
         let mut living = vec![];
         bonds(w, |i, j| living.push([i, j]));

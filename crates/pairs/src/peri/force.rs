@@ -3,9 +3,12 @@
 use super::{Pair, Solid, reunion};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_peri::families::{Families, FamilyOptions, ForceUnit, PeriTally, PmbCoeff, PmbTable};
-use perigrain_plan::{Access, Level, Op, Stage, Tick};
+use perigrain_plan::{Level, Needs, Op, Stage, Tick};
 use perigrain_styles::peri_view::view;
 use perigrain_world::adapted::Coefficient;
+use perigrain_world::field::{
+    BOX, DENSITY, F, FACTS, FAMILIES, KIND, MASK, MASS, MEMO, MOLECULE, TAG, TALLY, VOLUME, X, X0,
+};
 use perigrain_world::{Crack, World};
 
 /// Bond and short-range forces of all peridynamic bodies.
@@ -40,8 +43,12 @@ impl Op for Force {
         Level::At(0)
     }
 
-    fn access(&self) -> Access {
-        Access::new("x x0 type volume families", "f families tally")
+    fn needs(&self) -> Needs {
+        Needs::new()
+            .read(TAG | MASK | MOLECULE | X | X0 | KIND | VOLUME | BOX | MEMO | DENSITY)
+            .add(F)
+            .write(FAMILIES | TALLY | FACTS)
+            .keep(MASS)
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
@@ -81,7 +88,7 @@ impl Op for Force {
         for (total, part) in w.tally.virial.iter_mut().zip(virial) {
             *total += part;
         }
-        w.families = Some(families);
+        w.families = Some(families).into();
         Ok(())
     }
 }
@@ -93,7 +100,7 @@ impl Force {
         let Some(mut families) = w.families.take() else { return Ok(()) };
         let table = self.table(w)?;
         families.refresh(&view(w)?, &table);
-        w.families = Some(families);
+        w.families = Some(families).into();
         Ok(())
     }
 
@@ -146,7 +153,7 @@ impl Force {
                 families
             }
         };
-        w.families = Some(families);
+        w.families = Some(families).into();
         self.mark(w)?;
         reunion::check_spheres(&self.style, w)
     }
@@ -165,7 +172,7 @@ impl Force {
             let lasts = |x: &[f64; 3]| self.style.lasting.iter().any(|r| r.contains(*x));
             families.lasting = start.iter().map(lasts).collect();
         }
-        w.families = Some(families);
+        w.families = Some(families).into();
         Ok(())
     }
 

@@ -30,7 +30,7 @@ pub(super) fn check(style: &Solid, cx: &BuildCx) {
 /// # Errors
 /// The first such pair.
 pub(super) fn check_spheres(style: &Solid, w: &World) -> Result<()> {
-    let (Some((true, span)), Some(families)) = (style.reunite, &w.families) else { return Ok(()) };
+    let (Some((true, span)), Some(families)) = (style.reunite, &*w.families) else { return Ok(()) };
     let p = &w.particles;
     let radius = |i: usize| p.radius.get(i).copied().unwrap_or(0.0);
     for i in (0..p.len()).filter(|&i| outside(w, i)) {

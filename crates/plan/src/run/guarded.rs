@@ -101,7 +101,8 @@ impl Guarded {
         self.streak += 1;
         let rule = &self.guard.rule;
         if rule.recover > 0 && self.streak >= rule.recover && w.clock.dt < self.longest {
-            w.clock.set_dt((w.clock.dt / rule.shrink).min(self.longest));
+            let longer = (w.clock.dt / rule.shrink).min(self.longest);
+            w.clock.set_dt(longer);
             self.streak = 0;
         }
         plan.release(w)?;

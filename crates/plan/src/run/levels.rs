@@ -136,9 +136,9 @@ fn forces(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
 /// Lets the present forces, torques and heat flows and those of a level change places.
 pub(super) fn exchange(w: &mut World, level: usize) {
     let (n, [force, torque]) = (w.n(), of_level(level));
-    std::mem::swap(&mut w.particles.f, w.columns.vector(&force, n));
+    std::mem::swap(&mut *w.particles.f, w.columns.vector(&force, n));
     if w.particles.style.sphere {
-        std::mem::swap(&mut w.particles.torque, w.columns.vector(&torque, n));
+        std::mem::swap(&mut *w.particles.torque, w.columns.vector(&torque, n));
     }
     if let Some(heat) = w.columns.custom(HEATFLOW) {
         w.columns.swap_scalars(&heat, &heat_of_level(level), n);

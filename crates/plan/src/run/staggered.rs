@@ -127,8 +127,8 @@ fn split(plan: &mut StepPlan, w: &mut World, s: &Staggered) -> Result<()> {
         all.iter().zip(&own).map(|(f, b)| std::array::from_fn(|d| f[d] - b[d])).collect();
     w.columns.forget_levels();
     let torque = w.particles.torque.clone();
-    for (k, part) in [(0, (own, vec![[0.0; 3]; torque.len()])), (1, (rest, torque.clone()))] {
-        (w.particles.f, w.particles.torque) = part;
+    for (k, part) in [(0, (own, vec![[0.0; 3]; torque.len()])), (1, (rest.into(), torque.to_vec()))] {
+        (w.particles.f, *w.particles.torque) = part;
         exchange(w, k);
     }
     (w.particles.f, w.particles.torque) = (all, torque);

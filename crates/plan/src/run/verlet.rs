@@ -93,11 +93,11 @@ fn tally_anew(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
 /// # Errors
 /// The first op's that fails; the world is then as that op left it.
 pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Result<Outcome> {
-    w.rebuild.travel.begin(plan.guard.is_none() && plan.reports_travel());
+    w.travel.begin(plan.guard.is_none() && plan.reports_travel());
     // A guard may take steps back.
     let sure = plan.guard.is_none();
     let outcome = steps(plan, w, watch, |plan, w, t| plan.step(w, t, |w| sure && !over(w)));
-    w.rebuild.travel.begin(false);
+    w.travel.begin(false);
     outcome
 }
 

@@ -4,9 +4,10 @@ use super::Declared;
 use super::table::{Links, links};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_peri::families::{Families, FamilyOptions, ForceUnit, PeriTally};
-use perigrain_plan::{Access, Op, Stage, Tick};
+use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::peri_view::view;
 use perigrain_world::World;
+use perigrain_world::field::{BONDS, BOX, COLUMNS, F, FAMILIES, KIND, MASS, TAG, TALLY, V, X};
 
 /// Forces of all peridynamic bonds of the table.
 pub struct Force {
@@ -28,8 +29,12 @@ impl Op for Force {
     fn stage(&self) -> Stage {
         Stage::Force
     }
-    fn access(&self) -> Access {
-        Access::new("x v type bonds families", "f bonds families tally")
+    fn needs(&self) -> Needs {
+        Needs::new()
+            .read(MASS | X | V | KIND | BONDS | BOX | TAG)
+            .add(F)
+            .write(BONDS | FAMILIES | TALLY)
+            .keep(COLUMNS)
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let changed = w.families.as_ref().is_none_or(|f| f.seen != w.bonds.changes);
@@ -43,7 +48,7 @@ impl Op for Force {
             take_away(w, &mut families);
         }
         publish(w, &families);
-        w.families = Some(families);
+        w.families = Some(families).into();
         Ok(())
     }
 }
@@ -81,7 +86,7 @@ impl Force {
             }
         };
         families.seen = w.bonds.changes;
-        w.families = Some(families);
+        w.families = Some(families).into();
         Ok(())
     }
 

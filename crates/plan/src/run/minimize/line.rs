@@ -33,7 +33,7 @@ pub struct Line {
 impl Line {
     /// Along the present forces.
     pub fn new(w: &World) -> Self {
-        Self { direction: w.particles.f.clone(), start: vec![], images: vec![], generation: 0 }
+        Self { direction: w.particles.f.to_vec(), start: vec![], images: vec![], generation: 0 }
     }
 
     /// Turns to `force + beta · direction`, or to `force` where that leads uphill.

@@ -1,0 +1,260 @@
+//! What an op states about the fields it touches, and whether that is true.
+
+use perigrain_world::field::CLOCK;
+use perigrain_world::{Fields, Touched};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::panic::Location;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The fields an op reads, writes, adds to, and keeps for itself. To write, to add and to keep is to read as well; the clock
+/// may be read by all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Needs {
+    reads: Fields,
+    writes: Fields,
+    adds: Fields,
+    keeps: Fields,
+    /// Where this stands in the program: one place for each kind of op.
+    at: &'static Location<'static>,
+}
+
+impl Default for Needs {
+    #[track_caller]
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Needs {
+    /// Nothing yet.
+    #[track_caller]
+    pub fn new() -> Self {
+        let none = Fields::NONE;
+        Self { reads: none, writes: none, adds: none, keeps: none, at: Location::caller() }
+    }
+
+    /// The whole scene, to read and to write.
+    #[track_caller]
+    pub fn all() -> Self {
+        Self { reads: Fields::ALL, writes: Fields::ALL, ..Self::new() }
+    }
+
+    /// Reads these.
+    #[must_use]
+    pub fn read(mut self, fields: Fields) -> Self {
+        self.reads |= fields;
+        self
+    }
+
+    /// Writes these.
+    #[must_use]
+    pub fn write(mut self, fields: Fields) -> Self {
+        self.writes |= fields;
+        self
+    }
+
+    /// Adds to these, after those that came before in the order of ops.
+    #[must_use]
+    pub fn add(mut self, fields: Fields) -> Self {
+        self.adds |= fields;
+        self
+    }
+
+    /// Keeps its own state in these: what it writes there is nobody else's.
+    #[must_use]
+    pub fn keep(mut self, fields: Fields) -> Self {
+        self.keeps |= fields;
+        self
+    }
+
+    /// Whether it reads one of these without changing it.
+    pub fn reads(&self, any: Fields) -> bool {
+        self.reads.has(any)
+    }
+
+    /// Whether it changes one of these.
+    pub fn changes(&self, any: Fields) -> bool {
+        self.changed().has(any)
+    }
+
+    /// What it writes and adds to, if that is less than the whole scene.
+    pub fn written_by_name(&self) -> Fields {
+        if self.writes == Fields::ALL { Fields::NONE } else { self.writes | self.adds }
+    }
+
+    fn changed(&self) -> Fields {
+        self.writes | self.adds | self.keeps
+    }
+
+    /// What is stated and can be found to be used: to read, to change.
+    fn named(&self) -> [Fields; 2] {
+        [self.reads, self.changed()].map(|fields| if fields == Fields::ALL { Fields::NONE } else { fields })
+    }
+}
+
+impl fmt::Display for Needs {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts =
+            [("reads", self.reads), ("writes", self.writes), ("adds to", self.adds), ("keeps", self.keeps)];
+        let parts = parts.into_iter().filter(|(_, fields)| !fields.is_empty());
+        let parts: Vec<String> =
+            parts
+                .map(|(how, fields)| {
+                    if fields == Fields::ALL {
+                        format!("{how} everything")
+                    } else {
+                        format!("{how} {fields}")
+                    }
+                })
+                .collect();
+        f.write_str(&parts.join("; "))
+    }
+}
+
+/// What was stated and touched, and touched without being stated, by all ops of one kind.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Account {
+    /// Stated to be read, and to be changed.
+    pub stated: [Fields; 2],
+    /// Read and written.
+    pub touched: [Fields; 2],
+    /// Who read and who changed what it did not state.
+    pub unstated: BTreeMap<String, [Fields; 2]>,
+}
+
+impl Account {
+    /// What was stated and never used: to be read, to be changed.
+    pub fn idle(&self) -> [Fields; 2] {
+        std::array::from_fn(|k| self.stated[k].without(self.touched[k]))
+    }
+}
+
+type Accounts = BTreeMap<(&'static str, u32), Account>;
+
+/// Accounts by the place of the statement, while somebody collects them.
+static ACCOUNTS: Mutex<Accounts> = Mutex::new(BTreeMap::new());
+static COLLECTING: AtomicBool = AtomicBool::new(false);
+
+/// From now on what ops state and touch is noted, each op by itself and none in a pass with others; nobody is stopped for what
+/// is not true.
+pub fn collect() {
+    COLLECTING.store(true, Ordering::Relaxed);
+}
+
+/// Whether somebody collects.
+pub fn collecting() -> bool {
+    cfg!(debug_assertions) && COLLECTING.load(Ordering::Relaxed)
+}
+
+/// What was noted.
+pub fn collected() -> Accounts {
+    ACCOUNTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone()
+}
+
+/// What ops have touched that none of them states, in words. With several that acted at once it is enough that one of them
+/// states it.
+pub fn lie<'a>(ops: impl Iterator<Item = (&'a str, Needs)>, touched: Touched) -> Option<String> {
+    let ops: Vec<_> = ops.collect();
+    let all = |of: fn(&Needs) -> Fields| ops.iter().fold(Fields::NONE, |all, (_, n)| all | of(n));
+    let (reads, changed) = (all(|n| n.reads), all(Needs::changed));
+    let read = touched.read.without(reads | changed | CLOCK);
+    let written = touched.written.without(changed);
+    let true_enough = read.is_empty() && written.is_empty();
+    if collecting() {
+        let mut accounts = ACCOUNTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        for (name, n) in &ops {
+            let a = accounts.entry((n.at.file(), n.at.line())).or_default();
+            for (k, stated) in n.named().into_iter().enumerate() {
+                a.stated[k] |= stated;
+                a.touched[k] |= [touched.read, touched.written][k];
+            }
+            if !true_enough {
+                let more = a.unstated.entry((*name).to_string()).or_default();
+                *more = [more[0] | read, more[1] | written];
+            }
+        }
+        return None;
+    }
+    let names: Vec<String> = ops.iter().map(|(name, n)| format!("`{name}` ({})", n.at)).collect();
+    (!true_enough).then(|| format!("op {} {} and does not state it", names.join(", "), how([read, written])))
+}
+
+/// What is read and what is written in words.
+pub fn how([read, written]: [Fields; 2]) -> String {
+    let how = [("reads", read), ("writes", written)];
+    let how: Vec<String> =
+        how.iter().filter(|(_, f)| !f.is_empty()).map(|(how, f)| format!("{how} {f}")).collect();
+    how.join(" and ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Op, Placed, Stage, StepPlan, Tick};
+    use perigrain_base::diag::Result;
+    use perigrain_world::World;
+    use perigrain_world::field::{F, V, X};
+
+    /// States one thing and does another.
+    struct Says(Needs, fn(&mut World));
+
+    impl Op for Says {
+        fn name(&self) -> &str {
+            "fix 1 says"
+        }
+        fn stage(&self) -> Stage {
+            Stage::PostForce
+        }
+        fn needs(&self) -> Needs {
+            self.0
+        }
+        fn run(&mut self, w: &mut World, _: &Tick) -> Result<()> {
+            (self.1)(w);
+            Ok(())
+        }
+    }
+
+    fn acts(needs: Needs, does: fn(&mut World)) {
+        let (mut plan, mut w) = (StepPlan::default(), World::default());
+        w.particles.push(1, 1, [0.5; 3]);
+        plan.add(Placed::new(Box::new(Says(needs, does)), None));
+        let t = Tick::between_runs(&w.clock);
+        plan.run(&mut w, &t, &[Stage::PostForce]).unwrap();
+    }
+
+    #[test]
+    fn who_touches_what_it_states_may() {
+        acts(Needs::new().read(X).add(F), |w| w.particles.f[0][0] += w.particles.x[0][0]);
+        acts(Needs::new().write(V), |w| w.particles.v[0] = w.particles.v[0].map(|v| -v));
+        acts(Needs::all(), |w| w.particles.push(2, 1, [1.0; 3]));
+        // How many there are, and what time it is, everybody may know.
+        acts(Needs::new(), |w| assert!(w.n() == 1 && w.clock.step == 0));
+    }
+
+    #[cfg(debug_assertions)]
+    #[test]
+    #[should_panic(expected = "reads v and does not state it")]
+    fn who_reads_more_is_stopped() {
+        acts(Needs::new().read(X).add(F), |w| w.particles.f[0] = w.particles.v[0]);
+    }
+
+    #[cfg(debug_assertions)]
+    #[test]
+    #[should_panic(expected = "writes x and does not state it")]
+    fn who_writes_what_it_said_to_read_is_stopped() {
+        acts(Needs::new().read(X), |w| w.particles.x[0] = [0.0; 3]);
+    }
+
+    #[test]
+    fn what_is_stated_and_never_used_is_told() {
+        let needs = Needs::new().read(X | V).add(F);
+        let stated = needs.named();
+        let account = Account { stated, touched: [X | F, Fields::NONE], ..Account::default() };
+        assert_eq!(account.idle(), [V, F]);
+        assert_eq!(Needs::all().named(), [Fields::NONE; 2], "who takes everything says nothing by name");
+        assert_eq!(needs.to_string(), "reads x v; adds to f");
+        assert_eq!(Needs::new().write(Fields::ALL).keep(V).to_string(), "writes everything; keeps v");
+    }
+}

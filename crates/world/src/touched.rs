@@ -1,0 +1,62 @@
+//! Which fields of a scene were read and written since somebody asked last; debug builds know, release builds do not ask.
+
+use super::World;
+use super::field::{self, Fields};
+
+/// What was read and what was written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Touched {
+    /// Read.
+    pub read: Fields,
+    /// Written, or borrowed to be written.
+    pub written: Fields,
+}
+
+impl World {
+    /// What was touched since this was asked last.
+    #[cfg(debug_assertions)]
+    pub fn touched(&self) -> Touched {
+        let p = &self.particles;
+        let fields = [
+            (field::X, p.x.take_marks()),
+            (field::V, p.v.take_marks()),
+            (field::F, p.f.take_marks()),
+            (field::OMEGA, p.omega.take_marks()),
+            (field::TORQUE, p.torque.take_marks()),
+            (field::RADIUS, p.radius.take_marks()),
+            (field::MASS, p.mass.take_marks()),
+            (field::KIND, p.kind.take_marks()),
+            (field::MASK, p.mask.take_marks()),
+            (field::IMAGE, p.image.take_marks()),
+            (field::VOLUME, p.volume.take_marks()),
+            (field::X0, p.x0.take_marks()),
+            (field::TAG, p.tag.take_marks()),
+            (field::MOLECULE, p.molecule.take_marks()),
+            (field::DENSITY, p.density.take_marks()),
+            (field::RANK, p.rank.take_marks()),
+            (field::TYPE_MASS, self.type_mass.take_marks()),
+            (field::COLUMNS, self.columns.take_marks()),
+            (field::MEMO, self.memo.take_marks()),
+            (field::CONTROLS, self.controls.take_marks()),
+            (field::SLOTS, self.slots.take_marks()),
+            (field::BOX, self.domain.take_marks()),
+            (field::REGIONS, self.regions.take_marks()),
+            (field::BONDS, self.bonds.take_marks()),
+            (field::FAMILIES, self.families.take_marks()),
+            (field::CONTACTS, self.contacts.take_marks()),
+            (field::WALL_CONTACTS, self.wall_contacts.take_marks()),
+            (field::TALLY, self.tally.take_marks()),
+            (field::LISTS, self.rebuild.take_marks()),
+            (field::TRAVEL, self.travel.take_marks()),
+            (field::CLOCK, self.clock.take_marks()),
+            (field::FACTS, self.parts.take_marks()),
+        ];
+        debug_assert_eq!(fields.len(), field::FIELDS.len());
+        let mut all = Touched::default();
+        for (field, (read, written)) in fields {
+            all.read |= if read { field } else { Fields::NONE };
+            all.written |= if written { field } else { Fields::NONE };
+        }
+        all
+    }
+}

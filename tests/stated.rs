@@ -1,0 +1,151 @@
+//! What ops state about the fields that they touch is true: none touches more, and none states more than it ever uses.
+//!
+//! Marks on the fields and the account of them are there in debug builds only, and are the process's: a binary of its own.
+#![cfg(debug_assertions)]
+#![allow(clippy::unwrap_used)] // a test fails by panicking
+
+#[path = "common/examples.rs"]
+mod examples;
+#[path = "common/pages.rs"]
+mod scene;
+
+use examples::{Vars, examples};
+use perigrain::cli::manual::pages;
+use perigrain::diag::render;
+use perigrain::session::{Options, Session};
+use perigrain_plan::needs::{collect, collected, how};
+use perigrain_world::field;
+use scene::{Folder, deck, is_for_the_shell};
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// What may be stated and not be used by any of these decks: the file of the statement, fields, why.
+const SPARED: &[(&str, &str, &str)] = &[
+    ("dumps/src/base.rs", "omega torque", "which columns a dump has is the deck's"),
+    ("fixes/src/ave_atom.rs", "f", "what is averaged is the deck's"),
+    ("fixes/src/ave_chunk.rs", "f", "what is averaged is the deck's"),
+    ("fixes/src/ave_histo.rs", "f", "what is averaged is the deck's"),
+    ("fixes/src/deform.rs", "slots", "only where a variable moves the box"),
+    ("fixes/src/time_step.rs", "contacts radius", "only where grains touch"),
+    ("graph/ledger.rs", "contacts x", "only where grains touch"),
+    (
+        "graph/values.rs",
+        "f lists memo molecule omega regions torque type_mass",
+        "what formulas read is the deck's",
+    ),
+    ("fixes/src/evaporate.rs", "x mask", "only where its time has come"),
+    ("graph/dynamic.rs", "x regions", "only groups by region look at places"),
+    ("graph/welcome.rs", "columns image x", "only where particles come during a run"),
+    ("granular/powder.rs", "tally", "only where virials are asked for"),
+    ("bpm_peri/op.rs", "v", "only where bonds are damped"),
+];
+
+/// Examples that end after a few steps of each run; others wait for something that takes its time.
+const EXAMPLES: [&str; 3] = ["in.multiscale_bed", "in.plate_impact", "in.laminate_erosion"];
+
+/// The working folder is this test's.
+static ALONE: Mutex<()> = Mutex::new(());
+
+/// So many steps show what an op does.
+const STEPS: &str = "12";
+
+#[test]
+fn ops_touch_what_they_state_and_state_what_they_touch() {
+    collect();
+    let mut wrong = String::new();
+    for page in pages().iter().filter(|p| !is_for_the_shell(p)) {
+        let _folder = Folder::new(ALONE.lock().unwrap());
+        let deck = deck(&page.title(), page.doc.example);
+        for compat in [false, true] {
+            wrong += &run(Path::new(&page.title()), &deck, &vec![], compat);
+        }
+    }
+    for (place, short) in [
+        ("fixes", false),
+        ("computes", false),
+        ("dumps", false),
+        ("lammps/decks", true),
+        ("lammps/artefacts", true),
+    ] {
+        for path in files(place) {
+            let _folder = Folder::new(ALONE.lock().unwrap());
+            for data in files(place).iter().filter(|p| p.extension().is_some_and(|e| e != "in")) {
+                fs::copy(data, data.file_name().unwrap()).unwrap();
+            }
+            if path.extension().is_none_or(|e| e != "in") && !name(&path).starts_with("in.") {
+                continue;
+            }
+            let text = fs::read_to_string(&path).unwrap();
+            wrong += &run(&path, &if short { shortened(&text) } else { text }, &vec![], true);
+        }
+    }
+    for (path, vars) in examples().iter().filter(|(path, _)| EXAMPLES.contains(&&*name(path))) {
+        let _folder = Folder::new(ALONE.lock().unwrap());
+        let text = shortened(&fs::read_to_string(path).unwrap());
+        wrong += &run(path, &text, vars, false);
+    }
+    let (seen, wrong) = judged(wrong);
+    assert!(seen.lines().count() > 50, "only these ops ran:\n{seen}");
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+/// The kinds of ops that ran, and what is wrong with their statements besides.
+fn judged(mut wrong: String) -> (String, String) {
+    let mut seen = String::new();
+    for ((file, line), account) in collected() {
+        for (op, fields) in &account.unstated {
+            let _ = writeln!(wrong, "{file}:{line}: op `{op}` {} and does not state it", how(*fields));
+        }
+        let [reads, changes] = account.idle();
+        for (how, fields) in [("read", reads), ("changed", changes)] {
+            for (_, name) in field::FIELDS.iter().filter(|(one, _)| fields.has(*one)) {
+                let spared = |(f, words, _): &&(&str, &str, &str)| {
+                    file.ends_with(f) && words.split(' ').any(|w| w == *name)
+                };
+                if !SPARED.iter().any(|s| spared(&s)) {
+                    let _ = writeln!(wrong, "{file}:{line}: {name} is stated to be {how} and never is");
+                }
+            }
+        }
+        let _ = writeln!(seen, "{file}:{line}");
+    }
+    (seen, wrong)
+}
+
+/// Works a deck off; what is wrong with it.
+fn run(path: &Path, text: &str, vars: &Vars, compat: bool) -> String {
+    let (name, folder) = (&name(path), path.parent().unwrap().to_path_buf());
+    let here = std::env::current_dir().unwrap().to_string_lossy().into_owned();
+    let vars = vars.iter().cloned().chain([("dir".to_string(), vec![here])]).collect();
+    let mut session = Session::new(Options { vars, folder, compat, ..Options::default() }).unwrap();
+    match session.run_text(name, text) {
+        Ok(_) => String::new(),
+        Err(e) => format!("--- {name}\n{}\n", render::plain(&e, &session.sources)),
+    }
+}
+
+/// Runs of a few steps.
+fn shortened(text: &str) -> String {
+    let line = |line: &str| match line.trim_start().strip_prefix("run ") {
+        Some(rest) => {
+            let more = rest.trim_start().split_once(char::is_whitespace).map_or("", |(_, more)| more);
+            format!("run {STEPS} {}\n", if more.contains("upto") { "" } else { more })
+        }
+        None => format!("{line}\n"),
+    };
+    text.lines().map(line).collect()
+}
+
+fn files(place: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(place);
+    let mut all: Vec<PathBuf> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_file()).collect();
+    all.sort();
+    all
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().unwrap().to_string_lossy().into_owned()
+}
