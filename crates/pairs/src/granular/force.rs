@@ -246,6 +246,7 @@ impl Op for Force {
 
     fn needs(&self) -> Needs {
         Needs::new()
+            .keep(COLUMNS)
             .read(
                 X | V
                     | OMEGA
