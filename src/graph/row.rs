@@ -70,7 +70,7 @@ impl Op for Row {
         Stage::Output
     }
     fn needs(&self) -> Needs {
-        Needs::new().read(SLOTS | LISTS).write(FACTS)
+        Needs::new().read(SLOTS | LISTS).write(FACTS | LISTS)
     }
     fn when(&self) -> When {
         self.when.clone()

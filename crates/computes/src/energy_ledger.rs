@@ -9,7 +9,7 @@ use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
-    TAG, TALLY, TRAVEL, TYPE_MASS, V, VOLUME, X,
+    TAG, TALLY, TRAVEL, TYPE_MASS, V, VOLUME, X, X0,
 };
 use perigrain_world::{GroupId, SlotId, World};
 
@@ -97,7 +97,8 @@ impl Compute for Declared {
             | MOLECULE
             | TRAVEL
             | TYPE_MASS
-            | VOLUME;
+            | VOLUME
+            | X0;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let sheet = ledger::sheet(w, &mut probes)?;
             out.scalar = sheet.residual();
