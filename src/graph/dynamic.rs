@@ -8,7 +8,7 @@ use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::surface::choose;
 use perigrain_styles::{Reading, SealCx};
-use perigrain_world::field::{FAMILIES, MASK, REGIONS, SLOTS, VOLUME, X};
+use perigrain_world::field::{BOX, FAMILIES, LISTS, MASK, REGIONS, SLOTS, VOLUME, X};
 use perigrain_world::{Dynamic, GroupId, World};
 
 /// Adds the ops that choose the members of dynamic groups.
@@ -40,7 +40,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
         let op = StepOp::new(
             title,
             Stage::EndOfStep,
-            Needs::new().read(X | VOLUME | FAMILIES).write(MASK),
+            Needs::new().read(X | VOLUME | FAMILIES | BOX).write(MASK | LISTS),
             move |w, _| {
                 if choose(w, group.bit(), &surface) {
                     // Contacts are looked for anew in the next step.

@@ -8,8 +8,8 @@ use perigrain_styles::SealCx;
 use perigrain_styles::ledger::{self, Channel};
 use perigrain_styles::step_op::StepOp;
 use perigrain_world::field::{
-    COLUMNS, CONTACTS, F, FAMILIES, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, TALLY, TORQUE, TYPE_MASS, V,
-    VOLUME, X,
+    BONDS, BOX, COLUMNS, CONTACTS, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA,
+    RADIUS, TAG, TALLY, TORQUE, TRAVEL, TYPE_MASS, V, VOLUME, X, X0,
 };
 
 /// Whether somebody keeps the ledger.
@@ -59,7 +59,7 @@ pub fn end(s: &mut Sealer) -> Result<()> {
     s.ask_energy(&When::First);
     s.ask_atom_energy(&When::First);
     let access = Needs::new()
-        .read(TALLY)
+        .read(F | TORQUE | TAG | MOLECULE | BOX | BONDS | LISTS | TRAVEL | FACTS | CONTACTS | TALLY | X0)
         .read(
             X | V | OMEGA | RADIUS | MASS | KIND | CONTACTS | MASK | COLUMNS | FAMILIES | VOLUME | TYPE_MASS,
         )

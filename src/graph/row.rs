@@ -6,7 +6,7 @@ use perigrain_out::log::Log;
 use perigrain_out::thermo::{Column, Kind, Layout, memory_line};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::Reading;
-use perigrain_world::field::{FACTS, SLOTS};
+use perigrain_world::field::{FACTS, LISTS, SLOTS};
 use perigrain_world::{RowValue, TableRow, World};
 use std::sync::Arc;
 
@@ -70,7 +70,7 @@ impl Op for Row {
         Stage::Output
     }
     fn needs(&self) -> Needs {
-        Needs::new().read(SLOTS).write(FACTS)
+        Needs::new().read(SLOTS | LISTS).write(FACTS | LISTS)
     }
     fn when(&self) -> When {
         self.when.clone()

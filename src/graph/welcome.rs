@@ -5,7 +5,7 @@ use perigrain_base::diag::Result;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::{Compute, Fix, SealCx};
 use perigrain_world::World;
-use perigrain_world::field::{COLUMNS, IMAGE, LISTS, X};
+use perigrain_world::field::{BOX, COLUMNS, IMAGE, LISTS, X};
 
 /// Adds the op, where some fix makes particles.
 pub fn seal(s: &mut Sealer) {
@@ -36,7 +36,7 @@ impl Op for Welcome {
         Stage::Exchange
     }
     fn needs(&self) -> Needs {
-        Needs::new().read(X | IMAGE | LISTS).keep(COLUMNS)
+        Needs::new().read(BOX | X | IMAGE | LISTS).keep(COLUMNS)
     }
     fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
         if self.roster != w.rebuild.roster {

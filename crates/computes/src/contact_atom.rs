@@ -7,7 +7,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::near::touching;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X};
+use perigrain_world::field::{BONDS, BOX, FAMILIES, KIND, MASK, MOLECULE, RADIUS, TAG, X, X0};
 use perigrain_world::{GroupId, SlotId};
 
 /// The style.
@@ -57,7 +57,7 @@ impl Compute for Declared {
         Ok(fill(
             &self.id,
             &Wanted { slot, stage, when },
-            X | RADIUS | MASK | BONDS | BOX | FAMILIES | TAG | MOLECULE | KIND,
+            X | RADIUS | MASK | BONDS | BOX | FAMILIES | TAG | MOLECULE | KIND | X0,
             move |w, _, out| {
                 let mask = &w.particles.mask;
                 let counts = |i: usize, j: usize| mask[i] & group != 0 && mask[j] & among != 0;

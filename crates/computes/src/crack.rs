@@ -10,7 +10,7 @@ use perigrain_styles::near::Clusters;
 use perigrain_styles::peri_view::view;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::field::{FAMILIES, MASK, VOLUME, X};
+use perigrain_world::field::{BOX, FAMILIES, KIND, MASK, TAG, VOLUME, X, X0};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -171,10 +171,15 @@ impl Compute for Declared {
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let me = self.clone();
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, X | FAMILIES | VOLUME | MASK, move |w, _, out| {
-            out.vector = me.measure(w, &mut out.inner)?;
-            Ok(())
-        }))
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | FAMILIES | VOLUME | MASK | BOX | TAG | KIND | X0,
+            move |w, _, out| {
+                out.vector = me.measure(w, &mut out.inner)?;
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

@@ -7,7 +7,10 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::critical::{self, Estimate};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::field::{CONTACTS, FAMILIES, KIND, MASS, RADIUS, V, VOLUME, X};
+use perigrain_world::field::{
+    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
+    TRAVEL, V, VOLUME, X, X0,
+};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -77,7 +80,25 @@ impl Compute for Declared {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let mut probes = if self.grains { cx.probes()? } else { vec![] };
         let (how, safety, counts) = (self.how, self.safety, self.grains);
-        let reads = X | V | RADIUS | MASS | KIND | VOLUME | FAMILIES | CONTACTS;
+        let reads = X
+            | V
+            | RADIUS
+            | MASS
+            | KIND
+            | VOLUME
+            | FAMILIES
+            | CONTACTS
+            | BONDS
+            | BOX
+            | COLUMNS
+            | FACTS
+            | TAG
+            | LISTS
+            | MASK
+            | MOLECULE
+            | OMEGA
+            | TRAVEL
+            | X0;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let solids = safety * critical::solids(w, how)?;
             let grains = if counts { safety * critical::grains(w, &mut probes)? } else { f64::INFINITY };

@@ -7,7 +7,10 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::ledger;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::field::{CONTACTS, FAMILIES, KIND, MASS, OMEGA, RADIUS, TALLY, V, X};
+use perigrain_world::field::{
+    BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS,
+    TAG, TALLY, TRAVEL, TYPE_MASS, V, VOLUME, X, X0,
+};
 use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
@@ -74,7 +77,28 @@ impl Compute for Declared {
         cx.ask_energy(when);
         cx.ask_atom_energy(when);
         let mut probes = cx.probes()?;
-        let reads = X | V | OMEGA | RADIUS | MASS | KIND | FAMILIES | CONTACTS | TALLY;
+        let reads = X
+            | V
+            | OMEGA
+            | RADIUS
+            | MASS
+            | KIND
+            | FAMILIES
+            | CONTACTS
+            | TALLY
+            | BONDS
+            | BOX
+            | COLUMNS
+            | FACTS
+            | TAG
+            | LISTS
+            | MASK
+            | MEMO
+            | MOLECULE
+            | TRAVEL
+            | TYPE_MASS
+            | VOLUME
+            | X0;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let sheet = ledger::sheet(w, &mut probes)?;
             out.scalar = sheet.residual();

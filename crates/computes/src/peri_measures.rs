@@ -10,7 +10,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::peri_view::view;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, UseKind};
-use perigrain_world::field::{FAMILIES, MASK, VOLUME, X};
+use perigrain_world::field::{BOX, FAMILIES, KIND, MASK, VOLUME, X, X0};
 use perigrain_world::{GroupId, SlotId};
 
 /// `compute … peri/defgrad/atom`.
@@ -187,22 +187,27 @@ impl Compute for Declared {
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (bit, measure, width) = (self.group.bit(), self.measure, self.measure.columns());
-        Ok(fill(&self.id, &Wanted { slot, stage, when }, X | FAMILIES | VOLUME | MASK, move |w, _, out| {
-            out.cols = width;
-            out.atom.clear();
-            out.atom.resize(width * w.n(), 0.0);
-            let Some(families) = &*w.families else { return Ok(()) };
-            let view = view(w)?;
-            let rows = par::Rows { data: &mut out.atom[..], width };
-            par::each((rows, &w.particles.mask[..]), |start, (rows, mask)| {
-                for (k, (row, mask)) in rows.data.chunks_exact_mut(width).zip(mask).enumerate() {
-                    if let (true, Some(f)) = (mask & bit != 0, families.gradient(&view, start + k)) {
-                        measure.put(&f, row);
+        Ok(fill(
+            &self.id,
+            &Wanted { slot, stage, when },
+            X | FAMILIES | VOLUME | MASK | BOX | KIND | X0,
+            move |w, _, out| {
+                out.cols = width;
+                out.atom.clear();
+                out.atom.resize(width * w.n(), 0.0);
+                let Some(families) = &*w.families else { return Ok(()) };
+                let view = view(w)?;
+                let rows = par::Rows { data: &mut out.atom[..], width };
+                par::each((rows, &w.particles.mask[..]), |start, (rows, mask)| {
+                    for (k, (row, mask)) in rows.data.chunks_exact_mut(width).zip(mask).enumerate() {
+                        if let (true, Some(f)) = (mask & bit != 0, families.gradient(&view, start + k)) {
+                            measure.put(&f, row);
+                        }
                     }
-                }
-            });
-            Ok(())
-        }))
+                });
+                Ok(())
+            },
+        ))
     }
 
     fn boxed(&self) -> Box<dyn Compute> {

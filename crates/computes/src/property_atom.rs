@@ -12,8 +12,8 @@ use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::field::{
-    BOX, COLUMNS, F, FAMILIES, IMAGE, KIND, MASK, MASS, OMEGA, RADIUS, TAG, TORQUE, TYPE_MASS, V, VOLUME, X,
-    X0,
+    BOX, COLUMNS, F, FAMILIES, IMAGE, KIND, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG, TORQUE, TYPE_MASS, V,
+    VOLUME, X, X0,
 };
 use perigrain_world::index::Index;
 use perigrain_world::{AtomStyle, GroupId, SlotId, World};
@@ -313,7 +313,8 @@ impl Compute for Declared {
                 | VOLUME
                 | X0
                 | F
-                | V,
+                | V
+                | MOLECULE,
             move |w, _, out| {
                 let (bit, columns) = (group.bit(), getters.len());
                 out.cols = columns;

@@ -8,7 +8,7 @@ use perigrain_styles::common::variable_param;
 use perigrain_styles::matter::{Chosen, ChosenNow, change_forces, publish, sum, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
-use perigrain_world::field::{BOX, F, IMAGE, MASK, SLOTS, TALLY, X};
+use perigrain_world::field::{BOX, F, IMAGE, MASK, REGIONS, SLOTS, TALLY, X};
 use perigrain_world::{GroupId, World};
 
 /// The style.
@@ -110,7 +110,7 @@ impl Fix for Declared {
             None => None,
         };
         let (slot, virial) = (cx.slot(&format!("f_{}", self.id)), self.virial);
-        let access = Needs::new().read(X | IMAGE | MASK | BOX).add(F | TALLY).write(SLOTS);
+        let access = Needs::new().read(X | IMAGE | MASK | BOX | REGIONS).add(F | TALLY).write(SLOTS);
         let op = StepOp::new(format!("fix {} addforce", self.id), Stage::PostForce, access, move |w, t| {
             if virial && t.virial {
                 let added = virial_of(w, &chosen, &force);

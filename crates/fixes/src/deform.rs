@@ -11,7 +11,7 @@ use perigrain_styles::near::bonds_allow;
 use perigrain_styles::stretching::RATES;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::domain::Flow;
-use perigrain_world::field::{BOX, FAMILIES, MASK, MEMO, SLOTS, X};
+use perigrain_world::field::{BOX, FAMILIES, MASK, MEMO, SLOTS, X, X0};
 use perigrain_world::{Face, GroupId, World};
 use track::{Track, tracks};
 
@@ -264,7 +264,7 @@ impl Op for Move {
         Stage::EndOfStep
     }
     fn needs(&self) -> Needs {
-        Needs::new().read(MASK | SLOTS | FAMILIES).write(X | BOX).keep(MEMO)
+        Needs::new().read(MASK | SLOTS | FAMILIES | X0).write(X | BOX).keep(MEMO)
     }
     fn when(&self) -> When {
         self.when.clone()

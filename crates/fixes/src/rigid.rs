@@ -20,8 +20,8 @@ use perigrain_styles::molecules::named;
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
 use perigrain_world::field::{
-    self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, SLOTS, TORQUE, TRAVEL,
-    TYPE_MASS, V, X,
+    self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, SLOTS, TALLY, TORQUE,
+    TRAVEL, TYPE_MASS, V, X,
 };
 use perigrain_world::{GroupId, World};
 
@@ -325,7 +325,7 @@ impl Fix for Declared {
         let (me, mut crew) = (self.clone(), Crew::of(self));
         let access = || {
             Needs::new()
-                .add(TRAVEL)
+                .add(TRAVEL | TALLY)
                 .read(
                     F | TORQUE
                         | MASS

@@ -6,8 +6,10 @@ use perigrain_styles::SealCx;
 use perigrain_styles::matter::publish;
 use perigrain_styles::step_op::StepOp;
 use perigrain_world::World;
-use perigrain_world::field::Fields;
-use perigrain_world::field::{BOX, CLOCK, COLUMNS, FACTS, KIND, MEMO, SLOTS, TYPE_MASS, X0};
+use perigrain_world::field::{
+    BONDS, BOX, CLOCK, COLUMNS, FACTS, FAMILIES, Fields, KIND, LISTS, MASK, MEMO, MOLECULE, OMEGA, SLOTS,
+    TAG, TRAVEL, TYPE_MASS, X0,
+};
 
 /// What such fixes share: their name, how often they look, and as scalar the last step at which the step changed.
 #[derive(Clone)]
@@ -65,7 +67,23 @@ impl Follower {
             name,
             Stage::EndOfStep,
             Needs::new()
-                .read(reads | BOX | COLUMNS | TYPE_MASS | FACTS | KIND | X0)
+                .read(
+                    reads
+                        | BOX
+                        | COLUMNS
+                        | TYPE_MASS
+                        | FACTS
+                        | KIND
+                        | X0
+                        | FAMILIES
+                        | LISTS
+                        | OMEGA
+                        | MASK
+                        | BONDS
+                        | MOLECULE
+                        | TRAVEL
+                        | TAG,
+                )
                 .write(CLOCK | SLOTS)
                 .keep(MEMO),
             look,

@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::field::{KIND, MASK, OMEGA, TORQUE};
+use perigrain_world::field::{KIND, MASK, OMEGA, SLOTS, TORQUE};
 
 /// The style.
 pub struct ViscousSphere;
@@ -43,7 +43,7 @@ struct Declared(Resistance);
 
 impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let needs = Needs::new().read(OMEGA | KIND | MASK).add(TORQUE);
+        let needs = Needs::new().read(OMEGA | KIND | MASK | SLOTS).add(TORQUE);
         Ok(vec![self.0.op(needs, (|p| &mut p.torque, |p| &p.omega), cx)?])
     }
 

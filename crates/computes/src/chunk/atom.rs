@@ -8,7 +8,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Chunking, Doc, SealCx, Shape, Style, Wants};
-use perigrain_world::field::{BOX, COLUMNS, KIND, MASK, MEMO, SLOTS, X};
+use perigrain_world::field::{BOX, COLUMNS, KIND, MASK, MEMO, REGIONS, SLOTS, X};
 use perigrain_world::{SlotId, World};
 
 /// The style.
@@ -83,7 +83,8 @@ impl Compute for Declared {
             What::Value(r) => Some(cx.reading(r, Wants::PerAtom, stage, when)?),
             _ => None,
         };
-        let access = Needs::new().read(X | MASK | KIND | BOX | COLUMNS).write(SLOTS).keep(MEMO | COLUMNS);
+        let access =
+            Needs::new().read(X | MASK | KIND | BOX | COLUMNS | REGIONS).write(SLOTS).keep(MEMO | COLUMNS);
         let op = StepOp::new(format!("compute {}", spec.id), stage, access, move |w: &mut World, t| {
             let region = match &spec.region {
                 None => None,

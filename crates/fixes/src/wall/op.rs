@@ -331,7 +331,7 @@ impl Op for WallOp {
             .read(BOX | X | V | OMEGA | RADIUS | MASS | MASK | field::COLUMNS | TAG | REGIONS | LISTS)
             .add(F | TORQUE)
             .write(WALL_CONTACTS | FACTS | SLOTS)
-            .keep(MEMO)
+            .keep(MEMO | field::COLUMNS)
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {

@@ -151,7 +151,7 @@ impl Op for Springs {
         Stage::Force
     }
     fn needs(&self) -> Needs {
-        Needs::new().read(X | V | BONDS | BOX | LISTS | TAG).add(F).write(BONDS | TALLY)
+        Needs::new().read(X | V | BONDS | BOX | LISTS | TAG).add(F).write(BONDS | TALLY | LISTS)
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let now = (w.rebuild.generation, w.bonds.changes);

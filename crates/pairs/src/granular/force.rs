@@ -298,6 +298,7 @@ impl Op for Force {
                 .keep(COLUMNS | MEMO);
         }
         Needs::new()
+            .keep(COLUMNS)
             .read(
                 X | V
                     | OMEGA

@@ -7,7 +7,7 @@ use perigrain_plan::{Level, Needs, Op, Stage, Tick};
 use perigrain_styles::peri_view::view;
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
-    BOX, DENSITY, F, FACTS, FAMILIES, KIND, MASK, MASS, MEMO, MOLECULE, TAG, TALLY, VOLUME, X, X0,
+    BOX, DENSITY, F, FACTS, FAMILIES, KIND, MASK, MASS, MEMO, MOLECULE, RADIUS, TAG, TALLY, VOLUME, X, X0,
 };
 use perigrain_world::{Crack, World};
 
@@ -45,7 +45,7 @@ impl Op for Force {
 
     fn needs(&self) -> Needs {
         Needs::new()
-            .read(TAG | MASK | MOLECULE | X | X0 | KIND | VOLUME | BOX | MEMO | DENSITY)
+            .read(TAG | MASK | MOLECULE | X | X0 | KIND | VOLUME | BOX | MEMO | DENSITY | RADIUS)
             .add(F)
             .write(FAMILIES | TALLY | FACTS)
             .keep(MASS)
