@@ -24,8 +24,8 @@ use perigrain_world::{Said, World};
 
 const MAGIC: [u8; 8] = *b"PERIGRN\x1a";
 const END: [u8; 8] = *b"\x1aGRNDONE";
-/// The number of the arrangement above and of what the world consists of; higher ones are of later versions.
-const FORMAT: u32 = 2;
+/// The number of the arrangement above; higher ones are of later versions.
+const FORMAT: u32 = 1;
 /// Length of what follows the scene.
 const TAIL: u64 = 8 + 4 + 8;
 /// What LAMMPS' own restart files begin with.
@@ -161,10 +161,6 @@ fn check_head(head: &[u8]) -> std::result::Result<(), Refusal> {
     if format > FORMAT {
         let why = format!("is of format {format}; this perigrain reads formats up to {FORMAT}");
         return Err((why, "use the newer perigrain that wrote it"));
-    }
-    if format < FORMAT {
-        let why = format!("is of format {format}; this perigrain reads format {FORMAT}");
-        return Err((why, "use the perigrain that wrote it, or `write_data` there and `read_data` here"));
     }
     if head.len() < 16 { Err(cut_off(head.len() as u64)) } else { Ok(()) }
 }
