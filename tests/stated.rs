@@ -28,7 +28,11 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("fixes/src/ave_chunk.rs", "f", "what is averaged is the deck's"),
     ("fixes/src/ave_histo.rs", "f", "what is averaged is the deck's"),
     ("fixes/src/deform.rs", "slots", "only where a variable moves the box"),
-    ("fixes/src/time_step.rs", "contacts radius", "only where grains touch"),
+    (
+        "fixes/src/time_step.rs",
+        "contacts radius bonds id lists molecule omega travel",
+        "only where grains touch",
+    ),
     (
         "graph/ledger.rs",
         "x f torque contacts id molecule box bonds lists travel facts",
@@ -57,6 +61,7 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("graph/ledger.rs", "x0", "only beside solids"),
     ("graph/row.rs", "lists", "only rows that count rebuilds"),
     ("wall/op.rs", "columns", "only with heat"),
+    ("contact_atom.rs", "x0", "only beside solids"),
     ("wall/op.rs", "box", "only where grains of a restart file touch regions"),
 ];
 
