@@ -57,7 +57,10 @@ impl Placed {
         self.timed(w, t, clock, |op, w| {
             begin_watch(w);
             let outcome = act(op, w);
-            end_watch(w, std::iter::once((op.name(), needs)));
+            // Who fails may look around for words that help.
+            if outcome.is_ok() {
+                end_watch(w, std::iter::once((op.name(), needs)));
+            }
             outcome
         })
     }

@@ -7,7 +7,8 @@ use perigrain_plan::{Level, Needs, Op, Stage, Tick};
 use perigrain_styles::peri_view::view;
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
-    BOX, DENSITY, F, FACTS, FAMILIES, KIND, MASK, MASS, MEMO, MOLECULE, RADIUS, TAG, TALLY, VOLUME, X, X0,
+    BOX, DENSITY, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, RADIUS, TAG, TALLY, VOLUME, X,
+    X0,
 };
 use perigrain_world::{Crack, World};
 
@@ -47,7 +48,7 @@ impl Op for Force {
         Needs::new()
             .read(TAG | MASK | MOLECULE | X | X0 | KIND | VOLUME | BOX | MEMO | DENSITY | RADIUS)
             .add(F)
-            .write(FAMILIES | TALLY | FACTS)
+            .write(LISTS | FAMILIES | TALLY | FACTS)
             .keep(MASS)
     }
 
