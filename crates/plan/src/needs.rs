@@ -148,6 +148,18 @@ pub fn collecting() -> bool {
     cfg!(debug_assertions) && COLLECTING.load(Ordering::Relaxed)
 }
 
+static INSISTING: AtomicBool = AtomicBool::new(false);
+
+/// From now on an op that touches what it does not state ends the program (debug builds), where nobody collects.
+pub fn insist() {
+    INSISTING.store(true, Ordering::Relaxed);
+}
+
+/// Whether statements are looked at: somebody collects or insists.
+pub fn watched() -> bool {
+    cfg!(debug_assertions) && (COLLECTING.load(Ordering::Relaxed) || INSISTING.load(Ordering::Relaxed))
+}
+
 /// What was noted.
 pub fn collected() -> Accounts {
     ACCOUNTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone()
@@ -217,6 +229,7 @@ mod tests {
     }
 
     fn acts(needs: Needs, does: fn(&mut World)) {
+        insist();
         let (mut plan, mut w) = (StepPlan::default(), World::default());
         w.particles.push(1, 1, [0.5; 3]);
         plan.add(Placed::new(Box::new(Says(needs, does)), None));

@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn the_table_is_the_folder() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("potentials");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../potentials");
         let mut names: Vec<_> = std::fs::read_dir(folder)
             .unwrap()
             .map(|e| e.unwrap().file_name().into_string().unwrap())
