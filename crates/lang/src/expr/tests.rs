@@ -246,7 +246,7 @@ fn refusals_underline_the_word() {
         ("1+[1,2]", "one number is needed", "1+[1,2]"),
         ("is_typelabel(atom,C)", "needs a labelmap", "is_typelabel(atom,C)"),
         ("extract_setting(foo)", "knows no `foo`", "foo"),
-        ("is_os([a)", "never closed", "is_os([a)"),
+        ("is_os([a)", "never closed", "[a"),
         ("sqrt(1,2)", "takes 1 argument, not 2", "sqrt(1,2)"),
         ("1+atan2(1)", "takes 2 arguments, not 1", "atan2(1)"),
         ("1+volume", "nothing a formula knows", "volume"),
