@@ -8,8 +8,8 @@
 //! no less than max(s_min,i, s_min,j). Its own previous stretch is one, for the bond belongs to both families; the previous
 //! stretches of the bonds that were the least ones of both families when these were looked at last are mostly a far better one.
 
+use super::isa::Isa;
 use super::pmb::stretch;
-use super::stretching::StretchKernels;
 use crate::families::list::ListBody;
 use crate::families::{Candidate, FamilyOptions, Measures};
 
@@ -18,13 +18,13 @@ pub trait Bonds: Sync + Sized {
     /// How many sites are measured together.
     const GROUP: usize;
     /// Finds bonds stretched beyond what is sure to allow it, their own previous stretch or more, in order.
-    fn candidates<K: StretchKernels>(&self, found: &mut Vec<Candidate>);
+    fn candidates<K: Isa>(&self, found: &mut Vec<Candidate>);
     /// Calls `f(previous stretch, s00, alpha)` for each living bond of a site.
     fn family(&self, site: u32, options: &FamilyOptions, f: impl FnMut(f64, f64, f64));
     /// Gets ready for [`Bonds::candidates`].
     fn prepare(&mut self) {}
     /// The smallest previous stretch of the families of all sites in `groups`, or LAMMPS' critical stretch.
-    fn measure<K: StretchKernels>(&mut self, groups: &[u32], options: &FamilyOptions, values: &mut [f64]);
+    fn measure<K: Isa>(&mut self, groups: &[u32], options: &FamilyOptions, values: &mut [f64]);
     /// Sets whether the bonds that broke in the previous step live.
     fn revive(&mut self, lives: bool);
     /// Breaks bonds and remembers them as those of this step.
@@ -38,7 +38,7 @@ pub trait Bonds: Sync + Sized {
 }
 
 /// Breaks what has to break, except bonds of particles that are `spared`; `found` is scratch.
-pub fn break_bonds<K: StretchKernels, B: Bonds>(
+pub fn break_bonds<K: Isa, B: Bonds>(
     body: &mut B,
     options: &FamilyOptions,
     found: &mut Vec<Candidate>,
@@ -57,7 +57,7 @@ pub fn break_bonds<K: StretchKernels, B: Bonds>(
 }
 
 /// Keeps the candidates that exceed their limit.
-fn judge<K: StretchKernels, B: Bonds>(body: &mut B, options: &FamilyOptions, found: &mut Vec<Candidate>) {
+fn judge<K: Isa, B: Bonds>(body: &mut B, options: &FamilyOptions, found: &mut Vec<Candidate>) {
     let mut measures = std::mem::take(body.measures());
     measures.start(body.sites().div_ceil(B::GROUP));
     for site in found.iter().flat_map(|c| c.ends) {

@@ -1,7 +1,6 @@
-//! The innermost loop of the lattice layout: all bonds of eight neighbouring cells.
+//! Bonds of eight neighbouring cells of a lattice: their constants, stretches and forces handed back.
 
-use super::lanes::{Lanes, Portable};
-use super::pmb::closed;
+use super::lanes::Lanes;
 use super::wide;
 use crate::families::lattice::{CONSTANTS, Lead};
 
@@ -11,14 +10,18 @@ pub mod constant {
     pub const XI: usize = 0;
     /// |q| below which the bond counts as unstretched.
     pub const DEAD: usize = 3;
-    /// c w V/|xi| SERIES[k]/|xi|^(2 k + 2), eight numbers.
+    /// [`SERIES`](super::super::pmb::SERIES)`[k]`/|xi|^(2 k + 2), eight numbers, so that they give s/(1 + s); under laws whose
+    /// pull is that alone ([`BondLaw::PLAIN`](super::super::state::law::BondLaw::PLAIN)) times [`FACTOR`]. In the table of
+    /// dilatations they give the whole term.
     pub const SERIES: usize = 4;
     /// 1/|xi|^2.
     pub const INVERSE: usize = 12;
-    /// c w V/|xi|.
+    /// ω w V (c w V/|xi| of bond-based laws); in the table of dilatations ω w |xi|² V.
     pub const FACTOR: usize = 13;
-    /// w |xi| c V/2: energy density of one end per squared stretch, twice.
-    pub const ENERGY: usize = 14;
+    /// ω, or of bond-based laws the stretch at which bonds flow.
+    pub const OMEGA: usize = 14;
+    /// The pair's critical stretch; in the table of dilatations one over [`FACTOR`].
+    pub const LIMIT: usize = 15;
 }
 
 /// An expression for each of the three components. Not a closure: closures do not inherit the instruction set
@@ -86,7 +89,7 @@ pub const CLOSED: usize = 8;
 /// Displacements of some neighbouring cells, from the chunk's cell `here` on.
 ///
 /// # Safety
-/// See [`force`]; so for all helpers below.
+/// See the loops of [`super::state::chunk`]; so for all helpers below.
 #[inline(always)]
 pub unsafe fn place<L: Lanes>(u: &[*const f64; 3], here: isize) -> [L; 3] {
     // SAFETY: the caller's promise.
@@ -185,114 +188,6 @@ pub unsafe fn extremes<L: Lanes>(high: L, low: L) -> (f64, f64) {
     (most[0].iter().copied().fold(0.0, f64::max), -most[1].iter().copied().fold(0.0, f64::min))
 }
 
-/// Adds the forces of a chunk's bonds to both ends. Returns the largest z and the largest −z if `TRACK`.
-/// Without `MASKED` all bonds of all eight cells must live.
-///
-/// # Safety
-/// Live bonds must lead to cells within seven of cells that exist in `u` and `f`, all memory between readable
-/// and, in `f`, writable and not touched by others; the processor must have what `L` needs.
-#[inline(always)]
-pub unsafe fn force<
-    L: Lanes,
-    const DEGREE: usize,
-    const MASKED: bool,
-    const TRACK: bool,
-    const VARIOUS: bool,
->(
-    a: &Chunk,
-) -> (f64, f64) {
-    // SAFETY: the caller's promise covers every address formed below.
-    unsafe {
-        let zero = L::splat(0.0);
-        // Two vectors of four cells, or one of eight (the second then stays unused).
-        let half = CELLS - L::WIDTH;
-        let u = [place::<L>(&a.u, 0), place::<L>(&a.u, half as isize)];
-        let mut sum = [[zero; 3]; 2];
-        let (mut high, mut low) = (zero, zero);
-        let mut lead = 0;
-        while lead < a.to.len() {
-            let Lead { to, table, e } = *a.to.get_unchecked(lead);
-            let bits = *a.alive.get_unchecked(e as usize);
-            lead += 1;
-            if MASKED && bits == 0 {
-                continue;
-            }
-            let to = to as isize;
-            let c = a.tables.as_ptr().add(table as usize);
-            let mut v = 0;
-            while v < CELLS / L::WIDTH {
-                let here = L::WIDTH * v;
-                let other = to + here as isize;
-                let b = bonds::<L, MASKED>(&a.u, &u[v], other, c, bits >> here);
-                let factor = if DEGREE == CLOSED {
-                    let z = b.q.mul(L::splat(*c.add(constant::INVERSE)));
-                    z.mul(closed(z)).mul(L::splat(*c.add(constant::FACTOR)))
-                } else if DEGREE > CLOSED {
-                    let z = b.q.mul(L::splat(*c.add(constant::INVERSE)));
-                    z.mul(wide::share::<L, DEGREE>(z)).mul(L::splat(*c.add(constant::FACTOR)))
-                } else {
-                    series::<L, DEGREE>(b.q, c)
-                };
-                let factor = factor.keep(b.live);
-                if TRACK {
-                    let z = b.q.mul(L::splat(*c.add(constant::INVERSE))).keep(b.live);
-                    high = z.max(high);
-                    low = z.min(low);
-                }
-                let (own, back) = if VARIOUS { various::<L>(a, factor, to, v) } else { (factor, factor) };
-                sum[v] = xyz!(|k| own.fma(b.y[k], sum[v][k]));
-                take::<L>(&a.f, other, back, &b.y);
-                v += 1;
-            }
-        }
-        give::<L>(&a.f, &sum);
-        if TRACK { extremes::<L>(high, low) } else { (0.0, 0.0) }
-    }
-}
-
-/// Energy and virial of a chunk's bonds, each end of a bond counted: Σ ½ c w V s² |xi| and
-/// −Σ (c w V/|xi|) z h(z) y_a y_b over the six products of y = xi + eta, cell by cell. The virial lacks the
-/// volume that densities need.
-///
-/// # Safety
-/// As for [`force`], without `f`; the chunk has no per-cell data.
-#[inline(always)]
-pub unsafe fn sums<L: Lanes>(a: &Chunk) -> [[f64; CELLS]; SUMS] {
-    // SAFETY: the caller's promise covers every address formed below.
-    unsafe {
-        let mut out = [[0.0; CELLS]; SUMS];
-        let mut v = 0;
-        while v < CELLS / L::WIDTH {
-            let here = L::WIDTH * v;
-            let u = place::<L>(&a.u, here as isize);
-            let mut sum = [L::splat(0.0); SUMS];
-            let mut lead = 0;
-            while lead < a.to.len() {
-                let Lead { to, table, e } = *a.to.get_unchecked(lead);
-                let bits = *a.alive.get_unchecked(e as usize);
-                lead += 1;
-                if bits == 0 {
-                    continue;
-                }
-                let c = a.tables.as_ptr().add(table as usize);
-                let b = bonds::<L, true>(&a.u, &u, here as isize + to as isize, c, bits >> here);
-                let z = b.q.mul(L::splat(*c.add(constant::INVERSE)));
-                let one = L::splat(1.0);
-                let root = one.add(z).sqrt();
-                // z h(z) = s/(1 + s), and s times that root is s: one division.
-                let share = z.div(root.fma(root, root)).keep(b.live);
-                let stretch = share.mul(root);
-                let energy = stretch.mul(stretch).mul(L::splat(0.5 * *c.add(constant::ENERGY)));
-                let pull = share.mul(L::splat(-*c.add(constant::FACTOR)));
-                sum = with_virial(sum, energy, pull, &b.y);
-            }
-            put_sums(&sum, &mut out, here);
-            v += 1;
-        }
-        out
-    }
-}
-
 /// Puts sums to the cells from `here` on.
 ///
 /// # Safety
@@ -327,158 +222,37 @@ pub unsafe fn with_virial<L: Lanes>(sum: [L; SUMS], energy: L, pull: L, y: &[L; 
     }
 }
 
-/// The factor times micromodulus and volumes, for the two ends.
+/// Pulls times volumes, of microelastic bonds times micromoduli too, for bodies with various ones: at the cells from `here` on
+/// and at their partners from `other` on.
 #[inline(always)]
-unsafe fn various<L: Lanes>(a: &Chunk, factor: L, to: isize, v: usize) -> (L, L) {
+pub unsafe fn various<L: Lanes, const MODULI: bool>(
+    a: &Chunk,
+    (near, far): (L, L),
+    here: usize,
+    other: isize,
+) -> (L, L) {
     // SAFETY: per-cell data cover the cells that displacements cover.
     unsafe {
-        let Some(cells) = a.various else { return (factor, factor) };
-        let mut c = [0.0; CELLS];
-        let mut lane = 0;
-        while lane < L::WIDTH {
-            let at = (L::WIDTH * v + lane) as isize;
-            let (i, j) = (*cells.kind.offset(at), *cells.kind.offset(at + to));
-            c[lane] = cells.pairs[usize::from(i) * cells.kinds + usize::from(j)][0];
-            lane += 1;
-        }
-        let factor = factor.mul(L::load(c.as_ptr()));
-        let own = L::load(cells.volume.add(L::WIDTH * v));
-        let other = L::load(cells.volume.offset(to).add(L::WIDTH * v));
-        if cells.newton {
-            let both = factor.mul(own.mul(other));
-            return (both, both);
-        }
-        (factor.mul(other), factor.mul(own))
-    }
-}
-
-/// The kernels of one instruction set, chosen once per sweep.
-pub trait Kernels: Sync {
-    /// Whether there are forms without root and division for small stretches, and those without masks and tracking. Where
-    /// processors have AVX2, the portable kernels are there to compare with, and one form does.
-    const ALL_FORMS: bool = true;
-    /// [`force`] for this instruction set.
-    ///
-    /// # Safety
-    /// As for [`force`].
-    unsafe fn force<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
-        a: &Chunk,
-    ) -> (f64, f64);
-    /// [`sums`] for this instruction set.
-    ///
-    /// # Safety
-    /// As for [`sums`].
-    unsafe fn sums(a: &Chunk) -> [[f64; CELLS]; SUMS];
-}
-
-/// Any processor.
-pub struct Plain;
-
-impl Kernels for Plain {
-    const ALL_FORMS: bool = !cfg!(target_arch = "x86_64");
-    unsafe fn force<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
-        a: &Chunk,
-    ) -> (f64, f64) {
-        // SAFETY: the caller's promise.
-        unsafe { force::<Portable, DEGREE, MASKED, TRACK, VARIOUS>(a) }
-    }
-    unsafe fn sums(a: &Chunk) -> [[f64; CELLS]; SUMS] {
-        // SAFETY: the caller's promise.
-        unsafe { sums::<Portable>(a) }
-    }
-}
-
-/// Processors with AVX2 and FMA.
-#[cfg(target_arch = "x86_64")]
-pub struct Wide;
-
-#[cfg(target_arch = "x86_64")]
-impl Kernels for Wide {
-    unsafe fn force<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
-        a: &Chunk,
-    ) -> (f64, f64) {
-        #[target_feature(enable = "avx2,fma")]
-        unsafe fn wide<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
-            a: &Chunk,
-        ) -> (f64, f64) {
-            // SAFETY: the caller's promise.
-            unsafe { force::<super::lanes::Avx2, DEGREE, MASKED, TRACK, VARIOUS>(a) }
-        }
-        // SAFETY: the caller's promise includes the instruction set.
-        unsafe { wide::<DEGREE, MASKED, TRACK, VARIOUS>(a) }
-    }
-    unsafe fn sums(a: &Chunk) -> [[f64; CELLS]; SUMS] {
-        #[target_feature(enable = "avx2,fma")]
-        unsafe fn wide(a: &Chunk) -> [[f64; CELLS]; SUMS] {
-            // SAFETY: the caller's promise.
-            unsafe { sums::<super::lanes::Avx2>(a) }
-        }
-        // SAFETY: the caller's promise includes the instruction set.
-        unsafe { wide(a) }
-    }
-}
-
-/// Processors with AVX-512: the same bits as [`Wide`], eight cells at once.
-#[cfg(target_arch = "x86_64")]
-pub struct Widest;
-
-#[cfg(target_arch = "x86_64")]
-impl Kernels for Widest {
-    unsafe fn force<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
-        a: &Chunk,
-    ) -> (f64, f64) {
-        #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
-        unsafe fn widest<const DEGREE: usize, const MASKED: bool, const TRACK: bool, const VARIOUS: bool>(
-            a: &Chunk,
-        ) -> (f64, f64) {
-            // SAFETY: the caller's promise.
-            unsafe { force::<super::lanes512::Avx512, DEGREE, MASKED, TRACK, VARIOUS>(a) }
-        }
-        // SAFETY: the caller's promise includes the instruction set.
-        unsafe { widest::<DEGREE, MASKED, TRACK, VARIOUS>(a) }
-    }
-    unsafe fn sums(a: &Chunk) -> [[f64; CELLS]; SUMS] {
-        #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
-        unsafe fn widest(a: &Chunk) -> [[f64; CELLS]; SUMS] {
-            // SAFETY: the caller's promise.
-            unsafe { sums::<super::lanes512::Avx512>(a) }
-        }
-        // SAFETY: the caller's promise includes the instruction set.
-        unsafe { widest(a) }
-    }
-}
-
-/// Runs the kernel for a degree and the other choices.
-///
-/// # Safety
-/// As for [`force`].
-#[inline]
-pub unsafe fn run<K: Kernels>(a: &Chunk, degree: usize, masked: bool, track: bool) -> (f64, f64) {
-    macro_rules! pick {
-        ($($degree:literal)*) => {
-            match (degree, masked, track, a.various.is_some()) {
-                $(
-                    ($degree, false, false, false) => K::force::<$degree, false, false, false>(a),
-                    ($degree, false, true, false) => K::force::<$degree, false, true, false>(a),
-                    ($degree, true, false, false) => K::force::<$degree, true, false, false>(a),
-                    ($degree, true, true, false) => K::force::<$degree, true, true, false>(a),
-                    ($degree, _, _, true) => K::force::<$degree, true, true, true>(a),
-                )*
-                (_, _, _, false) => K::force::<CLOSED, true, true, false>(a),
-                (_, _, _, true) => K::force::<CLOSED, true, true, true>(a),
+        let Some(cells) = a.various else { return (near, far) };
+        let (mut near, mut far) = (near, far);
+        if MODULI {
+            let mut c = [0.0; CELLS];
+            let mut lane = 0;
+            while lane < L::WIDTH {
+                let (i, j) = (*cells.kind.add(here + lane), *cells.kind.offset(other + lane as isize));
+                c[lane] = cells.pairs[usize::from(i) * cells.kinds + usize::from(j)][0];
+                lane += 1;
             }
-        };
-    }
-    // SAFETY: the caller's promise.
-    unsafe {
-        if const { !K::ALL_FORMS } {
-            return match a.various.is_some() {
-                false => K::force::<CLOSED, true, true, false>(a),
-                true => K::force::<CLOSED, true, true, true>(a),
-            };
+            let c = L::load(c.as_ptr());
+            (near, far) = (near.mul(c), far.mul(c));
         }
-        pick!(3 5 7 10 16)
+        let (own, partner) = (L::load(cells.volume.add(here)), L::load(cells.volume.offset(other)));
+        if cells.newton {
+            let both = own.mul(partner);
+            return (near.mul(both), far.mul(both));
+        }
+        (near.mul(partner), far.mul(own))
     }
 }
 
-const _: () = assert!(constant::ENERGY < CONSTANTS && wide::FAR == 10 && wide::FARTHEST == 16);
+const _: () = assert!(constant::LIMIT < CONSTANTS && wide::FAR == 10 && wide::FARTHEST == 16);

@@ -1,15 +1,17 @@
 //! Energy and virial of all bonds: asked for at some steps only, so a pass of its own.
 
-use super::chunk::{CELLS, Chunk, Kernels, SUMS};
-use super::contact::add;
-use super::list::{self, kernel::RowKernels};
-use super::pmb::stretch;
+use super::chunk::{CELLS, Chunk, SUMS};
+use super::isa::Isa;
+use super::list;
+use super::single::Single;
+use super::state::lattice::States;
+use super::state::law::{Angles, BondLaw, Ends, Moment, Stretch, of_law};
+use super::state::settle::{columns_of, moment};
+use super::state::weighing::{Weighing, banded};
 use crate::families::lattice::{LANES, LatticeBody, PAD};
-use crate::families::{Families, FamilyOptions, ForceUnit, PeriTally, PeriView};
+use crate::families::law::{COLUMNS, SiteState};
+use crate::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
 use perigrain_base::par::{self, Shared};
-
-/// Takes a bond: both ends with their energies, the pull on the first and the vector it acts along.
-type Add<'a> = dyn FnMut((usize, f64), (usize, f64), f64, [f64; 3]) + 'a;
 
 /// Energy and virial of one row of cells or one record.
 pub(super) type Sums = [f64; SUMS];
@@ -17,52 +19,58 @@ pub(super) type Sums = [f64; SUMS];
 /// Rows per part when rows are summed.
 pub(super) const ROWS: usize = 16;
 
-/// Adds energy and virial of the bonds as they were during the force evaluation: LAMMPS gives each end half of
-/// 1/2 c w V s² |xi|, and the virial one factor V.
-pub fn tally<K: Kernels + RowKernels>(
+/// Adds energy and virial of all bonds as they were during the force evaluation, which has `advanced` bonds or not. Under
+/// bond-based laws LAMMPS gives each end half of ½ c w V s² |xi|, and the virial one factor V. Under state-based ones the energy
+/// density of a particle is ½Kθ² + ½ 15G/m Σ ω w |xi|² ε² V; LAMMPS counts half of the second term.
+pub fn tally<K: Isa>(
     families: &mut Families,
     view: &PeriView,
     t: &mut PeriTally,
-    period: [f64; 3],
+    (advanced, period): (bool, [f64; 3]),
 ) {
+    let newton = families.options.unit == ForceUnit::Newton;
+    let scale = |p: usize| if newton { view.volume[p] } else { 1.0 };
+    let dilated = !families.law.kind.bond_based();
     let mut rows = std::mem::take(&mut families.scratch.rows);
-    let options = families.options;
-    for body in &families.lattices {
-        if !t.per_atom() && body.cell_kind.is_empty() {
-            let newton = options.unit == ForceUnit::Newton;
-            // SAFETY: live bonds lead to cells of the body; forces are not touched.
-            let of_chunk = |_: usize, data: &Chunk| unsafe { K::sums(data) };
-            whole_rows(body, view, &mut rows, (false, newton), of_chunk);
-            collect(&rows, t);
-            continue;
+    for k in 0..families.lattices.len() {
+        let body = &families.lattices[k];
+        for (cell, &p) in body.particle.iter().enumerate().filter(|(_, p)| dilated && **p != u32::MAX) {
+            let p = p as usize;
+            own(families, view, p, body.state.theta[PAD + cell], scale(p), t);
         }
-        sum(body.rows.len(), &mut rows, t, |slot, f| lattice_row(body, slot, view, families, &options, f));
+        let one = |slot: usize, t: &mut PeriTally| one_by_one(families, view, (body, slot), (advanced, t));
+        if t.per_atom() {
+            (0..body.rows.len()).for_each(|slot| one(slot, t));
+        } else if !body.cell_kind.is_empty() {
+            apart(body.rows.len(), &mut rows, one);
+            collect(&rows, t);
+        } else {
+            in_lanes::<K>(families, k, view, advanced, &mut rows);
+            collect(&rows, t);
+        }
     }
     families.scratch.rows = rows;
-    list::energy::tally::<K>(families, t, (true, period));
+    let list = &families.list;
+    for (record, &p) in list.particle.iter().enumerate().filter(|(_, p)| dilated && **p != u32::MAX) {
+        own(families, view, p as usize, list.state.theta[record], scale(p as usize), t);
+    }
+    list::energy::tally::<K>(families, t, (advanced, period));
 }
 
-/// Adds up `row(k, add)` for `k` below `n` in a fixed order, and per particle if asked for.
-fn sum(n: usize, rows: &mut Vec<Sums>, t: &mut PeriTally, row: impl Fn(usize, &mut Add) + Sync) {
-    if t.per_atom() {
-        for k in 0..n {
-            row(k, &mut |i, j, pull, d| add(t, i, j, pull, d));
-        }
-        return;
-    }
+/// Sums of `row(k, sum)` for `k` below `n`, each row by itself.
+fn apart(n: usize, rows: &mut Vec<Sums>, row: impl Fn(usize, &mut PeriTally) + Sync) {
     rows.clear();
     rows.resize(n, [0.0; 7]);
     let shared = Shared::new(rows);
     par::for_rows(n.div_ceil(ROWS), |part| {
         for k in part * ROWS..n.min((part + 1) * ROWS) {
             let mut own = PeriTally::default();
-            row(k, &mut |i, j, pull, d| add(&mut own, i, j, pull, d));
+            row(k, &mut own);
             let v = own.virial;
             // SAFETY: each row belongs to one part.
             unsafe { shared.get(k..k + 1)[0] = [own.energy, v[0], v[1], v[2], v[3], v[4], v[5]] };
         }
     });
-    collect(rows, t);
 }
 
 /// Adds up rows in their order.
@@ -75,20 +83,19 @@ pub(super) fn collect(rows: &[Sums], t: &mut PeriTally) {
     }
 }
 
-/// Energy and virial of each row of a body whose constants are per row, several cells at a time. Constants hold the
-/// volumes of forces; `lacks` says that energies lack the second volume of
-/// true ones, `newton` that forces are true.
-pub(super) fn whole_rows(
+/// Energy and virial of each row of a body whose constants are per row, several cells at a time. Constants hold the volumes of
+/// forces, and one of those of energies; `newton` says that forces are true.
+fn whole_rows(
     body: &LatticeBody,
     view: &PeriView,
     rows: &mut Vec<Sums>,
-    (lacks, newton): (bool, bool),
+    newton: bool,
     of_chunk: impl Fn(usize, &Chunk) -> [[f64; CELLS]; SUMS] + Sync,
 ) {
     rows.clear();
     let Some(&first) = body.particle.iter().find(|&&p| p != u32::MAX) else { return };
     let volume = view.volume[first as usize];
-    let scale = [if lacks { volume } else { 1.0 }, if newton { 1.0 } else { volume }];
+    let scale = if newton { [volume, 1.0] } else { [1.0, volume] };
     let n = body.rows.len();
     rows.resize(n, [0.0; 7]);
     let shared = Shared::new(rows);
@@ -132,48 +139,187 @@ fn whole_row(
     lanes.map(|l| l.iter().sum())
 }
 
-/// Energies of both ends and the pull on the first, from z, |xi|, c w and the volumes.
-fn bond(z: f64, length: f64, cw: f64, (vi, vj): (f64, f64), options: &FamilyOptions) -> (f64, f64, f64) {
-    if z.abs() < options.dead_band(length) {
-        return (0.0, 0.0, 0.0);
+/// Energy and virial of each row of a body of one volume, several cells at a time.
+fn in_lanes<K: Isa>(
+    families: &mut Families,
+    body: usize,
+    view: &PeriView,
+    advanced: bool,
+    rows: &mut Vec<Sums>,
+) {
+    let state = &mut families.lattices[body].state;
+    let mut memory = if state.earlier.is_empty() { std::mem::take(&mut state.memory) } else { vec![] };
+    let mut earlier = std::mem::take(&mut state.earlier);
+    let mut touched = std::mem::take(&mut state.touched);
+    {
+        let told = if earlier.is_empty() { &mut memory } else { &mut earlier };
+        let (memory, touched) = (Shared::new(told), Shared::new(&mut touched));
+        let states = States {
+            kind: families.law.kind,
+            compat: families.options.compat_lammps,
+            moment: Moment { held: state.held, ..moment(&families.law, false) },
+            keep: false,
+            memory: &memory,
+            touched: &touched,
+            spread: false,
+        };
+        let body: &LatticeBody = &families.lattices[body];
+        let of_chunk = |chunk: usize, data: &Chunk| {
+            // SAFETY: live bonds lead to cells of the body, whose columns have PAD cells around.
+            unsafe { states.sums::<K>(body, chunk, data, advanced) }
+        };
+        let newton = families.options.unit == ForceUnit::Newton;
+        whole_rows(body, view, rows, newton, of_chunk);
     }
-    let s = stretch(z);
-    let (own, other) = match options.unit {
-        ForceUnit::Density => (vj, vi),
-        ForceUnit::Newton => (vi * vj, vi * vj),
-    };
-    let e = 0.25 * cw * s * s * length;
-    // Force density times the one volume of the virial, or the force itself: c w V_i V_j s/r either way.
-    (e * own, e * other, -cw * vi * vj * s / (length * (1.0 + s)))
+    let state = &mut families.lattices[body].state;
+    if earlier.is_empty() {
+        state.memory = memory;
+    }
+    (state.earlier, state.touched) = (earlier, touched);
 }
 
-fn lattice_row(
-    body: &LatticeBody,
-    slot: usize,
-    view: &PeriView,
+/// The energy of a particle's dilatation.
+fn own(families: &Families, view: &PeriView, p: usize, theta: f64, scale: f64, t: &mut PeriTally) {
+    let energy = 0.5 * families.law.of(view.kind[p]).bulk * theta * theta * scale;
+    t.energy += energy;
+    if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
+        atoms[p] += energy;
+    }
+}
+
+/// One bond with all that its energy depends on.
+struct Bond<'a> {
+    /// Particles.
+    ends: [usize; 2],
+    /// Places in columns.
+    at: [usize; 2],
+    volume: [f64; 2],
+    y: [f64; 3],
+    length: f64,
+    omega: f64,
+    /// ω w.
+    share: f64,
+    stretch: Stretch<Single>,
+    memory: [Single; 2],
+    state: &'a SiteState,
+    stride: usize,
+}
+
+/// Energies and virials of the bonds of a row's cells, one by one.
+fn one_by_one(
     families: &Families,
-    options: &FamilyOptions,
-    f: &mut Add,
+    view: &PeriView,
+    (body, slot): (&LatticeBody, usize),
+    (advanced, t): (bool, &mut PeriTally),
 ) {
+    let (entries, options, law) = (body.stencil.len(), &families.options, &families.law);
+    let numbers = law.kind.memory();
     let row = body.rows[slot];
-    let entries = body.stencil.len();
     for e in 0..entries {
         let xi = body.xi(e);
         let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
         let weight = options.volume.weight(length, body.horizon, options.lattice_spacing);
-        for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
-            let bits = body.alive[chunk * entries + e];
-            for cell in (0..LANES).filter(|lane| bits >> lane & 1 == 1).map(|lane| chunk * LANES + lane) {
-                let Some(to) = body.ahead(slot, cell, e) else { continue };
-                let (i, j) = (body.particle[cell] as usize, body.particle[to] as usize);
-                let Some(coeff) = families.table.get(view.kind[i], view.kind[j]) else { continue };
-                let volumes = (view.volume[i], view.volume[j]);
-                let (e_i, e_j, pull) =
-                    bond(body.z(1, cell, to, e), length, coeff.c * weight, volumes, options);
-                let u = |k: usize, c: usize| body.u[1][k * body.stride + crate::families::lattice::PAD + c];
-                let d = [0, 1, 2].map(|k| -(xi[k] + u(k, to) - u(k, cell)));
-                f((i, e_i), (j, e_j), pull, d);
+        for cell in row.start as usize..(row.start + row.len) as usize {
+            if !body.lives(cell, e) {
+                continue;
             }
+            let Some(to) = body.ahead(slot, cell, e) else { continue };
+            let u = |k: usize, c: usize| body.u[1][k * body.stride + PAD + c];
+            let mut stretch = banded(body.z(1, cell, to, e), length, options);
+            if !advanced {
+                stretch.before = banded(body.z(0, cell, to, e), length, options).s;
+            }
+            let first = (cell / LANES * entries + e) * numbers * LANES + cell % LANES;
+            let ends = [body.particle[cell] as usize, body.particle[to] as usize];
+            let (a, b) = (view.kind[ends[0]], view.kind[ends[1]]);
+            let (c, limit) = families.table.get(a, b).map_or((0.0, 0.0), |k| (k.c, k.s00));
+            stretch.limit = Single(limit);
+            let (omega, share) = Weighing::of(law).weigh(length, weight, (c, body.horizon, law.yields(a, b)));
+            add(
+                families,
+                &Bond {
+                    ends,
+                    at: [PAD + cell, PAD + to],
+                    volume: ends.map(|p| view.volume[p]),
+                    y: [0, 1, 2].map(|k| xi[k] + u(k, to) - u(k, cell)),
+                    length,
+                    omega,
+                    share,
+                    stretch,
+                    memory: std::array::from_fn(|k| {
+                        Single(if k < numbers { body.state.remembered()[first + k * LANES] } else { 0.0 })
+                    }),
+                    state: &body.state,
+                    stride: body.stride,
+                },
+                t,
+            );
         }
     }
+}
+
+/// Adds an energy density of a particle, or with its volume an energy.
+fn share_out(t: &mut PeriTally, p: usize, density: f64, volume: Option<f64>) {
+    let energy = density * volume.unwrap_or(1.0);
+    t.energy += energy;
+    if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
+        atoms[p] += energy;
+    }
+}
+
+/// Whether the ends of a law's bonds have a stiffness of their own, column 1; and the share of the squares that counts
+/// for each end. LAMMPS counts half of the shear energies.
+pub fn shares(kind: LawKind, compat: bool) -> (bool, f64) {
+    match kind {
+        LawKind::Shaped => (true, 0.5),
+        _ if kind.bond_based() => (false, 0.25),
+        _ => (true, if compat { 0.25 } else { 0.5 }),
+    }
+}
+
+/// Adds one bond's energies and virial.
+fn add(families: &Families, b: &Bond, t: &mut PeriTally) {
+    let kind = families.law.kind;
+    of_law!(kind, families.options.compat_lammps, W => add_of::<W>(families, b, t));
+}
+
+fn add_of<W: BondLaw>(families: &Families, b: &Bond, t: &mut PeriTally) {
+    let (law, options) = (&families.law, &families.options);
+    let newton = options.unit == ForceUnit::Newton;
+    let now = Moment { held: b.state.held, ..moment(law, false) };
+    let (own, half) = shares(law.kind, options.compat_lammps);
+    let columns = |at: usize| -> [Single; COLUMNS] {
+        let count = columns_of(law.kind, options.compat_lammps);
+        std::array::from_fn(|k| Single(if k < count { b.state.columns[k * b.stride + at] } else { 0.0 }))
+    };
+    let ends: Ends<Single> = b.at.map(columns);
+    let angles: [Angles<Single>; 2] = std::array::from_fn(|end| {
+        let at = b.at[end];
+        if !W::DILATED || b.state.is_empty() {
+            // SAFETY: plain arithmetic.
+            return unsafe { Angles::none() };
+        }
+        let theta = b.state.theta[at];
+        Angles {
+            now: Single(theta),
+            unrelaxed: Single(b.state.unrelaxed[at] + (theta - b.state.before[at])),
+            // SAFETY: plain arithmetic.
+            relaxing: unsafe { W::relaxing(&ends[end], &now) },
+        }
+    });
+    let omega = Single(b.omega);
+    // SAFETY: plain arithmetic.
+    let squares = unsafe { W::squares(&b.stretch, omega, &angles, &b.memory, &now) };
+    for (end, square) in [squares.0, squares.1].into_iter().enumerate() {
+        let p = b.ends[end];
+        let shear = if own { ends[end][1].0 } else { 1.0 };
+        let energy = half * shear * b.share * b.length * b.length * square.0 * b.volume[1 - end];
+        share_out(t, p, energy, newton.then_some(b.volume[end]));
+    }
+    let mut memory = b.memory;
+    // SAFETY: plain arithmetic.
+    let (near, far) = unsafe { W::pull(&b.stretch, omega, &ends, &mut memory, &now) };
+    // Force density times the one volume of the virial, or the force itself: V_i V_j either way.
+    let pull = -0.5 * (near.0 + far.0) * b.share * b.volume[0] * b.volume[1];
+    t.add_virial(b.ends[0], b.ends[1], pull, b.y);
 }

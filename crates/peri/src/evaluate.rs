@@ -1,29 +1,28 @@
 //! Peridynamic families at work: building them, the forces of a step, breaking, damage.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use super::breaking::break_bonds;
-use super::chunk::{Kernels, Plain};
-#[cfg(target_arch = "x86_64")]
-use super::chunk::{Wide, Widest};
 use super::contact::{Repulsion, push_apart, repel};
 use super::energy::tally;
-use super::gather::{GatherKernels, gather};
-use super::lanes::has_avx2;
+use super::gather::gather;
+use super::isa::Isa;
 #[cfg(target_arch = "x86_64")]
-use super::lanes512::has_avx512;
-use super::lattice::{self, ChunkColumns, Mode};
+use super::lanes::Avx2;
+use super::lanes::{Portable, has_avx2};
+#[cfg(target_arch = "x86_64")]
+use super::lanes512::{Avx512, has_avx512};
+use super::lattice::Mode;
 use super::list;
-use super::list::kernel::{RowKernels, Rules};
-use super::state::{self, kernels::StateKernels};
-use super::stretching::StretchKernels;
+use super::list::kernel::Rules;
+use super::state;
 use super::tables;
 use crate::build::sites::{Carrier, carrier};
 use crate::build::{detect, lattice as cells, list as records};
 use crate::families::lattice::RowMotion;
 use crate::families::{
-    AlmostLattice, Bounds, Candidate, Families, FamilyOptions, ForceUnit, Law, LawKind, Layout, NearPairs,
-    PeriTally, PeriView, PmbCoeff, PmbTable, Scratch,
+    AlmostLattice, Bounds, Candidate, Families, FamilyOptions, Law, LawKind, Layout, NearPairs, PeriTally,
+    PeriView, PmbCoeff, PmbTable, Scratch,
 };
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par::{self, Shared};
@@ -231,16 +230,16 @@ impl Families {
     ) {
         #[cfg(target_arch = "x86_64")]
         if !self.options.portable && has_avx512() {
-            return self.force_with::<Widest>(view, f, advance, tally);
+            return self.force_with::<Avx512>(view, f, advance, tally);
         }
         #[cfg(target_arch = "x86_64")]
         if !self.options.portable && has_avx2() {
-            return self.force_with::<Wide>(view, f, advance, tally);
+            return self.force_with::<Avx2>(view, f, advance, tally);
         }
-        self.force_with::<Plain>(view, f, advance, tally);
+        self.force_with::<Portable>(view, f, advance, tally);
     }
 
-    fn force_with<K: Kernels + RowKernels + StretchKernels + GatherKernels + StateKernels>(
+    fn force_with<K: Isa>(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
@@ -259,49 +258,22 @@ impl Families {
         }
         let presses = repels && self.list.contact >= 0.0;
         let moved = list::gather(&mut self.list, view, presses);
-        let states = self.law.kind.has_states();
-        match states {
-            true => self.sweep_states::<K>(view, f, (advance, tallied.is_some())),
-            false => self.sweep::<K>(f, advance),
-        }
+        self.sweep_lattices::<K>(view, f, (advance, tallied.is_some()));
         self.sweep_list::<K>(view, f, (advance, tallied.is_some()), period);
         if advance && self.counts_losses {
             self.count_heat::<K>(view, period);
         }
         self.contact(view, f, &moved, advance, tallied.as_deref_mut());
         if let Some(t) = tallied {
-            match states {
-                true => state::tally::<K>(self, view, t, (advance, period)),
-                false => tally::<K>(self, view, t, period),
-            }
+            tally::<K>(self, view, t, (advance, period));
         }
         if advance {
             self.advance::<K>(view, period);
         }
     }
 
-    /// Adds the forces of all bonds, slab by slab in two colours.
-    fn sweep<K: Kernels + StateKernels>(&mut self, f: &mut [[f64; 3]], advance: bool) {
-        let mode = Mode { advance, armed: self.armed, skip: self.options.skip_rest };
-        let newton = self.options.unit == ForceUnit::Newton;
-        let Self { lattices, scratch, .. } = self;
-        scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
-        let window = || {
-            scratch.windows[par::slot() % scratch.windows.len()]
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-        };
-        let f = Shared::new(f);
-        for body in lattices {
-            let mut columns = ChunkColumns::take(body);
-            let sweep = lattice::Sweep::new(body, &mut columns, mode, newton, None);
-            par::two_colours(body.slabs(), |slab| sweep.slab::<K>(slab, &mut window(), &f));
-            columns.give(body);
-        }
-    }
-
     /// Adds the forces of all bonds that are kept as a list.
-    pub(super) fn sweep_list<K: RowKernels>(
+    pub(super) fn sweep_list<K: Isa>(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
@@ -340,11 +312,7 @@ impl Families {
     }
 
     /// Breaks bonds and makes this step the previous one.
-    fn advance<K: Kernels + RowKernels + StretchKernels + StateKernels>(
-        &mut self,
-        view: &PeriView,
-        period: [f64; 3],
-    ) {
+    fn advance<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) {
         if self.armed {
             self.break_and_count::<K>(view, period);
         }
@@ -356,7 +324,7 @@ impl Families {
         list::breaking::roll(&mut self.list);
     }
 
-    pub(super) fn break_bonds<K: StretchKernels + RowKernels>(&mut self, view: &PeriView, period: [f64; 3]) {
+    pub(super) fn break_bonds<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) {
         let mut found: Vec<Candidate> = std::mem::take(&mut self.scratch.candidates);
         let mut ends = std::mem::take(&mut self.scratch.ends);
         ends.clear();

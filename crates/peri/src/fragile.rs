@@ -2,9 +2,10 @@
 
 use super::breaking::{Bonds, banded, measure};
 use super::chunk::constant;
+use super::isa::Isa;
 use super::lattice::MAY_BREAK;
 use super::pmb::stretch;
-use super::stretching::{Side, Strained, StretchKernels, Watched};
+use super::stretching::{FindLeast, FindStrained, Side, Strained, Watched};
 use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, Lead, PAD, Slack, Slackest};
 use crate::families::{Candidate, FamilyOptions, Measures};
 use perigrain_base::par::{self, Shared};
@@ -121,7 +122,7 @@ impl LatticeBody {
 
     /// Per cell of a chunk the smallest previous stretch, or LAMMPS' critical stretch, and which bond has it where all bonds
     /// have the same limits. `scratch` knows the row, whose first chunk is `first`.
-    fn extremes<K: StretchKernels>(
+    fn extremes<K: Isa>(
         &self,
         (chunk, first): (usize, usize),
         compat: bool,
@@ -143,7 +144,8 @@ impl LatticeBody {
         for &pair in &*pairs {
             let [_, s00, alpha] = self.pairs[usize::from(pair)];
             // SAFETY: living bonds lead to cells of the body; kernels read at most seven cells further.
-            let least = unsafe { K::least(self.at_cell(0, chunk * LANES), sides, pair, &self.tables) };
+            let u = self.at_cell(0, chunk * LANES);
+            let least = unsafe { K::call(FindLeast { u, sides, pair, tables: &self.tables }) };
             for (k, (out, z)) in out.iter_mut().zip(least.z).enumerate().filter(|(_, (_, z))| z.is_finite()) {
                 // A larger z is a larger stretch, and alpha is not negative.
                 let value = if compat { out.0.max(s00 - alpha * stretch(z)) } else { out.0.min(stretch(z)) };
@@ -155,12 +157,7 @@ impl LatticeBody {
     }
 
     /// Bonds of a row's flagged chunks that may break: stretched beyond what is sure to allow it.
-    fn strained_in_row<K: StretchKernels>(
-        &self,
-        slot: usize,
-        strained: &mut Vec<Strained>,
-        found: &mut Vec<Candidate>,
-    ) {
+    fn strained_in_row<K: Isa>(&self, slot: usize, strained: &mut Vec<Strained>, found: &mut Vec<Candidate>) {
         let (row, entries) = (&self.rows[slot], self.stencil.len());
         let chunks = row.start as usize / LANES..(row.start + row.len) as usize / LANES;
         for chunk in chunks.filter(|&chunk| self.flagged[chunk] & MAY_BREAK != 0) {
@@ -183,7 +180,7 @@ impl LatticeBody {
             };
             strained.clear();
             // SAFETY: living bonds lead to cells of the body; kernels read at most seven cells further.
-            unsafe { K::strained(&watched, strained) };
+            unsafe { K::call(FindStrained(&watched, strained)) };
             for s in &*strained {
                 let [_, s00, alpha] = self.pairs[usize::from(s.pair)];
                 let mut bits = s.bits;
@@ -256,7 +253,7 @@ impl Bonds for LatticeBody {
         self.slackest = Slackest { bond, bound: bounds };
     }
 
-    fn candidates<K: StretchKernels>(&self, found: &mut Vec<Candidate>) {
+    fn candidates<K: Isa>(&self, found: &mut Vec<Candidate>) {
         if !self.flagged.iter().any(|flag| flag & MAY_BREAK != 0) {
             return;
         }
@@ -274,7 +271,7 @@ impl Bonds for LatticeBody {
         lists.into_iter().for_each(|mut list| found.append(&mut list));
     }
 
-    fn measure<K: StretchKernels>(&mut self, groups: &[u32], options: &FamilyOptions, values: &mut [f64]) {
+    fn measure<K: Isa>(&mut self, groups: &[u32], options: &FamilyOptions, values: &mut [f64]) {
         let mut slack = std::mem::take(&mut self.slackest.bond);
         // Bonds of several pairs have several limits: which is the least stretched says nothing of the others.
         let alike = self.pairs.len() == 1;

@@ -1,8 +1,6 @@
 //! Displacements of a body on a lattice: gathered from positions into rows, with what moved.
 
-use super::chunk::Plain;
-#[cfg(target_arch = "x86_64")]
-use super::chunk::{Wide, Widest};
+use super::isa::{Isa, Kernel};
 use crate::families::PeriView;
 use crate::families::lattice::{LANES, LatticeBody, PAD, RowMotion, greater, lesser};
 use perigrain_base::par::{self, Shared};
@@ -12,12 +10,7 @@ use perigrain_base::par::{self, Shared};
 ///
 /// # Safety
 /// The processor must have the kernels' instruction set.
-pub unsafe fn gather<K: GatherKernels>(
-    body: &mut LatticeBody,
-    view: &PeriView,
-    reference: &[[f64; 3]],
-    presses: bool,
-) {
+pub unsafe fn gather<K: Isa>(body: &mut LatticeBody, view: &PeriView, reference: &[[f64; 3]], presses: bool) {
     let [old, new] = &mut body.u;
     let (new, motion) = (Shared::new(new), Shared::new(&mut body.motion));
     let (rows, particle, stride, width) = (&body.rows, &body.particle, body.stride, body.width);
@@ -34,7 +27,7 @@ pub unsafe fn gather<K: GatherKernels>(
             let motion = &mut unsafe { motion.get(slot..slot + 1) }[0];
             let task = Row { particle: &particle[cells], view, reference, u, last, lo: row.lo };
             // SAFETY: the caller's promise.
-            *motion = unsafe { K::gather(task) };
+            *motion = unsafe { K::call(task) };
             if presses {
                 (motion.lo, motion.hi) = (row.lo, row.lo + row.len as i32 - 1);
             }
@@ -52,42 +45,11 @@ pub struct Row<'a> {
     lo: i32,
 }
 
-/// The same code for each instruction set.
-pub trait GatherKernels: Sync {
-    /// Gathers a row; returns what moved.
-    ///
-    /// # Safety
-    /// The processor must have the instruction set.
-    unsafe fn gather(row: Row) -> RowMotion;
-}
-
-impl GatherKernels for Plain {
-    unsafe fn gather(row: Row) -> RowMotion {
-        gather_row(row)
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-impl GatherKernels for Wide {
-    unsafe fn gather(row: Row) -> RowMotion {
-        #[target_feature(enable = "avx2,fma")]
-        fn wide(row: Row) -> RowMotion {
-            gather_row(row)
-        }
-        // SAFETY: the caller's promise.
-        unsafe { wide(row) }
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-impl GatherKernels for Widest {
-    unsafe fn gather(row: Row) -> RowMotion {
-        #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
-        fn widest(row: Row) -> RowMotion {
-            gather_row(row)
-        }
-        // SAFETY: the caller's promise.
-        unsafe { widest(row) }
+impl Kernel for Row<'_> {
+    type Out = RowMotion;
+    #[inline(always)]
+    unsafe fn run<L: Isa>(self) -> RowMotion {
+        gather_row(self)
     }
 }
 

@@ -1,9 +1,9 @@
 //! Forces of a body on a lattice: slabs swept, forces handed back.
 
-use super::chunk::{self, Chunk, Kernels, Various};
+use super::chunk::{self, Chunk, Various};
+use super::isa::Isa;
 use super::leads::{ahead, find_leads, row_limit};
 use super::pmb::{UP_TO_3, UP_TO_5, UP_TO_7};
-use super::state::kernels::StateKernels;
 use super::state::lattice::States;
 use super::wide::{FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
 use crate::families::Window;
@@ -40,7 +40,7 @@ pub struct Sweep<'a> {
     growth: Shared<'a, f64>,
     mode: Mode,
     newton: bool,
-    states: Option<States<'a>>,
+    states: States<'a>,
 }
 
 /// The body's columns by chunks and rows, taken out so that slabs can share the rest.
@@ -90,13 +90,13 @@ pub(super) struct RowPlan {
 }
 
 impl<'a> Sweep<'a> {
-    /// Prepares the sweep of a body, under a state-based law with what its sites have.
+    /// Prepares the sweep of a body, with what its sites have under its law.
     pub fn new(
         body: &'a LatticeBody,
         columns: &'a mut ChunkColumns,
         mode: Mode,
         newton: bool,
-        states: Option<States<'a>>,
+        states: States<'a>,
     ) -> Self {
         Self {
             body,
@@ -114,7 +114,7 @@ impl<'a> Sweep<'a> {
 
     /// Adds the forces of the bonds of one slab's cells to `f`: written are the particles of this slab and
     /// of the next.
-    pub fn slab<K: Kernels + StateKernels>(&self, slab: usize, window: &mut Window, f: &Shared<[f64; 3]>) {
+    pub fn slab<K: Isa>(&self, slab: usize, window: &mut Window, f: &Shared<[f64; 3]>) {
         let body = self.body;
         let (own, first, last) = extent(body, slab);
         let (base, stride) = open(window, body, first, (last - first, 3));
@@ -144,9 +144,9 @@ impl<'a> Sweep<'a> {
         self.body
     }
 
-    /// What sites have under a state-based law.
-    pub(super) fn states(&self) -> Option<&States<'a>> {
-        self.states.as_ref()
+    /// What sites have under the law.
+    pub(super) fn states(&self) -> &States<'a> {
+        &self.states
     }
 
     /// Whether what is at rest is left out.
@@ -167,8 +167,8 @@ impl<'a> Sweep<'a> {
         let body = self.body;
         // SAFETY: a row belongs to one slab.
         let growth = unsafe { &mut self.growth.get(slot..slot + 1)[0] };
-        let spread = self.states.as_ref().filter(|s| s.spread);
-        let motion = spread.is_none_or(|s| s.kind.bond_based()).then(|| self.motion(slot));
+        let spread = self.states.spread;
+        let motion = (!spread || self.states.kind.bond_based()).then(|| self.motion(slot));
         if let Some(motion) = &motion {
             let range = [0, 1, 2].map(|k| (motion.most[k] - motion.least[k]).max(0.0) / body.spacing);
             let d = range.iter().map(|r| r * r).sum::<f64>().sqrt();
@@ -177,7 +177,7 @@ impl<'a> Sweep<'a> {
             *growth = d * (2.0 * (1.0 + UP_TO_FARTHEST).sqrt() + d);
         }
         let at = match &motion {
-            Some(motion) if spread.is_none() => (motion.lo, motion.hi),
+            Some(motion) if !spread => (motion.lo, motion.hi),
             _ => self.reached(slot),
         };
         let active = (at.0.saturating_sub(body.reach[0]), at.1.saturating_add(body.reach[0]));
@@ -203,7 +203,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Sweeps a row's chunks; returns whether any was not at rest.
-    fn row<K: Kernels + StateKernels>(
+    fn row<K: Isa>(
         &self,
         slot: usize,
         plan: &RowPlan,
@@ -248,12 +248,7 @@ impl<'a> Sweep<'a> {
             let cell = chunk * LANES;
             let chunk_data = self.chunk((slot, cell), entries, window, (base, stride, first));
             // SAFETY: live bonds lead to cells of the body that the window covers; both have PAD cells around.
-            let measured = unsafe {
-                match &self.states {
-                    None => chunk::run::<K>(&chunk_data, degree, !body.intact[chunk], track),
-                    Some(s) => s.pull::<K>(body, chunk, &chunk_data, degree, track),
-                }
-            };
+            let measured = unsafe { self.states.pull::<K>(body, chunk, &chunk_data, degree, track) };
             if track {
                 (high, low) = measured;
                 if fragile && high >= floor {

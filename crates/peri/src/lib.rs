@@ -18,6 +18,7 @@ mod evaluate;
 pub mod families;
 mod fragile;
 mod gather;
+mod isa;
 pub mod kinematics;
 mod lanes;
 #[cfg(target_arch = "x86_64")]

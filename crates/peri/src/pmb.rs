@@ -5,8 +5,6 @@
 //! c w V s (xi + eta)/|xi + eta| = (c w V/|xi|) z h(z) (xi + eta) with h(z) = 1/(1 + z + √(1 + z))
 //! (Silling and Askari 2005). Written in z, small stretches lose no digits.
 
-use super::lanes::Lanes;
-
 /// h(z) = Σ `SERIES[k]` z^k: the binomial series of (1 − (1 + z)^(−1/2))/z.
 pub const SERIES: [f64; 8] = [
     1.0 / 2.0,
@@ -26,20 +24,6 @@ pub const UP_TO_5: f64 = 3.5e-3;
 /// The same for z^7: 0.37 z^8.
 pub const UP_TO_7: f64 = 1.3e-2;
 
-/// h(z) by its closed form.
-///
-/// # Safety
-/// See [`Lanes`].
-#[inline(always)]
-pub unsafe fn closed<L: Lanes>(z: L) -> L {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        let one = L::splat(1.0);
-        let square = one.add(z);
-        one.div(square.add(square.sqrt()))
-    }
-}
-
 /// The stretch for a z.
 pub fn stretch(z: f64) -> f64 {
     z / (1.0 + (1.0 + z).sqrt())
@@ -47,7 +31,8 @@ pub fn stretch(z: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::lanes::Portable;
+    use super::super::single::Single;
+    use super::super::state::law::closed;
     use super::*;
 
     #[test]
@@ -55,8 +40,8 @@ mod tests {
         for (degree, edge) in [(3, UP_TO_3), (5, UP_TO_5), (7, UP_TO_7)] {
             for z in [edge, -edge, 0.3 * edge] {
                 let series = SERIES[..=degree].iter().rev().fold(0.0, |sum, a| sum * z + a);
-                // SAFETY: the portable form runs anywhere.
-                let closed = unsafe { closed(Portable::splat(z)) }.0[0];
+                // SAFETY: plain arithmetic.
+                let closed = unsafe { closed(Single(z)) }.share.0 / z;
                 // Truncation 1e-15 and a few roundings of 1e-16.
                 assert!((series / closed - 1.0).abs() < 2e-15, "{degree} {z} {series} {closed}");
             }

@@ -1,21 +1,14 @@
 //! The energy that bonds set free where they break, and what they turn into heat where they relax or flow.
 
-use super::chunk::Kernels;
 use super::energy::tally;
-use super::list::kernel::RowKernels;
-use super::state::{self, kernels::StateKernels};
-use super::stretching::StretchKernels;
+use super::isa::Isa;
 use crate::families::lattice::PAD;
 use crate::families::law::SiteState;
 use crate::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
 
 impl Families {
     /// Breaks bonds; where that is counted, adds the difference of the energies of all bonds before and after.
-    pub(super) fn break_and_count<K: Kernels + RowKernels + StretchKernels + StateKernels>(
-        &mut self,
-        view: &PeriView,
-        period: [f64; 3],
-    ) {
+    pub(super) fn break_and_count<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) {
         if !self.counts_losses {
             return self.break_bonds::<K>(view, period);
         }
@@ -35,11 +28,7 @@ impl Families {
     /// Adds what has become heat since the last step: at the present places plastic bonds have lost the difference of the
     /// energies before and after they flowed; what softening bonds have lost counts with that of broken ones; the dashpots of viscous ones take up 2/τ times the energy of their springs, by
     /// the trapezoidal rule. Nothing under LAMMPS' laws, whose forces have no energy.
-    pub(super) fn count_heat<K: Kernels + RowKernels + StateKernels>(
-        &mut self,
-        view: &PeriView,
-        period: [f64; 3],
-    ) {
+    pub(super) fn count_heat<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) {
         match self.law.kind {
             _ if self.options.compat_lammps => {}
             LawKind::Eps | LawKind::Yield => {
@@ -133,32 +122,21 @@ impl Families {
     }
 
     /// The energy of all bonds that live at the places of the last force evaluation, dilatations being theirs too.
-    fn living_energy<K: Kernels + RowKernels + StateKernels>(
-        &mut self,
-        view: &PeriView,
-        period: [f64; 3],
-    ) -> f64 {
+    fn living_energy<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) -> f64 {
         if !self.law.kind.bond_based() {
             let mut aside = vec![[0.0; 3]; view.x.len()];
-            self.sweep_states::<K>(view, &mut aside, (false, true));
+            self.sweep_lattices::<K>(view, &mut aside, (false, true));
             self.sweep_list::<K>(view, &mut aside, (false, true), period);
         }
         self.bond_energy::<K>(view, period)
     }
 
     /// The energy of all bonds that live at the places of the last force evaluation, with the dilatations of that.
-    fn bond_energy<K: Kernels + RowKernels + StateKernels>(
-        &mut self,
-        view: &PeriView,
-        period: [f64; 3],
-    ) -> f64 {
+    fn bond_energy<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) -> f64 {
         let mut atoms = vec![0.0; view.x.len()];
         let dense = self.options.unit == ForceUnit::Density;
         let mut sum = PeriTally { per_atom_energy: dense.then_some(&mut atoms), ..PeriTally::default() };
-        match self.law.kind.has_states() {
-            true => state::tally::<K>(self, view, &mut sum, (true, period)),
-            false => tally::<K>(self, view, &mut sum, period),
-        }
+        tally::<K>(self, view, &mut sum, (true, period));
         let total = sum.energy;
         if dense { atoms.iter().zip(view.volume).map(|(e, v)| e * v).sum() } else { total }
     }

@@ -1,9 +1,8 @@
 //! Stretches of a chunk's bonds, eight cells at a time: which bonds may break, and the least of each family.
 
-use super::chunk::{CELLS, Plain, constant};
-#[cfg(target_arch = "x86_64")]
-use super::chunk::{Wide, Widest};
-use super::lanes::{Lanes, Portable};
+use super::chunk::{CELLS, constant};
+use super::isa::{Isa, Kernel};
+use super::lanes::Lanes;
 use crate::families::lattice::Lead;
 
 /// One bond of every cell of a chunk: to the partner ahead, or from the owner behind.
@@ -68,23 +67,43 @@ pub struct Least {
     pub side: [f64; CELLS],
 }
 
-/// The kernels of one instruction set.
-pub trait StretchKernels: Sync {
-    /// Appends the living bonds stretched by at least s00 − alpha m. m is no less than the smallest stretch in the families of
-    /// both ends in the step before, one of them being the bond's own: neither than its own (or 0), nor than what is known of both.
-    ///
-    /// # Safety
-    /// Where a byte of `alive` has bits, columns must be readable at the partners of all eight cells; the processor must have
-    /// the instruction set.
-    unsafe fn strained(chunk: &Watched, found: &mut Vec<Strained>);
+/// Appends the living bonds stretched by at least s00 − alpha m. m is no less than the smallest stretch in the families of
+/// both ends in the step before, one of them being the bond's own: neither than its own (or 0), nor than what is known of both.
+///
+/// Where a byte of `alive` has bits, columns must be readable at the partners of all eight cells.
+pub struct FindStrained<'a, 'b>(pub &'a Watched<'b>, pub &'a mut Vec<Strained>);
 
-    /// Per cell the smallest z of its bonds of a pair of types, 0 for bonds inside the dead band, and whose that is; infinite
-    /// where there are none.
-    ///
-    /// # Safety
-    /// Where a side has bits, displacements `u` (at the chunk's first cell) must be readable at its eight other
-    /// ends; the processor must have the instruction set.
-    unsafe fn least(u: [*const f64; 3], sides: &[Side], pair: u16, tables: &[f64]) -> Least;
+impl Kernel for FindStrained<'_, '_> {
+    type Out = ();
+    #[inline(always)]
+    unsafe fn run<L: Isa>(self) {
+        // SAFETY: the caller's promise.
+        unsafe { strained::<L>(self.0, self.1) }
+    }
+}
+
+/// Per cell the smallest z of its bonds of a pair of types, 0 for bonds inside the dead band, and whose that is; infinite
+/// where there are none.
+///
+/// Where a side has bits, displacements `u` (at the chunk's first cell) must be readable at its eight other ends.
+pub struct FindLeast<'a> {
+    /// Displacements.
+    pub u: [*const f64; 3],
+    /// Where the bonds lead.
+    pub sides: &'a [Side],
+    /// The pair of types.
+    pub pair: u16,
+    /// Constants.
+    pub tables: &'a [f64],
+}
+
+impl Kernel for FindLeast<'_> {
+    type Out = Least;
+    #[inline(always)]
+    unsafe fn run<L: Isa>(self) -> Least {
+        // SAFETY: the caller's promise.
+        unsafe { least::<L>(self.u, self.sides, self.pair, self.tables) }
+    }
 }
 
 /// z |xi|² of the bonds from the cells from `here` on to those `to` cells further; `BEHIND`: of the bonds that
@@ -199,35 +218,3 @@ unsafe fn least<L: Lanes>(u: [*const f64; 3], sides: &[Side], pair: u16, tables:
         out
     }
 }
-
-/// Kernels of one instruction set from those for its lanes.
-macro_rules! compiled_for {
-    ($kernels:ty, $lanes:ty $(, $features:literal)?) => {
-        impl StretchKernels for $kernels {
-            unsafe fn strained(chunk: &Watched, found: &mut Vec<Strained>) {
-                $(#[target_feature(enable = $features)])?
-                unsafe fn inner(chunk: &Watched, found: &mut Vec<Strained>) {
-                    // SAFETY: the caller's promise.
-                    unsafe { strained::<$lanes>(chunk, found) }
-                }
-                // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner(chunk, found) }
-            }
-            unsafe fn least(u: [*const f64; 3], sides: &[Side], pair: u16, tables: &[f64]) -> Least {
-                $(#[target_feature(enable = $features)])?
-                unsafe fn inner(u: [*const f64; 3], sides: &[Side], pair: u16, tables: &[f64]) -> Least {
-                    // SAFETY: the caller's promise.
-                    unsafe { least::<$lanes>(u, sides, pair, tables) }
-                }
-                // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner(u, sides, pair, tables) }
-            }
-        }
-    };
-}
-
-compiled_for!(Plain, Portable);
-#[cfg(target_arch = "x86_64")]
-compiled_for!(Wide, super::lanes::Avx2, "avx2,fma");
-#[cfg(target_arch = "x86_64")]
-compiled_for!(Widest, super::lanes512::Avx512, "avx512f,avx512dq,avx512vl,avx2,fma");

@@ -1,8 +1,7 @@
 //! What the lattice kernels look up: constants of bonds, types of rows, data of cells.
 
-use super::chunk::constant;
-use crate::families::lattice::{CONSTANTS, LatticeBody, Leads, MIXED, PAD, Slackest};
-use crate::families::{FamilyOptions, ForceUnit, Law, PeriView, PmbTable};
+use crate::families::lattice::{LatticeBody, Leads, MIXED, PAD, Slackest};
+use crate::families::{FamilyOptions, Law, PeriView, PmbTable};
 
 /// Fills the tables of constants, row types and per-cell data from coefficients, types and volumes.
 pub fn refresh(
@@ -50,47 +49,20 @@ pub fn refresh(
             }
         }
     }
-    fill_tables(body, table, options, first);
-    if law.kind.has_states() {
-        super::state::tables::fill(body, table, options, law, if various { 1.0 } else { first });
-    }
+    fill_pairs(body, table);
+    super::state::tables::fill(body, table, options, law, (!various).then_some(first));
 }
 
 fn local(kinds: &[u16], kind: u16) -> u16 {
     kinds.iter().position(|&k| k == kind).unwrap_or(0) as u16
 }
 
-fn fill_tables(body: &mut LatticeBody, table: &PmbTable, options: &FamilyOptions, volume: f64) {
+/// The coefficients of pairs of local types.
+fn fill_pairs(body: &mut LatticeBody, table: &PmbTable) {
     let n = body.kinds.len();
-    let various = !body.cell_kind.is_empty();
-    body.tables.clear();
     body.pairs.clear();
     for pair in 0..n * n {
         let coeff = table.get(body.kinds[pair / n], body.kinds[pair % n]);
         body.pairs.push(coeff.map_or([0.0, f64::INFINITY, 0.0], |k| [k.c, k.s00, k.alpha]));
-        let volumes = match options.unit {
-            ForceUnit::Density => volume,
-            ForceUnit::Newton => volume * volume,
-        };
-        let c = if various { 1.0 } else { coeff.map_or(0.0, |k| k.c) * volumes };
-        for e in 0..body.stencil.len() {
-            let mut row = [0.0; CONSTANTS];
-            let xi = body.xi(e);
-            row[constant::XI..constant::XI + 3].copy_from_slice(&xi);
-            let length = xi.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let inverse = 1.0 / (length * length);
-            let weight = options.volume.weight(length, body.horizon, options.lattice_spacing);
-            let factor = c * weight / length;
-            row[constant::DEAD] = options.dead_band(length) * length * length;
-            let mut scale = factor * inverse;
-            for (k, a) in super::pmb::SERIES.iter().enumerate() {
-                row[constant::SERIES + k] = scale * a;
-                scale *= inverse;
-            }
-            row[constant::INVERSE] = inverse;
-            row[constant::FACTOR] = factor;
-            row[constant::ENERGY] = c * weight * length;
-            body.tables.extend_from_slice(&row);
-        }
     }
 }

@@ -87,9 +87,14 @@ pub enum LawKind {
 }
 
 impl LawKind {
-    /// Whether forces are swept as those of states: with columns of sites or memory of bonds.
+    /// Whether there are columns of sites or memory of bonds.
     pub fn has_states(self) -> bool {
         self != Self::Pmb
+    }
+
+    /// Whether sites have forces beyond the reach of displacements: where dilatations are, and where bonds remember.
+    pub fn spreads(self) -> bool {
+        !self.bond_based() || self.memory() > 0
     }
 
     /// Whether a bond's force depends on nothing but the bond.

@@ -7,9 +7,10 @@
 
 use std::sync::Mutex;
 
+use super::super::isa::Isa;
 use super::super::lattice::Mode;
 use super::super::pmb::stretch;
-use super::kernel::{Block, LAST, Row, RowKernels, Rules};
+use super::kernel::{Block, LAST, Row, Rules};
 use super::sweep::{in_slabs, reach_of, ring_start};
 use crate::families::list::{GROUP, ListBody, PairConstants};
 use crate::families::{Candidate, FamilyOptions, Window};
@@ -144,7 +145,7 @@ pub fn clear(window: &mut Window, records: usize) {
 }
 
 /// Finds the bonds that break in this step.
-pub fn candidates<K: RowKernels>(
+pub fn candidates<K: Isa>(
     body: &mut ListBody,
     (rules, options): (&Rules, &FamilyOptions),
     windows: &[Mutex<Window>],
@@ -188,12 +189,7 @@ impl ListBody {
 }
 
 /// The least measures of all families in the last step that advanced.
-fn least<K: RowKernels>(
-    body: &ListBody,
-    rules: &Rules,
-    judge: &Judge,
-    windows: &[Mutex<Window>],
-) -> Vec<f64> {
+fn least<K: Isa>(body: &ListBody, rules: &Rules, judge: &Judge, windows: &[Mutex<Window>]) -> Vec<f64> {
     let mut least = vec![f64::INFINITY; body.record.len()];
     let shared = Shared::new(&mut least);
     in_slabs(body, windows, |slab, window| {

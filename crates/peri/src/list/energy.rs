@@ -1,14 +1,16 @@
 //! Energy and virial of the list's bonds under any law: asked for at some steps only, so a pass of its own.
 
-use super::super::energy::{ROWS, Sums, collect};
-use super::super::state::energy::shares;
-use super::super::state::law::{BondLaw, Moment, Pmb, of_law};
+use std::marker::PhantomData;
+
+use super::super::energy::{ROWS, Sums, collect, shares};
+use super::super::isa::Isa;
+use super::super::state::law::{BondLaw, Moment, of_law};
 use super::super::state::settle::{columns_of, moment};
-use super::kernel::{Block, FULL, LAST, Row, RowKernels, Rules};
-use super::laws::Acting;
+use super::kernel::{Block, FULL, LAST, Row, Rules};
+use super::laws::{self, Acting, Hand};
 use super::sweep::in_rows;
 use crate::families::list::ListBody;
-use crate::families::{Families, ForceUnit, LawKind, PeriTally};
+use crate::families::{Families, ForceUnit, PeriTally};
 use perigrain_base::math::vec3::SIX;
 use perigrain_base::par::{self, Shared};
 
@@ -27,16 +29,12 @@ struct Energies<'a> {
 }
 
 /// Adds energy and virial of the list's bonds as they were during the force evaluation, which has `advanced` bonds or not.
-pub fn tally<K: RowKernels>(
-    families: &mut Families,
-    t: &mut PeriTally,
-    (advanced, period): (bool, [f64; 3]),
-) {
+pub fn tally<K: Isa>(families: &mut Families, t: &mut PeriTally, (advanced, period): (bool, [f64; 3])) {
     let (law, options, n) = (&families.law, &families.options, families.list.record.len());
     let (kind, compat) = (law.kind, options.compat_lammps);
     let rules = Rules::new(period, options, law);
     let list = &families.list;
-    let columns = if kind.has_states() { columns_of(kind, compat) } else { 0 };
+    let columns = columns_of(kind, compat);
     let ends = in_rows(&list.state, n, columns);
     let angles = if kind.bond_based() { vec![] } else { angles(list) };
     let now = Moment { held: list.state.held, ..moment(law, false) };
@@ -48,10 +46,7 @@ pub fn tally<K: RowKernels>(
     let newton = options.unit == ForceUnit::Newton;
     let e = Energies { list, rules: &rules, acting: &acting, angles: &angles, advanced, newton, own, half };
     let rows = &mut families.scratch.rows;
-    match kind {
-        LawKind::Pmb => e.tally::<K, Pmb>(rows, t),
-        _ => of_law!(kind, compat, W => e.tally::<K, W>(rows, t)),
-    }
+    of_law!(kind, compat, W => e.tally::<K, W>(rows, t));
 }
 
 /// θ of each record and its unrelaxed part, in rows of four.
@@ -62,7 +57,7 @@ fn angles(list: &ListBody) -> Vec<f64> {
 }
 
 impl Energies<'_> {
-    fn tally<K: RowKernels, W: BondLaw>(&self, rows: &mut Vec<Sums>, t: &mut PeriTally) {
+    fn tally<K: Isa, W: BondLaw>(&self, rows: &mut Vec<Sums>, t: &mut PeriTally) {
         let n = self.list.record.len();
         if t.per_atom() {
             let b = &mut Block::new();
@@ -85,7 +80,7 @@ impl Energies<'_> {
     }
 
     /// Adds a record's own bonds.
-    fn record<K: RowKernels, W: BondLaw>(&self, i: usize, b: &mut Block, t: &mut PeriTally) {
+    fn record<K: Isa, W: BondLaw>(&self, i: usize, b: &mut Block, t: &mut PeriTally) {
         let list = self.list;
         if list.particle[i] == u32::MAX {
             // Nothing is bonded to where a particle was.
@@ -110,7 +105,8 @@ impl Energies<'_> {
                 if W::BACK && self.advanced {
                     b.before = b.z;
                 }
-                K::energies::<W>(&row, self.acting, self.angles, b);
+                let hand = Hand::<W> { row: &row, acting: self.acting, block: b, law: PhantomData };
+                K::call(laws::Energies(hand, self.angles));
             }
             for at in (0..b.count).filter(|&at| b.weight[at] != 0.0) {
                 let j = list.partner[b.place(at)] as usize;

@@ -5,21 +5,13 @@
 
 use std::ptr::{null, null_mut};
 
-use super::super::chunk::Plain;
-#[cfg(target_arch = "x86_64")]
-use super::super::chunk::{Wide, Widest};
-#[cfg(target_arch = "x86_64")]
-use super::super::lanes::Avx2;
-use super::super::lanes::{Lanes, Portable};
-#[cfg(target_arch = "x86_64")]
-use super::super::lanes512::Avx512;
+use super::super::isa::{Isa, Kernel};
+use super::super::lanes::Lanes;
 use super::super::pmb::{SERIES, UP_TO_3, UP_TO_5, UP_TO_7};
 use super::super::rows::{self, Rows};
-use super::super::state::law::{BondLaw, closed};
+use super::super::state::law::closed;
 use super::super::state::tables::STRETCH;
-use super::super::state::terms::Term;
 use super::super::wide::{self, FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
-use super::laws::{self, Acting};
 use crate::families::list::{GROUP, ListBody};
 use crate::families::{FamilyOptions, Influence, Law};
 
@@ -195,12 +187,12 @@ impl Row<'_> {
     /// # Safety
     /// The processor must have what `K` needs.
     #[inline]
-    pub unsafe fn shape<K: RowKernels, const WHAT: u8>(&self, b: &mut Block) {
+    pub unsafe fn shape<K: Isa, const WHAT: u8>(&self, b: &mut Block) {
         // SAFETY: passed on to the caller.
         unsafe {
             match self.rules.period.iter().any(|p| p.is_finite()) {
-                false => K::shapes::<false, WHAT>(self, b),
-                true => K::shapes::<true, WHAT>(self, b),
+                false => K::call(Shapes::<false, WHAT>(self, b)),
+                true => K::call(Shapes::<true, WHAT>(self, b)),
             }
         }
     }
@@ -414,97 +406,14 @@ pub unsafe fn scatter<L: Rows, const LEAST: bool>(b: &Block, force: *mut f64) ->
     }
 }
 
-/// The kernels of one instruction set, for bonds of a row that are in hand.
-///
-/// # Safety
-/// The processor must have the instruction set. Every partner must lie in the window, untouched by others.
-pub trait RowKernels: Sync {
-    /// See [`Row::shape`].
-    #[allow(clippy::missing_safety_doc)] // above
-    unsafe fn shapes<const PERIODIC: bool, const WHAT: u8>(row: &Row, b: &mut Block);
-    /// See [`laws::pull`].
-    #[allow(clippy::missing_safety_doc)] // above
-    unsafe fn pull<W: BondLaw>(row: &Row, a: &Acting, b: &mut Block, force: *mut f64) -> bool;
-    /// See [`laws::add_up`].
-    #[allow(clippy::missing_safety_doc)] // above
-    unsafe fn add_up<T: Term>(row: &Row, a: &Acting, b: &mut Block, sums: *mut f64);
-    /// See [`laws::energies`].
-    #[allow(clippy::missing_safety_doc)] // above
-    unsafe fn energies<W: BondLaw>(row: &Row, a: &Acting, angles: &[f64], b: &mut Block);
-}
+/// See [`Row::shape`].
+struct Shapes<'a, 'b, const PERIODIC: bool, const WHAT: u8>(&'a Row<'b>, &'a mut Block);
 
-/// Kernels of one instruction set from those for its lanes.
-macro_rules! compiled_for {
-    ($kernels:ty, $lanes:ty $(, $features:literal)?) => {
-        impl RowKernels for $kernels {
-            unsafe fn shapes<const PERIODIC: bool, const WHAT: u8>(
-                row: &Row,
-                b: &mut Block,
-            ) {
-                $(#[target_feature(enable = $features)])?
-                unsafe fn inner<const PERIODIC: bool, const WHAT: u8>(
-                    row: &Row,
-                    b: &mut Block,
-                ) {
-                    // SAFETY: the caller's promise.
-                    unsafe { shapes::<$lanes, PERIODIC, WHAT>(row, b) }
-                }
-                // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<PERIODIC, WHAT>(row, b) }
-            }
-            unsafe fn pull<W: BondLaw>(
-                row: &Row,
-                a: &Acting,
-                b: &mut Block,
-                force: *mut f64,
-            ) -> bool {
-                $(#[target_feature(enable = $features)])?
-                unsafe fn inner<W: BondLaw>(
-                    row: &Row,
-                    a: &Acting,
-                    b: &mut Block,
-                    force: *mut f64,
-                ) -> bool {
-                    // SAFETY: the caller's promise.
-                    unsafe { laws::pull::<$lanes, W>(row, a, b, force) }
-                }
-                // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<W>(row, a, b, force) }
-            }
-            unsafe fn add_up<T: Term>(row: &Row, a: &Acting, b: &mut Block, sums: *mut f64) {
-                $(#[target_feature(enable = $features)])?
-                unsafe fn inner<T: Term>(row: &Row, a: &Acting, b: &mut Block, sums: *mut f64) {
-                    // SAFETY: the caller's promise.
-                    unsafe { laws::add_up::<$lanes, T>(row, a, b, sums) }
-                }
-                // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<T>(row, a, b, sums) }
-            }
-            unsafe fn energies<W: BondLaw>(
-                row: &Row,
-                a: &Acting,
-                angles: &[f64],
-                b: &mut Block,
-            ) {
-                $(#[target_feature(enable = $features)])?
-                unsafe fn inner<W: BondLaw>(
-                    row: &Row,
-                    a: &Acting,
-                    angles: &[f64],
-                    b: &mut Block,
-                ) {
-                    // SAFETY: the caller's promise.
-                    unsafe { laws::energies::<$lanes, W>(row, a, angles, b) }
-                }
-                // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<W>(row, a, angles, b) }
-            }
-        }
-    };
+impl<const PERIODIC: bool, const WHAT: u8> Kernel for Shapes<'_, '_, PERIODIC, WHAT> {
+    type Out = ();
+    #[inline(always)]
+    unsafe fn run<L: Isa>(self) {
+        // SAFETY: the caller's promise.
+        unsafe { shapes::<L, PERIODIC, WHAT>(self.0, self.1) }
+    }
 }
-
-compiled_for!(Plain, Portable);
-#[cfg(target_arch = "x86_64")]
-compiled_for!(Wide, Avx2, "avx2,fma");
-#[cfg(target_arch = "x86_64")]
-compiled_for!(Widest, Avx512, "avx512f,avx512dq,avx512vl,avx2,fma");

@@ -1,5 +1,6 @@
 //! Bond laws over the bonds in hand: forces, sums of both ends, energies.
 
+use super::super::isa::{Isa, Kernel};
 use super::super::lanes::Lanes;
 use super::super::rows::Rows;
 use super::super::state::law::{Angles, BondLaw, Ends, Moment, Stretch, closed};
@@ -7,6 +8,7 @@ use super::super::state::terms::Term;
 use super::kernel::{Block, Row, partners, scatter, stretch};
 use crate::families::law::COLUMNS;
 use crate::families::list::GROUP;
+use std::marker::PhantomData;
 use std::ptr::null;
 
 /// What laws need besides the bonds in hand.
@@ -144,14 +146,63 @@ impl<L: Lanes> Sum<L> {
     }
 }
 
+/// What laws do to the bonds in hand.
+pub struct Hand<'a, 'b, 'c, W> {
+    /// The record.
+    pub row: &'a Row<'b>,
+    /// What laws need besides.
+    pub acting: &'a Acting<'c>,
+    /// The bonds.
+    pub block: &'a mut Block,
+    /// The law.
+    pub law: PhantomData<W>,
+}
+
 /// Adds the forces of the bonds in hand times the volumes of both
 /// ends; true if bonds remember something that had nothing to remember before.
 ///
-/// # Safety
-/// Every partner must lie in the window of rows of four at `force`, untouched by others; the processor must have what `L`
-/// needs.
+/// Every partner must lie in the window of rows of four at `force`, untouched by others.
+pub struct Pull<'a, 'b, 'c, W>(pub Hand<'a, 'b, 'c, W>, pub *mut f64);
+
+impl<W: BondLaw> Kernel for Pull<'_, '_, '_, W> {
+    type Out = bool;
+    #[inline(always)]
+    unsafe fn run<L: Isa>(self) -> bool {
+        // SAFETY: the caller's promise.
+        unsafe { pull::<L, W>(self.0.row, self.0.acting, self.0.block, self.1) }
+    }
+}
+
+/// Adds a term of the bonds in hand to the sums of both ends.
+///
+/// As for [`Pull`], with one number of each record at the window.
+pub struct AddUp<'a, 'b, 'c, T>(pub Hand<'a, 'b, 'c, T>, pub *mut f64);
+
+impl<T: Term> Kernel for AddUp<'_, '_, '_, T> {
+    type Out = ();
+    #[inline(always)]
+    unsafe fn run<L: Isa>(self) {
+        // SAFETY: the caller's promise.
+        unsafe { add_up::<L, T>(self.0.row, self.0.acting, self.0.block, self.1) }
+    }
+}
+
+/// Finds what [`BondLaw::squares`] of both ends weigh, ω w |xi|² times squares, and the pull along y over both volumes: the
+/// columns of what comes out. With θ and its unrelaxed part of each record, in rows of four; none where energies do not depend
+/// on them.
+pub struct Energies<'a, 'b, 'c, W>(pub Hand<'a, 'b, 'c, W>, pub &'a [f64]);
+
+impl<W: BondLaw> Kernel for Energies<'_, '_, '_, W> {
+    type Out = ();
+    #[inline(always)]
+    unsafe fn run<L: Isa>(self) {
+        // SAFETY: the caller's promise.
+        unsafe { energies::<L, W>(self.0.row, self.0.acting, self.1, self.0.block) }
+    }
+}
+
 #[inline(always)]
-pub unsafe fn pull<L: Rows, W: BondLaw>(row: &Row, a: &Acting, b: &mut Block, force: *mut f64) -> bool {
+unsafe fn pull<L: Rows, W: BondLaw>(row: &Row, a: &Acting, b: &mut Block, force: *mut f64) -> bool {
     // SAFETY: the caller's promise.
     unsafe {
         stretch::<L, false>(b);
@@ -209,12 +260,8 @@ pub unsafe fn pull<L: Rows, W: BondLaw>(row: &Row, a: &Acting, b: &mut Block, fo
     }
 }
 
-/// Adds a term of the bonds in hand to the sums of both ends.
-///
-/// # Safety
-/// As for [`pull`], with one number of each record at `sums`.
 #[inline(always)]
-pub unsafe fn add_up<L: Rows, T: Term>(row: &Row, a: &Acting, b: &mut Block, sums: *mut f64) {
+unsafe fn add_up<L: Rows, T: Term>(row: &Row, a: &Acting, b: &mut Block, sums: *mut f64) {
     // SAFETY: the caller's promise.
     unsafe {
         stretch::<L, true>(b);
@@ -242,13 +289,8 @@ pub unsafe fn add_up<L: Rows, T: Term>(row: &Row, a: &Acting, b: &mut Block, sum
     }
 }
 
-/// Finds what [`BondLaw::squares`] of both ends weigh, ω w |xi|² times squares, and the pull along y over both volumes: the
-/// columns of what comes out. `angles`: θ and its unrelaxed part of each record, in rows of four.
-///
-/// # Safety
-/// The processor must have what `L` needs.
 #[inline(always)]
-pub unsafe fn energies<L: Rows, W: BondLaw>(row: &Row, a: &Acting, angles: &[f64], b: &mut Block) {
+unsafe fn energies<L: Rows, W: BondLaw>(row: &Row, a: &Acting, angles: &[f64], b: &mut Block) {
     // SAFETY: the caller's promise.
     unsafe {
         stretch::<L, false>(b);

@@ -1,16 +1,18 @@
 //! Sweeps over the bonds of the list under any law: sums that forces need, then forces.
 
+use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Mutex;
 
+use super::super::isa::Isa;
 use super::super::lattice::Mode;
-use super::super::state::law::{BondLaw, Moment, Pmb, of_law};
+use super::super::state::law::{BondLaw, Moment, of_law};
 use super::super::state::settle::{Settling, Sites, columns_of};
 use super::super::state::terms::{Dilatation, Norm, NormLammps, Term};
 use super::super::state::{keep_earlier, window};
 use super::breaking::{self, Judge, clear};
-use super::kernel::{Block, FULL, LAST, PLAIN, Row, RowKernels, Rules};
-use super::laws::Acting;
+use super::kernel::{Block, FULL, LAST, PLAIN, Row, Rules};
+use super::laws::{Acting, AddUp, Hand, Pull};
 use crate::families::law::{COLUMNS, SiteState};
 use crate::families::list::{ListBody, Record};
 use crate::families::{FamilyOptions, LawKind, PeriView, Window};
@@ -19,7 +21,7 @@ use perigrain_base::par::{self, Shared};
 const _: () = assert!(size_of::<Record>() == 64);
 
 /// Adds the forces of all bonds to `f`.
-pub fn forces<K: RowKernels>(
+pub fn forces<K: Isa>(
     list: &mut ListBody,
     view: &PeriView,
     f: &Shared<[f64; 3]>,
@@ -101,11 +103,8 @@ pub fn forces<K: RowKernels>(
         });
         settling.flow(&mut list.state, &sites);
     }
-    let columns = if kind.has_states() { columns_of(kind, settling.compat) } else { 0 };
-    let pulls = |s: &Sweep, slab: usize, w: &mut Window| match kind {
-        LawKind::Pmb => s.pull::<K, Pmb>(slab, active, w),
-        _ => of_law!(kind, settling.compat, now, W => s.pull::<K, W>(slab, active, w)),
-    };
+    let columns = columns_of(kind, settling.compat);
+    let pulls = |s: &Sweep, slab: usize, w: &mut Window| of_law!(kind, settling.compat, now, W => s.pull::<K, W>(slab, active, w));
     sweep(list, columns, &|s, slab, w| {
         if pulls(s, slab, w) {
             let (own, next) = reach_of(s.body, slab);
@@ -240,7 +239,7 @@ impl Sweep<'_> {
     }
 
     /// Adds a term of the bonds of one slab's records to the sums of both ends.
-    fn add_up<K: RowKernels, T: Term>(&self, slab: usize, active: &[bool], window: &mut Window) {
+    fn add_up<K: Isa, T: Term>(&self, slab: usize, active: &[bool], window: &mut Window) {
         if self.rests(slab, active) && self.mode.skip {
             return;
         }
@@ -261,7 +260,10 @@ impl Sweep<'_> {
                 // SAFETY: the kernels are those that the processor has; bonds lead to this slab or the next.
                 unsafe {
                     row.shape::<K, FULL>(b);
-                    K::add_up::<T>(&row, &acting, b, sums);
+                    K::call(AddUp(
+                        Hand::<T> { row: &row, acting: &acting, block: b, law: PhantomData },
+                        sums,
+                    ));
                 }
             }
         }
@@ -272,7 +274,7 @@ impl Sweep<'_> {
     }
 
     /// Puts the forces of the bonds of one slab's records into the window; false if there are none.
-    fn pull<K: RowKernels, W: BondLaw>(&self, slab: usize, active: &[bool], window: &mut Window) -> bool {
+    fn pull<K: Isa, W: BondLaw>(&self, slab: usize, active: &[bool], window: &mut Window) -> bool {
         let body = self.body;
         let (own, next) = reach_of(body, slab);
         // SAFETY: records belong to one slab.
@@ -309,7 +311,7 @@ impl Sweep<'_> {
                         false => row.shape::<K, FULL>(b),
                     }
                     judge.measure(&row, b);
-                    K::pull::<W>(&row, &acting, b, force)
+                    K::call(Pull(Hand::<W> { row: &row, acting: &acting, block: b, law: PhantomData }, force))
                 };
                 if woken && W::LAZY {
                     // SAFETY: a record belongs to one slab.

@@ -2,13 +2,14 @@
 
 use std::sync::Mutex;
 
-use super::super::chunk::Plain;
-#[cfg(target_arch = "x86_64")]
-use super::super::chunk::{Wide, Widest};
 use super::super::evaluate::periods;
+use super::super::isa::Isa;
+use super::super::lanes::Portable;
+#[cfg(target_arch = "x86_64")]
+use super::super::{lanes::Avx2, lanes512::Avx512};
 use super::super::lattice::Mode;
 use super::super::state::settling;
-use super::kernel::{RowKernels, Rules};
+use super::kernel::Rules;
 use super::{breaking, gather, keep, sweep};
 use crate::families::{
     Bounds, Families, FamilyOptions, Influence, Law, LawKind, Layout, Moduli, PeriView, PmbCoeff, PmbTable,
@@ -22,7 +23,7 @@ type Outcome = (Vec<[f64; 3]>, Vec<f64>, Vec<f64>, Vec<u8>);
 
 const SIDE: i32 = 7;
 
-fn shaken<K: RowKernels>(law: &Law, compat_lammps: bool, periodic: bool) -> Outcome {
+fn shaken<K: Isa>(law: &Law, compat_lammps: bool, periodic: bool) -> Outcome {
     let mut random = ParkMiller::new(4711);
     let mut near = |x: [f64; 3], by: f64| x.map(|a| a + by * (random.uniform() - 0.5));
     let place = |i: i32| [i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE].map(f64::from);
@@ -84,21 +85,21 @@ fn bits_do_not_depend_on_how_many_lanes_there_are() {
         for (compat, periodic) in [(false, false), (true, false), (false, true)] {
             let moduli = vec![own; 2];
             let law = Law { kind, influence, moduli, dt: 1.0, ..Law::default() };
-            let (f, memory, least, alive) = shaken::<Plain>(&law, compat, periodic);
+            let (f, memory, least, alive) = shaken::<Portable>(&law, compat, periodic);
             let living: u32 = alive.iter().map(|b| b.count_ones()).sum();
             assert!(living > 1000 && f.len() == SIDE.pow(3) as usize);
             assert!(kind.memory() == 0 || memory.iter().any(|m| *m != 0.0), "{kind:?} remembers");
             assert!(least.iter().filter(|z| **z < 0.0).count() > 300, "{kind:?} has measures");
             #[cfg(target_arch = "x86_64")]
             if super::super::lanes::has_avx2() {
-                let four = shaken::<Wide>(&law, compat, periodic);
+                let four = shaken::<Avx2>(&law, compat, periodic);
                 assert_eq!(four.3, alive);
                 let most = f.iter().flatten().fold(0.0f64, |m, f| m.max(f.abs()));
                 let off = f.iter().flatten().zip(four.0.iter().flatten()).map(|(a, b)| (a - b).abs());
                 // Sums of some hundred forces, rounded once or twice for each product.
                 assert!(off.fold(0.0, f64::max) < 1e-12 * most, "{kind:?} {compat} {periodic}");
                 if super::super::lanes512::has_avx512() {
-                    assert!(four == shaken::<Widest>(&law, compat, periodic), "{kind:?} {compat} {periodic}");
+                    assert!(four == shaken::<Avx512>(&law, compat, periodic), "{kind:?} {compat} {periodic}");
                 }
             }
         }

@@ -1,8 +1,10 @@
-//! The innermost loops of state-based laws on the lattice: all bonds of eight neighbouring cells.
+//! The innermost loops on the lattice, whatever the law: all bonds of eight neighbouring cells.
 
 mod energies;
 
-use super::super::chunk::{CELLS, CLOSED, Chunk, bonds, constant, extremes, give, place, series, take};
+use super::super::chunk::{
+    CELLS, CLOSED, Chunk, bonds, constant, extremes, give, place, series, take, various,
+};
 use super::super::lanes::Lanes;
 use super::super::wide;
 use super::law::{BondLaw, Ends, Moment, Stretch, closed};
@@ -11,14 +13,8 @@ use crate::families::lattice::Lead;
 use crate::families::law::COLUMNS;
 pub use energies::{Looking, sums};
 
-/// Places in the tables of state-based laws, beside those of [`constant`]: there [`constant::SERIES`] is scaled so that
-/// it gives s/(1 + s) in the table of forces, and the whole term in that of dilatations; [`constant::FACTOR`] is ω w V
-/// in the former, ω w |xi|² V in the latter.
-pub const OMEGA: usize = constant::ENERGY;
 /// In the table of dilatations: one over [`constant::FACTOR`].
-pub const FROM_TERM: usize = constant::ENERGY + 1;
-/// In the table of forces: the pair's critical stretch.
-pub const LIMIT: usize = FROM_TERM;
+pub const FROM_TERM: usize = constant::LIMIT;
 /// In the table of dilatations: twice the reference bond, three components.
 pub const TWICE_XI: usize = constant::XI;
 
@@ -72,7 +68,7 @@ unsafe fn lengthened<L: Lanes, const MASKED: bool>(
     }
 }
 
-/// Stretches of bonds, their `before` the same.
+/// Stretches of bonds, their `before` the same. Where series give s/(1 + s) times the weight of a bond, so is all that comes out.
 #[inline(always)]
 unsafe fn stretch<L: Lanes, const DEGREE: usize>((q, live): (L, L), c: *const f64) -> Stretch<L> {
     // SAFETY: the caller's promise.
@@ -152,9 +148,12 @@ const fn vectors<L: Lanes>(half: bool) -> usize {
 /// Adds the forces of a chunk's bonds to both ends. Returns the largest z and the largest −z if `TRACK`. With `HALF` the
 /// second half of its cells is vacant and left out.
 ///
+/// Without `MASKED` all bonds of all eight cells must live.
+///
 /// # Safety
-/// As for `chunk::force`; columns must be readable where displacements are, and `memory` writable for all bonds of the
-/// chunk if the law remembers.
+/// Live bonds must lead to cells within seven of cells that exist in `u` and `f`, all memory between readable and, in `f`,
+/// writable and not touched by others; columns must be readable where displacements are, and `memory` writable for all bonds
+/// of the chunk if the law remembers; the processor must have what `L` needs.
 #[inline(always)]
 pub(super) unsafe fn pull<
     L: Lanes,
@@ -203,14 +202,14 @@ pub(super) unsafe fn pull<
                     now.before = stretch::<L, DEGREE>((last.q, last.live), c).s;
                 }
                 if W::LIMITED {
-                    now.limit = L::splat(*c.add(LIMIT));
+                    now.limit = L::splat(*c.add(constant::LIMIT));
                 }
                 let ends: Ends<L> = [own[v], read::<L>(s, W::COLUMNS, other)];
                 let mut memory = if known { recall::<L>(s, W::MEMORY, vector, here) } else { [zero; 2] };
                 if known {
                     L::fetch(remembered(s, W::MEMORY, vector, 0, here).wrapping_add(AHEAD));
                 }
-                let omega = L::splat(*c.add(OMEGA));
+                let omega = L::splat(*c.add(constant::OMEGA));
                 let (mut near, mut far) = W::pull(&now, omega, &ends, &mut memory, &moment);
                 if W::MEMORY > 0 && s.keep && (known || W::flows(&ends).bits() != 0) {
                     woken = true;
@@ -220,13 +219,18 @@ pub(super) unsafe fn pull<
                         k += 1;
                     }
                 }
-                let mut factor = L::splat(*c.add(constant::FACTOR));
-                if MASKED {
-                    factor = factor.keep(L::mask(bits));
+                if !W::PLAIN || DEGREE >= CLOSED {
+                    let mut factor = L::splat(*c.add(constant::FACTOR));
+                    if MASKED && !W::PLAIN {
+                        factor = factor.keep(L::mask(bits));
+                    }
+                    (near, far) = (near.mul(factor), far.mul(factor));
                 }
-                (near, far) = (near.mul(factor), far.mul(factor));
                 if VARIOUS {
-                    (near, far) = volumes(a, near, far, here, other);
+                    (near, far) = match W::PLAIN {
+                        true => various::<L, true>(a, (near, far), here, other),
+                        false => various::<L, false>(a, (near, far), here, other),
+                    };
                 }
                 if TRACK {
                     let z = b.q.mul(L::splat(*c.add(constant::INVERSE))).keep(b.live);
@@ -339,26 +343,11 @@ unsafe fn term_of<L: Lanes, T: Term, const DEGREE: usize, const MASKED: bool>(
         };
         let ends: Ends<L> = [*own, read::<L>(s, T::COLUMNS, other)];
         let memory = if known { recall::<L>(s, T::MEMORY, vector, here) } else { [L::splat(0.0); 2] };
-        let (near, far) = T::terms(&s_of, L::splat(*c.add(OMEGA)), &ends, &memory);
+        let (near, far) = T::terms(&s_of, L::splat(*c.add(constant::OMEGA)), &ends, &memory);
         let mut factor = L::splat(*c.add(constant::FACTOR));
         if MASKED {
             factor = factor.keep(L::mask(bits));
         }
         (near.mul(factor), far.mul(factor))
-    }
-}
-
-/// Pulls times volumes, for bodies with various ones.
-#[inline(always)]
-unsafe fn volumes<L: Lanes>(a: &Chunk, near: L, far: L, here: usize, other: isize) -> (L, L) {
-    // SAFETY: per-cell data cover the cells that displacements cover.
-    unsafe {
-        let Some(cells) = a.various else { return (near, far) };
-        let (own, partner) = (L::load(cells.volume.add(here)), L::load(cells.volume.offset(other)));
-        if cells.newton {
-            let both = own.mul(partner);
-            return (near.mul(both), far.mul(both));
-        }
-        (near.mul(partner), far.mul(own))
     }
 }

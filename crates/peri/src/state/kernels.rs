@@ -1,151 +1,96 @@
-//! The loops of state-based laws compiled for each instruction set, and the choice among their forms.
+//! The loops of the lattice as kernels, and the choice among their forms.
 
-use super::super::chunk::{CELLS, CLOSED, Chunk, Plain, SUMS};
-#[cfg(target_arch = "x86_64")]
-use super::super::chunk::{Wide, Widest};
-#[cfg(target_arch = "x86_64")]
-use super::super::lanes::Avx2;
-use super::super::lanes::Portable;
+use std::marker::PhantomData;
+
+use super::super::chunk::{CELLS, CLOSED, Chunk, SUMS};
+use super::super::isa::{Isa, Kernel};
 use super::chunk::{Cells, Looking, add_up, pull, sums};
 use super::law::BondLaw;
 use super::terms::Term;
 
-/// The kernels of one instruction set.
-pub trait StateKernels: Sync {
-    /// See [`Kernels::ALL_FORMS`](super::super::chunk::Kernels::ALL_FORMS).
-    const ALL_FORMS: bool;
-    /// Adds forces; see [`pull`].
-    ///
-    /// # Safety
-    /// As for [`pull`].
-    unsafe fn pull<
-        W: BondLaw,
-        const DEGREE: usize,
-        const MASKED: bool,
-        const TRACK: bool,
-        const VARIOUS: bool,
-        const HALF: bool,
-    >(
-        a: &Chunk,
-        s: &Cells,
-    ) -> (f64, f64);
-    /// Adds up a term; see [`add_up`].
-    ///
-    /// # Safety
-    /// As for [`add_up`].
-    unsafe fn add_up<
-        T: Term,
-        const DEGREE: usize,
-        const MASKED: bool,
-        const VARIOUS: bool,
-        const HALF: bool,
-    >(
-        a: &Chunk,
-        s: &Cells,
-    );
-    /// Energies and virials; see [`sums`].
-    ///
-    /// # Safety
-    /// As for [`sums`].
-    unsafe fn state_sums<W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -> [[f64; CELLS]; SUMS];
-}
+/// Adds forces; see [`pull`].
+struct Pull<
+    'a,
+    W,
+    const DEGREE: usize,
+    const MASKED: bool,
+    const TRACK: bool,
+    const VARIOUS: bool,
+    const HALF: bool,
+>(&'a Chunk<'a>, &'a Cells<'a>, PhantomData<W>);
 
-/// Kernels of one instruction set from those for its lanes, and for those of half a chunk.
-macro_rules! compiled_for {
-    ($kernels:ty, $lanes:ty, $half:ty $(, $features:literal)?) => {
-        impl StateKernels for $kernels {
-            const ALL_FORMS: bool = <$kernels as super::super::chunk::Kernels>::ALL_FORMS;
-            unsafe fn pull<
-                W: BondLaw,
-                const DEGREE: usize,
-                const MASKED: bool,
-                const TRACK: bool,
-                const VARIOUS: bool,
-                const HALF: bool,
-            >(
-                a: &Chunk,
-                s: &Cells,
-            ) -> (f64, f64) {
-                $(#[target_feature(enable = $features)])?
-                unsafe fn inner<
-                    W: BondLaw,
-                    const DEGREE: usize,
-                    const MASKED: bool,
-                    const TRACK: bool,
-                    const VARIOUS: bool,
-                    const HALF: bool,
-                >(
-                    a: &Chunk,
-                    s: &Cells,
-                ) -> (f64, f64) {
-                    // SAFETY: the caller's promise.
-                    unsafe {
-                        match HALF {
-                            true => pull::<$half, W, DEGREE, MASKED, TRACK, VARIOUS, true>(a, s),
-                            false => pull::<$lanes, W, DEGREE, MASKED, TRACK, VARIOUS, false>(a, s),
-                        }
-                    }
-                }
-                // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<W, DEGREE, MASKED, TRACK, VARIOUS, HALF>(a, s) }
-            }
-            unsafe fn add_up<
-                T: Term,
-                const DEGREE: usize,
-                const MASKED: bool,
-                const VARIOUS: bool,
-                const HALF: bool,
-            >(
-                a: &Chunk,
-                s: &Cells,
-            ) {
-                $(#[target_feature(enable = $features)])?
-                unsafe fn inner<
-                    T: Term,
-                    const DEGREE: usize,
-                    const MASKED: bool,
-                    const VARIOUS: bool,
-                    const HALF: bool,
-                >(
-                    a: &Chunk,
-                    s: &Cells,
-                ) {
-                    // SAFETY: the caller's promise.
-                    unsafe {
-                        match HALF {
-                            true => add_up::<$half, T, DEGREE, MASKED, VARIOUS, true>(a, s),
-                            false => add_up::<$lanes, T, DEGREE, MASKED, VARIOUS, false>(a, s),
-                        }
-                    }
-                }
-                // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<T, DEGREE, MASKED, VARIOUS, HALF>(a, s) }
-            }
-            unsafe fn state_sums<W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -> [[f64; CELLS]; SUMS] {
-                $(#[target_feature(enable = $features)])?
-                unsafe fn inner<W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -> [[f64; CELLS]; SUMS] {
-                    // SAFETY: the caller's promise.
-                    unsafe { sums::<$lanes, W>(a, s, look) }
-                }
-                // SAFETY: the caller's promise includes the instruction set.
-                unsafe { inner::<W>(a, s, look) }
+impl<
+    W: BondLaw,
+    const DEGREE: usize,
+    const MASKED: bool,
+    const TRACK: bool,
+    const VARIOUS: bool,
+    const HALF: bool,
+> Kernel for Pull<'_, W, DEGREE, MASKED, TRACK, VARIOUS, HALF>
+{
+    type Out = (f64, f64);
+    #[inline(always)]
+    unsafe fn run<L: Isa>(self) -> (f64, f64) {
+        // SAFETY: the caller's promise.
+        unsafe {
+            match HALF {
+                true => pull::<L::Four, W, DEGREE, MASKED, TRACK, VARIOUS, true>(self.0, self.1),
+                false => pull::<L, W, DEGREE, MASKED, TRACK, VARIOUS, false>(self.0, self.1),
             }
         }
-    };
+    }
 }
 
-compiled_for!(Plain, Portable, Portable);
-#[cfg(target_arch = "x86_64")]
-compiled_for!(Wide, Avx2, Avx2, "avx2,fma");
-#[cfg(target_arch = "x86_64")]
-compiled_for!(Widest, super::super::lanes512::Avx512, Avx2, "avx512f,avx512dq,avx512vl,avx2,fma");
+/// Adds up a term; see [`add_up`].
+struct AddUp<'a, T, const DEGREE: usize, const MASKED: bool, const VARIOUS: bool, const HALF: bool>(
+    &'a Chunk<'a>,
+    &'a Cells<'a>,
+    PhantomData<T>,
+);
+
+impl<T: Term, const DEGREE: usize, const MASKED: bool, const VARIOUS: bool, const HALF: bool> Kernel
+    for AddUp<'_, T, DEGREE, MASKED, VARIOUS, HALF>
+{
+    type Out = ();
+    #[inline(always)]
+    unsafe fn run<L: Isa>(self) {
+        // SAFETY: the caller's promise.
+        unsafe {
+            match HALF {
+                true => add_up::<L::Four, T, DEGREE, MASKED, VARIOUS, true>(self.0, self.1),
+                false => add_up::<L, T, DEGREE, MASKED, VARIOUS, false>(self.0, self.1),
+            }
+        }
+    }
+}
+
+/// Energies and virials; see [`sums`].
+pub struct Sums<'a, W> {
+    /// The chunk.
+    pub chunk: &'a Chunk<'a>,
+    /// What its cells have.
+    pub cells: &'a Cells<'a>,
+    /// What energies need besides.
+    pub look: &'a Looking<'a>,
+    /// The law.
+    pub law: PhantomData<W>,
+}
+
+impl<W: BondLaw> Kernel for Sums<'_, W> {
+    type Out = [[f64; CELLS]; SUMS];
+    #[inline(always)]
+    unsafe fn run<L: Isa>(self) -> Self::Out {
+        // SAFETY: the caller's promise.
+        unsafe { sums::<L, W>(self.chunk, self.cells, self.look) }
+    }
+}
 
 /// Adds forces with the kernel for a degree and the other choices.
 ///
 /// # Safety
 /// As for [`pull`].
 #[inline]
-pub unsafe fn run<K: StateKernels, W: BondLaw>(
+pub unsafe fn run<K: Isa, W: BondLaw>(
     a: &Chunk,
     s: &Cells,
     degree: usize,
@@ -153,11 +98,20 @@ pub unsafe fn run<K: StateKernels, W: BondLaw>(
     track: bool,
 ) -> (f64, f64) {
     macro_rules! pull {
-        ($($choice:tt)*) => { K::pull::<W, $($choice)*>(a, s) };
+        ($($choice:tt)*) => { K::call(Pull::<W, $($choice)*>(a, s, PhantomData)) };
     }
     // SAFETY: the caller's promise.
     unsafe {
         if a.various.is_some() {
+            if const { K::ALL_FORMS && W::PLAIN } {
+                return match degree {
+                    3 => pull!(3, true, true, true, false),
+                    5 => pull!(5, true, true, true, false),
+                    7 => pull!(7, true, true, true, false),
+                    10 | 16 => pull!(16, true, true, true, false),
+                    _ => pull!(CLOSED, true, true, true, false),
+                };
+            }
             return pull!(CLOSED, true, true, true, false);
         }
         if const { !K::ALL_FORMS } {
@@ -197,9 +151,9 @@ pub unsafe fn run<K: StateKernels, W: BondLaw>(
 /// # Safety
 /// As for [`add_up`].
 #[inline]
-pub unsafe fn run_term<K: StateKernels, T: Term>(a: &Chunk, s: &Cells, degree: usize, masked: bool) {
+pub unsafe fn run_term<K: Isa, T: Term>(a: &Chunk, s: &Cells, degree: usize, masked: bool) {
     macro_rules! add_up {
-        ($($choice:tt)*) => { K::add_up::<T, $($choice)*>(a, s) };
+        ($($choice:tt)*) => { K::call(AddUp::<T, $($choice)*>(a, s, PhantomData)) };
     }
     // SAFETY: the caller's promise.
     unsafe {

@@ -1,10 +1,13 @@
-//! Sweeps of state-based laws over a body on a lattice.
+//! Sweeps of bond laws over a body on a lattice.
+
+use std::marker::PhantomData;
 
 use super::super::chunk::{CELLS, Chunk, SUMS};
+use super::super::energy::shares;
+use super::super::isa::Isa;
 use super::super::lattice::{Sweep, extent, open};
 use super::chunk::{Cells, Looking};
-use super::energy::shares;
-use super::kernels::{StateKernels, run, run_term};
+use super::kernels::{self, run, run_term};
 use super::law::{Moment, of_law};
 use super::terms::{Dilatation, Norm, NormLammps, Term};
 use crate::families::lattice::{LANES, LatticeBody, PAD, Row, RowMotion};
@@ -34,13 +37,11 @@ impl States<'_> {
     fn cells<'b>(&'b self, body: &LatticeBody, chunk: usize) -> Cells<'b> {
         let place = chunk * body.stencil.len() * self.kind.memory() * LANES;
         Cells {
-            // SAFETY: columns have a place for each cell and PAD more around, memory one for each chunk.
-            columns: unsafe { body.state.columns.as_ptr().add(PAD + chunk * LANES) },
+            // Columns have a place for each cell and PAD more around, memory one for each chunk; laws without them read nothing.
+            columns: body.state.columns.as_ptr().wrapping_add(PAD + chunk * LANES),
             stride: body.stride,
-            // SAFETY: as above; without memory nothing is read.
-            memory: unsafe { self.memory.as_ptr().add(place.min(self.memory.len())) },
-            // SAFETY: one for each chunk.
-            touched: unsafe { self.touched.as_ptr().add(chunk) },
+            memory: self.memory.as_ptr().wrapping_add(place),
+            touched: self.touched.as_ptr().wrapping_add(chunk),
             // SAFETY: a place for each cell and PAD more around.
             last: [0, 1, 2].map(|k| unsafe { body.u[0].as_ptr().add(k * body.stride + PAD + chunk * LANES) }),
             moment: &self.moment,
@@ -53,7 +54,7 @@ impl States<'_> {
     ///
     /// # Safety
     /// As for `chunk::run`; nobody else touches what the chunk's bonds remember.
-    pub unsafe fn pull<K: StateKernels>(
+    pub unsafe fn pull<K: Isa>(
         &self,
         body: &LatticeBody,
         chunk: usize,
@@ -73,7 +74,7 @@ impl States<'_> {
     ///
     /// # Safety
     /// As for `chunk::run`, forces are not touched.
-    pub unsafe fn sums<K: StateKernels>(
+    pub unsafe fn sums<K: Isa>(
         &self,
         body: &LatticeBody,
         chunk: usize,
@@ -83,19 +84,23 @@ impl States<'_> {
         let cells = self.cells(body, chunk);
         let ((states, half), first) = (shares(self.kind, self.compat), PAD + chunk * LANES);
         let look = Looking {
-            // SAFETY: columns have a place for each cell and PAD more around.
-            theta: unsafe { body.state.theta.as_ptr().add(first) },
-            // SAFETY: as above.
-            before: unsafe { body.state.before.as_ptr().add(first) },
-            // SAFETY: as above.
-            unrelaxed: unsafe { body.state.unrelaxed.as_ptr().add(first) },
+            theta: body.state.theta.as_ptr().wrapping_add(first),
+            before: body.state.before.as_ptr().wrapping_add(first),
+            unrelaxed: body.state.unrelaxed.as_ptr().wrapping_add(first),
             terms: &body.state.tables,
             half,
             states,
             advanced,
         };
         // SAFETY: the caller's promise.
-        unsafe { of_law!(self.kind, self.compat, W => K::state_sums::<W>(data, &cells, &look)) }
+        unsafe {
+            of_law!(self.kind, self.compat, W => K::call(kernels::Sums::<W> {
+                chunk: data,
+                cells: &cells,
+                look: &look,
+                law: PhantomData,
+            }))
+        }
     }
 }
 
@@ -111,7 +116,7 @@ pub enum Sum {
 }
 
 /// Adds the terms of the bonds of one slab's cells to `sums`, which has [`PAD`] entries before the first cell.
-pub fn slab<K: StateKernels>(sweep: &Sweep, sum: Sum, slab: usize, window: &mut Window, sums: &Shared<f64>) {
+pub fn slab<K: Isa>(sweep: &Sweep, sum: Sum, slab: usize, window: &mut Window, sums: &Shared<f64>) {
     match sum {
         Sum::Dilatation => add_up::<K, Dilatation>(sweep, slab, window, sums),
         Sum::Norm => add_up::<K, Norm>(sweep, slab, window, sums),
@@ -119,7 +124,7 @@ pub fn slab<K: StateKernels>(sweep: &Sweep, sum: Sum, slab: usize, window: &mut 
     }
 }
 
-fn add_up<K: StateKernels, T: Term>(sweep: &Sweep, slab: usize, window: &mut Window, sums: &Shared<f64>) {
+fn add_up<K: Isa, T: Term>(sweep: &Sweep, slab: usize, window: &mut Window, sums: &Shared<f64>) {
     let body = sweep.body();
     let (own, first, last) = extent(body, slab);
     let (base, stride) = open(window, body, first, (last - first, 1));
@@ -141,8 +146,7 @@ fn add_up<K: StateKernels, T: Term>(sweep: &Sweep, slab: usize, window: &mut Win
             let mut data =
                 sweep.chunk((slot, chunk * LANES), body.stencil.len(), window, (base, stride, first));
             data.tables = &body.state.tables;
-            let Some(states) = sweep.states() else { continue };
-            let cells = states.cells(body, chunk);
+            let cells = sweep.states().cells(body, chunk);
             // SAFETY: live bonds lead to cells of the body that the window covers; both have PAD cells around.
             unsafe { run_term::<K, T>(&data, &cells, degree, !body.intact[chunk]) };
         }

@@ -1,4 +1,4 @@
-//! Ordinary state-based laws of one bond, in lanes.
+//! Laws of one bond in lanes: bond-based and ordinary state-based.
 //!
 //! With stretch s, dilatation θ, weighted volume m and influence ω an end's force density is t = ω |xi| (3Kθ/m + 15G/m ε),
 //! ε being the deviatoric part of the stretch, s − θ/3, without what has relaxed or flowed (Silling et al. 2007;
@@ -82,7 +82,8 @@ macro_rules! of_law {
             }};
         }
         match ($kind, $compat) {
-            (LawKind::Pmb | LawKind::Lps | LawKind::Shaped, _) => with!(law::Elastic),
+            (LawKind::Pmb, _) => with!(law::Pmb),
+            (LawKind::Lps | LawKind::Shaped, _) => with!(law::Elastic),
             (LawKind::Yield, _) => with!(law::Yielding),
             (LawKind::Flat, _) => with!(law::Flattened),
             (LawKind::Ves, false) => with!(law::Viscous),
@@ -109,8 +110,10 @@ pub trait BondLaw: Sync {
     const MEMORY: usize;
     /// Whether forces need s itself, not only s/(1 + s) and 1/(1 + s).
     const STRETCHED: bool = true;
-    /// Whether forces need nothing of a bond but z, its direction and its weight.
+    /// Whether a pull is s/(1 + s) and nothing else: lattices then have the weight of a bond in its series.
     const PLAIN: bool = false;
+    /// Whether energies depend on dilatations.
+    const DILATED: bool = true;
     /// Whether it needs the stretch at the last step that advanced.
     const BACK: bool = false;
     /// Whether it is worth kernels for each size of stretches and for whole chunks: each law has a share of the time that
@@ -178,6 +181,19 @@ pub struct Angles<L> {
     pub relaxing: L,
 }
 
+impl<L: Lanes> Angles<L> {
+    /// No dilatation.
+    ///
+    /// # Safety
+    /// See [`Lanes`].
+    #[inline(always)]
+    pub unsafe fn none() -> Self {
+        // SAFETY: passed on to the caller.
+        let zero = unsafe { L::splat(0.0) };
+        Self { now: zero, unrelaxed: zero, relaxing: zero }
+    }
+}
+
 /// (s − θ/3)² of both ends.
 #[inline(always)]
 unsafe fn deviatoric<L: Lanes>(s: L, ends: &[Angles<L>; 2], without: &[L; 2]) -> (L, L) {
@@ -197,10 +213,23 @@ impl BondLaw for Pmb {
     const COLUMNS: usize = 0;
     const MEMORY: usize = 0;
     const PLAIN: bool = true;
+    const DILATED: bool = false;
     const STRETCHED: bool = false;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(bond: &Stretch<L>, _: L, _: &Ends<L>, _: &mut [L; 2], _: &Moment) -> (L, L) {
         (bond.share, bond.share)
+    }
+    #[inline(always)]
+    unsafe fn squares<L: Lanes>(
+        bond: &Stretch<L>,
+        _: L,
+        _: &[Angles<L>; 2],
+        _: &[L; 2],
+        _: &Moment,
+    ) -> (L, L) {
+        // SAFETY: passed on to the caller.
+        let square = unsafe { bond.s.mul(bond.s) };
+        (square, square)
     }
 }
 
@@ -316,6 +345,7 @@ pub struct Yielding;
 impl BondLaw for Yielding {
     const COLUMNS: usize = 0;
     const MEMORY: usize = 1;
+    const DILATED: bool = false;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(
         bond: &Stretch<L>,
@@ -354,6 +384,7 @@ pub struct Flattened;
 impl BondLaw for Flattened {
     const COLUMNS: usize = 0;
     const MEMORY: usize = 0;
+    const DILATED: bool = false;
     const ALL_FORMS: bool = false;
     #[inline(always)]
     unsafe fn pull<L: Lanes>(bond: &Stretch<L>, limit: L, _: &Ends<L>, _: &mut [L; 2], _: &Moment) -> (L, L) {

@@ -1,28 +1,26 @@
-//! Ordinary state-based materials: sweeps over all bonds for what sites have, then for forces.
+//! Bond laws on lattices: sweeps over all bonds for what sites have, then for forces.
 
 pub mod chunk;
-pub mod energy;
 pub mod kernels;
 pub mod lattice;
 pub mod law;
 pub mod settle;
 pub mod tables;
 pub mod terms;
-mod weighing;
+pub mod weighing;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::chunk::Kernels;
+use super::isa::Isa;
 use super::lattice::{ChunkColumns, Mode, Sweep};
 use crate::families::lattice::{LatticeBody, PAD};
 use crate::families::law::COLUMNS;
 use crate::families::{Families, FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable, Window};
-pub use energy::tally;
 use lattice::{States, Sum, find_active};
 use law::Moment;
 pub use law::REST;
 use perigrain_base::par::{self, Shared};
-use settle::{Settling, Sites, moment};
+use settle::{Settling, Sites, columns_of, moment};
 
 impl Families {
     /// Weighs all families: at their building.
@@ -33,8 +31,8 @@ impl Families {
         tables::weigh_list(&mut self.list, period, &self.law);
     }
 
-    /// Adds the forces of all bonds under a state-based law.
-    pub(super) fn sweep_states<K: Kernels + kernels::StateKernels>(
+    /// Adds the forces of all bonds of bodies on lattices.
+    pub(super) fn sweep_lattices<K: Isa>(
         &mut self,
         view: &PeriView,
         f: &mut [[f64; 3]],
@@ -102,7 +100,7 @@ pub fn window(windows: &[Mutex<Window>]) -> MutexGuard<'_, Window> {
 }
 
 /// The sweeps over one body on a lattice.
-fn lattice_body<K: Kernels + kernels::StateKernels>(
+fn lattice_body<K: Isa>(
     body: &mut LatticeBody,
     view: &PeriView,
     f: &Shared<[f64; 3]>,
@@ -111,8 +109,13 @@ fn lattice_body<K: Kernels + kernels::StateKernels>(
     windows: &[Mutex<Window>],
 ) {
     let kind = settling.law.kind;
-    find_active(body, kind.memory() > 0);
-    body.state.columns.resize(COLUMNS * body.stride, 0.0);
+    let spreads = kind.spreads();
+    if spreads {
+        find_active(body, kind.memory() > 0);
+    }
+    if columns_of(kind, settling.compat) > 0 {
+        body.state.columns.resize(COLUMNS * body.stride, 0.0);
+    }
     let mut columns = ChunkColumns::take(body);
     keep_earlier(&mut body.state, settling);
     let mut memory = std::mem::take(&mut body.state.memory);
@@ -129,7 +132,7 @@ fn lattice_body<K: Kernels + kernels::StateKernels>(
         touched: &touched_of,
         spread: false,
     };
-    let spread = States { spread: true, ..states };
+    let spread = States { spread: spreads, ..states };
     let count = particle.len();
     let only = if let [only] = body.kinds[..] { Some(only) } else { None };
     let sites = Sites { count, pad: PAD, stride: body.stride, particle: &particle, kind: view.kind, only };
@@ -138,7 +141,7 @@ fn lattice_body<K: Kernels + kernels::StateKernels>(
         sums.clear();
         sums.resize(body.stride, 0.0);
         let shared = Shared::new(&mut sums);
-        let sweep = Sweep::new(body, &mut columns, mode, newton, Some(states));
+        let sweep = Sweep::new(body, &mut columns, mode, newton, states);
         par::two_colours(body.slabs(), |slab| {
             lattice::slab::<K>(&sweep, sum, slab, &mut window(windows), &shared);
         });
@@ -156,7 +159,7 @@ fn lattice_body<K: Kernels + kernels::StateKernels>(
         settling.flow(&mut body.state, &sites);
     }
     body.particle = particle;
-    let sweep = Sweep::new(body, &mut columns, mode, newton, Some(spread));
+    let sweep = Sweep::new(body, &mut columns, mode, newton, spread);
     par::two_colours(body.slabs(), |slab| sweep.slab::<K>(slab, &mut window(windows), f));
     columns.give(body);
     (body.state.memory, body.state.touched) = (memory, touched);

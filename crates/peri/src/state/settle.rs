@@ -222,8 +222,8 @@ fn elastic(own: &Stiffness, state: &mut SiteState, sites: &Sites) {
 /// Columns that a law uses.
 pub fn columns_of(kind: LawKind, compat: bool) -> usize {
     match (kind, compat) {
-        (LawKind::Yield | LawKind::Flat | LawKind::Softening | LawKind::Decaying, _) => 0,
-        (LawKind::Pmb | LawKind::Lps | LawKind::Shaped, _) | (LawKind::Ves, false) => 2,
+        (LawKind::Pmb | LawKind::Yield | LawKind::Flat | LawKind::Softening | LawKind::Decaying, _) => 0,
+        (LawKind::Lps | LawKind::Shaped, _) | (LawKind::Ves, false) => 2,
         (LawKind::Ves, true) => 3,
         (LawKind::Eps, false) => 4,
         (LawKind::Eps, true) => 5,

@@ -1,13 +1,13 @@
-//! What state-based kernels look up: constants of bonds, weighted volumes of families.
+//! What the kernels of lattices look up: constants of bonds, weighted volumes of families.
 
 use super::super::chunk::constant;
 use super::super::pmb::SERIES;
-use super::chunk::{FROM_TERM, LIMIT, OMEGA, TWICE_XI};
+use super::chunk::{FROM_TERM, TWICE_XI};
 use super::weighing::Weighing;
 use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, PAD};
 use crate::families::law::SiteState;
 use crate::families::list::ListBody;
-use crate::families::{FamilyOptions, ForceUnit, Law, PeriView, PmbTable};
+use crate::families::{FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable};
 
 /// √(1 + z) − 1 = Σ `STRETCH[k]` z^(k + 1): the binomial series.
 pub const STRETCH: [f64; 8] = [
@@ -23,8 +23,17 @@ pub const STRETCH: [f64; 8] = [
 
 /// Fills the tables of constants: under state-based laws the same for all pairs of types, since moduli belong to the
 /// ends; under bond-based ones c/|xi| stands for ω, and the place of ω has the stretch at which bonds flow. `volume` is that of
-/// all sites, or 1 where they have various ones.
-pub fn fill(body: &mut LatticeBody, table: &PmbTable, options: &FamilyOptions, law: &Law, volume: f64) {
+/// all sites; where they have various ones, kernels multiply by those, and by the micromoduli of plain microelastic bonds.
+pub fn fill(
+    body: &mut LatticeBody,
+    table: &PmbTable,
+    options: &FamilyOptions,
+    law: &Law,
+    volume: Option<f64>,
+) {
+    let plain = law.kind == LawKind::Pmb;
+    let unit_moduli = plain && volume.is_none();
+    let volume = volume.unwrap_or(1.0);
     let forces = if options.unit == ForceUnit::Newton { volume * volume } else { volume };
     body.tables.clear();
     body.state.tables.clear();
@@ -32,6 +41,7 @@ pub fn fill(body: &mut LatticeBody, table: &PmbTable, options: &FamilyOptions, l
     for pair in 0..n * n {
         let (a, b) = (body.kinds[pair / n], body.kinds[pair % n]);
         let (c, limit) = table.get(a, b).map_or((0.0, 0.0), |k| (k.c, k.s00));
+        let c = if unit_moduli { 1.0 } else { c };
         for e in 0..body.stencil.len() {
             let xi = body.xi(e);
             let square = xi.iter().map(|x| x * x).sum::<f64>();
@@ -42,8 +52,8 @@ pub fn fill(body: &mut LatticeBody, table: &PmbTable, options: &FamilyOptions, l
             row[constant::XI..constant::XI + 3].copy_from_slice(&xi);
             row[constant::DEAD] = options.dead_band(length) * square;
             row[constant::INVERSE] = 1.0 / square;
-            row[OMEGA] = omega;
-            row[LIMIT] = limit;
+            row[constant::OMEGA] = omega;
+            row[constant::LIMIT] = limit;
             let series = |row: &mut [f64; CONSTANTS], terms: &[f64; 8], factor: f64, first: f64| {
                 row[constant::FACTOR] = factor;
                 let mut scale = first / square;
@@ -52,7 +62,8 @@ pub fn fill(body: &mut LatticeBody, table: &PmbTable, options: &FamilyOptions, l
                     scale /= square;
                 }
             };
-            series(&mut row, &SERIES, share * forces, 1.0);
+            let factor = share * forces;
+            series(&mut row, &SERIES, factor, if plain { factor } else { 1.0 });
             body.tables.extend_from_slice(&row);
             let term = share * square * volume;
             series(&mut row, &STRETCH, term, term);

@@ -17,7 +17,7 @@ impl Weighing {
     /// That of a law.
     pub fn of(law: &Law) -> Self {
         match law.kind.bond_based() {
-            true => Self::Bond(law.influence),
+            true => Self::Bond(law.shape()),
             false => Self::Influence(law.influence),
         }
     }

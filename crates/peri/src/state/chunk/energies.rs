@@ -1,9 +1,9 @@
-//! Energies and virials of state-based bonds on the lattice, eight neighbouring cells at a time.
+//! Energies and virials of bonds on the lattice, eight neighbouring cells at a time.
 
 use super::super::super::chunk::{CELLS, CLOSED, Chunk, SUMS, bonds, constant, place, put_sums, with_virial};
 use super::super::super::lanes::Lanes;
 use super::super::law::{Angles, BondLaw, Ends};
-use super::{Cells, LIMIT, OMEGA, read, recall, stretch};
+use super::{Cells, read, recall, stretch};
 use crate::families::lattice::Lead;
 
 /// What energies need besides.
@@ -36,7 +36,8 @@ unsafe fn angles<L: Lanes>(look: &Looking, at: isize, relaxing: L) -> Angles<L> 
     }
 }
 
-/// Energy and virial of a chunk's bonds, cell by cell, as [`sums`](super::super::super::chunk::sums) of microelastic bonds.
+/// Energy and virial of a chunk's bonds, each end of a bond counted, cell by cell: the law's squares times what they weigh, and
+/// −Σ pull y_a y_b over the six products of y = xi + eta. The virial lacks the volume that densities need.
 ///
 /// # Safety
 /// As for [`pull`], without `f`; `look` must be readable where columns are.
@@ -71,16 +72,17 @@ pub unsafe fn sums<L: Lanes, W: BondLaw>(a: &Chunk, s: &Cells, look: &Looking) -
                     now.before = stretch::<L, CLOSED>((last.q, last.live), c).s;
                 }
                 if W::LIMITED {
-                    now.limit = L::splat(*c.add(LIMIT));
+                    now.limit = L::splat(*c.add(constant::LIMIT));
                 }
                 let ends: Ends<L> = [own, read::<L>(s, W::COLUMNS, other)];
                 let mut memory =
                     if known { recall::<L>(s, W::MEMORY, vector, here) } else { [L::splat(0.0); 2] };
-                let omega = L::splat(*c.add(OMEGA));
-                let at = [
-                    angles::<L>(look, here as isize, W::relaxing(&ends[0], s.moment)),
-                    angles::<L>(look, other, W::relaxing(&ends[1], s.moment)),
-                ];
+                let omega = L::splat(*c.add(constant::OMEGA));
+                let mut at = [Angles::<L>::none(); 2];
+                if W::DILATED {
+                    at[0] = angles(look, here as isize, W::relaxing(&ends[0], s.moment));
+                    at[1] = angles(look, other, W::relaxing(&ends[1], s.moment));
+                }
                 let (mut near, mut far) = W::squares(&now, omega, &at, &memory, s.moment);
                 if look.states {
                     (near, far) = (near.mul(ends[0][1]), far.mul(ends[1][1]));

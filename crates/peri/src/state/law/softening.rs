@@ -100,6 +100,7 @@ const MOST: usize = 8;
 const TINY: f64 = 1e-150;
 
 impl<const EXPONENTIAL: bool> BondLaw for Softening<EXPONENTIAL> {
+    const DILATED: bool = false;
     const COLUMNS: usize = 0;
     const MEMORY: usize = if EXPONENTIAL { 2 } else { 1 };
     const LIMITED: bool = true;
