@@ -115,12 +115,7 @@ impl Declared {
         let mut clusters = Clusters::new(&w.particles.tag);
         let mut cells = Cells::default();
         cells.fill(at, slab.iter().copied(), &view.bounds, self.arm);
-        cells.pairs(|i, j| {
-            let d = view.bounds.nearest(sub(at[i as usize], at[j as usize]));
-            if length(d) <= self.arm {
-                clusters.join(i, j);
-            }
-        });
+        cells.within(&view.bounds, self.arm, |i, j, _, _| clusters.join(i, j));
         let mut names: Vec<u32> = slab.iter().map(|&i| clusters.name(i as usize) as u32).collect();
         names.sort_unstable();
         names.dedup();

@@ -37,13 +37,16 @@ pub fn bonds(
     }
     let mut cells = Cells::default();
     cells.fill(view.x, which, &view.bounds, far);
-    cells.pairs(|i, j| {
-        let (rsq, wraps) = distance(view, i, j);
-        if rsq > far * far {
-            return;
+    let cut_of = |a: u16, b: u16| -> Option<f64> {
+        Some(options.volume.reach(table.get(a, b)?.horizon, options.lattice_spacing))
+    };
+    let mut last = ((0, 0), None);
+    cells.within(&view.bounds, far, |i, j, rsq, wraps| {
+        let kinds = (view.kind[i as usize], view.kind[j as usize]);
+        if last.0 != kinds {
+            last = (kinds, cut_of(kinds.0, kinds.1));
         }
-        let Some(coeff) = table.get(view.kind[i as usize], view.kind[j as usize]) else { return };
-        let cut = options.volume.reach(coeff.horizon, options.lattice_spacing);
+        let Some(cut) = last.1 else { return };
         if rsq <= cut * cut && !view.excludes(i, j) {
             f(i, j, rsq, wraps);
         }
@@ -62,7 +65,9 @@ pub fn bodies(view: &PeriView, table: &PmbTable, options: &FamilyOptions) -> Bod
     let mut shortest = vec![f64::INFINITY; n];
     let mut crosses = vec![false; n];
     bonds(view, 0..n as u32, table, options, |i, j, rsq, wraps| {
-        join(&mut parent, i, j);
+        if parent[i as usize] != parent[j as usize] {
+            join(&mut parent, i, j);
+        }
         shortest[i as usize] = shortest[i as usize].min(rsq);
         shortest[j as usize] = shortest[j as usize].min(rsq);
         crosses[i as usize] |= wraps;

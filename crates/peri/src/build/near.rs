@@ -57,9 +57,8 @@ impl Families {
         self.near.spent[part] = 0.0;
         self.near.allowed[part] = SKIN * lc;
         self.near.skin = SKIN * lc;
-        let mut keep = |families: &Self, i: u32, j: u32| {
-            // Most pairs are too far apart.
-            if distance(view, i, j).0 >= range * range {
+        let mut keep = |families: &Self, i: u32, j: u32, square: f64| {
+            if square >= range * range {
                 return;
             }
             let same = families.body_of(i) == families.body_of(j) && families.body_of(i) != u32::MAX;
@@ -73,11 +72,11 @@ impl Families {
         if part == 0 {
             let members = (0..self.place.len() as u32).filter(|&p| self.place[p as usize] != u32::MAX);
             cells.fill(view.x, members, &view.bounds, range);
-            cells.pairs(|i, j| keep(self, i, j));
+            cells.within(&view.bounds, range, |i, j, square, _| keep(self, i, j, square));
         } else {
             let (chosen, gap) = self.across(view, range);
             cells.fill(view.x, chosen.iter().copied(), &view.bounds, range);
-            cells.pairs(|i, j| keep(self, i, j));
+            cells.within(&view.bounds, range, |i, j, square, _| keep(self, i, j, square));
             self.near.allowed[part] = self.near.allowed[part].max(gap - CONTACT * lc);
         }
         pairs.sort_unstable_by_key(|pair| pair.ends);

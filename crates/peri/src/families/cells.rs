@@ -11,6 +11,8 @@ pub struct Cells {
     wraps: [bool; 3],
     start: Vec<u32>,
     member: Vec<u32>,
+    /// Places of the members.
+    place: Vec<[f64; 3]>,
     cell: Vec<u32>,
 }
 
@@ -65,12 +67,13 @@ impl Cells {
         }
         self.member.clear();
         self.member.resize(n, 0);
-        // Filling from the back leaves members of a cell in order and `start` at the cells' first members.
-        let ends = &mut self.start;
-        let mut place = ends.clone();
+        self.place.clear();
+        self.place.resize(n, [0.0; 3]);
+        let mut next = self.start.clone();
         for (i, &c) in which.zip(&self.cell) {
-            self.member[place[c as usize] as usize] = i;
-            place[c as usize] += 1;
+            let at = next[c as usize] as usize;
+            (self.member[at], self.place[at]) = (i, x[i as usize]);
+            next[c as usize] += 1;
         }
     }
 
@@ -88,34 +91,45 @@ impl Cells {
         c[0] + self.count[0] * (c[1] + self.count[1] * c[2])
     }
 
-    fn of(&self, cell: usize) -> &[u32] {
-        &self.member[self.start[cell] as usize..self.start[cell + 1] as usize]
-    }
-
-    /// Calls `f` for every pair of points in the same or touching cells, each pair once: a superset of all
-    /// pairs closer than the reach.
-    pub fn pairs(&self, mut f: impl FnMut(u32, u32)) {
+    /// Calls `f` for every pair of the same or touching cells.
+    fn each(&self, mut f: impl FnMut(usize, usize)) {
         for z in 0..self.count[2] {
             for y in 0..self.count[1] {
                 for x in 0..self.count[0] {
                     let own = self.index([x, y, z]);
-                    if self.of(own).is_empty() {
+                    if self.start[own] == self.start[own + 1] {
                         continue;
                     }
                     let (around, n) = self.around([x, y, z]);
-                    for &other in &around[..n] {
-                        self.between(own, other, &mut f);
-                    }
+                    around[..n].iter().for_each(|&other| f(own, other));
                 }
             }
         }
     }
 
-    fn between(&self, own: usize, other: usize, f: &mut impl FnMut(u32, u32)) {
-        for (a, &i) in self.of(own).iter().enumerate() {
-            let rest = if own == other { &self.of(own)[a + 1..] } else { self.of(other) };
-            rest.iter().for_each(|&j| f(i, j));
-        }
+    /// Calls `f(i, j, |x_i − x_j|², whether the shortest image crosses a periodic face)` for every pair of points no farther apart
+    /// than `range`, which is no longer than the reach, each pair once.
+    pub fn within(&self, bounds: &Bounds, range: f64, mut f: impl FnMut(u32, u32, f64, bool)) {
+        let most = range * range;
+        let images = bounds.periodic != [false; 3];
+        self.each(|own, other| {
+            let others = self.start[other] as usize..self.start[other + 1] as usize;
+            for a in self.start[own] as usize..self.start[own + 1] as usize {
+                let x = self.place[a];
+                let rest = if own == other { a + 1..others.end } else { others.clone() };
+                for (y, &j) in self.place[rest.clone()].iter().zip(&self.member[rest]) {
+                    let plain = [x[0] - y[0], x[1] - y[1], x[2] - y[2]];
+                    // Kept apart: the way through an array costs more than all the rest.
+                    let (square, wraps) = match images {
+                        false => (plain[0] * plain[0] + plain[1] * plain[1] + plain[2] * plain[2], false),
+                        true => shortest(bounds, plain),
+                    };
+                    if square <= most {
+                        f(self.member[a], j, square, wraps);
+                    }
+                }
+            }
+        });
     }
 
     /// The cells touching `c` that come no earlier than it, itself included, without repetition.
@@ -142,6 +156,13 @@ impl Cells {
     }
 }
 
+/// The squared length of the shortest image of a vector, and whether it is not the plain one.
+#[inline(never)]
+fn shortest(bounds: &Bounds, plain: [f64; 3]) -> (f64, bool) {
+    let d = bounds.nearest(plain);
+    (d[0] * d[0] + d[1] * d[1] + d[2] * d[2], d != plain)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,20 +181,21 @@ mod tests {
             let mut cells = Cells::default();
             cells.fill(&x, 0..400, &bounds, 0.9);
             let mut found = Vec::new();
-            cells.pairs(|i, j| found.push((i.min(j), i.max(j))));
-            found.sort_unstable();
-            let once = found.len();
-            found.dedup();
-            assert_eq!(once, found.len());
+            cells.within(&bounds, 0.9, |i, j, square, wraps| found.push((i.min(j), i.max(j), square, wraps)));
+            found.sort_unstable_by_key(|(i, j, ..)| (*i, *j));
+            let mut expected = vec![];
             for i in 0..400u32 {
                 for j in i + 1..400 {
                     let (a, b) = (x[i as usize], x[j as usize]);
-                    let d = bounds.nearest([0, 1, 2].map(|k| a[k] - b[k]));
-                    if d.iter().map(|d| d * d).sum::<f64>() < 0.81 {
-                        assert!(found.binary_search(&(i, j)).is_ok());
+                    let plain = [0, 1, 2].map(|k| a[k] - b[k]);
+                    let d = bounds.nearest(plain);
+                    let square = d.iter().map(|d| d * d).sum::<f64>();
+                    if square <= 0.9 * 0.9 {
+                        expected.push((i, j, square, d != plain));
                     }
                 }
             }
+            assert_eq!(found, expected);
         }
     }
 }

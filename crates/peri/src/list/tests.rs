@@ -5,10 +5,10 @@ use std::sync::Mutex;
 use super::super::evaluate::periods;
 use super::super::isa::Isa;
 use super::super::lanes::Portable;
-#[cfg(target_arch = "x86_64")]
-use super::super::{lanes::Avx2, lanes512::Avx512};
 use super::super::lattice::Mode;
 use super::super::state::settling;
+#[cfg(target_arch = "x86_64")]
+use super::super::{lanes::Avx2, lanes512::Avx512};
 use super::kernel::Rules;
 use super::{breaking, gather, keep, sweep};
 use crate::families::{
