@@ -37,8 +37,6 @@ pub(super) struct Strip<V, const N: usize> {
     force: Room<Outgoing<N>>,
     /// On i and on j, each about its centre [force × length].
     torque: Room<[Outgoing<N>; 2]>,
-    /// Heat into i, where it is asked for [energy/time].
-    heat: Room<[f64; N]>,
 }
 
 /// Room for something of each group, not cleared: that would take longer than the contacts of a slab of few.
@@ -146,7 +144,6 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
             mass,
             force: Room::new(),
             torque: Room::new(),
-            heat: Room::new(),
         }
     }
 
@@ -175,6 +172,9 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
             }
             if cx.virial {
                 self.add_virial(count, &mut slab.virial);
+            }
+            if cx.heat.is_some() {
+                self.add_heat(cx, law, count);
             }
             for group in 0..count / N {
                 for lane in 0..N {
@@ -275,11 +275,6 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
             let wrench = law.contact(g, &own, &other, &mut history[..memory], cx.step);
             self.force.put(group, Outgoing::of(wrench.force));
             self.torque.put(group, [Outgoing::of(wrench.torque_i), Outgoing::of(wrench.torque_j)]);
-            if let Some((temperature, _)) = &cx.heat {
-                let t = temperature.as_ptr();
-                let into = law.conductance(g) * (V::pick(t, w) - V::pick(t, i));
-                self.heat.put(group, into.numbers());
-            }
             if !cx.store {
                 return;
             }
@@ -307,11 +302,6 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
             let [own, other] = self.torque.at(group);
             own.add::<V::Pair>(t, lane, i);
             other.add::<V::Pair>(t, lane, j);
-            if let Some((_, flow)) = &cx.heat {
-                let (flow, into) = (flow.as_ptr(), self.heat.at(group)[lane]);
-                *flow.add(i as usize) += into;
-                *flow.add(j as usize) -= into;
-            }
         }
     }
 
@@ -321,7 +311,8 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
             let (group, lane) = (at / N, at % N);
             // SAFETY: the caller's promise.
             let (d, force) = unsafe { (self.apart.at(group), self.force.at(group)) };
-            let d = d.map(|d| d.numbers()[lane]);
+            // SAFETY: a lane of the group.
+            let d = unsafe { [0, 1, 2].map(|k| number(&d[k], lane)) };
             let xy = &force.xy[lane % 2][lane / 2 * 2..];
             let f = [xy[0], xy[1], force.z[lane]];
             for (s, (a, b)) in sum.iter_mut().zip(SIX) {
@@ -329,6 +320,43 @@ impl<V: Lanes<N>, const N: usize> Strip<V, N> {
             }
         }
     }
+}
+
+impl<V: Lanes<N>, const N: usize> Strip<V, N> {
+    /// Adds the heat through the first contacts, which must have been met: in plain numbers and out of line, so that scenes
+    /// without heat do not carry it.
+    #[inline(never)]
+    unsafe fn add_heat<L: ContactLaw>(&self, cx: &Cx<L>, law: &L, count: usize) {
+        let Some((temperature, flow)) = &cx.heat else { return };
+        for at in 0..count {
+            // SAFETY: the caller's promise; entries are grains, and the caller keeps other threads away.
+            unsafe {
+                let (g, lane) = (self.geometry.at(at / N), at % N);
+                let geometry = Geometry {
+                    normal: [0, 1, 2].map(|k| number(&g.normal[k], lane)),
+                    overlap: number(&g.overlap, lane),
+                    radii: [number(&g.radii[0], lane), number(&g.radii[1], lane)],
+                    curvature: number(&g.curvature, lane),
+                    mass: number(&g.mass, lane),
+                };
+                let (i, j) = (self.i[at] as usize, place(self.w[at]));
+                let into = law.conductance(&geometry) * (temperature[j] - temperature[i]);
+                *flow.as_ptr().add(i) += into;
+                *flow.as_ptr().add(j) -= into;
+            }
+        }
+    }
+}
+
+/// One of the numbers in lanes, where lanes are not compiled for the processor.
+///
+/// # Safety
+/// There must be such a lane.
+#[inline]
+unsafe fn number<V: Lanes<N>, const N: usize>(lanes: &V, lane: usize) -> f64 {
+    const { assert!(size_of::<V>() == N * size_of::<f64>()) };
+    // SAFETY: lanes are so many numbers, one behind the other.
+    unsafe { *(&raw const *lanes).cast::<f64>().add(lane) }
 }
 
 /// Of two grains: their radii, the sum of these, and what is made of them.
