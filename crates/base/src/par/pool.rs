@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 use rayon::{ThreadPool, Yield};
 
 static POOL: RwLock<Option<Arc<Pool>>> = RwLock::new(None);
+/// The number of its threads: asked for several times in a step, and a lock takes as long as the motion of a few particles.
+static THREADS: AtomicUsize = AtomicUsize::new(1);
 
 /// Threads, and whether they look out for work.
 struct Pool {
@@ -30,13 +32,15 @@ pub fn set_threads(n: usize) -> usize {
         None
     };
     let pool = pool.map(|threads| Arc::new(Pool { threads, awake: Arc::default() }));
+    THREADS.store(pool.as_ref().map_or(1, |p| p.threads.current_num_threads()), Ordering::Relaxed);
     *POOL.write().unwrap_or_else(PoisonError::into_inner) = pool;
     threads()
 }
 
 /// The number of threads in use.
+#[inline]
 pub fn threads() -> usize {
-    pool().map_or(1, |p| p.threads.current_num_threads())
+    THREADS.load(Ordering::Relaxed)
 }
 
 /// The calling thread's number, below [`threads`]: for scratch memory of one piece per thread.

@@ -2,6 +2,7 @@
 
 use std::marker::PhantomData;
 
+use super::super::chunk::SUMS;
 use super::super::energy::{ROWS, Sums, collect, shares};
 use super::super::isa::Isa;
 use super::super::state::law::{BondLaw, Moment, of_law};
@@ -19,13 +20,9 @@ struct Energies<'a> {
     list: &'a ListBody,
     rules: &'a Rules,
     acting: &'a Acting<'a>,
-    angles: &'a [f64],
+    look: &'a laws::Looking<'a>,
     /// Forces are at the places of the last step that advanced as well.
     advanced: bool,
-    newton: bool,
-    /// See [`shares`].
-    own: bool,
-    half: f64,
 }
 
 /// Adds energy and virial of the list's bonds as they were during the force evaluation, which has `advanced` bonds or not.
@@ -44,7 +41,8 @@ pub fn tally<K: Isa>(families: &mut Families, t: &mut PeriTally, (advanced, peri
         Acting { ends: &ends, memory, known: kind.memory() > 0, keep: false, least: false, moment: now };
     let (own, half) = shares(kind, compat);
     let newton = options.unit == ForceUnit::Newton;
-    let e = Energies { list, rules: &rules, acting: &acting, angles: &angles, advanced, newton, own, half };
+    let look = laws::Looking { angles: &angles, states: own, half, newton };
+    let e = Energies { list, rules: &rules, acting: &acting, look: &look, advanced };
     let rows = &mut families.scratch.rows;
     of_law!(kind, compat, W => e.tally::<K, W>(rows, t));
 }
@@ -87,17 +85,11 @@ impl Energies<'_> {
             return;
         }
         let row = Row { body: list, i, first: 0, rules: self.rules };
-        let volume = list.record[i].volume;
-        let shear = |record: usize| {
-            let stride = Acting::stride(W::COLUMNS);
-            if self.own { self.acting.ends[stride * record + 1] } else { 1.0 }
-        };
-        let (own_share, mut own_energy) = (self.half * shear(i), 0.0);
-        let mut virial = [0.0; 6];
+        let (mut sums, mut own_energy) = ([0.0; SUMS], 0.0);
         let mut next = row.start();
         while row.fill(&mut next, b) {
             // SAFETY: the kernels are those that the processor has.
-            unsafe {
+            let more = unsafe {
                 if W::BACK && !self.advanced {
                     row.shape::<K, LAST>(b);
                 }
@@ -106,35 +98,29 @@ impl Energies<'_> {
                     b.before = b.z;
                 }
                 let hand = Hand::<W> { row: &row, acting: self.acting, block: b, law: PhantomData };
-                K::call(laws::Energies(hand, self.angles));
+                K::call(laws::Energies(hand, self.look))
+            };
+            sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+            if !t.per_atom() {
+                continue;
             }
             for at in (0..b.count).filter(|&at| b.weight[at] != 0.0) {
-                let j = list.partner[b.place(at)] as usize;
-                let (near, far) = match self.newton {
-                    true => (volume * b.volume[at], volume * b.volume[at]),
-                    false => (b.volume[at], volume),
-                };
-                let near = own_share * b.out[0][at] * near;
-                let far = self.half * shear(j) * b.out[1][at] * far;
-                own_energy += near;
-                t.energy += near + far;
-                // Force density times the one volume of the virial, or the force itself: V_i V_j either way.
-                let pull = -b.out[2][at] * volume * b.volume[at];
-                let y = [b.y[0][at], b.y[1][at], b.y[2][at]];
-                let products = SIX.map(|(c, d)| pull * y[c] * y[d]);
-                virial.iter_mut().zip(products).for_each(|(v, p)| *v += p);
+                let ends = [i, list.partner[b.place(at)] as usize].map(|r| list.particle[r] as usize);
+                own_energy += b.out[0][at];
                 if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
-                    atoms[list.particle[j] as usize] += far;
+                    atoms[ends[1]] += b.out[1][at];
                 }
                 if let Some(atoms) = t.per_atom_virial.as_deref_mut() {
-                    for record in [i, j] {
-                        let own = &mut atoms[list.particle[record] as usize];
-                        own.iter_mut().zip(products).for_each(|(v, p)| *v += 0.5 * p);
+                    let y = [b.y[0][at], b.y[1][at], b.y[2][at]];
+                    let products = SIX.map(|(c, d)| b.out[2][at] * y[c] * y[d]);
+                    for end in ends {
+                        atoms[end].iter_mut().zip(products).for_each(|(v, p)| *v += 0.5 * p);
                     }
                 }
             }
         }
-        t.virial.iter_mut().zip(virial).for_each(|(v, own)| *v += own);
+        t.energy += sums[0];
+        t.virial.iter_mut().zip(&sums[1..]).for_each(|(v, own)| *v += own);
         if let Some(atoms) = t.per_atom_energy.as_deref_mut() {
             atoms[list.particle[i] as usize] += own_energy;
         }

@@ -1,5 +1,6 @@
 //! Bond laws over the bonds in hand: forces, sums of both ends, energies.
 
+use super::super::chunk::SUMS;
 use super::super::isa::{Isa, Kernel};
 use super::super::lanes::Lanes;
 use super::super::rows::Rows;
@@ -8,6 +9,7 @@ use super::super::state::terms::Term;
 use super::kernel::{Block, Row, partners, scatter, stretch};
 use crate::families::law::COLUMNS;
 use crate::families::list::GROUP;
+use perigrain_base::math::vec3::SIX;
 use std::marker::PhantomData;
 use std::ptr::null;
 
@@ -187,15 +189,26 @@ impl<T: Term> Kernel for AddUp<'_, '_, '_, T> {
     }
 }
 
-/// Finds what [`BondLaw::squares`] of both ends weigh, ω w |xi|² times squares, and the pull along y over both volumes: the
-/// columns of what comes out. With θ and its unrelaxed part of each record, in rows of four; none where energies do not depend
-/// on them.
-pub struct Energies<'a, 'b, 'c, W>(pub Hand<'a, 'b, 'c, W>, pub &'a [f64]);
+/// What energies need besides.
+pub struct Looking<'a> {
+    /// θ and its unrelaxed part of each record, in rows of four; none where energies do not depend on them.
+    pub angles: &'a [f64],
+    /// Both ends have 15G/m as column 1; else that is part of the weight.
+    pub states: bool,
+    /// Share of the squares that counts for each end.
+    pub half: f64,
+    /// True forces: energies, not their densities.
+    pub newton: bool,
+}
+
+/// Energy and virial of the bonds in hand. What comes out of each: the energies of both ends, and the pull along y times both
+/// volumes, which makes the virial (force density times the one volume of it, or the force itself).
+pub struct Energies<'a, 'b, 'c, W>(pub Hand<'a, 'b, 'c, W>, pub &'a Looking<'a>);
 
 impl<W: BondLaw> Kernel for Energies<'_, '_, '_, W> {
-    type Out = ();
+    type Out = [f64; SUMS];
     #[inline(always)]
-    unsafe fn run<L: Isa>(self) {
+    unsafe fn run<L: Isa>(self) -> [f64; SUMS] {
         // SAFETY: the caller's promise.
         unsafe { energies::<L, W>(self.0.row, self.0.acting, self.1, self.0.block) }
     }
@@ -290,21 +303,23 @@ unsafe fn add_up<L: Rows, T: Term>(row: &Row, a: &Acting, b: &mut Block, sums: *
 }
 
 #[inline(always)]
-unsafe fn energies<L: Rows, W: BondLaw>(row: &Row, a: &Acting, angles: &[f64], b: &mut Block) {
+unsafe fn energies<L: Rows, W: BondLaw>(row: &Row, a: &Acting, look: &Looking, b: &mut Block) -> [f64; SUMS] {
     // SAFETY: the caller's promise.
     unsafe {
         stretch::<L, false>(b);
         stretch::<L, true>(b);
         let partner = row.body.partner.as_ptr();
+        let volume = L::splat(row.body.record.get_unchecked(row.i).volume);
         let own = near::<L>(a.ends, W::COLUMNS, row.i);
-        let turned = if angles.is_empty() { 0 } else { 2 };
-        let own_angles = near::<L>(angles, turned, row.i);
+        let turned = if look.angles.is_empty() { 0 } else { 2 };
+        let own_angles = near::<L>(look.angles, turned, row.i);
+        let mut sum = [Sum::<L>::none(); SUMS];
         let mut at = 0;
         while at < b.count {
             let place = b.place(at);
             let s = stretched::<L>(b, at, true, W::BACK, W::LIMITED);
             let ends: Ends<L> = [own, far(a.ends, W::COLUMNS, partner.add(place))];
-            let other = far::<L>(angles, turned, partner.add(place));
+            let other = far::<L>(look.angles, turned, partner.add(place));
             let angles = [
                 Angles {
                     now: own_angles[0],
@@ -316,13 +331,42 @@ unsafe fn energies<L: Rows, W: BondLaw>(row: &Row, a: &Acting, angles: &[f64], b
             let mut memory = recall::<L>(a, place, W::MEMORY);
             let omega = L::load(b.omega.as_ptr().add(at));
             let weight = L::load(b.weight.as_ptr().add(at));
-            let one = weight.mul(L::load(b.square.as_ptr().add(at)));
-            let squares = W::squares(&s, omega, &angles, &memory, &a.moment);
+            let partner_volume = L::load(b.volume.as_ptr().add(at));
+            let both = volume.mul(partner_volume);
+            let (mut near, mut far) = W::squares(&s, omega, &angles, &memory, &a.moment);
+            if look.states {
+                (near, far) = (near.mul(ends[0][1]), far.mul(ends[1][1]));
+            }
+            let one = weight.mul(L::load(b.square.as_ptr().add(at))).mul(L::splat(look.half));
+            (near, far) = match look.newton {
+                true => (near.mul(one).mul(both), far.mul(one).mul(both)),
+                false => (near.mul(one).mul(partner_volume), far.mul(one).mul(volume)),
+            };
+            near.store(b.out[0].as_mut_ptr().add(at));
+            far.store(b.out[1].as_mut_ptr().add(at));
+            sum[0].add(at, near.add(far), L::splat(1.0));
             let (near, far) = W::pull(&s, omega, &ends, &mut memory, &a.moment);
-            squares.0.mul(one).store(b.out[0].as_mut_ptr().add(at));
-            squares.1.mul(one).store(b.out[1].as_mut_ptr().add(at));
-            near.add(far).mul(weight).mul(L::splat(0.5)).store(b.out[2].as_mut_ptr().add(at));
+            let pull = near.add(far).mul(weight).mul(L::splat(-0.5)).mul(both);
+            pull.store(b.out[2].as_mut_ptr().add(at));
+            let y = [
+                L::load(b.y[0].as_ptr().add(at)),
+                L::load(b.y[1].as_ptr().add(at)),
+                L::load(b.y[2].as_ptr().add(at)),
+            ];
+            let p = [pull.mul(y[0]), pull.mul(y[1]), pull.mul(y[2])];
+            let mut k = 0;
+            while k < SIX.len() {
+                sum[1 + k].add(at, p[SIX[k].0], y[SIX[k].1]);
+                k += 1;
+            }
             at += L::WIDTH;
         }
+        let mut totals = [0.0; SUMS];
+        let mut k = 0;
+        while k < SUMS {
+            totals[k] = sum[k].total();
+            k += 1;
+        }
+        totals
     }
 }

@@ -130,6 +130,7 @@ pub unsafe fn run<K: Isa, W: BondLaw>(
             (7, _, false, true) => pull!(7, true, false, false, true),
             (10, _, false, true) => pull!(10, true, false, false, true),
             (16, _, false, true) => pull!(16, true, false, false, true),
+            (3 | 5 | 7, _, true, true) => pull!(7, true, true, false, true),
             (3, false, false, _) => pull!(3, false, false, false, false),
             (3, true, false, _) => pull!(3, true, false, false, false),
             (3, _, true, _) => pull!(3, true, true, false, false),
