@@ -23,7 +23,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
         .into());
     }
     let late = |stage: Stage| matches!(stage, Stage::EndOfStep | Stage::Output);
-    let outputs = s.plan.ops.iter().filter(|p| late(p.op.stage())).map(|p| p.when.clone());
+    let outputs = s.plan.ops.iter().filter(|p| late(p.about.stage)).map(|p| p.about.when.clone());
     let blocks = When::Every(rule.every).or(When::First).or(When::Last);
     let when = outputs.fold(blocks, When::or);
     s.ask_energy(&when);

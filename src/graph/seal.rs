@@ -66,8 +66,8 @@ impl<'a> Sealer<'a> {
     pub fn add(&mut self, ops: Vec<Box<dyn Op>>, span: Span) {
         for op in ops {
             let mut placed = Placed::new(op, Some(span));
-            if placed.op.stage() == Stage::PostForce && placed.level == Level::Outermost {
-                placed.level = self.level();
+            if placed.about.stage == Stage::PostForce && placed.about.level == Level::Outermost {
+                placed.about.level = self.level();
             }
             self.plan.add(placed);
         }
@@ -78,7 +78,7 @@ impl<'a> Sealer<'a> {
         for op in ops {
             let mut placed = Placed::new(op, Some(span));
             if self.plan.levels.is_some() {
-                placed.level = Level::At(level);
+                placed.about.level = Level::At(level);
             }
             self.plan.add(placed);
         }
@@ -153,11 +153,12 @@ impl<'a> Sealer<'a> {
 
     /// Places a provider so that it runs before what is added to `stage` next.
     fn provide(&mut self, op: Box<dyn Op>, when: When, provides: String) {
-        let mut placed = Placed::new(op, Some(self.span));
+        let mut placed = Placed { provides, ..Placed::new(op, Some(self.span)) };
+        placed.about.when = when;
         if self.plan.levels.is_some() {
-            placed.level = Level::Every;
+            placed.about.level = Level::Every;
         }
-        self.plan.add(Placed { when, provides, ..placed });
+        self.plan.add(placed);
     }
 
     fn enter(&mut self, name: String, span: Span) -> Result<()> {
@@ -244,8 +245,8 @@ impl<'a> Sealer<'a> {
     }
 
     fn widen(&mut self, key: &str, stage: Stage, when: &When) {
-        for p in self.plan.ops.iter_mut().filter(|p| p.op.stage() == stage && p.provides == key) {
-            p.when = p.when.clone().or(when.clone());
+        for p in self.plan.ops.iter_mut().filter(|p| p.about.stage == stage && p.provides == key) {
+            p.about.when = p.about.when.clone().or(when.clone());
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::seal::Sealer;
 use perigrain_base::diag::Result;
-use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::SealCx;
 use perigrain_styles::probe::{Ask, Probe, look_all};
 use perigrain_world::field::{
@@ -42,15 +42,9 @@ struct Virials {
 }
 
 impl Op for Virials {
-    fn name(&self) -> &str {
-        "virials of particles"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Force
-    }
-    fn needs(&self) -> Needs {
+    fn about(&self) -> About {
         // Contacts are there whenever virials of particles are asked for.
-        Needs::new()
+        let needs = Needs::new()
             .read(MASK | MOLECULE | BONDS)
             .read(
                 BOX | COLUMNS
@@ -67,7 +61,8 @@ impl Op for Virials {
                     | MASS
                     | KIND,
             )
-            .write(TALLY)
+            .write(TALLY);
+        About::new("virials of particles", Stage::Force, needs)
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if !t.atom_virial {

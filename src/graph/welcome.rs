@@ -2,7 +2,7 @@
 
 use super::seal::Sealer;
 use perigrain_base::diag::Result;
-use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::{Compute, Fix, SealCx};
 use perigrain_world::World;
 use perigrain_world::field::{BOX, COLUMNS, IMAGE, LISTS, X};
@@ -29,14 +29,8 @@ struct Welcome {
 }
 
 impl Op for Welcome {
-    fn name(&self) -> &str {
-        "welcome"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Exchange
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(BOX | X | IMAGE | LISTS).keep(COLUMNS)
+    fn about(&self) -> About {
+        About::new("welcome", Stage::Exchange, Needs::new().read(BOX | X | IMAGE | LISTS).keep(COLUMNS))
     }
     fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
         if self.roster != w.rebuild.roster {

@@ -342,8 +342,11 @@ impl Session {
         let shown = if post { text.as_str() } else { text.lines().next().unwrap_or("") };
         log.line(shown)?;
         if post {
-            let ops: Vec<(&str, f64, u64)> =
-                plan.ops.iter().map(|p| (p.op.name(), p.meter.time.as_secs_f64(), p.meter.calls)).collect();
+            let ops: Vec<(&str, f64, u64)> = plan
+                .ops
+                .iter()
+                .map(|p| (&*p.about.name, p.meter.time.as_secs_f64(), p.meter.calls))
+                .collect();
             log.line(perigrain_out::thermo::ops_table(&ops, finish.seconds).trim_end())?;
         }
         if o.interrupted {

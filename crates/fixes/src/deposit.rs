@@ -6,7 +6,7 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::{Args, ValueRef};
-use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::publish;
 use perigrain_styles::molecules::{Copy, Molecules};
 use perigrain_styles::newcomers::{Account, Ids, Newcomer, admit};
@@ -258,14 +258,8 @@ struct Drop {
 }
 
 impl Op for Drop {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn stage(&self) -> Stage {
-        Stage::Exchange
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(X).write(Fields::ALL)
+    fn about(&self) -> About {
+        About::new(&self.name, Stage::Exchange, Needs::new().read(X).write(Fields::ALL))
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let (fix, key) = (&self.fix, self.fix.key());

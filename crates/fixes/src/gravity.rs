@@ -7,7 +7,7 @@ use perigrain_base::math::lanes::Lanes;
 use perigrain_base::math::threes::{self, Threes};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::{Args, Param};
-use perigrain_plan::{Act, Gist, Needs, Op, Stage, Tick, When};
+use perigrain_plan::{Act, BlockSums, Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::{choice_or_refuse, variable_param};
 use perigrain_styles::matter::{check_masses, publish};
 use perigrain_styles::step_op::StepOp;
@@ -211,7 +211,7 @@ impl Fix for Declared {
         };
         let (slot, disabled) = (cx.slot(&format!("f_{}", self.id)), self.disabled);
         let access = Needs::new().read(X | MASS | MASK).add(F).write(SLOTS);
-        let pull = move |w: &World, t: &Tick, _: bool| -> Option<Act> {
+        let pull = move |w: &World, t: &Tick| -> Option<Act> {
             if t.unchanged || disabled {
                 return None;
             }
@@ -220,12 +220,12 @@ impl Fix for Declared {
             Some(Act::pull(perigrain_plan::Pull { bit, a }, move |s| {
                 let (mass, mask) = (&s.all.mass[s.start..][..s.x.len()], s.mask());
                 let energy = pulled(&mut s.f, &s.x, mass, mask, bit, a);
-                Gist { sums: [energy, 0.0, 0.0], most: 0.0 }
+                BlockSums { sums: [energy, 0.0, 0.0], most: 0.0 }
             }))
         };
-        let told = move |w: &mut World, t: &Tick, gist: Gist| publish(w, slot, t, gist.sums[0], &[]);
+        let told = move |w: &mut World, t: &Tick, sums: BlockSums| publish(w, slot, t, sums.sums[0], &[]);
         let name = format!("fix {} gravity", self.id);
-        let op = StepOp::new(name, Stage::PostForce, access, |_, _| Ok(())).taking_turns(pull, told);
+        let op = StepOp::new(name, Stage::PostForce, access, |_, _| Ok(())).fusing(pull, told);
         Ok(vec![op.boxed()])
     }
 

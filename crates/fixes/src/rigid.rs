@@ -348,16 +348,16 @@ impl Fix for Declared {
         let second = |me: Declared| {
             let mut crew = Crew::of(&me);
             move |w: &mut World, t: &Tick| {
-                if !t.unchanged {
+                if t.on {
+                    me.go_on(w, t, slot, &mut crew);
+                } else if !t.unchanged {
                     me.finish_step(w, t, slot, &mut crew);
                 }
                 Ok(())
             }
         };
-        let (me, mut crew) = (self.clone(), Crew::of(self));
-        let on = move |w: &mut World, t: &Tick| me.go_on(w, t, slot, &mut crew);
         let last = StepOp::new(name.clone(), Stage::FinalIntegrate, access(), second(self.clone()));
-        let (first, last) = (first.reporting(), last.reporting().and_on(on));
+        let (first, last) = (first.reporting(), last.reporting().going_on());
         let mut ops = vec![bodies.boxed(), first.boxed()];
         if cx.world().settings.lammps() {
             // Its setup sums up forces when it comes to this fix: those of fixes that stand below are missing.

@@ -7,7 +7,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::vec3::dot;
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference};
-use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::columns::VOLUME_PROPERTY;
 use perigrain_world::field::{BONDS, BOX, COLUMNS, F, KIND, LISTS, MASK, MOLECULE, RADIUS, TAG, TALLY, X};
@@ -135,18 +135,16 @@ impl Repulsion {
 }
 
 impl Op for Repulsion {
-    fn name(&self) -> &str {
-        "pair bpm/peri"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Force
-    }
-    fn needs(&self) -> Needs {
-        Needs::new()
-            .read(X | KIND | BONDS | BOX | TAG | LISTS | RADIUS | MASK | MOLECULE)
-            .add(F)
-            .write(TALLY)
-            .keep(COLUMNS)
+    fn about(&self) -> About {
+        About::new(
+            "pair bpm/peri",
+            Stage::Force,
+            Needs::new()
+                .read(X | KIND | BONDS | BOX | TAG | LISTS | RADIUS | MASK | MOLECULE)
+                .add(F)
+                .write(TALLY)
+                .keep(COLUMNS),
+        )
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let range = CONTACT * w.lattice.spacing[0];

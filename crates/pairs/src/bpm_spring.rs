@@ -6,7 +6,7 @@ use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{dot, sub};
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference};
-use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
@@ -127,17 +127,28 @@ struct Repulsion {
 }
 
 impl Op for Repulsion {
-    fn name(&self) -> &str {
-        "pair bpm/spring"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Force
-    }
-    fn needs(&self) -> Needs {
-        Needs::new()
-            .read(X | V | KIND | BONDS | BOX | MEMO | LISTS | RADIUS | FAMILIES | TAG | MOLECULE | X0 | MASK)
-            .add(F)
-            .write(TALLY)
+    fn about(&self) -> About {
+        About::new(
+            "pair bpm/spring",
+            Stage::Force,
+            Needs::new()
+                .read(
+                    X | V
+                        | KIND
+                        | BONDS
+                        | BOX
+                        | MEMO
+                        | LISTS
+                        | RADIUS
+                        | FAMILIES
+                        | TAG
+                        | MOLECULE
+                        | X0
+                        | MASK,
+                )
+                .add(F)
+                .write(TALLY),
+        )
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let period = w.periods();

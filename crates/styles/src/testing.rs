@@ -99,26 +99,22 @@ impl Bench {
     /// Runs the ops of one stage for the present step.
     pub fn stage(&mut self, ops: &mut [Box<dyn Op>], stage: Stage) -> Result<()> {
         let t = self.tick();
-        ops.iter_mut().filter(|o| o.stage() == stage).try_for_each(|o| o.run(&mut self.world, &t))
+        ops.iter_mut().filter(|o| o.about().stage == stage).try_for_each(|o| o.run(&mut self.world, &t))
     }
 
     /// What an op is told at the present step.
     pub fn tick(&self) -> Tick {
         let clock = &self.world.clock;
         Tick {
-            step: clock.step,
             first: clock.first,
             last: clock.last,
-            dt: clock.dt,
-            setup: false,
             unchanged: false,
-            ending: false,
             energy: true,
             virial: true,
             atom_energy: true,
-            phase: Default::default(),
             contacts: true,
             atom_virial: true,
+            ..Tick::between_runs(clock)
         }
     }
 
