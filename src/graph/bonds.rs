@@ -44,7 +44,7 @@ pub fn bond_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
     }
     let (first, last) = args.type_range(w.bonds.types)?;
     let kinds: Vec<u16> = (first..=last).collect();
-    let mut force = node.force.boxed();
+    let mut force = node.force.clone();
     force.coeff(&kinds, args, &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
     let span = node.span;

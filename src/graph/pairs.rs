@@ -81,7 +81,7 @@ pub fn pair_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
             .help("write the smaller type first, as `pair_coeff 1 2 …`")
             .into());
     }
-    let mut pair = node.pair.boxed();
+    let mut pair = node.pair.clone();
     pair.coeff(&pairs, args, &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
     pair.declare(w);
@@ -99,7 +99,7 @@ pub fn peri_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Conte
         let text = format!("`{}` comes before any pair_style", args.command());
         return fail(Code::WRONG_ORDER, args.name_span(), text);
     };
-    let mut pair = node.pair.boxed();
+    let mut pair = node.pair.clone();
     pair.modify(args.command(), args, &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
     if let Some(node) = &mut graph.pair {

@@ -4,12 +4,13 @@ mod context;
 
 use super::answers::Declared;
 use super::keywords::{self, Need, Sources};
-use super::node::Graph;
+use super::node::{FixNode, Graph};
 use super::values::{Evaluate, Keyword, Once, asks_forces};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Dep, RefKind, ValueRef, Vars};
 use perigrain_out::log::Log;
 use perigrain_plan::{Level, Op, Placed, Stage, StepPlan, When};
+use perigrain_styles::fix::Facts;
 use perigrain_styles::{Reading, SealCx, Shape};
 use perigrain_world::{SlotId, World};
 use std::collections::BTreeMap;
@@ -129,9 +130,14 @@ impl<'a> Sealer<'a> {
         self.world.parts.plastic.is_some()
     }
 
+    /// All fixes with what they tell of themselves.
+    pub fn facts(&self) -> impl Iterator<Item = (&'a FixNode, Facts)> {
+        self.graph.fixes.iter().map(|f| (f, f.fix.facts(self.world)))
+    }
+
     /// Whether a fix changes the box during the run.
     pub fn deforms(&self) -> bool {
-        self.graph.fixes.iter().any(|f| f.fix.deforms() != [false; 3])
+        self.facts().any(|(_, facts)| facts.deforms != [false; 3])
     }
 
     /// What is declared.

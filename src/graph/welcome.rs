@@ -10,11 +10,11 @@ use perigrain_world::field::{BOX, COLUMNS, IMAGE, LISTS, X};
 /// Adds the op, where some fix makes particles.
 pub fn seal(s: &mut Sealer) {
     let graph = s.graph();
-    if !graph.fixes.iter().any(|f| f.fix.makes_particles()) {
+    if !s.facts().any(|(_, facts)| facts.makes_particles) {
         return;
     }
-    let fixes = graph.fixes.iter().map(|f| f.fix.boxed()).collect();
-    let computes = graph.computes.iter().map(|c| c.compute.boxed()).collect();
+    let fixes = graph.fixes.iter().map(|f| f.fix.clone()).collect();
+    let computes = graph.computes.iter().map(|c| c.compute.clone()).collect();
     let op = Welcome { fixes, computes, roster: s.world().rebuild.roster };
     let span = s.span();
     s.add(vec![Box::new(op)], span);

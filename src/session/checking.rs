@@ -192,8 +192,9 @@ impl Session {
     /// A length of the box obeys one fix.
     fn check_box(&self, found: &mut Diagnostics) {
         let fixes = &self.graph.fixes;
+        let deforms = |f: &crate::graph::FixNode| f.fix.facts(&self.world).deforms;
         for (k, a) in fixes.iter().enumerate() {
-            let same = |b: &&crate::graph::FixNode| (0..3).any(|d| a.fix.deforms()[d] && b.fix.deforms()[d]);
+            let same = |b: &&crate::graph::FixNode| (0..3).any(|d| deforms(a)[d] && deforms(b)[d]);
             if let Some(b) = fixes[k + 1..].iter().find(same) {
                 let text = format!("fixes `{}` and `{}` both change the same length of the box", a.id, b.id);
                 found.push(Diagnostic::error(Code::CONFLICT, b.span, text).label(a.span, "the other one"));
@@ -203,7 +204,8 @@ impl Session {
 
     /// No integrator at all, and two on one particle.
     fn check_integrators(&self, span: Span, found: &mut Diagnostics) {
-        let moving: Vec<_> = self.graph.fixes.iter().filter(|f| f.fix.integrates()).collect();
+        let moving: Vec<_> =
+            self.graph.fixes.iter().filter(|f| f.fix.facts(&self.world).integrates).collect();
         if moving.is_empty() {
             found.push(
                 Diagnostic::warning(Code::NO_MOTION, span, "no fix moves any particle")

@@ -19,7 +19,7 @@ impl Session {
         let place = self.run_style_place(span);
         self.check_sub_styles(r, place, found);
         for f in &self.graph.fixes {
-            let Some(why) = f.fix.needs_whole_steps(&self.world) else { continue };
+            let Some(why) = f.fix.facts(&self.world).needs_whole_steps else { continue };
             let text = format!("fix {} has no part in steps of several lengths: {why}", f.style);
             found.push(
                 Diagnostic::error(Code::NOT_SUPPORTED, f.span, text)
@@ -72,7 +72,7 @@ impl Session {
             busy[r.bond] = true;
         }
         for f in &self.graph.fixes {
-            if f.fix.has_level() {
+            if f.fix.facts(&self.world).has_level {
                 busy[f.level.unwrap_or(outermost).min(outermost)] = true;
             }
             busy[outermost] |= f.style.starts_with("wall/");

@@ -1,6 +1,7 @@
 //! `run` and `write_dump`: seal the declarations, step, say how it went.
 
 use super::{Mode, Session, refuse};
+use crate::graph::Role;
 use crate::graph::build::Context;
 use crate::graph::dumps::once_dump;
 use crate::graph::env::DeckEnv;
@@ -8,7 +9,6 @@ use crate::graph::ledger;
 use crate::graph::ops::{ClearForces, Reneighbor};
 use crate::graph::seal::Sealer;
 use crate::graph::spatial;
-use crate::graph::{FixNode, Role};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_fixes::Minimizing;
 use perigrain_lang::{Args, Command, Script, Word};
@@ -179,8 +179,8 @@ impl Session {
             ledger::begin(&mut s);
         }
         crate::graph::dynamic::seal(&mut s)?;
-        let acts = |f: &&FixNode| !minimizing || f.fix.minimizing() == Minimizing::Acts;
-        for f in self.graph.fixes.iter().filter(acts) {
+        let all = s.facts().filter(|(_, facts)| !minimizing || facts.minimizing == Minimizing::Acts);
+        for (f, _) in all.collect::<Vec<_>>() {
             s.at_fix(f.span, f.level);
             let ops = f.fix.ops(&mut s)?;
             let stages = ledger::stages(&ops);

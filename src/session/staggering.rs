@@ -96,7 +96,8 @@ impl Session {
         const KNOWN: [&str; 2] = ["nve", "nve/sphere"];
         let p = &self.world.particles;
         let moves = |f: &&crate::graph::FixNode| {
-            let takes_over = (f.fix.integrates() && !KNOWN.contains(&f.style)) || f.style == "aveforce";
+            let takes_over =
+                (f.fix.facts(&self.world).integrates && !KNOWN.contains(&f.style)) || f.style == "aveforce";
             takes_over && (0..p.len()).any(|i| p.mask[i] & f.group.bit() != 0 && solid(i))
         };
         match self.graph.fixes.iter().find(moves) {

@@ -204,10 +204,6 @@ impl Fix for Declared {
         }
         Ok(ops)
     }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
-    }
 }
 
 /// Gives the particles their present size, and the old one back at the end.

@@ -2,7 +2,7 @@
 
 mod track;
 
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
@@ -228,12 +228,8 @@ impl Fix for Declared {
         Ok(vec![Box::new(Move { name, stretch, tracks, remap, group, when })])
     }
 
-    fn deforms(&self) -> [bool; 3] {
-        self.motions.each_ref().map(Option::is_some)
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { deforms: self.motions.each_ref().map(Option::is_some), ..Facts::default() }
     }
 }
 

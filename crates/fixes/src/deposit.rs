@@ -2,7 +2,7 @@
 
 mod words;
 
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::{Args, ValueRef};
@@ -233,16 +233,12 @@ impl Fix for Depositing {
         Ok(vec![Box::new(Drop { name, fix: self.clone(), span, slot, test, failed: 0 })])
     }
 
-    fn makes_particles(&self) -> bool {
-        true
+    fn facts(&self, _: &World) -> Facts {
+        Facts { makes_particles: true, ..Facts::default() }
     }
 
     fn shape(&self) -> Shape {
         Shape { scalar: true, ..Shape::default() }
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
     }
 }
 

@@ -92,10 +92,6 @@ impl Fix for Extremes {
     fn shape(&self) -> Shape {
         Shape { vector: 2 * self.values.len(), ..Shape::default() }
     }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
-    }
 }
 
 /// Looks at the values and keeps what is beyond all before.

@@ -1,6 +1,6 @@
 //! fix freeze: grains that nothing moves.
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
@@ -100,16 +100,12 @@ impl Fix for Declared {
         Ok(vec![op.in_every_level().boxed()])
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Absent
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Absent, ..Facts::default() }
     }
 
     fn shape(&self) -> Shape {
         Shape { vector: 3, vector_extensive: true, ..Shape::default() }
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
     }
 }
 

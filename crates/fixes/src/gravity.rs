@@ -1,6 +1,6 @@
 //! fix gravity: the same acceleration for everyone.
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::four::{Plain, has_avx2};
 use perigrain_base::math::lanes::Lanes;
@@ -233,15 +233,7 @@ impl Fix for Declared {
         Shape { scalar: true, scalar_extensive: true, ..Shape::default() }
     }
 
-    fn has_energy(&self) -> bool {
-        true
-    }
-
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Absent
-    }
-
-    fn pull(&self, flat: bool) -> Option<Pull> {
+    fn facts(&self, w: &World) -> Facts {
         let number = |p: &Param| match p {
             Param::Number(a) => Some(Reading::Const(*a)),
             Param::Ref(_) => None,
@@ -255,20 +247,14 @@ impl Fix for Declared {
                 number(x).zip(number(y)).zip(number(z)).map(|((x, y), z)| Pointer::Vector([x, y, z]))
             }
         };
-        let Param::Number(g) = self.magnitude else { return Some(Pull::Varying) };
-        let world = World::default();
-        Some(match pointer {
-            Some(pointer) => Pull::Constant(pointer.unit(&world, flat).map(|e| g * e)),
-            None => Pull::Varying,
-        })
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+        let pull = match (&self.magnitude, pointer) {
+            (Param::Number(g), Some(pointer)) => {
+                Pull::Constant(pointer.unit(w, w.settings.two_dimensional).map(|e| g * e))
+            }
+            _ => Pull::Varying,
+        };
+        let (minimizing, pull) = (Minimizing::Absent, Some(pull));
+        Facts { minimizing, pull, has_level: true, has_energy: true, ..Facts::default() }
     }
 }
 

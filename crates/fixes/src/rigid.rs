@@ -8,7 +8,7 @@ mod pass;
 
 pub use nve::{RigidNve, RigidNveSmall};
 
-use super::{Fix, FixStyle, no_option};
+use super::{Facts, Fix, FixStyle, no_option};
 use bodies::Split;
 use motion::Crew;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
@@ -392,21 +392,14 @@ impl Fix for Declared {
         no_option(args)
     }
 
-    fn integrates(&self) -> bool {
-        true
-    }
-
-    fn needs_whole_steps(&self, _w: &World) -> Option<&'static str> {
-        Some(
-            "its bodies add up the forces of a step once, and LAMMPS' count those of one level twice and leave others out",
-        )
-    }
-
-    fn adopts(&self) -> Option<&str> {
-        self.template.as_deref()
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts {
+            integrates: true,
+            needs_whole_steps: Some(
+                "its bodies add up the forces of a step once, and LAMMPS' count those of one level twice and leave others out",
+            ),
+            adopts: self.template.clone(),
+            ..Facts::default()
+        }
     }
 }

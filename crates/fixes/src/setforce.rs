@@ -1,7 +1,7 @@
 //! fix setforce: forces replaced by given ones.
 
 use super::components::Components;
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Act, BlockSums, Needs, Op, ParticleBlock, Stage, Tick};
@@ -84,16 +84,8 @@ impl Fix for Declared {
         Shape { vector: 3, vector_extensive: true, ..Shape::default() }
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, has_level: true, ..Facts::default() }
     }
 }
 

@@ -96,10 +96,6 @@ impl Pair for Contact {
     fn cutoff(&self, _w: &World) -> Option<f64> {
         self.table.values().map(|c| c[1]).reduce(f64::max)
     }
-
-    fn boxed(&self) -> Box<dyn Pair> {
-        Box::new(self.clone())
-    }
 }
 
 /// The op.

@@ -114,6 +114,7 @@ fn unknown(word: &Word, before: Option<&dyn PairStyle>, known: &[&'static str]) 
     d.help(format!("sub-styles: {}", known.join(" ")))
 }
 
+#[derive(Clone)]
 struct Declared {
     name: &'static str,
     overlay: bool,
@@ -142,7 +143,7 @@ impl Declared {
 
     /// Sub-style `k`, limited to its pairs.
     fn limited(&self, k: usize, types: usize) -> Box<dyn Pair> {
-        let mut sub = self.subs[k].boxed();
+        let mut sub = self.subs[k].clone();
         sub.restrict(&self.pairs_of(k, types));
         sub
     }
@@ -239,14 +240,5 @@ impl Pair for Declared {
             }
             self.limited(k, types).check(cx);
         }
-    }
-
-    fn boxed(&self) -> Box<dyn Pair> {
-        Box::new(Declared {
-            name: self.name,
-            overlay: self.overlay,
-            subs: self.subs.iter().map(|s| s.boxed()).collect(),
-            users: self.users.clone(),
-        })
     }
 }

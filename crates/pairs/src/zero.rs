@@ -83,8 +83,4 @@ impl Pair for Zero {
     fn cutoff(&self, _w: &World) -> Option<f64> {
         self.pairs.values().copied().reduce(f64::max)
     }
-
-    fn boxed(&self) -> Box<dyn Pair> {
-        Box::new(self.clone())
-    }
 }

@@ -2,6 +2,7 @@
 
 use super::probe::Probe;
 use super::{BuildCx, SealCx, Style};
+use dyn_clone::DynClone;
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
@@ -28,7 +29,7 @@ pub trait PairStyle: Style {
 }
 
 /// A declared pair style with its coefficients.
-pub trait Pair: Send {
+pub trait Pair: DynClone + Send {
     /// The style's name.
     fn name(&self) -> &'static str;
 
@@ -149,7 +150,6 @@ pub trait Pair: Send {
 
     /// Contradictions within the present declarations that a run would trip over, left as notes in `cx`.
     fn check(&self, _cx: &BuildCx) {}
-
-    /// A copy, so that a failing line changes nothing.
-    fn boxed(&self) -> Box<dyn Pair>;
 }
+
+dyn_clone::clone_trait_object!(Pair);

@@ -99,12 +99,11 @@ impl SealCx for Sealer<'_> {
     }
 
     fn pulls(&self) -> Vec<Pull> {
-        let flat = self.world.settings.two_dimensional;
-        self.graph.fixes.iter().filter_map(|f| f.fix.pull(flat)).collect()
+        self.facts().filter_map(|(_, facts)| facts.pull).collect()
     }
 
     fn adopts(&self, id: &str) -> Option<Option<String>> {
-        self.graph.find_fix(id).map(|f| f.fix.adopts().map(str::to_string))
+        self.graph.find_fix(id).map(|f| f.fix.facts(self.world).adopts)
     }
 
     fn log(&self) -> Log {
@@ -120,7 +119,7 @@ impl SealCx for Sealer<'_> {
     }
 
     fn bias(&self, r: &ValueRef) -> Option<Box<dyn Compute>> {
-        self.graph.knows_flow(&r.name).map(|c| c.boxed())
+        self.graph.knows_flow(&r.name).map(|c| c.compute.clone())
     }
 
     fn pair_styles(&self) -> Vec<&'static str> {
@@ -132,7 +131,7 @@ impl SealCx for Sealer<'_> {
     }
 
     fn bonds(&self) -> Option<Box<dyn BondForce>> {
-        self.graph.bond.as_ref().map(|b| b.force.boxed())
+        self.graph.bond.as_ref().map(|b| b.force.clone())
     }
 
     fn ask_energy(&mut self, when: &When) {

@@ -236,10 +236,6 @@ impl Pair for Declared {
             cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
         }
     }
-
-    fn boxed(&self) -> Box<dyn Pair> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

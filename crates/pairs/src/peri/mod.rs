@@ -402,8 +402,4 @@ impl Pair for Solid {
     fn cutoff(&self, _w: &World) -> Option<f64> {
         self.table.iter().map(|c| c.horizon).reduce(f64::max)
     }
-
-    fn boxed(&self) -> Box<dyn Pair> {
-        Box::new(self.clone())
-    }
 }
