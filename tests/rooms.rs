@@ -98,8 +98,12 @@ fn no_inherent_method_of_the_world_outside_its_crate() {
 
 #[test]
 fn traits_that_many_write_are_short() {
-    // What somebody who writes an op has to look through, given methods and those with a default alike.
-    for (file, name, most) in [("crates/plan/src/op.rs", "Op", 8), ("crates/styles/src/fix.rs", "Fix", 12)] {
+    // What somebody who writes an op, a fix or a pair style has to look through, methods with a default among them.
+    for (file, name, most) in [
+        ("crates/plan/src/op.rs", "Op", 8),
+        ("crates/styles/src/fix.rs", "Fix", 12),
+        ("crates/styles/src/pair.rs", "Pair", 12),
+    ] {
         let text = fs::read_to_string(root().join(file)).unwrap();
         let (_, from) = text.split_once(&format!("\npub trait {name}: ")).unwrap();
         let (body, _) = from.split_once("\n}").unwrap();

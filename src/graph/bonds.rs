@@ -93,7 +93,7 @@ pub fn check(graph: &Graph, w: &World, span: Span, found: &mut Diagnostics) {
 fn companion(graph: &Graph, node: &BondNode, span: Span, found: &mut Diagnostics) {
     let wanted = node.force.companions();
     let pair = graph.pair.iter().flat_map(|p| std::iter::once(p.pair.as_ref()).chain(p.pair.parts()));
-    if wanted.is_empty() || pair.into_iter().any(|p| wanted.contains(&p.name())) {
+    if wanted.is_empty() || pair.into_iter().any(|p| wanted.contains(&p.facts().name)) {
         return;
     }
     let text = format!("bond_style {} needs pair_style {}", node.force.name(), wanted.join(" or "));

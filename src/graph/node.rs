@@ -151,7 +151,7 @@ impl Graph {
     /// The pair style in force or its sub-style of this name, the first if there are several.
     fn pair_part(&self, style: &str) -> Option<&dyn Pair> {
         let pair = self.pair.as_ref()?.pair.as_ref();
-        std::iter::once(pair).chain(pair.parts()).find(|p| p.name() == style)
+        std::iter::once(pair).chain(pair.parts()).find(|p| p.facts().name == style)
     }
 
     /// What the deck's lines said of a coefficient.
@@ -258,14 +258,14 @@ impl Names for Graph {
     fn pair_styles(&self) -> Vec<&'static str> {
         let Some(node) = &self.pair else { return vec![] };
         let parts = node.pair.parts();
-        std::iter::once(node.pair.name()).chain(parts.iter().map(|p| p.name())).collect()
+        std::iter::once(node.pair.facts().name).chain(parts.iter().map(|p| p.facts().name)).collect()
     }
 
     fn coefficients(&self, bond: bool, style: &str) -> Option<&'static [&'static str]> {
         if bond {
             return self.bond.as_ref().filter(|b| b.force.name() == style).map(|b| b.force.coefficients());
         }
-        self.pair_part(style).map(|p| p.coefficients())
+        self.pair_part(style).map(|p| p.facts().coefficients)
     }
 
     fn users(&self, name: &Use) -> Vec<String> {

@@ -13,8 +13,8 @@ pub fn pair_style(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context)
     choose(graph, w, &mut Args::new(cmd), cx)?;
     keep_line(graph, w, cmd);
     let same = |old: &PairNode| {
-        let now = graph.pair.as_ref().map(|p| p.pair.name());
-        now == Some(old.pair.name()) && old.pair.parts().is_empty()
+        let now = graph.pair.as_ref().map(|p| p.pair.facts().name);
+        now == Some(old.pair.facts().name) && old.pair.parts().is_empty()
     };
     if let Some(old) = before.filter(same)
         && let Err(e) = restate(graph, w, &old, cx)

@@ -11,6 +11,7 @@ use perigrain_lang::{Dep, RefKind, ValueRef, Vars};
 use perigrain_out::log::Log;
 use perigrain_plan::{Level, Op, Placed, Stage, StepPlan, When};
 use perigrain_styles::fix::Facts;
+use perigrain_styles::probe::Probe;
 use perigrain_styles::{Reading, SealCx, Shape};
 use perigrain_world::{SlotId, World};
 use std::collections::BTreeMap;
@@ -128,6 +129,12 @@ impl<'a> Sealer<'a> {
     /// Whether the pair style in force has plastic grains.
     pub fn grains_are_plastic(&self) -> bool {
         self.world.parts.plastic.is_some()
+    }
+
+    /// Whom to ask about single pairs, see [`Pair::probes`](perigrain_styles::Pair::probes).
+    fn probes_of(&self, bonds: bool) -> Result<Vec<Box<dyn Probe>>> {
+        let probes = self.graph.pair.as_ref().map_or(Ok(vec![]), |node| node.pair.probes(self.world, bonds));
+        Ok(probes?.into_iter().map(|(_, probe)| probe).collect())
     }
 
     /// All fixes with what they tell of themselves.

@@ -26,8 +26,8 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
         s.add(ask(probes), span);
         return Ok(());
     };
-    for (k, probes) in pair.probes_by_part(s.world())? {
-        s.add_forces(ask(probes), span, respa.of_pair(k));
+    for (k, probe) in pair.probes(s.world(), false)? {
+        s.add_forces(ask(vec![probe]), span, respa.of_pair(k));
     }
     Ok(())
 }

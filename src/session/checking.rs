@@ -105,7 +105,7 @@ impl Session {
         if !missing.is_empty() {
             let text = format!(
                 "pair_style {} has no coefficients for types {}",
-                node.pair.name(),
+                node.pair.facts().name,
                 missing.join(", ")
             );
             found.push(
@@ -125,7 +125,7 @@ impl Session {
 
     /// Facts of the scene that a pair style uses and nobody has set.
     fn check_facts(&self, pair: &dyn Pair, span: Span, found: &mut Diagnostics) {
-        for fact in pair.needs() {
+        for fact in pair.facts().needs {
             // LAMMPS' default, spheres of diameter and density 1, is what reduced units are for.
             if self.world.settings.units.name() == "lj" && ["diameter", "density"].contains(fact) {
                 continue;
@@ -134,8 +134,10 @@ impl Session {
             if self.settled(fact) || (*fact == "density" && self.settled("mass")) {
                 continue;
             }
-            let text =
-                format!("the {fact} of particles was never set, and pair_style {} uses it", pair.name());
+            let text = format!(
+                "the {fact} of particles was never set, and pair_style {} uses it",
+                pair.facts().name
+            );
             let warning = Diagnostic::warning(Code::NEVER_SET, span, text);
             found.push(warning.help(format!("add `set group all {fact} …`")));
         }
@@ -144,8 +146,8 @@ impl Session {
     /// Force densities and forces added up in one column.
     fn check_units_of_force(&self, pair: &dyn Pair, span: Span, found: &mut Diagnostics) {
         let parts = pair.parts();
-        let densities = parts.iter().any(|p| p.true_forces() == Some(false));
-        let forces = parts.iter().any(|p| p.true_forces() != Some(false));
+        let densities = parts.iter().any(|p| p.facts().true_forces == Some(false));
+        let forces = parts.iter().any(|p| p.facts().true_forces != Some(false));
         if densities && forces && !self.settled("mass") {
             let text = "peridynamic force densities (with the density as mass) and granular forces meet in one scene: \
                         momentum is not conserved, and grains meet bodies that hardly move";

@@ -43,7 +43,7 @@ impl Session {
     fn check_sub_styles(&self, r: &Respa, place: Span, found: &mut Diagnostics) {
         let Some(subs) = &r.subs else { return };
         let Some(node) = &self.graph.pair else { return };
-        let (parts, name) = (node.pair.parts(), node.pair.name());
+        let (parts, name) = (node.pair.parts(), node.pair.facts().name);
         let d = match parts.len() {
             n if n == subs.len() => return,
             0 => {
@@ -53,7 +53,7 @@ impl Session {
             n => {
                 let text =
                     format!("`hybrid` gives {} levels, and pair_style {name} has {n} sub-styles", subs.len());
-                let names: Vec<&str> = parts.iter().map(|p| p.name()).collect();
+                let names: Vec<&str> = parts.iter().map(|p| p.facts().name).collect();
                 Diagnostic::error(Code::CONFLICT, place, text)
                     .help(format!("one level for each, in this order: {}", names.join(", ")))
             }

@@ -200,7 +200,7 @@ impl Session {
             log.line(&format!("  orthogonal box = ({}) to ({})", text(d.lo), text(d.hi)))?;
         }
         if let Some(node) = &self.graph.pair {
-            log.line(&format!("  restoring pair style {} from restart", node.pair.name()))?;
+            log.line(&format!("  restoring pair style {} from restart", node.pair.facts().name))?;
         }
         if let Some(node) = &self.graph.bond {
             log.line(&format!("  restoring bond style {} from restart", node.force.name()))?;

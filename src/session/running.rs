@@ -160,8 +160,8 @@ impl Session {
         crate::graph::regions::seal(&mut s)?;
         if let Some(node) = &self.graph.pair {
             s.at(node.span);
-            for (k, ops) in node.pair.ops_by_part(&mut s)? {
-                s.add_forces(ops, node.span, respa.of_pair(k));
+            for (k, op) in node.pair.ops(&mut s)? {
+                s.add_forces(vec![op], node.span, respa.of_pair(k));
             }
             if s.plan.levels.is_some() && s.grains_are_plastic() {
                 let text = "plastic grains (`mdr`) grow once in a step, and under run_style respa it has several lengths";

@@ -40,7 +40,7 @@ pub use build::{BuildCx, Chunking, Names, Shape, Use, UseKind};
 pub use command::{Act, CommandStyle};
 pub use compute::{Compute, ComputeStyle};
 pub use dump::{Dump, DumpStyle};
-pub use fix::{Facts, Fix, FixStyle};
+pub use fix::{Fix, FixStyle};
 pub use pair::{Pair, PairStyle, TypePairs};
 pub use seal::{PlaceTest, Pull, Reading, SealCx, Text, Wants};
 

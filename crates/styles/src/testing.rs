@@ -233,7 +233,8 @@ impl SealCx for Bench {
     fn ask_atom_energy(&mut self, _when: &When) {}
     fn ask_atom_virial(&mut self, _when: &When) {}
     fn probes(&mut self) -> Result<Vec<Box<dyn Probe>>> {
-        self.pair.as_ref().map_or(Ok(vec![]), |p| p.probes(&self.world))
+        let probes = self.pair.as_ref().map_or(Ok(vec![]), |p| p.probes(&self.world, false));
+        Ok(probes?.into_iter().map(|(_, probe)| probe).collect())
     }
     fn energy_fixes(&self) -> Vec<String> {
         self.energy_fixes.clone()

@@ -7,6 +7,7 @@ use perigrain_lang::{RefKind, ValueRef};
 use perigrain_out::log::Log;
 use perigrain_pairs::bond::BondForce;
 use perigrain_plan::{LeftOut, Level, Op, Stage, When};
+use perigrain_styles::pair::Deck;
 use perigrain_styles::probe::Probe;
 use perigrain_styles::{Compute, Names, PlaceTest, Pull, Reading, SealCx, Text, Wants};
 use perigrain_world::adapted::Coefficient;
@@ -155,15 +156,15 @@ impl SealCx for Sealer<'_> {
     }
 
     fn probes(&mut self) -> Result<Vec<Box<dyn Probe>>> {
-        self.graph.pair.as_ref().map_or(Ok(vec![]), |node| node.pair.probes(self.world))
+        self.probes_of(false)
     }
 
     fn singles(&mut self) -> Result<Vec<Box<dyn Probe>>> {
-        self.graph.pair.as_ref().map_or(Ok(vec![]), |node| node.pair.singles(self.world))
+        self.probes_of(true)
     }
 
     fn cutoff(&mut self) -> Option<f64> {
-        self.graph.pair.as_ref()?.pair.cutoff(self.world)
+        self.graph.pair.as_ref()?.pair.scales(self.world, Deck::default()).cutoff
     }
 
     fn energy_fixes(&self) -> Vec<String> {
