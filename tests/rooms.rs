@@ -97,6 +97,23 @@ fn no_inherent_method_of_the_world_outside_its_crate() {
 }
 
 #[test]
+fn traits_that_many_write_are_short() {
+    // What somebody who writes an op, a fix or a pair style has to look through, methods with a default among them.
+    for (file, name, most) in [
+        ("crates/plan/src/op.rs", "Op", 8),
+        ("crates/styles/src/fix.rs", "Fix", 12),
+        ("crates/styles/src/pair.rs", "Pair", 12),
+    ] {
+        let text = fs::read_to_string(root().join(file)).unwrap();
+        let (_, from) = text.split_once(&format!("\npub trait {name}: ")).unwrap();
+        let (body, _) = from.split_once("\n}").unwrap();
+        let methods = body.lines().filter(|line| line.starts_with("    fn ")).count();
+        println!("{name}: {methods} methods");
+        assert!((1..=most).contains(&methods), "{file}: `{name}` has {methods} methods, {most} at most");
+    }
+}
+
+#[test]
 fn every_file_opens_with_one_sentence() {
     let mut wrong = String::new();
     for folder in ["src", "crates", "tests", "benches"] {

@@ -65,9 +65,9 @@ impl Declared {
     pub fn new(w: &World, graph: &Graph) -> Self {
         let pair = graph.pair.as_ref().map(|p| &p.pair);
         Self {
-            pair: pair.map(|p| p.name()),
+            pair: pair.map(|p| p.facts().name),
             // One that still lacks coefficients has something to tell.
-            single: pair.is_some_and(|p| p.singles(w).map_or(true, |probes| !probes.is_empty())),
+            single: pair.is_some_and(|p| p.probes(w, true).map_or(true, |probes| !probes.is_empty())),
             bond: graph.bond.as_ref().map(|b| b.force.name()),
             computes: graph.computes.iter().map(|c| c.id.clone()).collect(),
             fixes: graph.fixes.iter().map(|f| f.id.clone()).collect(),

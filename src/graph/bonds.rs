@@ -44,7 +44,7 @@ pub fn bond_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
     }
     let (first, last) = args.type_range(w.bonds.types)?;
     let kinds: Vec<u16> = (first..=last).collect();
-    let mut force = node.force.boxed();
+    let mut force = node.force.clone();
     force.coeff(&kinds, args, &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
     let span = node.span;
@@ -93,7 +93,7 @@ pub fn check(graph: &Graph, w: &World, span: Span, found: &mut Diagnostics) {
 fn companion(graph: &Graph, node: &BondNode, span: Span, found: &mut Diagnostics) {
     let wanted = node.force.companions();
     let pair = graph.pair.iter().flat_map(|p| std::iter::once(p.pair.as_ref()).chain(p.pair.parts()));
-    if wanted.is_empty() || pair.into_iter().any(|p| wanted.contains(&p.name())) {
+    if wanted.is_empty() || pair.into_iter().any(|p| wanted.contains(&p.facts().name)) {
         return;
     }
     let text = format!("bond_style {} needs pair_style {}", node.force.name(), wanted.join(" or "));

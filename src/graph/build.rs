@@ -294,11 +294,11 @@ fn fix_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -
     if args.is_empty() {
         return fail(Code::MISSING_ARGUMENT, args.here(), "fix_modify needs an option");
     }
-    let mut fix = graph.fixes[k].fix.boxed();
+    let mut fix = graph.fixes[k].fix.clone();
     let (mut energy, mut level) = (graph.fixes[k].energy, graph.fixes[k].level);
     while !args.is_empty() {
         let word = args.here();
-        if fix.has_level() && args.eat("respa") {
+        if fix.facts(w).has_level && args.eat("respa") {
             let from_one = args.integer_from(0, "the level, from 1, or 0 for the outermost")?;
             level = usize::try_from(from_one - 1).ok();
             continue;
@@ -308,7 +308,7 @@ fn fix_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -
             continue;
         }
         energy = args.flag("energy")?;
-        if energy && !fix.has_energy() {
+        if energy && !fix.facts(w).has_energy {
             let text = format!("fix {} has no energy to add", graph.fixes[k].style);
             return fail(Code::CONFLICT, word, text);
         }
@@ -363,7 +363,7 @@ fn compute_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
     if args.is_empty() {
         return fail(Code::MISSING_ARGUMENT, args.here(), "compute_modify needs an option");
     }
-    let mut compute = graph.computes[k].compute.boxed();
+    let mut compute = graph.computes[k].compute.clone();
     while !args.is_empty() {
         compute.modify(args, &cx.build(graph, w, id, GroupId::ALL))?;
     }

@@ -54,7 +54,7 @@ pub fn dump_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Conte
     if args.is_empty() {
         return fail(Code::MISSING_ARGUMENT, args.here(), "dump_modify needs an option");
     }
-    let mut dump = graph.dumps[k].dump.boxed();
+    let mut dump = graph.dumps[k].dump.clone();
     dump.modify(args, &cx.build(graph, w, id, GroupId::ALL))?;
     args.finish()?;
     if let Some(every) = dump.every() {

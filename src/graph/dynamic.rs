@@ -4,7 +4,7 @@ use super::node::{FixNode, Graph};
 use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
 use perigrain_lang::{RefKind, ValueRef};
-use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::surface::choose;
 use perigrain_styles::{Reading, SealCx};
@@ -97,17 +97,11 @@ struct Choose {
 }
 
 impl Op for Choose {
-    fn name(&self) -> &str {
-        &self.title
-    }
-    fn stage(&self) -> Stage {
-        Stage::PostForce
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(X | REGIONS | SLOTS).write(MASK)
-    }
-    fn when(&self) -> When {
-        self.when.clone()
+    fn about(&self) -> About {
+        About {
+            when: self.when.clone(),
+            ..About::new(&self.title, Stage::PostForce, Needs::new().read(X | REGIONS | SLOTS).write(MASK))
+        }
     }
     fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
         let mut mask = std::mem::take(&mut w.particles.mask);

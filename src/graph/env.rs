@@ -362,7 +362,7 @@ impl Values for DeckValues<'_> {
     }
 
     fn flow(&mut self, w: &mut World, compute: &ValueRef) -> Result<Flow> {
-        match self.graph.knows_flow(&compute.name).and_then(|c| c.flow(w)) {
+        match self.graph.knows_flow(&compute.name).and_then(|c| c.compute.flow(w)) {
             Some(flow) => Ok(flow),
             None => fail(Code::WRONG_KIND, compute.span, format!("`{compute}` takes no flow away")),
         }

@@ -10,9 +10,9 @@ use perigrain_styles::{SealCx, ledger};
 /// # Errors
 /// Two guards.
 pub fn seal(s: &mut Sealer) -> Result<()> {
-    let mut all = s.graph().fixes.iter().filter_map(|f| Some((f, f.fix.guard()?)));
-    let Some((node, rule)) = all.next() else { return Ok(()) };
-    if let Some((other, _)) = all.next() {
+    let all: Vec<_> = s.facts().filter_map(|(f, facts)| Some((f, facts.guard?))).collect();
+    let [(node, rule), others @ ..] = &all[..] else { return Ok(()) };
+    if let Some((other, _)) = others.first() {
         return Err(Diagnostic::error(
             Code::CONFLICT,
             other.span,
@@ -23,7 +23,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
         .into());
     }
     let late = |stage: Stage| matches!(stage, Stage::EndOfStep | Stage::Output);
-    let outputs = s.plan.ops.iter().filter(|p| late(p.op.stage())).map(|p| p.when.clone());
+    let outputs = s.plan.ops.iter().filter(|p| late(p.about.stage)).map(|p| p.about.when.clone());
     let blocks = When::Every(rule.every).or(When::First).or(When::Last);
     let when = outputs.fold(blocks, When::or);
     s.ask_energy(&when);
@@ -35,6 +35,6 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
         let sheet = ledger::sheet(w, &mut probes)?;
         Ok(Energy { residual: sheet.residual(), held: sheet.held(), turnover: sheet.turnover() })
     });
-    s.plan.guard = Some(Guard { name, rule, when, look, say: Box::new(move |line| log.line(line)) });
+    s.plan.guard = Some(Guard { name, rule: *rule, when, look, say: Box::new(move |line| log.line(line)) });
     Ok(())
 }

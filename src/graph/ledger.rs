@@ -74,5 +74,5 @@ pub fn end(s: &mut Sealer) -> Result<()> {
 
 /// The stages of some ops.
 pub fn stages(ops: &[Box<dyn Op>]) -> Vec<Stage> {
-    ops.iter().map(|op| op.stage()).collect()
+    ops.iter().map(|op| op.about().stage).collect()
 }

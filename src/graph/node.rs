@@ -7,7 +7,7 @@ use perigrain_lang::{RefKind, ValueRef};
 use perigrain_pairs::bond::BondForce;
 use perigrain_styles::{Compute, Dump, Fix, Names, Pair, Shape, Use, UseKind};
 use perigrain_world::adapted::Coefficient;
-use perigrain_world::{GroupId, Said};
+use perigrain_world::{GroupId, Said, World};
 use std::collections::BTreeMap;
 
 /// Which node.
@@ -43,6 +43,7 @@ pub struct Node {
 }
 
 /// The pair style in force.
+#[derive(Clone)]
 pub struct PairNode {
     /// The style with its coefficients.
     pub pair: Box<dyn Pair>,
@@ -53,6 +54,7 @@ pub struct PairNode {
 }
 
 /// The bond style in force.
+#[derive(Clone)]
 pub struct BondNode {
     /// The style with its coefficients.
     pub force: Box<dyn BondForce>,
@@ -63,6 +65,7 @@ pub struct BondNode {
 }
 
 /// A fix in force.
+#[derive(Clone)]
 pub struct FixNode {
     /// Its ID.
     pub id: String,
@@ -83,6 +86,7 @@ pub struct FixNode {
 }
 
 /// A compute in force.
+#[derive(Clone)]
 pub struct ComputeNode {
     /// Its ID.
     pub id: String,
@@ -95,6 +99,7 @@ pub struct ComputeNode {
 }
 
 /// A dump in force.
+#[derive(Clone)]
 pub struct DumpNode {
     /// Its ID.
     pub id: String,
@@ -142,41 +147,11 @@ fn place(span: Span) -> (FileId, u32, u32) {
     (span.file, span.start, span.end)
 }
 
-impl Clone for PairNode {
-    fn clone(&self) -> Self {
-        Self { pair: self.pair.boxed(), span: self.span, lines: self.lines.clone() }
-    }
-}
-
-impl Clone for BondNode {
-    fn clone(&self) -> Self {
-        Self { force: self.force.boxed(), span: self.span, lines: self.lines.clone() }
-    }
-}
-
-impl Clone for FixNode {
-    fn clone(&self) -> Self {
-        Self { id: self.id.clone(), fix: self.fix.boxed(), lines: self.lines.clone(), ..*self }
-    }
-}
-
-impl Clone for ComputeNode {
-    fn clone(&self) -> Self {
-        Self { id: self.id.clone(), compute: self.compute.boxed(), ..*self }
-    }
-}
-
-impl Clone for DumpNode {
-    fn clone(&self) -> Self {
-        Self { id: self.id.clone(), file: self.file.clone(), dump: self.dump.boxed(), ..*self }
-    }
-}
-
 impl Graph {
     /// The pair style in force or its sub-style of this name, the first if there are several.
     fn pair_part(&self, style: &str) -> Option<&dyn Pair> {
         let pair = self.pair.as_ref()?.pair.as_ref();
-        std::iter::once(pair).chain(pair.parts()).find(|p| p.name() == style)
+        std::iter::once(pair).chain(pair.parts()).find(|p| p.facts().name == style)
     }
 
     /// What the deck's lines said of a coefficient.
@@ -226,12 +201,12 @@ impl Graph {
 
 impl Graph {
     /// The temperature that knows the flow which a compute takes away: itself, or that of its `bias`.
-    pub fn knows_flow(&self, id: &str) -> Option<&dyn Compute> {
-        let mut compute = &*self.find_compute(id)?.compute;
+    pub fn knows_flow(&self, id: &str) -> Option<&ComputeNode> {
+        let mut node = self.find_compute(id)?;
         // At most as many as there are computes: nobody is its own bias.
         for _ in 0..self.computes.len() {
-            let Some(r) = compute.bias() else { return Some(compute) };
-            compute = &*self.find_compute(&r.name)?.compute;
+            let Some(r) = node.compute.bias() else { return Some(node) };
+            node = self.find_compute(&r.name)?;
         }
         None
     }
@@ -259,26 +234,21 @@ impl Names for Graph {
     }
 
     fn extensive(&self, r: &ValueRef) -> bool {
-        let shape = match r.kind {
-            RefKind::Fix => {
-                return self.find_fix(&r.name).is_some_and(|f| f.fix.extensive(&r.index));
+        match r.kind {
+            RefKind::Fix => self.find_fix(&r.name).is_some_and(|f| f.fix.extensive(&r.index)),
+            RefKind::Compute => {
+                self.find_compute(&r.name).is_some_and(|c| c.compute.shape().extensive(&r.index))
             }
-            RefKind::Compute => self.find_compute(&r.name).map(|c| c.compute.shape()),
-            _ => None,
-        };
-        shape.is_some_and(|s| match r.index.len() {
-            0 => s.scalar_extensive,
-            1 => s.vector_extensive,
-            _ => s.array_extensive,
-        })
+            _ => false,
+        }
     }
 
     fn fix_style(&self, id: &str) -> Option<&'static str> {
         self.find_fix(id).map(|f| f.style)
     }
 
-    fn counting_fix(&self) -> Option<(&str, &'static str)> {
-        self.fixes.iter().find(|f| f.fix.counts_steps()).map(|f| (f.id.as_str(), f.style))
+    fn counting_fix(&self, w: &World) -> Option<(&str, &'static str)> {
+        self.fixes.iter().find(|f| f.fix.facts(w).counts_steps).map(|f| (f.id.as_str(), f.style))
     }
 
     fn growing_dump(&self) -> Option<&str> {
@@ -288,14 +258,14 @@ impl Names for Graph {
     fn pair_styles(&self) -> Vec<&'static str> {
         let Some(node) = &self.pair else { return vec![] };
         let parts = node.pair.parts();
-        std::iter::once(node.pair.name()).chain(parts.iter().map(|p| p.name())).collect()
+        std::iter::once(node.pair.facts().name).chain(parts.iter().map(|p| p.facts().name)).collect()
     }
 
     fn coefficients(&self, bond: bool, style: &str) -> Option<&'static [&'static str]> {
         if bond {
             return self.bond.as_ref().filter(|b| b.force.name() == style).map(|b| b.force.coefficients());
         }
-        self.pair_part(style).map(|p| p.coefficients())
+        self.pair_part(style).map(|p| p.facts().coefficients)
     }
 
     fn users(&self, name: &Use) -> Vec<String> {

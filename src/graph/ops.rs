@@ -3,7 +3,7 @@
 use super::spatial;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
-use perigrain_plan::{Act, Gist, Level, Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Act, BlockSums, Level, Needs, Op, Stage, Tick};
 use perigrain_world::bonds::LostBond;
 use perigrain_world::columns::HEATFLOW;
 use perigrain_world::field::{COLUMNS, F, FACTS, FAMILIES, Fields, TAG, TALLY, TORQUE, TRAVEL, X, X0};
@@ -31,15 +31,13 @@ pub enum Lost {
 }
 
 impl Op for Reneighbor {
-    fn name(&self) -> &str {
-        "reneighbor"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Neighbor
-    }
-    fn needs(&self) -> Needs {
+    fn about(&self) -> About {
         // Grains are put in the order of space, with all that belongs to them.
-        Needs::new().read(X | TRAVEL | FAMILIES | TAG | X0).write(Fields::ALL)
+        About::new(
+            "reneighbor",
+            Stage::Neighbor,
+            Needs::new().read(X | TRAVEL | FAMILIES | TAG | X0).write(Fields::ALL),
+        )
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if t.setup {
@@ -243,17 +241,15 @@ fn hold(w: &mut World) {
 pub struct ClearForces;
 
 impl Op for ClearForces {
-    fn name(&self) -> &str {
-        "clear forces"
-    }
-    fn stage(&self) -> Stage {
-        Stage::PreForce
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().write(F | TORQUE | COLUMNS | TALLY | FACTS)
-    }
-    fn level(&self) -> Level {
-        Level::Every
+    fn about(&self) -> About {
+        About {
+            level: Level::Every,
+            ..About::new(
+                "clear forces",
+                Stage::PreForce,
+                Needs::new().write(F | TORQUE | COLUMNS | TALLY | FACTS),
+            )
+        }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let cleared = std::mem::take(&mut w.parts.cleared);
@@ -272,10 +268,10 @@ impl Op for ClearForces {
         }
         Ok(())
     }
-    fn on_stretches(&self, _: &World, _: &Tick, on: bool) -> Option<Act> {
-        on.then(Act::clear)
+    fn fusible(&self, _: &World, t: &Tick) -> Option<Act> {
+        t.on.then(Act::clear)
     }
-    fn took_turns(&mut self, w: &mut World, _: &Tick, _: Gist) {
+    fn fused(&mut self, w: &mut World, _: &Tick, _: BlockSums) {
         w.parts.cleared = true;
     }
 }

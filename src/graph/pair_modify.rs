@@ -29,7 +29,7 @@ pub fn pair_modify(graph: &Graph, w: &World, args: &mut Args, cx: &Context) -> R
     };
     args.clone().expect("a keyword such as shift or mix")?;
     if args.eat("pair") {
-        part(&node.pair.parts().iter().map(|p| p.name()).collect::<Vec<_>>(), args)?;
+        part(&node.pair.parts().iter().map(|p| p.facts().name).collect::<Vec<_>>(), args)?;
     }
     let (mut shift, mut tail) = (false, false);
     while let Some(word) = args.next() {

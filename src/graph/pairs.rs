@@ -13,8 +13,8 @@ pub fn pair_style(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context)
     choose(graph, w, &mut Args::new(cmd), cx)?;
     keep_line(graph, w, cmd);
     let same = |old: &PairNode| {
-        let now = graph.pair.as_ref().map(|p| p.pair.name());
-        now == Some(old.pair.name()) && old.pair.parts().is_empty()
+        let now = graph.pair.as_ref().map(|p| p.pair.facts().name);
+        now == Some(old.pair.facts().name) && old.pair.parts().is_empty()
     };
     if let Some(old) = before.filter(same)
         && let Err(e) = restate(graph, w, &old, cx)
@@ -81,7 +81,7 @@ pub fn pair_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
             .help("write the smaller type first, as `pair_coeff 1 2 …`")
             .into());
     }
-    let mut pair = node.pair.boxed();
+    let mut pair = node.pair.clone();
     pair.coeff(&pairs, args, &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
     pair.declare(w);
@@ -99,7 +99,7 @@ pub fn peri_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Conte
         let text = format!("`{}` comes before any pair_style", args.command());
         return fail(Code::WRONG_ORDER, args.name_span(), text);
     };
-    let mut pair = node.pair.boxed();
+    let mut pair = node.pair.clone();
     pair.modify(args.command(), args, &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
     if let Some(node) = &mut graph.pair {

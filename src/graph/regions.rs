@@ -5,7 +5,7 @@ use super::node::Graph;
 use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{RefKind, Value, ValueRef, Vars};
-use perigrain_plan::{Level, Needs, Op, Stage, Tick, When};
+use perigrain_plan::{About, Level, Needs, Op, Stage, Tick, When};
 use perigrain_styles::{Reading, SealCx};
 use perigrain_world::field::{REGIONS, SLOTS};
 use perigrain_world::region::Variable;
@@ -105,20 +105,12 @@ struct PlaceRegion {
 }
 
 impl Op for PlaceRegion {
-    fn name(&self) -> &str {
-        &self.title
-    }
-    fn stage(&self) -> Stage {
-        self.stage
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(SLOTS).write(REGIONS)
-    }
-    fn in_setup(&self) -> bool {
-        true
-    }
-    fn level(&self) -> Level {
-        Level::Every
+    fn about(&self) -> About {
+        About {
+            in_setup: true,
+            level: Level::Every,
+            ..About::new(&self.title, self.stage, Needs::new().read(SLOTS).write(REGIONS))
+        }
     }
     fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
         let values: Vec<f64> = self.readings.iter().map(|r| r.get(w)).collect();

@@ -6,7 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, ValueRef};
 use perigrain_out::file::Pattern;
 use perigrain_out::restart::{Saving, write};
-use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::{BuildCx, SealCx, Use, UseKind};
 use perigrain_world::adapted;
 use perigrain_world::columns::{LEVEL, PLASTIC_BEGUN, PLASTIC_COLUMNS};
@@ -154,20 +154,12 @@ struct Write {
 }
 
 impl Op for Write {
-    fn name(&self) -> &str {
-        "restart"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Output
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(Fields::ALL).keep(MEMO)
-    }
-    fn when(&self) -> When {
-        self.when.clone()
-    }
-    fn in_setup(&self) -> bool {
-        false
+    fn about(&self) -> About {
+        About {
+            when: self.when.clone(),
+            in_setup: false,
+            ..About::new("restart", Stage::Output, Needs::new().read(Fields::ALL).keep(MEMO))
+        }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if t.step == t.first {

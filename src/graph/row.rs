@@ -4,7 +4,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::Value;
 use perigrain_out::log::Log;
 use perigrain_out::thermo::{Column, Kind, Layout, memory_line};
-use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::Reading;
 use perigrain_world::field::{FACTS, LISTS, SLOTS};
 use perigrain_world::{RowValue, TableRow, World};
@@ -63,17 +63,11 @@ impl Row {
 }
 
 impl Op for Row {
-    fn name(&self) -> &str {
-        "thermo"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Output
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(SLOTS | LISTS).write(FACTS | LISTS)
-    }
-    fn when(&self) -> When {
-        self.when.clone()
+    fn about(&self) -> About {
+        About {
+            when: self.when.clone(),
+            ..About::new("thermo", Stage::Output, Needs::new().read(SLOTS | LISTS).write(FACTS | LISTS))
+        }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if t.setup {

@@ -4,12 +4,14 @@ mod context;
 
 use super::answers::Declared;
 use super::keywords::{self, Need, Sources};
-use super::node::Graph;
+use super::node::{FixNode, Graph};
 use super::values::{Evaluate, Keyword, Once, asks_forces};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Dep, RefKind, ValueRef, Vars};
 use perigrain_out::log::Log;
 use perigrain_plan::{Level, Op, Placed, Stage, StepPlan, When};
+use perigrain_styles::fix::Facts;
+use perigrain_styles::probe::Probe;
 use perigrain_styles::{Reading, SealCx, Shape};
 use perigrain_world::{SlotId, World};
 use std::collections::BTreeMap;
@@ -66,8 +68,8 @@ impl<'a> Sealer<'a> {
     pub fn add(&mut self, ops: Vec<Box<dyn Op>>, span: Span) {
         for op in ops {
             let mut placed = Placed::new(op, Some(span));
-            if placed.op.stage() == Stage::PostForce && placed.level == Level::Outermost {
-                placed.level = self.level();
+            if placed.about.stage == Stage::PostForce && placed.about.level == Level::Outermost {
+                placed.about.level = self.level();
             }
             self.plan.add(placed);
         }
@@ -78,7 +80,7 @@ impl<'a> Sealer<'a> {
         for op in ops {
             let mut placed = Placed::new(op, Some(span));
             if self.plan.levels.is_some() {
-                placed.level = Level::At(level);
+                placed.about.level = Level::At(level);
             }
             self.plan.add(placed);
         }
@@ -129,9 +131,20 @@ impl<'a> Sealer<'a> {
         self.world.parts.plastic.is_some()
     }
 
+    /// Whom to ask about single pairs, see [`Pair::probes`](perigrain_styles::Pair::probes).
+    fn probes_of(&self, bonds: bool) -> Result<Vec<Box<dyn Probe>>> {
+        let probes = self.graph.pair.as_ref().map_or(Ok(vec![]), |node| node.pair.probes(self.world, bonds));
+        Ok(probes?.into_iter().map(|(_, probe)| probe).collect())
+    }
+
+    /// All fixes with what they tell of themselves.
+    pub fn facts(&self) -> impl Iterator<Item = (&'a FixNode, Facts)> {
+        self.graph.fixes.iter().map(|f| (f, f.fix.facts(self.world)))
+    }
+
     /// Whether a fix changes the box during the run.
     pub fn deforms(&self) -> bool {
-        self.graph.fixes.iter().any(|f| f.fix.deforms() != [false; 3])
+        self.facts().any(|(_, facts)| facts.deforms != [false; 3])
     }
 
     /// What is declared.
@@ -153,11 +166,12 @@ impl<'a> Sealer<'a> {
 
     /// Places a provider so that it runs before what is added to `stage` next.
     fn provide(&mut self, op: Box<dyn Op>, when: When, provides: String) {
-        let mut placed = Placed::new(op, Some(self.span));
+        let mut placed = Placed { provides, ..Placed::new(op, Some(self.span)) };
+        placed.about.when = when;
         if self.plan.levels.is_some() {
-            placed.level = Level::Every;
+            placed.about.level = Level::Every;
         }
-        self.plan.add(Placed { when, provides, ..placed });
+        self.plan.add(placed);
     }
 
     fn enter(&mut self, name: String, span: Span) -> Result<()> {
@@ -244,8 +258,8 @@ impl<'a> Sealer<'a> {
     }
 
     fn widen(&mut self, key: &str, stage: Stage, when: &When) {
-        for p in self.plan.ops.iter_mut().filter(|p| p.op.stage() == stage && p.provides == key) {
-            p.when = p.when.clone().or(when.clone());
+        for p in self.plan.ops.iter_mut().filter(|p| p.about.stage == stage && p.provides == key) {
+            p.about.when = p.about.when.clone().or(when.clone());
         }
     }
 

@@ -5,7 +5,7 @@ use super::env::RunEnv;
 use super::keywords::{self, Sources};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Value, Vars};
-use perigrain_plan::{Needs, Op, OpClass, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, OpClass, Stage, Tick};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTROLS, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, REGIONS,
     SLOTS, TAG, TALLY, TORQUE, TYPE_MASS, V, X,
@@ -25,20 +25,9 @@ pub(super) struct Once {
 }
 
 impl Op for Once {
-    fn name(&self) -> &str {
-        self.op.name()
-    }
-    fn stage(&self) -> Stage {
-        self.stage
-    }
-    fn needs(&self) -> Needs {
-        self.op.needs()
-    }
-    fn in_setup(&self) -> bool {
-        true
-    }
-    fn class(&self) -> OpClass {
-        OpClass::Output
+    fn about(&self) -> About {
+        let about = self.op.about();
+        About { in_setup: true, class: OpClass::Output, ..About::new(about.name, self.stage, about.needs) }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         // Within a step of several levels everything moves on.
@@ -62,21 +51,11 @@ pub(super) struct Keyword {
 }
 
 impl Op for Keyword {
-    fn name(&self) -> &str {
-        self.name
-    }
-    fn stage(&self) -> Stage {
-        self.stage
-    }
-    fn needs(&self) -> Needs {
+    fn about(&self) -> About {
         let forces = if self.name.starts_with('f') { F } else { Fields::NONE };
-        Needs::new().read(BONDS | BOX | LISTS | MASS | MEMO | TALLY | SLOTS | forces).write(SLOTS)
-    }
-    fn in_setup(&self) -> bool {
-        true
-    }
-    fn class(&self) -> OpClass {
-        OpClass::Output
+        let needs =
+            Needs::new().read(BONDS | BOX | LISTS | MASS | MEMO | TALLY | SLOTS | forces).write(SLOTS);
+        About { in_setup: true, class: OpClass::Output, ..About::new(self.name, self.stage, needs) }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let value = keywords::value(self.name, w, &self.sources);
@@ -146,20 +125,18 @@ pub(super) fn asks_forces(vars: &Vars, name: &str) -> bool {
 }
 
 impl Op for Evaluate {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn stage(&self) -> Stage {
-        self.stage
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(FORMULAS | if self.asks_forces { F | TORQUE } else { Fields::NONE }).write(SLOTS)
-    }
-    fn in_setup(&self) -> bool {
-        true
-    }
-    fn class(&self) -> OpClass {
-        OpClass::Output
+    fn about(&self) -> About {
+        About {
+            in_setup: true,
+            class: OpClass::Output,
+            ..About::new(
+                &self.name,
+                self.stage,
+                Needs::new()
+                    .read(FORMULAS | if self.asks_forces { F | TORQUE } else { Fields::NONE })
+                    .write(SLOTS),
+            )
+        }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let mut env = RunEnv { w, declared: &self.declared, from: &self.from };

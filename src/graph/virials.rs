@@ -2,7 +2,7 @@
 
 use super::seal::Sealer;
 use perigrain_base::diag::Result;
-use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::SealCx;
 use perigrain_styles::probe::{Ask, Probe, look_all};
 use perigrain_world::field::{
@@ -26,8 +26,8 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
         s.add(ask(probes), span);
         return Ok(());
     };
-    for (k, probes) in pair.probes_by_part(s.world())? {
-        s.add_forces(ask(probes), span, respa.of_pair(k));
+    for (k, probe) in pair.probes(s.world(), false)? {
+        s.add_forces(ask(vec![probe]), span, respa.of_pair(k));
     }
     Ok(())
 }
@@ -42,15 +42,9 @@ struct Virials {
 }
 
 impl Op for Virials {
-    fn name(&self) -> &str {
-        "virials of particles"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Force
-    }
-    fn needs(&self) -> Needs {
+    fn about(&self) -> About {
         // Contacts are there whenever virials of particles are asked for.
-        Needs::new()
+        let needs = Needs::new()
             .read(MASK | MOLECULE | BONDS)
             .read(
                 BOX | COLUMNS
@@ -67,7 +61,8 @@ impl Op for Virials {
                     | MASS
                     | KIND,
             )
-            .write(TALLY)
+            .write(TALLY);
+        About::new("virials of particles", Stage::Force, needs)
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if !t.atom_virial {

@@ -2,7 +2,7 @@
 
 use super::seal::Sealer;
 use perigrain_base::diag::Result;
-use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::{Compute, Fix, SealCx};
 use perigrain_world::World;
 use perigrain_world::field::{BOX, COLUMNS, IMAGE, LISTS, X};
@@ -10,11 +10,11 @@ use perigrain_world::field::{BOX, COLUMNS, IMAGE, LISTS, X};
 /// Adds the op, where some fix makes particles.
 pub fn seal(s: &mut Sealer) {
     let graph = s.graph();
-    if !graph.fixes.iter().any(|f| f.fix.makes_particles()) {
+    if !s.facts().any(|(_, facts)| facts.makes_particles) {
         return;
     }
-    let fixes = graph.fixes.iter().map(|f| f.fix.boxed()).collect();
-    let computes = graph.computes.iter().map(|c| c.compute.boxed()).collect();
+    let fixes = graph.fixes.iter().map(|f| f.fix.clone()).collect();
+    let computes = graph.computes.iter().map(|c| c.compute.clone()).collect();
     let op = Welcome { fixes, computes, roster: s.world().rebuild.roster };
     let span = s.span();
     s.add(vec![Box::new(op)], span);
@@ -29,14 +29,8 @@ struct Welcome {
 }
 
 impl Op for Welcome {
-    fn name(&self) -> &str {
-        "welcome"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Exchange
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(BOX | X | IMAGE | LISTS).keep(COLUMNS)
+    fn about(&self) -> About {
+        About::new("welcome", Stage::Exchange, Needs::new().read(BOX | X | IMAGE | LISTS).keep(COLUMNS))
     }
     fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
         if self.roster != w.rebuild.roster {

@@ -105,7 +105,7 @@ impl Session {
         if !missing.is_empty() {
             let text = format!(
                 "pair_style {} has no coefficients for types {}",
-                node.pair.name(),
+                node.pair.facts().name,
                 missing.join(", ")
             );
             found.push(
@@ -125,7 +125,7 @@ impl Session {
 
     /// Facts of the scene that a pair style uses and nobody has set.
     fn check_facts(&self, pair: &dyn Pair, span: Span, found: &mut Diagnostics) {
-        for fact in pair.needs() {
+        for fact in pair.facts().needs {
             // LAMMPS' default, spheres of diameter and density 1, is what reduced units are for.
             if self.world.settings.units.name() == "lj" && ["diameter", "density"].contains(fact) {
                 continue;
@@ -134,8 +134,10 @@ impl Session {
             if self.settled(fact) || (*fact == "density" && self.settled("mass")) {
                 continue;
             }
-            let text =
-                format!("the {fact} of particles was never set, and pair_style {} uses it", pair.name());
+            let text = format!(
+                "the {fact} of particles was never set, and pair_style {} uses it",
+                pair.facts().name
+            );
             let warning = Diagnostic::warning(Code::NEVER_SET, span, text);
             found.push(warning.help(format!("add `set group all {fact} …`")));
         }
@@ -144,8 +146,8 @@ impl Session {
     /// Force densities and forces added up in one column.
     fn check_units_of_force(&self, pair: &dyn Pair, span: Span, found: &mut Diagnostics) {
         let parts = pair.parts();
-        let densities = parts.iter().any(|p| p.true_forces() == Some(false));
-        let forces = parts.iter().any(|p| p.true_forces() != Some(false));
+        let densities = parts.iter().any(|p| p.facts().true_forces == Some(false));
+        let forces = parts.iter().any(|p| p.facts().true_forces != Some(false));
         if densities && forces && !self.settled("mass") {
             let text = "peridynamic force densities (with the density as mass) and granular forces meet in one scene: \
                         momentum is not conserved, and grains meet bodies that hardly move";
@@ -192,8 +194,9 @@ impl Session {
     /// A length of the box obeys one fix.
     fn check_box(&self, found: &mut Diagnostics) {
         let fixes = &self.graph.fixes;
+        let deforms = |f: &crate::graph::FixNode| f.fix.facts(&self.world).deforms;
         for (k, a) in fixes.iter().enumerate() {
-            let same = |b: &&crate::graph::FixNode| (0..3).any(|d| a.fix.deforms()[d] && b.fix.deforms()[d]);
+            let same = |b: &&crate::graph::FixNode| (0..3).any(|d| deforms(a)[d] && deforms(b)[d]);
             if let Some(b) = fixes[k + 1..].iter().find(same) {
                 let text = format!("fixes `{}` and `{}` both change the same length of the box", a.id, b.id);
                 found.push(Diagnostic::error(Code::CONFLICT, b.span, text).label(a.span, "the other one"));
@@ -203,7 +206,8 @@ impl Session {
 
     /// No integrator at all, and two on one particle.
     fn check_integrators(&self, span: Span, found: &mut Diagnostics) {
-        let moving: Vec<_> = self.graph.fixes.iter().filter(|f| f.fix.integrates()).collect();
+        let moving: Vec<_> =
+            self.graph.fixes.iter().filter(|f| f.fix.facts(&self.world).integrates).collect();
         if moving.is_empty() {
             found.push(
                 Diagnostic::warning(Code::NO_MOTION, span, "no fix moves any particle")

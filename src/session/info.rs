@@ -123,7 +123,7 @@ impl Session {
         let w = &self.world;
         let style = &w.particles.style;
         let atom = if style.sphere && style.peri { "hybrid sphere peri" } else { style.name() };
-        let pair = self.graph.pair.as_ref().map_or("none", |p| p.pair.name());
+        let pair = self.graph.pair.as_ref().map_or("none", |p| p.pair.facts().name);
         let mut text = format!(
             "\nSystem information:\nUnits         = {}\nAtom style    = {atom}\nAtoms     = {:>12},  types = {:>8},  style = {pair}\nDimensions = {}\n",
             w.settings.units.name(),

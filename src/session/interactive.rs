@@ -170,7 +170,7 @@ impl Session {
             dumps: self.graph.dumps.iter().map(|d| d.id.clone()).collect(),
             variables: self.vars.names().map(String::from).collect(),
             materials: keys(&mut self.world.materials.keys()),
-            pair: self.graph.pair.as_ref().map(|p| p.pair.name().to_string()),
+            pair: self.graph.pair.as_ref().map(|p| p.pair.facts().name.to_string()),
         }
     }
 

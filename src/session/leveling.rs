@@ -19,7 +19,7 @@ impl Session {
         let place = self.run_style_place(span);
         self.check_sub_styles(r, place, found);
         for f in &self.graph.fixes {
-            let Some(why) = f.fix.needs_whole_steps(&self.world) else { continue };
+            let Some(why) = f.fix.facts(&self.world).needs_whole_steps else { continue };
             let text = format!("fix {} has no part in steps of several lengths: {why}", f.style);
             found.push(
                 Diagnostic::error(Code::NOT_SUPPORTED, f.span, text)
@@ -43,7 +43,7 @@ impl Session {
     fn check_sub_styles(&self, r: &Respa, place: Span, found: &mut Diagnostics) {
         let Some(subs) = &r.subs else { return };
         let Some(node) = &self.graph.pair else { return };
-        let (parts, name) = (node.pair.parts(), node.pair.name());
+        let (parts, name) = (node.pair.parts(), node.pair.facts().name);
         let d = match parts.len() {
             n if n == subs.len() => return,
             0 => {
@@ -53,7 +53,7 @@ impl Session {
             n => {
                 let text =
                     format!("`hybrid` gives {} levels, and pair_style {name} has {n} sub-styles", subs.len());
-                let names: Vec<&str> = parts.iter().map(|p| p.name()).collect();
+                let names: Vec<&str> = parts.iter().map(|p| p.facts().name).collect();
                 Diagnostic::error(Code::CONFLICT, place, text)
                     .help(format!("one level for each, in this order: {}", names.join(", ")))
             }
@@ -72,7 +72,7 @@ impl Session {
             busy[r.bond] = true;
         }
         for f in &self.graph.fixes {
-            if f.fix.has_level() {
+            if f.fix.facts(&self.world).has_level {
                 busy[f.level.unwrap_or(outermost).min(outermost)] = true;
             }
             busy[outermost] |= f.style.starts_with("wall/");

@@ -47,7 +47,7 @@ impl Session {
 
     /// Fixes that push particles in runs but not here.
     fn note_absent(&mut self) {
-        let absent = |f: &&crate::graph::FixNode| f.fix.minimizing() == Minimizing::Absent;
+        let absent = |f: &&crate::graph::FixNode| f.fix.facts(&self.world).minimizing == Minimizing::Absent;
         let notes: Vec<Diagnostic> = (self.graph.fixes.iter().filter(absent))
             .map(|f| {
                 let text = format!("fix {} does not act while `minimize` moves particles", f.style);

@@ -50,10 +50,11 @@ impl Session {
     /// In check mode: files that a run would have written.
     pub(super) fn promise_outputs(&mut self) {
         self.graph.restarts.names().into_iter().for_each(|name| self.promise_restart(name));
+        let fixes = self.graph.fixes.iter().filter_map(|f| f.fix.facts(&self.world).file);
+        let fixes: Vec<String> = fixes.filter_map(|path| path.to_str().map(str::to_string)).collect();
+        let dumps = self.graph.dumps.iter().map(|d| &d.file);
         let promised = &mut self.world.parts.promised;
-        let fixes = self.graph.fixes.iter().filter_map(|f| f.fix.file()?.to_str());
-        let dumps = self.graph.dumps.iter().map(|d| d.file.as_str());
-        fixes.chain(dumps).for_each(|name| promised.keep(name, Promise::Unseen));
+        fixes.iter().chain(dumps).for_each(|name| promised.keep(name, Promise::Unseen));
     }
 
     pub(super) fn read_restart(&mut self, cmd: &Command) -> Result<()> {
@@ -199,7 +200,7 @@ impl Session {
             log.line(&format!("  orthogonal box = ({}) to ({})", text(d.lo), text(d.hi)))?;
         }
         if let Some(node) = &self.graph.pair {
-            log.line(&format!("  restoring pair style {} from restart", node.pair.name()))?;
+            log.line(&format!("  restoring pair style {} from restart", node.pair.facts().name))?;
         }
         if let Some(node) = &self.graph.bond {
             log.line(&format!("  restoring bond style {} from restart", node.force.name()))?;

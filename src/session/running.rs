@@ -1,6 +1,7 @@
 //! `run` and `write_dump`: seal the declarations, step, say how it went.
 
 use super::{Mode, Session, refuse};
+use crate::graph::Role;
 use crate::graph::build::Context;
 use crate::graph::dumps::once_dump;
 use crate::graph::env::DeckEnv;
@@ -8,7 +9,6 @@ use crate::graph::ledger;
 use crate::graph::ops::{ClearForces, Reneighbor};
 use crate::graph::seal::Sealer;
 use crate::graph::spatial;
-use crate::graph::{FixNode, Role};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_fixes::Minimizing;
 use perigrain_lang::{Args, Command, Script, Word};
@@ -160,8 +160,8 @@ impl Session {
         crate::graph::regions::seal(&mut s)?;
         if let Some(node) = &self.graph.pair {
             s.at(node.span);
-            for (k, ops) in node.pair.ops_by_part(&mut s)? {
-                s.add_forces(ops, node.span, respa.of_pair(k));
+            for (k, op) in node.pair.ops(&mut s)? {
+                s.add_forces(vec![op], node.span, respa.of_pair(k));
             }
             if s.plan.levels.is_some() && s.grains_are_plastic() {
                 let text = "plastic grains (`mdr`) grow once in a step, and under run_style respa it has several lengths";
@@ -179,8 +179,8 @@ impl Session {
             ledger::begin(&mut s);
         }
         crate::graph::dynamic::seal(&mut s)?;
-        let acts = |f: &&FixNode| !minimizing || f.fix.minimizing() == Minimizing::Acts;
-        for f in self.graph.fixes.iter().filter(acts) {
+        let all = s.facts().filter(|(_, facts)| !minimizing || facts.minimizing == Minimizing::Acts);
+        for (f, _) in all.collect::<Vec<_>>() {
             s.at_fix(f.span, f.level);
             let ops = f.fix.ops(&mut s)?;
             let stages = ledger::stages(&ops);
@@ -342,8 +342,11 @@ impl Session {
         let shown = if post { text.as_str() } else { text.lines().next().unwrap_or("") };
         log.line(shown)?;
         if post {
-            let ops: Vec<(&str, f64, u64)> =
-                plan.ops.iter().map(|p| (p.op.name(), p.meter.time.as_secs_f64(), p.meter.calls)).collect();
+            let ops: Vec<(&str, f64, u64)> = plan
+                .ops
+                .iter()
+                .map(|p| (&*p.about.name, p.meter.time.as_secs_f64(), p.meter.calls))
+                .collect();
             log.line(perigrain_out::thermo::ops_table(&ops, finish.seconds).trim_end())?;
         }
         if o.interrupted {

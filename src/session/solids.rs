@@ -13,7 +13,9 @@ impl Session {
         parts.push(node.pair.as_ref());
         // Cracks that are cut need no strength.
         let cut = self.graph.nodes.iter().any(|n| n.text.starts_with("peri_crack"));
-        let Some(kind) = parts.into_iter().find_map(|p| p.unbreakable()).filter(|_| !cut) else { return };
+        let Some(kind) = parts.into_iter().find_map(|p| p.facts().unbreakable).filter(|_| !cut) else {
+            return;
+        };
         let text = format!("bonds of type {kind} never break: its material has neither Gc nor s00");
         found.push(
             Diagnostic::warning(Code::SUSPICIOUS, compute.span, text)

@@ -3,6 +3,7 @@
 use super::Session;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use perigrain_styles::Pair;
+use perigrain_styles::pair::{Deck, Scales};
 use perigrain_world::RunStyle;
 
 impl Session {
@@ -12,18 +13,15 @@ impl Session {
         if self.graph.fixes.iter().any(|f| f.style.starts_with("dt/")) {
             return;
         }
-        let density = self.density();
+        let deck = Deck { density: self.density(), diameter: self.said("diameter").reduce(f64::min) };
+        let pairs = self.graph.pair.iter().flat_map(|n| sub_styles(n.pair.as_ref()));
+        let pairs: Vec<Scales> = pairs.map(|p| p.scales(&self.world, deck)).collect();
         let line = self.graph.nodes.iter().rev().find(|n| n.text.starts_with("timestep"));
         let place = line.map_or(span, |n| n.span);
-        self.check_contacts(place, density, found);
-        let Some(node) = &self.graph.pair else { return };
-        let all = sub_styles(node.pair.as_ref());
-        let own = |(k, p): (usize, &dyn Pair)| Some((p.stable_step(&self.world, density)?, self.step_of(k)));
-        let worst = all
-            .into_iter()
-            .enumerate()
-            .filter_map(own)
-            .reduce(|a, b| if b.0 * a.1 < a.0 * b.1 { b } else { a });
+        self.check_contacts(place, &pairs, deck, found);
+        let own = |(k, p): (usize, &Scales)| Some((p.stable_step?, self.step_of(k)));
+        let steps = pairs.iter().enumerate().filter_map(own);
+        let worst = steps.reduce(|a, b| if b.0 * a.1 < a.0 * b.1 { b } else { a });
         let Some((limit, dt)) = worst else { return };
         if dt <= limit {
             return;
@@ -71,14 +69,13 @@ impl Session {
     }
 
     /// A warning where contacts of grains, with each other or with walls, last less than ten steps.
-    fn check_contacts(&self, place: Span, density: Option<f64>, found: &mut Diagnostics) {
-        let said = density.zip(self.said("diameter").reduce(f64::min));
+    fn check_contacts(&self, place: Span, pairs: &[Scales], deck: Deck, found: &mut Diagnostics) {
+        let said = deck.density.zip(deck.diameter);
         let whole = self.world.clock.dt;
-        let pairs = self.graph.pair.iter().flat_map(|n| sub_styles(n.pair.as_ref()).into_iter().enumerate());
-        let pairs = pairs.filter_map(|(k, p)| {
+        let pairs = pairs.iter().enumerate().filter_map(|(k, p)| {
             let dt =
                 if let RunStyle::Respa(_) = self.world.settings.run_style { self.step_of(k) } else { whole };
-            Some((p.contact_time(&self.world, said)?, dt, String::new()))
+            Some((p.contact_time?, dt, String::new()))
         });
         let walls = self.graph.fixes.iter();
         let walls = walls.filter_map(|f| {

@@ -6,6 +6,7 @@ use perigrain_plan::Solids;
 use perigrain_plan::run::Pace;
 use perigrain_plan::run::levels::Levels;
 use perigrain_plan::run::staggered::{Ratio, Staggered};
+use perigrain_styles::pair::Deck;
 use perigrain_world::{GroupId, RunStyle};
 use std::sync::Arc;
 
@@ -79,8 +80,8 @@ impl Session {
 
     /// Who moves in short steps.
     fn solids(&self, twice: u32) -> Solids {
-        let solid = |k: u16| self.graph.pair.as_ref().is_some_and(|node| node.pair.solid(k));
-        Solids { kinds: (1..=self.world.types as u16).map(solid).collect(), twice }
+        let solids = self.graph.pair.as_ref().map_or(vec![], |node| node.pair.facts().solids);
+        Solids { kinds: (1..=self.world.types as u16).map(|k| solids.contains(&k)).collect(), twice }
     }
 
     /// The longest stable step of the solids.
@@ -88,7 +89,7 @@ impl Session {
         let node = self.graph.pair.as_ref()?;
         let mut parts = node.pair.parts();
         parts.push(node.pair.as_ref());
-        parts.into_iter().filter_map(|p| p.stable_step(&self.world, None)).reduce(f64::min)
+        parts.into_iter().filter_map(|p| p.scales(&self.world, Deck::default()).stable_step).reduce(f64::min)
     }
 
     /// Refuses fixes that move solids in a way that knows no short steps.
@@ -96,7 +97,8 @@ impl Session {
         const KNOWN: [&str; 2] = ["nve", "nve/sphere"];
         let p = &self.world.particles;
         let moves = |f: &&crate::graph::FixNode| {
-            let takes_over = (f.fix.integrates() && !KNOWN.contains(&f.style)) || f.style == "aveforce";
+            let takes_over =
+                (f.fix.facts(&self.world).integrates && !KNOWN.contains(&f.style)) || f.style == "aveforce";
             takes_over && (0..p.len()).any(|i| p.mask[i] & f.group.bit() != 0 && solid(i))
         };
         match self.graph.fixes.iter().find(moves) {

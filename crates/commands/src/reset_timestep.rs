@@ -35,7 +35,7 @@ impl CommandStyle for ResetTimestep {
             }
             time = Some(a.number("the time")?);
         }
-        if let Some((id, style)) = cx.names.counting_fix() {
+        if let Some((id, style)) = cx.names.counting_fix(cx.world) {
             let text = format!("the step cannot be reset while fix `{id}` ({style}) counts on it");
             let help = format!("put `unfix {id}` before this line, and the fix again after it");
             return Err(Diagnostic::error(Code::CONFLICT, cx.span, text).help(help).into());

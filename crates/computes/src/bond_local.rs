@@ -197,8 +197,4 @@ impl Compute for Declared {
             },
         ))
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }

@@ -116,10 +116,6 @@ impl Compute for Declared {
         });
         Ok(Some(op.when(when.clone()).in_setup(true).boxed()))
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

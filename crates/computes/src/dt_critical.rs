@@ -116,10 +116,6 @@ impl Compute for Declared {
         }
         Ok(())
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

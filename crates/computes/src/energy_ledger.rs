@@ -116,8 +116,4 @@ impl Compute for Declared {
         w.touch();
         Ok(())
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }

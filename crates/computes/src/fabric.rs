@@ -163,10 +163,6 @@ impl Compute for Declared {
             Ok(())
         }))
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }
 
 type Symmetric = [f64; 6];

@@ -81,10 +81,6 @@ impl Compute for Declared {
             },
         ))
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

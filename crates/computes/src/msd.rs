@@ -140,10 +140,6 @@ impl Compute for Declared {
         );
         Ok(op.when(when.clone()).in_setup(true).boxed())
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

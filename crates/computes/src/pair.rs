@@ -88,8 +88,4 @@ impl Compute for Declared {
     fn tallied(&self) -> bool {
         true
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }

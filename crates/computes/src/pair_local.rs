@@ -188,10 +188,6 @@ impl Compute for Declared {
             Ok(())
         }))
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }
 
 /// The pair styles that can be asked about single pairs.

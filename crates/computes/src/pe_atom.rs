@@ -74,10 +74,6 @@ impl Compute for Declared {
     fn tallied(&self) -> bool {
         true
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

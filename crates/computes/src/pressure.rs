@@ -166,10 +166,6 @@ impl Compute for Declared {
     fn tallied(&self) -> bool {
         true
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }
 
 fn virial(w: &World, step: i64, parts: Parts) -> Result<[f64; 6]> {

@@ -366,10 +366,6 @@ impl Compute for Declared {
             Ok(())
         }))
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }
 
 fn fold(

@@ -117,10 +117,6 @@ impl Compute for Energy {
             Ok(())
         }))
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

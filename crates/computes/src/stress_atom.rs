@@ -103,10 +103,6 @@ impl Compute for Declared {
     fn tallied(&self) -> bool {
         true
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }
 
 /// Checks that the virials of this step were tallied, if they are wanted.

@@ -142,10 +142,6 @@ impl Compute for Declared {
     fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
         self.rules.modify(args)
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

@@ -141,8 +141,4 @@ impl<S: Streams> Compute for Thermal<S> {
     fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
         self.rules.modify(args)
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }

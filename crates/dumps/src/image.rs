@@ -140,10 +140,6 @@ impl Dump for Declared {
     fn every(&self) -> Option<i64> {
         self.base.every()
     }
-
-    fn boxed(&self) -> Box<dyn Dump> {
-        Box::new(self.clone())
-    }
 }
 
 impl Declared {

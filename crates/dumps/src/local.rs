@@ -208,10 +208,6 @@ impl Dump for Declared {
     fn growing(&self) -> bool {
         self.base.growing()
     }
-
-    fn boxed(&self) -> Box<dyn Dump> {
-        Box::new(self.clone())
-    }
 }
 
 impl Declared {

@@ -263,10 +263,6 @@ impl Dump for Text {
     fn repeats_row(&self) -> bool {
         self.thermo
     }
-
-    fn boxed(&self) -> Box<dyn Dump> {
-        Box::new(self.clone())
-    }
 }
 
 impl Text {

@@ -85,10 +85,6 @@ impl Dump for Declared {
     fn every(&self) -> Option<i64> {
         self.base.every()
     }
-
-    fn boxed(&self) -> Box<dyn Dump> {
-        Box::new(self.clone())
-    }
 }
 
 fn compress(args: &mut Args) -> Result<Storage> {

@@ -7,7 +7,7 @@ use super::{Fix, FixStyle};
 use coefficients::Follows;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef};
-use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
 use perigrain_world::field::{COLUMNS, LISTS, MASK, MASS, MEMO, RADIUS, SLOTS};
 use perigrain_world::{GroupId, World};
@@ -204,10 +204,6 @@ impl Fix for Declared {
         }
         Ok(ops)
     }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
-    }
 }
 
 /// Gives the particles their present size, and the old one back at the end.
@@ -220,17 +216,15 @@ struct Change {
 }
 
 impl Op for Change {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn stage(&self) -> Stage {
-        Stage::PreForce
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(SLOTS | MASK).write(LISTS | RADIUS | MASS).keep(COLUMNS | MEMO)
-    }
-    fn when(&self) -> When {
-        self.when.clone()
+    fn about(&self) -> About {
+        About {
+            when: self.when.clone(),
+            ..About::new(
+                &self.name,
+                Stage::PreForce,
+                Needs::new().read(SLOTS | MASK).write(LISTS | RADIUS | MASS).keep(COLUMNS | MEMO),
+            )
+        }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if t.unchanged {

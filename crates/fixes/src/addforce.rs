@@ -1,6 +1,6 @@
 //! fix addforce: a force added to each particle.
 
-use super::{Fix, FixStyle, Minimizing, region_keyword};
+use super::{Facts, Fix, FixStyle, Minimizing, region_keyword};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Param, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
@@ -158,20 +158,8 @@ impl Fix for Declared {
         Shape { scalar: true, vector: 3, scalar_extensive: true, vector_extensive: true, ..Shape::default() }
     }
 
-    fn has_energy(&self) -> bool {
-        true
-    }
-
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
     }
 }
 
@@ -235,6 +223,6 @@ mod tests {
             assert!(b.fix(&AddForce, words).is_err(), "{words}");
         }
         let fix = b.fix(&AddForce, "1 0 0 every 5").unwrap();
-        assert!(fix.has_energy());
+        assert!(fix.facts(&b.world).has_energy);
     }
 }

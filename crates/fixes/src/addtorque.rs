@@ -1,6 +1,6 @@
 //! fix addtorque: forces that turn a group as one body.
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, scale, sub};
 use perigrain_commands::momentum::rotation;
@@ -84,24 +84,12 @@ impl Fix for Declared {
         Ok(vec![op.boxed()])
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
     }
 
     fn shape(&self) -> Shape {
         Shape { scalar: true, vector: 3, scalar_extensive: true, vector_extensive: true, ..Shape::default() }
-    }
-
-    fn has_energy(&self) -> bool {
-        true
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
     }
 }
 

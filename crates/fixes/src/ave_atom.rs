@@ -1,7 +1,7 @@
 //! fix ave/atom: averages of per-atom values over time.
 
 use super::window::{Schedule, forget};
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Result, fail};
 use perigrain_base::par;
 use perigrain_lang::{Args, ValueRef, Word};
@@ -135,8 +135,8 @@ impl Declared {
 }
 
 impl Fix for Declared {
-    fn counts_steps(&self) -> bool {
-        true
+    fn facts(&self, _: &World) -> Facts {
+        Facts { counts_steps: true, ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
@@ -193,10 +193,6 @@ impl Fix for Declared {
 
     fn shape(&self) -> Shape {
         Shape { atom: Some(self.inputs.len()), every: self.schedule.freq, ..Shape::default() }
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
     }
 }
 

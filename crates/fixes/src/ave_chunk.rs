@@ -3,7 +3,7 @@
 use super::ave_atom::{Input, Source};
 use super::ave_time::{Output, number_format};
 use super::window::{Ave, Averager, Due, Schedule, forget};
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::cformat::{Format, Value, general, shortest};
 use perigrain_base::math::vec3::sub;
@@ -17,7 +17,6 @@ use perigrain_styles::{BuildCx, Doc, Flow, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{BOX, F, KIND, MASK, MASS, MEMO, REGIONS, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, SlotId, World};
 use std::fmt::Write;
-use std::path::Path;
 
 /// The style.
 pub struct AveChunk;
@@ -336,12 +335,12 @@ impl Declared {
 }
 
 impl Fix for Declared {
-    fn file(&self) -> Option<&Path> {
-        self.output.file.as_ref().map(|(path, _)| path.as_path())
-    }
-
-    fn counts_steps(&self) -> bool {
-        true
+    fn facts(&self, _: &World) -> Facts {
+        Facts {
+            counts_steps: true,
+            file: self.output.file.as_ref().map(|(path, _)| path.clone()),
+            ..Facts::default()
+        }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
@@ -410,9 +409,5 @@ impl Fix for Declared {
             every: self.schedule.freq,
             ..Shape::default()
         }
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
     }
 }

@@ -4,7 +4,7 @@ use super::ave_atom::{Input, Source};
 use super::ave_time::Output;
 use super::bins::{Beyond, Bins, Histogram};
 use super::window::{Ave, Averager, Due, Schedule, forget};
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_base::math::cformat::{general, shortest};
 use perigrain_computes::reduce::BIG;
@@ -15,7 +15,6 @@ use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{F, MASK, MEMO, SLOTS, V, X};
 use perigrain_world::{GroupId, Slot, World};
 use std::fmt::Write;
-use std::path::Path;
 
 /// `fix ave/histo`.
 pub struct AveHisto;
@@ -317,8 +316,8 @@ impl Declared {
 }
 
 impl Fix for Declared {
-    fn file(&self) -> Option<&Path> {
-        self.output.file.as_ref().map(|(path, _)| path.as_path())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { file: self.output.file.as_ref().map(|(path, _)| path.clone()), ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
@@ -371,9 +370,5 @@ impl Fix for Declared {
     fn shape(&self) -> Shape {
         let (array_rows, every) = (self.bins.count(), self.schedule.freq);
         Shape { vector: 4, array: 3, array_rows, every, ..Shape::default() }
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
     }
 }

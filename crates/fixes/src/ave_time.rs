@@ -1,7 +1,7 @@
 //! fix ave/time: averages of global values over time, for other styles and a file.
 
 use super::window::{Ave, Averager, Schedule, forget};
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::cformat::{Format, Value};
 use perigrain_computes::chunk::{behind, hold, let_go};
@@ -13,7 +13,7 @@ use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{MEMO, SLOTS};
 use perigrain_world::{SlotId, World};
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The style.
 pub struct AveTime;
@@ -294,12 +294,12 @@ fn offer(w: &mut World, slot: SlotId, step: i64, means: &[f64], cols: usize, vec
 }
 
 impl Fix for Declared {
-    fn file(&self) -> Option<&Path> {
-        self.output.file.as_ref().map(|(path, _)| path.as_path())
-    }
-
-    fn counts_steps(&self) -> bool {
-        true
+    fn facts(&self, _: &World) -> Facts {
+        Facts {
+            counts_steps: true,
+            file: self.output.file.as_ref().map(|(path, _)| path.clone()),
+            ..Facts::default()
+        }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
@@ -374,9 +374,5 @@ impl Fix for Declared {
             (false, [k]) => self.extensive.get(k - 1).copied().unwrap_or(false),
             _ => self.extensive.contains(&true),
         }
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
     }
 }

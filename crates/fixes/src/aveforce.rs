@@ -1,13 +1,14 @@
 //! fix aveforce: every particle of a group feels the mean force of the group.
 
 use super::components::Components;
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::matter::{change_forces, publish_levels};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::World;
 use perigrain_world::field::{F, MASK, SLOTS, X};
 
 /// The style.
@@ -75,16 +76,8 @@ impl Fix for Declared {
         Shape { vector: 3, vector_extensive: true, ..Shape::default() }
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, has_level: true, ..Facts::default() }
     }
 }
 

@@ -71,10 +71,6 @@ impl Fix for Idle {
     fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         Ok(vec![])
     }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

@@ -123,8 +123,4 @@ impl Fix for Declared {
     fn shape(&self) -> Shape {
         Shape { vector: 3, vector_extensive: true, ..Shape::default() }
     }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
-    }
 }

@@ -2,10 +2,10 @@
 
 mod track;
 
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
-use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::{not_here, scales, units_lattice};
 use perigrain_styles::near::bonds_allow;
 use perigrain_styles::stretching::RATES;
@@ -228,12 +228,8 @@ impl Fix for Declared {
         Ok(vec![Box::new(Move { name, stretch, tracks, remap, group, when })])
     }
 
-    fn deforms(&self) -> [bool; 3] {
-        self.motions.each_ref().map(Option::is_some)
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { deforms: self.motions.each_ref().map(Option::is_some), ..Facts::default() }
     }
 }
 
@@ -257,20 +253,16 @@ struct Move {
 }
 
 impl Op for Move {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn stage(&self) -> Stage {
-        Stage::EndOfStep
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(MASK | SLOTS | FAMILIES | X0).write(X | BOX).keep(MEMO)
-    }
-    fn when(&self) -> When {
-        self.when.clone()
-    }
-    fn in_setup(&self) -> bool {
-        true
+    fn about(&self) -> About {
+        About {
+            when: self.when.clone(),
+            in_setup: true,
+            ..About::new(
+                &self.name,
+                Stage::EndOfStep,
+                Needs::new().read(MASK | SLOTS | FAMILIES | X0).write(X | BOX).keep(MEMO),
+            )
+        }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let (lo, hi, rate) = track::faces(&self.tracks, w, t)?;

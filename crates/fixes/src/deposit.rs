@@ -2,11 +2,11 @@
 
 mod words;
 
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::{Args, ValueRef};
-use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::publish;
 use perigrain_styles::molecules::{Copy, Molecules};
 use perigrain_styles::newcomers::{Account, Ids, Newcomer, admit};
@@ -233,16 +233,12 @@ impl Fix for Depositing {
         Ok(vec![Box::new(Drop { name, fix: self.clone(), span, slot, test, failed: 0 })])
     }
 
-    fn makes_particles(&self) -> bool {
-        true
+    fn facts(&self, _: &World) -> Facts {
+        Facts { makes_particles: true, ..Facts::default() }
     }
 
     fn shape(&self) -> Shape {
         Shape { scalar: true, ..Shape::default() }
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
     }
 }
 
@@ -258,14 +254,8 @@ struct Drop {
 }
 
 impl Op for Drop {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn stage(&self) -> Stage {
-        Stage::Exchange
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(X).write(Fields::ALL)
+    fn about(&self) -> About {
+        About::new(&self.name, Stage::Exchange, Needs::new().read(X).write(Fields::ALL))
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let (fix, key) = (&self.fix, self.fix.key());

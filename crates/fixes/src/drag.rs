@@ -1,6 +1,6 @@
 //! fix drag: a force of constant strength towards a point.
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
@@ -8,8 +8,8 @@ use perigrain_styles::common::number_or_null;
 use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::GroupId;
 use perigrain_world::field::{BOX, F, MASK, SLOTS, X};
+use perigrain_world::{GroupId, World};
 
 /// The style.
 pub struct Drag;
@@ -84,16 +84,8 @@ impl Fix for Declared {
         Shape { vector: 3, vector_extensive: true, ..Shape::default() }
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Absent
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Absent, has_level: true, ..Facts::default() }
     }
 }
 

@@ -1,6 +1,6 @@
 //! fix dt/guard: a run whose energy is off goes back to where it was right, and on in shorter steps.
 
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Rule};
@@ -78,16 +78,12 @@ impl Fix for Declared {
         Ok(())
     }
 
-    fn guard(&self) -> Option<Rule> {
-        Some(self.rule)
-    }
-
-    fn needs_whole_steps(&self, _w: &World) -> Option<&'static str> {
-        Some("its ledger counts the work of whole steps")
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts {
+            needs_whole_steps: Some("its ledger counts the work of whole steps"),
+            guard: Some(self.rule),
+            ..Facts::default()
+        }
     }
 }
 
@@ -100,7 +96,8 @@ mod tests {
     #[test]
     fn words() {
         let b = Bench::new(AtomStyle::default(), &[[0.0; 3]]);
-        let rule = b.fix(&DtGuard, "20 0.1 shrink 0.25 min 1e-9 recover 7").unwrap().guard().unwrap();
+        let fix = b.fix(&DtGuard, "20 0.1 shrink 0.25 min 1e-9 recover 7").unwrap();
+        let rule = fix.facts(&b.world).guard.unwrap();
         assert_eq!(rule, Rule { every: 20, tolerance: 0.1, shrink: 0.25, shortest: 1e-9, recover: 7 });
         for words in ["", "20", "0 0.1", "20 0", "20 0.1 shrink 1", "20 0.1 min 0", "20 0.1 grow 3"] {
             assert!(b.fix(&DtGuard, words).is_err(), "{words}");

@@ -1,7 +1,7 @@
 //! fix dt/reset: a time step that follows the fastest particle.
 
 use super::time_step::Follower;
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::par;
 use perigrain_lang::Args;
@@ -140,8 +140,8 @@ struct Declared {
 }
 
 impl Fix for Declared {
-    fn counts_steps(&self) -> bool {
-        true
+    fn facts(&self, _: &World) -> Facts {
+        Facts { counts_steps: true, ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
@@ -161,10 +161,6 @@ impl Fix for Declared {
 
     fn shape(&self) -> Shape {
         Shape { scalar: true, ..Shape::default() }
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
     }
 }
 

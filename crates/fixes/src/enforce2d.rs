@@ -1,14 +1,14 @@
 //! fix enforce2d: keeps a two-dimensional scene in its plane.
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::GroupId;
 use perigrain_world::field::{F, MASK, OMEGA, TORQUE, V};
+use perigrain_world::{GroupId, World};
 
 /// The style.
 pub struct Enforce2d;
@@ -74,12 +74,8 @@ impl Fix for Declared {
         Ok(vec![op.in_every_level().boxed()])
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, ..Facts::default() }
     }
 }
 

@@ -129,10 +129,6 @@ impl Fix for Declared {
     fn shape(&self) -> Shape {
         Shape { scalar: true, ..Shape::default() }
     }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

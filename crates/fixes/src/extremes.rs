@@ -3,7 +3,7 @@
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Result, fail};
 use perigrain_lang::{Args, Param};
-use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{MEMO, SLOTS};
 use perigrain_world::{SlotId, World};
@@ -92,10 +92,6 @@ impl Fix for Extremes {
     fn shape(&self) -> Shape {
         Shape { vector: 2 * self.values.len(), ..Shape::default() }
     }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
-    }
 }
 
 /// Looks at the values and keeps what is beyond all before.
@@ -108,24 +104,12 @@ struct Watch {
 }
 
 impl Op for Watch {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn stage(&self) -> Stage {
-        Stage::EndOfStep
-    }
-
-    fn needs(&self) -> Needs {
-        Needs::new().read(SLOTS).write(SLOTS).keep(MEMO)
-    }
-
-    fn when(&self) -> When {
-        self.when.clone()
-    }
-
-    fn in_setup(&self) -> bool {
-        true
+    fn about(&self) -> About {
+        About {
+            when: self.when.clone(),
+            in_setup: true,
+            ..About::new(&self.name, Stage::EndOfStep, Needs::new().read(SLOTS).write(SLOTS).keep(MEMO))
+        }
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {

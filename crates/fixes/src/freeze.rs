@@ -1,10 +1,10 @@
 //! fix freeze: grains that nothing moves.
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
-use perigrain_plan::{Act, Gist, Needs, Op, Stage, Stretch, Tick};
+use perigrain_plan::{Act, BlockSums, Needs, Op, ParticleBlock, Stage, Tick};
 use perigrain_styles::matter::publish_levels;
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
@@ -85,31 +85,27 @@ impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let (slot, bit) = (cx.slot(&format!("f_{}", self.id)), self.group.bit());
         let access = Needs::new().read(MASK).write(F | TORQUE | SLOTS);
-        let hold = move |_: &World, t: &Tick, _: bool| -> Option<Act> {
-            let act = move |s: &mut Stretch<'_>| {
-                let mut gist = Gist::default();
+        let hold = move |_: &World, t: &Tick| -> Option<Act> {
+            let act = move |s: &mut ParticleBlock<'_>| {
+                let mut sums = BlockSums::default();
                 let mask = s.mask();
-                hold(&mut s.f, &mut s.torque, mask, bit, &mut gist.sums);
-                gist
+                hold(&mut s.f, &mut s.torque, mask, bit, &mut sums.sums);
+                sums
             };
             (!t.unchanged).then(|| Act::hold(bit, act))
         };
-        let told = move |w: &mut World, t: &Tick, gist: Gist| publish_levels(w, slot, t, &gist.sums);
+        let told = move |w: &mut World, t: &Tick, sums: BlockSums| publish_levels(w, slot, t, &sums.sums);
         let name = format!("fix {} freeze", self.id);
-        let op = StepOp::new(name, Stage::PostForce, access, |_, _| Ok(())).taking_turns(hold, told);
+        let op = StepOp::new(name, Stage::PostForce, access, |_, _| Ok(())).fusing(hold, told);
         Ok(vec![op.in_every_level().boxed()])
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Absent
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Absent, ..Facts::default() }
     }
 
     fn shape(&self) -> Shape {
         Shape { vector: 3, vector_extensive: true, ..Shape::default() }
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
     }
 }
 

@@ -1,13 +1,13 @@
 //! fix gravity: the same acceleration for everyone.
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::four::{Plain, has_avx2};
 use perigrain_base::math::lanes::Lanes;
 use perigrain_base::math::threes::{self, Threes};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::{Args, Param};
-use perigrain_plan::{Act, Gist, Needs, Op, Stage, Tick, When};
+use perigrain_plan::{Act, BlockSums, Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::{choice_or_refuse, variable_param};
 use perigrain_styles::matter::{check_masses, publish};
 use perigrain_styles::step_op::StepOp;
@@ -211,7 +211,7 @@ impl Fix for Declared {
         };
         let (slot, disabled) = (cx.slot(&format!("f_{}", self.id)), self.disabled);
         let access = Needs::new().read(X | MASS | MASK).add(F).write(SLOTS);
-        let pull = move |w: &World, t: &Tick, _: bool| -> Option<Act> {
+        let pull = move |w: &World, t: &Tick| -> Option<Act> {
             if t.unchanged || disabled {
                 return None;
             }
@@ -220,12 +220,12 @@ impl Fix for Declared {
             Some(Act::pull(perigrain_plan::Pull { bit, a }, move |s| {
                 let (mass, mask) = (&s.all.mass[s.start..][..s.x.len()], s.mask());
                 let energy = pulled(&mut s.f, &s.x, mass, mask, bit, a);
-                Gist { sums: [energy, 0.0, 0.0], most: 0.0 }
+                BlockSums { sums: [energy, 0.0, 0.0], most: 0.0 }
             }))
         };
-        let told = move |w: &mut World, t: &Tick, gist: Gist| publish(w, slot, t, gist.sums[0], &[]);
+        let told = move |w: &mut World, t: &Tick, sums: BlockSums| publish(w, slot, t, sums.sums[0], &[]);
         let name = format!("fix {} gravity", self.id);
-        let op = StepOp::new(name, Stage::PostForce, access, |_, _| Ok(())).taking_turns(pull, told);
+        let op = StepOp::new(name, Stage::PostForce, access, |_, _| Ok(())).fusing(pull, told);
         Ok(vec![op.boxed()])
     }
 
@@ -233,15 +233,7 @@ impl Fix for Declared {
         Shape { scalar: true, scalar_extensive: true, ..Shape::default() }
     }
 
-    fn has_energy(&self) -> bool {
-        true
-    }
-
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Absent
-    }
-
-    fn pull(&self, flat: bool) -> Option<Pull> {
+    fn facts(&self, w: &World) -> Facts {
         let number = |p: &Param| match p {
             Param::Number(a) => Some(Reading::Const(*a)),
             Param::Ref(_) => None,
@@ -255,20 +247,14 @@ impl Fix for Declared {
                 number(x).zip(number(y)).zip(number(z)).map(|((x, y), z)| Pointer::Vector([x, y, z]))
             }
         };
-        let Param::Number(g) = self.magnitude else { return Some(Pull::Varying) };
-        let world = World::default();
-        Some(match pointer {
-            Some(pointer) => Pull::Constant(pointer.unit(&world, flat).map(|e| g * e)),
-            None => Pull::Varying,
-        })
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+        let pull = match (&self.magnitude, pointer) {
+            (Param::Number(g), Some(pointer)) => {
+                Pull::Constant(pointer.unit(w, w.settings.two_dimensional).map(|e| g * e))
+            }
+            _ => Pull::Varying,
+        };
+        let (minimizing, pull) = (Minimizing::Absent, Some(pull));
+        Facts { minimizing, pull, has_level: true, has_energy: true, ..Facts::default() }
     }
 }
 

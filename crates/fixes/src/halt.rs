@@ -1,6 +1,6 @@
 //! fix halt: ends a run when something has happened.
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::shortest;
 use perigrain_lang::{Args, Param, RefKind, ValueRef};
@@ -159,12 +159,8 @@ impl Fix for Declared {
         Ok(vec![op.when(when).boxed()])
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, ..Facts::default() }
     }
 }
 

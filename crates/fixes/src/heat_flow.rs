@@ -86,10 +86,6 @@ impl Fix for Declared {
             });
         Ok(vec![op.in_every_level().boxed()])
     }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 mod form;
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use form::{Form, check_ends};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Param, Word};
@@ -11,8 +11,8 @@ use perigrain_styles::common::{axis, scales, units_lattice, variable_param};
 use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::GroupId;
 use perigrain_world::field::{BOX, F, MASK, SLOTS, X};
+use perigrain_world::{GroupId, World};
 
 /// The style.
 pub struct Indent;
@@ -169,20 +169,8 @@ impl Fix for Declared {
         Shape { scalar: true, vector: 3, scalar_extensive: true, vector_extensive: true, ..Shape::default() }
     }
 
-    fn has_energy(&self) -> bool {
-        true
-    }
-
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
     }
 }
 

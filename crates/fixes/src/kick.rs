@@ -5,18 +5,18 @@ mod pass;
 use super::nve::half_step;
 use pass::{Kick, Part, faster};
 use perigrain_base::diag::Result;
-use perigrain_plan::{Act, Gist, Solids, Stretch, Tick};
+use perigrain_plan::{Act, BlockSums, ParticleBlock, Solids, Tick};
 use perigrain_styles::matter::Masses;
 use perigrain_styles::step_op::StepOp;
 use perigrain_world::{GroupId, World};
 
-/// Lets the op that begins a step make whole ones in stretches: half kicks and drifts of a group; with `inertia`,
+/// Lets the op that begins a step make whole ones in blocks of particles: half kicks and drifts of a group; with `inertia`,
 /// I / (m R²), spins too: ω += Δt/2 · torque/I. How far anybody has gone at most is told to the account of ways.
 pub fn first<F>(op: StepOp<F>, group: GroupId, inertia: Option<f64>) -> StepOp<F>
 where
     F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
 {
-    op.taking_turns(move |w, t, _| whole(w, group, inertia, t, Part::First), went)
+    op.fusing(move |w, t| whole(w, group, inertia, t, Part::First), went)
 }
 
 /// The same for the op that ends a step, and can begin the next one.
@@ -24,8 +24,7 @@ pub fn second<F>(op: StepOp<F>, group: GroupId, inertia: Option<f64>) -> StepOp<
 where
     F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
 {
-    let part = |on: bool| if on { Part::Both } else { Part::Second };
-    op.taking_turns(move |w, t, on| whole(w, group, inertia, t, part(on)), went)
+    op.fusing(move |w, t| whole(w, group, inertia, t, if t.on { Part::Both } else { Part::Second }), went)
 }
 
 /// A part of a step, or of a level of steps, of which only the shortest drift; of the two lengths of steps for grains and
@@ -54,15 +53,15 @@ fn whole(w: &World, group: GroupId, inertia: Option<f64>, t: &Tick, part: Part) 
 }
 
 /// What came of a motion: the largest v².
-fn moved(most: f64) -> Gist {
-    Gist { most, ..Gist::default() }
+fn moved(most: f64) -> BlockSums {
+    BlockSums { most, ..BlockSums::default() }
 }
 
 /// A part of a step of two lengths: in the long one all are kicked and all but solids drift, in the short ones solids do
 /// both. Solids are created one after the other: what a particle does is decided once for all like it that follow.
 fn some(
     k: &Kick,
-    s: &mut Stretch,
+    s: &mut ParticleBlock,
     spins: bool,
     part: Part,
     masses: &Masses,
@@ -100,6 +99,6 @@ fn alike(kind: &[u16], mask: &[u32]) -> usize {
 }
 
 /// Tells the account of ways what came of a part.
-fn went(w: &mut World, t: &Tick, gist: Gist) {
-    w.travel.went(t.dt.abs() * gist.most.sqrt());
+fn went(w: &mut World, t: &Tick, sums: BlockSums) {
+    w.travel.went(t.dt.abs() * sums.most.sqrt());
 }

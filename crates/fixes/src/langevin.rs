@@ -1,6 +1,6 @@
 //! fix langevin: friction and random forces, as if particles were in a bath of some temperature.
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::rng::Marsaglia;
 use perigrain_base::math::vec3::{Vec3, dot};
@@ -352,12 +352,8 @@ impl Fix for Declared {
         Shape { scalar: true, scalar_extensive: true, ..Shape::default() }
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Absent
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Absent, ..Facts::default() }
     }
 }
 

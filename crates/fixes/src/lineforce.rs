@@ -1,6 +1,6 @@
 //! fix lineforce: forces held along a line.
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::vec3::{Vec3, dot};
 use perigrain_base::par;
@@ -8,8 +8,8 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::GroupId;
 use perigrain_world::field::{F, MASK};
+use perigrain_world::{GroupId, World};
 
 /// The style.
 pub struct LineForce;
@@ -86,12 +86,8 @@ impl Fix for Held {
         Ok(vec![op.in_every_level().boxed()])
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, ..Facts::default() }
     }
 }
 

@@ -102,10 +102,6 @@ impl Fix for Declared {
         });
         Ok(vec![op.when(When::Every(self.every)).boxed()])
     }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
-    }
 }
 
 impl Declared {

@@ -4,7 +4,7 @@ use super::elapsed::Elapsed;
 use super::lineforce::direction;
 use super::nve::half_step;
 use super::path::{Path, Readings};
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::par;
 use perigrain_lang::{Args, Param, ValueRef};
@@ -205,19 +205,12 @@ impl Fix for Declared {
         Shape { atom: Some(3), ..Shape::default() }
     }
 
-    fn integrates(&self) -> bool {
-        true
-    }
-
-    fn needs_whole_steps(&self, w: &World) -> Option<&'static str> {
+    fn facts(&self, w: &World) -> Facts {
         let free = self.path.given().contains(&false) && !w.settings.lammps();
-        free.then_some(
+        let needs_whole_steps = free.then_some(
             "its free components would feel the forces of the outermost level alone, as they do in LAMMPS",
-        )
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+        );
+        Facts { integrates: true, needs_whole_steps, ..Facts::default() }
     }
 }
 

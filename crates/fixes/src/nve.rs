@@ -1,7 +1,7 @@
 //! fix nve: velocity Verlet at constant energy.
 
 use super::kick;
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
@@ -67,12 +67,8 @@ impl Fix for Declared {
         Ok(vec![first.boxed(), second.boxed()])
     }
 
-    fn integrates(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { integrates: true, ..Facts::default() }
     }
 }
 

@@ -1,7 +1,7 @@
 //! fix nve/limit: velocity Verlet that lets no particle go farther than a limit in one step.
 
 use super::nve::half_step;
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::dot;
 use perigrain_base::par;
@@ -133,12 +133,8 @@ impl Fix for Declared {
         Shape { scalar: true, scalar_extensive: true, ..Shape::default() }
     }
 
-    fn integrates(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { integrates: true, ..Facts::default() }
     }
 }
 

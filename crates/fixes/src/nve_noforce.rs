@@ -1,14 +1,14 @@
 //! fix nve/noforce: particles fly on, whatever the forces on them.
 
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::Result;
 use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::GroupId;
 use perigrain_world::field::{MASK, V, X};
+use perigrain_world::{GroupId, World};
 
 /// The style.
 pub struct NveNoForce;
@@ -55,12 +55,8 @@ impl Fix for Declared {
         Ok(vec![op.innermost().boxed()])
     }
 
-    fn integrates(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { integrates: true, ..Facts::default() }
     }
 }
 

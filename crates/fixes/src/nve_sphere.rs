@@ -1,7 +1,7 @@
 //! fix nve/sphere: velocity Verlet of spheres, translation and rotation.
 
 use super::kick as kicks;
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
@@ -99,12 +99,8 @@ impl Fix for Declared {
         Ok(vec![first.boxed(), second.boxed()])
     }
 
-    fn integrates(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { integrates: true, ..Facts::default() }
     }
 }
 

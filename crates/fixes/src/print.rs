@@ -1,6 +1,6 @@
 //! fix print: a line of text with values in it every so many steps.
 
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Result, Span};
 use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_out::Sheet;
@@ -9,7 +9,7 @@ use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::field::{SLOTS, TAG, V};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The style.
 pub struct Print;
@@ -112,8 +112,8 @@ struct Declared {
 }
 
 impl Fix for Declared {
-    fn file(&self) -> Option<&Path> {
-        self.file.as_ref().map(|(path, _)| path.as_path())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { file: self.file.as_ref().map(|(path, _)| path.clone()), ..Facts::default() }
     }
 
     fn declare(&self, _w: &mut World) -> Result<()> {
@@ -143,9 +143,5 @@ impl Fix for Declared {
             sheet.as_mut().map_or(Ok(()), |s| s.block(&format!("{line}\n")))
         });
         Ok(vec![op.when(when).boxed()])
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
     }
 }

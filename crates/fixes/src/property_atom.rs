@@ -172,10 +172,6 @@ impl Fix for Declared {
         cx.world().columns.resize(n);
         Ok(vec![])
     }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

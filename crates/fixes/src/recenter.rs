@@ -136,10 +136,6 @@ impl Fix for Declared {
     fn shape(&self) -> Shape {
         Shape { scalar: true, vector: 3, scalar_extensive: true, vector_extensive: true, ..Shape::default() }
     }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

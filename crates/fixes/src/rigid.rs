@@ -8,7 +8,7 @@ mod pass;
 
 pub use nve::{RigidNve, RigidNveSmall};
 
-use super::{Fix, FixStyle, no_option};
+use super::{Facts, Fix, FixStyle, no_option};
 use bodies::Split;
 use motion::Crew;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
@@ -348,16 +348,16 @@ impl Fix for Declared {
         let second = |me: Declared| {
             let mut crew = Crew::of(&me);
             move |w: &mut World, t: &Tick| {
-                if !t.unchanged {
+                if t.on {
+                    me.go_on(w, t, slot, &mut crew);
+                } else if !t.unchanged {
                     me.finish_step(w, t, slot, &mut crew);
                 }
                 Ok(())
             }
         };
-        let (me, mut crew) = (self.clone(), Crew::of(self));
-        let on = move |w: &mut World, t: &Tick| me.go_on(w, t, slot, &mut crew);
         let last = StepOp::new(name.clone(), Stage::FinalIntegrate, access(), second(self.clone()));
-        let (first, last) = (first.reporting(), last.reporting().and_on(on));
+        let (first, last) = (first.reporting(), last.reporting().going_on());
         let mut ops = vec![bodies.boxed(), first.boxed()];
         if cx.world().settings.lammps() {
             // Its setup sums up forces when it comes to this fix: those of fixes that stand below are missing.
@@ -392,21 +392,14 @@ impl Fix for Declared {
         no_option(args)
     }
 
-    fn integrates(&self) -> bool {
-        true
-    }
-
-    fn needs_whole_steps(&self, _w: &World) -> Option<&'static str> {
-        Some(
-            "its bodies add up the forces of a step once, and LAMMPS' count those of one level twice and leave others out",
-        )
-    }
-
-    fn adopts(&self) -> Option<&str> {
-        self.template.as_deref()
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts {
+            integrates: true,
+            needs_whole_steps: Some(
+                "its bodies add up the forces of a step once, and LAMMPS' count those of one level twice and leave others out",
+            ),
+            adopts: self.template.clone(),
+            ..Facts::default()
+        }
     }
 }

@@ -1,10 +1,10 @@
 //! fix setforce: forces replaced by given ones.
 
 use super::components::Components;
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_plan::{Act, Gist, Needs, Op, Stage, Stretch, Tick};
+use perigrain_plan::{Act, BlockSums, Needs, Op, ParticleBlock, Stage, Tick};
 use perigrain_styles::matter::{change_forces, publish_levels};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
@@ -52,13 +52,13 @@ impl Fix for Declared {
         let slot = cx.slot(&format!("f_{}", self.id));
         let access = Needs::new().read(X | MASK | REGIONS).write(F | SLOTS);
         let numbers = chosen.bit_alone().zip(numbers(&force));
-        let hold = move |_: &World, t: &Tick, _: bool| {
+        let hold = move |_: &World, t: &Tick| {
             let (bit, values) = numbers.filter(|_| !t.unchanged)?;
             let here = level.acts(&t.phase);
             let values = values.map(|v: Option<f64>| v.map(|a| if here { a } else { 0.0 }));
-            Some(Act::new(move |s: &mut Stretch<'_>| replace(s, bit, &values)))
+            Some(Act::new(move |s: &mut ParticleBlock<'_>| replace(s, bit, &values)))
         };
-        let told = move |w: &mut World, t: &Tick, gist: Gist| publish_levels(w, slot, t, &gist.sums);
+        let told = move |w: &mut World, t: &Tick, sums: BlockSums| publish_levels(w, slot, t, &sums.sums);
         let op = StepOp::new(format!("fix {} setforce", self.id), Stage::PostForce, access, move |w, t| {
             if t.unchanged {
                 return Ok(());
@@ -77,23 +77,15 @@ impl Fix for Declared {
             publish_levels(w, slot, t, &before);
             Ok(())
         });
-        Ok(vec![op.taking_turns(hold, told).in_every_level().boxed()])
+        Ok(vec![op.fusing(hold, told).in_every_level().boxed()])
     }
 
     fn shape(&self) -> Shape {
         Shape { vector: 3, vector_extensive: true, ..Shape::default() }
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, has_level: true, ..Facts::default() }
     }
 }
 
@@ -111,8 +103,8 @@ fn numbers(force: &[Option<Reading>; 3]) -> Option<[Option<f64>; 3]> {
 }
 
 /// Replaces components of the forces of a group's particles by numbers; the sum of what was there before.
-fn replace(s: &mut Stretch, bit: u32, values: &[Option<f64>; 3]) -> Gist {
-    let mut gist = Gist::default();
+fn replace(s: &mut ParticleBlock, bit: u32, values: &[Option<f64>; 3]) -> BlockSums {
+    let mut sums = BlockSums::default();
     // Particles that are held lie together: most eights have none.
     for (k, eight) in s.mask().chunks(8).enumerate() {
         if eight.iter().fold(0, |all, m| all | m) & bit == 0 {
@@ -120,12 +112,12 @@ fn replace(s: &mut Stretch, bit: u32, values: &[Option<f64>; 3]) -> Gist {
         }
         for (f, _) in s.f[8 * k..].iter_mut().zip(eight).filter(|(_, m)| **m & bit != 0) {
             for d in 0..3 {
-                gist.sums[d] += f[d];
+                sums.sums[d] += f[d];
                 f[d] = values[d].unwrap_or(f[d]);
             }
         }
     }
-    gist
+    sums
 }
 
 #[cfg(test)]

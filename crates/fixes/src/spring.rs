@@ -1,6 +1,6 @@
 //! fix spring: a spring between the centre of mass of a group and a point, or another group's centre.
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::vec3::length;
 use perigrain_lang::Args;
@@ -9,8 +9,8 @@ use perigrain_styles::common::number_or_null;
 use perigrain_styles::matter::{Chosen, Masses, centre, change_forces, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::GroupId;
 use perigrain_world::field::{BOX, F, IMAGE, KIND, MASK, MASS, SLOTS, TYPE_MASS, X};
+use perigrain_world::{GroupId, World};
 
 /// The style.
 pub struct Spring;
@@ -124,20 +124,8 @@ impl Fix for Declared {
         Shape { scalar: true, vector: 4, scalar_extensive: true, vector_extensive: true, ..Shape::default() }
     }
 
-    fn has_energy(&self) -> bool {
-        true
-    }
-
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
     }
 }
 

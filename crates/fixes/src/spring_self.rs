@@ -1,6 +1,6 @@
 //! fix spring/self: every particle on a spring to where it was.
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, When};
@@ -113,20 +113,8 @@ impl Fix for Declared {
         Shape { scalar: true, scalar_extensive: true, ..Shape::default() }
     }
 
-    fn has_energy(&self) -> bool {
-        true
-    }
-
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
     }
 }
 

@@ -1,6 +1,6 @@
 //! fix store/force: keeps the forces as they are at this place among the fixes.
 
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
@@ -78,12 +78,8 @@ impl Fix for Declared {
         Shape { atom: Some(3), ..Shape::default() }
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, ..Facts::default() }
     }
 }
 

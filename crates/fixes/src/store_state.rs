@@ -210,10 +210,6 @@ impl Fix for Declared {
     fn shape(&self) -> Shape {
         Shape { atom: Some(self.inputs.len()), every: self.every, ..Shape::default() }
     }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

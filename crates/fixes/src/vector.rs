@@ -2,7 +2,7 @@
 
 use super::ave_time::leading_values;
 use super::window::forget;
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
@@ -76,8 +76,8 @@ impl Declared {
 }
 
 impl Fix for Declared {
-    fn counts_steps(&self) -> bool {
-        true
+    fn facts(&self, _: &World) -> Facts {
+        Facts { counts_steps: true, ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
@@ -140,10 +140,6 @@ impl Fix for Declared {
                 ..Shape::default()
             },
         }
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
     }
 }
 

@@ -1,11 +1,12 @@
 //! fix viscous: a drag proportional to velocity.
 
 use super::resistance::Resistance;
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::World;
 use perigrain_world::field::{F, KIND, MASK, V};
 
 /// The style.
@@ -42,16 +43,8 @@ impl Fix for Declared {
         Ok(vec![self.0.op(needs, (|p| &mut p.f, |p| &p.v), cx)?])
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, has_level: true, ..Facts::default() }
     }
 }
 

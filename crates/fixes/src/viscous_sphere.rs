@@ -1,11 +1,12 @@
 //! fix viscous/sphere: a torque against the spin of spheres.
 
 use super::resistance::Resistance;
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::World;
 use perigrain_world::field::{KIND, MASK, OMEGA, SLOTS, TORQUE};
 
 /// The style.
@@ -47,16 +48,8 @@ impl Fix for Declared {
         Ok(vec![self.0.op(needs, (|p| &mut p.torque, |p| &p.omega), cx)?])
     }
 
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, has_level: true, ..Facts::default() }
     }
 }
 

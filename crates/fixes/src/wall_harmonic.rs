@@ -1,7 +1,7 @@
 //! fix wall/harmonic: flat walls that push with a spring.
 
 use super::faces::{Face, Spot, check};
-use super::{Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
@@ -278,20 +278,8 @@ impl Fix for Declared {
         }
     }
 
-    fn has_energy(&self) -> bool {
-        true
-    }
-
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Acts
-    }
-
-    fn has_level(&self) -> bool {
-        true
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
     }
 }
 

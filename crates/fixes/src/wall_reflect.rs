@@ -1,7 +1,7 @@
 //! fix wall/reflect: flat walls that throw particles back.
 
 use super::faces::{Face, Spot, check};
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
 use perigrain_lang::Args;
@@ -104,12 +104,8 @@ impl Fix for Declared {
         Ok(vec![op.boxed()])
     }
 
-    fn needs_whole_steps(&self, _w: &World) -> Option<&'static str> {
-        Some("in LAMMPS it throws nobody back in them")
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
+    fn facts(&self, _: &World) -> Facts {
+        Facts { needs_whole_steps: Some("in LAMMPS it throws nobody back in them"), ..Facts::default() }
     }
 }
 

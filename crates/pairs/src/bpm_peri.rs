@@ -1,13 +1,13 @@
 //! `pair_style bpm/peri`: short-range repulsion of peridynamic particles that no bond joins.
 
 use super::shared::{built_at, near, push};
-use super::{Pair, PairStyle, TypePairs};
+use super::{ByPart, Deck, Facts, Pair, PairStyle, Scales, TypePairs};
 use crate::bond::bpm_peri::cubic;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::vec3::dot;
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference};
-use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::columns::VOLUME_PROPERTY;
 use perigrain_world::field::{BONDS, BOX, COLUMNS, F, KIND, LISTS, MASK, MOLECULE, RADIUS, TAG, TALLY, X};
@@ -56,8 +56,8 @@ struct Contact {
 }
 
 impl Pair for Contact {
-    fn name(&self) -> &'static str {
-        "bpm/peri"
+    fn facts(&self) -> Facts {
+        Facts { name: "bpm/peri", ..Facts::default() }
     }
 
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
@@ -74,7 +74,7 @@ impl Pair for Contact {
         self.table.retain(|p, _| pairs.contains(p));
     }
 
-    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {
         let span = cx.span();
         cubic(cx.world(), "pair_style bpm/peri", span)?;
         if cx.world().columns.custom(VOLUME_PROPERTY).is_none() {
@@ -83,22 +83,12 @@ impl Pair for Contact {
                 .help("put `fix vol all property/atom d_vfrac ghost yes` and `set group all d_vfrac …` before the run")
                 .into());
         }
-        Ok(vec![Box::new(Repulsion {
-            law: self.clone(),
-            span,
-            held: None,
-            joined: None,
-            near: vec![],
-            list: vec![],
-        })])
+        let op = Repulsion { law: self.clone(), span, held: None, joined: None, near: vec![], list: vec![] };
+        Ok(vec![(0, Box::new(op))])
     }
 
-    fn cutoff(&self, _w: &World) -> Option<f64> {
-        self.table.values().map(|c| c[1]).reduce(f64::max)
-    }
-
-    fn boxed(&self) -> Box<dyn Pair> {
-        Box::new(self.clone())
+    fn scales(&self, _w: &World, _deck: Deck) -> Scales {
+        Scales { cutoff: self.table.values().map(|c| c[1]).reduce(f64::max), ..Scales::default() }
     }
 }
 
@@ -135,18 +125,16 @@ impl Repulsion {
 }
 
 impl Op for Repulsion {
-    fn name(&self) -> &str {
-        "pair bpm/peri"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Force
-    }
-    fn needs(&self) -> Needs {
-        Needs::new()
-            .read(X | KIND | BONDS | BOX | TAG | LISTS | RADIUS | MASK | MOLECULE)
-            .add(F)
-            .write(TALLY)
-            .keep(COLUMNS)
+    fn about(&self) -> About {
+        About::new(
+            "pair bpm/peri",
+            Stage::Force,
+            Needs::new()
+                .read(X | KIND | BONDS | BOX | TAG | LISTS | RADIUS | MASK | MOLECULE)
+                .add(F)
+                .write(TALLY)
+                .keep(COLUMNS),
+        )
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let range = CONTACT * w.lattice.spacing[0];

@@ -1,12 +1,12 @@
 //! `pair_style bpm/spring`: damped repulsion of particles of bonded solids.
 
 use super::shared::{built_at, near, push};
-use super::{Pair, PairStyle, TypePairs};
+use super::{ByPart, Deck, Facts, Pair, PairStyle, Scales, TypePairs};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{dot, sub};
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference};
-use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
@@ -51,7 +51,7 @@ impl Springs {
         let mut new = self.clone();
         for (&types, [k, _, gamma]) in &mut new.table {
             let of = |name: &str| {
-                let (style, name) = (self.name().to_string(), name.to_string());
+                let (style, name) = ("bpm/spring".to_string(), name.to_string());
                 w.adapted(&Coefficient { bond: false, style, name, types })
             };
             *k = of("k").unwrap_or(*k);
@@ -62,8 +62,8 @@ impl Springs {
 }
 
 impl Pair for Springs {
-    fn name(&self) -> &'static str {
-        "bpm/spring"
+    fn facts(&self) -> Facts {
+        Facts { name: "bpm/spring", coefficients: &["k", "gamma"], ..Facts::default() }
     }
 
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
@@ -81,34 +81,27 @@ impl Pair for Springs {
         self.table.retain(|p, _| pairs.contains(p));
     }
 
-    fn coefficients(&self) -> &'static [&'static str] {
-        &["k", "gamma"]
-    }
-
     fn coefficient(&self, name: &str, types: (u16, u16)) -> Option<f64> {
         let [k, _, gamma] = self.table.get(&types)?;
         Some(if name == "k" { *k } else { *gamma })
     }
 
-    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {
         let mut wanted = Wanted::new(cx.world().types);
         self.table.iter().for_each(|((a, b), s)| wanted.set(*a, *b, Reach::Fixed(s[1])));
-        Ok(vec![Box::new(Repulsion {
+        let op = Repulsion {
             said: self.clone(),
             law: self.clone(),
             adapted: 0.0,
             wanted,
             made: None,
             list: vec![],
-        })])
+        };
+        Ok(vec![(0, Box::new(op))])
     }
 
-    fn cutoff(&self, _w: &World) -> Option<f64> {
-        self.table.values().map(|c| c[1]).reduce(f64::max)
-    }
-
-    fn boxed(&self) -> Box<dyn Pair> {
-        Box::new(self.clone())
+    fn scales(&self, _w: &World, _deck: Deck) -> Scales {
+        Scales { cutoff: self.table.values().map(|c| c[1]).reduce(f64::max), ..Scales::default() }
     }
 }
 
@@ -127,17 +120,28 @@ struct Repulsion {
 }
 
 impl Op for Repulsion {
-    fn name(&self) -> &str {
-        "pair bpm/spring"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Force
-    }
-    fn needs(&self) -> Needs {
-        Needs::new()
-            .read(X | V | KIND | BONDS | BOX | MEMO | LISTS | RADIUS | FAMILIES | TAG | MOLECULE | X0 | MASK)
-            .add(F)
-            .write(TALLY)
+    fn about(&self) -> About {
+        About::new(
+            "pair bpm/spring",
+            Stage::Force,
+            Needs::new()
+                .read(
+                    X | V
+                        | KIND
+                        | BONDS
+                        | BOX
+                        | MEMO
+                        | LISTS
+                        | RADIUS
+                        | FAMILIES
+                        | TAG
+                        | MOLECULE
+                        | X0
+                        | MASK,
+                )
+                .add(F)
+                .write(TALLY),
+        )
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let period = w.periods();

@@ -1,6 +1,6 @@
 //! `pair_style hybrid` and `hybrid/overlay`: several pair styles, each for its own pairs of types.
 
-use super::{ByPart, PAIRS, Pair, PairStyle, TypePairs};
+use super::{ByPart, Deck, Facts, PAIRS, Pair, PairStyle, Scales, TypePairs};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail, nearest};
 use perigrain_lang::{Args, Word, blame};
 use perigrain_plan::Op;
@@ -75,14 +75,14 @@ fn build(name: &'static str, overlay: bool, args: &mut Args, cx: &BuildCx) -> Re
             return Err(unknown(first, None, &known).into());
         };
         let (sub, word) = (style.name(), first.span);
-        if subs.iter().any(|s| s.name() == sub) {
+        if subs.iter().any(|s| s.facts().name == sub) {
             return Err(Diagnostic::error(Code::NOT_SUPPORTED, word, format!("`{sub}` is named twice"))
                 .help("one is enough: coefficients may differ for every pair of types")
                 .into());
         }
         let solid = |name: &str| name.starts_with("peri/");
-        if let Some(first) = subs.iter().find(|s| solid(s.name()) && solid(sub)) {
-            let text = format!("`{sub}` beside `{}`: one scene has one peridynamic style", first.name());
+        if let Some(first) = subs.iter().map(|s| s.facts().name).find(|name| solid(name) && solid(sub)) {
+            let text = format!("`{sub}` beside `{first}`: one scene has one peridynamic style");
             return Err(Diagnostic::error(Code::NOT_SUPPORTED, word, text)
                 .help("coefficients may differ for every pair of types; LAMMPS crashes here without a word")
                 .into());
@@ -114,6 +114,7 @@ fn unknown(word: &Word, before: Option<&dyn PairStyle>, known: &[&'static str]) 
     d.help(format!("sub-styles: {}", known.join(" ")))
 }
 
+#[derive(Clone)]
 struct Declared {
     name: &'static str,
     overlay: bool,
@@ -142,15 +143,18 @@ impl Declared {
 
     /// Sub-style `k`, limited to its pairs.
     fn limited(&self, k: usize, types: usize) -> Box<dyn Pair> {
-        let mut sub = self.subs[k].boxed();
+        let mut sub = self.subs[k].clone();
         sub.restrict(&self.pairs_of(k, types));
         sub
     }
 }
 
 impl Pair for Declared {
-    fn name(&self) -> &'static str {
-        self.name
+    fn facts(&self) -> Facts {
+        let own = self.users.iter().filter(|((i, j), _)| i == j).map(|((i, _), list)| (*i, list));
+        let solid = |i: &u16, list: &[usize]| list.iter().any(|&k| self.subs[k].facts().solids.contains(i));
+        let solids = own.filter(|(i, list)| solid(i, list)).map(|(i, _)| i).collect();
+        Facts { name: self.name, solids, ..Facts::default() }
     }
 
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()> {
@@ -158,7 +162,7 @@ impl Pair for Declared {
             self.users.extend(pairs.iter().map(|&p| (p, vec![])));
             return Ok(());
         }
-        let names: Vec<&'static str> = self.subs.iter().map(|s| s.name()).collect();
+        let names: Vec<&'static str> = self.subs.iter().map(|s| s.facts().name).collect();
         let name = args.choice(&format!("sub-style of this {}", self.name), &names)?;
         let k = names.iter().position(|n| *n == name).unwrap_or(0);
         self.subs[k].coeff(pairs, args, cx)?;
@@ -182,32 +186,35 @@ impl Pair for Declared {
         self.users(i.min(j), i.max(j)).is_some()
     }
 
-    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        Ok(self.ops_by_part(cx)?.into_iter().flat_map(|(_, ops)| ops).collect())
-    }
-
-    fn ops_by_part(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {
         let types = cx.world().types;
         // Solids first: contacts ask which particles belong to one.
         let mut order: Vec<usize> = (0..self.subs.len()).collect();
-        order.sort_by_key(|&k| self.subs[k].true_forces().is_none());
-        order.into_iter().map(|k| Ok((k, self.limited(k, types).ops(cx)?))).collect()
+        order.sort_by_key(|&k| self.subs[k].facts().true_forces.is_none());
+        let mut all = vec![];
+        for k in order {
+            all.extend(self.limited(k, types).ops(cx)?.into_iter().map(|(_, op)| (k, op)));
+        }
+        Ok(all)
     }
 
-    fn probes(&self, w: &World) -> Result<Vec<Box<dyn Probe>>> {
-        Ok(self.probes_by_part(w)?.into_iter().flat_map(|(_, probes)| probes).collect())
+    fn probes(&self, w: &World, _bonds: bool) -> Result<ByPart<dyn Probe>> {
+        let mut all = vec![];
+        for k in 0..self.subs.len() {
+            all.extend(self.limited(k, w.types).probes(w, false)?.into_iter().map(|(_, probe)| (k, probe)));
+        }
+        Ok(all)
     }
 
-    fn cutoff(&self, w: &World) -> Option<f64> {
-        (0..self.subs.len()).filter_map(|k| self.limited(k, w.types).cutoff(w)).reduce(f64::max)
-    }
-
-    fn probes_by_part(&self, w: &World) -> Result<ByPart<dyn Probe>> {
-        (0..self.subs.len()).map(|k| Ok((k, self.limited(k, w.types).probes(w)?))).collect()
+    fn scales(&self, w: &World, deck: Deck) -> Scales {
+        let cutoff = |k| self.limited(k, w.types).scales(w, deck).cutoff;
+        let cutoff = (0..self.subs.len()).filter_map(cutoff).reduce(f64::max);
+        // Those who look for times ask each sub-style.
+        Scales { cutoff, ..Scales::default() }
     }
 
     fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        let solid = self.subs.iter_mut().find(|s| s.true_forces().is_some());
+        let solid = self.subs.iter_mut().find(|s| s.facts().true_forces.is_some());
         match (command, solid) {
             ("peri_modify", Some(sub)) => sub.modify(command, args, cx),
             _ => fail(
@@ -218,10 +225,6 @@ impl Pair for Declared {
         }
     }
 
-    fn solid(&self, kind: u16) -> bool {
-        self.users(kind, kind).is_some_and(|list| list.iter().any(|&k| self.subs[k].solid(kind)))
-    }
-
     fn parts(&self) -> Vec<&dyn Pair> {
         self.subs.iter().map(AsRef::as_ref).collect()
     }
@@ -230,23 +233,15 @@ impl Pair for Declared {
         let types = cx.world.types;
         for (k, sub) in self.subs.iter().enumerate() {
             if self.pairs_of(k, types).is_empty() {
-                let text = format!("no pair of types uses the sub-style {} of {}", sub.name(), self.name);
+                let name = sub.facts().name;
+                let text = format!("no pair of types uses the sub-style {name} of {}", self.name);
                 cx.note(
                     Diagnostic::error(Code::CONFLICT, cx.span, text)
-                        .help(format!("give it coefficients: `pair_coeff i j {} …`", sub.name()))
+                        .help(format!("give it coefficients: `pair_coeff i j {name} …`"))
                         .help("with `hybrid` a later pair_coeff replaces an earlier one: put `* *` first"),
                 );
             }
             self.limited(k, types).check(cx);
         }
-    }
-
-    fn boxed(&self) -> Box<dyn Pair> {
-        Box::new(Declared {
-            name: self.name,
-            overlay: self.overlay,
-            subs: self.subs.iter().map(|s| s.boxed()).collect(),
-            users: self.users.clone(),
-        })
     }
 }

@@ -19,7 +19,7 @@ pub mod peri;
 mod shared;
 mod zero;
 
-pub use perigrain_styles::pair::{ByPart, Pair, PairStyle, TypePairs};
+pub use perigrain_styles::pair::{ByPart, Deck, Facts, Pair, PairStyle, Scales, TypePairs};
 pub use perigrain_styles::probe;
 
 /// Every pair style.

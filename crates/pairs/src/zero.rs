@@ -1,6 +1,6 @@
 //! `pair_style zero`: particles that do not feel each other.
 
-use super::{Pair, PairStyle, TypePairs};
+use super::{ByPart, Deck, Facts, Pair, PairStyle, Scales, TypePairs};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
@@ -56,8 +56,8 @@ struct Zero {
 }
 
 impl Pair for Zero {
-    fn name(&self) -> &'static str {
-        "zero"
+    fn facts(&self) -> Facts {
+        Facts { name: "zero", ..Facts::default() }
     }
 
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
@@ -76,15 +76,11 @@ impl Pair for Zero {
         has(i, j) || (has(i, i) && has(j, j))
     }
 
-    fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+    fn ops(&self, _cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {
         Ok(vec![])
     }
 
-    fn cutoff(&self, _w: &World) -> Option<f64> {
-        self.pairs.values().copied().reduce(f64::max)
-    }
-
-    fn boxed(&self) -> Box<dyn Pair> {
-        Box::new(self.clone())
+    fn scales(&self, _w: &World, _deck: Deck) -> Scales {
+        Scales { cutoff: self.pairs.values().copied().reduce(f64::max), ..Scales::default() }
     }
 }

@@ -24,7 +24,7 @@ impl StepPlan {
             return;
         }
         let sums = [&self.energy, &self.virial, &self.atom_energy, &self.atom_virial].into_iter().flatten();
-        let all = self.ops.iter().map(|p| &p.when).chain(sums).filter(|w| **w != When::Always);
+        let all = self.ops.iter().map(|p| &p.about.when).chain(sums).filter(|w| **w != When::Always);
         let next = all.map(|w| w.next(t.step, t.last)).min().unwrap_or(i64::MAX);
         self.quiet = (t.step..next, t.last);
     }
@@ -54,10 +54,12 @@ impl StepPlan {
     }
 
     fn find_ending(&mut self, t: &Tick) -> Ending {
-        let acts = |p: &Placed| p.level.acts(&t.phase) && self.fires(&p.when, t);
+        let acts = |p: &Placed| p.about.level.acts(&t.phase) && self.fires(&p.about.when, t);
         let of = |stages: &[Stage]| {
             let all = self.ops.iter().enumerate();
-            all.filter(|(_, p)| stages.contains(&p.stage) && acts(p)).map(|(k, _)| k).collect::<Vec<_>>()
+            all.filter(|(_, p)| stages.contains(&p.about.stage) && acts(p))
+                .map(|(k, _)| k)
+                .collect::<Vec<_>>()
         };
         let (forces, mut order) = (of(&[Stage::Force]), of(&[Stage::PostForce, Stage::FinalIntegrate]));
         let last = self.last_kick(t);
@@ -69,9 +71,10 @@ impl StepPlan {
 
     /// The op that clears forces, if nobody reads them between the beginning of a step and there.
     fn clears_early(&mut self) -> Option<usize> {
-        let first = self.ops.iter().position(|p| p.stage >= Stage::PreForce)?;
-        let clears = self.ops[first].stage == Stage::PreForce && self.ops[first].when == When::Always;
-        let reads = |p: &Placed| p.stage > Stage::InitialIntegrate && p.needs.reads(F | TORQUE);
+        let first = self.ops.iter().position(|p| p.about.stage >= Stage::PreForce)?;
+        let clears =
+            self.ops[first].about.stage == Stage::PreForce && self.ops[first].about.when == When::Always;
+        let reads = |p: &Placed| p.about.stage > Stage::InitialIntegrate && p.about.needs.reads(F | TORQUE);
         let before = &self.ops[..first];
         let unread = *self.unread.get_or_insert_with(|| !before.iter().any(reads));
         (clears && unread).then_some(first)
@@ -79,8 +82,8 @@ impl StepPlan {
 
     /// The op that ends the motion of this step if its fix alone moves particles and nobody looks before the next step.
     fn last_kick(&self, t: &Tick) -> Option<usize> {
-        let fires = |p: &Placed| self.fires(&p.when, t);
-        let acts = |p: &Placed, stage| p.stage == stage && p.level.acts(&t.phase);
+        let fires = |p: &Placed| self.fires(&p.about.when, t);
+        let acts = |p: &Placed, stage| p.about.stage == stage && p.about.level.acts(&t.phase);
         let at = |stage| self.ops.iter().enumerate().filter(move |(_, p)| acts(p, stage));
         let looks = |stage| at(stage).any(|(_, p)| fires(p));
         let (mut first, mut second) = (at(Stage::InitialIntegrate), at(Stage::FinalIntegrate));
@@ -89,7 +92,7 @@ impl StepPlan {
         else {
             return None;
         };
-        let one = a.from == b.from && a.when == When::Always && b.when == When::Always;
+        let one = a.from == b.from && a.about.when == When::Always && b.about.when == When::Always;
         // The virial of constraints comes from what the first half of a step does to velocities. Short steps that others follow
         // have the number of the long one, in which nobody looks at them.
         let next = Tick { step: t.step + i64::from(t.phase.outermost()), ..t.clone() };

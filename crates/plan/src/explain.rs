@@ -8,15 +8,15 @@ pub fn text(plan: &StepPlan, measured: bool) -> String {
     let mut s = String::new();
     let total: f64 = plan.ops.iter().map(|p| p.meter.time.as_secs_f64()).sum();
     for stage in Stage::ALL {
-        let ops: Vec<_> = plan.ops.iter().filter(|p| p.op.stage() == stage).collect();
+        let ops: Vec<_> = plan.ops.iter().filter(|p| p.about.stage == stage).collect();
         if ops.is_empty() {
             continue;
         }
         let _ = writeln!(s, "{}", stage.name());
         for p in ops {
-            let _ = write!(s, "  {:<34} {:<22}", p.op.name(), p.when.to_string());
+            let _ = write!(s, "  {:<34} {:<22}", p.about.name, p.about.when.to_string());
             if let Some(levels) = plan.levels.filter(|_| stage < Stage::EndOfStep) {
-                let _ = write!(s, " {:<12}", p.level.told(levels));
+                let _ = write!(s, " {:<12}", p.about.level.told(levels));
             }
             if measured {
                 let secs = p.meter.time.as_secs_f64();
@@ -30,7 +30,7 @@ pub fn text(plan: &StepPlan, measured: bool) -> String {
                     );
                 }
             } else {
-                let _ = write!(s, " {}", p.needs);
+                let _ = write!(s, " {}", p.about.needs);
             }
             let _ = writeln!(s);
         }

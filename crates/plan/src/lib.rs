@@ -8,6 +8,7 @@
 
 mod ending;
 pub mod explain;
+pub mod fuse;
 pub mod guard;
 mod level;
 pub mod meter;
@@ -15,12 +16,11 @@ pub mod needs;
 pub mod op;
 pub mod run;
 pub mod schedule;
-pub mod stretch;
 
+pub use fuse::{Act, Beside, BlockSums, FusedPass, ParticleBlock, Pull, fuse};
 pub use guard::{Energy, Guard, Rule};
 pub use level::{Level, Phase, Solids};
 pub use meter::Meter;
 pub use needs::Needs;
-pub use op::{Op, OpClass, Stage, Tick, When};
+pub use op::{About, Op, OpClass, Stage, Tick, When};
 pub use schedule::{LeftOut, Placed, StepPlan};
-pub use stretch::{Act, Beside, Gist, Pull, Stretch, Turns, take_turns};

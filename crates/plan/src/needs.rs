@@ -204,7 +204,7 @@ pub fn how([read, written]: [Fields; 2]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Op, Placed, Stage, StepPlan, Tick};
+    use crate::{About, Op, Placed, Stage, StepPlan, Tick};
     use perigrain_base::diag::Result;
     use perigrain_world::World;
     use perigrain_world::field::{F, V, X};
@@ -213,14 +213,8 @@ mod tests {
     struct Says(Needs, fn(&mut World));
 
     impl Op for Says {
-        fn name(&self) -> &str {
-            "fix 1 says"
-        }
-        fn stage(&self) -> Stage {
-            Stage::PostForce
-        }
-        fn needs(&self) -> Needs {
-            self.0
+        fn about(&self) -> About {
+            About::new("fix 1 says", Stage::PostForce, self.0)
         }
         fn run(&mut self, w: &mut World, _: &Tick) -> Result<()> {
             (self.1)(w);

@@ -1,6 +1,6 @@
 //! What a step is made of: ops, their stage, what they read and write, and when they act.
 
-use super::stretch::{Act, Gist};
+use super::fuse::{Act, BlockSums};
 use super::{Level, Needs, Phase};
 use perigrain_base::diag::Result;
 use perigrain_world::{Fields, World};
@@ -211,6 +211,8 @@ pub struct Tick {
     pub contacts: bool,
     /// Somebody reads per-particle virials at this step.
     pub atom_virial: bool,
+    /// Who ends this step begins the next one in the same pass, as its fix (or it itself) does: nobody looks in between.
+    pub on: bool,
 }
 
 impl Tick {
@@ -239,6 +241,7 @@ impl Tick {
             phase: Phase::default(),
             contacts: false,
             atom_virial: false,
+            on: false,
         }
     }
 }
@@ -258,48 +261,62 @@ pub enum OpClass {
     Other,
 }
 
+/// What an op tells once, when it is placed in a plan.
+#[derive(Clone, Debug)]
+pub struct About {
+    /// A name for plan and timing, as `fix ball indent`.
+    pub name: String,
+    /// Where in the step.
+    pub stage: Stage,
+    /// Which fields it touches, and how.
+    pub needs: Needs,
+    /// At which steps. Providers of values get the union of their consumers' times instead.
+    pub when: When,
+    /// Whether it acts in the setup of a run too.
+    pub in_setup: bool,
+    /// In which of several levels of steps it acts.
+    pub level: Level,
+    /// Whether it tells the world's account ([`Travel`](perigrain_world::Travel)) how far it moves particles in whole steps.
+    pub reports_travel: bool,
+    /// Whether `run` can begin the next step as well, where [`Tick::on`] asks for it.
+    pub goes_on: bool,
+    /// The row of the timing table.
+    pub class: OpClass,
+}
+
+impl About {
+    /// Acts every step and in the outermost level, in the setup of a run where its stage usually does.
+    pub fn new(name: impl Into<String>, stage: Stage, needs: Needs) -> Self {
+        let class = match stage {
+            Stage::Force => OpClass::Pair,
+            Stage::Neighbor => OpClass::Neigh,
+            Stage::Output => OpClass::Output,
+            Stage::PreForce => OpClass::Other,
+            _ => OpClass::Modify,
+        };
+        let (when, in_setup, level) = (When::Always, stage.in_setup(), Level::Outermost);
+        let (reports_travel, goes_on) = (false, false);
+        Self { name: name.into(), stage, needs, when, in_setup, level, reports_travel, goes_on, class }
+    }
+}
+
 /// One thing a step does. Ops own scratch only; whatever outlives a step lives in `World`.
 pub trait Op: Send {
-    /// A name for plan and timing, as `fix ball indent`.
-    fn name(&self) -> &str;
-    /// Where in the step.
-    fn stage(&self) -> Stage;
-    /// Which fields it touches, and how; the whole scene if it does not say.
-    fn needs(&self) -> Needs {
-        Needs::all()
-    }
-    /// At which steps. Providers of values get the union of their consumers' times instead.
-    fn when(&self) -> When {
-        When::Always
-    }
-    /// Whether it acts in the setup of a run too.
-    fn in_setup(&self) -> bool {
-        self.stage().in_setup()
-    }
-    /// In which of several levels of steps it acts.
-    fn level(&self) -> Level {
-        Level::Outermost
-    }
-    /// Whether it tells the world's account ([`Travel`](perigrain_world::Travel)) how far it moves particles in whole steps.
-    fn reports_travel(&self) -> bool {
-        false
-    }
+    /// What the plan asks once.
+    fn about(&self) -> About;
     /// Told once all ops of a plan are known: which fields some of them change by name.
     fn settle(&mut self, _changed: Fields) {}
-    /// Acts at the end of this step and, in the same pass, as its fix does at the beginning of the next one, which nobody
-    /// looks in between of; `false` if it cannot, and has then done nothing.
+    /// Acts.
     ///
     /// # Errors
-    /// As `run`.
-    fn run_on(&mut self, _w: &mut World, _t: &Tick) -> Result<bool> {
-        Ok(false)
-    }
+    /// Failures of the physics (lost particles, numbers out of control) and of files.
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()>;
     /// As `run`, for the last op that adds forces: it may tell which particles have all of theirs while these are in fast memory,
     /// each once, and reads and writes nothing of those any more; they may be moved at once. `false` if it did not tell.
     ///
     /// # Errors
     /// As `run`.
-    fn run_telling(
+    fn run_streaming(
         &mut self,
         w: &mut World,
         t: &Tick,
@@ -307,29 +324,13 @@ pub trait Op: Send {
     ) -> Result<bool> {
         self.run(w, t).map(|()| false)
     }
-    /// What it does to stretches of particles at this tick, where it acts on each particle by itself: such ops take turns.
-    /// With `on` it acts at the end of this step and, in the same pass, as its fix (or it itself) does at the beginning of
-    /// the next one, which nobody looks in between of. `None` if it cannot.
-    fn on_stretches(&self, _w: &World, _t: &Tick, _on: bool) -> Option<Act> {
+    /// What it does to blocks of particles at this tick, where it acts on each particle by itself: such ops are fused into one
+    /// pass. `None` if it cannot.
+    fn fusible(&self, _w: &World, _t: &Tick) -> Option<Act> {
         None
     }
-    /// Takes what came of all stretches.
-    fn took_turns(&mut self, _w: &mut World, _t: &Tick, _gist: Gist) {}
-    /// The row of the timing table.
-    fn class(&self) -> OpClass {
-        match self.stage() {
-            Stage::Force => OpClass::Pair,
-            Stage::Neighbor => OpClass::Neigh,
-            Stage::Output => OpClass::Output,
-            Stage::PreForce => OpClass::Other,
-            _ => OpClass::Modify,
-        }
-    }
-    /// Acts.
-    ///
-    /// # Errors
-    /// Failures of the physics (lost particles, numbers out of control) and of files.
-    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()>;
+    /// Takes what came of all blocks.
+    fn fused(&mut self, _w: &mut World, _t: &Tick, _sums: BlockSums) {}
     /// What the run's end should do (close files, print a fact).
     ///
     /// # Errors

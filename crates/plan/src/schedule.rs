@@ -2,7 +2,7 @@
 
 use super::ending::Ending;
 use super::needs::{self, Needs};
-use super::{Act, Gist, Guard, Level, Meter, Op, OpClass, Stage, Tick, Turns, When, take_turns};
+use super::{About, Act, BlockSums, FusedPass, Guard, Meter, Op, OpClass, Stage, Tick, When, fuse};
 use perigrain_base::diag::{Diagnostics, Result, Span};
 use perigrain_world::field::{CONTACTS, RADIUS, X};
 use perigrain_world::{Fields, World};
@@ -14,20 +14,12 @@ use std::time::{Duration, Instant};
 pub struct Placed {
     /// The op.
     pub op: Box<dyn Op>,
-    /// When it acts (an op's own, or the union of its readers').
-    pub when: When,
-    /// In which of several levels of steps (an op's own, or what `run_style` and `fix_modify` say).
-    pub level: Level,
+    /// What it tells of itself; `when` may be the union of its readers' times, `level` what `run_style` and `fix_modify` say.
+    pub about: About,
     /// The command that created it, for messages.
     pub from: Option<Span>,
     /// The value it provides, as `c_dmg`; empty for ops that provide none to others.
     pub provides: String,
-    /// Which fields it touches.
-    pub needs: Needs,
-    /// Where in the step it acts.
-    pub stage: Stage,
-    /// Whether it acts in the setup of a run.
-    pub in_setup: bool,
     /// What it has cost.
     pub meter: Meter,
 }
@@ -35,14 +27,12 @@ pub struct Placed {
 impl Placed {
     /// An op at its own times.
     pub fn new(op: Box<dyn Op>, from: Option<Span>) -> Self {
-        let (when, level, needs) = (op.when(), op.level(), op.needs());
-        let (stage, in_setup, provides) = (op.stage(), op.in_setup(), String::new());
-        Self { op, when, level, from, provides, needs, stage, in_setup, meter: Meter::default() }
+        Self { about: op.about(), op, from, provides: String::new(), meter: Meter::default() }
     }
 
     /// Its name and what it states.
     fn stated(&self) -> (&str, Needs) {
-        (self.op.name(), self.needs)
+        (&self.about.name, self.about.needs)
     }
 
     /// Lets the op act by itself, see [`Placed::timed`]; it touches what it states.
@@ -53,16 +43,13 @@ impl Placed {
         clock: &mut Instant,
         act: impl FnOnce(&mut dyn Op, &mut World) -> Result<T>,
     ) -> Result<T> {
-        let needs = self.needs;
-        self.timed(w, t, clock, |op, w| {
-            begin_watch(w);
-            let outcome = act(op, w);
-            // Who fails may look around for words that help.
-            if outcome.is_ok() {
-                end_watch(w, std::iter::once((op.name(), needs)));
-            }
-            outcome
-        })
+        begin_watch(w);
+        let outcome = self.timed(w, t, clock, act);
+        // Who fails may look around for words that help.
+        if outcome.is_ok() {
+            end_watch(w, std::iter::once(self.stated()));
+        }
+        outcome
     }
 
     /// Lets the op act, and adds up what that costs; `clock` is when the one before was done.
@@ -145,15 +132,15 @@ pub struct StepPlan {
 impl StepPlan {
     /// Adds an op at the end of its stage (ops of a stage keep the order in which they are added).
     pub fn add(&mut self, placed: Placed) {
-        let stage = placed.op.stage();
-        let at = self.ops.iter().position(|p| p.stage > stage).unwrap_or(self.ops.len());
+        let stage = placed.about.stage;
+        let at = self.ops.iter().position(|p| p.about.stage > stage).unwrap_or(self.ops.len());
         self.ops.insert(at, placed);
         (self.unread, self.quiet, self.usual) = (None, Default::default(), None);
     }
 
     /// Tells every op what all of them write, now that they are known.
     pub fn settle(&mut self) {
-        let changed = self.ops.iter().fold(Fields::NONE, |all, p| all | p.needs.written_by_name());
+        let changed = self.ops.iter().fold(Fields::NONE, |all, p| all | p.about.needs.written_by_name());
         self.ops.iter_mut().for_each(|p| p.op.settle(changed));
     }
 
@@ -165,7 +152,9 @@ impl StepPlan {
         let atom_virial = any(&self.atom_virial);
         // Those of this step are there when all forces are.
         let reads = |p: &Placed| {
-            p.stage != Stage::Force && p.needs.reads(CONTACTS) && (t.ending || self.fires(&p.when, t))
+            p.about.stage != Stage::Force
+                && p.about.needs.reads(CONTACTS)
+                && (t.ending || self.fires(&p.about.when, t))
         };
         let contacts = atom_virial || self.ops.iter().any(reads);
         t.energy = energy || atoms;
@@ -182,17 +171,20 @@ impl StepPlan {
     pub fn run(&mut self, w: &mut World, t: &Tick, stages: &[Stage]) -> Result<()> {
         let Some((first, end)) = stages.first().zip(stages.last()) else { return Ok(()) };
         let mut clock = None;
-        let from = self.ops.partition_point(|p| p.stage < *first);
+        let from = self.ops.partition_point(|p| p.about.stage < *first);
         for k in from..self.ops.len() {
             let p = &self.ops[k];
-            if p.stage > *end {
+            if p.about.stage > *end {
                 break;
             }
-            if !stages.contains(&p.stage) || !p.level.acts(&t.phase) || (t.setup && !p.in_setup) {
+            if !stages.contains(&p.about.stage)
+                || !p.about.level.acts(&t.phase)
+                || (t.setup && !p.about.in_setup)
+            {
                 continue;
             }
-            let ends = t.ending && p.stage == Stage::Output && p.when != When::Never;
-            if ends || self.fires(&p.when, t) {
+            let ends = t.ending && p.about.stage == Stage::Output && p.about.when != When::Never;
+            if ends || self.fires(&p.about.when, t) {
                 let clock = clock.get_or_insert_with(Instant::now);
                 self.ops[k].alone(w, t, clock, |op, w| op.run(w, t))?;
             }
@@ -206,9 +198,9 @@ impl StepPlan {
     /// The first op's that fails, with the place of its command.
     pub fn end_first(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let later = Tick { setup: false, ..t.clone() };
-        for p in self.ops.iter_mut().filter(|p| p.stage == Stage::EndOfStep) {
-            let t = if p.in_setup { t } else { &later };
-            if p.when.fires(t) {
+        for p in self.ops.iter_mut().filter(|p| p.about.stage == Stage::EndOfStep) {
+            let t = if p.about.in_setup { t } else { &later };
+            if p.about.when.fires(t) {
                 p.alone(w, t, &mut Instant::now(), |op, w| op.run(w, t))?;
             }
         }
@@ -217,9 +209,9 @@ impl StepPlan {
 
     /// Whether all that move particles report how far, and none grows; who adds or wraps particles has lists made anew.
     pub fn reports_travel(&self) -> bool {
-        let moves = |p: &&Placed| p.needs.changes(X | RADIUS);
-        let anew = |p: &Placed| matches!(p.op.stage(), Stage::Exchange | Stage::Neighbor);
-        self.ops.iter().filter(moves).all(|p| anew(p) || p.op.reports_travel())
+        let moves = |p: &&Placed| p.about.needs.changes(X | RADIUS);
+        let anew = |p: &Placed| matches!(p.about.stage, Stage::Exchange | Stage::Neighbor);
+        self.ops.iter().filter(moves).all(|p| anew(p) || p.about.reports_travel)
     }
 
     /// Whether the last step has made the beginning of the next one, which has to be made then.
@@ -227,7 +219,7 @@ impl StepPlan {
         self.begun
     }
 
-    /// Makes one step up to its outputs. Ops that act on each particle by itself take turns after the forces. Where `more`
+    /// Makes one step up to its outputs. Ops that act on each particle by itself are fused after the forces. Where `more`
     /// steps are sure to follow and nobody looks in between, the last kick is made with the first one of the next step.
     ///
     /// # Errors
@@ -258,38 +250,38 @@ impl StepPlan {
         }
         begin_watch(w);
         let acts = self.offers(w, t, order, [last, clears]);
-        let turns = Turns::new(&acts, w.n()).filter(|_| !acts.is_empty() && acts.len() == order.len());
-        let Some(mut turns) = turns else { return Ok(false) };
+        let pass = FusedPass::new(&acts, w.n()).filter(|_| !acts.is_empty() && acts.len() == order.len());
+        let Some(mut pass) = pass else { return Ok(false) };
         let (mut clock, mut moving) = (Instant::now(), Duration::ZERO);
         let p = &mut self.ops[force];
         let told = p.timed(w, t, &mut clock, |op, w| {
-            op.run_telling(w, t, &mut |w, particles| {
+            op.run_streaming(w, t, &mut |w, particles| {
                 // To look at the clock takes longer than to move a few particles.
                 let begin = (particles.len() > FEW).then(Instant::now);
-                turns.ready(w, particles);
+                pass.ready(w, particles);
                 moving += begin.map_or(Duration::ZERO, |begin| begin.elapsed());
             })
         })?;
         p.meter.time = p.meter.time.saturating_sub(moving);
-        let gists = if told { turns.finish() } else { take_turns(w, &acts) };
-        self.took_turns(w, t, (order, last), gists, moving + clock.elapsed());
+        let sums = if told { pass.finish() } else { fuse(w, &acts) };
+        self.fused(w, t, (order, last), sums, moving + clock.elapsed());
         end_watch(w, std::iter::once(&force).chain(order).map(|&k| self.ops[k].stated()));
         Ok(true)
     }
 
-    /// Tells ops what came of their turns, which took so long together.
-    fn took_turns(
+    /// Tells ops what came of a fused pass, which took so long.
+    fn fused(
         &mut self,
         w: &mut World,
         t: &Tick,
         (ops, last): (&[usize], Option<usize>),
-        gists: Vec<Gist>,
+        sums: Vec<BlockSums>,
         elapsed: Duration,
     ) {
-        let each = elapsed / gists.len().max(1) as u32;
-        for (&k, gist) in ops.iter().zip(gists) {
+        let each = elapsed / sums.len().max(1) as u32;
+        for (&k, sum) in ops.iter().zip(sums) {
             let p = &mut self.ops[k];
-            p.op.took_turns(w, t, gist);
+            p.op.fused(w, t, sum);
             p.meter.time += each;
             p.meter.calls += 1;
             p.meter.bytes += p.op.bytes(w);
@@ -297,11 +289,12 @@ impl StepPlan {
         }
     }
 
-    /// What these ops, from the first on, offer to do to stretches. The last kick of the step goes on into the next one, and what
+    /// What these ops, from the first on, do to blocks of particles. The last kick of the step goes on into the next one, and what
     /// clears forces then, if there is one.
     fn offers(&self, w: &World, t: &Tick, ops: &[usize], [last, clears]: [Option<usize>; 2]) -> Vec<Act> {
         let goes_on = |k: usize| last == Some(k) || (last.is_some() && clears == Some(k));
-        ops.iter().map_while(|&k| self.ops[k].op.on_stretches(w, t, goes_on(k))).collect()
+        let on = Tick { on: true, ..t.clone() };
+        ops.iter().map_while(|&k| self.ops[k].op.fusible(w, if goes_on(k) { &on } else { t })).collect()
     }
 
     /// Whether the step before has made the beginning of this one.
@@ -309,7 +302,7 @@ impl StepPlan {
         std::mem::take(&mut self.begun)
     }
 
-    /// What is left of a step, or of one of a level, after its forces. Ops that act on each particle by itself take turns;
+    /// What is left of a step, or of one of a level, after its forces. Ops that act on each particle by itself are fused;
     /// `more` as for [`StepPlan::step`].
     ///
     /// # Errors
@@ -325,20 +318,21 @@ impl StepPlan {
             acts.truncate(if needs::collecting() { 1 } else { acts.len() });
             if acts.is_empty() {
                 let (k, p) = (order[at], &mut self.ops[order[at]]);
-                let whole = last == Some(k) && t.phase.levels == 1;
-                self.begun |= whole && p.alone(w, t, &mut clock, |op, w| op.run_on(w, t))?;
+                let on = last == Some(k) && t.phase.levels == 1 && p.about.goes_on;
                 if !self.begun && clears != Some(k) {
-                    p.alone(w, t, &mut clock, |op, w| op.run(w, t))?;
+                    let t = Tick { on, ..t.clone() };
+                    p.alone(w, &t, &mut clock, |op, w| op.run(w, &t))?;
                 }
+                self.begun |= on;
                 if !self.begun && last == Some(k) {
                     return Ok(());
                 }
                 at += 1;
                 continue;
             }
-            let gists = take_turns(w, &acts);
+            let sums = fuse(w, &acts);
             let elapsed = std::mem::replace(&mut clock, Instant::now()).elapsed();
-            self.took_turns(w, t, (&order[at..], last), gists, elapsed);
+            self.fused(w, t, (&order[at..], last), sums, elapsed);
             end_watch(w, order[at..at + acts.len()].iter().map(|&k| self.ops[k].stated()));
             at += acts.len();
         }
@@ -350,7 +344,7 @@ impl StepPlan {
     /// # Errors
     /// As `finish`.
     pub fn release(&mut self, w: &mut World) -> Result<()> {
-        self.ops.iter_mut().filter(|p| p.op.stage() == Stage::Force).try_for_each(|p| p.op.finish(w))
+        self.ops.iter_mut().filter(|p| p.about.stage == Stage::Force).try_for_each(|p| p.op.finish(w))
     }
 
     /// Tells every op that the run is over.
@@ -370,7 +364,7 @@ impl StepPlan {
     /// Time spent per row of the timing table.
     pub fn time_by_class(&self) -> [(OpClass, Duration); 5] {
         let classes = [OpClass::Pair, OpClass::Neigh, OpClass::Output, OpClass::Modify, OpClass::Other];
-        classes.map(|c| (c, self.ops.iter().filter(|p| p.op.class() == c).map(|p| p.meter.time).sum()))
+        classes.map(|c| (c, self.ops.iter().filter(|p| p.about.class == c).map(|p| p.meter.time).sum()))
     }
 
     /// Sets all meters to zero.
@@ -386,7 +380,7 @@ fn placed_error(e: Diagnostics, p: &Placed, t: &Tick) -> Diagnostics {
     for d in &mut e.0 {
         if d.span.is_none() {
             d.span = p.from;
-            d.help.push(format!("in op `{}` at step {}", p.op.name(), t.step));
+            d.help.push(format!("in op `{}` at step {}", p.about.name, t.step));
         }
     }
     e

@@ -2,6 +2,7 @@
 
 use super::pull::{Pull, Stretched};
 use super::{BuildCx, SealCx, Style};
+use dyn_clone::DynClone;
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
@@ -17,7 +18,7 @@ pub trait BondStyle: Style {
 }
 
 /// A declared bond style with its coefficients.
-pub trait BondForce: Send + Sync {
+pub trait BondForce: DynClone + Send + Sync {
     /// The style's name.
     fn name(&self) -> &'static str;
 
@@ -60,7 +61,6 @@ pub trait BondForce: Send + Sync {
 
     /// The coefficients of a type as a data file has them.
     fn written(&self, kind: u16) -> Option<String>;
-
-    /// A copy, so that a failing line changes nothing.
-    fn boxed(&self) -> Box<dyn BondForce>;
 }
+
+dyn_clone::clone_trait_object!(BondForce);

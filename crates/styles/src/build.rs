@@ -76,6 +76,11 @@ pub struct Chunking {
 }
 
 impl Shape {
+    /// Whether a global value (element k, row and column) grows with the scene.
+    pub fn extensive(&self, index: &[usize]) -> bool {
+        [self.scalar_extensive, self.vector_extensive, self.array_extensive][index.len().min(2)]
+    }
+
     /// A length that only a run can tell, and that may change from step to step.
     pub const OPEN: usize = usize::MAX;
 
@@ -129,7 +134,7 @@ pub trait Names {
         None
     }
     /// The first fix that counts on the steps going on, and its style.
-    fn counting_fix(&self) -> Option<(&str, &'static str)> {
+    fn counting_fix(&self, _w: &World) -> Option<(&str, &'static str)> {
         None
     }
     /// The first dump that has written snapshots into a file that goes on growing.

@@ -1,6 +1,7 @@
 //! What a compute is: a style that reads its line, and what it declares.
 
 use super::{BuildCx, Flow, SealCx, Shape, Style};
+use dyn_clone::DynClone;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
@@ -16,7 +17,7 @@ pub trait ComputeStyle: Style {
 }
 
 /// A declared compute.
-pub trait Compute: Send {
+pub trait Compute: DynClone + Send {
     /// Which values it offers.
     fn shape(&self) -> Shape;
 
@@ -87,7 +88,6 @@ pub trait Compute: Send {
 
     /// Uses another temperature, if it uses one (`thermo_modify temp`).
     fn take_temperature(&mut self, _temperature: &perigrain_lang::ValueRef) {}
-
-    /// A copy, so that a failing `compute_modify` changes nothing.
-    fn boxed(&self) -> Box<dyn Compute>;
 }
+
+dyn_clone::clone_trait_object!(Compute);

@@ -1,6 +1,7 @@
 //! What a dump is: a style that reads its line, and what it declares.
 
 use super::{BuildCx, SealCx, Style};
+use dyn_clone::DynClone;
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
@@ -15,7 +16,7 @@ pub trait DumpStyle: Style {
 }
 
 /// A declared dump.
-pub trait Dump: Send {
+pub trait Dump: DynClone + Send {
     /// The op that writes a snapshot each time it runs; `every` is the interval in steps (0: `write_dump`,
     /// which runs the op once between runs). Its name is `dump ID style`, its stage `Output`, its times
     /// those of the dump: multiples of `every`, and the first step of a run when it is such a multiple or
@@ -45,7 +46,6 @@ pub trait Dump: Send {
     fn repeats_row(&self) -> bool {
         false
     }
-
-    /// A copy, so that a failing `dump_modify` changes nothing.
-    fn boxed(&self) -> Box<dyn Dump>;
 }
+
+dyn_clone::clone_trait_object!(Dump);

@@ -1,11 +1,12 @@
 //! What a fix is: a style that reads its line, and what it declares.
 
 use super::{BuildCx, Motion, Pull, SealCx, Shape, Style};
+use dyn_clone::DynClone;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Rule};
 use perigrain_world::World;
-use std::path::Path;
+use std::path::PathBuf;
 
 /// A fix style: one file, one line in `FIXES`.
 pub trait FixStyle: Style {
@@ -28,8 +29,52 @@ pub enum Minimizing {
     Acts,
 }
 
-/// A declared fix.
-pub trait Fix: Send {
+/// What a fix tells of itself.
+#[derive(Clone, Debug, Default)]
+pub struct Facts {
+    /// It moves the particles of its group (two such fixes on one particle draw a warning).
+    pub integrates: bool,
+    /// It counts on the steps going on one by one, so that `reset_timestep` is refused beside it, as in LAMMPS.
+    pub counts_steps: bool,
+    /// Which lengths of the box it changes during a run.
+    pub deforms: [bool; 3],
+    /// What becomes of it in a minimization; as in LAMMPS, only some that change forces act.
+    pub minimizing: Minimizing,
+    /// `fix_modify respa` may choose the level of steps in which it adds its force.
+    pub has_level: bool,
+    /// Why it cannot act in steps of several lengths (`run_style respa`), if it cannot.
+    pub needs_whole_steps: Option<&'static str>,
+    /// Its scalar is an energy that `fix_modify energy yes` may add to the potential energy.
+    pub has_energy: bool,
+    /// It makes particles during a run.
+    pub makes_particles: bool,
+    /// The molecule template of which new copies become rigid bodies of this fix.
+    pub adopts: Option<String>,
+    /// The file it writes during a run.
+    pub file: Option<PathBuf>,
+    /// How it watches the energy of a run.
+    pub guard: Option<Rule>,
+    /// The acceleration it gives to everyone.
+    pub pull: Option<Pull>,
+}
+
+/// A declared fix. A failing `fix_modify` changes nothing: it works on a copy.
+pub trait Fix: DynClone + Send {
+    /// What it tells of itself, in the present scene.
+    fn facts(&self, _w: &World) -> Facts {
+        Facts::default()
+    }
+
+    /// Which values it offers.
+    fn shape(&self) -> Shape {
+        Shape::default()
+    }
+
+    /// Whether one of its global values (element k, row and column) grows with the scene, as `shape` says of all.
+    fn extensive(&self, index: &[usize]) -> bool {
+        self.shape().extensive(index)
+    }
+
     /// The ops it contributes to a step. Values it offers go to the slot `f_ID`.
     ///
     /// # Errors
@@ -47,60 +92,8 @@ pub trait Fix: Send {
     /// Forgets what `declare` captured.
     fn remove(&self, _w: &mut World) {}
 
-    /// Which values it offers.
-    fn shape(&self) -> Shape {
-        Shape::default()
-    }
-
-    /// Whether one of its global values (element k, row and column) grows with the scene, as `shape` says of all.
-    fn extensive(&self, index: &[usize]) -> bool {
-        let shape = self.shape();
-        match index.len() {
-            0 => shape.scalar_extensive,
-            1 => shape.vector_extensive,
-            _ => shape.array_extensive,
-        }
-    }
-
-    /// Whether it moves the particles of its group (two such fixes on one particle draw a warning).
-    fn integrates(&self) -> bool {
-        false
-    }
-
-    /// Whether it counts on the steps going on one by one, so that `reset_timestep` is refused beside it, as in LAMMPS.
-    fn counts_steps(&self) -> bool {
-        false
-    }
-
-    /// Which lengths of the box it changes during a run.
-    fn deforms(&self) -> [bool; 3] {
-        [false; 3]
-    }
-
-    /// What becomes of it in a minimization; as in LAMMPS, only some that change forces act.
-    fn minimizing(&self) -> Minimizing {
-        Minimizing::Idle
-    }
-
-    /// Whether `fix_modify respa` may choose the level of steps in which it adds its force.
-    fn has_level(&self) -> bool {
-        false
-    }
-
-    /// Why it cannot act in steps of several lengths (`run_style respa`), if it cannot.
-    fn needs_whole_steps(&self, _w: &World) -> Option<&'static str> {
-        None
-    }
-
-    /// Whether its scalar is an energy that `fix_modify energy yes` may add to the potential energy.
-    fn has_energy(&self) -> bool {
-        false
-    }
-
-    /// Whether it makes particles during a run.
-    fn makes_particles(&self) -> bool {
-        false
-    }
+    /// Takes note of particles that another fix has made during a run.
+    fn welcome(&self, _w: &mut World) {}
 
     /// Stops its rigid bodies, each by itself (`velocity … zero … rigid ID`).
     ///
@@ -110,32 +103,9 @@ pub trait Fix: Send {
         fail(Code::WRONG_KIND, span, "this fix has no rigid bodies")
     }
 
-    /// The molecule template of which new copies become rigid bodies of this fix.
-    fn adopts(&self) -> Option<&str> {
-        None
-    }
-
-    /// Takes note of particles that another fix has made during a run.
-    fn welcome(&self, _w: &mut World) {}
-
     /// How long the shortest contacts with it last, if it is a wall for grains; `said`: density and diameter in the
     /// deck, for a check that has no particles.
     fn contact_time(&self, _w: &World, _said: Option<(f64, f64)>) -> Option<f64> {
-        None
-    }
-
-    /// The file it writes during a run.
-    fn file(&self) -> Option<&Path> {
-        None
-    }
-
-    /// How it watches the energy of a run.
-    fn guard(&self) -> Option<Rule> {
-        None
-    }
-
-    /// The acceleration it gives to everyone, in a flat scene or another.
-    fn pull(&self, _flat: bool) -> Option<Pull> {
         None
     }
 
@@ -153,10 +123,9 @@ pub trait Fix: Send {
         }
         no_option(args)
     }
-
-    /// A copy, so that a failing `fix_modify` changes nothing.
-    fn boxed(&self) -> Box<dyn Fix>;
 }
+
+dyn_clone::clone_trait_object!(Fix);
 
 /// The refusal of an option that a fix does not have, with what it would mean.
 ///

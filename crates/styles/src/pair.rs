@@ -2,6 +2,7 @@
 
 use super::probe::Probe;
 use super::{BuildCx, SealCx, Style};
+use dyn_clone::DynClone;
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
@@ -10,8 +11,8 @@ use perigrain_world::World;
 /// Type pairs (i ≤ j, from 1) that a `pair_coeff` line speaks of.
 pub type TypePairs = [(u16, u16)];
 
-/// What each sub-style contributes: its number, from 0, and its ops or probes.
-pub type ByPart<T> = Vec<(usize, Vec<Box<T>>)>;
+/// What sub-styles contribute, each with the number of its sub-style, from 0.
+pub type ByPart<T> = Vec<(usize, Box<T>)>;
 
 /// A pair style: one file, one line in `PAIRS`.
 pub trait PairStyle: Style {
@@ -27,16 +28,58 @@ pub trait PairStyle: Style {
     }
 }
 
-/// A declared pair style with its coefficients.
-pub trait Pair: Send {
+/// What a pair style tells of itself.
+#[derive(Clone, Debug, Default)]
+pub struct Facts {
     /// The style's name.
-    fn name(&self) -> &'static str;
+    pub name: &'static str,
+    /// Facts of the scene it needs (`volume`, `density`, `diameter` …), for checks.
+    pub needs: &'static [&'static str],
+    /// For peridynamic styles: whether forces are true forces (else force densities, as LAMMPS).
+    pub true_forces: Option<bool>,
+    /// Types whose particles belong to peridynamic solids.
+    pub solids: Vec<u16>,
+    /// A type whose material says nothing of when its bonds break.
+    pub unbreakable: Option<u16>,
+    /// The coefficients that `fix adapt` may change, by name.
+    pub coefficients: &'static [&'static str],
+}
+
+/// What the deck has said of particles, for a check without particles.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Deck {
+    /// The density.
+    pub density: Option<f64>,
+    /// The smallest diameter.
+    pub diameter: Option<f64>,
+}
+
+/// How far forces reach and how fast they change.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Scales {
+    /// The largest cutoff [length], as LAMMPS has it; `None` without any.
+    pub cutoff: Option<f64>,
+    /// The longest time step that is stable, by the style's own estimate [time units]; `None` if it cannot tell.
+    pub stable_step: Option<f64>,
+    /// How long the shortest contact of grains lasts [time units]; `None` if there are none.
+    pub contact_time: Option<f64>,
+}
+
+/// A declared pair style with its coefficients. A failing line changes nothing: it works on a copy.
+pub trait Pair: DynClone + Send {
+    /// What it tells of itself.
+    fn facts(&self) -> Facts;
 
     /// Reads the words of `pair_coeff` after the two types.
     ///
     /// # Errors
     /// Every mistake in the line.
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()>;
+
+    /// What the deck's lines said of a coefficient that `fix adapt` may change.
+    fn coefficient(&self, _name: &str, _types: (u16, u16)) -> Option<f64> {
+        None
+    }
 
     /// Makes what decks may name of it before the first run.
     fn declare(&self, _w: &mut World) {}
@@ -47,48 +90,29 @@ pub trait Pair: Send {
     /// Limits the style to some type pairs (as a sub-style of `hybrid`); by default it acts on all.
     fn restrict(&mut self, _pairs: &TypePairs) {}
 
-    /// The ops it contributes to a step.
-    ///
-    /// # Errors
-    /// What is missing in the scene.
-    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>>;
-
-    /// The same by sub-style: its number, from 0, and what it contributes.
-    ///
-    /// # Errors
-    /// As `ops`.
-    fn ops_by_part(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {
-        Ok(vec![(0, self.ops(cx)?)])
+    /// The sub-styles of a `hybrid`.
+    fn parts(&self) -> Vec<&dyn Pair> {
+        vec![]
     }
 
-    /// What it, or each sub-style of a `hybrid`, can be asked about single pairs of particles.
+    /// The ops it contributes to a step, in their order.
     ///
     /// # Errors
     /// What is missing in the scene.
-    fn probes(&self, _w: &World) -> Result<Vec<Box<dyn Probe>>> {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>>;
+
+    /// What can be asked about single pairs of particles; with `bonds` also a solid that is no sub-style and whose bonds depend
+    /// on nothing but their ends.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn probes(&self, _w: &World, _bonds: bool) -> Result<ByPart<dyn Probe>> {
         Ok(vec![])
     }
 
-    /// Whom computes can ask what single pairs do to each other: those of `probes`, and solids whose bonds depend on
-    /// nothing but their ends.
-    ///
-    /// # Errors
-    /// As `probes`.
-    fn singles(&self, w: &World) -> Result<Vec<Box<dyn Probe>>> {
-        self.probes(w)
-    }
-
-    /// The largest cutoff of its forces [length], as LAMMPS has it; `None` without any.
-    fn cutoff(&self, w: &World) -> Option<f64> {
-        self.probes(w).ok()?.iter().filter_map(|p| p.cutoff(w)).reduce(f64::max)
-    }
-
-    /// The same by sub-style: its number, from 0, and whom to ask.
-    ///
-    /// # Errors
-    /// As `probes`.
-    fn probes_by_part(&self, w: &World) -> Result<ByPart<dyn Probe>> {
-        Ok(vec![(0, self.probes(w)?)])
+    /// How far its forces reach and how fast they change.
+    fn scales(&self, _w: &World, _deck: Deck) -> Scales {
+        Scales::default()
     }
 
     /// `peri_modify …` and the like: options by command name.
@@ -97,59 +121,12 @@ pub trait Pair: Send {
     /// By default the pair style has none.
     fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
         let span = args.peek().map_or(cx.span, |w| w.span);
-        fail(Code::CONFLICT, span, format!("`{command}` does not concern pair_style {}", self.name()))
-    }
-
-    /// Facts of the scene it needs (`volume`, `density`, `diameter` …), for checks.
-    fn needs(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    /// The longest time step that is stable, by its own estimate [time units]; `None` if it cannot tell. `said` is the
-    /// density that the deck has set, for a check without particles.
-    fn stable_step(&self, _w: &World, _said: Option<f64>) -> Option<f64> {
-        None
-    }
-
-    /// How long the shortest contact of grains lasts [time units]; `None` if there are none. `said` is the density and the
-    /// smallest diameter that the deck has set, for a check without particles.
-    fn contact_time(&self, _w: &World, _said: Option<(f64, f64)>) -> Option<f64> {
-        None
-    }
-
-    /// For peridynamic styles: whether forces are true forces (else force densities, as LAMMPS).
-    fn true_forces(&self) -> Option<bool> {
-        None
-    }
-
-    /// Whether particles of a type belong to peridynamic solids.
-    fn solid(&self, kind: u16) -> bool {
-        self.true_forces().is_some() && self.covers(kind, kind)
-    }
-
-    /// A type whose material says nothing of when its bonds break.
-    fn unbreakable(&self) -> Option<u16> {
-        None
-    }
-
-    /// The coefficients that `fix adapt` may change, by name.
-    fn coefficients(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    /// What the deck's lines said of one of them.
-    fn coefficient(&self, _name: &str, _types: (u16, u16)) -> Option<f64> {
-        None
-    }
-
-    /// The sub-styles of a `hybrid`.
-    fn parts(&self) -> Vec<&dyn Pair> {
-        vec![]
+        let name = self.facts().name;
+        fail(Code::CONFLICT, span, format!("`{command}` does not concern pair_style {name}"))
     }
 
     /// Contradictions within the present declarations that a run would trip over, left as notes in `cx`.
     fn check(&self, _cx: &BuildCx) {}
-
-    /// A copy, so that a failing line changes nothing.
-    fn boxed(&self) -> Box<dyn Pair>;
 }
+
+dyn_clone::clone_trait_object!(Pair);

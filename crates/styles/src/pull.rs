@@ -3,7 +3,7 @@
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::{Vec3, add, dot, sub};
 use perigrain_base::par;
-use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_world::bonds::LostBond;
 use perigrain_world::field::{BONDS, BOX, F, LISTS, MEMO, TAG, TALLY, X};
 use perigrain_world::index::Index;
@@ -124,14 +124,12 @@ impl<F: Law> Along<F> {
 }
 
 impl<F: Law> Op for Along<F> {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn stage(&self) -> Stage {
-        Stage::Force
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(X | BONDS | BOX | MEMO | LISTS | TAG).add(F).write(TALLY)
+    fn about(&self) -> About {
+        About::new(
+            &self.name,
+            Stage::Force,
+            Needs::new().read(X | BONDS | BOX | MEMO | LISTS | TAG).add(F).write(TALLY),
+        )
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if self.adapted != w.adaptations() {

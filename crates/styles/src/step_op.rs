@@ -2,36 +2,26 @@
 
 use perigrain_base::diag::Result;
 use perigrain_base::par;
-use perigrain_plan::{Act, Gist, Level, Needs, Op, Stage, Tick, When, take_turns};
+use perigrain_plan::{About, Act, BlockSums, Level, Needs, Op, Stage, Tick, When, fuse};
 use perigrain_world::field::Fields;
 use perigrain_world::field::SLOTS;
 use perigrain_world::{GroupId, Slot, SlotId, World};
 
 /// An op whose whole work is one closure at one stage.
 pub struct StepOp<F> {
-    name: String,
-    stage: Stage,
-    access: Needs,
-    when: When,
-    in_setup: bool,
-    level: Level,
-    reports: bool,
-    on: Option<On>,
-    turn: Option<Turn>,
+    about: About,
+    fusing: Option<Fusing>,
     act: F,
 }
 
-/// What ends a step and begins the next one.
-type On = Box<dyn FnMut(&mut World, &Tick) + Send>;
-
-/// What an op offers to do to stretches of particles, and what it makes of what comes of them.
-struct Turn {
+/// What an op offers to do to blocks of particles, and what it makes of what comes of them.
+struct Fusing {
     offer: Box<Offer>,
     took: Box<Took>,
 }
 
-type Offer = dyn Fn(&World, &Tick, bool) -> Option<Act> + Send;
-type Took = dyn FnMut(&mut World, &Tick, Gist) + Send;
+type Offer = dyn Fn(&World, &Tick) -> Option<Act> + Send;
+type Took = dyn FnMut(&mut World, &Tick, BlockSums) + Send;
 
 impl<F> StepOp<F>
 where
@@ -39,71 +29,60 @@ where
 {
     /// Acts every step at `stage`, and in the setup of a run where that stage usually does.
     pub fn new(name: impl Into<String>, stage: Stage, access: Needs, act: F) -> Self {
-        Self {
-            name: name.into(),
-            stage,
-            access,
-            when: When::Always,
-            in_setup: stage.in_setup(),
-            level: Level::Outermost,
-            reports: false,
-            on: None,
-            turn: None,
-            act,
-        }
+        Self { about: About::new(name, stage, access), fusing: None, act }
     }
 
     /// Acts at other times.
     #[must_use]
     pub fn when(mut self, when: When) -> Self {
-        self.when = when;
+        self.about.when = when;
         self
     }
 
     /// Acts in the setup of a run too, or not.
     #[must_use]
     pub fn in_setup(mut self, yes: bool) -> Self {
-        self.in_setup = yes;
+        self.about.in_setup = yes;
         self
     }
 
     /// Acts in every one of several levels of steps: moves particles, or takes components of their forces away.
     #[must_use]
     pub fn in_every_level(mut self) -> Self {
-        self.level = Level::Every;
+        self.about.level = Level::Every;
         self
     }
 
     /// Acts in the shortest of several levels of steps alone.
     #[must_use]
     pub fn innermost(mut self) -> Self {
-        self.level = Level::At(0);
+        self.about.level = Level::At(0);
         self
     }
 
     /// Reports to the account of ways how far it moves particles.
     #[must_use]
     pub fn reporting(mut self) -> Self {
-        self.reports = true;
+        self.about.reports_travel = true;
         self
     }
 
-    /// Can end a step and begin the next one at once.
+    /// Begins the next step as well where [`Tick::on`] asks for it.
     #[must_use]
-    pub fn and_on(mut self, on: impl FnMut(&mut World, &Tick) + Send + 'static) -> Self {
-        self.on = Some(Box::new(on));
+    pub fn going_on(mut self) -> Self {
+        self.about.goes_on = true;
         self
     }
 
-    /// Acts on each particle by itself: where `offer(world, tick, on)` gives something to do to stretches of particles, that
-    /// is done instead of what else it does, and `took` gets what came of it. For `on` see [`Op::on_stretches`].
+    /// Acts on each particle by itself: where `offer(world, tick)` gives something to do to blocks of particles, that is done
+    /// instead of what else it does, and `took` gets what came of it.
     #[must_use]
-    pub fn taking_turns(
+    pub fn fusing(
         mut self,
-        offer: impl Fn(&World, &Tick, bool) -> Option<Act> + Send + 'static,
-        took: impl FnMut(&mut World, &Tick, Gist) + Send + 'static,
+        offer: impl Fn(&World, &Tick) -> Option<Act> + Send + 'static,
+        took: impl FnMut(&mut World, &Tick, BlockSums) + Send + 'static,
     ) -> Self {
-        self.turn = Some(Turn { offer: Box::new(offer), took: Box::new(took) });
+        self.fusing = Some(Fusing { offer: Box::new(offer), took: Box::new(took) });
         self
     }
 
@@ -117,46 +96,24 @@ impl<F> Op for StepOp<F>
 where
     F: FnMut(&mut World, &Tick) -> Result<()> + Send,
 {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn stage(&self) -> Stage {
-        self.stage
-    }
-    fn needs(&self) -> Needs {
-        self.access.clone()
-    }
-    fn when(&self) -> When {
-        self.when.clone()
-    }
-    fn in_setup(&self) -> bool {
-        self.in_setup
-    }
-    fn level(&self) -> Level {
-        self.level
-    }
-    fn reports_travel(&self) -> bool {
-        self.reports
+    fn about(&self) -> About {
+        self.about.clone()
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        match self.on_stretches(w, t, false) {
+        match self.fusible(w, t) {
             Some(act) => {
-                let gists = take_turns(w, &[act]);
-                gists.into_iter().for_each(|gist| self.took_turns(w, t, gist));
+                fuse(w, &[act]).into_iter().for_each(|sums| self.fused(w, t, sums));
                 Ok(())
             }
             None => (self.act)(w, t),
         }
     }
-    fn run_on(&mut self, w: &mut World, t: &Tick) -> Result<bool> {
-        Ok(self.on.as_mut().map(|on| on(w, t)).is_some())
+    fn fusible(&self, w: &World, t: &Tick) -> Option<Act> {
+        self.fusing.as_ref().and_then(|fusing| (fusing.offer)(w, t))
     }
-    fn on_stretches(&self, w: &World, t: &Tick, on: bool) -> Option<Act> {
-        self.turn.as_ref().and_then(|turn| (turn.offer)(w, t, on))
-    }
-    fn took_turns(&mut self, w: &mut World, t: &Tick, gist: Gist) {
-        if let Some(turn) = &mut self.turn {
-            (turn.took)(w, t, gist);
+    fn fused(&mut self, w: &mut World, t: &Tick, sums: BlockSums) {
+        if let Some(fusing) = &mut self.fusing {
+            (fusing.took)(w, t, sums);
         }
     }
 }

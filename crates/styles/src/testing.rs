@@ -99,26 +99,22 @@ impl Bench {
     /// Runs the ops of one stage for the present step.
     pub fn stage(&mut self, ops: &mut [Box<dyn Op>], stage: Stage) -> Result<()> {
         let t = self.tick();
-        ops.iter_mut().filter(|o| o.stage() == stage).try_for_each(|o| o.run(&mut self.world, &t))
+        ops.iter_mut().filter(|o| o.about().stage == stage).try_for_each(|o| o.run(&mut self.world, &t))
     }
 
     /// What an op is told at the present step.
     pub fn tick(&self) -> Tick {
         let clock = &self.world.clock;
         Tick {
-            step: clock.step,
             first: clock.first,
             last: clock.last,
-            dt: clock.dt,
-            setup: false,
             unchanged: false,
-            ending: false,
             energy: true,
             virial: true,
             atom_energy: true,
-            phase: Default::default(),
             contacts: true,
             atom_virial: true,
+            ..Tick::between_runs(clock)
         }
     }
 
@@ -237,7 +233,8 @@ impl SealCx for Bench {
     fn ask_atom_energy(&mut self, _when: &When) {}
     fn ask_atom_virial(&mut self, _when: &When) {}
     fn probes(&mut self) -> Result<Vec<Box<dyn Probe>>> {
-        self.pair.as_ref().map_or(Ok(vec![]), |p| p.probes(&self.world))
+        let probes = self.pair.as_ref().map_or(Ok(vec![]), |p| p.probes(&self.world, false));
+        Ok(probes?.into_iter().map(|(_, probe)| probe).collect())
     }
     fn energy_fixes(&self) -> Vec<String> {
         self.energy_fixes.clone()

@@ -7,6 +7,7 @@ use perigrain_lang::{RefKind, ValueRef};
 use perigrain_out::log::Log;
 use perigrain_pairs::bond::BondForce;
 use perigrain_plan::{LeftOut, Level, Op, Stage, When};
+use perigrain_styles::pair::Deck;
 use perigrain_styles::probe::Probe;
 use perigrain_styles::{Compute, Names, PlaceTest, Pull, Reading, SealCx, Text, Wants};
 use perigrain_world::adapted::Coefficient;
@@ -99,12 +100,11 @@ impl SealCx for Sealer<'_> {
     }
 
     fn pulls(&self) -> Vec<Pull> {
-        let flat = self.world.settings.two_dimensional;
-        self.graph.fixes.iter().filter_map(|f| f.fix.pull(flat)).collect()
+        self.facts().filter_map(|(_, facts)| facts.pull).collect()
     }
 
     fn adopts(&self, id: &str) -> Option<Option<String>> {
-        self.graph.find_fix(id).map(|f| f.fix.adopts().map(str::to_string))
+        self.graph.find_fix(id).map(|f| f.fix.facts(self.world).adopts)
     }
 
     fn log(&self) -> Log {
@@ -120,7 +120,7 @@ impl SealCx for Sealer<'_> {
     }
 
     fn bias(&self, r: &ValueRef) -> Option<Box<dyn Compute>> {
-        self.graph.knows_flow(&r.name).map(|c| c.boxed())
+        self.graph.knows_flow(&r.name).map(|c| c.compute.clone())
     }
 
     fn pair_styles(&self) -> Vec<&'static str> {
@@ -132,7 +132,7 @@ impl SealCx for Sealer<'_> {
     }
 
     fn bonds(&self) -> Option<Box<dyn BondForce>> {
-        self.graph.bond.as_ref().map(|b| b.force.boxed())
+        self.graph.bond.as_ref().map(|b| b.force.clone())
     }
 
     fn ask_energy(&mut self, when: &When) {
@@ -156,15 +156,15 @@ impl SealCx for Sealer<'_> {
     }
 
     fn probes(&mut self) -> Result<Vec<Box<dyn Probe>>> {
-        self.graph.pair.as_ref().map_or(Ok(vec![]), |node| node.pair.probes(self.world))
+        self.probes_of(false)
     }
 
     fn singles(&mut self) -> Result<Vec<Box<dyn Probe>>> {
-        self.graph.pair.as_ref().map_or(Ok(vec![]), |node| node.pair.singles(self.world))
+        self.probes_of(true)
     }
 
     fn cutoff(&mut self) -> Option<f64> {
-        self.graph.pair.as_ref()?.pair.cutoff(self.world)
+        self.graph.pair.as_ref()?.pair.scales(self.world, Deck::default()).cutoff
     }
 
     fn energy_fixes(&self) -> Vec<String> {

@@ -75,8 +75,4 @@ impl Compute for Means {
             },
         ))
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }

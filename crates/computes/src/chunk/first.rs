@@ -153,8 +153,4 @@ impl Compute for SinceFirst {
         );
         Ok(op.when(when.clone()).in_setup(true).boxed())
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }

@@ -122,8 +122,4 @@ impl Compute for Rows {
             },
         ))
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }

@@ -157,8 +157,4 @@ impl Compute for Declared {
             Ok(())
         }))
     }
-
-    fn boxed(&self) -> Box<dyn Compute> {
-        Box::new(self.clone())
-    }
 }

@@ -11,7 +11,7 @@ mod form;
 mod lists;
 mod memory;
 mod near;
-mod piecewise;
+mod per_list;
 mod stray;
 mod strip;
 mod sweep;

@@ -3,7 +3,7 @@
 use super::variable;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, ValueRef, Word};
-use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::World;
 use perigrain_world::adapted::Coefficient;
@@ -118,17 +118,11 @@ impl Before {
 }
 
 impl Op for Change {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn stage(&self) -> Stage {
-        Stage::PreForce
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(SLOTS).keep(MEMO)
-    }
-    fn when(&self) -> When {
-        self.when.clone()
+    fn about(&self) -> About {
+        About {
+            when: self.when.clone(),
+            ..About::new(&self.name, Stage::PreForce, Needs::new().read(SLOTS).keep(MEMO))
+        }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if t.unchanged {

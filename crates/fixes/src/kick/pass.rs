@@ -6,7 +6,7 @@ use perigrain_base::math::four::{Plain, has_avx2};
 use perigrain_base::math::lanes::Lanes;
 use perigrain_base::math::threes::{self, Threes};
 use perigrain_base::math::vec3::Vec3;
-use perigrain_plan::{Beside, Gist, Stretch};
+use perigrain_plan::{Beside, BlockSums, ParticleBlock};
 use perigrain_styles::matter::Masses;
 use std::ops::Range;
 
@@ -21,7 +21,7 @@ pub(super) enum Part {
     Both,
 }
 
-/// A stretch of particles. Spins and torques are empty where there are none.
+/// A block of particles. Spins and torques are empty where there are none.
 struct Chunk<'a> {
     x: &'a mut [Vec3],
     v: &'a mut [Vec3],
@@ -101,26 +101,30 @@ impl<F: Threes> Sums<F> {
 }
 
 impl Kick {
-    /// A stretch, with what stands beside the motion: what came of a pull, of a hold and of the motion, with the bits that
+    /// A block, with what stands beside the motion: what came of a pull, of a hold and of the motion, with the bits that
     /// they have alone.
     pub fn together(
         &self,
-        s: &mut Stretch,
+        s: &mut ParticleBlock,
         spins: bool,
         part: Part,
         mass: &[f64],
         beside: &Beside,
-    ) -> [Gist; 3] {
+    ) -> [BlockSums; 3] {
         let (masses, start, own) = (Masses::Own(mass), s.start, 0..s.x.len());
-        let came = self.stretch(chunk(s, own, (spins, part), beside), spins, part, &masses, start, beside);
-        let sums = |sums| Gist { sums, most: 0.0 };
-        [sums([came.energy, 0.0, 0.0]), sums(came.held), Gist { most: came.most, ..Gist::default() }]
+        let came = self.block(chunk(s, own, (spins, part), beside), spins, part, &masses, start, beside);
+        let sums = |sums| BlockSums { sums, most: 0.0 };
+        [
+            sums([came.energy, 0.0, 0.0]),
+            sums(came.held),
+            BlockSums { most: came.most, ..BlockSums::default() },
+        ]
     }
 
-    /// Some particles of a stretch, and the largest v² among them after a drift.
+    /// Some particles of a block, and the largest v² among them after a drift.
     pub fn part_of(
         &self,
-        s: &mut Stretch,
+        s: &mut ParticleBlock,
         own: Range<usize>,
         spins: bool,
         part: Part,
@@ -129,12 +133,12 @@ impl Kick {
         let first = s.start + own.start;
         {
             let alone = Beside::default();
-            self.stretch(chunk(s, own, (spins, part), &alone), spins, part, masses, first, &alone).most
+            self.block(chunk(s, own, (spins, part), &alone), spins, part, masses, first, &alone).most
         }
     }
 
     /// The particles from `start` on.
-    fn stretch(
+    fn block(
         &self,
         c: Chunk,
         spins: bool,
@@ -351,9 +355,9 @@ impl Kick {
     }
 }
 
-/// Particles of a stretch as the loops see them: what they do not touch here is handed to them all the same, past all marks.
+/// Particles of a block as the loops see them: what they do not touch here is handed to them all the same, past all marks.
 fn chunk<'a>(
-    s: &'a mut Stretch<'_>,
+    s: &'a mut ParticleBlock<'_>,
     own: Range<usize>,
     (spins, part): (bool, Part),
     beside: &Beside,

@@ -4,7 +4,7 @@ mod rain;
 mod sizes;
 mod volume;
 
-use super::{Fix, FixStyle};
+use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
@@ -239,8 +239,8 @@ impl Pouring {
 }
 
 impl Fix for Pouring {
-    fn counts_steps(&self) -> bool {
-        true
+    fn facts(&self, _: &World) -> Facts {
+        Facts { counts_steps: true, makes_particles: true, ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
@@ -263,16 +263,8 @@ impl Fix for Pouring {
         Ok(vec![Box::new(Rain::new(self, cx.world(), gravity, span, slot, &log)?)])
     }
 
-    fn makes_particles(&self) -> bool {
-        true
-    }
-
     fn shape(&self) -> Shape {
         Shape { scalar: true, ..Shape::default() }
-    }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Pouring, Sizes};
 use crate::crowd::Crowd;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_out::log::Log;
-use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::matter::publish;
 use perigrain_styles::molecules::{Copy, Molecules};
 use perigrain_styles::newcomers::{Account, Newcomer, admit};
@@ -166,14 +166,8 @@ impl Rain {
 }
 
 impl Op for Rain {
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn stage(&self) -> Stage {
-        Stage::Exchange
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(X | RADIUS).write(Fields::ALL)
+    fn about(&self) -> About {
+        About::new(&self.name, Stage::Exchange, Needs::new().read(X | RADIUS).write(Fields::ALL))
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let Some(mut account) = Account::load(w, &self.key).filter(|a| a.next == Some(t.step)) else {

@@ -116,10 +116,6 @@ impl<F: Form> Fix for Declared<F> {
         let law = self.common.material.law(w.settings.compat);
         durations::on_wall(w, &law, self.common.group.bit(), said)
     }
-
-    fn boxed(&self) -> Box<dyn Fix> {
-        Box::new(self.clone())
-    }
 }
 
 /// Refuses particles without a radius.

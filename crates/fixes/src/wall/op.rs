@@ -8,7 +8,7 @@ use perigrain_base::par;
 use perigrain_contact::driver::DEEP;
 use perigrain_contact::walls::{Spheres, WallSweep};
 use perigrain_contact::{Advance, Granular};
-use perigrain_plan::{Needs, Op, Stage, Tick, When};
+use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::{Reading, SealCx};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::contacts::Contacts;
@@ -271,32 +271,28 @@ impl Half {
 }
 
 impl Op for Half {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn stage(&self) -> Stage {
-        if self.early { Stage::PreForce } else { Stage::PostForce }
-    }
-
-    fn needs(&self) -> Needs {
-        Needs::new()
-            .read(
-                X | V
-                    | OMEGA
-                    | RADIUS
-                    | MASS
-                    | MASK
-                    | WALL_CONTACTS
-                    | field::COLUMNS
-                    | TAG
-                    | REGIONS
-                    | LISTS
-                    | BOX,
-            )
-            .add(F | TORQUE)
-            .write(WALL_CONTACTS | RADIUS | FACTS | SLOTS)
-            .keep(field::COLUMNS | MEMO)
+    fn about(&self) -> About {
+        About::new(
+            &self.name,
+            if self.early { Stage::PreForce } else { Stage::PostForce },
+            Needs::new()
+                .read(
+                    X | V
+                        | OMEGA
+                        | RADIUS
+                        | MASS
+                        | MASK
+                        | WALL_CONTACTS
+                        | field::COLUMNS
+                        | TAG
+                        | REGIONS
+                        | LISTS
+                        | BOX,
+                )
+                .add(F | TORQUE)
+                .write(WALL_CONTACTS | RADIUS | FACTS | SLOTS)
+                .keep(field::COLUMNS | MEMO),
+        )
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
@@ -318,20 +314,16 @@ impl Op for Half {
 }
 
 impl Op for WallOp {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn stage(&self) -> Stage {
-        Stage::PostForce
-    }
-
-    fn needs(&self) -> Needs {
-        Needs::new()
-            .read(BOX | X | V | OMEGA | RADIUS | MASS | MASK | field::COLUMNS | TAG | REGIONS | LISTS)
-            .add(F | TORQUE)
-            .write(WALL_CONTACTS | FACTS | SLOTS)
-            .keep(MEMO | field::COLUMNS)
+    fn about(&self) -> About {
+        About::new(
+            &self.name,
+            Stage::PostForce,
+            Needs::new()
+                .read(BOX | X | V | OMEGA | RADIUS | MASS | MASK | field::COLUMNS | TAG | REGIONS | LISTS)
+                .add(F | TORQUE)
+                .write(WALL_CONTACTS | FACTS | SLOTS)
+                .keep(MEMO | field::COLUMNS),
+        )
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {

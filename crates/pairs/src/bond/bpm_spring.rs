@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_base::math::vec3::{dot, sub};
 use perigrain_lang::Args;
-use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::pull::{Found, apart, find, periods, tally};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
@@ -113,10 +113,6 @@ impl BondForce for Declared {
     fn written(&self, kind: u16) -> Option<String> {
         self.springs.get(&kind).map(|s| s.map(|a| general(a, 16)).join(" "))
     }
-
-    fn boxed(&self) -> Box<dyn BondForce> {
-        Box::new(self.clone())
-    }
 }
 
 impl Options {
@@ -144,14 +140,12 @@ struct Springs {
 }
 
 impl Op for Springs {
-    fn name(&self) -> &str {
-        "bond bpm/spring"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Force
-    }
-    fn needs(&self) -> Needs {
-        Needs::new().read(X | V | BONDS | BOX | LISTS | TAG).add(F).write(BONDS | TALLY | LISTS)
+    fn about(&self) -> About {
+        About::new(
+            "bond bpm/spring",
+            Stage::Force,
+            Needs::new().read(X | V | BONDS | BOX | LISTS | TAG).add(F).write(BONDS | TALLY | LISTS),
+        )
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let now = (w.rebuild.generation, w.bonds.changes);

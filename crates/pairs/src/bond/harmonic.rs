@@ -119,10 +119,6 @@ impl BondForce for Harmonic {
     fn written(&self, kind: u16) -> Option<String> {
         self.springs.get(&kind).map(|s| s.map(|a| general(a, 16)).join(" "))
     }
-
-    fn boxed(&self) -> Box<dyn BondForce> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

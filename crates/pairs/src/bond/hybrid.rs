@@ -46,6 +46,7 @@ impl BondStyle for Hybrid {
     }
 }
 
+#[derive(Clone)]
 struct Declared {
     subs: Vec<Box<dyn BondForce>>,
     /// The sub-style of each type; `None` for `none`.
@@ -85,7 +86,7 @@ impl BondForce for Declared {
         for (k, sub) in self.subs.iter().enumerate() {
             let own: Vec<u16> =
                 self.users.iter().filter(|(_, u)| **u == Some(k)).map(|(kind, _)| *kind).collect();
-            let mut sub = sub.boxed();
+            let mut sub = sub.clone();
             sub.restrict(&own);
             ops.append(&mut sub.ops(cx)?);
         }
@@ -104,9 +105,5 @@ impl BondForce for Declared {
             Some(sub) => sub.written(kind).map(|text| format!("{} {text}", sub.name())),
             None => self.users.contains_key(&kind).then(|| "none".to_string()),
         }
-    }
-
-    fn boxed(&self) -> Box<dyn BondForce> {
-        Box::new(Declared { subs: self.subs.iter().map(|s| s.boxed()).collect(), users: self.users.clone() })
     }
 }

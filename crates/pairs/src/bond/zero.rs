@@ -73,8 +73,4 @@ impl BondForce for Zero {
     fn written(&self, kind: u16) -> Option<String> {
         self.lengths.get(&kind).map(|r| general(*r, 16))
     }
-
-    fn boxed(&self) -> Box<dyn BondForce> {
-        Box::new(self.clone())
-    }
 }

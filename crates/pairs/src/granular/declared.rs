@@ -4,7 +4,7 @@ use super::force::{Force, conducts};
 use super::powder::Press;
 use crate::contact::{Coeff, durations, words};
 use crate::contact_probe::{ContactProbe, Own};
-use crate::{Pair, TypePairs};
+use crate::{ByPart, Deck, Facts, Pair, Scales, TypePairs};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::driver::{Average, Curvature, Rule, Rules};
 use perigrain_contact::normal::{plastic, plastic_grain};
@@ -145,8 +145,8 @@ impl Declared {
 }
 
 impl Pair for Declared {
-    fn name(&self) -> &'static str {
-        self.name
+    fn facts(&self) -> Facts {
+        Facts { name: self.name, needs: &["diameter", "density"], ..Facts::default() }
     }
 
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
@@ -173,7 +173,7 @@ impl Pair for Declared {
         self.only = Some(pairs.to_vec());
     }
 
-    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {
         let w = cx.world();
         let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
         let columns = &w.columns;
@@ -189,26 +189,26 @@ impl Pair for Declared {
             cx.world().parts.plastic = self.given.values().find_map(|c| plastic_grain(&c.model.normal));
         }
         let types = cx.world().types;
-        Ok(vec![Box::new(Force::new(self.name, rules, wanted, types, press))])
+        Ok(vec![(0, Box::new(Force::new(self.name, rules, wanted, types, press)))])
     }
 
-    fn probes(&self, w: &World) -> Result<Vec<Box<dyn Probe>>> {
+    fn probes(&self, w: &World, _bonds: bool) -> Result<ByPart<dyn Probe>> {
         let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
         let own = match self.name {
             "granular" if self.powder()?.is_some() => Own::Powder,
             "granular" => Own::Granular,
             _ => Own::Gran,
         };
-        Ok(vec![Box::new(ContactProbe::new(self.name, rules, wanted, own))])
+        Ok(vec![(0, Box::new(ContactProbe::new(self.name, rules, wanted, own)))])
     }
 
-    fn contact_time(&self, w: &World, said: Option<(f64, f64)>) -> Option<f64> {
-        let rules = self.tables(w.types, w.settings.compat).ok()?.0;
-        durations::between_grains(w, &rules, said)
-    }
-
-    fn needs(&self) -> &'static [&'static str] {
-        &["diameter", "density"]
+    fn scales(&self, w: &World, deck: Deck) -> Scales {
+        let probes = self.probes(w, false).unwrap_or_default();
+        let cutoff = probes.iter().filter_map(|(_, p)| p.cutoff(w)).reduce(f64::max);
+        let rules = self.tables(w.types, w.settings.compat).ok();
+        let said = deck.density.zip(deck.diameter);
+        let contact_time = rules.and_then(|(rules, _)| durations::between_grains(w, &rules, said));
+        Scales { cutoff, contact_time, stable_step: None }
     }
 
     fn check(&self, cx: &BuildCx) {
@@ -235,10 +235,6 @@ impl Pair for Declared {
                 "compat lammps: shear stiffness of mixed type pairs from E* in the place of both moduli";
             cx.note(Diagnostic::note(Code::COMPAT, c.span, text));
         }
-    }
-
-    fn boxed(&self) -> Box<dyn Pair> {
-        Box::new(self.clone())
     }
 }
 

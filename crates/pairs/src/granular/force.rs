@@ -13,7 +13,7 @@ use perigrain_contact::powder::Manner;
 use perigrain_contact::{Advance, ContactLaw, Granular, Heat, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
 use perigrain_neigh::slabs::{edges, shift_of};
-use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_world::Fields;
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::contacts::{Contacts, Deep};
@@ -165,7 +165,7 @@ impl Force {
 
     /// As [`Force::run_fast`], list by list: `ready` is told which grains have all their forces. `false`, with nothing done, where
     /// somebody reads more than forces, or lists do not come one by one.
-    fn run_piecewise(
+    fn run_per_list(
         &mut self,
         w: &mut World,
         t: &Tick,
@@ -174,20 +174,20 @@ impl Force {
     ) -> Result<bool> {
         let plain = !t.virial && !t.contacts && !conducts(&self.rules);
         let alone = matches!(w.contact_masses(), Cow::Borrowed(_));
-        let fast = self.fast.as_mut().filter(|fast| self.is_fast && plain && alone && fast.is_piecewise());
+        let fast = self.fast.as_mut().filter(|fast| self.is_fast && plain && alone && fast.is_per_list());
         let Some(fast) = fast else { return Ok(false) };
         let seen = grains(w, period, &[], &self.frozen)?;
         if anew {
             fast.weigh(&seen);
         }
         let step = Advance { dt: t.dt, history: !t.setup };
-        let mut piecewise = fast.begin_piecewise(&seen, step, store);
+        let mut per_list = fast.begin_per_list(&seen, step, store);
         w.contacts.remove(self.style);
         loop {
             let p = &mut w.particles;
             let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
             let seen = grains(w, period, &[], &self.frozen)?;
-            let complete = fast.go_on(&mut piecewise, &seen, [&mut f, &mut torque]);
+            let complete = fast.go_on(&mut per_list, &seen, [&mut f, &mut torque]);
             (w.particles.f, w.particles.torque) = (f, torque);
             let Some(complete) = complete else { break };
             complete.into_iter().for_each(|particles| ready(w, particles));
@@ -266,17 +266,9 @@ impl Force {
 }
 
 impl Op for Force {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn stage(&self) -> Stage {
-        Stage::Force
-    }
-
-    fn needs(&self) -> Needs {
-        if self.press.is_some() {
-            return Needs::new()
+    fn about(&self) -> About {
+        let needs = if self.press.is_some() {
+            Needs::new()
                 .read(
                     X | V
                         | OMEGA
@@ -295,29 +287,31 @@ impl Op for Force {
                 )
                 .add(F | TORQUE)
                 .write(CONTACTS | TALLY | RADIUS)
-                .keep(COLUMNS | MEMO);
-        }
-        Needs::new()
-            .keep(COLUMNS)
-            .read(
-                X | V
-                    | OMEGA
-                    | RADIUS
-                    | MASS
-                    | KIND
-                    | BOX
-                    | COLUMNS
-                    | LISTS
-                    | TAG
-                    | TRAVEL
-                    | MASK
-                    | MOLECULE
-                    | FAMILIES
-                    | X0
-                    | BONDS,
-            )
-            .add(F | TORQUE)
-            .write(FACTS | CONTACTS | TALLY)
+                .keep(COLUMNS | MEMO)
+        } else {
+            Needs::new()
+                .keep(COLUMNS)
+                .read(
+                    X | V
+                        | OMEGA
+                        | RADIUS
+                        | MASS
+                        | KIND
+                        | BOX
+                        | COLUMNS
+                        | LISTS
+                        | TAG
+                        | TRAVEL
+                        | MASK
+                        | MOLECULE
+                        | FAMILIES
+                        | X0
+                        | BONDS,
+                )
+                .add(F | TORQUE)
+                .write(FACTS | CONTACTS | TALLY)
+        };
+        About::new(&self.name, Stage::Force, needs)
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
@@ -329,7 +323,7 @@ impl Op for Force {
         self.act(w, t, how)
     }
 
-    fn run_telling(
+    fn run_streaming(
         &mut self,
         w: &mut World,
         t: &Tick,
@@ -339,7 +333,7 @@ impl Op for Force {
             return self.run(w, t).map(|()| false);
         }
         let how = self.prepare(w, t)?;
-        let told = self.run_piecewise(w, t, how, ready)?;
+        let told = self.run_per_list(w, t, how, ready)?;
         if !told {
             self.act(w, t, how)?;
         }

@@ -3,7 +3,7 @@
 use super::{Pair, Solid, reunion};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_peri::families::{Families, FamilyOptions, ForceUnit, PeriTally, PmbCoeff, PmbTable};
-use perigrain_plan::{Level, Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Level, Needs, Op, Stage, Tick};
 use perigrain_styles::peri_view::view;
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
@@ -32,24 +32,19 @@ impl Force {
 }
 
 impl Op for Force {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn stage(&self) -> Stage {
-        Stage::Force
-    }
-
-    fn level(&self) -> Level {
-        Level::At(0)
-    }
-
-    fn needs(&self) -> Needs {
-        Needs::new()
-            .read(TAG | MASK | MOLECULE | X | X0 | KIND | VOLUME | BOX | MEMO | DENSITY | RADIUS)
-            .add(F)
-            .write(LISTS | FAMILIES | TALLY | FACTS)
-            .keep(MASS)
+    fn about(&self) -> About {
+        About {
+            level: Level::At(0),
+            ..About::new(
+                &self.name,
+                Stage::Force,
+                Needs::new()
+                    .read(TAG | MASK | MOLECULE | X | X0 | KIND | VOLUME | BOX | MEMO | DENSITY | RADIUS)
+                    .add(F)
+                    .write(LISTS | FAMILIES | TALLY | FACTS)
+                    .keep(MASS),
+            )
+        }
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {

@@ -14,7 +14,7 @@ mod reunion;
 mod softening;
 mod ves;
 
-use super::{Pair, TypePairs};
+use super::{ByPart, Deck, Facts, Pair, Scales, TypePairs};
 use bond_probe::BondProbe;
 pub use eps::PeriEps;
 use force::Force;
@@ -238,8 +238,22 @@ impl Solid {
 }
 
 impl Pair for Solid {
-    fn name(&self) -> &'static str {
-        self.name
+    fn facts(&self) -> Facts {
+        let types = || 1..=self.table.types() as u16;
+        let endless = |i: &u16| self.table.get(*i, *i).is_some_and(|c| c.s00.is_infinite());
+        Facts {
+            name: self.name,
+            needs: if self.materials.is_empty() { &["volume", "density"] } else { &["volume"] },
+            true_forces: Some(self.unit() == ForceUnit::Newton),
+            solids: types().filter(|&i| self.covers(i, i)).collect(),
+            unbreakable: types().find(endless).filter(|_| !self.materials.is_empty()),
+            coefficients: match self.law.kind {
+                // Peak, last stretch and energy belong together.
+                kind if kind.softens() => &[],
+                kind if kind.bond_based() => &["c", "s00", "alpha"],
+                _ => &["s00", "alpha"],
+            },
+        }
     }
 
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()> {
@@ -297,7 +311,7 @@ impl Pair for Solid {
         self.table = table;
     }
 
-    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {
         let span = cx.span();
         let w = cx.world();
         let [a, b, c] = w.lattice.spacing;
@@ -316,20 +330,11 @@ impl Pair for Solid {
             style.law.kind = LawKind::Shaped;
         }
         style.law.shared_or_apart(before).map_err(|e| e.at(span))?;
-        Ok(vec![Box::new(Force::new(style, self.table.clone(), options))])
+        Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options)))])
     }
 
     fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
         options::read(self, command, args, cx)
-    }
-
-    fn coefficients(&self) -> &'static [&'static str] {
-        match self.law.kind {
-            // Peak, last stretch and energy belong together.
-            kind if kind.softens() => &[],
-            kind if kind.bond_based() => &["c", "s00", "alpha"],
-            _ => &["s00", "alpha"],
-        }
     }
 
     fn coefficient(&self, name: &str, (i, j): (u16, u16)) -> Option<f64> {
@@ -342,11 +347,7 @@ impl Pair for Solid {
         }
     }
 
-    fn needs(&self) -> &'static [&'static str] {
-        if self.materials.is_empty() { &["volume", "density"] } else { &["volume"] }
-    }
-
-    fn stable_step(&self, w: &World, said: Option<f64>) -> Option<f64> {
+    fn scales(&self, w: &World, deck: Deck) -> Scales {
         let types = self.table.types() as u16;
         let stiffest = |i: u16| {
             let all = (1..=types).filter_map(|j| self.table.get(i, j));
@@ -363,19 +364,12 @@ impl Pair for Solid {
         let ftm2v = w.settings.units.constants().ftm2v;
         let step = |i: u16| {
             let own = self.materials.density(i);
-            let rho = own.or_else(|| if w.n() > 0 { self.lightest(w, i) } else { said })?;
+            let rho = own.or_else(|| if w.n() > 0 { self.lightest(w, i) } else { deck.density })?;
             Some((rho / (ftm2v * stiffest(i)?)).sqrt())
         };
-        (1..=types).filter_map(step).reduce(f64::min)
-    }
-
-    fn unbreakable(&self) -> Option<u16> {
-        let endless = |i: &u16| self.table.get(*i, *i).is_some_and(|c| c.s00.is_infinite());
-        (1..=self.table.types() as u16).find(endless).filter(|_| !self.materials.is_empty())
-    }
-
-    fn true_forces(&self) -> Option<bool> {
-        Some(self.unit() == ForceUnit::Newton)
+        let cutoff = self.table.iter().map(|c| c.horizon).reduce(f64::max);
+        let stable_step = (1..=types).filter_map(step).reduce(f64::min);
+        Scales { cutoff, stable_step, contact_time: None }
     }
 
     fn check(&self, cx: &BuildCx) {
@@ -394,16 +388,8 @@ impl Pair for Solid {
         }
     }
 
-    fn singles(&self, _w: &World) -> Result<Vec<Box<dyn Probe>>> {
+    fn probes(&self, _w: &World, bonds: bool) -> Result<ByPart<dyn Probe>> {
         let plain = self.law.kind == LawKind::Pmb && !self.compress;
-        Ok(if plain { vec![Box::new(BondProbe)] } else { vec![] })
-    }
-
-    fn cutoff(&self, _w: &World) -> Option<f64> {
-        self.table.iter().map(|c| c.horizon).reduce(f64::max)
-    }
-
-    fn boxed(&self) -> Box<dyn Pair> {
-        Box::new(self.clone())
+        Ok(if bonds && plain { vec![(0, Box::new(BondProbe))] } else { vec![] })
     }
 }

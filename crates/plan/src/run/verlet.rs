@@ -1,7 +1,7 @@
 //! Velocity Verlet over a sealed plan: the loop, short enough to read aloud.
 
 use super::guarded::{Guarded, Verdict};
-use crate::{Phase, Stage, StepPlan, Tick};
+use crate::{Stage, StepPlan, Tick};
 use perigrain_base::diag::Result;
 use perigrain_base::par;
 use perigrain_world::columns::HEATFLOW;
@@ -214,21 +214,8 @@ pub fn look(
 
 /// The tick of the step the clock stands at.
 pub(super) fn tick(w: &World, setup: bool) -> Tick {
-    Tick {
-        step: w.clock.step,
-        first: w.clock.first,
-        last: w.clock.last,
-        dt: w.clock.dt,
-        setup,
-        unchanged: false,
-        ending: false,
-        energy: false,
-        virial: false,
-        atom_energy: false,
-        phase: Phase::default(),
-        contacts: false,
-        atom_virial: false,
-    }
+    let c = &w.clock;
+    Tick { first: c.first, last: c.last, setup, unchanged: false, ..Tick::between_runs(c) }
 }
 
 /// User + system time of this process [s], from /proc where there is one, else 0.

@@ -196,10 +196,6 @@ impl BondForce for Declared {
         let words: Vec<String> = all.map(|a| general(a, 16)).collect();
         Some(format!("{} {}", name_of(*kind), words.join(" ")))
     }
-
-    fn boxed(&self) -> Box<dyn BondForce> {
-        Box::new(self.clone())
-    }
 }
 
 /// Partial volumes and contact go by one lattice spacing.

@@ -4,7 +4,7 @@ use super::Declared;
 use super::table::{Links, links};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_peri::families::{Families, FamilyOptions, ForceUnit, PeriTally};
-use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::peri_view::view;
 use perigrain_world::World;
 use perigrain_world::field::{BONDS, BOX, COLUMNS, F, FAMILIES, KIND, MASS, TAG, TALLY, V, X};
@@ -23,18 +23,16 @@ impl Force {
 }
 
 impl Op for Force {
-    fn name(&self) -> &str {
-        "bond bpm/peri"
-    }
-    fn stage(&self) -> Stage {
-        Stage::Force
-    }
-    fn needs(&self) -> Needs {
-        Needs::new()
-            .read(MASS | X | V | KIND | BONDS | BOX | TAG)
-            .add(F)
-            .write(BONDS | FAMILIES | TALLY)
-            .keep(COLUMNS)
+    fn about(&self) -> About {
+        About::new(
+            "bond bpm/peri",
+            Stage::Force,
+            Needs::new()
+                .read(MASS | X | V | KIND | BONDS | BOX | TAG)
+                .add(F)
+                .write(BONDS | FAMILIES | TALLY)
+                .keep(COLUMNS),
+        )
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let changed = w.families.as_ref().is_none_or(|f| f.seen != w.bonds.changes);

@@ -11,7 +11,7 @@ use perigrain_base::par;
 use std::ops::Range;
 
 /// An evaluation of all contacts that is under way.
-pub struct Piecewise {
+pub struct PerList {
     /// Lists, in the order of one thread.
     order: Vec<usize>,
     /// How many lists that touch grains of each slab are still to come.
@@ -25,23 +25,23 @@ pub struct Piecewise {
 impl<L: ContactLaw> Fast<L> {
     /// Whether an evaluation can go list by list: not where several threads share the lists, or grains of a slab do not stand beside
     /// each other.
-    pub fn is_piecewise(&self) -> bool {
+    pub fn is_per_list(&self) -> bool {
         par::threads() == 1 && self.strays.stand_in_order() && self.strays_of_large.lists() == 0
     }
 
     /// Begins an evaluation as [`Fast::run`] does it without the virial, and with the same bits, for [`Fast::go_on`].
-    pub fn begin_piecewise(&mut self, grains: &Grains, step: Advance, store: bool) -> Piecewise {
+    pub fn begin_per_list(&mut self, grains: &Grains, step: Advance, store: bool) -> PerList {
         self.begin(grains);
         let lists = self.strays.lists();
         let mut to_come = vec![1; lists];
         (0..lists).filter_map(|k| self.strays.next(k)).for_each(|next| to_come[next] += 1);
-        Piecewise { order: par::in_turn(lists).collect(), to_come, done: 0, step, store, deep: None }
+        PerList { order: par::in_turn(lists).collect(), to_come, done: 0, step, store, deep: None }
     }
 
     /// Adds forces and torques of one list more to `f` and `torque`; which grains have all of theirs now. `None` when all have.
     pub fn go_on(
         &mut self,
-        p: &mut Piecewise,
+        p: &mut PerList,
         grains: &Grains,
         wrench: [&mut [Vec3]; 2],
     ) -> Option<[Range<usize>; 2]> {

@@ -1,17 +1,17 @@
-//! Ops that act on each particle by itself, one after the other on each stretch of particles while that is in fast memory.
+//! Ops that act on each particle by itself, one after the other on each block of particles while that is in fast memory.
 
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par::{self, CHUNK, Split};
 use perigrain_world::{AtomStyle, Lent, Tracked, World};
 use std::ops::Range;
 
-/// Most ops that take turns.
+/// Most ops of one fused pass.
 const MOST: usize = 6;
-/// Particles of a stretch: what ops read and write of them fits the fastest memory.
-const STRETCH: usize = 256;
+/// Particles of a block: what ops read and write of them fits the fastest memory.
+const BLOCK: usize = 256;
 
-/// A stretch of particles as ops see it: columns they may write, cut to the stretch, and whole columns to read.
-pub struct Stretch<'a> {
+/// A block of particles as ops see it: columns they may write, cut to the block, and whole columns to read.
+pub struct ParticleBlock<'a> {
     /// The first particle.
     pub start: usize,
     /// Positions.
@@ -28,7 +28,7 @@ pub struct Stretch<'a> {
     pub all: Known<'a>,
 }
 
-impl<'a> Stretch<'a> {
+impl<'a> ParticleBlock<'a> {
     /// Group bits.
     #[inline]
     pub fn mask(&self) -> &'a [u32] {
@@ -36,7 +36,7 @@ impl<'a> Stretch<'a> {
     }
 }
 
-/// What ops on stretches can read of all particles.
+/// What ops on blocks can read of all particles.
 #[derive(Clone, Copy)]
 pub struct Known<'a> {
     /// What particles have.
@@ -53,22 +53,22 @@ pub struct Known<'a> {
     pub type_mass: &'a Tracked<Vec<Option<f64>>>,
 }
 
-/// What came of a stretch: sums, and a largest value.
+/// What came of a block: sums, and a largest value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Gist {
+pub struct BlockSums {
     /// Sums over particles.
     pub sums: [f64; 3],
     /// The largest of something.
     pub most: f64,
 }
 
-impl Gist {
+impl BlockSums {
     fn join(self, other: Self) -> Self {
         Self { sums: std::array::from_fn(|k| self.sums[k] + other.sums[k]), most: self.most.max(other.most) }
     }
 }
 
-/// What an op does to one stretch.
+/// What an op does to one block.
 pub struct Act(Does);
 
 enum Does {
@@ -78,9 +78,9 @@ enum Does {
     Move(Box<Together>),
 }
 
-type Alone = dyn Fn(&mut Stretch) -> Gist + Sync;
+type Alone = dyn Fn(&mut ParticleBlock) -> BlockSums + Sync;
 /// What came of a pull and a hold before, and of the motion itself.
-type Together = dyn Fn(&mut Stretch, &Beside) -> [Gist; 3] + Sync;
+type Together = dyn Fn(&mut ParticleBlock, &Beside) -> [BlockSums; 3] + Sync;
 
 /// What a motion has to know of an act to take it into its pass.
 enum Kind {
@@ -115,22 +115,22 @@ pub struct Beside {
 }
 
 impl Act {
-    fn of(kind: Kind, alone: impl Fn(&mut Stretch) -> Gist + Sync + 'static) -> Self {
+    fn of(kind: Kind, alone: impl Fn(&mut ParticleBlock) -> BlockSums + Sync + 'static) -> Self {
         Self(Does::Alone(Box::new(alone), kind))
     }
 
     /// An act of whatever kind.
-    pub fn new(alone: impl Fn(&mut Stretch) -> Gist + Sync + 'static) -> Self {
+    pub fn new(alone: impl Fn(&mut ParticleBlock) -> BlockSums + Sync + 'static) -> Self {
         Self::of(Kind::Other, alone)
     }
 
     /// One that adds forces m a.
-    pub fn pull(pull: Pull, alone: impl Fn(&mut Stretch) -> Gist + Sync + 'static) -> Self {
+    pub fn pull(pull: Pull, alone: impl Fn(&mut ParticleBlock) -> BlockSums + Sync + 'static) -> Self {
         Self::of(Kind::Pull(pull), alone)
     }
 
     /// One that sets forces and torques of a group to zero.
-    pub fn hold(bit: u32, alone: impl Fn(&mut Stretch) -> Gist + Sync + 'static) -> Self {
+    pub fn hold(bit: u32, alone: impl Fn(&mut ParticleBlock) -> BlockSums + Sync + 'static) -> Self {
         Self::of(Kind::Hold(bit), alone)
     }
 
@@ -139,12 +139,12 @@ impl Act {
         Self::of(Kind::Clear, |s| {
             s.f.fill([0.0; 3]);
             s.torque.fill([0.0; 3]);
-            Gist::default()
+            BlockSums::default()
         })
     }
 
     /// One that moves particles, and in the same pass does what stands beside it, with the bits that this has alone.
-    pub fn moving(act: impl Fn(&mut Stretch, &Beside) -> [Gist; 3] + Sync + 'static) -> Self {
+    pub fn moving(act: impl Fn(&mut ParticleBlock, &Beside) -> [BlockSums; 3] + Sync + 'static) -> Self {
         Self(Does::Move(Box::new(act)))
     }
 
@@ -157,7 +157,7 @@ impl Act {
     }
 }
 
-/// One pass over a stretch.
+/// One pass over a block.
 enum Pass<'a> {
     /// An act alone, which is at this place.
     Alone(usize, &'a Alone),
@@ -196,13 +196,13 @@ fn passes(acts: &[Act]) -> Vec<Pass<'_>> {
     passes
 }
 
-/// Lets ops take turns on all stretches; what came of each of them. Every particle sees the same as if the ops acted one
+/// Lets ops act on all blocks in fused passes; what came of each of them. Every particle sees the same as if the ops acted one
 /// after the other.
-pub fn take_turns(w: &mut World, acts: &[Act]) -> Vec<Gist> {
+pub fn fuse(w: &mut World, acts: &[Act]) -> Vec<BlockSums> {
     acts.chunks(MOST).flat_map(|acts| some(w, acts).into_iter().take(acts.len())).collect()
 }
 
-fn some(w: &mut World, acts: &[Act]) -> [Gist; MOST] {
+fn some(w: &mut World, acts: &[Act]) -> [BlockSums; MOST] {
     let passes = passes(acts);
     let (all, columns) = columns(w);
     par::reduce_each(columns, |start, rows| chunk(&passes, all, start, rows), join).unwrap_or_default()
@@ -226,51 +226,51 @@ fn columns(w: &mut World) -> (Known<'_>, Columns<'_>) {
     (all, (p.x.lend(), p.v.lend(), p.f.lend(), turned))
 }
 
-/// All passes over one stretch after the other.
-fn chunk(passes: &[Pass<'_>], all: Known<'_>, mut start: usize, mut rest: Columns<'_>) -> [Gist; MOST] {
-    let mut gists = [Gist::default(); MOST];
+/// All passes over one block after the other.
+fn chunk(passes: &[Pass<'_>], all: Known<'_>, mut start: usize, mut rest: Columns<'_>) -> [BlockSums; MOST] {
+    let mut sums = [BlockSums::default(); MOST];
     while rest.rows() > 0 {
-        let n = rest.rows().min(STRETCH);
+        let n = rest.rows().min(BLOCK);
         let ((x, v, f, turned), later) = rest.cut(n);
         let (omega, torque) = turned.unwrap_or_else(|| (Lent::none(), Lent::none()));
-        let mut stretch = Stretch { start, x, v, f, omega, torque, all };
-        let mut came = [Gist::default(); MOST];
+        let mut block = ParticleBlock { start, x, v, f, omega, torque, all };
+        let mut came = [BlockSums::default(); MOST];
         for pass in passes {
             match pass {
-                Pass::Alone(at, act) => came[*at] = act(&mut stretch),
+                Pass::Alone(at, act) => came[*at] = act(&mut block),
                 Pass::Together(act, beside, places) => {
-                    let all = act(&mut stretch, beside);
-                    places.iter().zip(all).for_each(|(at, gist)| at.iter().for_each(|at| came[*at] = gist));
+                    let all = act(&mut block, beside);
+                    places.iter().zip(all).for_each(|(at, sums)| at.iter().for_each(|at| came[*at] = sums));
                 }
             }
         }
-        (gists, start, rest) = (join(gists, came), start + n, later);
+        (sums, start, rest) = (join(sums, came), start + n, later);
     }
-    gists
+    sums
 }
 
-fn join(a: [Gist; MOST], b: [Gist; MOST]) -> [Gist; MOST] {
+fn join(a: [BlockSums; MOST], b: [BlockSums; MOST]) -> [BlockSums; MOST] {
     std::array::from_fn(|k| a[k].join(b[k]))
 }
 
-/// [`take_turns`] by and by, as particles get all their forces.
-pub struct Turns<'a> {
+/// [`fuse`] by and by, as particles get all their forces.
+pub struct FusedPass<'a> {
     acts: usize,
     passes: Vec<Pass<'a>>,
     /// Of each chunk, how many particles wait for forces.
     waiting: Vec<usize>,
-    came: Vec<[Gist; MOST]>,
+    came: Vec<[BlockSums; MOST]>,
 }
 
-impl<'a> Turns<'a> {
-    /// With `n` particles that wait for forces; `None` if there are too many ops for one turn.
+impl<'a> FusedPass<'a> {
+    /// With `n` particles that wait for forces; `None` if there are too many ops for one pass.
     pub fn new(acts: &'a [Act], n: usize) -> Option<Self> {
         let waiting: Vec<usize> = (0..n).step_by(CHUNK).map(|start| CHUNK.min(n - start)).collect();
-        let came = vec![[Gist::default(); MOST]; waiting.len()];
+        let came = vec![[BlockSums::default(); MOST]; waiting.len()];
         (acts.len() <= MOST).then(|| Self { acts: acts.len(), passes: passes(acts), waiting, came })
     }
 
-    /// These particles have all their forces; each is told once. Ops take turns on chunks in which nobody waits any more.
+    /// These particles have all their forces; each is told once. Ops act on chunks in which nobody waits any more.
     pub fn ready(&mut self, w: &mut World, particles: Range<usize>) {
         let end = if particles.is_empty() { 0 } else { particles.end.div_ceil(CHUNK) };
         for k in particles.start / CHUNK..end {
@@ -286,7 +286,7 @@ impl<'a> Turns<'a> {
     }
 
     /// What came of each op when all particles have been told.
-    pub fn finish(self) -> Vec<Gist> {
+    pub fn finish(self) -> Vec<BlockSums> {
         debug_assert!(self.waiting.iter().all(|n| *n == 0), "somebody waits for forces still");
         let all = par::along_tree(&self.came, join).unwrap_or_default();
         all.into_iter().take(self.acts).collect()
@@ -311,10 +311,10 @@ mod tests {
 
     #[test]
     fn a_motion_takes_what_stands_right_beside_it_in_this_order() {
-        let none = |_: &mut Stretch<'_>| Gist::default();
+        let none = |_: &mut ParticleBlock<'_>| BlockSums::default();
         let pull = || Act::pull(Pull { bit: 1, a: [0.0; 3] }, none);
         let hold = || Act::hold(2, none);
-        let moving = || Act::moving(|_, _| [Gist::default(); 3]);
+        let moving = || Act::moving(|_, _| [BlockSums::default(); 3]);
         assert_eq!(told(&[pull(), hold(), moving(), Act::clear()]), ["0+1+2+c"]);
         assert_eq!(told(&[hold(), pull(), moving(), Act::clear()]), ["0", "1+2+c"]);
         assert_eq!(told(&[pull(), pull(), hold(), moving()]), ["0", "1+2+3+"]);
@@ -338,23 +338,23 @@ mod tests {
         let acts = [
             Act::new(|s| {
                 s.v.iter_mut().zip(s.f.iter()).for_each(|(v, f)| v[0] += 0.3 * f[0]);
-                Gist { sums: [s.v.iter().map(|v| v[0]).sum(), 0.0, 0.0], most: s.v[0][0] }
+                BlockSums { sums: [s.v.iter().map(|v| v[0]).sum(), 0.0, 0.0], most: s.v[0][0] }
             }),
             Act::clear(),
         ];
         let (mut once, mut by_and_by) = (world(), world());
-        let came = take_turns(&mut once, &acts);
-        let mut turns = Turns::new(&acts, n).unwrap();
+        let came = fuse(&mut once, &acts);
+        let mut pass = FusedPass::new(&acts, n).unwrap();
         // In pieces that end anywhere, from the middle on, and with nobody.
         for piece in [5000..n, 5..5000, 7..7, 0..5] {
             let early = piece.start > 0;
-            turns.ready(&mut by_and_by, piece);
+            pass.ready(&mut by_and_by, piece);
             assert!(!early || by_and_by.particles.f[0] != [0.0; 3], "the first ones wait for forces");
         }
-        assert_eq!(turns.finish(), came);
+        assert_eq!(pass.finish(), came);
         assert_eq!(once.particles.v, by_and_by.particles.v);
         assert!(by_and_by.particles.f.iter().all(|f| *f == [0.0; 3]));
         let many: Vec<Act> = (0..=MOST).map(|_| Act::clear()).collect();
-        assert!(Turns::new(&many, n).is_none());
+        assert!(FusedPass::new(&many, n).is_none());
     }
 }
