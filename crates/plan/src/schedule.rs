@@ -1,6 +1,7 @@
 //! Ops in the order of a step, with what was left out and why.
 
 use super::ending::Ending;
+use super::meter::{Stopwatch, Timing};
 use super::needs::{self, Needs};
 use super::{About, Act, BlockSums, FusedPass, Guard, Meter, Op, OpClass, Stage, Tick, When, fuse};
 use perigrain_base::diag::{Diagnostics, Result, Span};
@@ -8,7 +9,7 @@ use perigrain_world::field::{CONTACTS, RADIUS, X};
 use perigrain_world::{Fields, World};
 use std::ops::Range;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// An op with its times and the command it came from.
 pub struct Placed {
@@ -40,7 +41,7 @@ impl Placed {
         &mut self,
         w: &mut World,
         t: &Tick,
-        clock: &mut Instant,
+        clock: &mut Stopwatch,
         act: impl FnOnce(&mut dyn Op, &mut World) -> Result<T>,
     ) -> Result<T> {
         begin_watch(w);
@@ -57,12 +58,11 @@ impl Placed {
         &mut self,
         w: &mut World,
         t: &Tick,
-        clock: &mut Instant,
+        clock: &mut Stopwatch,
         act: impl FnOnce(&mut dyn Op, &mut World) -> Result<T>,
     ) -> Result<T> {
         let outcome = act(&mut *self.op, w);
-        let begin = std::mem::replace(clock, Instant::now());
-        self.meter.time += *clock - begin;
+        self.meter.time += clock.lap();
         self.meter.calls += 1;
         self.meter.bytes += self.op.bytes(w);
         outcome.map_err(|e| placed_error(e, self, t))
@@ -121,6 +121,8 @@ pub struct StepPlan {
     pub levels: Option<usize>,
     /// The end of the last step has begun the present one.
     begun: bool,
+    /// In which steps ops are timed.
+    timing: Timing,
     /// Whether nobody reads forces between the drift and the next ones; unknown at first.
     pub(super) unread: Option<bool>,
     /// Steps in which only what acts in every step acts, in a run up to the step beside it.
@@ -171,6 +173,8 @@ impl StepPlan {
     pub fn run(&mut self, w: &mut World, t: &Tick, stages: &[Stage]) -> Result<()> {
         let Some((first, end)) = stages.first().zip(stages.last()) else { return Ok(()) };
         let mut clock = None;
+        // What acts now and then is timed each time.
+        let mut own = None;
         let from = self.ops.partition_point(|p| p.about.stage < *first);
         for k in from..self.ops.len() {
             let p = &self.ops[k];
@@ -185,7 +189,13 @@ impl StepPlan {
             }
             let ends = t.ending && p.about.stage == Stage::Output && p.about.when != When::Never;
             if ends || self.fires(&p.about.when, t) {
-                let clock = clock.get_or_insert_with(Instant::now);
+                let clock = match self.ops[k].about.when {
+                    When::Always => clock.get_or_insert_with(|| self.timing.clock(t)),
+                    _ => {
+                        clock = None;
+                        own.insert(Stopwatch::all())
+                    }
+                };
                 self.ops[k].alone(w, t, clock, |op, w| op.run(w, t))?;
             }
         }
@@ -201,7 +211,7 @@ impl StepPlan {
         for p in self.ops.iter_mut().filter(|p| p.about.stage == Stage::EndOfStep) {
             let t = if p.about.in_setup { t } else { &later };
             if p.about.when.fires(t) {
-                p.alone(w, t, &mut Instant::now(), |op, w| op.run(w, t))?;
+                p.alone(w, t, &mut Stopwatch::all(), |op, w| op.run(w, t))?;
             }
         }
         Ok(())
@@ -226,6 +236,8 @@ impl StepPlan {
     /// The first op's that fails.
     pub fn step(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
         use Stage::{InitialIntegrate, PostIntegrate};
+        let Self { timing, ops, .. } = self;
+        timing.step(|| ops.iter().map(|p| p.meter.time).sum());
         if !self.goes_on() {
             self.run(w, t, &[InitialIntegrate])?;
         }
@@ -252,19 +264,21 @@ impl StepPlan {
         let acts = self.offers(w, t, order, [last, clears]);
         let pass = FusedPass::new(&acts, w.n()).filter(|_| !acts.is_empty() && acts.len() == order.len());
         let Some(mut pass) = pass else { return Ok(false) };
-        let (mut clock, mut moving) = (Instant::now(), Duration::ZERO);
+        let (mut clock, mut moving) = (self.timing.clock(t), Duration::ZERO);
+        let looks = clock;
         let p = &mut self.ops[force];
         let told = p.timed(w, t, &mut clock, |op, w| {
             op.run_streaming(w, t, &mut |w, particles| {
                 // To look at the clock takes longer than to move a few particles.
-                let begin = (particles.len() > FEW).then(Instant::now);
-                pass.ready(w, particles);
-                moving += begin.map_or(Duration::ZERO, |begin| begin.elapsed());
+                match particles.len() > FEW {
+                    true => moving += looks.of(|| pass.ready(w, particles)),
+                    false => pass.ready(w, particles),
+                }
             })
         })?;
         p.meter.time = p.meter.time.saturating_sub(moving);
         let sums = if told { pass.finish() } else { fuse(w, &acts) };
-        self.fused(w, t, (order, last), sums, moving + clock.elapsed());
+        self.fused(w, t, (order, last), sums, moving + clock.lap());
         end_watch(w, std::iter::once(&force).chain(order).map(|&k| self.ops[k].stated()));
         Ok(true)
     }
@@ -310,7 +324,7 @@ impl StepPlan {
     pub fn end(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
         let ending = self.ending(t);
         let (order, clears) = (&ending.order[..], ending.clears);
-        let (mut at, mut clock) = (0, Instant::now());
+        let (mut at, mut clock) = (0, self.timing.clock(t));
         while at < order.len() {
             let last = ending.last.filter(|_| self.begun || more(w));
             begin_watch(w);
@@ -331,7 +345,7 @@ impl StepPlan {
                 continue;
             }
             let sums = fuse(w, &acts);
-            let elapsed = std::mem::replace(&mut clock, Instant::now()).elapsed();
+            let elapsed = clock.lap();
             self.fused(w, t, (&order[at..], last), sums, elapsed);
             end_watch(w, order[at..at + acts.len()].iter().map(|&k| self.ops[k].stated()));
             at += acts.len();
@@ -369,6 +383,7 @@ impl StepPlan {
 
     /// Sets all meters to zero.
     pub fn reset_meters(&mut self) {
+        self.timing = Timing::default();
         for p in &mut self.ops {
             p.meter = Meter::default();
         }

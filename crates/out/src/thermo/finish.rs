@@ -121,7 +121,8 @@ impl Finish<'_> {
                 &[name, time, time, time, percent],
             ));
         }
-        let other = self.seconds - self.sections.iter().map(|s| s.seconds).sum::<f64>();
+        // Times of short steps are those of some of them: sums may be a little more than all.
+        let other = (self.seconds - self.sections.iter().map(|s| s.seconds).sum::<f64>()).max(0.0);
         // Rounding may leave a hair below zero.
         let other = other.max(0.0);
         text.push_str(&print(
