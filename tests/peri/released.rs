@@ -5,7 +5,8 @@ use perigrain::peri::families::*;
 use super::scene::Scene;
 
 const DX: f64 = 1e-3;
-const KINDS: [LawKind; 5] = [LawKind::Pmb, LawKind::Lps, LawKind::Ves, LawKind::Eps, LawKind::VesApart];
+const KINDS: [LawKind; 5] =
+    [LawKind::Pmb, LawKind::Lps, LawKind::Ves, LawKind::ElasticPlastic, LawKind::VesApart];
 
 /// A bar that is torn in the middle; its bonds relax and flow before they break.
 fn torn(kind: LawKind, layout: Layout) -> Scene {

@@ -9,7 +9,7 @@ use super::scene::Scene;
 const DX: f64 = 1e-3;
 const K: f64 = 14e9;
 const G: f64 = 6e9;
-pub const KINDS: [LawKind; 4] = [LawKind::Lps, LawKind::Ves, LawKind::Eps, LawKind::VesApart];
+pub const KINDS: [LawKind; 4] = [LawKind::Lps, LawKind::Ves, LawKind::ElasticPlastic, LawKind::VesApart];
 
 fn moduli(kind: LawKind, factor: f64) -> Moduli {
     let (lambda, tau) = match kind {
@@ -110,7 +110,7 @@ impl Plain {
             let alpha = 15.0 * m.shear / self.weighted[i];
             let dev = |e: &End| bond(i, e).1 - theta[i] * e.length / 3.0;
             let mut scale = 1.0;
-            if s.law.kind == LawKind::Eps {
+            if s.law.kind == LawKind::ElasticPlastic {
                 let one = |e: &End| {
                     (alpha * e.omega * (dev(e) - e.memory[0])).powi(2) * e.weight * s.volume[e.partner]
                 };
@@ -131,7 +131,7 @@ impl Plain {
                         e.memory = [dev, relaxed];
                         (1.0 - m.lambda) * dev + m.lambda * (dev - relaxed)
                     }
-                    LawKind::Eps => {
+                    LawKind::ElasticPlastic => {
                         let left = scale * (dev - e.memory[0]);
                         e.memory[0] = dev - left;
                         left
@@ -200,7 +200,7 @@ fn forces_are_those_of_the_formulas() {
         check(&format!("{kind:?} layers"), &with_law(shaken(impact_of_types(false)), kind));
         check(&format!("{kind:?} scattered"), &with_law(shaken(impact_of_types(true)), kind));
     }
-    check("rubble", &with_law(shaken(rubble()), LawKind::Eps));
+    check("rubble", &with_law(shaken(rubble()), LawKind::ElasticPlastic));
     check("ring", &with_law(tough(periodic([17, 7, 7], 0.0)), LawKind::Ves));
 }
 
@@ -208,7 +208,7 @@ fn forces_are_those_of_the_formulas() {
 fn influence_and_volume_rules() {
     let pairs = [(Influence::One, VolumeRule::Full), (Influence::Gaussian, VolumeRule::None)];
     for (influence, volume) in pairs {
-        let mut s = with_law(shaken(impact(1)), LawKind::Eps);
+        let mut s = with_law(shaken(impact(1)), LawKind::ElasticPlastic);
         (s.law.influence, s.options.volume) = (influence, volume);
         check(&format!("{influence:?} {volume:?}"), &s);
     }
@@ -217,9 +217,12 @@ fn influence_and_volume_rules() {
 #[test]
 fn bits_do_not_depend_on_threads_or_skipping() {
     let _alone = super::super::threads::alone();
-    for (kind, compat_lammps) in
-        [(LawKind::Lps, false), (LawKind::Ves, false), (LawKind::Eps, false), (LawKind::Eps, true)]
-    {
+    for (kind, compat_lammps) in [
+        (LawKind::Lps, false),
+        (LawKind::Ves, false),
+        (LawKind::ElasticPlastic, false),
+        (LawKind::ElasticPlastic, true),
+    ] {
         let ring = tough(periodic([17, 7, 7], 0.0));
         for (name, scene, steps) in
             [("lattice", pulled(Layout::Auto), 12), ("list", pulled(Layout::List), 12), ("ring", ring, 3)]
@@ -412,12 +415,12 @@ impl Sample {
 
 #[test]
 fn plastic_loops_are_those_of_von_mises() {
-    let yield_stress = moduli(LawKind::Eps, 1.0).yield_stress;
+    let yield_stress = moduli(LawKind::ElasticPlastic, 1.0).yield_stress;
     // Deviatoric stress per strain, its limit, and the volume's part: strain along x alone, or simple shear.
     let uniaxial = (4.0 / 3.0 * LATTICE[0] * G, 2.0 / 3.0 * yield_stress, K);
     let sheared = (LATTICE[1] * G, yield_stress / 3f64.sqrt(), 0.0);
     for (axis, (stiffness, limit, bulk)) in [uniaxial, sheared].into_iter().enumerate() {
-        let mut sample = Sample::new(LawKind::Eps);
+        let mut sample = Sample::new(LawKind::ElasticPlastic);
         let amplitude = 3.0 * limit / stiffness;
         let (mut expected, mut last, mut worst) = (0.0f64, 0.0, 0.0f64);
         // Up, down, up again in steps of a fifth of the amplitude.

@@ -208,7 +208,7 @@ fn bits(w: &World) -> Vec<u64> {
 fn memory(w: &World) -> String {
     let bonds = w.families.as_ref().map(|f| {
         let alive: Vec<_> = f.lattices.iter().map(|b| &b.alive).collect();
-        format!("{alive:?} {:?} {:?}", f.list.alive, f.hurt)
+        format!("{alive:?} {:?} {:?}", f.list.alive, f.damaged)
     });
     let state: Vec<_> = w.memo.iter().filter(|(name, _)| !name.starts_with("restart/")).collect();
     format!("{bonds:?} {:?} {:?} {state:?} {:?}", w.contacts, w.wall_contacts, w.particles.image)
@@ -223,7 +223,7 @@ fn a_run_cut_in_two_has_the_bits_of_one() {
         let (whole, said) = run(folder.path(), &format!("{make}{again}run {steps}"), s.list);
         let whole_rows = rows(&said);
         // There is something to lose: broken bonds, or springs of contacts.
-        let broken = whole.families.as_ref().is_some_and(|f| f.hurt.iter().any(|h| *h));
+        let broken = whole.families.as_ref().is_some_and(|f| f.damaged.iter().any(|h| *h));
         let touching = whole.contacts.values().chain(whole.wall_contacts.values());
         let springs = touching.flat_map(|c| &c.history).any(|h| *h != 0.0);
         // Of rain: the streams of random numbers.

@@ -8,10 +8,10 @@
 //! no less than max(s_min,i, s_min,j). Its own previous stretch is one, for the bond belongs to both families; the previous
 //! stretches of the bonds that were the least ones of both families when these were looked at last are mostly a far better one.
 
-use super::isa::Isa;
-use super::pmb::stretch;
 use crate::families::list::ListBody;
 use crate::families::{Candidate, FamilyOptions, Measures};
+use crate::lanes::isa::Isa;
+use crate::law::series::stretch;
 
 /// A layout, as breaking sees it. Sites are cells or records.
 pub trait Bonds: Sync + Sized {

@@ -1,9 +1,9 @@
 //! Short-range repulsion: unbonded pairs that are near, and bonded ones that are squeezed.
 
-use super::lattice::SQUEEZED;
 use crate::families::lattice::LANES;
 use crate::families::list::CLOSE;
 use crate::families::{Families, FamilyOptions, ForceUnit, Influence, PeriTally, PeriView, PmbTable};
+use crate::lattice::sweep::SQUEEZED;
 use perigrain_base::math::vec3::length;
 
 /// Everything a pair's repulsion depends on, and where it goes.
@@ -99,7 +99,7 @@ pub fn push_apart(families: &Families, repulsion: &mut Repulsion) {
     // State-based solids push with their short-range modulus, which has no shape.
     let states = !families.law.kind.bond_based();
     let shape = if states { Influence::One } else { families.law.influence };
-    for i in (0..families.hurt.len()).filter(|&i| families.hurt[i]) {
+    for i in (0..families.damaged.len()).filter(|&i| families.damaged[i]) {
         families.each(i, |n| {
             let j = n.partner as usize;
             if n.alive || j < i {

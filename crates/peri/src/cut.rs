@@ -40,7 +40,7 @@ impl Families {
             }
         }
         for p in ends.iter().flatten() {
-            self.hurt[*p as usize] = true;
+            self.damaged[*p as usize] = true;
         }
         if !ends.is_empty() {
             self.forget_near();

@@ -1,9 +1,9 @@
 //! What has become of families: damage, counts, partners, and what happens to them when particles are deleted.
 
-use super::lattice::extent;
 use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::list::ListBody;
 use crate::families::{Families, NearPair};
+use crate::lattice::sweep::extent;
 use perigrain_base::par::{self, Shared};
 
 /// One partner of a particle.
@@ -60,15 +60,15 @@ impl Families {
 
     /// The damage of many particles: where all of a body on a lattice are of one volume, their living bonds are counted first.
     pub fn damages<'a>(&'a self, volume: &'a [f64]) -> Damages<'a> {
-        let hurt = self.hurt.contains(&true);
-        let counted = self.lattices.iter().map(|body| hurt.then(|| Counted::of(body, volume)).flatten());
+        let damaged = self.damaged.contains(&true);
+        let counted = self.lattices.iter().map(|body| damaged.then(|| Counted::of(body, volume)).flatten());
         Damages { families: self, volume, counted: counted.collect() }
     }
 
     /// A particle's damage from what is found about its living bonds: their number, and the volume of their partners.
     fn damage_from(&self, i: usize, found: impl FnOnce() -> (u16, f64)) -> f64 {
         let size = self.family_size.get(i).copied().unwrap_or(0);
-        if size == 0 || self.family_volume[i] == 0.0 || !self.hurt[i] {
+        if size == 0 || self.family_volume[i] == 0.0 || !self.damaged[i] {
             return 0.0;
         }
         let (live, sum) = found();
@@ -165,7 +165,7 @@ impl Families {
         }
         self.family_volume = moved(&self.family_volume, old_to_new, n, 0.0);
         self.family_size = moved(&self.family_size, old_to_new, n, 0);
-        self.hurt = vec![true; n];
+        self.damaged = vec![true; n];
         if !self.lasting.is_empty() {
             self.lasting = moved(&self.lasting, old_to_new, n, false);
         }
@@ -315,7 +315,7 @@ mod tests {
         for volume in [vec![0.1; 330], various] {
             let view = PeriView { x: &x, x0: &x, kind: &[1; 330], volume: &volume, bounds, excluded: None };
             let mut families = Families::build(&view, &table, FamilyOptions::new(1.0)).unwrap();
-            assert!(families.damages(&volume).counted.iter().all(Option::is_none), "nothing is hurt yet");
+            assert!(families.damages(&volume).counted.iter().all(Option::is_none), "nothing is damaged yet");
             families.cut(&view, |a, b| (a[0] + 0.3 * a[1] - 5.2) * (b[0] + 0.3 * b[1] - 5.2) < 0.0);
             families.lattices[0].vacate(130);
             let mut all = vec![0.0; 330];

@@ -1,16 +1,16 @@
 //! Energy and virial of all bonds: asked for at some steps only, so a pass of its own.
 
-use super::chunk::{CELLS, Chunk, SUMS};
-use super::isa::Isa;
-use super::list;
-use super::single::Single;
-use super::state::lattice::States;
-use super::state::law::{Angles, BondLaw, Ends, Moment, Stretch, of_law};
-use super::state::settle::{columns_of, moment};
-use super::state::weighing::{Weighing, banded};
 use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::law::{COLUMNS, SiteState};
 use crate::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
+use crate::lanes::isa::Isa;
+use crate::lanes::single::Single;
+use crate::lattice::chunk::{CELLS, Chunk, SUMS};
+use crate::lattice::states::States;
+use crate::law::settle::{columns_of, moment};
+use crate::law::weighing::{Weighing, banded};
+use crate::law::{Angles, BondLaw, Ends, Moment, Stretch, of_law};
+use crate::list;
 use perigrain_base::par::{self, Shared};
 
 /// Energy and virial of one row of cells or one record.

@@ -2,28 +2,28 @@
 
 use std::sync::Mutex;
 
-use super::breaking::break_bonds;
-use super::contact::{Repulsion, push_apart, repel};
-use super::energy::tally;
-use super::gather::gather;
-use super::isa::Isa;
-#[cfg(target_arch = "x86_64")]
-use super::lanes::Avx2;
-use super::lanes::{Portable, has_avx2};
-#[cfg(target_arch = "x86_64")]
-use super::lanes512::{Avx512, has_avx512};
-use super::lattice::Mode;
-use super::list;
-use super::list::kernel::Rules;
-use super::state;
-use super::tables;
+use crate::breaking::break_bonds;
 use crate::build::sites::{Carrier, carrier};
 use crate::build::{detect, lattice as cells, list as records};
+use crate::contact::{Repulsion, push_apart, repel};
+use crate::energy::tally;
 use crate::families::lattice::RowMotion;
 use crate::families::{
     AlmostLattice, Bounds, Candidate, Families, FamilyOptions, Law, LawKind, Layout, NearPairs, PeriTally,
     PeriView, PmbCoeff, PmbTable, Scratch,
 };
+#[cfg(target_arch = "x86_64")]
+use crate::lanes::Avx2;
+#[cfg(target_arch = "x86_64")]
+use crate::lanes::avx512::{Avx512, has_avx512};
+use crate::lanes::isa::Isa;
+use crate::lanes::{Portable, has_avx2};
+use crate::lattice;
+use crate::lattice::gather::gather;
+use crate::lattice::sweep::Mode;
+use crate::lattice::tables;
+use crate::list;
+use crate::list::kernel::Rules;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par::{self, Shared};
 
@@ -96,7 +96,7 @@ impl Families {
             law,
             of_bonds: vec![],
             seen: 0,
-            armed: false,
+            breaking_enabled: false,
             lattices: vec![],
             list: Default::default(),
             reference: (view.x != view.x0).then(|| view.x.to_vec()),
@@ -104,7 +104,7 @@ impl Families {
             family_volume: vec![0.0; n],
             family_size: vec![0; n],
             lasting: vec![],
-            hurt: vec![false; n],
+            damaged: vec![false; n],
             near: NearPairs::default(),
             released: 0.0,
             heat: 0.0,
@@ -211,7 +211,7 @@ impl Families {
         self.place.resize(n, u32::MAX);
         self.family_volume.resize(n, 0.0);
         self.family_size.resize(n, 0);
-        self.hurt.resize(n, false);
+        self.damaged.resize(n, false);
         if let Some(reference) = &mut self.reference {
             reference.extend_from_slice(&view.x[reference.len()..]);
         }
@@ -252,12 +252,12 @@ impl Families {
         // Bonded particles that were put close to each other before families were built push each other from the start.
         let repels = !self.options.no_repulsion;
         for body in &mut self.lattices {
-            let presses = repels && body.contact >= 0.0;
+            let short_range = repels && body.contact >= 0.0;
             // SAFETY: `force` has chosen kernels that the processor has.
-            unsafe { gather::<K>(body, view, reference, presses) };
+            unsafe { gather::<K>(body, view, reference, short_range) };
         }
-        let presses = repels && self.list.contact >= 0.0;
-        let moved = list::gather(&mut self.list, view, presses);
+        let short_range = repels && self.list.contact >= 0.0;
+        let moved = list::gather(&mut self.list, view, short_range);
         self.sweep_lattices::<K>(view, f, (advance, tallied.is_some()));
         self.sweep_list::<K>(view, f, (advance, tallied.is_some()), period);
         if advance && self.counts_losses {
@@ -280,10 +280,10 @@ impl Families {
         (advance, tallied): (bool, bool),
         period: [f64; 3],
     ) {
-        let Self { list, scratch, options, law, table, armed, counts_losses, .. } = self;
-        let mode = Mode { advance, armed: *armed, skip: options.skip_rest };
+        let Self { list, scratch, options, law, table, breaking_enabled, counts_losses, .. } = self;
+        let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest };
         scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
-        let settling = state::settling((law, table), options, (advance, tallied, *counts_losses));
+        let settling = lattice::settling((law, table), options, (advance, tallied, *counts_losses));
         if list.inverse.len() != list.partner.len() {
             // Read from a restart file.
             list::measure(list, law, period);
@@ -313,10 +313,10 @@ impl Families {
 
     /// Breaks bonds and makes this step the previous one.
     fn advance<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) {
-        if self.armed {
+        if self.breaking_enabled {
             self.break_and_count::<K>(view, period);
         }
-        self.armed = true;
+        self.breaking_enabled = true;
         for body in &mut self.lattices {
             body.u.swap(0, 1);
         }
@@ -344,8 +344,8 @@ impl Families {
         self.list.break_all(&mut found, &spared);
         ends.extend(found.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
         for &[i, j] in &ends {
-            self.hurt[i as usize] = true;
-            self.hurt[j as usize] = true;
+            self.damaged[i as usize] = true;
+            self.damaged[j as usize] = true;
             self.add_broken(view, i, j);
         }
         self.scratch.candidates = found;

@@ -9,36 +9,23 @@
 mod breaking;
 pub mod build;
 pub mod calibration;
-mod chunk;
 mod contact;
 mod cut;
 pub mod damage;
 mod energy;
 mod evaluate;
 pub mod families;
-mod fragile;
-mod gather;
-mod isa;
 pub mod kinematics;
 mod lanes;
-#[cfg(target_arch = "x86_64")]
-mod lanes512;
 mod lattice;
-mod leads;
+mod law;
 mod limit;
 pub mod linked;
 mod list;
 pub mod moduli;
-mod pmb;
 mod released;
-mod rows;
-mod single;
-mod state;
 /// What bonds that soften leave of their peak where they break.
 pub mod softening {
-    pub use super::state::REST;
+    pub use super::law::REST;
 }
 pub mod stretches;
-mod stretching;
-mod tables;
-mod wide;

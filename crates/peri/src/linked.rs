@@ -1,6 +1,6 @@
 //! Families that follow a table of bonds: what it has taken away since, and how strained they are.
 
-use super::breaking::banded;
+use crate::breaking::banded;
 use crate::families::list::GROUP;
 use crate::families::{Families, PeriView};
 use perigrain_base::diag::{Code, Result, fail};
@@ -49,8 +49,8 @@ impl Families {
         }
         for (b, [i, j]) in ended {
             self.list.end(b);
-            self.hurt[i as usize] = true;
-            self.hurt[j as usize] = true;
+            self.damaged[i as usize] = true;
+            self.damaged[j as usize] = true;
             self.add_broken(view, i, j);
         }
         Ok(())

@@ -1,10 +1,10 @@
 //! The energy that bonds set free where they break, and what they turn into heat where they relax or flow.
 
-use super::energy::tally;
-use super::isa::Isa;
+use crate::energy::tally;
 use crate::families::lattice::PAD;
 use crate::families::law::SiteState;
 use crate::families::{Families, ForceUnit, LawKind, PeriTally, PeriView};
+use crate::lanes::isa::Isa;
 
 impl Families {
     /// Breaks bonds; where that is counted, adds the difference of the energies of all bonds before and after.
@@ -31,7 +31,7 @@ impl Families {
     pub(super) fn count_heat<K: Isa>(&mut self, view: &PeriView, period: [f64; 3]) {
         match self.law.kind {
             _ if self.options.compat_lammps => {}
-            LawKind::Eps | LawKind::Yield => {
+            LawKind::ElasticPlastic | LawKind::Yield => {
                 if !self.flowed() {
                     return self.forget_earlier();
                 }

@@ -1,6 +1,6 @@
 //! What single bonds and particles show of their stretches: LAMMPS' critical stretch, first lengths, the dead band.
 
-use super::breaking::{Bonds, banded};
+use crate::breaking::{Bonds, banded};
 use crate::evaluate::periods;
 use crate::families::list::GROUP;
 use crate::families::{Families, FamilyOptions, PeriView};
@@ -11,7 +11,7 @@ impl Families {
     /// stretches in that step; the largest number there is for particles that had none, and for all before the first step.
     pub fn critical_stretches(&self, view: &PeriView) -> Vec<f64> {
         let mut all = vec![f64::MAX; view.x.len()];
-        if !self.armed {
+        if !self.breaking_enabled {
             return all;
         }
         for body in &self.lattices {

@@ -177,7 +177,7 @@ impl<L: ContactLaw> Fast<L> {
     pub fn keep_contacts(&mut self) {
         self.lists.iter_mut().for_each(|l| l.long = Default::default());
         self.spare = vec![];
-        self.strays.forget();
-        self.strays_of_large.forget();
+        self.validity.forget();
+        self.validity_of_large.forget();
     }
 }

@@ -4,23 +4,24 @@
 //! pairs within the skin, and of those a shorter list of pairs within a thin second skin, which holds what contacts remember.
 //! Where sizes differ much, slabs are as thick as small grains reach, and pairs with large ones have lists of their own.
 //! A step tests the distances of the short list and evaluates the law for four or eight pairs at a time ([`form`]), stage by
-//! stage ([`strip`]); slabs in two colours keep the order of additions for any number of threads.
+//! stage ([`batch`]); slabs in two colours keep the order of additions for any number of threads.
 
+mod batch;
+mod bidisperse;
 mod deep;
 mod form;
+mod image_shift;
+mod list_validity;
 mod lists;
 mod memory;
 mod near;
 mod per_list;
-mod stray;
-mod strip;
 mod sweep;
-mod turned;
-mod uneven;
 
 use super::driver::Grains;
 use super::{Advance, ContactLaw, MOST_MEMORY};
 pub use form::{Form, InLanes};
+use list_validity::ListValidity;
 use lists::{Short, Slab};
 use memory::Book;
 use perigrain_base::math::four::has_avx2;
@@ -30,7 +31,6 @@ use perigrain_base::par;
 use perigrain_neigh::list::small;
 use perigrain_neigh::slabs::{Slabs, edges, shift_of};
 use perigrain_world::contacts::Contacts;
-use stray::Strays;
 
 /// How many grains at most: a place and an image share 32 bits.
 pub const MOST_GRAINS: usize = (1 << PLACE_BITS) - 1;
@@ -143,9 +143,9 @@ pub struct Fast<L> {
     /// Identities of the grains when the lists were made.
     tag: Vec<u32>,
     /// Who has strayed from where short lists were made.
-    strays: Strays,
+    validity: ListValidity,
     /// The same for lists of pairs with large grains.
-    strays_of_large: Strays,
+    validity_of_large: ListValidity,
     /// Masses with a minus sign where frozen, if some are.
     signed: Vec<f64>,
     /// What all grains have in common.
@@ -183,8 +183,8 @@ impl<L: ContactLaw> Fast<L> {
             laws,
             form: Form::here(),
             tag: vec![],
-            strays: Strays::default(),
-            strays_of_large: Strays::default(),
+            validity: ListValidity::default(),
+            validity_of_large: ListValidity::default(),
             signed: vec![],
             alike: Alike::default(),
             turns: vec![],
@@ -248,8 +248,8 @@ impl<L: ContactLaw> Fast<L> {
         // The book has what they knew: room for what is made now.
         self.lists.iter_mut().for_each(|l| l.short = Short::default());
         self.spare = vec![];
-        self.strays.forget();
-        self.strays_of_large.forget();
+        self.validity.forget();
+        self.validity_of_large.forget();
         self.turns = vec![];
         self.tag.clear();
         self.tag.extend_from_slice(grains.tag);
@@ -268,7 +268,7 @@ impl<L: ContactLaw> Fast<L> {
             self.add_large(&large, &slabs);
         }
         self.lists.iter_mut().for_each(|list| list.long.fill_up());
-        self.strays.divide(&slabs);
+        self.validity.divide(&slabs);
         self.book = Some(book);
         self.stale = true;
     }
@@ -293,18 +293,18 @@ impl<L: ContactLaw> Fast<L> {
     /// Makes short lists where they are due.
     pub(super) fn begin(&mut self, grains: &Grains) {
         let stale = std::mem::take(&mut self.stale);
-        let mut strayed = self.strays.strayed(grains, self.thin, stale);
-        let of_large = self.strays_of_large.strayed(grains, self.thin, stale);
-        strayed.extend(of_large.into_iter().map(|k| self.strays.lists() + k));
+        let mut strayed = self.validity.strayed(grains, self.thin, stale);
+        let of_large = self.validity_of_large.strayed(grains, self.thin, stale);
+        strayed.extend(of_large.into_iter().map(|k| self.validity.lists() + k));
         self.make_short(grains, &strayed);
     }
 
     /// Calls `f` for lists of these weights in two rounds, for those of slabs and then for those of large grains: a list may write to
     /// its slab and the next one.
     fn each_list(&self, weights: &[usize], f: impl Fn(usize) + Sync) {
-        let first = self.strays.lists();
+        let first = self.validity.lists();
         par::neighbours(&weights[..first], &f);
-        par::two_colours(self.strays_of_large.lists(), |k| f(first + k));
+        par::two_colours(self.validity_of_large.lists(), |k| f(first + k));
     }
 
     /// Takes up who is frozen and who is alike: after a [`Fast::rebuild`], and when masses, radii or who is frozen may have

@@ -26,15 +26,15 @@ impl<L: ContactLaw> Fast<L> {
     /// Whether an evaluation can go list by list: not where several threads share the lists, or grains of a slab do not stand beside
     /// each other.
     pub fn is_per_list(&self) -> bool {
-        par::threads() == 1 && self.strays.stand_in_order() && self.strays_of_large.lists() == 0
+        par::threads() == 1 && self.validity.stand_in_order() && self.validity_of_large.lists() == 0
     }
 
     /// Begins an evaluation as [`Fast::run`] does it without the virial, and with the same bits, for [`Fast::go_on`].
     pub fn begin_per_list(&mut self, grains: &Grains, step: Advance, store: bool) -> PerList {
         self.begin(grains);
-        let lists = self.strays.lists();
+        let lists = self.validity.lists();
         let mut to_come = vec![1; lists];
-        (0..lists).filter_map(|k| self.strays.next(k)).for_each(|next| to_come[next] += 1);
+        (0..lists).filter_map(|k| self.validity.next(k)).for_each(|next| to_come[next] += 1);
         PerList { order: par::in_turn(lists).collect(), to_come, done: 0, step, store, deep: None }
     }
 
@@ -60,8 +60,8 @@ impl<L: ContactLaw> Fast<L> {
         let mut ready = |slab: Option<usize>| {
             let Some(slab) = slab else { return 0..0 };
             p.to_come[slab] -= 1;
-            if p.to_come[slab] == 0 { self.strays.members(slab) } else { 0..0 }
+            if p.to_come[slab] == 0 { self.validity.members(slab) } else { 0..0 }
         };
-        Some([ready(Some(k)), ready(self.strays.next(k))])
+        Some([ready(Some(k)), ready(self.validity.next(k))])
     }
 }

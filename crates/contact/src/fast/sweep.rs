@@ -1,9 +1,9 @@
-//! The inner loop of a step: which pairs of short lists touch, and their contacts, strip by strip.
+//! The inner loop of a step: which pairs of short lists touch, and their contacts, batch by batch.
 
+use super::batch::{BATCH, Batch};
 use super::form::InLanes;
 use super::lists::{FILL, Short, Slab, weights};
 use super::near::Places;
-use super::strip::{STRIP, Strip};
 use super::{Alike, Fast, Laws, NONE, Sums};
 use crate::driver::Grains;
 use crate::{Advance, ContactLaw, Loop};
@@ -151,7 +151,7 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
         let at = cx.places();
         let mut hits = [0; ROOM];
         let (mut count, mut k, end) = (0, 0, slab.short.i.len());
-        let mut strip = None;
+        let mut batch = None;
         loop {
             // By the same steps in all forms: where it stops, blocks of what holds end.
             while k < end && count + FILL <= ROOM {
@@ -173,12 +173,12 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
             slab.touching += holding;
             if holding > 0 {
                 // SAFETY: passed on. Not before something touches: in loose scenes most slabs have no contact.
-                let strip = match &mut strip {
-                    Some(strip) => strip,
-                    none => none.insert(unsafe { Strip::<V, N>::new(cx.alike) }),
+                let batch = match &mut batch {
+                    Some(batch) => batch,
+                    none => none.insert(unsafe { Batch::<V, N>::new(cx.alike) }),
                 };
                 // SAFETY: passed on.
-                unsafe { evaluate::<N, V, L, W>(cx, slab, strip, &hits[..holding]) };
+                unsafe { evaluate::<N, V, L, W>(cx, slab, batch, &hits[..holding]) };
             }
             if k == end {
                 break;
@@ -223,13 +223,13 @@ impl Hits<'_, '_> {
 unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     cx: &Cx<L>,
     slab: &mut Slab,
-    strip: &mut Strip<V, N>,
+    batch: &mut Batch<V, N>,
     hits: &[u32],
 ) {
     // SAFETY: passed on.
     unsafe {
         if let [law] = &cx.laws.distinct[..] {
-            return of_law::<N, V, L, W>(cx, law, slab, strip, hits);
+            return of_law::<N, V, L, W>(cx, law, slab, batch, hits);
         }
         let mut own = [0; BLOCK];
         for block in hits.chunks(BLOCK) {
@@ -241,7 +241,7 @@ unsafe fn evaluate<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
                     own[count] = k;
                     count += usize::from(which != NONE && usize::from(which) == number);
                 }
-                of_law::<N, V, L, W>(cx, law, slab, strip, &own[..count]);
+                of_law::<N, V, L, W>(cx, law, slab, batch, &own[..count]);
             }
         }
     }
@@ -256,10 +256,10 @@ unsafe fn of_law<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
     cx: &Cx<L>,
     law: &L,
     slab: &mut Slab,
-    strip: &mut Strip<V, N>,
+    batch: &mut Batch<V, N>,
     hits: &[u32],
 ) {
-    let many = Many::<N, V, L, W> { cx, slab, strip, hits };
+    let many = Many::<N, V, L, W> { cx, slab, batch, hits };
     if W == 4 && V::Row::FAST { law.within(many) } else { many.run(law) }
 }
 
@@ -267,16 +267,16 @@ unsafe fn of_law<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize>(
 struct Many<'a, 'b, const N: usize, V, L, const W: usize> {
     cx: &'a Cx<'b, L>,
     slab: &'a mut Slab,
-    strip: &'a mut Strip<V, N>,
+    batch: &'a mut Batch<V, N>,
     hits: &'a [u32],
 }
 
 impl<const N: usize, V: Lanes<N>, L: ContactLaw, const W: usize> Loop<L> for Many<'_, '_, N, V, L, W> {
     #[inline(always)]
     fn run(self, law: &L) {
-        for pairs in self.hits.chunks(STRIP) {
+        for pairs in self.hits.chunks(BATCH) {
             // SAFETY: hits are pairs of the list, and their entries grains.
-            unsafe { self.strip.run::<L, W>(self.cx, law, self.slab, pairs) };
+            unsafe { self.batch.run::<L, W>(self.cx, law, self.slab, pairs) };
         }
     }
 }

@@ -54,7 +54,7 @@ fn scene(period: [f64; 3]) -> Scene {
 }
 
 /// The same with some grains that are four to seven times as large as the smallest, and no others inside them.
-fn uneven(period: [f64; 3]) -> Scene {
+fn bidisperse(period: [f64; 3]) -> Scene {
     let mut s = scene(period);
     let large = [13, 350, 401, 888, 1200];
     for (k, i) in large.into_iter().enumerate() {
@@ -281,7 +281,7 @@ fn the_numbers_of_the_plain_driver() {
     let scenes =
         PERIODS.into_iter().flat_map(|p| [between as Table, sticky, plastic].map(|law| (scene(p), law)));
     // With large grains reaching farther, only boxes that do not repeat or are wide enough.
-    let large = [uneven(PERIODS[0]), uneven([10.45, 0.0, 0.0])].map(|s| (s, between as Table));
+    let large = [bidisperse(PERIODS[0]), bidisperse([10.45, 0.0, 0.0])].map(|s| (s, between as Table));
     for (mut s, law) in scenes.chain(large) {
         let mut plain = PlainLoop { law, list: vec![], sweep: Sweep::default(), memory: Contacts::default() };
         let mut fast = FastLoop::new(false, law);
@@ -318,7 +318,7 @@ fn the_numbers_of_the_plain_driver() {
 #[test]
 fn the_same_bits_for_threads_and_across_the_world() {
     let dense = [sticky as Table, plastic].map(|law| (scene(PERIODS[2]), law));
-    for (first, law) in dense.into_iter().chain([(uneven([10.45, 0.0, 0.0]), between as Table)]) {
+    for (first, law) in dense.into_iter().chain([(bidisperse([10.45, 0.0, 0.0]), between as Table)]) {
         same_bits(&first, law);
     }
 }
@@ -348,11 +348,11 @@ fn same_bits(first: &Scene, law: Table) {
 
 #[test]
 fn small_grains_beside_large_ones_have_slabs_of_their_own() {
-    let s = uneven([10.45, 0.0, 0.0]);
+    let s = bidisperse([10.45, 0.0, 0.0]);
     let mut fast = FastLoop::new(false, between);
     fast.step(&s, 0);
-    let Fast { lists, strays, strays_of_large, .. } = &fast.fast;
-    let (of_slabs, of_large) = (strays.lists(), strays_of_large.lists());
+    let Fast { lists, validity, validity_of_large, .. } = &fast.fast;
+    let (of_slabs, of_large) = (validity.lists(), validity_of_large.lists());
     assert!(
         of_large > 0 && of_slabs > of_large && lists.len() == of_slabs + of_large,
         "{of_slabs} {of_large}"

@@ -72,7 +72,7 @@ pub fn check(w: &World) -> Result<(), &'static str> {
         return Err("contacts and their history differ in length");
     }
     let Some(f) = &*w.families else { return Ok(()) };
-    let lengths = [f.place.len(), f.family_volume.len(), f.family_size.len(), f.hurt.len()];
+    let lengths = [f.place.len(), f.family_volume.len(), f.family_size.len(), f.damaged.len()];
     if lengths.iter().any(|len| *len != n) || f.reference.as_ref().is_some_and(|r| r.len() != n) {
         return Err("families and particles differ in number");
     }

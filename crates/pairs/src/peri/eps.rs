@@ -37,6 +37,6 @@ impl Style for PeriEps {
 
 impl PairStyle for PeriEps {
     fn build(&self, _args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
-        start("peri/eps", LawKind::Eps, cx)
+        start("peri/eps", LawKind::ElasticPlastic, cx)
     }
 }

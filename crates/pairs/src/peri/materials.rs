@@ -190,8 +190,8 @@ fn keywords(law: LawKind) -> &'static [&'static str] {
         LawKind::Pmb | LawKind::Shaped => &["form"],
         LawKind::Lps => &[],
         LawKind::Ves | LawKind::VesApart => &["lambda", "tau"],
-        LawKind::Eps => &["yield"],
-        LawKind::Yield | LawKind::Flat => &["form", "syc"],
+        LawKind::ElasticPlastic => &["yield"],
+        LawKind::Yield | LawKind::NonlinearElastic => &["form", "syc"],
         LawKind::Softening | LawKind::Decaying => &["form", "peak"],
     }
 }

@@ -166,13 +166,13 @@ impl Solid {
 
     /// The rule for yielding bonds on their way back, at the end of a line.
     fn unloading(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        if !matches!(self.law.kind, LawKind::Yield | LawKind::Flat) {
+        if !matches!(self.law.kind, LawKind::Yield | LawKind::NonlinearElastic) {
             return Ok(());
         }
         let at = args.here();
         let said = match args.peek_text() {
             "plastic" => LawKind::Yield,
-            "nonlinear" => LawKind::Flat,
+            "nonlinear" => LawKind::NonlinearElastic,
             _ if self.unloading.is_some() => return Ok(()),
             _ => LawKind::Yield,
         };
@@ -284,7 +284,7 @@ impl Pair for Solid {
             }
             let types = self.table.types();
             let edge = match self.law.kind {
-                LawKind::Yield | LawKind::Flat => moduli.syc,
+                LawKind::Yield | LawKind::NonlinearElastic => moduli.syc,
                 LawKind::Softening | LawKind::Decaying => moduli.peak,
                 _ => continue,
             };

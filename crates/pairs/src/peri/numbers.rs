@@ -43,11 +43,11 @@ pub fn beyond_elastic(kind: LawKind, args: &mut Args, moduli: &mut Moduli) -> Re
             }
             moduli.tau = args.positive("the relaxation time tau")?;
         }
-        LawKind::Yield | LawKind::Flat => {
+        LawKind::Yield | LawKind::NonlinearElastic => {
             moduli.syc = args.number("the stretch syc at which bonds flow")?;
             below_zero(moduli.syc, at)?;
         }
-        LawKind::Eps => moduli.yield_stress = args.positive("the yield stress")?,
+        LawKind::ElasticPlastic => moduli.yield_stress = args.positive("the yield stress")?,
         _ => {}
     }
     Ok(())

@@ -89,7 +89,7 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
 
 /// Refuses options that shape bonds where they cannot: under plastic bonds, or once bonds have been weighed.
 fn settled(style: &Solid, option: &str, at: Span, cx: &BuildCx) -> Result<()> {
-    if style.law.kind.softens() || matches!(style.law.kind, LawKind::Yield | LawKind::Flat) {
+    if style.law.kind.softens() || matches!(style.law.kind, LawKind::Yield | LawKind::NonlinearElastic) {
         let text = format!("peri_modify {option} does not concern pair_style {}", style.name);
         return fail(Code::CONFLICT, at, text);
     }

@@ -1,7 +1,7 @@
 //! Laying out a body on a lattice: rows, slabs, half stencil, alive bits.
 
-use super::detect::distance;
-use super::sites::Sites;
+use crate::build::detect::distance;
+use crate::build::sites::Sites;
 use crate::families::lattice::{LANES, LatticeBody, Row, RowMotion, staggered};
 use crate::families::{FamilyOptions, PeriView, PmbTable};
 use perigrain_base::math::cell::{Basis, Turn, beside, point, reciprocal};

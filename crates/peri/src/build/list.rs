@@ -1,6 +1,6 @@
 //! Laying out bonds as a list: records by slabs, half of the bonds with each.
 
-use super::detect::{bonds, distance, reach};
+use crate::build::detect::{bonds, distance, reach};
 use crate::families::list::{CLOSE, GROUP, ListBody, Record};
 use crate::families::{FamilyOptions, PeriView, PmbTable};
 

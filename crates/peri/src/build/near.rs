@@ -5,7 +5,7 @@
 //! searches keep all pairs within the contact range plus a skin. How much closer two particles may have come is
 //! bounded by the range of displacement changes, added up over steps: a body that flies undeformed needs no search.
 
-use super::detect::distance;
+use crate::build::detect::distance;
 use crate::families::lattice::RowMotion;
 use crate::families::{Families, NearPair, PeriView};
 

@@ -1,6 +1,6 @@
 //! A grid of cells for finding all pairs closer than a distance, each once, in a fixed order.
 
-use super::Bounds;
+use crate::families::Bounds;
 
 /// Points sorted into cells; in periodic directions cells tile the box exactly.
 #[derive(Clone, Debug, Default)]

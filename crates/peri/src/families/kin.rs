@@ -1,6 +1,6 @@
 //! Who belonged to one family at the start, and whether the bond between two still lives: contacts ask.
 
-use super::Families;
+use crate::families::Families;
 
 impl Families {
     /// Whether two particles are kept from touching by their family: they belonged to one at the start, by their distance

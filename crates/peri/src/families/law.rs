@@ -1,5 +1,6 @@
 //! Which material the bonds are made of: bond-based or ordinary state-based, and what of it outlives a step.
 
+use crate::law::{BondLaw, of_law};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 
 /// How much a bond counts for its length in state-based sums (`peri_modify influence`).
@@ -71,11 +72,11 @@ pub enum LawKind {
     /// The same with a relaxing deviatoric part.
     Ves,
     /// The same with a perfectly plastic deviatoric part.
-    Eps,
+    ElasticPlastic,
     /// Microelastic bonds that flow in compression.
     Yield,
     /// Microelastic bonds whose compression is cut off, without memory.
-    Flat,
+    NonlinearElastic,
     /// Microelastic bonds whose micro-modulus depends on their length or on how near the surface is.
     Shaped,
     /// As [`LawKind::Ves`] where types relax differently: each end of a bond remembers its own stretch.
@@ -99,26 +100,30 @@ impl LawKind {
 
     /// Whether a bond's force depends on nothing but the bond.
     pub fn bond_based(self) -> bool {
-        matches!(self, Self::Pmb | Self::Yield | Self::Flat | Self::Shaped | Self::Softening | Self::Decaying)
+        matches!(
+            self,
+            Self::Pmb
+                | Self::Yield
+                | Self::NonlinearElastic
+                | Self::Shaped
+                | Self::Softening
+                | Self::Decaying
+        )
     }
 
     /// Whether bonds lose energy for good while they live.
     pub fn flows(self) -> bool {
-        self.softens() || matches!(self, Self::Eps | Self::Yield)
+        self.softens() || matches!(self, Self::ElasticPlastic | Self::Yield)
     }
 
     /// Whether bonds soften beyond a peak.
     pub fn softens(self) -> bool {
-        matches!(self, Self::Softening | Self::Decaying)
+        of_law!(self, false, W => <W as BondLaw>::LIMITED)
     }
 
     /// Numbers that each bond remembers.
     pub fn memory(self) -> usize {
-        match self {
-            Self::Pmb | Self::Lps | Self::Flat | Self::Shaped => 0,
-            Self::Yield | Self::Ves | Self::Softening => 1,
-            Self::Eps | Self::VesApart | Self::Decaying => 2,
-        }
+        of_law!(self, false, W => <W as BondLaw>::MEMORY)
     }
 }
 
@@ -259,7 +264,7 @@ pub struct SiteState {
     /// Sums being added up.
     #[serde(skip)]
     pub sums: Vec<f64>,
-    /// Constants of the first sweep, as [`super::lattice::LatticeBody::tables`].
+    /// Constants of the first sweep, as [`crate::families::lattice::LatticeBody::tables`].
     pub tables: Vec<f64>,
     /// Coordinates of each row beyond which no site has a dilatation.
     #[serde(skip)]

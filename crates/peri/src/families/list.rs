@@ -1,6 +1,6 @@
 //! Bonds of all bodies that sit on no lattice: records in slab order, each with its bonds to later ones.
 
-use super::law::SiteState;
+use crate::families::law::SiteState;
 
 /// What a bond needs to know of one end; one cache line.
 #[repr(C, align(64))]

@@ -300,7 +300,7 @@ pub struct Families {
     #[serde(default)]
     pub seen: u64,
     /// Whether a step has been advanced: nothing breaks before.
-    pub armed: bool,
+    pub breaking_enabled: bool,
     /// Bodies on a lattice.
     pub lattices: Vec<lattice::LatticeBody>,
     /// All other bonds.
@@ -317,7 +317,7 @@ pub struct Families {
     /// Particles whose bonds never break; empty if there are none.
     pub lasting: Vec<bool>,
     /// Whether a particle may have lost a bond: damage need not be counted elsewhere.
-    pub hurt: Vec<bool>,
+    pub damaged: Vec<bool>,
     /// Pairs without a living bond that may come into short-range contact.
     pub near: NearPairs,
     /// Energy of bonds where they broke, as far as it was counted [energy].

@@ -7,13 +7,13 @@
 
 use std::sync::Mutex;
 
-use super::super::isa::Isa;
-use super::super::lattice::Mode;
-use super::super::pmb::stretch;
-use super::kernel::{Block, LAST, Row, Rules};
-use super::sweep::{in_slabs, reach_of, ring_start};
 use crate::families::list::{GROUP, ListBody, PairConstants};
 use crate::families::{Candidate, FamilyOptions, Window};
+use crate::lanes::isa::Isa;
+use crate::lattice::sweep::Mode;
+use crate::law::series::stretch;
+use crate::list::kernel::{Block, LAST, Row, Rules};
+use crate::list::sweep::{in_slabs, reach_of, ring_start};
 use perigrain_base::par::Shared;
 
 /// Bonds keep measures when the most stretched of them has come this close to its limit.
@@ -23,7 +23,7 @@ const NEAR: f64 = 0.8;
 #[derive(Clone, Copy)]
 pub struct Judge {
     /// Bonds may break.
-    armed: bool,
+    breaking_enabled: bool,
     /// Measures of families are kept for the next step.
     pub keeps: bool,
     /// The measures of the last step are known, or not needed.
@@ -40,17 +40,17 @@ impl Judge {
         let critical = options.compat_lammps && body.pairs.len() > 1;
         let measured = critical || body.pairs.iter().any(|p| p.alpha != 0.0);
         let known = body.limits.least.len() == body.record.len();
-        let armed = mode.armed && mode.advance;
+        let breaking_enabled = mode.breaking_enabled && mode.advance;
         let keeps = mode.advance && measured && body.limits.near;
         let most = if known { f64::INFINITY } else { body.limits.top.unwrap_or(f64::INFINITY) };
         let floor = floor(body, most);
-        Self { armed, keeps, known: known || !measured, floor, critical }
+        Self { breaking_enabled, keeps, known: known || !measured, floor, critical }
     }
 
     /// The same for bonds between some records alone.
     pub fn among(self, body: &ListBody, records: impl Iterator<Item = usize>) -> Self {
         let least = &body.limits.least;
-        if !self.armed || least.is_empty() {
+        if !self.breaking_enabled || least.is_empty() {
             return self;
         }
         let finite = |a: f64, i: usize| if least[i].is_finite() { a.max(least[i]) } else { a };
@@ -87,7 +87,7 @@ impl Judge {
     /// Notes which of the bonds in hand may break.
     #[inline]
     pub fn note(&self, row: &Row, b: &Block, strained: &mut Vec<(u32, f64)>) {
-        if !self.armed || b.high < self.floor {
+        if !self.breaking_enabled || b.high < self.floor {
             return;
         }
         let body = row.body;
@@ -152,7 +152,7 @@ pub fn candidates<K: Isa>(
     found: &mut Vec<Candidate>,
 ) {
     found.clear();
-    let mode = Mode { advance: true, armed: true, skip: false };
+    let mode = Mode { advance: true, breaking_enabled: true, skip: false };
     let judge = Judge::new(body, mode, options);
     if body.limits.strained.iter().all(|(bonds, _)| bonds.is_empty()) {
         return;

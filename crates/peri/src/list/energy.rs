@@ -2,16 +2,16 @@
 
 use std::marker::PhantomData;
 
-use super::super::chunk::SUMS;
-use super::super::energy::{ROWS, Sums, collect, shares};
-use super::super::isa::Isa;
-use super::super::state::law::{BondLaw, Moment, of_law};
-use super::super::state::settle::{columns_of, moment};
-use super::kernel::{Block, FULL, LAST, Row, Rules};
-use super::laws::{self, Acting, Hand};
-use super::sweep::in_rows;
+use crate::energy::{ROWS, Sums, collect, shares};
 use crate::families::list::ListBody;
 use crate::families::{Families, ForceUnit, PeriTally};
+use crate::lanes::isa::Isa;
+use crate::lattice::chunk::SUMS;
+use crate::law::settle::{columns_of, moment};
+use crate::law::{BondLaw, Moment, of_law};
+use crate::list::kernel::{Block, FULL, LAST, Row, Rules};
+use crate::list::laws::{self, Acting, Hand};
+use crate::list::sweep::in_rows;
 use perigrain_base::math::vec3::SIX;
 use perigrain_base::par::{self, Shared};
 

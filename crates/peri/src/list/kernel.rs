@@ -5,15 +5,15 @@
 
 use std::ptr::{null, null_mut};
 
-use super::super::isa::{Isa, Kernel};
-use super::super::lanes::Lanes;
-use super::super::pmb::{SERIES, UP_TO_3, UP_TO_5, UP_TO_7};
-use super::super::rows::{self, Rows};
-use super::super::state::law::closed;
-use super::super::state::tables::STRETCH;
-use super::super::wide::{self, FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
 use crate::families::list::{GROUP, ListBody};
 use crate::families::{FamilyOptions, Influence, Law};
+use crate::lanes::Lanes;
+use crate::lanes::isa::{Isa, Kernel};
+use crate::lanes::rows::{self, Rows};
+use crate::lattice::constants::STRETCH;
+use crate::law::closed;
+use crate::law::polynomials::{self, FAR, FARTHEST, UP_TO_FAR, UP_TO_FARTHEST};
+use crate::law::series::{SERIES, UP_TO_3, UP_TO_5, UP_TO_7};
 
 /// An expression for each partner that there is a lane for, else `$none`; see `chunk::xyz` for why this is no
 /// closure.
@@ -351,15 +351,16 @@ pub unsafe fn stretch<L: Lanes, const S: bool>(b: &mut Block) {
         macro_rules! series {
             ($terms:literal) => {{
                 let terms = if S { &STRETCH } else { &SERIES };
-                fill!(|z| z.mul(wide::polynomial::<L, $terms>(z, terms.first_chunk().unwrap_unchecked())))
+                fill!(|z| z
+                    .mul(polynomials::polynomial::<L, $terms>(z, terms.first_chunk().unwrap_unchecked())))
             }};
         }
         macro_rules! far {
             ($degree:expr) => {
                 fill!(|z| z.mul(if S {
-                    wide::stretch::<L, $degree>(z)
+                    polynomials::stretch::<L, $degree>(z)
                 } else {
-                    wide::share::<L, $degree>(z)
+                    polynomials::share::<L, $degree>(z)
                 }))
             };
         }

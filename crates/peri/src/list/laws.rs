@@ -1,14 +1,14 @@
 //! Bond laws over the bonds in hand: forces, sums of both ends, energies.
 
-use super::super::chunk::SUMS;
-use super::super::isa::{Isa, Kernel};
-use super::super::lanes::Lanes;
-use super::super::rows::Rows;
-use super::super::state::law::{Angles, BondLaw, Ends, Moment, Stretch, closed};
-use super::super::state::terms::Term;
-use super::kernel::{Block, Row, partners, scatter, stretch};
 use crate::families::law::COLUMNS;
 use crate::families::list::GROUP;
+use crate::lanes::Lanes;
+use crate::lanes::isa::{Isa, Kernel};
+use crate::lanes::rows::Rows;
+use crate::lattice::chunk::SUMS;
+use crate::law::terms::Term;
+use crate::law::{Angles, BondLaw, Ends, Moment, Stretch, closed};
+use crate::list::kernel::{Block, Row, partners, scatter, stretch};
 use perigrain_base::math::vec3::SIX;
 use std::marker::PhantomData;
 use std::ptr::null;

@@ -69,16 +69,16 @@ fn constants(k: &PmbCoeff, yields: f64, (options, law): (&FamilyOptions, &Law)) 
     PairConstants { c: k.c, shape, s00: k.s00, alpha: k.alpha, horizon: k.horizon, yields, weight }
 }
 
-/// Gathers displacements from positions; returns their change since the last step that advanced. A body that `presses` even
-/// where nobody is displaced is nowhere at rest.
-pub fn gather(body: &mut ListBody, view: &PeriView, presses: bool) -> RowMotion {
+/// Gathers displacements from positions; returns their change since the last step that advanced. Where contact is `short_range`
+/// even between undisplaced particles, nothing is at rest.
+pub fn gather(body: &mut ListBody, view: &PeriView, short_range: bool) -> RowMotion {
     let (record, moving) = (Shared::new(&mut body.record), Shared::new(&mut body.moving));
     let (slab, particle, last) = (&body.slab, &body.particle, &body.last);
     par::for_rows(moving.len(), |s| {
         let range = slab[s] as usize..slab[s + 1] as usize;
         // SAFETY: slabs do not share records.
         let (record, moving) = unsafe { (record.get(range.clone()), &mut moving.get(s..s + 1)[0]) };
-        *moving = presses;
+        *moving = short_range;
         for (record, i) in record.iter_mut().zip(range) {
             let Some(x) = view.x.get(particle[i] as usize) else { continue };
             for k in 0..3 {

@@ -4,18 +4,18 @@ use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::Mutex;
 
-use super::super::isa::Isa;
-use super::super::lattice::Mode;
-use super::super::state::law::{BondLaw, Moment, of_law};
-use super::super::state::settle::{Settling, Sites, columns_of};
-use super::super::state::terms::{Dilatation, Norm, NormLammps, Term};
-use super::super::state::{keep_earlier, window};
-use super::breaking::{self, Judge, clear};
-use super::kernel::{Block, FULL, LAST, PLAIN, Row, Rules};
-use super::laws::{Acting, AddUp, Hand, Pull};
 use crate::families::law::{COLUMNS, SiteState};
 use crate::families::list::{ListBody, Record};
 use crate::families::{FamilyOptions, LawKind, PeriView, Window};
+use crate::lanes::isa::Isa;
+use crate::lattice::sweep::Mode;
+use crate::lattice::{keep_earlier, window};
+use crate::law::settle::{Settling, Sites, columns_of};
+use crate::law::terms::{Dilatation, Norm, NormLammps, Term};
+use crate::law::{BondLaw, Moment, of_law};
+use crate::list::breaking::{self, Judge, clear};
+use crate::list::kernel::{Block, FULL, LAST, PLAIN, Row, Rules};
+use crate::list::laws::{Acting, AddUp, Hand, Pull};
 use perigrain_base::par::{self, Shared};
 
 const _: () = assert!(size_of::<Record>() == 64);
@@ -95,7 +95,7 @@ pub fn forces<K: Isa>(
     if kind == LawKind::Shaped {
         settling.stiffen(&mut list.state, &sites);
     }
-    if kind == LawKind::Eps {
+    if kind == LawKind::ElasticPlastic {
         clear_sums(list);
         sweep(list, Norm::COLUMNS, &|s, slab, w| match settling.compat {
             true => s.add_up::<K, NormLammps>(slab, active, w),

@@ -2,19 +2,19 @@
 
 use std::sync::Mutex;
 
-use super::super::evaluate::periods;
-use super::super::isa::Isa;
-use super::super::lanes::Portable;
-use super::super::lattice::Mode;
-use super::super::state::settling;
-#[cfg(target_arch = "x86_64")]
-use super::super::{lanes::Avx2, lanes512::Avx512};
-use super::kernel::Rules;
-use super::{breaking, gather, keep, sweep};
+use crate::evaluate::periods;
 use crate::families::{
     Bounds, Families, FamilyOptions, Influence, Law, LawKind, Layout, Moduli, PeriView, PmbCoeff, PmbTable,
     VolumeRule, Window,
 };
+use crate::lanes::Portable;
+use crate::lanes::isa::Isa;
+use crate::lattice::settling;
+use crate::lattice::sweep::Mode;
+use crate::list::kernel::Rules;
+use crate::list::{breaking, gather, keep, sweep};
+#[cfg(target_arch = "x86_64")]
+use crate::{lanes::Avx2, lanes::avx512::Avx512};
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_base::par::Shared;
 
@@ -55,7 +55,7 @@ fn shaken<K: Isa>(law: &Law, compat_lammps: bool, periodic: bool) -> Outcome {
         let x: Vec<[f64; 3]> = x0.iter().map(|x| near(*x, 0.006 * f64::from(step))).collect();
         gather(list, &view!(&x), false);
         f = vec![[0.0; 3]; n];
-        let mode = Mode { advance: true, armed: step > 0, skip: true };
+        let mode = Mode { advance: true, breaking_enabled: step > 0, skip: true };
         let settling = settling((law, &table), &options, (true, false, false));
         let to = (&windows[..], period);
         sweep::forces::<K>(list, &view!(&x), &Shared::new(&mut f), (mode, &options), &settling, to);
@@ -78,7 +78,7 @@ fn bits_do_not_depend_on_how_many_lanes_there_are() {
         (LawKind::Pmb, Influence::Inverse),
         (LawKind::Lps, Influence::Gaussian),
         (LawKind::Ves, Influence::Inverse),
-        (LawKind::Eps, Influence::One),
+        (LawKind::ElasticPlastic, Influence::One),
         (LawKind::Shaped, Influence::Inverse),
     ];
     for (kind, influence) in kinds {
@@ -91,14 +91,14 @@ fn bits_do_not_depend_on_how_many_lanes_there_are() {
             assert!(kind.memory() == 0 || memory.iter().any(|m| *m != 0.0), "{kind:?} remembers");
             assert!(least.iter().filter(|z| **z < 0.0).count() > 300, "{kind:?} has measures");
             #[cfg(target_arch = "x86_64")]
-            if super::super::lanes::has_avx2() {
+            if crate::lanes::has_avx2() {
                 let four = shaken::<Avx2>(&law, compat, periodic);
                 assert_eq!(four.3, alive);
                 let most = f.iter().flatten().fold(0.0f64, |m, f| m.max(f.abs()));
                 let off = f.iter().flatten().zip(four.0.iter().flatten()).map(|(a, b)| (a - b).abs());
                 // Sums of some hundred forces, rounded once or twice for each product.
                 assert!(off.fold(0.0, f64::max) < 1e-12 * most, "{kind:?} {compat} {periodic}");
-                if super::super::lanes512::has_avx512() {
+                if crate::lanes::avx512::has_avx512() {
                     assert!(four == shaken::<Avx512>(&law, compat, periodic), "{kind:?} {compat} {periodic}");
                 }
             }

@@ -111,7 +111,7 @@ struct Declared {
 
 /// The names of the laws.
 const LAWS: [(&str, LawKind); 4] =
-    [("pmb", LawKind::Pmb), ("lps", LawKind::Lps), ("ves", LawKind::Ves), ("eps", LawKind::Eps)];
+    [("pmb", LawKind::Pmb), ("lps", LawKind::Lps), ("ves", LawKind::Ves), ("eps", LawKind::ElasticPlastic)];
 
 fn name_of(kind: LawKind) -> &'static str {
     LAWS.iter().find(|l| l.1 == kind).map_or("", |l| l.0)
@@ -189,7 +189,7 @@ impl BondForce for Declared {
         let own = match kind {
             LawKind::Pmb => vec![bond.c],
             LawKind::Ves => vec![moduli.bulk, moduli.shear, moduli.lambda, moduli.tau],
-            LawKind::Eps => vec![moduli.bulk, moduli.shear, moduli.yield_stress],
+            LawKind::ElasticPlastic => vec![moduli.bulk, moduli.shear, moduli.yield_stress],
             _ => vec![moduli.bulk, moduli.shear],
         };
         let all = own.into_iter().chain([bond.horizon, bond.s00, bond.alpha]);

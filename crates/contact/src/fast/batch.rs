@@ -1,0 +1,414 @@
+//! Contacts that are evaluated together, stage by stage: who they are, where they touch, what the law says, sums to memory.
+
+use super::Alike;
+use super::lists::{Short, Slab};
+use super::sweep::Cx;
+use crate::driver::DEEP;
+use crate::{ContactLaw, Geometry, Motion};
+use perigrain_base::math::four::Four;
+use perigrain_base::math::lanes::{Lanes, place};
+use perigrain_base::math::pair::Pair;
+use perigrain_base::math::real::Real;
+use perigrain_base::math::vec3::{SIX, Vec3, scale};
+use std::mem::MaybeUninit;
+
+/// How many contacts go through each stage of the evaluation before the next stage begins. A processor looks ahead over some
+/// five hundred instructions: stages are so short that several groups of contacts are under way in each of them, and nobody
+/// waits for roots and quotients.
+pub(super) const BATCH: usize = 64;
+/// The most groups of a batch.
+const GROUPS: usize = BATCH / 4;
+
+/// Contacts that go from stage to stage together; what is past the last one repeats it up to a full group.
+pub(super) struct Batch<V, const N: usize> {
+    /// Numbers of the pairs in the short list.
+    k: [u32; BATCH],
+    i: [u32; BATCH],
+    /// The others and their images.
+    w: [u32; BATCH],
+    /// x_i − x_j, by groups [length].
+    apart: Room<Vec3<V>>,
+    geometry: Room<Geometry<V>>,
+    /// Of two grains, where all have one radius.
+    sizes: Option<Sizes<V>>,
+    /// The reduced mass, where all have one mass.
+    mass: Option<V>,
+    /// On i [force].
+    force: Room<Outgoing<N>>,
+    /// On i and on j, each about its centre [force × length].
+    torque: Room<[Outgoing<N>; 2]>,
+}
+
+/// Room for something of each group, not cleared: that would take longer than the contacts of a slab of few.
+struct Room<T>(MaybeUninit<[T; GROUPS]>);
+
+impl<T: Copy> Room<T> {
+    /// With nothing in it.
+    #[inline(always)]
+    fn new() -> Self {
+        Self(MaybeUninit::uninit())
+    }
+
+    /// # Safety
+    /// It must be one of the groups.
+    #[inline(always)]
+    unsafe fn put(&mut self, group: usize, value: T) {
+        debug_assert!(group < GROUPS);
+        // SAFETY: the caller's promise.
+        unsafe { self.0.as_mut_ptr().cast::<T>().add(group).write(value) }
+    }
+
+    /// # Safety
+    /// Something must have been put there.
+    #[inline(always)]
+    unsafe fn at(&self, group: usize) -> &T {
+        // SAFETY: the caller's promise.
+        unsafe { &*self.0.as_ptr().cast::<T>().add(group) }
+    }
+}
+
+/// Vectors in lanes as they go to memory: x and y together, of lanes 0, 2, 4 … and of lanes 1, 3, 5 …, and z.
+#[derive(Clone, Copy)]
+struct Outgoing<const N: usize> {
+    xy: [[f64; N]; 2],
+    z: [f64; N],
+}
+
+impl<const N: usize> Outgoing<N> {
+    #[inline(always)]
+    fn of<V: Lanes<N>>([x, y, z]: Vec3<V>) -> Self {
+        let [even, odd] = V::pairs(x, y);
+        Self { xy: [even.numbers(), odd.numbers()], z: z.numbers() }
+    }
+
+    #[inline(always)]
+    unsafe fn lane<P: Pair>(&self, lane: usize) -> (P, f64) {
+        // SAFETY: two numbers in one row of the array.
+        let xy = unsafe { P::load(self.xy.as_ptr().cast::<f64>().add(lane % 2 * N + lane / 2 * 2)) };
+        (xy, self.z[lane])
+    }
+
+    /// Adds the vector of a lane to that of grain `i`.
+    #[inline(always)]
+    unsafe fn add<P: Pair>(&self, to: *mut f64, lane: usize, i: u32) {
+        // SAFETY: passed on.
+        unsafe {
+            let ((xy, z), to) = (self.lane::<P>(lane), to.add(3 * i as usize));
+            xy.add_to(to);
+            *to.add(2) += z;
+        }
+    }
+
+    /// Adds the vector of a lane to that of grain `i` and takes it from that of grain `j`.
+    #[inline(always)]
+    unsafe fn act<P: Pair>(&self, to: *mut f64, lane: usize, i: u32, j: u32) {
+        // SAFETY: passed on.
+        unsafe {
+            let (xy, z) = self.lane::<P>(lane);
+            let (to, from) = (to.add(3 * i as usize), to.add(3 * j as usize));
+            xy.add_to(to);
+            *to.add(2) += z;
+            xy.take_from(from);
+            *from.add(2) -= z;
+        }
+    }
+}
+
+impl<V: Lanes<N>, const N: usize> Batch<V, N> {
+    /// Without contacts.
+    ///
+    /// # Safety
+    /// The processor must have what the form needs.
+    #[inline(always)]
+    #[allow(clippy::manual_map)] // closures are not compiled for AVX
+    pub unsafe fn new(alike: Alike) -> Self {
+        // SAFETY: passed on.
+        let (sizes, mass) = unsafe {
+            let sizes = match alike.radius {
+                Some(radius) => Some(Sizes::of([V::all(radius); 2])),
+                None => None,
+            };
+            let mass = match alike.mass {
+                Some(mass) => Some(reduced(V::all(mass), V::all(mass))),
+                None => None,
+            };
+            (sizes, mass)
+        };
+        Self {
+            k: [0; BATCH],
+            i: [0; BATCH],
+            w: [0; BATCH],
+            apart: Room::new(),
+            geometry: Room::new(),
+            sizes,
+            mass,
+            force: Room::new(),
+            torque: Room::new(),
+        }
+    }
+
+    /// Evaluates the law for these pairs of the short list, at least one and at most [`BATCH`].
+    ///
+    /// # Safety
+    /// They must be pairs of the list, and its entries grains.
+    #[inline(always)]
+    pub unsafe fn run<L: ContactLaw, const W: usize>(
+        &mut self,
+        cx: &Cx<L>,
+        law: &L,
+        slab: &mut Slab,
+        pairs: &[u32],
+    ) {
+        let count = pairs.len();
+        // SAFETY: passed on.
+        unsafe {
+            self.gather(&slab.short, pairs);
+            for group in 0..count.div_ceil(N) {
+                slab.deep |= self.meet(cx, group);
+            }
+            let memory = law.memory();
+            for group in 0..count.div_ceil(N) {
+                self.act::<L, W>(cx, law, memory, &mut slab.short, group);
+            }
+            if cx.virial {
+                self.add_virial(count, &mut slab.virial);
+            }
+            if cx.heat.is_some() {
+                self.add_heat(cx, law, count);
+            }
+            for group in 0..count / N {
+                for lane in 0..N {
+                    self.add(cx, group, lane);
+                }
+            }
+            for lane in 0..count % N {
+                self.add(cx, count / N, lane);
+            }
+        }
+    }
+
+    /// First stage: who they are.
+    #[inline(always)]
+    unsafe fn gather(&mut self, short: &Short, pairs: &[u32]) {
+        let count = pairs.len();
+        self.k[..count].copy_from_slice(pairs);
+        self.k[count..count.next_multiple_of(N)].fill(pairs[count - 1]);
+        for at in 0..count.next_multiple_of(N) {
+            // SAFETY: passed on; the batch has room for whole groups.
+            unsafe {
+                let k = *self.k.get_unchecked(at);
+                let (i, w) = (*short.i.as_ptr().add(k as usize), *short.w.as_ptr().add(k as usize));
+                *self.i.get_unchecked_mut(at) = i;
+                *self.w.get_unchecked_mut(at) = w;
+            }
+        }
+    }
+
+    /// Second stage: where and how grains touch. Whether some overlap too far.
+    #[inline(always)]
+    unsafe fn meet<L: ContactLaw>(&mut self, cx: &Cx<L>, group: usize) -> bool {
+        // SAFETY: passed on.
+        unsafe {
+            let (i, w) = (self.i.as_ptr().add(N * group), self.w.as_ptr().add(N * group));
+            let [x, y, z] = V::apart(cx.x.as_ptr(), i, w, cx.shifts);
+            let (r, m) = (cx.radius.as_ptr(), cx.mass.as_ptr());
+            let sizes = match self.sizes {
+                Some(sizes) => sizes,
+                None => Sizes::of([V::pick(r, i), V::pick(r, w)]),
+            };
+            let mass = match (self.mass, cx.frozen) {
+                (Some(mass), false) => mass,
+                (None, false) => reduced(V::pick(m, i), V::pick(m, w)),
+                (mass, true) => beside_frozen(V::pick(m, i), V::pick(m, w), mass),
+            };
+            let g = geometry([x, y, z], &sizes, mass);
+            self.apart.put(group, [x, y, z]);
+            self.geometry.put(group, g);
+            V::any(too_deep(&g))
+        }
+    }
+
+    /// Four numbers from `part` on of records of `width` numbers, turned into lanes.
+    #[inline(always)]
+    unsafe fn records(p: *const f64, width: usize, part: usize, at: *const u32) -> [V; 4] {
+        // SAFETY: passed on.
+        unsafe {
+            let mut rows = [V::Row::splat(0.0); N];
+            for lane in 0..N {
+                rows[lane] = V::Row::load(p.add(width * *at.add(lane) as usize + part));
+            }
+            V::of_rows(rows)
+        }
+    }
+
+    /// Third stage: forces, torques and what is remembered.
+    #[inline(always)]
+    unsafe fn act<L: ContactLaw, const W: usize>(
+        &mut self,
+        cx: &Cx<L>,
+        law: &L,
+        memory: usize,
+        short: &mut Short,
+        group: usize,
+    ) {
+        // SAFETY: passed on.
+        unsafe {
+            let at = N * group;
+            let (i, w, k) = (self.i.as_ptr().add(at), self.w.as_ptr().add(at), self.k.as_ptr().add(at));
+            // (No closures in here: they are not compiled for AVX.)
+            let (v, spin) = (cx.v.as_ptr(), cx.omega.as_ptr());
+            let own = Motion { velocity: V::vectors(v, i), spin: V::vectors(spin, i) };
+            let other = Motion { velocity: V::vectors(v, w), spin: V::vectors(spin, w) };
+
+            let past = short.history.as_mut_ptr();
+            let mut history = [V::all(0.0); W];
+            for part in (0..W).step_by(4) {
+                let lanes = Self::records(past, W, part, k);
+                [history[part], history[part + 1], history[part + 2], history[part + 3]] = lanes;
+            }
+            let lasts = history[W - 1].above(V::all(cx.now - 0.5));
+            for part in 0..W - 1 {
+                history[part] = V::choose(lasts, history[part], V::all(0.0));
+            }
+
+            let g = self.geometry.at(group);
+            let wrench = law.contact(g, &own, &other, &mut history[..memory], cx.step);
+            self.force.put(group, Outgoing::of(wrench.force));
+            self.torque.put(group, [Outgoing::of(wrench.torque_i), Outgoing::of(wrench.torque_j)]);
+            if !cx.store {
+                return;
+            }
+            history[W - 1] = V::all(cx.now + 1.0);
+            for part in (0..W).step_by(4) {
+                let rows =
+                    V::to_rows([history[part], history[part + 1], history[part + 2], history[part + 3]]);
+                // Lanes without a contact repeat the last one, in whose place they would write the same.
+                for lane in 0..N {
+                    rows[lane].store(past.add(W * *k.add(lane) as usize + part));
+                }
+            }
+        }
+    }
+
+    /// Last stage: adds the forces and torques of one contact.
+    #[inline(always)]
+    unsafe fn add<L>(&self, cx: &Cx<L>, group: usize, lane: usize) {
+        let (f, t): (*mut f64, *mut f64) = (cx.force.as_ptr().cast(), cx.torque.as_ptr().cast());
+        // SAFETY: passed on.
+        unsafe {
+            let at = N * group + lane;
+            let (i, j) = (*self.i.get_unchecked(at), place(*self.w.get_unchecked(at)) as u32);
+            self.force.at(group).act::<V::Pair>(f, lane, i, j);
+            let [own, other] = self.torque.at(group);
+            own.add::<V::Pair>(t, lane, i);
+            other.add::<V::Pair>(t, lane, j);
+        }
+    }
+
+    /// Adds Σ d ⊗ F of the first contacts, which must have gone through all stages.
+    unsafe fn add_virial(&self, count: usize, sum: &mut [f64; 6]) {
+        for at in 0..count {
+            let (group, lane) = (at / N, at % N);
+            // SAFETY: the caller's promise.
+            let (d, force) = unsafe { (self.apart.at(group), self.force.at(group)) };
+            // SAFETY: a lane of the group.
+            let d = unsafe { [0, 1, 2].map(|k| number(&d[k], lane)) };
+            let xy = &force.xy[lane % 2][lane / 2 * 2..];
+            let f = [xy[0], xy[1], force.z[lane]];
+            for (s, (a, b)) in sum.iter_mut().zip(SIX) {
+                *s += d[a] * f[b];
+            }
+        }
+    }
+}
+
+impl<V: Lanes<N>, const N: usize> Batch<V, N> {
+    /// Adds the heat through the first contacts, which must have been met: in plain numbers and out of line, so that scenes
+    /// without heat do not carry it.
+    #[inline(never)]
+    unsafe fn add_heat<L: ContactLaw>(&self, cx: &Cx<L>, law: &L, count: usize) {
+        let Some((temperature, flow)) = &cx.heat else { return };
+        for at in 0..count {
+            // SAFETY: the caller's promise; entries are grains, and the caller keeps other threads away.
+            unsafe {
+                let (g, lane) = (self.geometry.at(at / N), at % N);
+                let geometry = Geometry {
+                    normal: [0, 1, 2].map(|k| number(&g.normal[k], lane)),
+                    overlap: number(&g.overlap, lane),
+                    radii: [number(&g.radii[0], lane), number(&g.radii[1], lane)],
+                    curvature: number(&g.curvature, lane),
+                    mass: number(&g.mass, lane),
+                };
+                let (i, j) = (self.i[at] as usize, place(self.w[at]));
+                let into = law.conductance(&geometry) * (temperature[j] - temperature[i]);
+                *flow.as_ptr().add(i) += into;
+                *flow.as_ptr().add(j) -= into;
+            }
+        }
+    }
+}
+
+/// One of the numbers in lanes, where lanes are not compiled for the processor.
+///
+/// # Safety
+/// There must be such a lane.
+#[inline]
+unsafe fn number<V: Lanes<N>, const N: usize>(lanes: &V, lane: usize) -> f64 {
+    const { assert!(size_of::<V>() == N * size_of::<f64>()) };
+    // SAFETY: lanes are so many numbers, one behind the other.
+    unsafe { *(&raw const *lanes).cast::<f64>().add(lane) }
+}
+
+/// Of two grains: their radii, the sum of these, and what is made of them.
+#[derive(Clone, Copy)]
+struct Sizes<R> {
+    radii: [R; 2],
+    sum: R,
+    /// The effective radius.
+    curvature: R,
+}
+
+impl<R: Real> Sizes<R> {
+    #[inline(always)]
+    fn of(radii: [R; 2]) -> Self {
+        let sum = radii[0] + radii[1];
+        Self { radii, sum, curvature: radii[0] * radii[1] / sum }
+    }
+}
+
+/// The geometry of touching spheres, as `Geometry::of_spheres`.
+#[inline(always)]
+fn geometry<R: Real>(d: Vec3<R>, sizes: &Sizes<R>, mass: R) -> Geometry<R> {
+    let distance = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+    Geometry {
+        normal: scale(distance.like(1.0) / distance, d),
+        overlap: sizes.sum - distance,
+        radii: sizes.radii,
+        curvature: sizes.curvature,
+        mass,
+    }
+}
+
+/// Whether grains overlap by more than [`DEEP`] of the smaller radius.
+#[inline(always)]
+fn too_deep<R: Real>(g: &Geometry<R>) -> R::Mask {
+    g.overlap.above(g.radii[0].least(g.radii[1]) * DEEP)
+}
+
+/// The reduced mass.
+#[inline(always)]
+fn reduced<R: Real>(mi: R, mj: R) -> R {
+    mi * mj / (mi + mj)
+}
+
+/// The reduced mass where frozen grains have a minus sign and count as infinitely heavy; `free`: that of two that are not, if
+/// it is known.
+#[inline(always)]
+fn beside_frozen<R: Real>(mi: R, mj: R, free: Option<R>) -> R {
+    let (zero, a, b) = (mi.like(0.0), mi.abs(), mj.abs());
+    let free = match free {
+        Some(mass) => mass,
+        None => reduced(a, b),
+    };
+    R::choose(zero.above(mj), a, R::choose(zero.above(mi), b, free))
+}

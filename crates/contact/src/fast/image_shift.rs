@@ -1,0 +1,44 @@
+//! Lists that go on after grains have been moved around the box.
+
+use super::lists::Slab;
+use super::{Fast, NOWHERE};
+use crate::ContactLaw;
+use perigrain_base::math::lanes::{PLACE_BITS, place};
+use perigrain_base::math::vec3::Vec3;
+use perigrain_base::par;
+
+impl<L: ContactLaw> Fast<L> {
+    /// Lists see grains where they are after as many `turns` of each since the lists were made, that is after they were moved by
+    /// so many `period`s; empty where nobody was.
+    pub fn turn(&mut self, turns: &[[i8; 3]], period: Vec3) {
+        if turns == self.turns {
+            return;
+        }
+        let code = |n: &[i16; 3]| i32::from(n[0]) + 3 * i32::from(n[1]) + 9 * i32::from(n[2]);
+        let of = |list: &[[i8; 3]], i: usize| list.get(i).copied().unwrap_or_default().map(i16::from);
+        let more: Vec<[i16; 3]> = (0..self.tag.len())
+            .map(|i| std::array::from_fn(|d| of(turns, i)[d] - of(&self.turns, i)[d]))
+            .collect();
+        // The code of an image is a sum over axes: what its grains are moved by adds to it.
+        let codes: Vec<i32> = more.iter().map(code).collect();
+        let follow = |i: &u32, w: &mut u32| {
+            let image = *w >> PLACE_BITS;
+            if image != NOWHERE {
+                let turned = image as i32 + codes[*i as usize] - codes[place(*w)];
+                debug_assert!((0..27).contains(&turned), "neighbours are in the next image at most");
+                *w = place(*w) as u32 | (turned as u32) << PLACE_BITS;
+            }
+        };
+        let slabs = par::Shared::new(&mut self.lists);
+        par::for_rows(slabs.len(), |k| {
+            // SAFETY: each part writes its own slab.
+            let Slab { long, short, .. } = unsafe { &mut slabs.get(k..k + 1)[0] };
+            for (i, w) in [(&long.i, &mut long.w), (&short.i, &mut short.w)] {
+                i.iter().zip(w).for_each(|(i, w)| follow(i, w));
+            }
+        });
+        self.validity.turn(&more, period);
+        self.validity_of_large.turn(&more, period);
+        self.turns = turns.to_vec();
+    }
+}

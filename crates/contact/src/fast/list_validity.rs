@@ -1,0 +1,344 @@
+//! How long short lists stay valid: how far grains have gone since, slab by slab, and only relative to each other.
+//!
+//! Two grains come closer by what their ways differ. In a flow all grains of a slab and the next go nearly the same way, and
+//! lists outlast many steps in which everybody goes far.
+
+use super::has_avx2;
+use crate::driver::Grains;
+use perigrain_base::math::four::{Four, Plain};
+use perigrain_base::math::lanes::Lanes;
+use perigrain_base::math::vec3::Vec3;
+use perigrain_base::par;
+use perigrain_neigh::slabs::Slabs;
+use perigrain_world::Seen;
+use std::ops::Range;
+
+/// The part of the thin skin that grains of a slab may use up before it gets a new list at the next look.
+const WORN: f64 = 0.5;
+
+/// Positions and radii where a slab's list was made.
+type Place = [f64; 4];
+
+/// Where grains were when the short lists that they are in were made.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ListValidity {
+    /// Places of the order, list by list.
+    members: Vec<Range<usize>>,
+    /// The slab that each one reaches into, if it is a slab's list.
+    next: Vec<Option<usize>>,
+    /// The grain at each place; none where it is the place itself.
+    order: Vec<u32>,
+    /// Who is at each place, when the list of its own slab was made.
+    own: Vec<Place>,
+    /// And when that of the slab before was made, into which it reaches.
+    before: Vec<Place>,
+    /// How far, at the last look, grains of a slab and the next had strayed from each other at most.
+    since: Seen,
+}
+
+/// Bounds of ways [length], and of what radii have grown.
+#[derive(Clone, Copy)]
+struct Ways {
+    least: [f64; 3],
+    most: [f64; 3],
+    grown: f64,
+}
+
+impl Ways {
+    const NONE: Self = Self { least: [f64::INFINITY; 3], most: [f64::NEG_INFINITY; 3], grown: 0.0 };
+
+    fn join(self, other: Self) -> Self {
+        let mut all = self;
+        for d in 0..3 {
+            all.least[d] = all.least[d].min(other.least[d]);
+            all.most[d] = all.most[d].max(other.most[d]);
+        }
+        all.grown = all.grown.max(other.grown);
+        all
+    }
+
+    /// By how much two surfaces can have come closer at most [length].
+    fn closer(self) -> f64 {
+        let square: f64 = (0..3).map(|d| (self.most[d] - self.least[d]).max(0.0).powi(2)).sum();
+        square.sqrt() + 2.0 * self.grown
+    }
+}
+
+/// [`Ways`] as they are gathered, vector by vector.
+struct Span<F> {
+    least: F,
+    most: F,
+    /// Zero, but where a way was no number: that is neither the least nor the most.
+    bad: F,
+    grown: f64,
+}
+
+impl<F: Four> Span<F> {
+    /// # Safety
+    /// The processor must have what the form needs.
+    #[inline(always)]
+    unsafe fn new() -> Self {
+        // SAFETY: passed on.
+        unsafe {
+            let (least, most) = (F::splat(f64::INFINITY), F::splat(f64::NEG_INFINITY));
+            Self { least, most, bad: F::splat(0.0), grown: 0.0 }
+        }
+    }
+
+    #[inline(always)]
+    fn take(&mut self, now: F, radius: f64, seen: &Place) {
+        // SAFETY: an array of four numbers. The radius in the last lane is not looked at.
+        let way = now - unsafe { F::load(seen.as_ptr()) };
+        (self.least, self.most) = (way.least(self.least), way.most(self.most));
+        self.bad = self.bad + way * 0.0;
+        let change = (radius - seen[3]).abs();
+        self.grown = if change > self.grown { change } else { self.grown };
+    }
+
+    #[inline(always)]
+    fn ways(self) -> Ways {
+        let ([a, b, c, _], [p, q, r, _]) = (self.least.numbers(), self.most.numbers());
+        let p = if self.bad.numbers()[..3] == [0.0; 3] { p } else { f64::INFINITY };
+        Ways { least: [a, b, c], most: [p, q, r], grown: self.grown }
+    }
+}
+
+impl ListValidity {
+    /// Forgets all grains.
+    pub fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    /// How many lists.
+    pub fn lists(&self) -> usize {
+        self.members.len()
+    }
+
+    /// Whether every grain stands at its place.
+    pub fn stand_in_order(&self) -> bool {
+        self.order.is_empty()
+    }
+
+    /// The slab that the list of this one reaches into, if there is one.
+    pub fn next(&self, slab: usize) -> Option<usize> {
+        self.next[slab]
+    }
+
+    /// The places of a slab.
+    pub fn members(&self, slab: usize) -> Range<usize> {
+        self.members[slab].clone()
+    }
+
+    /// Grains have been moved by so many periods: that is not a way.
+    pub fn turn(&mut self, turns: &[[i16; 3]], period: Vec3) {
+        for at in 0..self.own.len() {
+            let turns = turns[self.grain(at)];
+            for place in [&mut self.own[at], &mut self.before[at]] {
+                (0..3).filter(|d| turns[*d] != 0).for_each(|d| place[d] += f64::from(turns[d]) * period[d]);
+            }
+        }
+    }
+
+    /// Takes up new slabs; all their lists have to be made.
+    pub fn divide(&mut self, slabs: &Slabs) {
+        let near = slabs.near();
+        self.members = (0..near.count()).map(|k| near.members(k)).collect();
+        self.next = (0..near.count()).map(|k| near.next(k)).collect();
+        let same = slabs.order.iter().zip(0..).all(|(grain, place)| *grain == place);
+        self.order = if same { vec![] } else { slabs.order.clone() };
+        self.make_room(slabs.order.len());
+    }
+
+    /// Takes up lists in which these grains are, each of them once; all have to be made.
+    pub fn take(&mut self, lists: &[Vec<u32>]) {
+        let end_of = |k: usize| lists[..k].iter().map(Vec::len).sum();
+        self.members = (0..lists.len()).map(|k| end_of(k)..end_of(k + 1)).collect();
+        self.next = vec![None; lists.len()];
+        self.order = lists.concat();
+        self.make_room(self.order.len());
+    }
+
+    fn make_room(&mut self, places: usize) {
+        self.own.resize(places, [0.0; 4]);
+        self.before.resize(places, [0.0; 4]);
+    }
+
+    /// The grain at a place.
+    fn grain(&self, place: usize) -> usize {
+        if self.order.is_empty() { place } else { self.order[place] as usize }
+    }
+
+    /// The slabs whose grains may have come closer than their short lists reach, or `all`, and some that are near that; their
+    /// lists are taken to be made from the present positions.
+    pub fn strayed(&mut self, grains: &Grains, thin: f64, all: bool) -> Vec<usize> {
+        // Whatever way two grains have gone since, they came closer by twice that at most.
+        if !all && self.since.within(grains.travel, 0.5 * thin) {
+            // The box around all ways may be longer than the two longest of them.
+            let limit = 3.0_f64.sqrt() * thin;
+            debug_assert!(
+                self.closer(grains).iter().all(|c| *c < limit),
+                "somebody moves grains without a word"
+            );
+            return vec![];
+        }
+        let closer = if all { vec![f64::INFINITY; self.members.len()] } else { self.closer(grains) };
+        let worn: Vec<usize> = (0..closer.len()).filter(|&k| closer[k] >= WORN * thin).collect();
+        for &k in &worn {
+            self.see(grains, k);
+        }
+        let left = closer.into_iter().filter(|c| *c < WORN * thin).fold(0.0, f64::max);
+        self.since = Seen::now(grains.travel, 0.5 * left);
+        worn
+    }
+
+    /// How much closer two grains of a list can have come, for each slab [length].
+    fn closer(&self, grains: &Grains) -> Vec<f64> {
+        let mut ways = vec![[Ways::NONE; 2]; self.members.len()];
+        let shared = par::Shared::new(&mut ways);
+        par::for_rows(self.members.len(), |k| {
+            let ways = self.ways(grains, k);
+            // SAFETY: each part writes its own slab.
+            unsafe { shared.get(k..k + 1)[0] = ways };
+        });
+        let both = |(own, next): (&[Ways; 2], &Option<usize>)| match next {
+            Some(next) => own[0].join(ways[*next][1]).closer(),
+            None => own[0].closer(),
+        };
+        ways.iter().zip(&self.next).map(both).collect()
+    }
+
+    /// The ways of a slab's grains since its own list was made, and since that of the slab before.
+    fn ways(&self, grains: &Grains, k: usize) -> [Ways; 2] {
+        // SAFETY: the processor was asked; members are grains, and all of them have been seen.
+        unsafe {
+            #[cfg(target_arch = "x86_64")]
+            if has_avx2() {
+                return self.ways_avx2(grains, k);
+            }
+            self.ways_in::<Plain>(grains, k)
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    unsafe fn ways_avx2(&self, grains: &Grains, k: usize) -> [Ways; 2] {
+        // SAFETY: passed on.
+        unsafe { self.ways_in::<perigrain_base::math::four::Avx2>(grains, k) }
+    }
+
+    #[inline(always)]
+    unsafe fn ways_in<F: Four>(&self, grains: &Grains, k: usize) -> [Ways; 2] {
+        // SAFETY: passed on.
+        unsafe {
+            let (mut own, mut before) = (Span::<F>::new(), Span::<F>::new());
+            for place in self.members[k].clone() {
+                let i = self.grain(place);
+                let now = F::load3(grains.x.get_unchecked(i).as_ptr());
+                let radius = grains.radius.get_unchecked(i);
+                own.take(now, *radius, self.own.get_unchecked(place));
+                before.take(now, *radius, self.before.get_unchecked(place));
+            }
+            [own.ways(), before.ways()]
+        }
+    }
+
+    /// Keeps the present places for the list of slab `k`.
+    fn see(&mut self, grains: &Grains, k: usize) {
+        let place = |i: usize| [grains.x[i][0], grains.x[i][1], grains.x[i][2], grains.radius[i]];
+        for at in self.members[k].clone() {
+            self.own[at] = place(self.grain(at));
+        }
+        for at in self.next[k].map_or(0..0, |next| self.members[next].clone()) {
+            self.before[at] = place(self.grain(at));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_world::Travel;
+
+    /// Three grains in each of three slabs, 1 apart along x.
+    fn scene() -> (Slabs, Vec<[f64; 3]>, Vec<u32>) {
+        let x: Vec<[f64; 3]> = (0..9).map(|i| [f64::from(i), 0.0, 0.0]).collect();
+        let tag: Vec<u32> = (0..9).collect();
+        let mut slabs = Slabs::default();
+        slabs.sort(&x, &tag, [2.8; 2], &[0.0; 3], &[0.0; 3]);
+        assert_eq!(slabs.near().count(), 3);
+        (slabs, x, tag)
+    }
+
+    fn grains<'a>(
+        x: &'a [[f64; 3]],
+        tag: &'a [u32],
+        more: (&'a [[f64; 3]], &'a [f64]),
+        travel: Travel,
+    ) -> Grains<'a> {
+        let (still, radius) = more;
+        let none = (&[][..], &[][..]);
+        Grains {
+            x,
+            v: still,
+            omega: still,
+            radius,
+            mass: radius,
+            kind: &[1; 9],
+            tag,
+            period: [0.0; 3],
+            flow: None,
+            body: none.0,
+            frozen: none.1,
+            travel,
+        }
+    }
+
+    #[test]
+    fn lists_wear_by_what_ways_differ_and_slab_by_slab() {
+        let (slabs, mut x, tag) = scene();
+        let (still, radius) = ([[0.0; 3]; 9], [0.5; 9]);
+        let mut validity = ListValidity::default();
+        validity.divide(&slabs);
+        let mut look = |x: &[[f64; 3]], all| {
+            validity.strayed(&grains(x, &tag, (&still, &radius), Travel::default()), 0.1, all)
+        };
+        assert_eq!(look(&x, true), [0, 1, 2]);
+        // All go far together.
+        x.iter_mut().for_each(|x| x[1] += 3.0);
+        assert_eq!(look(&x, false), [0usize; 0]);
+        // The last grain leaves the others of its slab and of the slab before, which reaches into it.
+        x[8][0] += 0.06;
+        assert_eq!(look(&x, false), [1, 2]);
+        assert_eq!(look(&x, false), [0usize; 0], "the new lists know");
+        x[8][0] += 0.04;
+        assert_eq!(look(&x, false), [0usize; 0], "less than half of the skin");
+        x[0][2] = f64::NAN;
+        assert_eq!(look(&x, false), [0], "the last slab reaches into the first only where the axis repeats");
+        let mut around = Slabs::default();
+        around.sort(&x[..8], &tag[..8], [2.8; 2], &[0.0; 3], &[8.0, 0.0, 0.0]);
+        assert_eq!([0, 1, 2].map(|k| slabs.near().next(k)), [Some(1), Some(2), None]);
+        assert_eq!([0, 1].map(|k| around.near().next(k)), [Some(1), Some(0)]);
+    }
+
+    #[test]
+    fn the_account_saves_looks_and_growth_counts_twice() {
+        let (slabs, mut x, tag) = scene();
+        let (still, mut radius) = ([[0.0; 3]; 9], [0.5; 9]);
+        let mut travel = Travel::default();
+        travel.begin(true);
+        let mut validity = ListValidity::default();
+        validity.divide(&slabs);
+        validity.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, true);
+        travel.went(0.04);
+        x[4][0] += 0.04;
+        assert!(validity.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, false).is_empty());
+        travel.went(0.04);
+        assert!(
+            validity.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, false).is_empty(),
+            "0.04 of 0.05"
+        );
+        travel.went(0.04);
+        radius[4] += 0.006;
+        assert_eq!(validity.strayed(&grains(&x, &tag, (&still, &radius), travel), 0.1, false), [0, 1]);
+    }
+}

@@ -1,0 +1,170 @@
+//! Bodies on lattices: sweeps over all bonds for what sites have, then for forces; what breaks.
+
+pub mod bond_stretch;
+pub mod breaking;
+pub mod chunk;
+pub mod constants;
+pub mod energies;
+pub mod forms;
+pub mod gather;
+pub mod kernels;
+pub mod leads;
+pub mod states;
+pub mod sweep;
+pub mod tables;
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use crate::families::lattice::{LatticeBody, PAD};
+use crate::families::law::COLUMNS;
+use crate::families::{Families, FamilyOptions, ForceUnit, Law, LawKind, PeriView, PmbTable, Window};
+use crate::lanes::isa::Isa;
+use crate::lattice::sweep::{ChunkColumns, Mode, Sweep};
+use crate::law::Moment;
+use crate::law::settle::{Settling, Sites, columns_of, moment};
+use perigrain_base::par::{self, Shared};
+use states::{States, Sum, find_active};
+
+impl Families {
+    /// Weighs all families: at their building.
+    pub(crate) fn weigh(&mut self, view: &PeriView, period: [f64; 3]) {
+        for body in &mut self.lattices {
+            constants::weigh_lattice(body, view, &self.options, &self.law);
+        }
+        constants::weigh_list(&mut self.list, period, &self.law);
+    }
+
+    /// Adds the forces of all bonds of bodies on lattices.
+    pub(crate) fn sweep_lattices<K: Isa>(
+        &mut self,
+        view: &PeriView,
+        f: &mut [[f64; 3]],
+        (advance, tallied): (bool, bool),
+    ) {
+        let Self { lattices, scratch, options, law, table, breaking_enabled, counts_losses, .. } = self;
+        let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest };
+        scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
+        let windows: &[Mutex<Window>] = &scratch.windows;
+        let settling = settling((law, table), options, (advance, tallied, *counts_losses));
+        let f = Shared::new(f);
+        for body in lattices {
+            lattice_body::<K>(body, view, &f, (mode, options), &settling, windows);
+        }
+    }
+
+    /// The dilatation of a particle at the last force evaluation.
+    pub fn dilatation(&self, i: usize) -> f64 {
+        self.of_site(i, |state| &state.theta)
+    }
+
+    /// The accumulated plastic multiplier of a particle.
+    pub fn plastic_strain(&self, i: usize) -> f64 {
+        self.of_site(i, |state| &state.plastic)
+    }
+
+    fn of_site(&self, i: usize, column: impl Fn(&crate::families::law::SiteState) -> &Vec<f64>) -> f64 {
+        let place = self.place.get(i).copied().unwrap_or(u32::MAX);
+        if place == u32::MAX {
+            return 0.0;
+        }
+        let body = self.lattices.partition_point(|b| b.first_place + b.particle.len() as u32 <= place);
+        let (state, at) = match self.lattices.get(body) {
+            Some(body) => (&body.state, PAD + (place - body.first_place) as usize),
+            None => (&self.list.state, (place - self.list.first_place) as usize),
+        };
+        column(state).get(at).copied().unwrap_or(0.0)
+    }
+}
+
+/// What turns sums into columns in an evaluation that advances or not, is tallied or not, with losses counted or not.
+pub fn settling<'a>(
+    (law, table): (&'a Law, &'a PmbTable),
+    options: &FamilyOptions,
+    (advance, tallied, counts): (bool, bool, bool),
+) -> Settling<'a> {
+    let (moment, compat) = (moment(law, advance), options.compat_lammps);
+    Settling { law, table, moment, compat, advance, tallied, counted: counts && advance }
+}
+
+/// LAMMPS takes the energy of plastic bonds from what they remembered before they flowed; ours is compared with that one
+/// where heat is counted.
+pub fn keep_earlier(state: &mut crate::families::law::SiteState, settling: &Settling) {
+    let flows = settling.law.kind.flows();
+    let asked = if settling.compat { settling.tallied } else { settling.counted };
+    match flows && asked {
+        true => state.earlier.clone_from(&state.memory),
+        false => state.earlier.clear(),
+    }
+}
+
+/// One thread's window.
+pub fn window(windows: &[Mutex<Window>]) -> MutexGuard<'_, Window> {
+    windows[par::slot() % windows.len()].lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The sweeps over one body on a lattice.
+fn lattice_body<K: Isa>(
+    body: &mut LatticeBody,
+    view: &PeriView,
+    f: &Shared<[f64; 3]>,
+    (mode, options): (Mode, &FamilyOptions),
+    settling: &Settling,
+    windows: &[Mutex<Window>],
+) {
+    let kind = settling.law.kind;
+    let spreads = kind.spreads();
+    if spreads {
+        find_active(body, kind.memory() > 0);
+    }
+    if columns_of(kind, settling.compat) > 0 {
+        body.state.columns.resize(COLUMNS * body.stride, 0.0);
+    }
+    let mut columns = ChunkColumns::take(body);
+    keep_earlier(&mut body.state, settling);
+    let mut memory = std::mem::take(&mut body.state.memory);
+    let mut touched = std::mem::take(&mut body.state.touched);
+    let newton = options.unit == ForceUnit::Newton;
+    let particle = std::mem::take(&mut body.particle);
+    let (memory_of, touched_of) = (Shared::new(&mut memory), Shared::new(&mut touched));
+    let states = States {
+        kind,
+        compat: settling.compat,
+        moment: Moment { held: body.state.held, ..settling.moment },
+        keep: mode.advance,
+        memory: &memory_of,
+        touched: &touched_of,
+        spread: false,
+    };
+    let spread = States { spread: spreads, ..states };
+    let count = particle.len();
+    let only = if let [only] = body.kinds[..] { Some(only) } else { None };
+    let sites = Sites { count, pad: PAD, stride: body.stride, particle: &particle, kind: view.kind, only };
+    let mut add_up = |body: &mut LatticeBody, sum, states| {
+        let mut sums = std::mem::take(&mut body.state.sums);
+        sums.clear();
+        sums.resize(body.stride, 0.0);
+        let shared = Shared::new(&mut sums);
+        let sweep = Sweep::new(body, &mut columns, mode, newton, states);
+        par::two_colours(body.slabs(), |slab| {
+            states::slab::<K>(&sweep, sum, slab, &mut window(windows), &shared);
+        });
+        body.state.sums = sums;
+    };
+    if !kind.bond_based() {
+        add_up(body, Sum::Dilatation, states);
+        settling.dilatations(&mut body.state, &sites);
+    }
+    if kind == LawKind::Shaped {
+        settling.stiffen(&mut body.state, &sites);
+    }
+    if kind == LawKind::ElasticPlastic {
+        add_up(body, if settling.compat { Sum::NormLammps } else { Sum::Norm }, spread);
+        settling.flow(&mut body.state, &sites);
+    }
+    body.particle = particle;
+    let sweep = Sweep::new(body, &mut columns, mode, newton, spread);
+    par::two_colours(body.slabs(), |slab| sweep.slab::<K>(slab, &mut window(windows), f));
+    columns.give(body);
+    (body.state.memory, body.state.touched) = (memory, touched);
+    settling.held(&mut body.state);
+}

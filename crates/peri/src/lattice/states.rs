@@ -1,0 +1,208 @@
+//! Sweeps of bond laws over a body on a lattice.
+
+use std::marker::PhantomData;
+
+use crate::energy::shares;
+use crate::families::lattice::{LANES, LatticeBody, PAD, Row, RowMotion};
+use crate::families::{LawKind, Window};
+use crate::lanes::isa::Isa;
+use crate::lattice::chunk::{CELLS, Chunk, SUMS};
+use crate::lattice::energies::Looking;
+use crate::lattice::forms::{self, run, run_term};
+use crate::lattice::kernels::Cells;
+use crate::lattice::sweep::{Sweep, extent, open};
+use crate::law::terms::{Dilatation, Norm, NormLammps, Term};
+use crate::law::{Moment, of_law};
+use perigrain_base::par::Shared;
+
+/// What the sites and bonds of a body have under a state-based law, during one evaluation.
+#[derive(Clone, Copy)]
+pub struct States<'a> {
+    /// The law.
+    pub kind: LawKind,
+    /// LAMMPS' forces where they differ.
+    pub compat: bool,
+    /// What is the same for all bonds.
+    pub moment: Moment,
+    /// Keep what bonds remember.
+    pub keep: bool,
+    /// What bonds remember.
+    pub memory: &'a Shared<'a, f64>,
+    /// Whether a chunk's bonds remember anything.
+    pub touched: &'a Shared<'a, u8>,
+    /// Sites have dilatations already: they reach farther than displacements.
+    pub spread: bool,
+}
+
+impl States<'_> {
+    fn cells<'b>(&'b self, body: &LatticeBody, chunk: usize) -> Cells<'b> {
+        let place = chunk * body.stencil.len() * self.kind.memory() * LANES;
+        Cells {
+            // Columns have a place for each cell and PAD more around, memory one for each chunk; laws without them read nothing.
+            columns: body.state.columns.as_ptr().wrapping_add(PAD + chunk * LANES),
+            stride: body.stride,
+            memory: self.memory.as_ptr().wrapping_add(place),
+            touched: self.touched.as_ptr().wrapping_add(chunk),
+            // SAFETY: a place for each cell and PAD more around.
+            last: [0, 1, 2].map(|k| unsafe { body.u[0].as_ptr().add(k * body.stride + PAD + chunk * LANES) }),
+            moment: &self.moment,
+            keep: self.keep,
+            half: body.leads.half.get(chunk).copied().unwrap_or(false),
+        }
+    }
+
+    /// Adds the forces of a chunk's bonds.
+    ///
+    /// # Safety
+    /// As for `chunk::run`; nobody else touches what the chunk's bonds remember.
+    pub unsafe fn pull<K: Isa>(
+        &self,
+        body: &LatticeBody,
+        chunk: usize,
+        data: &Chunk,
+        degree: usize,
+        track: bool,
+    ) -> (f64, f64) {
+        let cells = self.cells(body, chunk);
+        let masked = !body.intact[chunk];
+        // SAFETY: the caller's promise.
+        unsafe {
+            of_law!(self.kind, self.compat, self.moment, W => run::<K, W>(data, &cells, degree, masked, track))
+        }
+    }
+
+    /// Energy and virial of a chunk's bonds, cell by cell; in densities but for volumes.
+    ///
+    /// # Safety
+    /// As for `chunk::run`, forces are not touched.
+    pub unsafe fn sums<K: Isa>(
+        &self,
+        body: &LatticeBody,
+        chunk: usize,
+        data: &Chunk,
+        advanced: bool,
+    ) -> [[f64; CELLS]; SUMS] {
+        let cells = self.cells(body, chunk);
+        let ((states, half), first) = (shares(self.kind, self.compat), PAD + chunk * LANES);
+        let look = Looking {
+            theta: body.state.theta.as_ptr().wrapping_add(first),
+            before: body.state.before.as_ptr().wrapping_add(first),
+            unrelaxed: body.state.unrelaxed.as_ptr().wrapping_add(first),
+            terms: &body.state.tables,
+            half,
+            states,
+            advanced,
+        };
+        // SAFETY: the caller's promise.
+        unsafe {
+            of_law!(self.kind, self.compat, W => K::call(forms::Sums::<W> {
+                chunk: data,
+                cells: &cells,
+                look: &look,
+                law: PhantomData,
+            }))
+        }
+    }
+}
+
+/// The sums of a sweep: which.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sum {
+    /// Dilatations.
+    Dilatation,
+    /// Norms of trial states.
+    Norm,
+    /// The same as LAMMPS reckons them.
+    NormLammps,
+}
+
+/// Adds the terms of the bonds of one slab's cells to `sums`, which has [`PAD`] entries before the first cell.
+pub fn slab<K: Isa>(sweep: &Sweep, sum: Sum, slab: usize, window: &mut Window, sums: &Shared<f64>) {
+    match sum {
+        Sum::Dilatation => add_up::<K, Dilatation>(sweep, slab, window, sums),
+        Sum::Norm => add_up::<K, Norm>(sweep, slab, window, sums),
+        Sum::NormLammps => add_up::<K, NormLammps>(sweep, slab, window, sums),
+    }
+}
+
+fn add_up<K: Isa, T: Term>(sweep: &Sweep, slab: usize, window: &mut Window, sums: &Shared<f64>) {
+    let body = sweep.body();
+    let (own, first, last) = extent(body, slab);
+    let (base, stride) = open(window, body, first, (last - first, 1));
+    let mut touched = false;
+    for slot in body.slot(own.start, 0)..body.slot(own.end, 0) {
+        let row = &body.rows[slot];
+        if row.len == 0 {
+            continue;
+        }
+        let plan = sweep.plan(slot);
+        for chunk in row.start as usize / LANES..(row.start + row.len) as usize / LANES {
+            let lo = row.lo + (chunk * LANES) as i32 - row.start as i32;
+            let rest = lo > plan.active.1 || lo + (LANES as i32) <= plan.active.0;
+            if rest && sweep.skips() {
+                continue;
+            }
+            touched = true;
+            let degree = sweep.degree(chunk, &plan);
+            let mut data =
+                sweep.chunk((slot, chunk * LANES), body.stencil.len(), window, (base, stride, first));
+            data.tables = &body.state.tables;
+            let cells = sweep.states().cells(body, chunk);
+            // SAFETY: live bonds lead to cells of the body that the window covers; both have PAD cells around.
+            unsafe { run_term::<K, T>(&data, &cells, degree, !body.intact[chunk]) };
+        }
+    }
+    if touched {
+        // SAFETY: slabs that reach a cell run one after the other.
+        let sums = unsafe { sums.get(PAD + first..PAD + last) };
+        for (sum, part) in sums.iter_mut().zip(&window.force[base..base + last - first]) {
+            *sum += part;
+        }
+    }
+}
+
+/// Whether every chunk has a cell that is not at rest.
+fn all_move(body: &LatticeBody) -> bool {
+    let moves = |row: &Row, motion: &RowMotion| {
+        motion.lo < row.lo + LANES as i32 && motion.hi >= row.lo + row.len as i32 - LANES as i32
+    };
+    body.rows.iter().zip(&body.motion).all(|(row, motion)| row.len == 0 || moves(row, motion))
+}
+
+/// Finds for each row the coordinates beyond which no site has a dilatation, or under a law with memory has ever had; for no
+/// row where none is at rest.
+pub fn find_active(body: &mut LatticeBody, remembers: bool) {
+    let mut active = std::mem::take(&mut body.state.active);
+    active.clear();
+    if !remembers && all_move(body) {
+        body.state.active = active;
+        return;
+    }
+    active.resize(body.rows.len(), (i32::MAX, i32::MIN));
+    let mut join = |slot: usize, lo: i32, hi: i32| {
+        active[slot] = (active[slot].0.min(lo), active[slot].1.max(hi));
+    };
+    for slot in (0..body.planes * body.width).filter(|&slot| body.rows[slot].len > 0) {
+        let own = body.motion[slot];
+        join(slot, own.lo, own.hi);
+        for &(across, up) in &body.steps {
+            let ahead = (slot + up * body.width).wrapping_add_signed(across as isize);
+            let other = body.motion[ahead];
+            join(slot, other.lo, other.hi);
+            join(ahead, own.lo, own.hi);
+        }
+    }
+    let reach = body.reach[0];
+    for at in active.iter_mut().filter(|at| at.0 <= at.1) {
+        *at = (at.0.saturating_sub(reach), at.1.saturating_add(reach));
+    }
+    if remembers {
+        let awake = &mut body.state.awake;
+        awake.resize(active.len(), (i32::MAX, i32::MIN));
+        for (awake, at) in awake.iter_mut().zip(&mut active) {
+            *awake = (awake.0.min(at.0), awake.1.max(at.1));
+            *at = *awake;
+        }
+    }
+    body.state.active = active;
+}

@@ -1,0 +1,284 @@
+//! Microelastic bonds that soften beyond a peak: quasi-brittle materials (concrete, ceramics, rock).
+//!
+//! Along the envelope the force density of a bond is c g(s) per volume of either end, with the stretch s, the peak s₀ and the
+//! stretch s_f at which nothing is left:
+//!
+//! ```text
+//! g(s) = s                                    s ≤ s₀
+//! g(s) = s₀ (s_f − s)/(s_f − s₀)              linear (bilinear in all: Zaccariotto et al. 2015)
+//! g(s) = s₀ exp(−(s − s₀)/a)                  exponential, a = (s_f − s₀)/ln 1000 (Yang et al. 2018)
+//! ```
+//!
+//! Below the largest stretch so far, s_m, a bond unloads to the origin: c (1 − d) s with the damage d = 1 − g(s_m)/s_m; in
+//! compression c s, as cracks close. Its energy is ½ (1 − d) s², of compression ½ s², and what it has lost by then is
+//! D = ∫₀^{s_m} g ds − ½ g(s_m) s_m, each over c w |xi| V. Whole families release πcδ⁵/5 ∫ g ds for each area of a crack
+//! (Silling & Askari 2005, equation 21, where ∫ g ds = ½ s₀²).
+
+use crate::families::law::COLUMNS;
+use crate::lanes::Lanes;
+use crate::law::{Angles, BondLaw, Ends, Moment, Stretch};
+
+/// What is left of the peak where an exponential bond breaks.
+pub const REST: f64 = 1e-3;
+
+/// The law. Columns: none; in the place of ω the peak. Memory: damage; of an exponential bond also the largest stretch so far.
+pub struct Softening<const EXPONENTIAL: bool>;
+
+/// A bond beyond its peak.
+struct Grown<L> {
+    /// d.
+    damage: L,
+    /// The largest stretch so far if that was beyond the peak, else 0; of a linear bond always 0.
+    most: L,
+}
+
+impl<const EXPONENTIAL: bool> Softening<EXPONENTIAL> {
+    /// The damage once a bond has been stretched by s, and the largest stretch.
+    #[inline(always)]
+    unsafe fn grown<L: Lanes>(bond: &Stretch<L>, peak: L, memory: &[L; 2]) -> Grown<L> {
+        // SAFETY: passed on to the caller.
+        unsafe {
+            // Nothing is divided by zero where no bond lives and both stretches are; nor by the square of this.
+            let tiny = L::splat(TINY);
+            let one = L::splat(1.0);
+            let room = bond.limit.sub(peak).max(tiny);
+            if !EXPONENTIAL {
+                let s = bond.s.max(peak).max(tiny);
+                let share = peak.mul(bond.limit.sub(s).max(L::splat(0.0))).div(room.mul(s));
+                return Grown { damage: memory[0].max(one.sub(share)), most: memory[1] };
+            }
+            let known = memory[1].max(peak).max(tiny);
+            let grows = bond.s.sub(known).ge(tiny);
+            if grows.bits() == 0 {
+                return Grown { damage: memory[0], most: memory[1] };
+            }
+            let s = bond.s.max(known);
+            // Few bonds grow in a step: exponentials one by one, so that their bits do not depend on the width.
+            let rate = L::splat(REST.ln()).div(room);
+            let (mut exponents, mut left) = ([0.0f64; MOST], [0.0f64; MOST]);
+            s.sub(peak).mul(rate).store(exponents.as_mut_ptr());
+            for (left, exponent) in left.iter_mut().zip(exponents).take(L::WIDTH) {
+                *left = exponent.exp();
+            }
+            let share = peak.mul(L::load(left.as_ptr())).div(s);
+            Grown { damage: memory[0].max(one.sub(share)), most: memory[1].max(bond.s.keep(grows)) }
+        }
+    }
+
+    /// s times 1 − d in tension: half its product with s is the energy.
+    #[inline(always)]
+    unsafe fn tension<L: Lanes>(s: L, damage: L) -> L {
+        // SAFETY: passed on to the caller.
+        unsafe { s.sub(damage.mul(s.max(L::splat(0.0)))) }
+    }
+
+    /// Twice D.
+    #[inline(always)]
+    unsafe fn lost<L: Lanes>(limit: L, peak: L, memory: &[L; 2]) -> L {
+        // SAFETY: passed on to the caller.
+        unsafe {
+            let tiny = L::splat(TINY);
+            let intact = L::splat(1.0).sub(memory[0]);
+            if !EXPONENTIAL {
+                // g = s₀ s_f (1 − d)/((1 − d)(s_f − s₀) + s₀), and a triangle of height s₀ − g over s_f.
+                let below = intact.mul(limit.sub(peak)).add(peak).max(tiny);
+                let force = peak.mul(limit).mul(intact).div(below);
+                return limit.mul(peak.sub(force));
+            }
+            // The envelope's integral up to s_m: ½ s₀² + a (s₀ − g).
+            let most = memory[1].max(peak);
+            let force = intact.mul(most);
+            let scale = limit.sub(peak).mul(L::splat(-2.0 / REST.ln()));
+            peak.mul(peak).add(scale.mul(peak.sub(force))).sub(force.mul(most))
+        }
+    }
+}
+
+/// The most lanes.
+const MOST: usize = 8;
+/// Far below any stretch.
+const TINY: f64 = 1e-150;
+
+impl<const EXPONENTIAL: bool> BondLaw for Softening<EXPONENTIAL> {
+    const DILATED: bool = false;
+    const COLUMNS: usize = 0;
+    const MEMORY: usize = if EXPONENTIAL { 2 } else { 1 };
+    const LIMITED: bool = true;
+    const ALL_FORMS: bool = false;
+    #[inline(always)]
+    unsafe fn pull<L: Lanes>(
+        bond: &Stretch<L>,
+        peak: L,
+        _: &Ends<L>,
+        memory: &mut [L; 2],
+        _: &Moment,
+    ) -> (L, L) {
+        // SAFETY: passed on to the caller.
+        unsafe {
+            let grown = Self::grown(bond, peak, memory);
+            *memory = [grown.damage, grown.most];
+            let pull = Self::tension(bond.s, grown.damage).mul(bond.inverse);
+            (pull, pull)
+        }
+    }
+    #[inline(always)]
+    unsafe fn squares<L: Lanes>(
+        bond: &Stretch<L>,
+        peak: L,
+        _: &[Angles<L>; 2],
+        memory: &[L; 2],
+        moment: &Moment,
+    ) -> (L, L) {
+        // SAFETY: passed on to the caller.
+        unsafe {
+            if moment.lost {
+                let lost = Self::lost(bond.limit, peak, memory);
+                return (lost, lost);
+            }
+            let grown = Self::grown(bond, peak, memory);
+            let square = Self::tension(bond.s, grown.damage).mul(bond.s);
+            (square, square)
+        }
+    }
+    #[inline(always)]
+    unsafe fn relaxing<L: Lanes>(_: &[L; COLUMNS], _: &Moment) -> L {
+        // SAFETY: passed on to the caller.
+        unsafe { L::splat(0.0) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::single::Single;
+
+    const PEAK: f64 = 1e-3;
+    const LIMIT: f64 = 9e-3;
+
+    fn bond(s: f64) -> Stretch<Single> {
+        let inverse = Single(1.0 / (1.0 + s));
+        Stretch {
+            s: Single(s),
+            share: Single(s / (1.0 + s)),
+            inverse,
+            before: Single(s),
+            limit: Single(LIMIT),
+        }
+    }
+
+    /// One bond on its way, for a law of either curve.
+    struct Way<const E: bool>([Single; 2]);
+
+    impl<const E: bool> Way<E> {
+        /// g of a stretch that is kept.
+        fn to(&mut self, s: f64) -> f64 {
+            let ends = [[Single(0.0); COLUMNS]; 2];
+            // SAFETY: plain arithmetic.
+            let (near, far) = unsafe {
+                Softening::<E>::pull(&bond(s), Single(PEAK), &ends, &mut self.0, &Moment::default())
+            };
+            assert_eq!(near.0, far.0);
+            near.0 * (1.0 + s)
+        }
+        /// Energy held and lost, over c w |xi| V.
+        fn energies(&self, s: f64) -> [f64; 2] {
+            [false, true].map(|lost| {
+                let none = Angles { now: Single(0.0), unrelaxed: Single(0.0), relaxing: Single(0.0) };
+                let moment = Moment { lost, ..Moment::default() };
+                // SAFETY: plain arithmetic.
+                let squares =
+                    unsafe { Softening::<E>::squares(&bond(s), Single(PEAK), &[none; 2], &self.0, &moment) };
+                0.5 * squares.0.0
+            })
+        }
+    }
+
+    fn envelope(exponential: bool, s: f64) -> f64 {
+        match exponential {
+            _ if s <= PEAK => s,
+            false => PEAK * (LIMIT - s).max(0.0) / (LIMIT - PEAK),
+            true => PEAK * (REST.ln() * (s - PEAK) / (LIMIT - PEAK)).exp(),
+        }
+    }
+
+    fn follows_the_envelope<const E: bool>() {
+        let mut way = Way::<E>([Single(0.0); 2]);
+        for k in 0..=1000 {
+            let s = LIMIT * f64::from(k) / 1000.0;
+            // Some roundings of 1e-16 of the peak.
+            assert!((way.to(s) - envelope(E, s)).abs() < 2e-15 * PEAK, "{s}");
+        }
+    }
+
+    #[test]
+    fn forces_follow_the_envelope() {
+        follows_the_envelope::<false>();
+        follows_the_envelope::<true>();
+    }
+
+    fn goes_back_to_the_origin<const E: bool>() {
+        let mut way = Way::<E>([Single(0.0); 2]);
+        let most = 3e-3;
+        let top = way.to(most);
+        for part in [0.9, 0.5, 0.0, 0.7, 1.0] {
+            assert!((way.to(part * most) - part * top).abs() < 1e-15 * PEAK, "{part}");
+        }
+        // Cracks close: compression knows no damage.
+        assert_eq!(way.to(-2e-3), -2e-3 / (1.0 - 2e-3) * (1.0 - 2e-3));
+    }
+
+    #[test]
+    fn unloading_goes_to_the_origin_and_back() {
+        goes_back_to_the_origin::<false>();
+        goes_back_to_the_origin::<true>();
+    }
+
+    fn energy_is_the_integral_of_the_force<const E: bool>() {
+        let mut way = Way::<E>([Single(0.0); 2]);
+        let (mut work, mut s, mut g) = (0.0, 0.0, 0.0);
+        // Up, back, into compression, up beyond where it was, back, and up until nothing is left.
+        for goal in [2e-3, 0.5e-3, -1e-3, 4e-3, 0.0, LIMIT] {
+            let (start, steps) = (s, 20_000);
+            for k in 1..=steps {
+                let next = start + (goal - start) * f64::from(k) / f64::from(steps);
+                let force = way.to(next);
+                work += 0.5 * (g + force) * (next - s);
+                (s, g) = (next, force);
+            }
+            let [held, lost] = way.energies(s);
+            // The trapezoidal rule: h²/12 · g'' · path, and a kink of size 1 at the peak: h² of PEAK², h = 4e-7.
+            assert!((held + lost - work).abs() < 1e-6 * PEAK * PEAK, "{goal}: {held} + {lost}, {work}");
+        }
+        let [held, lost] = way.energies(LIMIT);
+        let whole = match E {
+            false => 0.5 * PEAK * LIMIT,
+            true => 0.5 * PEAK * PEAK - (LIMIT - PEAK) / REST.ln() * PEAK * (1.0 - REST),
+        };
+        assert!((held + lost - whole).abs() < 1e-14 * whole, "{held} {lost} {whole}");
+    }
+
+    #[test]
+    fn work_is_held_or_lost() {
+        energy_is_the_integral_of_the_force::<false>();
+        energy_is_the_integral_of_the_force::<true>();
+    }
+
+    #[test]
+    fn what_is_no_bond_gives_no_nonsense() {
+        let dead = Stretch { limit: Single(0.0), ..bond(0.0) };
+        let ends = [[Single(0.0); COLUMNS]; 2];
+        for before in [[0.0; 2], [0.3, 2e-3]] {
+            // SAFETY: plain arithmetic.
+            let (a, b) = unsafe {
+                let mut memory = before.map(Single);
+                let linear =
+                    Softening::<false>::pull(&dead, Single(0.0), &ends, &mut memory, &Moment::default());
+                let mut memory = before.map(Single);
+                let other =
+                    Softening::<true>::pull(&dead, Single(0.0), &ends, &mut memory, &Moment::default());
+                (linear.0.0, other.0.0)
+            };
+            assert!(a == 0.0 && b == 0.0);
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! The laws of one bond by hand.
+
+use crate::lanes::single::Single;
+use crate::law::*;
+
+fn bond(s: f64) -> Stretch<Single> {
+    // SAFETY: plain arithmetic.
+    unsafe { closed(Single(s * (2.0 + s))) }
+}
+
+/// The first step of a bond.
+fn fresh(s: f64) -> Stretch<Single> {
+    Stretch { before: Single(0.0), ..bond(s) }
+}
+
+fn end(values: [f64; COLUMNS]) -> [Single; COLUMNS] {
+    values.map(Single)
+}
+
+/// Memory is the element's stretch itself.
+const ITSELF: Held = Held { decay: 1.0, fresh: 0.0 };
+const NOW: Moment =
+    Moment { decay: 0.8, fresh: 0.9, lambda: 0.4, flow: 1.0, held: ITSELF, hold: ITSELF, lost: false };
+
+#[test]
+fn forms_of_the_stretch() {
+    for s in [-0.4, -1e-9, 0.0, 1e-5, 0.3, 2.0] {
+        let b = bond(s);
+        let near = |a: f64, b: f64| (a - b).abs() <= 4e-16 * (1.0 + b.abs());
+        assert!(near(b.s.0, s) && near(b.share.0, s / (1.0 + s)) && near(b.inverse.0, 1.0 / (1.0 + s)));
+    }
+}
+
+#[test]
+fn laws_agree_where_nothing_relaxes_or_flows() {
+    // 3K = 7, 15G/m = 3 and 2, theta/3 = 0.01 and -0.02 with m = 1: A = 3K theta/m - B theta/3.
+    let (k, g, third) = (7.0, [3.0, 2.0], [0.01, -0.02]);
+    let a = [0, 1].map(|i| k * 3.0 * third[i]);
+    let b = bond(0.05);
+    let lps = [0, 1].map(|i| end([a[i] - g[i] * third[i], g[i], 0.0, 0.0, 0.0, 0.0]));
+    let eps = [0, 1].map(|i| end([a[i], g[i], third[i], 0.0, 0.0, 0.0]));
+    let mut none = [Single(0.0); 2];
+    // SAFETY: plain arithmetic.
+    unsafe {
+        let one = Single(1.0);
+        let (x, y) = Elastic::pull(&b, one, &lps, &mut none, &NOW);
+        let (p, _) = Plastic::pull(&b, one, &eps, &mut none, &NOW);
+        let mut memory = [Single(0.0); 2];
+        let still = Moment { lambda: 0.0, ..NOW };
+        let (v, _) = Viscous::<true>::pull(&fresh(0.05), one, &lps, &mut memory, &still);
+        assert!(x.0 == y.0 && (x.0 - p.0).abs() < 1e-15 && (x.0 - v.0).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn a_maxwell_element_relaxes_to_the_spring() {
+    let ends = [end([0.0, 1.0, 0.0, 0.0, 0.0, 0.0]); 2];
+    let mut memory = [Single(0.0); 2];
+    let b = bond(0.1);
+    let mut pulls = vec![];
+    for step in 0..200 {
+        let b = if step == 0 { fresh(0.1) } else { b };
+        // SAFETY: plain arithmetic.
+        pulls.push(
+            unsafe { Viscous::<true>::pull(&b, Single(1.0), &ends, &mut memory, &NOW) }.0.0 * 1.1 / 2.0,
+        );
+    }
+    // First 0.6 s + 0.4 * 0.9 s, at last 0.6 s.
+    assert!((pulls[0] - 0.096).abs() < 1e-15 && (pulls[199] - 0.06).abs() < 1e-15);
+    let kept = memory;
+    let look = Moment { decay: 1.0, fresh: 1.0, ..NOW };
+    // SAFETY: plain arithmetic.
+    unsafe { Viscous::<true>::pull(&b, Single(1.0), &ends, &mut memory, &look) };
+    // The stretch is taken away and added: a rounding of 0.1.
+    assert!((kept[0].0 - memory[0].0).abs() < 2e-17);
+}
+
+#[test]
+fn both_forms_of_viscous_memory_give_the_same_pulls() {
+    let ends = [end([0.03, 1.5, 0.01, 0.0, 0.0, 0.0]); 2];
+    // The element's stretch by its definition, and in the forms in which bonds remember it; the step changes twice.
+    let (mut d, mut before, mut held) = (0.0, 0.0, ITSELF);
+    let mut memory = [Single(0.0); 2];
+    for step in 0..60 {
+        let s = 0.02 * (0.3 * f64::from(step + 1)).sin();
+        let (decay, fresh) = if (20..40).contains(&step) { (0.7, 0.84) } else { (0.9, 0.95) };
+        d = decay * d + fresh * (s - before);
+        let hold = Held::for_steps(decay, fresh);
+        let moment = Moment { decay, fresh, lambda: 0.4, flow: 1.0, held, hold, lost: false };
+        assert_eq!(moment.steady(), ![0, 20, 40].contains(&step));
+        let b = Stretch { before: Single(before), ..bond(s) };
+        let mut looking = memory;
+        // SAFETY: plain arithmetic.
+        let (any, lammps) = unsafe {
+            (
+                Viscous::<true>::pull(&b, Single(1.0), &ends, &mut looking, &moment).0.0,
+                Viscous::<true, true>::pull(&b, Single(1.0), &ends, &mut memory.clone(), &moment).0.0,
+            )
+        };
+        let relaxed = 3.0 * (0.6 * s + 0.4 * d);
+        // Numbers below 0.1, some ten roundings in each of the steps that D still feels (about ten).
+        assert!((any - (0.06 + relaxed) / (1.0 + s)).abs() < 1e-15, "{step}");
+        assert!((lammps - (0.06 + relaxed - 0.03) / (1.0 + s)).abs() < 1e-15, "{step}");
+        if moment.steady() {
+            // SAFETY: as above.
+            let quick = unsafe { Viscous::<false>::pull(&b, Single(1.0), &ends, &mut memory, &moment) }.0.0;
+            assert!((any - quick).abs() < 1e-15 && (looking[0].0 - memory[0].0).abs() < 1e-16, "{step}");
+        }
+        (memory, before, held) = (looking, s, hold);
+        let angles = [Angles { now: Single(0.0), unrelaxed: Single(0.0), relaxing: Single(0.4) }; 2];
+        let now = Stretch { before: Single(s), ..bond(s) };
+        // SAFETY: as above.
+        let square = unsafe {
+            Viscous::<true>::squares(&now, Single(1.0), &angles, &memory, &Moment { held, ..moment }).0.0
+        };
+        assert!((square - (0.6 * s * s + 0.4 * d * d)).abs() < 1e-16, "{step}");
+    }
+    // Where hardly anything is left of the element there is no way back from the form.
+    assert_eq!(Held::for_steps(0.0, 0.1), ITSELF);
+}
+
+#[test]
+fn a_cycle_of_a_bond_that_yields() {
+    // Walayat et al. 2023, Eq. 6: a plateau in compression; after unloading the bond is left shorter.
+    let (limit, ends) = (Single(-0.02), [end([0.0; COLUMNS]); 2]);
+    let mut memory = [Single(0.0); 2];
+    for (s, plastic, flat) in [
+        (0.01, 0.01, 0.01),
+        (-0.01, -0.01, -0.01),
+        (-0.05, -0.02, -0.02),
+        (-0.03, 0.0, -0.02),
+        (0.0, 0.03, 0.0),
+    ] {
+        // SAFETY: plain arithmetic.
+        unsafe {
+            let (p, _) = Yielding::pull(&bond(s), limit, &ends, &mut memory, &NOW);
+            let (f, _) = Flattened::pull(&bond(s), limit, &ends, &mut [Single(0.0); 2], &NOW);
+            assert!(
+                (p.0 * (1.0 + s) - plastic).abs() < 1e-16 && (f.0 * (1.0 + s) - flat).abs() < 1e-16,
+                "{s}"
+            );
+        }
+    }
+}
+
+#[test]
+fn energies_are_the_work_of_the_pulls() {
+    // d(½ square)/ds by central differences over 2e-6 is the elastic stretch: (1 + s) times a bond-based pull.
+    let none = [Angles { now: Single(0.0), unrelaxed: Single(0.0), relaxing: Single(0.0) }; 2];
+    let (limit, ends, step) = (Single(-0.02), [end([0.0; COLUMNS]); 2], 1e-6);
+    let square = |s: f64| {
+        // SAFETY: plain arithmetic.
+        unsafe { Flattened::squares(&bond(s), limit, &none, &[Single(0.0); 2], &NOW) }.0.0
+    };
+    for s in [0.03, -0.01, -0.05] {
+        let slope = (square(s + step) - square(s - step)) / (4.0 * step);
+        // SAFETY: plain arithmetic.
+        let pull = unsafe { Flattened::pull(&bond(s), limit, &ends, &mut [Single(0.0); 2], &NOW) }.0.0;
+        // Rounding of 1e-18 over 4e-6.
+        assert!((slope - pull * (1.0 + s)).abs() < 1e-11, "{s}");
+    }
+}
+
+#[test]
+fn flow_returns_to_the_limit_and_stays() {
+    // Trial 0.1, limit 0.04: 60 % flow.
+    let ends = [end([0.0, 1.0, 0.0, 0.6, 0.0, 0.0]); 2];
+    let mut memory = [Single(0.0); 2];
+    // SAFETY: plain arithmetic.
+    unsafe {
+        let (p, _) = Plastic::pull(&bond(0.1), Single(1.0), &ends, &mut memory, &NOW);
+        assert!((p.0 * 1.1 - 0.08).abs() < 1e-15 && (memory[0].0 - 0.06).abs() < 1e-15);
+        let look = Moment { flow: 0.0, ..NOW };
+        let (q, _) = Plastic::pull(&bond(0.1), Single(1.0), &ends, &mut memory, &look);
+        assert_eq!(p.0, q.0);
+    }
+}
