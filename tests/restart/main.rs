@@ -138,6 +138,15 @@ const EPS_AGAIN: &str = "pair_style peri/eps\npair_coeff * * 14e9 6e9 0.0030001 
     fix 1 all nve\ntimestep 5.0e-8\ncompute flow all plasticity/atom\ncompute dsum all reduce sum c_flow\n\
     thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
 
+/// The block of bonds that soften beyond a peak: what is left of each, and of exponential ones how far they have been stretched.
+const SOFT_AGAIN: &str = "pair_style peri/pmb/softening\npair_coeff * * 1.6e21 0.0030001 0.0015 1100\nneighbor 0.0006 bin\n\
+    fix 1 all nve\ntimestep 5.0e-8\ncompute dmg all damage/atom\ncompute dsum all reduce sum c_dmg\ncompute e all energy/ledger\n\
+    thermo_style custom step time pe ke press c_dsum c_e[7]\nthermo_modify format float %24.17g\nthermo 5\n";
+const DECAYING_AGAIN: &str = "pair_style peri/pmb/softening exponential\npair_coeff * * 1.6e21 0.0030001 0.0015 700\n\
+    neighbor 0.0006 bin\nfix 1 all nve\ntimestep 5.0e-8\ncompute dmg all damage/atom\ncompute dsum all reduce sum c_dmg\n\
+    compute e all energy/ledger\nthermo_style custom step time pe ke press c_dsum c_e[7]\n\
+    thermo_modify format float %24.17g\nthermo 5\n";
+
 /// The block with everything that averages, keeps a list or remembers where particles were.
 const AVERAGES_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.0030001 0.0015 0.25\nneighbor 0.0006 bin\n\
     fix 1 all nve\ntimestep 5.0e-8\ncompute m all msd com yes\ncompute mav all msd\n\
@@ -156,13 +165,15 @@ const AVERAGES_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.00300
     f_h[4] f_h[3][2] c_ra[1] c_ra[2] c_rs[2] c_mc[1][4] c_vc[1][4] c_vv[4] c_least\n\
     thermo_modify format float %24.17g\nthermo 10\n";
 
-const SCENES: [Scene; 16] = [
+const SCENES: [Scene; 18] = [
     Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
     Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
     Scene { name: "lps", make: BLOCK, again: LPS_AGAIN, steps: 60, list: false },
     Scene { name: "ves", make: BLOCK, again: VES_AGAIN, steps: 60, list: false },
     Scene { name: "eps", make: BLOCK, again: EPS_AGAIN, steps: 60, list: false },
     Scene { name: "eps, list", make: BLOCK, again: EPS_AGAIN, steps: 40, list: true },
+    Scene { name: "softening", make: BLOCK, again: SOFT_AGAIN, steps: 60, list: false },
+    Scene { name: "softening, list", make: BLOCK, again: DECAYING_AGAIN, steps: 60, list: true },
     Scene { name: "averages", make: BLOCK, again: AVERAGES_AGAIN, steps: 60, list: false },
     Scene { name: "pile", make: PILE, again: PILE_AGAIN, steps: 400, list: false },
     Scene { name: "bath pile", make: PILE, again: BATH_AGAIN, steps: 400, list: false },
