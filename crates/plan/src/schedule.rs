@@ -5,6 +5,7 @@ use super::needs::{self, Needs};
 use super::{Act, Gist, Guard, Level, Meter, Op, OpClass, Stage, Tick, Turns, When, take_turns};
 use perigrain_base::diag::{Diagnostics, Result, Span};
 use perigrain_world::field::{CONTACTS, RADIUS, X};
+use perigrain_world::named::Acting;
 use perigrain_world::{Fields, World};
 use std::ops::Range;
 use std::sync::Arc;
@@ -73,7 +74,10 @@ impl Placed {
         clock: &mut Instant,
         act: impl FnOnce(&mut dyn Op, &mut World) -> Result<T>,
     ) -> Result<T> {
-        let outcome = act(&mut *self.op, w);
+        let outcome = {
+            let _names_are_known = Acting::op();
+            act(&mut *self.op, w)
+        };
         let begin = std::mem::replace(clock, Instant::now());
         self.meter.time += *clock - begin;
         self.meter.calls += 1;
