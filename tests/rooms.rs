@@ -28,6 +28,14 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
 ];
 
+/// Maps by string in the world, and why no step looks into them: where else state has a name it is a `Named`, whose handles are
+/// made outside of steps (debug builds refuse to make one inside).
+const BY_STRING: &[(&str, &str)] = &[
+    ("files", "promises are kept while a deck is checked, where no step is made"),
+    ("materials", "words of a line that is being read"),
+    ("templates", "words of a line that is being read; fixes hold the molecules themselves"),
+];
+
 /// Within the root package: the command graph knows no session, a session no program.
 const UPWARDS: &[(&str, &[&str])] = &[("graph", &["session", "cli"]), ("session", &["cli"])];
 
@@ -111,6 +119,23 @@ fn traits_that_many_write_are_short() {
         println!("{name}: {methods} methods");
         assert!((1..=most).contains(&methods), "{file}: `{name}` has {methods} methods, {most} at most");
     }
+}
+
+#[test]
+fn no_state_is_found_by_a_string_inside_a_step() {
+    let mut found = vec![];
+    for file in rust_files("crates/world/src") {
+        let text = fs::read_to_string(&file).unwrap();
+        let code = &text[..text.find("#[cfg(test)]\nmod ").unwrap_or(text.len())];
+        let fields = code.lines().filter_map(|line| line.trim().trim_start_matches("pub ").split_once(": "));
+        let maps = ["Map<String", "Map<Box<str>", "Map<Arc<str>", "Map<&"];
+        let by_string =
+            fields.filter(|(name, of)| !name.contains(' ') && maps.iter().any(|map| of.contains(map)));
+        found.extend(by_string.map(|(name, _)| name.to_string()));
+    }
+    found.sort();
+    let known: Vec<&str> = BY_STRING.iter().map(|(name, _)| *name).collect();
+    assert_eq!(found, known, "maps by string in the world: steps find state by handles (`Named`)");
 }
 
 #[test]

@@ -173,7 +173,7 @@ fn defined(w: &World, declared: &Declared, category: &Word, name: &str) -> Resul
         "fix" => declared.fixes.iter().any(|f| f == name),
         "dump" => declared.dumps.iter().any(|d| d == name),
         "group" => w.groups.find(name).is_some(),
-        "region" => w.regions.contains_key(name),
+        "region" => w.regions.find(name).is_some(),
         _ => {
             let known = ["compute", "dump", "fix", "group", "region", "variable"];
             return among("category of is_defined()", category, &known);

@@ -9,7 +9,7 @@ use perigrain_styles::step_op::StepOp;
 use perigrain_styles::surface::choose;
 use perigrain_styles::{Reading, SealCx};
 use perigrain_world::field::{BOX, FAMILIES, LISTS, MASK, REGIONS, SLOTS, VOLUME, X};
-use perigrain_world::{Dynamic, GroupId, World};
+use perigrain_world::{GroupId, Key, Region, World};
 
 /// Adds the ops that choose the members of dynamic groups.
 ///
@@ -29,7 +29,8 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
                 Some(s.value(&r, Stage::PostForce, &when)?)
             }
         };
-        let op = Choose { title: format!("group {name} dynamic"), group, rule, chosen, when };
+        let (title, region) = (format!("group {name} dynamic"), rule.region.as_deref().map(Key::new));
+        let op = Choose { title, group, parent: rule.parent, region, chosen, when };
         let span = s.span();
         s.add(vec![Box::new(op)], span);
     }
@@ -91,7 +92,8 @@ pub fn check(graph: &Graph, w: &World, found: &mut Diagnostics) {
 struct Choose {
     title: String,
     group: GroupId,
-    rule: Dynamic,
+    parent: GroupId,
+    region: Option<Key<Region>>,
     chosen: Option<Reading>,
     when: When,
 }
@@ -105,8 +107,8 @@ impl Op for Choose {
     }
     fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
         let mut mask = std::mem::take(&mut w.particles.mask);
-        let region = self.rule.region.as_ref().map(|name| w.regions.get(name));
-        let (parent, bit) = (self.rule.parent.bit(), self.group.bit());
+        let region = self.region.map(|key| w.regions.get(key));
+        let (parent, bit) = (self.parent.bit(), self.group.bit());
         for (i, mask) in mask.iter_mut().enumerate() {
             let here = region.is_none_or(|r| r.is_some_and(|r| r.contains(w.particles.x[i])));
             let meant = *mask & parent != 0 && here && self.chosen.is_none_or(|v| v.atom(w, i) != 0.0);

@@ -11,6 +11,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Clock, Env, Question, RefKind, Value, ValueRef, Vars, Word};
 use perigrain_plan::{Op, Stage, StepPlan, Tick, When};
 use perigrain_styles::{Flow, Motion, Reading, SealCx, Values};
+use perigrain_world::named::Acting;
 use perigrain_world::{SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -37,7 +38,7 @@ fn attribute(w: &World, name: &str, i: usize) -> Option<f64> {
         "omegax" => of(&p.omega, 0)?,
         "omegay" => of(&p.omega, 1)?,
         "omegaz" => of(&p.omega, 2)?,
-        custom => *w.columns.get_scalar(&w.columns.custom(custom)?)?.get(i)?,
+        custom => *w.columns.get_scalar(w.columns.custom(custom)?)?.get(i)?,
     })
 }
 
@@ -56,8 +57,8 @@ fn column(w: &World, name: &str) -> Option<Result<Vec<f64>>> {
         "id", "type", "mol", "mass", "radius", "x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz", "omegax",
         "omegay", "omegaz",
     ];
-    if let Some(full) = w.columns.custom(name) {
-        let mut list = w.columns.get_scalar(&full).unwrap_or_default().to_vec();
+    if let Some(key) = w.columns.custom(name) {
+        let mut list = w.columns.get_scalar(key).unwrap_or_default().to_vec();
         list.resize(w.n(), 0.0);
         return Some(Ok(list));
     }
@@ -78,14 +79,22 @@ fn clock(w: &World) -> Clock {
     Clock { step: c.step, begin, end: c.stop, dt: c.dt, running: c.running }
 }
 
-/// Inside a step: values come from slots that the plan has filled before.
+/// Inside a step: values come from slots that the plan has filled before; all else that a formula names is looked up.
 pub struct RunEnv<'a> {
     /// The world, read only.
-    pub w: &'a World,
+    w: &'a World,
     /// What is declared.
-    pub declared: &'a Declared,
+    declared: &'a Declared,
     /// The slots of what the formula depends on.
-    pub from: &'a BTreeMap<String, SlotId>,
+    from: &'a BTreeMap<String, SlotId>,
+    _reads: Acting,
+}
+
+impl<'a> RunEnv<'a> {
+    /// For formulas whose values are in the slots `from`.
+    pub fn new(w: &'a World, declared: &'a Declared, from: &'a BTreeMap<String, SlotId>) -> Self {
+        Self { w, declared, from, _reads: Acting::text() }
+    }
 }
 
 impl Env for RunEnv<'_> {
@@ -134,7 +143,7 @@ impl Env for RunEnv<'_> {
     }
 
     fn control(&self, name: &str) -> Option<f64> {
-        self.w.controls.get(name).copied()
+        self.w.controls.look_up(name).copied()
     }
     fn clock(&self) -> Clock {
         clock(self.w)
@@ -300,7 +309,7 @@ impl Env for DeckEnv<'_> {
     }
 
     fn control(&self, name: &str) -> Option<f64> {
-        self.w.controls.get(name).copied()
+        self.w.controls.look_up(name).copied()
     }
     fn clock(&self) -> Clock {
         clock(self.w)

@@ -134,7 +134,7 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
     let pe = || scalar(s.pe) * per_atom;
     // The tensor of the temperature compute holds Σ m v v in energy units: half its trace is the energy.
     let ke = || s.temp.map_or(0.0, |id| kinetic(w, w.slots.get(id))) * per_atom;
-    let taken = || w.memo.iter().filter(|(name, _)| name.ends_with(COUPLED)).filter_map(|(_, e)| e.first());
+    let taken = || w.memo.playing(*COUPLED).filter_map(|(_, e)| e.first());
     let coupled = || taken().sum::<f64>();
     let edges = |k: usize| w.domain.as_ref().map_or(0.0, |d| d.lengths()[k]);
     let lo = |k: usize| w.domain.as_ref().map_or(0.0, |d| d.lo[k]);

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_base::par;
 use perigrain_lang::Word;
-use perigrain_world::{GroupId, Region, World};
+use perigrain_world::{GroupId, Key, Region, World};
 
 /// The names of all group functions.
 pub const NAMES: [&str; 13] = [
@@ -81,10 +81,10 @@ pub fn group(w: &World, name: &Word) -> Result<GroupId> {
 /// # Errors
 /// There is none.
 pub fn region<'a>(w: &'a World, name: &Word) -> Result<&'a Region> {
-    if let Some(region) = w.regions.get(&name.text) {
+    if let Some(region) = w.regions.look_up(&name.text) {
         return Ok(region);
     }
-    let known = nearest(&name.text, w.regions.keys().map(String::as_str));
+    let known = nearest(&name.text, w.regions.keys().map(Key::text));
     missing(Code::UNKNOWN_REGION, name, format!("there is no region `{}`", name.text), known)
 }
 

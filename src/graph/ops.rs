@@ -257,9 +257,9 @@ impl Op for ClearForces {
             w.particles.f.fill([0.0; 3]);
             w.particles.torque.fill([0.0; 3]);
         }
-        if let Some(heat) = w.columns.custom(HEATFLOW) {
+        if let Some(heat) = w.columns.property(*HEATFLOW) {
             let n = w.particles.len();
-            w.columns.scalar(&heat, n).fill(0.0);
+            w.columns.scalar(heat, n).fill(0.0);
         }
         // Of several levels of steps the shorter ones have tallied by now.
         if (t.energy || t.virial) && t.phase.level == 0 {

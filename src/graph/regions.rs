@@ -9,7 +9,7 @@ use perigrain_plan::{About, Level, Needs, Op, Stage, Tick, When};
 use perigrain_styles::{Reading, SealCx};
 use perigrain_world::field::{REGIONS, SLOTS};
 use perigrain_world::region::Variable;
-use perigrain_world::{Region, World};
+use perigrain_world::{Key, Region, World};
 
 /// The stages whose ops find moving regions in their present places.
 const STAGES: [Stage; 2] = [Stage::PreForce, Stage::Output];
@@ -25,15 +25,15 @@ pub fn place_now(
     checking: bool,
     meant: impl Fn(&str) -> bool,
 ) -> Result<()> {
-    let follows = w.regions.iter().filter(|(name, region)| region.follows() && meant(name));
-    let names: Vec<String> = follows.map(|(name, _)| name.clone()).collect();
-    for name in names {
+    let follows = w.regions.iter().filter(|(key, region)| region.follows() && meant(key.text()));
+    let keys: Vec<Key<Region>> = follows.map(|(key, _)| key).collect();
+    for key in keys {
         // Out of the world meanwhile: a formula that asks the region it places would never end.
-        let Some(region) = w.regions.remove(&name) else { continue };
+        let Some(region) = w.regions.remove(key) else { continue };
         let placed = placed(w, graph, vars, checking, &region);
-        w.regions.insert(name.clone(), placed.as_ref().unwrap_or(&region).clone());
+        w.regions.insert(key, placed.as_ref().unwrap_or(&region).clone());
         placed.map_err(|mut e| {
-            e.0.iter_mut().for_each(|d| d.help.push(format!("region `{name}` follows this variable")));
+            e.0.iter_mut().for_each(|d| d.help.push(format!("region `{key}` follows this variable")));
             e
         })?;
     }
@@ -44,12 +44,12 @@ pub fn place_now(
 /// them in a line or formula is told.
 pub fn place_all(w: &mut World, graph: &Graph, vars: &Vars, checking: bool) {
     // All of them out of the world meanwhile: what their variables ask for comes here again.
-    let following: Vec<String> =
-        w.regions.iter().filter(|(_, r)| r.follows()).map(|(name, _)| name.clone()).collect();
-    let taken: Vec<_> = following.iter().filter_map(|name| w.regions.remove_entry(name)).collect();
-    for (name, region) in taken {
+    let following: Vec<Key<Region>> =
+        w.regions.iter().filter(|(_, r)| r.follows()).map(|(key, _)| key).collect();
+    let taken: Vec<_> = following.into_iter().filter_map(|key| Some((key, w.regions.remove(key)?))).collect();
+    for (key, region) in taken {
         let placed = placed(w, graph, vars, checking, &region).unwrap_or(region);
-        w.regions.insert(name, placed);
+        w.regions.insert(key, placed);
     }
 }
 
@@ -77,9 +77,9 @@ fn number(w: &mut World, graph: &Graph, vars: &Vars, checking: bool, v: &Variabl
 /// Variables that are gone.
 pub fn seal(s: &mut Sealer) -> Result<()> {
     let following = s.world().regions.iter().filter(|(_, r)| r.follows());
-    let regions: Vec<(String, Vec<Variable>)> =
-        following.map(|(name, r)| (name.clone(), r.variables().into_iter().cloned().collect())).collect();
-    for (name, variables) in regions {
+    let regions: Vec<(Key<Region>, Vec<Variable>)> =
+        following.map(|(key, r)| (key, r.variables().into_iter().cloned().collect())).collect();
+    for (region, variables) in regions {
         for stage in STAGES {
             let mut readings = vec![];
             for v in &variables {
@@ -87,7 +87,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
                     ValueRef { kind: RefKind::Variable, name: v.name.clone(), index: vec![], span: v.span };
                 readings.push(s.value(&r, stage, &When::Always)?);
             }
-            let op = PlaceRegion { title: format!("region {name}"), region: name.clone(), readings, stage };
+            let op = PlaceRegion { title: format!("region {region}"), region, readings, stage };
             let span = s.span();
             s.add(vec![Box::new(op)], span);
         }
@@ -98,7 +98,7 @@ pub fn seal(s: &mut Sealer) -> Result<()> {
 /// Puts one region where its variables say.
 struct PlaceRegion {
     title: String,
-    region: String,
+    region: Key<Region>,
     /// Values of its variables, in the order in which it asks for them.
     readings: Vec<Reading>,
     stage: Stage,
@@ -115,7 +115,7 @@ impl Op for PlaceRegion {
     fn run(&mut self, w: &mut World, _t: &Tick) -> Result<()> {
         let values: Vec<f64> = self.readings.iter().map(|r| r.get(w)).collect();
         let mut next = values.into_iter();
-        match w.regions.get_mut(&self.region) {
+        match w.regions.get_mut(self.region) {
             Some(region) => region.place(&mut |_| Ok(next.next())),
             None => Ok(()),
         }

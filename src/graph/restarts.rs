@@ -11,7 +11,7 @@ use perigrain_styles::{BuildCx, SealCx, Use, UseKind};
 use perigrain_world::adapted;
 use perigrain_world::columns::{LEVEL, PLASTIC_BEGUN, PLASTIC_COLUMNS};
 use perigrain_world::field::{Fields, MEMO};
-use perigrain_world::{Said, World};
+use perigrain_world::{Constant, Said, World};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -45,7 +45,7 @@ pub struct Restarts {
 }
 
 /// Where the world keeps which of two files comes next: a restarted run does not begin with the file it came from.
-const NEXT: &str = "restart/next";
+static NEXT: Constant<Vec<f64>> = Constant::new("restart/next");
 
 impl Restarts {
     /// Reads `restart 0`, `restart N root` or `restart N file1 file2`; N may be a variable.
@@ -168,8 +168,8 @@ impl Op for Write {
         let path: PathBuf = match &self.names {
             Names::Each(p) => p.at(t.step),
             Names::Turn(files) => {
-                let next = w.memo.get(NEXT).is_some_and(|m| m.first() == Some(&1.0));
-                w.memo.insert(NEXT.into(), vec![if next { 0.0 } else { 1.0 }]);
+                let next = w.memo.get(*NEXT).is_some_and(|m| m.first() == Some(&1.0));
+                w.memo.insert(*NEXT, vec![if next { 0.0 } else { 1.0 }]);
                 files[usize::from(next)].clone()
             }
         };
@@ -196,9 +196,9 @@ pub fn save(
 pub fn claimable(name: &str) -> bool {
     // The pair style comes with the file, and what its plastic grains and fixes have made of it; the forces of each level of
     // steps belong to the run style, which is a setting.
-    name != NEXT
+    name != NEXT.text()
         && !adapted::is(name)
-        && name != PLASTIC_BEGUN
+        && name != PLASTIC_BEGUN.text()
         && !name.starts_with(PLASTIC_COLUMNS)
         && !name.starts_with(LEVEL)
 }

@@ -27,7 +27,7 @@ pub fn text(
     let from = sources(s, needed, span, stage, when)?;
     let (text, declared) = (text.to_string(), s.declared());
     Ok(Box::new(move |w| {
-        let mut env = RunEnv { w, declared: &declared, from: &from };
+        let mut env = RunEnv::new(w, &declared, &from);
         substitute(&text, span, &vars, &mut env)
     }))
 }
@@ -80,7 +80,7 @@ pub fn test(
         for (variable, x) in sets.iter().zip(x).filter_map(|(v, x)| v.as_ref().map(|v| (v, x))) {
             vars.set_internal(&variable.name, x);
         }
-        let mut env = RunEnv { w, declared: &declared, from: &from };
+        let mut env = RunEnv::new(w, &declared, &from);
         match vars.value(&r.name, r.span, &mut env)? {
             Value::Number(a) => Ok(a != 0.0),
             _ => fail(Code::WRONG_KIND, r.span, format!("`{r}` has no single number")),

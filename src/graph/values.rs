@@ -139,7 +139,7 @@ impl Op for Evaluate {
         }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let mut env = RunEnv { w, declared: &self.declared, from: &self.from };
+        let mut env = RunEnv::new(w, &self.declared, &self.from);
         let value = self.vars.value(&self.variable, self.span, &mut env)?;
         let slot = w.slots.get_mut(self.slot);
         slot.step = Some(t.step);

@@ -179,7 +179,7 @@ impl Session {
             "regions" => {
                 text += "\nRegion information:\n";
                 for (k, (name, region)) in w.regions.iter().enumerate() {
-                    let _ = write!(text, "Region[{k:>3}]:  {:<16}", comma(name));
+                    let _ = write!(text, "Region[{k:>3}]:  {:<16}", comma(name.text()));
                     let _ = match region.bounds() {
                         Some((lo, hi)) => writeln!(
                             text,

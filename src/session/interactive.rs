@@ -161,15 +161,14 @@ impl Session {
 
     /// The names that exist.
     pub fn known(&self) -> Known {
-        let keys = |map: &mut dyn Iterator<Item = &String>| map.cloned().collect();
         Known {
             groups: self.world.groups.names().map(String::from).collect(),
-            regions: keys(&mut self.world.regions.keys()),
+            regions: self.world.regions.keys().map(|key| key.to_string()).collect(),
             fixes: self.graph.fixes.iter().map(|f| f.id.clone()).collect(),
             computes: self.graph.computes.iter().map(|c| c.id.clone()).collect(),
             dumps: self.graph.dumps.iter().map(|d| d.id.clone()).collect(),
             variables: self.vars.names().map(String::from).collect(),
-            materials: keys(&mut self.world.materials.keys()),
+            materials: self.world.materials.keys().cloned().collect(),
             pair: self.graph.pair.as_ref().map(|p| p.pair.facts().name.to_string()),
         }
     }

@@ -9,7 +9,7 @@ use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, unseen};
 use perigrain_base::math::cformat::general;
 use perigrain_lang::{Args, Command, Word};
 use perigrain_out::restart::{Saved, fingerprint, read, resume};
-use perigrain_world::{Halt, Particles, Promise, Said, World};
+use perigrain_world::{Halt, Key, Numbers, Particles, Promise, Said, World};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -155,10 +155,10 @@ impl Session {
         world.folder = std::mem::take(&mut old.folder);
         world.parts.promised = std::mem::take(&mut old.parts.promised);
         (world.clock.running, world.clock.halt) = (false, Halt::No);
-        let state = world.memo.keys().cloned().chain(world.columns.names()).filter(|n| claimable(n));
+        let state = world.memo.keys().map(Key::text).chain(world.columns.names()).filter(|n| claimable(n));
         let names = world.regions.keys().map(|n| format!("region/{n}"));
         let names = names.chain(world.materials.keys().map(|n| format!("material/{n}")));
-        world.parts.restored = names.chain(state).collect();
+        world.parts.restored = names.chain(state.map(str::to_string)).collect();
         self.world = world;
         self.replay(&pair, span)?;
         let parts = &mut self.world.parts;
@@ -244,8 +244,9 @@ impl Session {
             return;
         }
         for name in &state {
-            self.world.memo.remove(name);
-            self.world.columns.remove(name);
+            let key: Numbers = Key::new(name);
+            self.world.memo.remove(key);
+            self.world.columns.remove(key);
         }
         let text = format!(
             "the restart file holds state of {}, which nobody claims: it is forgotten",

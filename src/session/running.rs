@@ -267,8 +267,8 @@ impl Session {
         spatial::line_up_again(&mut self.world);
         let outcome = self.steps(&mut plan, unchanged, &pace);
         self.world.clock.running = false;
-        for (name, value) in std::mem::take(&mut *self.world.controls) {
-            self.vars.set_internal(&name, value);
+        for (name, value) in std::mem::take(&mut *self.world.controls).iter() {
+            self.vars.set_internal(name.text(), *value);
         }
         // What is put back at the end of a run changes the scene again.
         self.world.parts.changed &= outcome.is_err();

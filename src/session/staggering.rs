@@ -21,7 +21,7 @@ impl Session {
     pub(super) fn pace(&self, span: Span) -> Result<Pace> {
         Ok(match &self.world.settings.run_style {
             RunStyle::Verlet => Pace::Even,
-            RunStyle::Respa(r) => Pace::Levels(Levels { loops: r.loops.clone(), solids: None }),
+            RunStyle::Respa(r) => Pace::Levels(Levels::new(r.loops.clone(), None)),
             RunStyle::Staggered { ratio, rare, twice } => {
                 Pace::Staggered(self.staggered(span, *ratio, *rare, *twice)?)
             }
@@ -69,7 +69,7 @@ impl Session {
                 }
             },
         };
-        Ok(Staggered { solids, ratio })
+        Ok(Staggered::new(solids, ratio))
     }
 
     /// The line that asked for steps of two lengths.

@@ -259,7 +259,7 @@ const OWN: &str = "atom_style sphere\nfix p all property/atom i_a d_b i2_c 2 d2_
 
 /// The property of the particles by id, as the deck's `words`.
 fn property(w: &World, words: &str) -> Vec<f64> {
-    let column = w.columns.get_scalar(&w.columns.custom(words).unwrap()).unwrap();
+    let column = w.columns.get_scalar(w.columns.custom(words).unwrap()).unwrap();
     let mut rows: Vec<(u32, f64)> = w.particles.tag.iter().copied().zip(column.iter().copied()).collect();
     rows.sort_by_key(|r| r.0);
     rows.into_iter().map(|r| r.1).collect()

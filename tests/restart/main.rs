@@ -221,7 +221,7 @@ fn memory(w: &World) -> String {
         let alive: Vec<_> = f.lattices.iter().map(|b| &b.alive).collect();
         format!("{alive:?} {:?} {:?}", f.list.alive, f.damaged)
     });
-    let state: Vec<_> = w.memo.iter().filter(|(name, _)| !name.starts_with("restart/")).collect();
+    let state: Vec<_> = w.memo.iter().filter(|(name, _)| !name.text().starts_with("restart/")).collect();
     format!("{bonds:?} {:?} {:?} {state:?} {:?}", w.contacts, w.wall_contacts, w.particles.image)
 }
 

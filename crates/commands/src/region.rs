@@ -8,8 +8,8 @@ use perigrain_base::math::vec3::length;
 use perigrain_lang::{Args, Param, Word};
 use perigrain_styles::common::{self, free_id, scales, setting, units_lattice, unknown_style};
 use perigrain_styles::{BuildCx, Doc, Style, Use, UseKind};
-use perigrain_world::Region;
 use perigrain_world::region::{Motion, Shape, Turn, Variable};
+use perigrain_world::{Key, Region};
 use shapes::Reader;
 
 /// The command.
@@ -80,7 +80,7 @@ impl CommandStyle for RegionCommand {
         if style.text == "delete" {
             return delete(cx, name, word);
         }
-        if cx.world.regions.contains_key(&name)
+        if cx.world.regions.find(&name).is_some()
             && !cx.world.parts.restored.contains(&format!("region/{name}"))
         {
             let text = format!("region `{name}` exists already");
@@ -111,14 +111,14 @@ impl CommandStyle for RegionCommand {
         region.open_holds_all(cx.world.settings.lammps());
         Ok(setting(move |cx| {
             cx.world.parts.restored.remove(&format!("region/{name}"));
-            cx.world.regions.insert(name, region);
+            cx.world.regions.insert(Key::new(&name), region);
             Ok(())
         }))
     }
 }
 
 fn delete(cx: &BuildCx, name: String, word: &Word) -> Result<Box<dyn Act>> {
-    if !cx.world.regions.contains_key(&name) {
+    if cx.world.regions.find(&name).is_none() {
         return fail(Code::UNKNOWN_REGION, word.span, format!("there is no region `{name}`"));
     }
     // Walls look their region up at every run: it may be made anew until then.
@@ -134,7 +134,7 @@ fn delete(cx: &BuildCx, name: String, word: &Word) -> Result<Box<dyn Act>> {
         return fail(Code::CONFLICT, word.span, text);
     }
     Ok(setting(move |cx| {
-        cx.world.regions.remove(&name);
+        cx.world.regions.remove(Key::new(&name));
         Ok(())
     }))
 }
@@ -269,7 +269,7 @@ mod tests {
         assert!(!w.regions["o"].contains([0.5, -5.0, 2.0]) && w.regions["o"].contains([5.0, 5.0, 5.0]));
         more(&mut w, "region w cylinder z 0 0 1 0 2 open 3 side out\nregion e delete");
         assert_eq!(w.regions["w"].open, 4);
-        assert!(!w.regions.contains_key("e"));
+        assert!(w.regions.find("e").is_none());
     }
 
     #[test]

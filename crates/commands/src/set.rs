@@ -207,17 +207,17 @@ fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
             let d = usize::from(keyword.text.as_bytes()[1] - b'x');
             value(a, cx, "the velocity", None).map(|p| Change::Velocity(d, p))
         }
-        HEATFLOW => {
+        custom if custom == HEATFLOW.text() => {
             let text = "the heat flow is computed anew in each step: it cannot be set";
             fail(Code::CONFLICT, keyword.span, text)
         }
-        TEMPERATURE if cx.world.columns.custom(TEMPERATURE).is_none() => {
+        custom if custom == TEMPERATURE.text() && cx.world.columns.property(*TEMPERATURE).is_none() => {
             let d = Diagnostic::error(Code::INCOMPLETE, keyword.span, "these particles have no temperature");
             Err(d.help("`fix ID all property/atom temperature` gives them one").into())
         }
         custom => match cx.world.columns.custom(custom) {
             Some(column) => {
-                let limit = (custom == TEMPERATURE).then_some(Limit::NotNegative);
+                let limit = (custom == TEMPERATURE.text()).then_some(Limit::NotNegative);
                 let (at, known) = (a.here(), a.peek().is_some_and(|w| !w.unknown));
                 let p = value(a, cx, if limit.is_some() { "the temperature" } else { "the value" }, limit)?;
                 let whole = custom.starts_with('i');

@@ -1,6 +1,7 @@
 //! compute displace/atom: how far each particle has come since the compute was declared.
 
-use super::{Compute, ComputeStyle, origin};
+use super::origin::Origin;
+use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_base::par;
 use perigrain_lang::{Args, RefKind, ValueRef};
@@ -45,13 +46,14 @@ impl ComputeStyle for DisplaceAtom {
             cx.reading(&r, Wants::PerAtom)?;
             refresh = Some(r);
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, refresh }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), origin: Origin::of(cx.id), group: cx.group, refresh }))
     }
 }
 
 #[derive(Clone)]
 struct Declared {
     id: String,
+    origin: Origin,
     group: GroupId,
     refresh: Option<ValueRef>,
 }
@@ -62,27 +64,27 @@ impl Compute for Declared {
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
-        origin::capture(w, &self.id, [0.0; 3]);
+        self.origin.capture(w, [0.0; 3]);
         Ok(())
     }
 
     fn welcome(&self, w: &mut World) {
-        origin::welcome(w, &self.id, [0.0; 3]);
+        self.origin.welcome(w, [0.0; 3]);
     }
 
     fn remove(&self, w: &mut World) {
-        origin::forget(w, &self.id);
+        self.origin.forget(w);
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         self.welcome(cx.world());
-        let (id, group) = (self.id.clone(), self.group);
+        let (places, group) = (self.origin.places, self.group);
         Ok(fill(
             &self.id,
             &Wanted { slot, stage, when },
             X | IMAGE | MASK | BOX | COLUMNS,
             move |w, _, out| {
-                let (bit, start) = (group.bit(), origin::places(w, &id));
+                let (bit, start) = (group.bit(), w.columns.get_vector(places).unwrap_or(&[]));
                 out.cols = 4;
                 out.atom.resize(4 * w.n(), 0.0);
                 par::each(out.atom.as_chunks_mut::<4>().0, |first, rows| {
@@ -104,13 +106,14 @@ impl Compute for Declared {
     fn refresh(&self, cx: &mut dyn SealCx, stage: Stage, when: &When) -> Result<Option<Box<dyn Op>>> {
         let Some(r) = &self.refresh else { return Ok(None) };
         let reading = cx.reading(r, Wants::PerAtom, stage, when)?;
-        let (id, group) = (self.id.clone(), self.group);
-        let name = format!("compute {id} refresh");
+        let (places, group) = (self.origin.places, self.group);
+        let name = format!("compute {} refresh", self.id);
         let op = StepOp::new(name, stage, Needs::new().read(X | IMAGE | MASK), move |w: &mut World, _| {
             let chosen = |i: &usize| w.particles.mask[*i] & group.bit() != 0 && reading.atom(w, *i) != 0.0;
             let new: Vec<(usize, [f64; 3])> =
                 (0..w.n()).filter(chosen).map(|i| (i, unwrapped(w, i))).collect();
-            let places = origin::places_mut(w, &id);
+            let n = w.n();
+            let places = w.columns.vector(places, n);
             new.into_iter().for_each(|(i, x)| places[i] = x);
             Ok(())
         });
@@ -137,7 +140,7 @@ mod tests {
         let slot = b.evaluate(&*c).unwrap();
         assert_eq!(slot.atom, [2.0, 0.0, 1.0, 5f64.sqrt(), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         c.remove(&mut b.world);
-        assert!(origin::places(&b.world, "c").is_empty());
+        assert!(b.world.columns.names().is_empty());
         assert!(b.compute(&DisplaceAtom, "fresh v").is_err());
     }
 }

@@ -156,7 +156,8 @@ fn need_spheres(what: &str, cx: &BuildCx) -> Result<()> {
 /// Refuses what needs families where particles cannot have any.
 fn need_bonds(what: &str, cx: &BuildCx) -> Result<()> {
     let w = cx.world;
-    if w.particles.style.peri || (w.particles.style.bonded && w.columns.custom(VOLUME_PROPERTY).is_some()) {
+    if w.particles.style.peri || (w.particles.style.bonded && w.columns.property(*VOLUME_PROPERTY).is_some())
+    {
         return Ok(());
     }
     Err(Diagnostic::error(

@@ -1,6 +1,7 @@
 //! compute msd: mean squared displacement since the compute was declared.
 
-use super::{Compute, ComputeStyle, origin};
+use super::origin::Origin;
+use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, When};
@@ -8,7 +9,7 @@ use perigrain_styles::matter::{Masses, check_masses, count, sum, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, X};
-use perigrain_world::{GroupId, SlotId, World};
+use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
 
 /// The style.
 pub struct Msd;
@@ -39,13 +40,20 @@ impl ComputeStyle for Msd {
                 _ => average = args.flag("average")?,
             }
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, com, average }))
+        Ok(Box::new(Declared {
+            id: cx.id.to_string(),
+            origin: Origin::of(cx.id),
+            group: cx.group,
+            com,
+            average,
+        }))
     }
 }
 
 #[derive(Clone)]
 struct Declared {
     id: String,
+    origin: Origin,
     group: GroupId,
     com: bool,
     average: bool,
@@ -67,8 +75,8 @@ impl Declared {
     }
 
     /// How often a mean of places has been taken, by the world's memory.
-    fn key(&self) -> String {
-        format!("compute {} uses", self.id)
+    fn key(&self) -> Numbers {
+        Key::new(&format!("compute {} uses", self.id))
     }
 }
 
@@ -78,24 +86,24 @@ impl Compute for Declared {
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
-        w.memo.remove(&self.key());
+        w.memo.remove(self.key());
         let shift = self.shift(w);
-        origin::capture(w, &self.id, shift);
+        self.origin.capture(w, shift);
         Ok(())
     }
 
     fn welcome(&self, w: &mut World) {
-        origin::welcome(w, &self.id, [0.0; 3]);
+        self.origin.welcome(w, [0.0; 3]);
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.key());
-        origin::forget(w, &self.id);
+        w.memo.remove(self.key());
+        self.origin.forget(w);
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         self.welcome(cx.world());
-        let (me, span) = (self.clone(), cx.span());
+        let (me, span, key, places) = (self.clone(), cx.span(), self.key(), self.origin.places);
         if self.com {
             check_masses(cx.world(), span)?;
         }
@@ -110,19 +118,19 @@ impl Compute for Declared {
             move |w: &mut World, t| {
                 let (shift, bit) = (me.shift(w), me.group.bit());
                 if me.average {
-                    let uses = w.memo.entry(me.key()).or_insert_with(|| vec![0.0]);
+                    let uses = w.memo.get_or(key, || vec![0.0]);
                     uses[0] += 1.0;
-                    let (uses, part) = (uses[0], 1.0 / (uses[0] + 1.0));
-                    let mut places = std::mem::take(origin::places_mut(w, &me.id));
+                    let (uses, part, n) = (uses[0], 1.0 / (uses[0] + 1.0), w.n());
+                    let mut means = std::mem::take(w.columns.vector(places, n));
                     for (i, place) in
-                        places.iter_mut().enumerate().filter(|(i, _)| w.particles.mask[*i] & bit != 0)
+                        means.iter_mut().enumerate().filter(|(i, _)| w.particles.mask[*i] & bit != 0)
                     {
                         let x = unwrapped(w, i);
                         *place = std::array::from_fn(|d| (place[d] * uses + (x[d] - shift[d])) * part);
                     }
-                    *origin::places_mut(w, &me.id) = places;
+                    *w.columns.vector(places, n) = means;
                 }
-                let start = origin::places(w, &me.id);
+                let start = w.columns.get_vector(places).unwrap_or(&[]);
                 let [x, y, z, all] = sum(&w.particles.mask, me.group, |i| {
                     let x = unwrapped(w, i);
                     let [a, b, c]: [f64; 3] = std::array::from_fn(|d| {

@@ -6,8 +6,8 @@ use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::SlotId;
 use perigrain_world::field::TALLY;
+use perigrain_world::{Key, SlotId};
 
 /// The style.
 pub struct PairEnergy;
@@ -53,14 +53,14 @@ impl ComputeStyle for PairEnergy {
         if !args.is_empty() {
             coulomb = args.choice("part of the energy", &["epair", "evdwl", "ecoul"])? == "ecoul";
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), style: word.text.clone(), coulomb }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), style: Key::new(&word.text), coulomb }))
     }
 }
 
 #[derive(Clone)]
 struct Declared {
     id: String,
-    style: String,
+    style: Key<f64>,
     coulomb: bool,
 }
 
@@ -78,8 +78,8 @@ impl Compute for Declared {
                 let text = format!("the energy is not known at step {}", t.step);
                 return fail(Code::WRONG_ORDER, None, text);
             }
-            let all = ["hybrid", "hybrid/overlay"].contains(&me.style.as_str());
-            let energy = if all { tally.pair } else { tally.styles.get(&me.style).copied().unwrap_or(0.0) };
+            let all = ["hybrid", "hybrid/overlay"].contains(&me.style.text());
+            let energy = if all { tally.pair } else { tally.styles.get(me.style).copied().unwrap_or(0.0) };
             out.scalar = if me.coulomb { 0.0 } else { energy };
             Ok(())
         }))

@@ -16,7 +16,7 @@ use perigrain_world::field::{
     VOLUME, X, X0,
 };
 use perigrain_world::index::Index;
-use perigrain_world::{AtomStyle, GroupId, SlotId, World};
+use perigrain_world::{AtomStyle, GroupId, Numbers, SlotId, World};
 use std::borrow::Cow;
 
 /// The style.
@@ -79,7 +79,7 @@ pub enum Getter {
     /// One that is found for all particles together.
     Whole(fn(&World) -> Vec<f64>),
     /// A column of fix property/atom.
-    Column(String),
+    Column(Numbers),
 }
 
 impl Getter {
@@ -89,7 +89,7 @@ impl Getter {
     /// Nobody has the property any more.
     pub fn present(&self, w: &World, span: Span) -> Result<Self> {
         let Getter::Column(full) = self else { return Ok(self.clone()) };
-        w.columns.present(full).map(Getter::Column).ok_or_else(|| gone(full, span).into())
+        w.columns.present(*full).map(Getter::Column).ok_or_else(|| gone(full.text(), span).into())
     }
 
     /// What reads the present values.
@@ -97,8 +97,8 @@ impl Getter {
         match self {
             Getter::Own(read) => Values::Own(w, *read),
             Getter::Whole(find) => Values::Found(Cow::Owned(find(w))),
-            Getter::Column(name) => {
-                Values::Found(Cow::Borrowed(w.columns.get_scalar(name).unwrap_or_default()))
+            Getter::Column(key) => {
+                Values::Found(Cow::Borrowed(w.columns.get_scalar(*key).unwrap_or_default()))
             }
         }
     }
@@ -260,7 +260,7 @@ pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
             .help("`fix ID all property/atom NAME` makes one; of several columns say which, as `d2_x[1]`")
             .into());
     }
-    if [TEMPERATURE, HEATFLOW].contains(&name) {
+    if [TEMPERATURE.text(), HEATFLOW.text()].contains(&name) {
         let text = format!("the particles of this scene have no `{name}`");
         let d = Diagnostic::error(Code::INCOMPLETE, word.span, text);
         return Err(d.help(format!("`fix ID all property/atom {name}` gives them one")).into());

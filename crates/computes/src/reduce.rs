@@ -322,9 +322,8 @@ impl Compute for Declared {
                 Input::Value(r) => Source::Reading(cx.reading(r, wants, stage, when)?),
             });
         }
-        let (group, region) = (self.group, self.region.clone());
+        let chosen = Chosen::new(cx.world(), self.group, self.region.as_deref(), span)?;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, X | V | F | MASK | REGIONS, move |w, _, out| {
-            let chosen = Chosen::new(w, group, region.as_deref(), span)?;
             let chosen = chosen.now(w);
             let p = &w.particles;
             let has = |i: usize| chosen.has(p.mask[i], p.x[i]);

@@ -5,11 +5,11 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::vec3::dot;
 use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Op, Stage, When};
-use perigrain_styles::rigid_bodies::{Body, bodies};
+use perigrain_styles::rigid_bodies::{Body, bodies, bodies_key};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, UseKind};
-use perigrain_world::SlotId;
 use perigrain_world::field::MEMO;
+use perigrain_world::{Numbers, SlotId};
 
 /// `compute ke/rigid`.
 pub struct KeRigid;
@@ -75,6 +75,11 @@ pub(super) struct RigidFix {
 }
 
 impl RigidFix {
+    /// Where the world keeps its bodies.
+    pub fn bodies(&self) -> Numbers {
+        bodies_key(self.style, &self.id)
+    }
+
     /// Takes the ID of a fix rigid.
     ///
     /// # Errors
@@ -110,9 +115,9 @@ impl Compute for Energy {
     }
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let me = self.clone();
+        let (me, kept) = (self.clone(), self.fix.bodies());
         Ok(fill(&self.id, &Wanted { slot, stage, when }, MEMO, move |w, _, out| {
-            let twice: f64 = bodies(w, me.fix.style, &me.fix.id).iter().map(me.twice).sum();
+            let twice: f64 = bodies(w, kept).iter().map(me.twice).sum();
             out.scalar = 0.5 * w.settings.units.constants().mvv2e * twice;
             Ok(())
         }))

@@ -12,7 +12,7 @@ use perigrain_styles::rigid_bodies::{Body, bodies, body_column};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, IMAGE, MASK, MEMO, MOLECULE, SLOTS, TAG, X};
-use perigrain_world::{GroupId, SlotId, World};
+use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
 
 /// The style.
 pub struct RigidLocal;
@@ -107,13 +107,13 @@ struct Declared {
 
 impl Declared {
     /// Under which name the world remembers the ids of owners.
-    fn key(&self) -> String {
-        format!("compute {} owners", self.id)
+    fn key(&self) -> Numbers {
+        Key::new(&format!("compute {} owners", self.id))
     }
 
     /// Chooses owners of the bodies from number `known` on.
-    fn owners(&self, w: &World, known: usize, count: usize) -> Vec<f64> {
-        let of = w.columns.get_scalar(&body_column(self.fix.style, &self.fix.id)).unwrap_or_default();
+    fn owners(w: &World, column: Numbers, known: usize, count: usize) -> Vec<f64> {
+        let of = w.columns.get_scalar(column).unwrap_or_default();
         let mut boxes = vec![([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]); count];
         let members = || (0..w.n()).filter_map(|i| Some((i, (*of.get(i)? as usize).checked_sub(1 + known)?)));
         for (i, k) in members().filter(|(_, k)| *k < count) {
@@ -168,7 +168,7 @@ impl Compute for Declared {
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.key());
+        w.memo.remove(self.key());
     }
 
     fn begins(&self) -> bool {
@@ -176,7 +176,8 @@ impl Compute for Declared {
     }
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let me = self.clone();
+        let (me, key) = (self.clone(), self.key());
+        let (kept, column) = (self.fix.bodies(), body_column(self.fix.style, &self.fix.id));
         let name = format!("compute {}", self.id);
         let op = StepOp::new(
             name,
@@ -186,13 +187,12 @@ impl Compute for Declared {
                 .write(SLOTS)
                 .keep(MEMO),
             move |w: &mut World, t| {
-                let bodies: Vec<Body> =
-                    bodies(w, me.fix.style, &me.fix.id).into_iter().map(ascending).collect();
-                let mut owners = w.memo.remove(&me.key()).unwrap_or_default();
+                let bodies: Vec<Body> = bodies(w, kept).into_iter().map(ascending).collect();
+                let mut owners = w.memo.remove(key).unwrap_or_default();
                 owners.truncate(bodies.len());
-                owners.extend(me.owners(w, owners.len(), bodies.len() - owners.len()));
+                owners.extend(Self::owners(w, column, owners.len(), bodies.len() - owners.len()));
                 let rows = me.rows(w, &owners, &bodies);
-                w.memo.insert(me.key(), owners);
+                w.memo.insert(key, owners);
                 let out = w.slots.get_mut(slot);
                 (out.step, out.local, out.local_cols) = (Some(t.step), rows, me.list.len());
                 Ok(())

@@ -6,7 +6,7 @@ use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_styles::matter::{Chosen, sum};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::{GroupId, World};
+use perigrain_world::{GroupId, Key, Region, World};
 
 /// The style.
 pub struct TempRegion;
@@ -33,17 +33,17 @@ impl ComputeStyle for TempRegion {
         let word = args.expect("a region")?;
         cx.region(word)?;
         args.finish()?;
-        Ok(Box::new(Thermal::new(Inside(word.text.clone()), cx)))
+        Ok(Box::new(Thermal::new(Inside(Key::new(&word.text)), cx)))
     }
 }
 
 /// All outside of the region of this name is taken away.
 #[derive(Clone)]
-struct Inside(String);
+struct Inside(Key<Region>);
 
 impl Inside {
     fn has(&self, w: &World, i: usize) -> bool {
-        w.regions.get(&self.0).is_some_and(|r| r.contains(w.particles.x[i]))
+        w.regions.get(self.0).is_some_and(|r| r.contains(w.particles.x[i]))
     }
 }
 
@@ -67,7 +67,7 @@ impl Streams for Inside {
 
     fn check(&self, cx: &mut dyn SealCx) -> Result<()> {
         let span = cx.span();
-        Chosen::new(cx.world(), GroupId::ALL, Some(&self.0), span).map(drop)
+        Chosen::new(cx.world(), GroupId::ALL, Some(self.0.text()), span).map(drop)
     }
 }
 
@@ -76,14 +76,14 @@ mod tests {
     use super::*;
     use perigrain_styles::testing::Bench;
     use perigrain_world::AtomStyle;
-    use perigrain_world::region::{Region, Shape};
+    use perigrain_world::region::Shape;
 
     #[test]
     fn who_is_inside_counts() {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
         b.world.particles.v = vec![[1.0, 2.0, 0.0], [4.0, 2.0, 0.0], [4.0, 5.0, 0.0]].into();
         let block = Shape::Block { lo: [-1.0; 3], hi: [1.5; 3] };
-        b.world.regions.insert("left".into(), Region::inside(block));
+        b.world.regions.insert(Key::new("left"), Region::inside(block));
         let mut c = b.compute(&TempRegion, "left").unwrap();
         // By hand, m = 2: Σ m v² = 2 (5 + 20) over 6 − 3 degrees of freedom, then 6.
         assert!((b.evaluate(&*c).unwrap().scalar - 50.0 / 3.0).abs() < 1e-14);

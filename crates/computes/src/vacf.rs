@@ -8,7 +8,7 @@ use perigrain_styles::matter::{count, keep_places, sum};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{COLUMNS, MASK, V};
-use perigrain_world::{GroupId, SlotId, World};
+use perigrain_world::{GroupId, Key, SlotId, Vectors, World};
 
 /// The style.
 pub struct Vacf;
@@ -32,21 +32,17 @@ impl Style for Vacf {
 impl ComputeStyle for Vacf {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         args.finish()?;
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group }))
+        let key = Key::new(&format!("compute {} velocity", cx.id));
+        Ok(Box::new(Declared { id: cx.id.to_string(), key, group: cx.group }))
     }
 }
 
 #[derive(Clone)]
 struct Declared {
     id: String,
-    group: GroupId,
-}
-
-impl Declared {
     /// The column with the first velocities.
-    fn key(&self) -> String {
-        format!("compute {} velocity", self.id)
-    }
+    key: Vectors,
+    group: GroupId,
 }
 
 impl Compute for Declared {
@@ -63,18 +59,18 @@ impl Compute for Declared {
     fn welcome(&self, w: &mut World) {
         let n = w.n();
         w.columns.resize(n);
-        keep_places(w, &self.key(), GroupId::ALL, |w, i| w.particles.v[i]);
+        keep_places(w, self.key, GroupId::ALL, |w, i| w.particles.v[i]);
     }
 
     fn remove(&self, w: &mut World) {
-        w.columns.remove(&self.key());
+        w.columns.remove(self.key);
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         self.welcome(cx.world());
-        let me = self.clone();
+        let (me, key) = (self.clone(), self.key);
         Ok(fill(&self.id, &Wanted { slot, stage, when }, V | MASK | COLUMNS, move |w, _, out| {
-            let first = w.columns.get_vector(&me.key()).unwrap_or(&[]);
+            let first = w.columns.get_vector(key).unwrap_or(&[]);
             let [x, y, z] = sum(&w.particles.mask, me.group, |i| {
                 let (now, then) = (w.particles.v[i], first.get(i).copied().unwrap_or_default());
                 std::array::from_fn(|d| now[d] * then[d])

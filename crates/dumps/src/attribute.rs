@@ -8,7 +8,7 @@ use perigrain_out::dump::Data;
 use perigrain_out::formats::Kind;
 use perigrain_plan::{Stage, When};
 use perigrain_styles::{BuildCx, Reading, SealCx, Wants};
-use perigrain_world::{Domain, World};
+use perigrain_world::{Domain, Numbers, World};
 
 /// An attribute as a deck names it.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub enum Source {
     /// A compute, fix or atom-style variable.
     Value(ValueRef),
     /// A column of fix property/atom; whole numbers or not.
-    Custom(String, bool),
+    Custom(Numbers, bool),
 }
 
 /// Core properties; numbers are axes.
@@ -190,9 +190,9 @@ impl Attribute {
                 let own = cx.reading(r, Wants::PerAtom, Stage::Output, when);
                 Ok(Bound::Value(own.or_else(|_| cx.value(r, Stage::Output, when))?))
             }
-            Source::Custom(full, int) => match cx.world().columns.present(full) {
+            Source::Custom(full, int) => match cx.world().columns.present(*full) {
                 Some(column) => Ok(Bound::Custom(column, *int)),
-                None => Err(gone(full, cx.span()).into()),
+                None => Err(gone(full.text(), cx.span()).into()),
             },
         }
     }
@@ -229,7 +229,7 @@ pub enum Bound {
     /// In a slot.
     Value(Reading),
     /// In a column of fix property/atom; whole numbers or not.
-    Custom(String, bool),
+    Custom(Numbers, bool),
 }
 
 impl Bound {
@@ -243,7 +243,7 @@ impl Bound {
                 return Data::float(move |i| reading.atom(w, i));
             }
             Bound::Custom(column, int) => {
-                let column = w.columns.get_scalar(column).unwrap_or_default();
+                let column = w.columns.get_scalar(*column).unwrap_or_default();
                 let at = move |i: usize| column.get(i).copied().unwrap_or(0.0);
                 return if *int { Data::int(move |i| at(i) as i64) } else { Data::float(at) };
             }

@@ -24,7 +24,7 @@ pub use keywords::{column, unknown};
 use perigrain_world::field::{
     BOX, COLUMNS, F, FACTS, IMAGE, KIND, MASK, MASS, OMEGA, RADIUS, REGIONS, SLOTS, TAG, TORQUE, V, VOLUME, X,
 };
-use perigrain_world::{Domain, GroupId, World};
+use perigrain_world::{Domain, GroupId, Key, Numbers, Region, World};
 
 /// What outlives a run: open files and what belongs to them.
 #[derive(Debug)]
@@ -103,7 +103,7 @@ pub struct Base {
     refresh: Option<String>,
     /// Names of types.
     pub elements: Vec<String>,
-    region: Option<String>,
+    region: Option<Key<Region>>,
     thresholds: Vec<Threshold>,
     /// Order of rows.
     pub sort: Sort,
@@ -230,6 +230,8 @@ impl Base {
             None => None,
         };
         let base = self.clone();
+        let key = |k: usize| Key::new(&format!("dump {} last {k}", self.id));
+        let kept: Vec<Numbers> = (0..tested.len()).map(key).collect();
         let act = move |w: &mut World, t: &Tick| {
             let due = base.due(w, t, every, &mut clock)?;
             base.aim();
@@ -241,7 +243,7 @@ impl Base {
             let wrapped = base.pbc.then(|| wrapped(world, domain));
             let frame = Frame { world, domain, wrapped: wrapped.as_deref(), elements: &base.elements };
             let data: Vec<Data<'_>> = shown.iter().map(|b| b.data(&frame)).collect();
-            let (rows, last) = base.rows(&frame, &tested, &data).map_err(|e| e.at(span))?;
+            let (rows, last) = base.rows(&frame, (&tested, &kept), &data).map_err(|e| e.at(span))?;
             let mut state = base.state();
             let shot = Shot { world, step: t.step, rows, data, state: &mut state };
             write(shot).map_err(|e| e.at(span))?;
@@ -249,7 +251,7 @@ impl Base {
             base.keep_few(&mut state, t.step)?;
             drop(state);
             let n = w.n();
-            last.into_iter().for_each(|(key, values)| *w.columns.scalar(&key, n) = values);
+            last.into_iter().for_each(|(key, values)| *w.columns.scalar(key, n) = values);
             refresh.as_mut().map_or(Ok(()), |op| op.run(w, t))
         };
         let name = format!("dump {} {}", self.id, self.style);
@@ -335,20 +337,24 @@ impl Base {
     }
 
     /// Particles that pass, in order, and the values that `LAST` will compare with next time.
-    fn rows(&self, frame: &Frame<'_>, tested: &[Test<Bound>], data: &[Data<'_>]) -> Result<(Vec<u32>, Last)> {
+    fn rows(
+        &self,
+        frame: &Frame<'_>,
+        (tested, kept): (&[Test<Bound>], &[Numbers]),
+        data: &[Data<'_>],
+    ) -> Result<(Vec<u32>, Last)> {
         let w = frame.world;
-        let region = match &self.region {
+        let region = match self.region {
             None => None,
-            Some(name) => match w.regions.get(name) {
+            Some(key) => match w.regions.get(key) {
                 Some(region) => Some(region),
-                None => return fail(Code::UNKNOWN_REGION, None, format!("region `{name}` is gone")),
+                None => return fail(Code::UNKNOWN_REGION, None, format!("region `{key}` is gone")),
             },
         };
         let (bit, p) = (self.group.bit(), &w.particles);
         let tests: Vec<Test<Data<'_>>> =
             tested.iter().map(|(b, compare, value)| (b.data(frame), *compare, *value)).collect();
-        let key = |k: usize| format!("dump {} last {k}", self.id);
-        let before: Vec<Option<&[f64]>> = (0..tests.len()).map(|k| w.columns.get_scalar(&key(k))).collect();
+        let before: Vec<Option<&[f64]>> = kept.iter().map(|key| w.columns.get_scalar(*key)).collect();
         let passes = |i: usize| {
             let holds = |(k, (data, compare, value)): (usize, &Test<Data<'_>>)| {
                 let value = value.or_else(|| before[k].and_then(|b| b.get(i).copied()));
@@ -365,13 +371,14 @@ impl Base {
             _ => sort_rows(&mut rows, &Data::int(|i| i64::from(p.tag[i])), false),
         }
         let against_last = tests.iter().enumerate().filter(|(_, t)| t.2.is_none());
-        let last = against_last.map(|(k, t)| (key(k), (0..w.n()).map(|i| t.0.number(i)).collect())).collect();
+        let last =
+            against_last.map(|(k, t)| (kept[k], (0..w.n()).map(|i| t.0.number(i)).collect())).collect();
         Ok((rows, last))
     }
 }
 
-/// Values of this snapshot for the next one, by the name of their column.
-type Last = Vec<(String, Vec<f64>)>;
+/// Values of this snapshot for the next one, and their columns.
+type Last = Vec<(Numbers, Vec<f64>)>;
 
 /// Places and box crossings wrapped into the box.
 fn wrapped(w: &World, domain: &Domain) -> Vec<([f64; 3], [i32; 3])> {

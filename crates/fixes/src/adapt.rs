@@ -10,7 +10,7 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
 use perigrain_world::field::{COLUMNS, LISTS, MASK, MASS, MEMO, RADIUS, SLOTS};
-use perigrain_world::{GroupId, World};
+use perigrain_world::{GroupId, Key, Numbers, World};
 use std::f64::consts::PI;
 
 /// The style.
@@ -48,6 +48,8 @@ impl FixStyle for Adapt {
         let every = args.integer_from(0, "the number of steps N")?;
         let mut fix = Declared {
             id: cx.id.to_string(),
+            factor: Key::new(&format!("adapt/{}/factor", cx.id)),
+            columns: ["radius", "mass"].map(|what| Key::new(&format!("adapt/{}/{what}", cx.id))),
             group: cx.group,
             every,
             size: None,
@@ -135,6 +137,10 @@ fn variable(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
 #[derive(Clone)]
 struct Declared {
     id: String,
+    /// Where the factor of the last change is remembered.
+    factor: Numbers,
+    /// The columns that hold radii and masses before a run.
+    columns: [Numbers; 2],
     group: GroupId,
     every: i64,
     size: Option<Size>,
@@ -145,14 +151,9 @@ struct Declared {
 }
 
 impl Declared {
-    /// Where the factor of the last change is remembered.
-    fn factor(&self) -> String {
-        format!("adapt/{}/factor", self.id)
-    }
-
-    /// Names of the columns that hold radii and masses before a run.
-    fn columns(&self) -> [String; 2] {
-        ["radius", "mass"].map(|what| format!("adapt/{}/{what}", self.id))
+    /// What is above all that is remembered.
+    fn key(&self) -> Numbers {
+        Key::new(&format!("adapt/{}", self.id))
     }
 }
 
@@ -165,30 +166,30 @@ impl Size {
 
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
-        w.memo.insert(self.factor(), vec![1.0]);
+        w.memo.insert(self.factor, vec![1.0]);
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
-        forget(w, &format!("adapt/{}", self.id));
-        self.columns().iter().for_each(|c| w.columns.remove(c));
+        forget(w, self.key());
+        self.columns.into_iter().for_each(|c| w.columns.remove(c));
     }
 
     fn welcome(&self, w: &mut World) {
-        let [radius, mass] = self.columns();
-        if !w.memo.contains_key(&radius) {
+        let [radius, mass] = self.columns;
+        if !w.memo.contains(radius) {
             return;
         }
         let n = w.n();
-        let mut kept = std::mem::take(w.columns.scalar(&radius, n));
-        let mut masses = std::mem::take(w.columns.scalar(&mass, n));
+        let mut kept = std::mem::take(w.columns.scalar(radius, n));
+        let mut masses = std::mem::take(w.columns.scalar(mass, n));
         for (i, (radius, mass)) in kept.iter_mut().zip(&mut masses).enumerate() {
             if *mass == 0.0 {
                 (*radius, *mass) = (w.particles.radius[i], w.particles.mass[i]);
             }
         }
-        *w.columns.scalar(&radius, n) = kept;
-        *w.columns.scalar(&mass, n) = masses;
+        *w.columns.scalar(radius, n) = kept;
+        *w.columns.scalar(mass, n) = masses;
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -236,14 +237,14 @@ impl Op for Change {
             let text = format!("`{variable}` is {value} at step {}: no size of particles", t.step);
             return fail(Code::BAD_VALUE, variable.span, text);
         }
-        let [radius, mass] = fix.columns();
-        if t.setup && fix.reset && !w.memo.contains_key(&radius) {
+        let [radius, mass] = fix.columns;
+        if t.setup && fix.reset && !w.memo.contains(radius) {
             let (radii, masses) = (w.particles.radius.clone(), w.particles.mass.clone());
-            *w.columns.scalar(&radius, n) = radii.to_vec();
-            *w.columns.scalar(&mass, n) = masses.to_vec();
+            *w.columns.scalar(radius, n) = radii.to_vec();
+            *w.columns.scalar(mass, n) = masses.to_vec();
             w.memo.insert(radius, vec![]);
         }
-        let before = w.memo.insert(fix.factor(), vec![value]).and_then(|m| m.first().copied()).unwrap_or(1.0);
+        let before = w.memo.insert(fix.factor, vec![value]).and_then(|m| m.first().copied()).unwrap_or(1.0);
         let (p, mut most) = (&mut w.particles, 0.0_f64);
         for i in (0..n).filter(|&i| p.mask[i] & fix.group.bit() != 0) {
             let new = if fix.scale { p.radius[i] * (value / before) } else { 0.5 * value };
@@ -260,16 +261,16 @@ impl Op for Change {
         Ok(())
     }
     fn finish(&mut self, w: &mut World) -> Result<()> {
-        let [radius, mass] = self.fix.columns();
-        if w.memo.remove(&radius).is_none() {
+        let [radius, mass] = self.fix.columns;
+        if w.memo.remove(radius).is_none() {
             return Ok(());
         }
         let n = w.n();
-        let (radii, masses) = (w.columns.scalar(&radius, n).clone(), w.columns.scalar(&mass, n).clone());
+        let (radii, masses) = (w.columns.scalar(radius, n).clone(), w.columns.scalar(mass, n).clone());
         (*w.particles.radius, *w.particles.mass) = (radii, masses);
-        w.columns.remove(&radius);
-        w.columns.remove(&mass);
-        w.memo.insert(self.fix.factor(), vec![1.0]);
+        w.columns.remove(radius);
+        w.columns.remove(mass);
+        w.memo.insert(self.fix.factor, vec![1.0]);
         w.touch();
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! fix ave/atom: averages of per-atom values over time.
 
-use super::window::{Schedule, forget};
+use super::window::{Kept, Schedule, forget};
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Result, fail};
 use perigrain_base::par;
@@ -9,7 +9,7 @@ use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{COLUMNS, F, MASK, MEMO, SLOTS, V, X};
-use perigrain_world::{GroupId, Slot, World};
+use perigrain_world::{GroupId, Key, Numbers, Slot, World};
 
 /// The style.
 pub struct AveAtom;
@@ -124,13 +124,14 @@ struct Declared {
 }
 
 impl Declared {
-    fn key(&self) -> String {
-        format!("ave/atom/{}", self.id)
+    fn kept(&self) -> Kept {
+        Kept::below(Key::new(&format!("ave/atom/{}", self.id)))
     }
 
-    /// The column of the sums of one value.
-    fn column(&self, k: usize) -> String {
-        format!("{}/{k}", self.key())
+    /// The columns of the sums of values.
+    fn columns(&self) -> Vec<Numbers> {
+        let key = self.kept().key;
+        (0..self.inputs.len()).map(|k| key.with(&format!("/{k}"))).collect()
     }
 }
 
@@ -141,7 +142,7 @@ impl Fix for Declared {
 
     fn declare(&self, w: &mut World) -> Result<()> {
         self.remove(w);
-        self.schedule.declare(w, &self.key());
+        self.schedule.declare(w, &self.kept());
         let (name, cols) = (format!("f_{}", self.id), self.inputs.len());
         let slot = w.slots.id(&name);
         let step = Some(w.clock.step);
@@ -150,8 +151,8 @@ impl Fix for Declared {
     }
 
     fn remove(&self, w: &mut World) {
-        forget(w, &self.key());
-        (0..self.inputs.len()).for_each(|k| w.columns.remove(&self.column(k)));
+        forget(w, self.kept().key);
+        self.columns().into_iter().for_each(|column| w.columns.remove(column));
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -160,15 +161,15 @@ impl Fix for Declared {
         for input in &self.inputs {
             sources.push(input.source(cx, Wants::PerAtom, Stage::EndOfStep, &when)?);
         }
-        let (me, key, slot) = (self.clone(), self.key(), cx.slot(&format!("f_{}", self.id)));
+        let (me, kept, columns) = (self.clone(), self.kept(), self.columns());
+        let slot = cx.slot(&format!("f_{}", self.id));
         let access = Needs::new().read(SLOTS | X | V | F | MASK).write(SLOTS).keep(MEMO | COLUMNS);
         let op = StepOp::new(format!("fix {} ave/atom", self.id), Stage::EndOfStep, access, move |w, t| {
-            let Some(due) = me.schedule.due(w, &key, t.step) else { return Ok(()) };
+            let Some(due) = me.schedule.due(w, &kept, t.step) else { return Ok(()) };
             let (n, cols, bit) = (w.n(), sources.len(), me.group.bit());
             let mut means = vec![0.0; if due.last { n * cols } else { 0 }];
-            for (k, source) in sources.iter().enumerate() {
-                let name = me.column(k);
-                let mut sums = std::mem::take(w.columns.scalar(&name, n));
+            for (k, (source, column)) in sources.iter().zip(&columns).enumerate() {
+                let mut sums = std::mem::take(w.columns.scalar(*column, n));
                 let world = &*w;
                 par::each((&mut sums[..], &world.particles.mask[..]), |start, (sums, mask)| {
                     for (i, (sum, mask)) in sums.iter_mut().zip(mask).enumerate() {
@@ -180,7 +181,7 @@ impl Fix for Declared {
                 for (mean, sum) in means.iter_mut().skip(k).step_by(cols).zip(&sums) {
                     *mean = sum / me.schedule.repeat as f64;
                 }
-                *w.columns.scalar(&name, n) = sums;
+                *w.columns.scalar(*column, n) = sums;
             }
             if due.last {
                 let out = w.slots.get_mut(slot);
@@ -219,7 +220,7 @@ mod tests {
         }
         assert_eq!(b.slot_of("f_f").atom, [3.5, 3.0, 0.0, 0.0]);
         fix.remove(&mut b.world);
-        assert!(b.world.memo.is_empty() && b.world.columns.get_scalar("ave/atom/f/0").is_none());
+        assert!(b.world.memo.is_empty() && b.world.columns.names().is_empty());
         for words in ["1 2", "1 2 2", "1 2 2 vq", "1 3 2 vx", "2 1 3 vx", "1 1 1 c_t"] {
             assert!(b.fix(&AveAtom, words).is_err(), "{words}");
         }

@@ -2,7 +2,7 @@
 
 use super::ave_atom::{Input, Source};
 use super::ave_time::{Output, number_format};
-use super::window::{Ave, Averager, Due, Schedule, forget};
+use super::window::{Ave, Averager, Due, Kept, Schedule, forget};
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::cformat::{Format, Value, general, shortest};
@@ -15,7 +15,7 @@ use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Flow, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{BOX, F, KIND, MASK, MASS, MEMO, REGIONS, SLOTS, TYPE_MASS, V, X};
-use perigrain_world::{GroupId, SlotId, World};
+use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
 use std::fmt::Write;
 
 /// The style.
@@ -157,8 +157,8 @@ struct Sample {
 }
 
 impl Declared {
-    fn key(&self) -> String {
-        format!("ave/chunk/{}", self.id)
+    fn kept(&self) -> Kept {
+        Kept::below(Key::new(&format!("ave/chunk/{}", self.id)))
     }
 
     /// Adds a value.
@@ -266,9 +266,8 @@ impl Declared {
     }
 
     /// Adds a sample; after the last one of an average, its rows.
-    fn add(&self, w: &mut World, sample: Sample, due: Due) -> Option<Vec<f64>> {
-        let name = format!("{}/many", self.key());
-        let mut many = w.memo.remove(&name).unwrap_or_default();
+    fn add(&self, w: &mut World, key: Numbers, sample: Sample, due: Due) -> Option<Vec<f64>> {
+        let mut many = w.memo.remove(key).unwrap_or_default();
         let Sample { mut rows, volumes } = sample;
         if due.first || many.len() != rows.len() {
             many = vec![0.0; rows.len()];
@@ -278,7 +277,7 @@ impl Declared {
         }
         many.iter_mut().zip(&rows).for_each(|(sum, a)| *sum += a);
         if !due.last {
-            w.memo.insert(name, many);
+            w.memo.insert(key, many);
             return None;
         }
         let (width, repeat) = (1 + self.values.len(), self.schedule.repeat as f64);
@@ -344,17 +343,17 @@ impl Fix for Declared {
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
-        self.schedule.declare(w, &self.key());
+        self.schedule.declare(w, &self.kept());
         let name = format!("f_{}", self.id);
         let slot = w.slots.id(&name);
         *w.slots.get_mut(slot) =
             perigrain_world::Slot { name, array_cols: self.columns(), ..perigrain_world::Slot::default() };
-        if self.checking { Ok(()) } else { self.output.begin(w, &self.key(), &self.titles()) }
+        if self.checking { Ok(()) } else { self.output.begin(w, self.kept().key, &self.titles()) }
     }
 
     fn remove(&self, w: &mut World) {
-        forget(w, &self.key());
-        let_go(w, &self.chunks.id);
+        forget(w, self.kept().key);
+        let_go(w, self.chunks.window);
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -371,10 +370,11 @@ impl Fix for Declared {
         }
         let bias = self.bias.as_ref().map(|r| temp_flow::known(r, cx)).transpose()?;
         let chunk_slot = self.chunks.seal(cx, Stage::EndOfStep, &when)?;
-        let (me, key, slot) = (self.clone(), self.key(), cx.slot(&format!("f_{}", self.id)));
-        let mut sheet = self.output.sheet(cx.world(), &key);
+        let (me, kept, slot) = (self.clone(), self.kept(), cx.slot(&format!("f_{}", self.id)));
+        let mut sheet = self.output.sheet(cx.world(), kept.key);
+        let many = kept.key.with("/many");
         // Averages come here whole: each is joined with those before it.
-        let averager = Averager { key: key.clone(), repeat: 1, ave: self.ave, off: vec![] };
+        let averager = Averager { kept, repeat: 1, ave: self.ave, off: vec![] };
         let access = Needs::new()
             .read(X | V | F | MASS | MASK | SLOTS | BOX | REGIONS | TYPE_MASS | KIND)
             .write(SLOTS)
@@ -384,15 +384,15 @@ impl Fix for Declared {
             Stage::EndOfStep,
             access,
             move |w: &mut World, t| {
-                let Some(due) = me.schedule.due(w, &key, t.step) else { return Ok(()) };
+                let Some(due) = me.schedule.due(w, &kept, t.step) else { return Ok(()) };
                 let chunks = Chunks::of(w, chunk_slot, me.chunks.kind);
                 let flow = bias.as_ref().and_then(|b| b.flow(w));
                 let sample = me.sample(w, &sources, flow.as_ref(), &chunks);
                 if due.first {
                     let last = (me.ave == Ave::One).then(|| me.schedule.last(t.step));
-                    hold(w, &me.chunks.id, t.step, last, span)?;
+                    hold(w, me.chunks.window, t.step, last, span)?;
                 }
-                let Some(rows) = me.add(w, sample, due) else { return Ok(()) };
+                let Some(rows) = me.add(w, many, sample, due) else { return Ok(()) };
                 let whole = Due { first: true, last: true };
                 let Some((total, times)) = averager.add(w, &rows, whole) else { return Ok(()) };
                 let block = me.publish(w, t, [slot, chunk_slot], &total, times);

@@ -3,7 +3,7 @@
 use super::ave_atom::{Input, Source};
 use super::ave_time::Output;
 use super::bins::{Beyond, Bins, Histogram};
-use super::window::{Ave, Averager, Due, Schedule, forget};
+use super::window::{Ave, Averager, Due, Kept, Schedule, forget};
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_base::math::cformat::{general, shortest};
@@ -13,7 +13,7 @@ use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{F, MASK, MEMO, SLOTS, V, X};
-use perigrain_world::{GroupId, Slot, World};
+use perigrain_world::{GroupId, Key, Numbers, Slot, World};
 use std::fmt::Write;
 
 /// `fix ave/histo`.
@@ -210,9 +210,9 @@ struct Declared {
 }
 
 impl Declared {
-    fn key(&self) -> String {
+    fn kept(&self) -> Kept {
         let style = if self.weight { "ave/histo/weight" } else { "ave/histo" };
-        format!("{style}/{}", self.id)
+        Kept::below(Key::new(&format!("{style}/{}", self.id)))
     }
 
     /// The values of one input at present.
@@ -248,9 +248,9 @@ impl Declared {
     }
 
     /// Smallest and largest value of all samples that count now; `one` are those of this sample.
-    fn extremes(&self, w: &mut World, one: [f64; 2], due: Due) -> [f64; 2] {
+    fn extremes(&self, w: &mut World, key: Numbers, one: [f64; 2], due: Due) -> [f64; 2] {
         let lammps = w.settings.lammps();
-        let list = w.memo.entry(format!("{}/extremes", self.key())).or_default();
+        let list = w.memo.get_or(key, Vec::new);
         let fold = |list: &[f64]| {
             list.chunks_exact(2)
                 .fold([f64::INFINITY, f64::NEG_INFINITY], |e, p| [e[0].min(p[0]), e[1].max(p[1])])
@@ -322,17 +322,17 @@ impl Fix for Declared {
 
     fn declare(&self, w: &mut World) -> Result<()> {
         self.remove(w);
-        self.schedule.declare(w, &self.key());
+        self.schedule.declare(w, &self.kept());
         let name = format!("f_{}", self.id);
         let slot = w.slots.id(&name);
         let (vector, array) = (vec![0.0; 4], self.rows(&[]));
         *w.slots.get_mut(slot) =
             Slot { name, step: Some(w.clock.step), vector, array, array_cols: 3, ..Slot::default() };
-        if self.checking { Ok(()) } else { self.output.begin(w, &self.key(), &self.titles()) }
+        if self.checking { Ok(()) } else { self.output.begin(w, self.kept().key, &self.titles()) }
     }
 
     fn remove(&self, w: &mut World) {
-        forget(w, &self.key());
+        forget(w, self.kept().key);
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -341,18 +341,18 @@ impl Fix for Declared {
         for input in &self.inputs {
             sources.push(input.source(cx, self.wants, Stage::EndOfStep, &when)?);
         }
-        let (me, key, slot) = (self.clone(), self.key(), cx.slot(&format!("f_{}", self.id)));
-        let so_far = format!("{key}/bins");
-        let mut sheet = self.output.sheet(cx.world(), &key);
-        let averager = Averager { key: key.clone(), repeat: 1, ave: self.ave, off: vec![] };
+        let (me, kept, slot) = (self.clone(), self.kept(), cx.slot(&format!("f_{}", self.id)));
+        let (so_far, extremes) = (kept.key.with("/bins"), kept.key.with("/extremes"));
+        let mut sheet = self.output.sheet(cx.world(), kept.key);
+        let averager = Averager { kept, repeat: 1, ave: self.ave, off: vec![] };
         let access = Needs::new().read(SLOTS | X | V | F | MASK).write(SLOTS).keep(MEMO);
         let op = StepOp::new(format!("fix {} ave/histo", self.id), Stage::EndOfStep, access, move |w, t| {
-            let Some(due) = me.schedule.due(w, &key, t.step) else { return Ok(()) };
-            let before = w.memo.remove(&so_far).filter(|_| !due.first);
+            let Some(due) = me.schedule.due(w, &kept, t.step) else { return Ok(()) };
+            let before = w.memo.remove(so_far).filter(|_| !due.first);
             let one = me.sample(w, &sources, before)?;
-            let [lo, hi] = me.extremes(w, one.extremes, due);
+            let [lo, hi] = me.extremes(w, extremes, one.extremes, due);
             if !due.last {
-                w.memo.insert(so_far.clone(), one.counts);
+                w.memo.insert(so_far, one.counts);
                 return Ok(());
             }
             let whole = Due { first: true, last: true };

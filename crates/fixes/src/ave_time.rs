@@ -1,17 +1,17 @@
 //! fix ave/time: averages of global values over time, for other styles and a file.
 
-use super::window::{Ave, Averager, Schedule, forget};
+use super::window::{Ave, Averager, Kept, Schedule, forget};
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::cformat::{Format, Value};
-use perigrain_computes::chunk::{behind, hold, let_go};
+use perigrain_computes::chunk::{hold, let_go};
 use perigrain_lang::{Args, ValueRef};
 use perigrain_out::Sheet;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{MEMO, SLOTS};
-use perigrain_world::{SlotId, World};
+use perigrain_world::{Key, Numbers, SlotId, World};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -92,21 +92,21 @@ impl Output {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn begin(&self, w: &mut World, key: &str, defaults: &[String]) -> Result<()> {
+    pub fn begin(&self, w: &mut World, key: Numbers, defaults: &[String]) -> Result<()> {
         let Some((path, append)) = &self.file else { return Ok(()) };
         let mut head = String::new();
         for (given, default) in self.titles.iter().zip(defaults) {
             let _ = writeln!(head, "{}", given.as_ref().unwrap_or(default));
         }
         let length = Sheet::begin(path, *append, &head)?;
-        w.memo.insert(format!("{key}/file"), vec![length as f64]);
+        w.memo.insert(key.with("/file"), vec![length as f64]);
         Ok(())
     }
 
     /// The file for further averages, if there is one.
-    pub fn sheet(&self, w: &World, key: &str) -> Option<Sheet> {
+    pub fn sheet(&self, w: &World, key: Numbers) -> Option<Sheet> {
         let (path, _) = self.file.as_ref()?;
-        let head = w.memo.get(&format!("{key}/file")).and_then(|m| m.first()).map_or(0, |a| *a as u64);
+        let head = w.memo.get(key.with("/file")).and_then(|m| m.first()).map_or(0, |a| *a as u64);
         Some(Sheet::new(path, self.overwrite.then_some(head)))
     }
 }
@@ -220,8 +220,8 @@ struct Declared {
 }
 
 impl Declared {
-    fn key(&self) -> String {
-        format!("ave/time/{}", self.id)
+    fn kept(&self) -> Kept {
+        Kept::below(Key::new(&format!("ave/time/{}", self.id)))
     }
 
     /// Adds a value.
@@ -260,10 +260,16 @@ impl Declared {
         }
     }
 
-    /// The computes that make the chunks of which values have rows: their number is held as long as rows are added up.
-    fn chunks(&self, w: &World) -> Vec<String> {
+    /// What holds the number of chunks of which values have rows: it is held as long as rows are added up.
+    fn windows(&self, w: &World, slots: &[SlotId]) -> Vec<Numbers> {
         let adds = self.vector && (self.schedule.repeat > 1 || self.ave != Ave::One);
-        self.values.iter().filter(|_| adds).filter_map(|r| behind(w, r)).collect()
+        slots.iter().filter(|_| adds).filter_map(|slot| w.slots.get(*slot).chunks).collect()
+    }
+
+    /// The slots of the values.
+    fn slots(&self, w: &World) -> Vec<SlotId> {
+        let name = |r: &ValueRef| format!("{}_{}", r.kind.letter(), r.name);
+        self.values.iter().filter_map(|r| w.slots.find(&name(r))).collect()
     }
 
     /// The block of one average in the file.
@@ -303,7 +309,7 @@ impl Fix for Declared {
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
-        self.schedule.declare(w, &self.key());
+        self.schedule.declare(w, &self.kept());
         let slot = w.slots.id(&format!("f_{}", self.id));
         let rows = if !self.vector {
             1
@@ -315,12 +321,12 @@ impl Fix for Declared {
         *w.slots.get_mut(slot) =
             perigrain_world::Slot { name: format!("f_{}", self.id), ..Default::default() };
         offer(w, slot, w.clock.step, &vec![0.0; rows * self.values.len()], self.values.len(), self.vector);
-        if self.checking { Ok(()) } else { self.output.begin(w, &self.key(), &self.titles()) }
+        if self.checking { Ok(()) } else { self.output.begin(w, self.kept().key, &self.titles()) }
     }
 
     fn remove(&self, w: &mut World) {
-        forget(w, &self.key());
-        self.chunks(w).iter().for_each(|id| let_go(w, id));
+        forget(w, self.kept().key);
+        self.windows(w, &self.slots(w)).into_iter().for_each(|window| let_go(w, window));
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -330,16 +336,20 @@ impl Fix for Declared {
         for r in &self.values {
             readings.push(cx.reading(r, wants, Stage::EndOfStep, &when)?);
         }
-        let (me, key, slot, span) = (self.clone(), self.key(), cx.slot(&format!("f_{}", self.id)), cx.span());
-        let mut sheet = self.output.sheet(cx.world(), &key);
+        let (me, kept, slot, span) =
+            (self.clone(), self.kept(), cx.slot(&format!("f_{}", self.id)), cx.span());
+        let mut sheet = self.output.sheet(cx.world(), kept.key);
         let (repeat, ave, off) = (self.schedule.repeat, self.ave, self.off.clone());
-        let averager = Averager { key: key.clone(), repeat, ave, off };
+        let averager = Averager { kept, repeat, ave, off };
+        let slots = self.slots(cx.world());
         let access = Needs::new().read(SLOTS).write(SLOTS).keep(MEMO);
         let op = StepOp::new(format!("fix {} ave/time", self.id), Stage::EndOfStep, access, move |w, t| {
-            let Some(due) = me.schedule.due(w, &key, t.step) else { return Ok(()) };
+            let Some(due) = me.schedule.due(w, &kept, t.step) else { return Ok(()) };
             if due.first {
                 let last = (me.ave == Ave::One).then(|| me.schedule.last(t.step));
-                me.chunks(w).iter().try_for_each(|id| hold(w, id, t.step, last, span))?;
+                me.windows(w, &slots)
+                    .into_iter()
+                    .try_for_each(|window| hold(w, window, t.step, last, span))?;
             }
             let lists: Vec<Vec<f64>> = readings.iter().map(|r| r.list(w)).collect();
             let rows = lists.first().map_or(0, Vec::len);

@@ -7,8 +7,8 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::World;
 use perigrain_world::field::{CONTROLS, MEMO, SLOTS};
+use perigrain_world::{Key, Numbers, World};
 
 /// The style.
 pub struct Controller;
@@ -77,14 +77,14 @@ struct Declared {
 }
 
 impl Declared {
-    fn key(&self) -> String {
-        format!("controller/{}", self.id)
+    fn key(&self) -> Numbers {
+        Key::new(&format!("controller/{}", self.id))
     }
 }
 
 impl Fix for Declared {
     fn remove(&self, w: &mut World) {
-        forget(w, &self.key());
+        forget(w, self.key());
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -92,20 +92,20 @@ impl Fix for Declared {
         let value = cx.value(&self.value, Stage::EndOfStep, &when)?;
         let control = cx.value(&self.control, Stage::EndOfStep, &when)?;
         let slot = cx.slot(&format!("f_{}", self.id));
-        let fix = self.clone();
+        let (fix, key, name) = (self.clone(), self.key(), Key::new(&self.control.name));
         let access = Needs::new().read(SLOTS).write(SLOTS | CONTROLS).keep(MEMO);
         let op = StepOp::new(format!("fix {} controller", self.id), Stage::EndOfStep, access, move |w, t| {
             let error = value.get(w) - fix.setpoint;
-            let (sum, change) = match w.memo.get(&fix.key()).map(Vec::as_slice) {
+            let (sum, change) = match w.memo.get(key).map(Vec::as_slice) {
                 Some([sum, last]) => (sum + error, error - last),
                 _ => (error, 0.0),
             };
-            w.memo.insert(fix.key(), vec![sum, error]);
+            w.memo.insert(key, vec![sum, error]);
             let tau = fix.every as f64 * t.dt;
             let [p, i, d] = fix.gains;
             let terms = [p * tau * error, i * tau * tau * sum, d * change].map(|term| -fix.alpha * term);
             let new = control.get(w) + terms[0] + terms[1] + terms[2];
-            w.controls.insert(fix.control.name.clone(), new);
+            w.controls.insert(name, new);
             let out = w.slots.get_mut(slot);
             (out.step, out.vector) = (Some(t.step), terms.to_vec());
             Ok(())

@@ -8,11 +8,10 @@ use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::{not_here, scales, units_lattice};
 use perigrain_styles::near::bonds_allow;
-use perigrain_styles::stretching::RATES;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::domain::Flow;
 use perigrain_world::field::{BOX, FAMILIES, MASK, MEMO, SLOTS, X, X0};
-use perigrain_world::{Face, GroupId, World};
+use perigrain_world::{Face, GroupId, Key, Numbers, RATES, World};
 use track::{Track, tracks};
 
 /// The style.
@@ -181,8 +180,13 @@ struct Declared {
 }
 
 impl Declared {
-    fn key(&self) -> String {
-        format!("deform/{}", self.id)
+    fn key(&self) -> Numbers {
+        Key::new(&format!("deform/{}", self.id))
+    }
+
+    /// How fast it deforms the box.
+    fn rates(&self) -> Numbers {
+        self.key().with(RATES.text())
     }
 
     /// `volume` needs another dimension that moves by itself.
@@ -201,13 +205,13 @@ impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         let Some(d) = &*w.domain else { return Ok(()) };
         w.memo.insert(self.key(), [d.lo, d.hi].concat());
-        tell(w, &format!("{}{RATES}", self.key()), [[0.0; 3]; 2], self.remap);
+        tell(w, self.rates(), [[0.0; 3]; 2], self.remap);
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.key());
-        w.memo.remove(&format!("{}{RATES}", self.key()));
+        w.memo.remove(self.key());
+        w.memo.remove(self.rates());
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -219,8 +223,8 @@ impl Fix for Declared {
         // Forces of the setup see the flow already; a variable's rate is known from the first change on.
         let t = Tick::between_runs(&w.clock);
         let (_, _, rate) = track::faces(&tracks, w, &t)?;
-        let stretch = format!("{}{RATES}", self.key());
-        tell(w, &stretch, track::streaming(&tracks, w, rate, true), remap);
+        let stretch = self.rates();
+        tell(w, stretch, track::streaming(&tracks, w, rate, true), remap);
         if remap == Remap::Velocities {
             w.domain.iter_mut().for_each(|d| d.flow = Some(Flow { rate, group }));
         }
@@ -234,9 +238,9 @@ impl Fix for Declared {
 }
 
 /// Lets the world remember how fast lengths grow and lower faces move.
-fn tell(w: &mut World, key: &str, [rate, low]: [[f64; 3]; 2], remap: Remap) {
+fn tell(w: &mut World, key: Numbers, [rate, low]: [[f64; 3]; 2], remap: Remap) {
     let remapped = f64::from(u8::from(remap == Remap::Positions));
-    let row = w.memo.entry(key.to_string()).or_default();
+    let row = w.memo.get_or(key, Vec::new);
     row.clear();
     row.extend(rate.into_iter().chain(low).chain([remapped]));
 }
@@ -244,8 +248,8 @@ fn tell(w: &mut World, key: &str, [rate, low]: [[f64; 3]; 2], remap: Remap) {
 /// Moves the faces.
 struct Move {
     name: String,
-    /// Under which name the world remembers the rates.
-    stretch: String,
+    /// Where the world remembers the rates.
+    stretch: Numbers,
     tracks: [Track; 3],
     remap: Remap,
     group: GroupId,
@@ -266,7 +270,7 @@ impl Op for Move {
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let (lo, hi, rate) = track::faces(&self.tracks, w, t)?;
-        tell(w, &self.stretch, track::streaming(&self.tracks, w, rate, t.setup), self.remap);
+        tell(w, self.stretch, track::streaming(&self.tracks, w, rate, t.setup), self.remap);
         if self.remap == Remap::Velocities
             && let Some(domain) = &mut *w.domain
         {

@@ -13,7 +13,7 @@ use perigrain_styles::newcomers::{Account, Ids, Newcomer, admit};
 use perigrain_styles::{BuildCx, Doc, PlaceTest, SealCx, Shape, Style};
 use perigrain_world::Fields;
 use perigrain_world::field::X;
-use perigrain_world::{GroupId, Region, SlotId, World};
+use perigrain_world::{GroupId, Key, Numbers, Region, SlotId, World};
 
 /// The style.
 pub struct Deposit;
@@ -93,8 +93,8 @@ struct Depositing {
 }
 
 impl Depositing {
-    fn key(&self) -> String {
-        format!("deposit/{}", self.id)
+    fn key(&self) -> Numbers {
+        Key::new(&format!("deposit/{}", self.id))
     }
 
     /// A place in the region.
@@ -201,12 +201,12 @@ impl Depositing {
 
 impl Fix for Depositing {
     fn declare(&self, w: &mut World) -> Result<()> {
-        Account::maker(w, self.seed).store(w, &self.key());
+        Account::maker(w, self.seed).store(w, self.key());
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.key());
+        w.memo.remove(self.key());
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -220,17 +220,17 @@ impl Fix for Depositing {
         }
         let slot = cx.slot(&format!("f_{}", self.id));
         let w = cx.world();
-        let Some(mut account) = Account::load(w, &self.key()) else { return Ok(vec![]) };
+        let Some(mut account) = Account::load(w, self.key()) else { return Ok(vec![]) };
         if account.next.is_none() && account.done == 0 {
             self.check_distance(w, span);
         }
         let now = w.clock.step;
         let planned = account.next.filter(|n| (now + 1..=now + self.every).contains(n));
         account.next = (account.done < self.count).then(|| planned.unwrap_or(now + 1));
-        account.store(w, &self.key());
+        account.store(w, self.key());
         w.slots.get_mut(slot).scalar = account.done as f64;
         let name = format!("fix {} deposit", self.id);
-        Ok(vec![Box::new(Drop { name, fix: self.clone(), span, slot, test, failed: 0 })])
+        Ok(vec![Box::new(Drop { name, key: self.key(), fix: self.clone(), span, slot, test, failed: 0 })])
     }
 
     fn facts(&self, _: &World) -> Facts {
@@ -245,6 +245,7 @@ impl Fix for Depositing {
 /// Puts particles in.
 struct Drop {
     name: String,
+    key: Numbers,
     fix: Depositing,
     span: Span,
     slot: SlotId,
@@ -258,9 +259,9 @@ impl Op for Drop {
         About::new(&self.name, Stage::Exchange, Needs::new().read(X).write(Fields::ALL))
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let (fix, key) = (&self.fix, self.fix.key());
+        let (fix, key) = (&self.fix, self.key);
         let due = |a: &Account| a.next == Some(t.step);
-        let Some(mut account) = Account::load(w, &key).filter(due) else { return Ok(()) };
+        let Some(mut account) = Account::load(w, key).filter(due) else { return Ok(()) };
         // LAMMPS counts the steps to the next insertion.
         let offset = (t.step + fix.every - account.start) as f64 * t.dt * fix.rate;
         match fix.find(w, offset, &mut account, &mut self.test)? {
@@ -280,7 +281,7 @@ impl Op for Drop {
             None => self.failed += 1,
         }
         account.next = (account.done < fix.count).then_some(t.step + fix.every);
-        account.store(w, &key);
+        account.store(w, key);
         w.rebuild.due = true;
         publish(w, self.slot, t, account.done as f64, &[]);
         Ok(())

@@ -1,6 +1,6 @@
 //! Time since the declaration of a fix.
 
-use perigrain_world::World;
+use perigrain_world::{Numbers, World};
 
 /// How much time has passed since the declaration, also where the time step changes or steps are renumbered.
 #[derive(Clone, Copy)]
@@ -19,7 +19,7 @@ pub struct Elapsed {
 
 impl Elapsed {
     /// As the world remembers it under this key; from now on where it does not.
-    pub fn load(w: &World, key: &str) -> Self {
+    pub fn load(w: &World, key: Numbers) -> Self {
         match w.memo.get(key).map(Vec::as_slice) {
             Some(&[origin, time, step, dt, last]) => Self { origin, time, step, dt, last },
             _ => {
@@ -30,11 +30,11 @@ impl Elapsed {
     }
 
     /// Lets the world remember it.
-    pub fn store(self, w: &mut World, key: &str) {
+    pub fn store(self, w: &mut World, key: Numbers) {
         let Self { origin, time, step, dt, last } = self;
         match w.memo.get_mut(key) {
             Some(memo) => memo.copy_from_slice(&[origin, time, step, dt, last]),
-            None => drop(w.memo.insert(key.to_string(), vec![origin, time, step, dt, last])),
+            None => drop(w.memo.insert(key, vec![origin, time, step, dt, last])),
         }
     }
 

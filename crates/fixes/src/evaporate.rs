@@ -11,7 +11,7 @@ use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::Fields;
 use perigrain_world::field::{MASK, X};
-use perigrain_world::{GroupId, World};
+use perigrain_world::{GroupId, Key, Numbers, World};
 
 /// The style.
 pub struct Evaporate;
@@ -65,8 +65,8 @@ struct Declared {
 }
 
 impl Declared {
-    fn key(&self) -> String {
-        format!("evaporate/{}", self.id)
+    fn key(&self) -> Numbers {
+        Key::new(&format!("evaporate/{}", self.id))
     }
 
     /// Deletes this step's share.
@@ -96,12 +96,12 @@ impl Declared {
 
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
-        Account::maker(w, self.seed).store(w, &self.key());
+        Account::maker(w, self.seed).store(w, self.key());
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.key());
+        w.memo.remove(self.key());
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -109,16 +109,15 @@ impl Fix for Declared {
         let chosen = Chosen::new(cx.world(), self.group, Some(&self.region), span)?;
         let slot = cx.slot(&format!("f_{}", self.id));
         let w = cx.world();
-        w.slots.get_mut(slot).scalar = Account::load(w, &self.key()).map_or(0.0, |a| a.done as f64);
-        let me = self.clone();
+        w.slots.get_mut(slot).scalar = Account::load(w, self.key()).map_or(0.0, |a| a.done as f64);
+        let (me, key) = (self.clone(), self.key());
         let access = Needs::new().read(X | MASK).write(Fields::ALL);
         let act = move |w: &mut World, t: &Tick| {
-            let key = me.key();
-            let Some(mut account) = Account::load(w, &key).filter(|_| t.step % me.every == 0) else {
+            let Some(mut account) = Account::load(w, key).filter(|_| t.step % me.every == 0) else {
                 return Ok(());
             };
             me.act(w, &chosen, &mut account);
-            account.store(w, &key);
+            account.store(w, key);
             w.rebuild.due = true;
             publish(w, slot, t, account.done as f64, &[]);
             Ok(())
@@ -143,7 +142,7 @@ mod tests {
         let places: Vec<[f64; 3]> = (0..8).map(|k| [f64::from(k), 0.0, 0.0]).collect();
         let mut b = Bench::new(AtomStyle::default(), &places);
         let near = Shape::Sphere { center: [0.0; 3], radius: 4.5 };
-        b.world.regions.insert("near".into(), Region::inside(near));
+        b.world.regions.insert(Key::new("near"), Region::inside(near));
         let fix = b.fix(&Evaporate, "2 3 near 44").unwrap();
         fix.declare(&mut b.world).unwrap();
         let mut ops = b.seal(&*fix).unwrap();

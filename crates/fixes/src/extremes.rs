@@ -6,7 +6,7 @@ use perigrain_lang::{Args, Param};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{MEMO, SLOTS};
-use perigrain_world::{SlotId, World};
+use perigrain_world::{Key, Numbers, SlotId, World};
 
 /// The style.
 pub struct ExtremesStyle;
@@ -61,8 +61,8 @@ struct Extremes {
 }
 
 impl Extremes {
-    fn memo(&self) -> String {
-        format!("extremes/{}", self.id)
+    fn memo(&self) -> Numbers {
+        Key::new(&format!("extremes/{}", self.id))
     }
 }
 
@@ -86,7 +86,7 @@ impl Fix for Extremes {
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.memo());
+        w.memo.remove(self.memo());
     }
 
     fn shape(&self) -> Shape {
@@ -97,7 +97,7 @@ impl Fix for Extremes {
 /// Looks at the values and keeps what is beyond all before.
 struct Watch {
     name: String,
-    memo: String,
+    memo: Numbers,
     when: When,
     readings: Vec<Reading>,
     slot: SlotId,
@@ -113,12 +113,12 @@ impl Op for Watch {
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let mut known = w.memo.remove(&self.memo).unwrap_or_default();
+        let mut known = w.memo.remove(self.memo).unwrap_or_default();
         widen(&mut known, self.readings.iter().map(|r| r.get(w)));
         let mut slot = w.slots.take(self.slot);
         slot.vector.clone_from(&known);
         w.slots.put(self.slot, slot, t.step);
-        w.memo.insert(self.memo.clone(), known);
+        w.memo.insert(self.memo, known);
         Ok(())
     }
 }

@@ -59,7 +59,8 @@ impl Fix for Declared {
         let (capacity, bit, span) = (self.capacity.clone(), self.group.bit(), cx.span());
         check_masses(cx.world(), span)?;
         let columns = &cx.world().columns;
-        let (Some(temperature), Some(heat)) = (columns.custom(TEMPERATURE), columns.custom(HEATFLOW)) else {
+        let (Some(temperature), Some(heat)) = (columns.property(*TEMPERATURE), columns.property(*HEATFLOW))
+        else {
             let text = "fix heat/flow needs particles with temperature and heat flow";
             return Err(Diagnostic::error(Code::INCOMPLETE, span, text)
                 .help("write `fix ID all property/atom temperature heatflow` before the run")
@@ -69,10 +70,10 @@ impl Fix for Declared {
         let op =
             StepOp::new(format!("fix {} heat/flow", self.id), Stage::FinalIntegrate, access, move |w, t| {
                 let n = w.n();
-                let mut warmth = std::mem::take(w.columns.scalar(&temperature, n));
+                let mut warmth = std::mem::take(w.columns.scalar(temperature, n));
                 warmth.resize(n, 0.0);
                 let (p, masses) = (&w.particles, Masses::of(w));
-                let flow = w.columns.get_scalar(&heat).unwrap_or_default();
+                let flow = w.columns.get_scalar(heat).unwrap_or_default();
                 par::each((&mut warmth[..], flow, &p.mask[..]), |start, (warmth, flow, mask)| {
                     for (k, ((warmth, flow), mask)) in warmth.iter_mut().zip(flow).zip(mask).enumerate() {
                         if mask & bit != 0 {
@@ -81,7 +82,7 @@ impl Fix for Declared {
                         }
                     }
                 });
-                *w.columns.scalar(&temperature, n) = warmth;
+                *w.columns.scalar(temperature, n) = warmth;
                 Ok(())
             });
         Ok(vec![op.in_every_level().boxed()])
@@ -93,7 +94,7 @@ mod tests {
     use super::super::property_atom::PropertyAtomFix;
     use super::*;
     use perigrain_styles::testing::Bench;
-    use perigrain_world::AtomStyle;
+    use perigrain_world::{AtomStyle, Key};
 
     #[test]
     fn heat_warms() {
@@ -103,13 +104,13 @@ mod tests {
         assert!(b.seal(&*flow).is_err());
         let own = b.fix(&PropertyAtomFix, "temperature heatflow").unwrap();
         own.declare(&mut b.world).unwrap();
-        *b.world.columns.scalar("property/atom/f/temperature", 3) = vec![300.0; 3];
-        *b.world.columns.scalar("property/atom/f/heatflow", 3) = vec![16.0, -16.0, 16.0];
+        *b.world.columns.scalar(Key::new("property/atom/f/temperature"), 3) = vec![300.0; 3];
+        *b.world.columns.scalar(Key::new("property/atom/f/heatflow"), 3) = vec![16.0, -16.0, 16.0];
         b.world.particles.mask[2] = 0;
         let mut ops = b.seal(&*flow).unwrap();
         b.stage(&mut ops, Stage::FinalIntegrate).unwrap();
         // ΔT = 0.5 · 16/(2 · 4) by hand.
-        let after = b.world.columns.get_scalar("property/atom/f/temperature").unwrap();
+        let after = b.world.columns.get_scalar(Key::new("property/atom/f/temperature")).unwrap();
         assert_eq!(after, [301.0, 299.0, 300.0]);
         for words in ["", "constant", "constant 0", "constant -1", "type", "every 2"] {
             assert!(b.fix(&HeatFlow, words).is_err(), "{words}");

@@ -13,7 +13,7 @@ use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{
     COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, SLOTS, TORQUE, TYPE_MASS, V,
 };
-use perigrain_world::{COUPLED, GroupId, SlotId, World};
+use perigrain_world::{COUPLED, GroupId, Key, Numbers, SlotId, Vectors, World};
 
 /// The style.
 pub struct Langevin;
@@ -60,11 +60,27 @@ impl FixStyle for Langevin {
         };
         let ratios = vec![1.0; cx.world.types];
         let (id, group) = (cx.id.to_string(), cx.group);
-        let mut fix =
-            Declared { id, group, start, stop, damp, seed, ratios, omega: false, tally: false, zero: false };
+        let key: Numbers = Key::new(&format!("langevin/{id}"));
+        let (coupled, columns) = (key.with(COUPLED.text()), [key.of(), key.with("/torque")]);
+        let (omega, tally, zero) = (false, false, false);
+        let mut fix = Declared {
+            id,
+            key,
+            coupled,
+            columns,
+            group,
+            start,
+            stop,
+            damp,
+            seed,
+            ratios,
+            omega,
+            tally,
+            zero,
+        };
         while let Some(word) = args.next() {
             match word.text.as_str() {
-                "omega" => fix.omega = omega(args, cx)?,
+                "omega" => fix.omega = self::omega(args, cx)?,
                 "tally" => fix.tally = args.flag("tally")?,
                 "zero" => fix.zero = args.flag("zero")?,
                 "scale" => {
@@ -119,6 +135,12 @@ fn omega(args: &mut Args, cx: &BuildCx) -> Result<bool> {
 #[derive(Clone)]
 struct Declared {
     id: String,
+    /// Where the world keeps what outlives a step.
+    key: Numbers,
+    /// And the energy that has been taken.
+    coupled: Numbers,
+    /// The columns of the forces and torques that were added last.
+    columns: [Vectors; 2],
     group: GroupId,
     start: Param,
     stop: f64,
@@ -139,7 +161,7 @@ struct Account {
 }
 
 impl Account {
-    fn load(w: &World, key: &str, seed: u32) -> Self {
+    fn load(w: &World, key: Numbers, seed: u32) -> Self {
         let kept = w.memo.get(key).and_then(|list| {
             let (&[energy, power], stand) = list.split_first_chunk()?;
             Some(Self { energy, power, stream: Marsaglia::resumed(stand)? })
@@ -147,9 +169,9 @@ impl Account {
         kept.unwrap_or_else(|| Self { energy: 0.0, power: 0.0, stream: Marsaglia::new(seed) })
     }
 
-    fn store(&self, w: &mut World, key: &str) {
+    fn store(&self, w: &mut World, key: Numbers) {
         let list = [self.energy, self.power].into_iter().chain(self.stream.stand()).collect();
-        w.memo.insert(key.to_string(), list);
+        w.memo.insert(key, list);
     }
 }
 
@@ -164,16 +186,6 @@ fn by_creation(w: &World, group: GroupId) -> Vec<usize> {
 }
 
 impl Declared {
-    /// Under this name the world keeps what outlives a step.
-    fn key(&self) -> String {
-        format!("langevin/{}", self.id)
-    }
-
-    /// The columns of the forces and torques that were added last.
-    fn columns(&self) -> [String; 2] {
-        [self.key(), format!("{}/torque", self.key())]
-    }
-
     /// √T of each of these particles.
     fn roots(&self, w: &World, members: &[usize], start: Reading, span: Span) -> Result<Vec<f64>> {
         if let Param::Number(start) = self.start {
@@ -237,7 +249,7 @@ impl Declared {
         }
         let members = by_creation(w, self.group);
         let roots = self.roots(w, &members, start, span)?;
-        let mut account = Account::load(w, &self.key(), self.seed);
+        let mut account = Account::load(w, self.key, self.seed);
         let masses = Masses::of(w);
         let with = |inertia: &dyn Fn(usize) -> f64| -> Vec<(usize, f64, f64)> {
             members.iter().zip(&roots).map(|(&i, root)| (i, inertia(i), *root)).collect()
@@ -251,14 +263,14 @@ impl Declared {
         for (forces, rotation) in parts {
             self.add(w, t, (&members, &forces), rotation);
         }
-        account.store(w, &self.key());
+        account.store(w, self.key);
         Ok(())
     }
 
     /// Adds forces or torques; where LAMMPS draws once more, in place of those of the step before.
     fn add(&self, w: &mut World, t: &Tick, (members, forces): (&[usize], &[Vec3]), rotation: bool) {
         let (n, kept) = (w.n(), self.tally || w.settings.lammps());
-        let column = &self.columns()[usize::from(rotation)];
+        let column = self.columns[usize::from(rotation)];
         let mut own = if kept { std::mem::take(w.columns.vector(column, n)) } else { vec![] };
         let p = &mut w.particles;
         let to = if rotation { &mut p.torque } else { &mut p.f };
@@ -279,8 +291,8 @@ impl Declared {
 
     /// Counts the energy of the step: power by the trapezoidal rule.
     fn count(&self, w: &mut World, t: &Tick, slot: SlotId) {
-        let mut account = Account::load(w, &self.key(), self.seed);
-        let (forces, p) = (w.columns.get_vector(&self.key()).unwrap_or(&[]), &w.particles);
+        let mut account = Account::load(w, self.key, self.seed);
+        let (forces, p) = (w.columns.get_vector(self.columns[0]).unwrap_or(&[]), &w.particles);
         let [power] = sum::<1>(&p.mask, self.group, |i| [forces.get(i).map_or(0.0, |f| dot(*f, p.v[i]))]);
         if !t.setup {
             account.energy += 0.5 * w.clock.dt * (account.power + power);
@@ -290,17 +302,17 @@ impl Declared {
         if !t.setup || !t.unchanged || w.settings.lammps() {
             account.power = power;
         }
-        account.store(w, &self.key());
-        w.memo.insert(self.key() + COUPLED, vec![-account.energy]);
+        account.store(w, self.key);
+        w.memo.insert(self.coupled, vec![-account.energy]);
         publish(w, slot, t, -account.energy, &[]);
     }
 }
 
 impl Fix for Declared {
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.key());
-        self.columns().iter().for_each(|column| w.columns.remove(column));
-        w.memo.remove(&(self.key() + COUPLED));
+        w.memo.remove(self.key);
+        self.columns.iter().for_each(|column| w.columns.remove(*column));
+        w.memo.remove(self.coupled);
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {

@@ -14,7 +14,7 @@ use perigrain_styles::matter::{Masses, check_masses, keep_places, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, SLOTS, TYPE_MASS, V, X};
-use perigrain_world::{GroupId, SlotId, World};
+use perigrain_world::{GroupId, Key, Numbers, SlotId, Vectors, World};
 use std::f64::consts::PI;
 
 /// The style.
@@ -87,7 +87,8 @@ impl FixStyle for Move {
             }
             Path::Variables(..) => {}
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, path }))
+        let key = Key::new(&format!("move/{}", cx.id));
+        Ok(Box::new(Declared { id: cx.id.to_string(), key, group: cx.group, path }))
     }
 }
 
@@ -125,34 +126,31 @@ fn variable(args: &mut Args, cx: &BuildCx, what: &str) -> Result<Option<ValueRef
 #[derive(Clone)]
 struct Declared {
     id: String,
+    key: Numbers,
     group: GroupId,
     path: Path,
 }
 
 impl Declared {
-    fn key(&self) -> String {
-        format!("move/{}", self.id)
-    }
-
     /// Remembers where particles of the group that are not known yet would have started.
     fn capture(&self, w: &mut World) {
-        let key = self.key();
-        let now = Elapsed::load(w, &key).now();
-        keep_places(w, &key, self.group, |w, i| self.path.start(unwrapped(w, i), now));
+        let key = self.key;
+        let now = Elapsed::load(w, key).now();
+        keep_places(w, key.of(), self.group, |w, i| self.path.start(unwrapped(w, i), now));
     }
 }
 
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         self.remove(w);
-        Elapsed::load(w, &self.key()).store(w, &self.key());
+        Elapsed::load(w, self.key).store(w, self.key);
         self.capture(w);
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.key());
-        w.columns.remove(&self.key());
+        w.memo.remove(self.key);
+        w.columns.remove(self.key);
     }
 
     fn welcome(&self, w: &mut World) {
@@ -160,7 +158,7 @@ impl Fix for Declared {
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let (group, path, key, span) = (self.group, self.path.clone(), self.key(), cx.span());
+        let (group, path, key, span) = (self.group, self.path.clone(), self.key, cx.span());
         let free = path.given().map(|g| !g);
         if free.contains(&true) {
             check_masses(cx.world(), span)?;
@@ -183,9 +181,9 @@ impl Fix for Declared {
             .keep(MEMO);
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access, move |w, t| {
             if t.setup {
-                show_starts(w, &key, slot, t);
+                show_starts(w, key.of(), slot, t);
             } else {
-                advance(w, group, &path, &readings, &key, t);
+                advance(w, group, &path, &readings, key, t);
             }
             Ok(())
         });
@@ -215,7 +213,7 @@ impl Fix for Declared {
 }
 
 /// Offers the starting positions as per-atom values.
-fn show_starts(w: &mut World, key: &str, slot: SlotId, t: &Tick) {
+fn show_starts(w: &mut World, key: Vectors, slot: SlotId, t: &Tick) {
     let out = w.slots.get_mut(slot);
     (out.step, out.cols) = (Some(t.step), 3);
     out.atom.clear();
@@ -223,7 +221,7 @@ fn show_starts(w: &mut World, key: &str, slot: SlotId, t: &Tick) {
 }
 
 /// The path's positions and velocities at this step; free components kicked and drifted.
-fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key: &str, t: &Tick) {
+fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key: Numbers, t: &Tick) {
     let mut elapsed = Elapsed::load(w, key);
     elapsed.follow(t.step, t.dt);
     elapsed.store(w, key);
@@ -232,13 +230,13 @@ fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key:
     let (bit, half) = (group.bit(), half_step(w, t.dt));
     let periodic = w.domain.as_ref().map_or([false; 3], |d| d.periodic());
     let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
-    if w.columns.get_vector(key).is_none() {
+    if w.columns.get_vector(key.of()).is_none() {
         return;
     }
     let (mut places, mut velocities) =
         (std::mem::take(&mut w.particles.x), std::mem::take(&mut w.particles.v));
     let world = &*w;
-    let (start, masses) = (world.columns.get_vector(key).unwrap_or_default(), Masses::of(world));
+    let (start, masses) = (world.columns.get_vector(key.of()).unwrap_or_default(), Masses::of(world));
     let columns =
         (&mut places[..], &mut velocities[..], &world.particles.f[..], &world.particles.mask[..], start);
     par::each(columns, |first, (x, v, f, mask, start)| {
@@ -379,7 +377,7 @@ mod tests {
         assert_eq!(b.world.particles.x[1][0], 5.5);
         assert_eq!(b.world.particles.x[0][0], 2.0);
         fix.remove(&mut b.world);
-        assert!(b.world.columns.get_vector("move/f").is_none() && b.world.memo.is_empty());
+        assert!(b.world.columns.names().is_empty() && b.world.memo.is_empty());
     }
 
     #[test]

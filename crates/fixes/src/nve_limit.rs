@@ -11,7 +11,7 @@ use perigrain_styles::matter::{Masses, add, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{F, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, V, X};
-use perigrain_world::{GroupId, World};
+use perigrain_world::{GroupId, Key, Numbers, World};
 
 /// The style.
 pub struct NveLimit;
@@ -50,8 +50,8 @@ struct Declared {
 }
 
 impl Declared {
-    fn key(&self) -> String {
-        format!("nve/limit/{}", self.id)
+    fn key(&self) -> Numbers {
+        Key::new(&format!("nve/limit/{}", self.id))
     }
 
     /// A half kick, limited; the number of velocities that were shortened.
@@ -94,7 +94,7 @@ impl Fix for Declared {
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.key());
+        w.memo.remove(self.key());
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -112,7 +112,7 @@ impl Fix for Declared {
                 let short = t.phase.solids.is_some() && !t.phase.outermost();
                 let drift = drift && (t.phase.level == 0 || t.phase.solids.is_some());
                 let shortened = if t.setup || short { 0.0 } else { me.kick(w, t, drift) };
-                let total = w.memo.get_mut(&key).and_then(|m| m.first_mut()).map_or(shortened, |n| {
+                let total = w.memo.get_mut(key).and_then(|m| m.first_mut()).map_or(shortened, |n| {
                     *n += shortened;
                     *n
                 });

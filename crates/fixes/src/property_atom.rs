@@ -7,7 +7,7 @@ use perigrain_plan::Op;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::properties::MOLECULE;
-use perigrain_world::{Properties, World};
+use perigrain_world::{Numbers, Properties, World};
 
 /// The style.
 pub struct PropertyAtomFix;
@@ -82,7 +82,7 @@ fn no_molecules(word: &Word, cx: &BuildCx, before: bool) -> Result<()> {
 
 /// The columns of one name, as `d_heat` or `d2_heat/1`.
 fn columns(word: &Word, args: &mut Args, cx: &BuildCx, before: &[String]) -> Result<Vec<String>> {
-    if [TEMPERATURE, HEATFLOW].contains(&word.text.as_str()) {
+    if [TEMPERATURE.text(), HEATFLOW.text()].contains(&word.text.as_str()) {
         return free(word, cx, before, &word.text).map(|()| vec![word.text.clone()]);
     }
     let prefix = ["i_", "d_", "i2_", "d2_"].into_iter().find(|p| word.text.starts_with(p));
@@ -139,7 +139,7 @@ impl Declared {
         self.0.names.iter().any(|name| name == MOLECULE)
     }
 
-    fn columns(&self) -> impl Iterator<Item = String> {
+    fn columns(&self) -> impl Iterator<Item = Numbers> {
         (0..self.0.names.len()).filter_map(|k| self.0.column(k))
     }
 }
@@ -148,7 +148,7 @@ impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         let n = w.n();
         for column in self.columns() {
-            w.columns.scalar(&column, n);
+            w.columns.scalar(column, n);
         }
         w.properties.push(self.0.clone());
         if self.molecules() {
@@ -164,7 +164,7 @@ impl Fix for Declared {
             w.particles.molecule.clear();
         }
         w.properties.retain(|p| p.fix != self.0.fix);
-        self.columns().for_each(|column| w.columns.remove(&column));
+        self.columns().for_each(|column| w.columns.remove(column));
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -178,7 +178,7 @@ impl Fix for Declared {
 mod tests {
     use super::*;
     use perigrain_styles::testing::Bench;
-    use perigrain_world::AtomStyle;
+    use perigrain_world::{AtomStyle, Key};
 
     #[test]
     fn columns_come_and_go() {
@@ -186,12 +186,12 @@ mod tests {
         let fix = b.fix(&PropertyAtomFix, "i_a d_b d2_c 2 ghost yes").unwrap();
         fix.declare(&mut b.world).unwrap();
         let columns = &b.world.columns;
-        assert_eq!(columns.custom("d_b").as_deref(), Some("property/atom/f/d_b"));
-        assert_eq!(columns.custom("d2_c[2]").as_deref(), Some("property/atom/f/d2_c/2"));
+        assert_eq!(columns.custom("d_b"), Some(Key::new("property/atom/f/d_b")));
+        assert_eq!(columns.custom("d2_c[2]"), Some(Key::new("property/atom/f/d2_c/2")));
         assert_eq!((columns.custom("d2_c[3]"), columns.custom("b")), (None, None));
         fix.remove(&mut b.world);
         assert!(b.world.columns.names().is_empty());
-        b.world.columns.scalar("property/atom/other/d_b", 2);
+        b.world.columns.scalar(Key::new("property/atom/other/d_b"), 2);
         for words in ["", "d_b", "x_b", "d_", "d_a d_a", "d2_c", "d2_c 0", "q", "ghost maybe", "d_a-b"] {
             assert!(b.fix(&PropertyAtomFix, words).is_err(), "{words}");
         }

@@ -11,7 +11,7 @@ use perigrain_styles::matter::{centre, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, X};
-use perigrain_world::{GroupId, World};
+use perigrain_world::{GroupId, Key, Numbers, World};
 
 /// The style.
 pub struct Recenter;
@@ -66,13 +66,15 @@ impl FixStyle for Recenter {
             other => other,
         });
         let fraction = units == "fraction";
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, shifted, hold, fraction }))
+        let (id, key) = (cx.id.to_string(), Key::new(&format!("recenter/{}", cx.id)));
+        Ok(Box::new(Declared { id, key, group: cx.group, shifted, hold, fraction }))
     }
 }
 
 #[derive(Clone)]
 struct Declared {
     id: String,
+    key: Numbers,
     group: GroupId,
     shifted: GroupId,
     hold: [Hold; 3],
@@ -80,15 +82,11 @@ struct Declared {
 }
 
 impl Declared {
-    fn key(&self) -> String {
-        format!("recenter/{}", self.id)
-    }
-
     /// What must be added to the positions now.
     fn shift(&self, w: &World) -> [f64; 3] {
         let (_, now) = centre(w, self.group);
         let (lo, lengths) = w.domain.as_ref().map_or(([0.0; 3], [0.0; 3]), |d| (d.lo, d.lengths()));
-        let initial = w.memo.get(&self.key());
+        let initial = w.memo.get(self.key);
         std::array::from_fn(|d| match self.hold[d] {
             Hold::Free => 0.0,
             Hold::Initial => initial.and_then(|x| x.get(d)).map_or(0.0, |x| x - now[d]),
@@ -102,12 +100,12 @@ impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         w.spread_type_masses();
         let (_, at) = centre(w, self.group);
-        w.memo.insert(self.key(), at.to_vec());
+        w.memo.insert(self.key, at.to_vec());
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.key());
+        w.memo.remove(self.key);
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {

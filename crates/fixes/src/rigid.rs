@@ -17,13 +17,14 @@ use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::range_from;
 use perigrain_styles::matter::check_masses;
 use perigrain_styles::molecules::named;
+use perigrain_styles::rigid_bodies::{bodies_key, body_column};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
 use perigrain_world::field::{
     self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, SLOTS, TALLY, TORQUE,
     TRAVEL, TYPE_MASS, V, X,
 };
-use perigrain_world::{GroupId, World};
+use perigrain_world::{GroupId, Key, Numbers, Vectors, World};
 
 /// Columns of the array: centre, velocity, force, torque, image counts.
 const COLUMNS: usize = 15;
@@ -163,6 +164,7 @@ fn build(
         style,
         whole,
         id: cx.id.to_string(),
+        keys: Keys::new(style, cx.id),
         group: cx.group,
         split,
         switches: vec![],
@@ -208,12 +210,36 @@ fn template(args: &mut Args, cx: &BuildCx) -> Result<String> {
     Ok(word.text.clone())
 }
 
+/// Where the world keeps its state.
+#[derive(Clone, Copy)]
+struct Keys {
+    bodies: Numbers,
+    /// The virial of the first half of a step.
+    virial: Numbers,
+    /// The number of each particle's body.
+    body: Numbers,
+    /// The mass of each particle's body.
+    mass: Numbers,
+    /// Where particles are as seen from their bodies.
+    place: Vectors,
+}
+
+impl Keys {
+    fn new(style: &str, id: &str) -> Self {
+        let bodies = bodies_key(style, id);
+        let [virial, mass] = ["virial", "contact mass"].map(|what| Key::new(&format!("{style}/{id}/{what}")));
+        let (body, place) = (body_column(style, id), Key::new(&format!("{style}/{id}/place")));
+        Self { bodies, virial, body, mass, place }
+    }
+}
+
 #[derive(Clone)]
 struct Declared {
     style: &'static str,
     /// `rigid` and `rigid/nve`: with an array, and components that can be turned off.
     whole: bool,
     id: String,
+    keys: Keys,
     group: GroupId,
     split: Split,
     switches: Vec<Switch>,
@@ -228,11 +254,6 @@ impl Declared {
     /// Whether orientations move by NO_SQUISH.
     fn exact(&self) -> bool {
         self.style.starts_with("rigid/nve")
-    }
-
-    /// Where the world keeps its state.
-    fn key(&self, what: &str) -> String {
-        format!("{}/{}/{what}", self.style, self.id)
     }
 
     /// By component whether forces and torques on body `k` (from 0) count.
@@ -250,7 +271,7 @@ impl Declared {
 
     /// Sets the bodies up at the beginning of a run where that is due.
     fn begin(&self, w: &mut World, span: Span) -> Result<()> {
-        let there = w.memo.contains_key(&self.key("bodies"));
+        let there = w.memo.contains(self.keys.bodies);
         if there && !self.reinit {
             return Ok(());
         }
@@ -277,12 +298,10 @@ impl Fix for Declared {
     }
 
     fn remove(&self, w: &mut World) {
-        for what in ["bodies", "virial"] {
-            w.memo.remove(&self.key(what));
-        }
-        for what in ["body", "place", "contact mass"] {
-            w.columns.remove(&self.key(what));
-        }
+        let keys = self.keys;
+        [keys.bodies, keys.virial].into_iter().for_each(|key| drop(w.memo.remove(key)));
+        [keys.body, keys.mass].into_iter().for_each(|key| w.columns.remove(key));
+        w.columns.remove(keys.place);
     }
 
     fn shape(&self) -> Shape {

@@ -124,15 +124,17 @@ fn replace(s: &mut ParticleBlock, bit: u32, values: &[Option<f64>; 3]) -> BlockS
 mod tests {
     use super::*;
     use perigrain_styles::testing::Bench;
-    use perigrain_world::AtomStyle;
     use perigrain_world::region::{Region, Shape};
+    use perigrain_world::{AtomStyle, Key};
 
     fn scene() -> Bench {
         let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [5.0, 0.0, 0.0]]);
         b.world.particles.f = vec![[1.0, 2.0, 3.0], [10.0, 20.0, 30.0]].into();
         b.atom.insert("a".into(), vec![-1.0, -2.0]);
         b.equal.insert("e".into(), 7.0);
-        b.world.regions.insert("r".into(), Region::inside(Shape::Sphere { center: [0.0; 3], radius: 1.0 }));
+        b.world
+            .regions
+            .insert(Key::new("r"), Region::inside(Shape::Sphere { center: [0.0; 3], radius: 1.0 }));
         b
     }
 

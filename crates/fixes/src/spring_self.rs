@@ -9,7 +9,7 @@ use perigrain_styles::matter::{Chosen, change_forces, keep_places, publish, unwr
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, COLUMNS, F, IMAGE, MASK, SLOTS, X};
-use perigrain_world::{GroupId, World};
+use perigrain_world::{GroupId, Key, Vectors, World};
 
 /// The style.
 pub struct SpringSelf;
@@ -47,43 +47,39 @@ impl FixStyle for SpringSelf {
             false => args.choice("direction", &["xyz", "xy", "xz", "yz", "x", "y", "z"])?,
         };
         let along = ["x", "y", "z"].map(|d| along.contains(d));
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, stiffness, along }))
+        let key = Key::new(&format!("spring/self/{}", cx.id));
+        Ok(Box::new(Declared { id: cx.id.to_string(), key, group: cx.group, stiffness, along }))
     }
 }
 
 #[derive(Clone)]
 struct Declared {
     id: String,
+    key: Vectors,
     group: GroupId,
     stiffness: Param,
     along: [bool; 3],
 }
 
-impl Declared {
-    fn key(&self) -> String {
-        format!("spring/self/{}", self.id)
-    }
-}
-
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
-        w.columns.remove(&self.key());
-        keep_places(w, &self.key(), self.group, unwrapped);
+        w.columns.remove(self.key);
+        keep_places(w, self.key, self.group, unwrapped);
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
-        w.columns.remove(&self.key());
+        w.columns.remove(self.key);
     }
 
     fn welcome(&self, w: &mut World) {
-        keep_places(w, &self.key(), self.group, unwrapped);
+        keep_places(w, self.key, self.group, unwrapped);
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let (span, key, along) = (cx.span(), self.key(), self.along);
+        let (span, key, along) = (cx.span(), self.key, self.along);
         let chosen = Chosen::new(cx.world(), self.group, None, span)?;
-        keep_places(cx.world(), &key, self.group, unwrapped);
+        keep_places(cx.world(), key, self.group, unwrapped);
         let stiffness = cx.param(&self.stiffness, Stage::PostForce, &When::Always)?;
         let slot = cx.slot(&format!("f_{}", self.id));
         let access = Needs::new().read(X | IMAGE | MASK | BOX | COLUMNS).add(F).write(SLOTS);
@@ -93,7 +89,7 @@ impl Fix for Declared {
                     return Ok(());
                 }
                 let [energy] = change_forces(w, &chosen, |w, i, f| {
-                    let Some(start) = w.columns.get_vector(&key) else { return [0.0] };
+                    let Some(start) = w.columns.get_vector(key) else { return [0.0] };
                     let (x, k) = (unwrapped(w, i), stiffness.atom(w, i));
                     let mut square = 0.0;
                     for d in (0..3).filter(|&d| along[d]) {
@@ -136,7 +132,7 @@ mod tests {
         assert_eq!(b.world.particles.f, [[-2.0, 0.0, 4.0], [0.0; 3]]);
         assert_eq!(b.slot_of("f_f").scalar, 5.0);
         fix.remove(&mut b.world);
-        assert!(b.world.columns.get_vector("spring/self/f").is_none());
+        assert!(b.world.columns.names().is_empty());
         for words in ["", "1 w", "1 x y", "v_no"] {
             let whole = b.fix(&SpringSelf, words);
             assert!(whole.is_err() || words == "1 x y", "{words}");

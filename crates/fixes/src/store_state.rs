@@ -9,7 +9,7 @@ use perigrain_styles::matter::centre;
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{BOX, COLUMNS, F, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, V, X};
-use perigrain_world::{GroupId, Slot, World};
+use perigrain_world::{GroupId, Key, Numbers, Slot, SlotId, World};
 
 /// The style.
 pub struct StoreState;
@@ -58,7 +58,10 @@ impl FixStyle for StoreState {
             return fail(Code::MISSING_ARGUMENT, args.here(), text);
         }
         let relative = args.eat("com") && args.flag("com")?;
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, every, inputs, relative }))
+        let filled: Numbers = Key::new(&format!("store/state/{}", cx.id));
+        let columns = (0..inputs.len()).map(|k| filled.with(&format!("/{k}"))).collect();
+        let (id, group) = (cx.id.to_string(), cx.group);
+        Ok(Box::new(Declared { id, group, every, inputs, relative, filled, columns }))
     }
 }
 
@@ -83,6 +86,10 @@ struct Declared {
     every: i64,
     inputs: Vec<Input>,
     relative: bool,
+    /// Whether values have been kept once.
+    filled: Numbers,
+    /// Where inputs are kept.
+    columns: Vec<Numbers>,
 }
 
 impl Input {
@@ -105,21 +112,12 @@ enum Which {
 }
 
 impl Declared {
-    fn column(&self, k: usize) -> String {
-        format!("store/state/{}/{k}", self.id)
-    }
-
-    /// Whether values have been kept once.
-    fn filled(&self) -> String {
-        format!("store/state/{}", self.id)
-    }
-
     /// Keeps inputs; `readings` are those of values.
     fn keep(&self, w: &mut World, which: Which, readings: &[Option<Reading>]) {
         let (n, bit) = (w.n(), self.group.bit());
         let center = if self.relative { centre(w, self.group).1 } else { [0.0; 3] };
         for (k, input) in self.inputs.iter().enumerate() {
-            let name = self.column(k);
+            let column = self.columns[k];
             let world = &*w;
             let list: Vec<f64> = match input {
                 Input::Attribute(name, getter) if which != input.left_out_at() => {
@@ -140,18 +138,17 @@ impl Declared {
             };
             let inside = |i: usize| w.particles.mask[i] & bit != 0;
             let kept = (0..n).map(|i| if inside(i) { list[i] } else { 0.0 }).collect();
-            *w.columns.scalar(&name, n) = kept;
+            *w.columns.scalar(column, n) = kept;
         }
     }
 
     /// Offers what is kept.
-    fn show(&self, w: &mut World, step: i64) {
+    fn show(&self, w: &mut World, slot: SlotId, step: i64) {
         let (n, cols) = (w.n(), self.inputs.len());
         let lists: Vec<&[f64]> =
-            (0..cols).map(|k| w.columns.get_scalar(&self.column(k)).unwrap_or_default()).collect();
+            self.columns.iter().map(|column| w.columns.get_scalar(*column).unwrap_or_default()).collect();
         let atom: Vec<f64> =
             (0..n).flat_map(|i| lists.iter().map(move |l| l.get(i).copied().unwrap_or(0.0))).collect();
-        let slot = w.slots.id(&format!("f_{}", self.id));
         let out = w.slots.get_mut(slot);
         (out.step, out.cols, out.atom) = (Some(step), cols, atom);
     }
@@ -165,20 +162,20 @@ impl Fix for Declared {
         let name = format!("f_{}", self.id);
         let slot = w.slots.id(&name);
         *w.slots.get_mut(slot) = Slot { name, ..Slot::default() };
-        self.show(w, w.clock.step);
+        self.show(w, slot, w.clock.step);
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.filled());
-        (0..self.inputs.len()).for_each(|k| w.columns.remove(&self.column(k)));
+        w.memo.remove(self.filled);
+        self.columns.iter().for_each(|column| w.columns.remove(*column));
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let when = if self.every == 0 { When::First } else { When::First.or(When::Every(self.every)) };
         let (mut me, mut readings) = (self.clone(), vec![]);
         // What is stored once and for all may go.
-        let stored = self.every == 0 && cx.world().memo.contains_key(&self.filled());
+        let stored = self.every == 0 && cx.world().memo.contains(self.filled);
         for input in &mut me.inputs {
             readings.push(match input {
                 _ if stored => None,
@@ -190,6 +187,7 @@ impl Fix for Declared {
                 Input::Value(r) => Some(cx.reading(r, Wants::PerAtom, Stage::EndOfStep, &when)?),
             });
         }
+        let slot = cx.slot(&format!("f_{}", self.id));
         let access = Needs::new()
             .read(SLOTS | X | V | F | MASK | MASS | IMAGE | TYPE_MASS | KIND | BOX)
             .write(SLOTS)
@@ -198,10 +196,10 @@ impl Fix for Declared {
             StepOp::new(format!("fix {} store/state", self.id), Stage::EndOfStep, access, move |w, t| {
                 if !t.setup {
                     me.keep(w, Which::All, &readings);
-                } else if w.memo.insert(me.filled(), vec![]).is_none() {
+                } else if w.memo.insert(me.filled, vec![]).is_none() {
                     me.keep(w, Which::Values, &readings);
                 }
-                me.show(w, t.step);
+                me.show(w, slot, t.step);
                 Ok(())
             });
         Ok(vec![op.when(when).in_setup(true).boxed()])

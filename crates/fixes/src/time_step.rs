@@ -5,11 +5,11 @@ use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::SealCx;
 use perigrain_styles::matter::publish;
 use perigrain_styles::step_op::StepOp;
-use perigrain_world::World;
 use perigrain_world::field::{
     BONDS, BOX, CLOCK, COLUMNS, FACTS, FAMILIES, Fields, KIND, LISTS, MASK, MEMO, MOLECULE, OMEGA, SLOTS,
     TAG, TRAVEL, TYPE_MASS, X0,
 };
+use perigrain_world::{Key, Numbers, World};
 
 /// What such fixes share: their name, how often they look, and as scalar the last step at which the step changed.
 #[derive(Clone)]
@@ -26,8 +26,8 @@ impl Follower {
         Self { style, id: id.to_string(), every }
     }
 
-    fn memo(&self) -> String {
-        format!("{}/{}", self.style, self.id)
+    fn memo(&self) -> Numbers {
+        Key::new(&format!("{}/{}", self.style, self.id))
     }
 
     /// Counts from now on.
@@ -37,7 +37,7 @@ impl Follower {
 
     /// Forgets.
     pub fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.memo());
+        w.memo.remove(self.memo());
     }
 
     /// The op that looks in the setup of a run and every so many steps; `step` says how long a step is to be. A run that merely
@@ -51,13 +51,13 @@ impl Follower {
         let (memo, slot) = (self.memo(), cx.slot(&format!("f_{}", self.id)));
         let name = format!("fix {} {}", self.id, self.style);
         let look = move |w: &mut World, t: &Tick| {
-            let mut last = w.memo.get(&memo).and_then(|m| m.first().copied()).unwrap_or(0.0);
+            let mut last = w.memo.get(memo).and_then(|m| m.first().copied()).unwrap_or(0.0);
             if !t.unchanged {
                 let dt = step(w)?;
                 if dt != w.clock.dt {
                     w.clock.set_dt(dt);
                     last = t.step as f64;
-                    w.memo.insert(memo.clone(), vec![last]);
+                    w.memo.insert(memo, vec![last]);
                 }
             }
             publish(w, slot, t, last, &[]);

@@ -9,7 +9,7 @@ use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, Wants};
 use perigrain_world::field::{MEMO, SLOTS};
-use perigrain_world::{Slot, World};
+use perigrain_world::{Key, Numbers, Slot, World};
 
 /// The style.
 pub struct VectorFix;
@@ -70,8 +70,8 @@ struct Declared {
 }
 
 impl Declared {
-    fn key(&self) -> String {
-        format!("vector/{}", self.id)
+    fn key(&self) -> Numbers {
+        Key::new(&format!("vector/{}", self.id))
     }
 }
 
@@ -89,7 +89,7 @@ impl Fix for Declared {
     }
 
     fn remove(&self, w: &mut World) {
-        forget(w, &self.key());
+        forget(w, self.key());
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
@@ -100,16 +100,16 @@ impl Fix for Declared {
         }
         let slot = cx.slot(&format!("f_{}", self.id));
         let (most, cols, key) = (self.most, self.values.len(), self.key());
+        let (last, list) = (key.with("/last"), key.with("/list"));
         let access = Needs::new().read(SLOTS).write(SLOTS).keep(MEMO);
         let op = StepOp::new(format!("fix {} vector", self.id), Stage::EndOfStep, access, move |w, t| {
             // The setup of a run stands at a step that the run before may have kept already.
-            let last = format!("{key}/last");
-            if w.memo.get(&last).is_some_and(|s| s.first() == Some(&(t.step as f64))) {
+            if w.memo.get(last).is_some_and(|s| s.first() == Some(&(t.step as f64))) {
                 return Ok(());
             }
             w.memo.insert(last, vec![t.step as f64]);
             let row: Vec<f64> = readings.iter().map(|r| r.get(w)).collect();
-            let list = w.memo.entry(format!("{key}/list")).or_default();
+            let list = w.memo.get_or(list, Vec::new);
             list.extend(row);
             if let Some(most) = most
                 && list.len() > most * cols

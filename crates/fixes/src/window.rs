@@ -3,7 +3,7 @@
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::When;
-use perigrain_world::World;
+use perigrain_world::{Numbers, World};
 
 /// `Nevery Nrepeat Nfreq` and `start`.
 #[derive(Clone, Copy, Debug)]
@@ -74,10 +74,10 @@ impl Schedule {
     }
 
     /// Forgets all samples; the next is taken at the present step at the earliest.
-    pub fn declare(&self, w: &mut World, key: &str) {
-        forget(w, key);
+    pub fn declare(&self, w: &mut World, kept: &Kept) {
+        forget(w, kept.key);
         let next = self.next_from(w.clock.step);
-        w.memo.insert(format!("{key}/next"), vec![next as f64, 0.0]);
+        w.memo.insert(kept.next, vec![next as f64, 0.0]);
     }
 
     /// The last sample of an average whose first one is at this step.
@@ -86,9 +86,8 @@ impl Schedule {
     }
 
     /// Whether a sample is due at this step; then the schedule moves on.
-    pub fn due(&self, w: &mut World, key: &str, step: i64) -> Option<Due> {
-        let name = format!("{key}/next");
-        let (mut next, mut taken) = match w.memo.get(&name).map(Vec::as_slice) {
+    pub fn due(&self, w: &mut World, kept: &Kept, step: i64) -> Option<Due> {
+        let (mut next, mut taken) = match w.memo.get(kept.next).map(Vec::as_slice) {
             Some(&[next, taken]) => (next as i64, taken as i64),
             _ => (self.next_from(step), 0),
         };
@@ -106,15 +105,37 @@ impl Schedule {
                 step + self.every
             };
         }
-        w.memo.insert(name, vec![next as f64, taken as f64]);
+        w.memo.insert(kept.next, vec![next as f64, taken as f64]);
         due.then_some(found)
     }
 }
 
 /// Forgets everything below a key.
-pub fn forget(w: &mut World, key: &str) {
+pub fn forget(w: &mut World, key: Numbers) {
     let below = format!("{key}/");
-    w.memo.retain(|name, _| !name.starts_with(&below));
+    w.memo.retain(|name| !name.text().starts_with(&below));
+}
+
+/// Where an average is kept in the world's memory.
+#[derive(Clone, Copy)]
+pub struct Kept {
+    /// What is above all of it.
+    pub key: Numbers,
+    /// The next sample, and how many have been taken.
+    next: Numbers,
+    sum: Numbers,
+    total: Numbers,
+    count: Numbers,
+    list: Numbers,
+}
+
+impl Kept {
+    /// Below this key.
+    pub fn below(key: Numbers) -> Self {
+        let [next, sum, total, count, list] =
+            ["/next", "/sum", "/total", "/count", "/list"].map(|what| key.with(what));
+        Self { key, next, sum, total, count, list }
+    }
 }
 
 /// How an average goes with the ones before it.
@@ -142,10 +163,10 @@ impl Ave {
     }
 }
 
-/// Adds up samples and joins averages; its state lives in the world's memory below `key`.
+/// Adds up samples and joins averages; its state lives in the world's memory.
 pub struct Averager {
     /// Where in the world's memory.
-    pub key: String,
+    pub kept: Kept,
     /// Samples per average, by which a sum is divided; 1 leaves sums.
     pub repeat: i64,
     /// How averages follow one another.
@@ -158,8 +179,7 @@ impl Averager {
     /// Adds a sample. After the last one of an average: sums over averages, and their number.
     pub fn add(&self, w: &mut World, values: &[f64], due: Due) -> Option<(Vec<f64>, f64)> {
         let off = |i: usize| self.off.get(i % self.off.len().max(1)).copied().unwrap_or(false);
-        let sum_name = format!("{}/sum", self.key);
-        let mut sum = w.memo.remove(&sum_name).unwrap_or_default();
+        let mut sum = w.memo.remove(self.kept.sum).unwrap_or_default();
         if due.first || sum.len() != values.len() {
             sum.clear();
             sum.resize(values.len(), 0.0);
@@ -168,7 +188,7 @@ impl Averager {
             *sum = if off(i) { *value } else { *sum + value };
         }
         if !due.last {
-            w.memo.insert(sum_name, sum);
+            w.memo.insert(self.kept.sum, sum);
             return None;
         }
         for (i, sum) in sum.iter_mut().enumerate() {
@@ -180,25 +200,25 @@ impl Averager {
         for (i, total) in total.iter_mut().enumerate().filter(|(i, _)| off(*i)) {
             *total = count * sum[i];
         }
-        w.memo.insert(sum_name, sum);
+        w.memo.insert(self.kept.sum, sum);
         Some((total, count))
     }
 
     /// Joins an average with those before it.
     fn join(&self, w: &mut World, one: &[f64]) -> (Vec<f64>, f64) {
-        let (total_name, count_name) = (format!("{}/total", self.key), format!("{}/count", self.key));
-        let mut total = w.memo.remove(&total_name).unwrap_or_default();
-        let mut count = w.memo.get(&count_name).and_then(|c| c.first().copied()).unwrap_or(0.0);
+        let kept = &self.kept;
+        let mut total = w.memo.remove(kept.total).unwrap_or_default();
+        let mut count = w.memo.get(kept.count).and_then(|c| c.first().copied()).unwrap_or(0.0);
         if total.len() != one.len() || self.ave == Ave::One {
             (total, count) = (vec![0.0; one.len()], 0.0);
-            w.memo.remove(&format!("{}/list", self.key));
+            w.memo.remove(kept.list);
         }
         for (total, one) in total.iter_mut().zip(one) {
             *total += one;
         }
         count += 1.0;
         if let Ave::Window(most) = self.ave {
-            let list = w.memo.entry(format!("{}/list", self.key)).or_default();
+            let list = w.memo.get_or(kept.list, Vec::new);
             if count > most as f64 {
                 for (total, old) in total.iter_mut().zip(list.drain(..one.len())) {
                     *total -= old;
@@ -207,8 +227,8 @@ impl Averager {
             }
             list.extend_from_slice(one);
         }
-        w.memo.insert(count_name, vec![count]);
-        w.memo.insert(total_name, total.clone());
+        w.memo.insert(kept.count, vec![count]);
+        w.memo.insert(kept.total, total.clone());
         (total, count)
     }
 }
@@ -216,12 +236,14 @@ impl Averager {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use perigrain_world::Key;
 
     fn steps(s: &Schedule, from: i64) -> Vec<i64> {
         let mut w = World::default();
         w.clock.step = from;
-        s.declare(&mut w, "k");
-        (from..40).filter(|&k| s.due(&mut w, "k", k).is_some()).collect()
+        let kept = Kept::below(Key::new("k"));
+        s.declare(&mut w, &kept);
+        (from..40).filter(|&k| s.due(&mut w, &kept, k).is_some()).collect()
     }
 
     // The first two from LAMMPS' manual of fix ave/time, scaled down.
@@ -251,14 +273,14 @@ mod tests {
             [(Ave::One, [1.0, 2.0, 6.0]), (Ave::Running, [1.0, 1.5, 3.0]), (Ave::Window(2), [1.0, 1.5, 4.0])]
         {
             let mut w = World::default();
-            let a = Averager { key: "k".into(), repeat: 1, ave, off: vec![false, true] };
+            let a = Averager { kept: Kept::below(Key::new("k")), repeat: 1, ave, off: vec![false, true] };
             let means = [1.0, 2.0, 6.0].map(|v| {
                 let (total, count) = a.add(&mut w, &[v, v], due).unwrap();
                 assert_eq!(total[1] / count, v);
                 total[0] / count
             });
             assert_eq!(means, wanted, "{ave:?}");
-            forget(&mut w, "k");
+            forget(&mut w, Key::new("k"));
             assert!(w.memo.is_empty());
         }
     }

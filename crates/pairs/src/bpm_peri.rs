@@ -11,7 +11,7 @@ use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::columns::VOLUME_PROPERTY;
 use perigrain_world::field::{BONDS, BOX, COLUMNS, F, KIND, LISTS, MASK, MOLECULE, RADIUS, TAG, TALLY, X};
-use perigrain_world::{Allowed, World};
+use perigrain_world::{Allowed, Constant, World};
 use std::collections::BTreeMap;
 
 /// Contact begins at this many lattice spacings.
@@ -77,7 +77,7 @@ impl Pair for Contact {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {
         let span = cx.span();
         cubic(cx.world(), "pair_style bpm/peri", span)?;
-        if cx.world().columns.custom(VOLUME_PROPERTY).is_none() {
+        if cx.world().columns.property(*VOLUME_PROPERTY).is_none() {
             let text = "pair_style bpm/peri needs the volumes of particles, the property d_vfrac";
             return Err(Diagnostic::error(Code::INCOMPLETE, span, text)
                 .help("put `fix vol all property/atom d_vfrac ghost yes` and `set group all d_vfrac …` before the run")
@@ -91,6 +91,8 @@ impl Pair for Contact {
         Scales { cutoff: self.table.values().map(|c| c[1]).reduce(f64::max), ..Scales::default() }
     }
 }
+
+static NAME: Constant<f64> = Constant::new("bpm/peri");
 
 /// The op.
 struct Repulsion {
@@ -140,10 +142,10 @@ impl Op for Repulsion {
         let range = CONTACT * w.lattice.spacing[0];
         self.update(w, t, range);
         let n = w.n();
-        let Some(name) = w.columns.custom(VOLUME_PROPERTY) else {
+        let Some(key) = w.columns.property(*VOLUME_PROPERTY) else {
             return fail(Code::LOST, self.span, "the property d_vfrac is gone");
         };
-        let volumes = std::mem::take(w.columns.scalar(&name, n));
+        let volumes = std::mem::take(w.columns.scalar(key, n));
         let (period, newton) = (w.periods(), w.bonds.newton);
         let mut energy = 0.0;
         for q in &self.list {
@@ -165,9 +167,9 @@ impl Op for Repulsion {
             push(w, t, [i, j], d, f, own);
         }
         if t.energy {
-            w.tally.add_pair("bpm/peri", energy);
+            w.tally.add_pair(*NAME, energy);
         }
-        *w.columns.scalar(&name, n) = volumes;
+        *w.columns.scalar(key, n) = volumes;
         Ok(())
     }
 }

@@ -12,7 +12,7 @@ use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
     BONDS, BOX, F, FAMILIES, KIND, LISTS, MASK, MEMO, MOLECULE, RADIUS, TAG, TALLY, V, X, X0,
 };
-use perigrain_world::{Allowed, World};
+use perigrain_world::{Allowed, Constant, Numbers, World};
 use std::collections::BTreeMap;
 
 /// The style.
@@ -43,19 +43,18 @@ impl PairStyle for BpmSpringStyle {
 #[derive(Clone, Default)]
 struct Springs {
     table: BTreeMap<(u16, u16), [f64; 3]>,
+    /// Where fixes leave the stiffness and damping they have changed.
+    keys: BTreeMap<(u16, u16), [Numbers; 2]>,
 }
 
 impl Springs {
     /// With what fixes have made of it.
     fn adapted(&self, w: &World) -> Self {
         let mut new = self.clone();
-        for (&types, [k, _, gamma]) in &mut new.table {
-            let of = |name: &str| {
-                let (style, name) = ("bpm/spring".to_string(), name.to_string());
-                w.adapted(&Coefficient { bond: false, style, name, types })
-            };
-            *k = of("k").unwrap_or(*k);
-            *gamma = of("gamma").unwrap_or(*gamma);
+        for (types, [k, _, gamma]) in &mut new.table {
+            let [of_k, of_gamma] = self.keys[types].map(|key| w.adapted(key));
+            *k = of_k.unwrap_or(*k);
+            *gamma = of_gamma.unwrap_or(*gamma);
         }
         new
     }
@@ -70,6 +69,11 @@ impl Pair for Springs {
         let k = args.non_negative("the stiffness k")?;
         let spring = [k, args.positive("the cutoff rc")?, args.non_negative("the damping gamma")?];
         self.table.extend(pairs.iter().map(|p| (*p, spring)));
+        let of = |types, name: &str| {
+            let (style, name) = ("bpm/spring".to_string(), name.to_string());
+            Coefficient { bond: false, style, name, types }.key()
+        };
+        self.keys.extend(pairs.iter().map(|&p| (p, ["k", "gamma"].map(|name| of(p, name)))));
         Ok(())
     }
 
@@ -104,6 +108,8 @@ impl Pair for Springs {
         Scales { cutoff: self.table.values().map(|c| c[1]).reduce(f64::max), ..Scales::default() }
     }
 }
+
+static NAME: Constant<f64> = Constant::new("bpm/spring");
 
 /// The op.
 struct Repulsion {
@@ -175,7 +181,7 @@ impl Op for Repulsion {
             push(w, t, [i, j], d, f, own);
         }
         if t.energy {
-            w.tally.add_pair("bpm/spring", energy);
+            w.tally.add_pair(*NAME, energy);
         }
         Ok(())
     }

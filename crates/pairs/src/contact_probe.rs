@@ -11,7 +11,7 @@ use perigrain_contact::{Advance, ContactLaw, Wrench};
 use perigrain_neigh::list::{Pair, Reach, Wanted, difference};
 use perigrain_styles::probe::{Ask, Balance, Interaction, OWN, Probe, Springs};
 use perigrain_world::contacts::Contacts;
-use perigrain_world::{Allowed, World};
+use perigrain_world::{Allowed, Key, World};
 
 /// The numbers a granular style gives to each pair, in LAMMPS' order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +26,8 @@ pub enum Own {
 
 /// Evaluates the contacts of one pair style.
 pub struct ContactProbe<L> {
-    name: &'static str,
+    /// Where contact history is kept in the world.
+    key: Key<Contacts>,
     rules: Rules<L>,
     wanted: Wanted,
     own: Own,
@@ -38,7 +39,7 @@ pub struct ContactProbe<L> {
 impl<L: ContactLaw> ContactProbe<L> {
     /// Of the pairs of types that `wanted` names, with the contacts kept in the world under the style's name.
     pub fn new(name: &'static str, rules: Rules<L>, wanted: Wanted, own: Own) -> Self {
-        Self { name, rules, wanted, own, sweep: Sweep::default(), listed: None }
+        Self { key: Key::new(name), rules, wanted, own, sweep: Sweep::default(), listed: None }
     }
 
     /// Pairs that may touch: those of the neighbour list, as it was when lists were last rebuilt.
@@ -63,7 +64,7 @@ impl<L: ContactLaw> ContactProbe<L> {
         find_frozen(w, &mut frozen);
         let masses = w.contact_masses();
         let grains = Grains { mass: &masses, ..grains(w, w.periods(), &body, &frozen)? };
-        let mut memory = w.contacts.get(self.name).cloned().unwrap_or_default();
+        let mut memory = w.contacts.get(self.key).cloned().unwrap_or_default();
         let still = Advance { dt: w.clock.dt, history: false };
         let stands = |(made, _): &(u64, Vec<Pair>)| *made == w.rebuild.generation && w.clock.running;
         let list = match self.listed.take().filter(stands) {
@@ -99,7 +100,7 @@ impl<L: ContactLaw> ContactProbe<L> {
 
 impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
     fn name(&self) -> &'static str {
-        self.name
+        self.key.text()
     }
 
     fn own(&self) -> usize {

@@ -6,6 +6,7 @@ use super::needs::{self, Needs};
 use super::{About, Act, BlockSums, FusedPass, Guard, Meter, Op, OpClass, Stage, Tick, When, fuse};
 use perigrain_base::diag::{Diagnostics, Result, Span};
 use perigrain_world::field::{CONTACTS, RADIUS, X};
+use perigrain_world::named::Acting;
 use perigrain_world::{Fields, World};
 use std::ops::Range;
 use std::sync::Arc;
@@ -61,7 +62,10 @@ impl Placed {
         clock: &mut Stopwatch,
         act: impl FnOnce(&mut dyn Op, &mut World) -> Result<T>,
     ) -> Result<T> {
-        let outcome = act(&mut *self.op, w);
+        let outcome = {
+            let _names_are_known = Acting::op();
+            act(&mut *self.op, w)
+        };
         self.meter.time += clock.lap();
         self.meter.calls += 1;
         self.meter.bytes += self.op.bytes(w);

@@ -2,7 +2,7 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail, nearest};
 use perigrain_lang::{Param, RefKind, ValueRef, Word};
-use perigrain_world::{GroupId, Offers, Region, World};
+use perigrain_world::{GroupId, Key, Offers, Region, World};
 use std::cell::RefCell;
 
 use super::Wants;
@@ -224,13 +224,13 @@ impl BuildCx<'_> {
     /// # Errors
     /// An unknown region, with the nearest known one.
     pub fn region(&self, word: &Word) -> Result<&Region> {
-        if let Some(r) = self.world.regions.get(&word.text) {
+        if let Some(r) = self.world.regions.look_up(&word.text) {
             self.uses(UseKind::Region, &word.text);
             return Ok(r);
         }
         let d =
             Diagnostic::error(Code::UNKNOWN_REGION, word.span, format!("there is no region `{}`", word.text));
-        Err(match nearest(&word.text, self.world.regions.keys().map(String::as_str)) {
+        Err(match nearest(&word.text, self.world.regions.keys().map(Key::text)) {
             Some(n) => d.help(format!("did you mean `{n}`?")),
             None => d.help("define it before this line with `region ID style …`"),
         }

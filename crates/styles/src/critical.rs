@@ -6,9 +6,8 @@ use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
 use perigrain_peri::families::ForceUnit;
-use perigrain_world::World;
 use perigrain_world::contacts::WallSpring;
-use std::collections::BTreeMap;
+use perigrain_world::{Named, World};
 
 /// How the step of peridynamic solids is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,14 +60,14 @@ pub fn solids(w: &World, how: Estimate) -> Result<f64> {
 /// Asks walls for the springs of their contacts, from the next step on.
 pub fn ask_walls(w: &mut World) {
     if w.parts.wall_springs.is_none() {
-        w.parts.wall_springs = Some(BTreeMap::new());
+        w.parts.wall_springs = Some(Named::default());
         w.touch();
     }
 }
 
 /// Goes through the contacts with walls at the last step.
 fn add_walls(w: &World, mut each: impl FnMut(usize, &WallSpring)) {
-    let springs = || w.parts.wall_springs.iter().flat_map(BTreeMap::values).flatten();
+    let springs = || w.parts.wall_springs.iter().flat_map(Named::values).flatten();
     if springs().next().is_none() {
         return;
     }

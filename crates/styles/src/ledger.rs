@@ -2,11 +2,11 @@
 
 use crate::probe::{Balance, Probe};
 use perigrain_base::diag::{Code, Result, fail};
-use perigrain_base::math::vec3::dot;
+use perigrain_base::math::vec3::{Vec3, dot};
 use perigrain_base::par;
 use perigrain_peri::families::ForceUnit;
 use perigrain_plan::Tick;
-use perigrain_world::World;
+use perigrain_world::{Constant, World};
 
 /// What does work on particles besides their mutual forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,13 +20,18 @@ pub enum Channel {
 }
 
 /// Columns of the forces of each channel at the present step.
-const FORCES: [&str; 3] = ["ledger/walls", "ledger/gravity", "ledger/imposed"];
+static FORCES: [Constant<Vec<Vec3>>; 3] =
+    [Constant::new("ledger/walls"), Constant::new("ledger/gravity"), Constant::new("ledger/imposed")];
 /// And of their torques.
-const TORQUES: [&str; 3] = ["ledger/walls torque", "ledger/gravity torque", "ledger/imposed torque"];
+static TORQUES: [Constant<Vec<Vec3>>; 3] = [
+    Constant::new("ledger/walls torque"),
+    Constant::new("ledger/gravity torque"),
+    Constant::new("ledger/imposed torque"),
+];
 /// Forces and torques as they were before the next fix.
-const BEFORE: [&str; 2] = ["ledger/force", "ledger/torque"];
+static BEFORE: [Constant<Vec<Vec3>>; 2] = [Constant::new("ledger/force"), Constant::new("ledger/torque")];
 /// The name of the book in the world's memory.
-const BOOK: &str = "energy/ledger";
+static BOOK: Constant<Vec<f64>> = Constant::new("energy/ledger");
 
 /// The channels' sums.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,7 +49,7 @@ struct Book {
 
 impl Book {
     fn read(w: &World) -> Option<Self> {
-        let m = w.memo.get(BOOK).filter(|m| m.len() == 15)?;
+        let m = w.memo.get(*BOOK).filter(|m| m.len() == 15)?;
         let six = |k: usize| std::array::from_fn(|i| m[k + i]);
         Some(Self { power: six(0), work: six(6), driven: [m[12], m[13]], base: m[14] })
     }
@@ -53,14 +58,14 @@ impl Book {
         let mut m = [self.power, self.work].concat();
         m.extend(self.driven);
         m.push(self.base);
-        w.memo.insert(BOOK.to_string(), m);
+        w.memo.insert(*BOOK, m);
     }
 }
 
 /// Forgets the ledger: the next run opens a new one.
 pub fn forget(w: &mut World) {
-    w.memo.remove(BOOK);
-    FORCES.iter().chain(&TORQUES).chain(&BEFORE).for_each(|c| w.columns.remove(c));
+    w.memo.remove(*BOOK);
+    FORCES.iter().chain(&TORQUES).chain(&BEFORE).for_each(|c| w.columns.remove(**c));
 }
 
 /// Before the fixes of a step change forces.
@@ -72,8 +77,8 @@ pub fn begin(w: &mut World, t: &Tick) {
         families.counts_losses = true;
     }
     let n = w.n();
-    for name in FORCES.iter().chain(&TORQUES) {
-        let column = w.columns.vector(name, n);
+    for key in FORCES.iter().chain(&TORQUES) {
+        let column = w.columns.vector(**key, n);
         column.clear();
         column.resize(n, [0.0; 3]);
     }
@@ -82,8 +87,8 @@ pub fn begin(w: &mut World, t: &Tick) {
 
 fn remember(w: &mut World) {
     let n = w.n();
-    w.columns.vector(BEFORE[0], n).clone_from(&w.particles.f);
-    w.columns.vector(BEFORE[1], n).clone_from(&w.particles.torque);
+    w.columns.vector(*BEFORE[0], n).clone_from(&w.particles.f);
+    w.columns.vector(*BEFORE[1], n).clone_from(&w.particles.torque);
 }
 
 /// After a fix has changed forces.
@@ -92,14 +97,15 @@ pub fn mark(w: &mut World, t: &Tick, channel: Channel) {
         return;
     }
     let n = w.n();
-    for (names, k) in [(FORCES, 0), (TORQUES, 1)] {
-        let mut sum = std::mem::take(w.columns.vector(names[channel as usize], n));
+    for (keys, k) in [(&FORCES, 0), (&TORQUES, 1)] {
+        let key = *keys[channel as usize];
+        let mut sum = std::mem::take(w.columns.vector(key, n));
         let now = if k == 0 { &w.particles.f } else { &w.particles.torque };
-        let before = w.columns.get_vector(BEFORE[k]).unwrap_or(&[]);
+        let before = w.columns.get_vector(*BEFORE[k]).unwrap_or(&[]);
         for ((sum, now), before) in sum.iter_mut().zip(now).zip(before) {
             (0..3).for_each(|d| sum[d] += now[d] - before[d]);
         }
-        *w.columns.vector(names[channel as usize], n) = sum;
+        *w.columns.vector(key, n) = sum;
     }
     remember(w);
 }
@@ -151,8 +157,8 @@ pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32
     let contacts = balance(w, probes)?;
     let p = &w.particles;
     let power = |k: usize| {
-        let force = w.columns.get_vector(FORCES[k]).unwrap_or(&[]);
-        let torque = w.columns.get_vector(TORQUES[k]).unwrap_or(&[]);
+        let force = w.columns.get_vector(*FORCES[k]).unwrap_or(&[]);
+        let torque = w.columns.get_vector(*TORQUES[k]).unwrap_or(&[]);
         let turns = |i: usize| torque.get(i).zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(*q, *o));
         par::sum(p.len().min(force.len()), |i| scale(w, i) * dot(force[i], p.v[i]) + turns(i))
     };

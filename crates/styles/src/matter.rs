@@ -3,7 +3,7 @@
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::par;
 use perigrain_plan::Tick;
-use perigrain_world::{AtomStyle, GroupId, Region, SlotId, World};
+use perigrain_world::{AtomStyle, GroupId, Key, Region, SlotId, Vectors, World};
 
 /// The mass of each particle: its own where the atom style has one, else its type's.
 #[derive(Clone, Copy)]
@@ -103,10 +103,10 @@ pub fn unwrapped(w: &World, i: usize) -> [f64; 3] {
 
 /// Keeps `what` of every particle of a group in a vector column, for those it does not hold yet; a scalar column of the
 /// same name says who they are.
-pub fn keep_places(w: &mut World, key: &str, group: GroupId, what: impl Fn(&World, usize) -> [f64; 3]) {
+pub fn keep_places(w: &mut World, key: Vectors, group: GroupId, what: impl Fn(&World, usize) -> [f64; 3]) {
     let (n, bit) = (w.n(), group.bit());
     w.columns.vector(key, n);
-    let mut known = std::mem::take(w.columns.scalar(key, n));
+    let mut known = std::mem::take(w.columns.scalar(key.of(), n));
     for (i, known) in known.iter_mut().enumerate() {
         if *known == 0.0 && w.particles.mask[i] & bit != 0 {
             *known = 1.0;
@@ -114,14 +114,14 @@ pub fn keep_places(w: &mut World, key: &str, group: GroupId, what: impl Fn(&Worl
             w.columns.vector(key, n)[i] = kept;
         }
     }
-    *w.columns.scalar(key, n) = known;
+    *w.columns.scalar(key.of(), n) = known;
 }
 
 /// Who a force acts on: a group, or its members inside a region.
 #[derive(Clone)]
 pub struct Chosen {
     bit: u32,
-    region: Option<String>,
+    region: Option<Key<Region>>,
 }
 
 impl Chosen {
@@ -130,13 +130,12 @@ impl Chosen {
     /// # Errors
     /// The region no longer exists.
     pub fn new(w: &World, group: GroupId, region: Option<&str>, span: Span) -> Result<Self> {
-        if let Some(name) = region
-            && !w.regions.contains_key(name)
-        {
+        let gone = |name| {
             let text = format!("there is no region `{name}` any more");
-            return Err(Diagnostic::error(Code::UNKNOWN_NAME, span, text).into());
-        }
-        Ok(Self { bit: group.bit(), region: region.map(String::from) })
+            Diagnostic::error(Code::UNKNOWN_NAME, span, text)
+        };
+        let region = region.map(|name| w.regions.find(name).ok_or_else(|| gone(name))).transpose()?;
+        Ok(Self { bit: group.bit(), region })
     }
 
     /// The bit of the group, if no region limits it.
@@ -146,10 +145,10 @@ impl Chosen {
 
     /// Who is meant at this moment: regions may move. Of a region that is gone nobody.
     pub fn now<'w>(&self, w: &'w World) -> ChosenNow<'w> {
-        match &self.region {
+        match self.region {
             None => ChosenNow { bit: self.bit, region: None },
-            Some(name) => {
-                let region = w.regions.get(name);
+            Some(key) => {
+                let region = w.regions.get(key);
                 ChosenNow { bit: if region.is_some() { self.bit } else { 0 }, region }
             }
         }

@@ -3,7 +3,7 @@
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::Args;
-use perigrain_world::{GroupId, World};
+use perigrain_world::{GroupId, Numbers, World};
 use std::f64::consts::PI;
 
 /// A particle that joins.
@@ -116,7 +116,7 @@ impl Account {
     }
 
     /// Reads it from the world.
-    pub fn load(w: &World, key: &str) -> Option<Self> {
+    pub fn load(w: &World, key: Numbers) -> Option<Self> {
         let &[done, next, start, tag, molecule, state, spare] = w.memo.get(key)?.as_slice() else {
             return None;
         };
@@ -130,19 +130,19 @@ impl Account {
     }
 
     /// Keeps it in the world.
-    pub fn store(&self, w: &mut World, key: &str) {
+    pub fn store(&self, w: &mut World, key: Numbers) {
         let [state, spare] = self.stream.stand();
         let next = self.next.map_or(f64::NAN, |n| n as f64);
         let [tag, molecule] = self.last.map(f64::from);
         let list = vec![self.done as f64, next, self.start as f64, tag, molecule, state, spare];
-        w.memo.insert(key.to_string(), list);
+        w.memo.insert(key, list);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use perigrain_world::AtomStyle;
+    use perigrain_world::{AtomStyle, Key};
 
     #[test]
     fn what_is_kept_comes_back() {
@@ -150,20 +150,20 @@ mod tests {
         let mut account = Account::new(&w, ParkMiller::new(4711));
         account.stream.gaussian();
         (account.done, account.last) = (3, [17, 2]);
-        account.store(&mut w, "pour/ins");
-        assert_eq!(Account::load(&w, "pour/ins"), Some(account.clone()));
+        account.store(&mut w, Key::new("pour/ins"));
+        assert_eq!(Account::load(&w, Key::new("pour/ins")), Some(account.clone()));
         account.next = Some(12);
         account.stream.gaussian();
-        account.store(&mut w, "pour/ins");
-        assert_eq!(Account::load(&w, "pour/ins"), Some(account));
-        assert_eq!(Account::load(&w, "pour/other"), None);
+        account.store(&mut w, Key::new("pour/ins"));
+        assert_eq!(Account::load(&w, Key::new("pour/ins")), Some(account));
+        assert_eq!(Account::load(&w, Key::new("pour/other")), None);
     }
 
     #[test]
     fn newcomers_have_their_columns() {
         let mut w = World::default();
         w.particles.style = AtomStyle { sphere: true, sphere_mass: true, ..AtomStyle::default() };
-        w.columns.scalar("own", 0);
+        w.columns.scalar(Key::new("own"), 0);
         let new = Newcomer { kind: 1, x: [1.0; 3], v: [0.0, 0.0, -1.0], size: Some([1.0, 3.0]) };
         admit(&mut w, GroupId(2), 8, &[new, Newcomer { size: None, ..new }]).unwrap();
         let p = &w.particles;

@@ -2,7 +2,7 @@
 
 use perigrain_base::math::body::Quat;
 use perigrain_base::math::vec3::Vec3;
-use perigrain_world::World;
+use perigrain_world::{Key, Numbers, World};
 
 /// A rigid body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -63,13 +63,18 @@ impl Body {
     }
 }
 
-/// The bodies of the fix of this style and ID, as the world keeps them.
-pub fn bodies(w: &World, style: &str, id: &str) -> Vec<Body> {
-    let kept = w.memo.get(&format!("{style}/{id}/bodies"));
+/// The handle of the bodies of the fix of this style and ID.
+pub fn bodies_key(style: &str, id: &str) -> Numbers {
+    Key::new(&format!("{style}/{id}/bodies"))
+}
+
+/// The bodies of a fix, as the world keeps them.
+pub fn bodies(w: &World, key: Numbers) -> Vec<Body> {
+    let kept = w.memo.get(key);
     kept.map_or(vec![], |m| m.chunks_exact(WIDTH).map(Body::of).collect())
 }
 
 /// The column with the number of each particle's body, from 1; 0 for none.
-pub fn body_column(style: &str, id: &str) -> String {
-    format!("{style}/{id}/body")
+pub fn body_column(style: &str, id: &str) -> Numbers {
+    Key::new(&format!("{style}/{id}/body"))
 }

@@ -1,9 +1,6 @@
 //! How the box is deformed: what fixes deform leave and temperatures read.
 
-use perigrain_world::World;
-
-/// What the name of the rates of a fix ends with.
-pub const RATES: &str = "/rates";
+use perigrain_world::{RATES, World};
 
 /// How the box is deformed by all fixes deform.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,8 +15,7 @@ pub struct Stretching {
 
 /// How the box is deformed; `None` without a fix deform that has been in a run.
 pub fn stretching(w: &World) -> Option<Stretching> {
-    let told = w.memo.iter().filter(|(key, _)| key.starts_with("deform/") && key.ends_with(RATES));
-    told.map(|(_, row)| row).fold(None, |all, row| {
+    w.memo.playing(*RATES).map(|(_, row)| row).fold(None, |all, row| {
         let mut s: Stretching = all.unwrap_or_default();
         for d in 0..3 {
             s.rate[d] += row.get(d).copied().unwrap_or(0.0);

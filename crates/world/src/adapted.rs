@@ -1,9 +1,12 @@
 //! Coefficients of pair and bond styles that `fix adapt` has changed: they differ from what the deck's lines said.
 
 use super::World;
+use super::named::{Constant, Key, Numbers};
 
-/// Grows with every change, so that ops notice.
+/// How the names of coefficients that a fix has changed begin.
 const CHANGES: &str = "adapted";
+/// Grows with every change, so that ops notice.
+static COUNT: Constant<Vec<f64>> = Constant::new(CHANGES);
 
 /// A coefficient of a pair of particle types, or of a bond type (twice the same).
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,14 +22,15 @@ pub struct Coefficient {
 }
 
 impl Coefficient {
-    fn key(&self) -> String {
-        let (a, b) = self.types;
-        format!("{}{}/{a}/{b}", prefix(self.bond, &self.style), self.name)
+    /// Where the value is that a fix has given to it.
+    pub fn key(&self) -> Numbers {
+        let (kind, (a, b)) = (if self.bond { "bond" } else { "pair" }, self.types);
+        Key::new(&format!("{CHANGES}/{kind}/{}/{}/{a}/{b}", self.style, self.name))
     }
 
     /// Where a fix keeps what it was when the run began.
-    pub fn kept_by(&self, fix: &str) -> String {
-        format!("adapt/{fix}/{}", self.key())
+    pub fn kept_by(&self, fix: &str) -> Numbers {
+        Key::new(&format!("adapt/{fix}/{}", self.key()))
     }
 }
 
@@ -35,35 +39,32 @@ pub fn is(name: &str) -> bool {
     name.strip_prefix(CHANGES).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 
-fn prefix(bond: bool, style: &str) -> String {
-    format!("{CHANGES}/{}/{style}/", if bond { "bond" } else { "pair" })
-}
-
 impl World {
-    /// The value a fix has given to a coefficient.
-    pub fn adapted(&self, of: &Coefficient) -> Option<f64> {
-        self.memo.get(&of.key()).and_then(|m| m.first().copied())
+    /// The value a fix has given to the coefficient of this key.
+    pub fn adapted(&self, key: Numbers) -> Option<f64> {
+        self.memo.get(key).and_then(|m| m.first().copied())
     }
 
     /// Gives a coefficient a value, or takes it away again: the deck's then holds.
-    pub fn adapt(&mut self, of: &Coefficient, value: Option<f64>) {
-        match value {
-            Some(value) => drop(self.memo.insert(of.key(), vec![value])),
-            None => drop(self.memo.remove(&of.key())),
-        }
+    pub fn adapt(&mut self, key: Numbers, value: Option<f64>) {
         let next = self.adaptations() + 1.0;
-        self.memo.insert(CHANGES.to_string(), vec![next]);
+        for (key, value) in [(key, value), (*COUNT, Some(next))] {
+            match value {
+                Some(value) => drop(self.memo.insert(key, vec![value])),
+                None => drop(self.memo.remove(key)),
+            }
+        }
     }
 
     /// A number that grows with every change; 0 as long as there was none.
     pub fn adaptations(&self) -> f64 {
-        self.memo.get(CHANGES).and_then(|m| m.first().copied()).unwrap_or(0.0)
+        self.adapted(*COUNT).unwrap_or(0.0)
     }
 
     /// All values that fixes have given, as they are remembered.
-    pub fn adaptations_made(&self) -> Vec<(String, Vec<f64>)> {
-        let made = self.memo.iter().filter(|(key, _)| is(key));
-        made.map(|(key, value)| (key.clone(), value.clone())).collect()
+    pub fn adaptations_made(&self) -> Vec<(Numbers, Vec<f64>)> {
+        let made = self.memo.iter().filter(|(key, _)| is(key.text()));
+        made.map(|(key, value)| (key, value.clone())).collect()
     }
 
     /// A line of the deck has set coefficients: what fixes have made of those of these types (of all: `None`) is past.
@@ -76,7 +77,7 @@ impl World {
             key.starts_with(&begin)
                 && types.is_none_or(|list| list.iter().any(|(a, b)| key.ends_with(&format!("/{a}/{b}"))))
         };
-        self.memo.retain(|key, _| !past(key));
+        self.memo.retain(|key| !past(key.text()));
     }
 }
 
@@ -87,15 +88,16 @@ mod tests {
     #[test]
     fn what_a_fix_has_changed_and_a_line_sets_anew() {
         let mut w = World::default();
-        let of = |types| Coefficient { bond: false, style: "peri/pmb".into(), name: "s00".into(), types };
-        assert_eq!((w.adapted(&of((1, 2))), w.adaptations()), (None, 0.0));
-        w.adapt(&of((1, 2)), Some(3.0));
-        w.adapt(&of((1, 1)), Some(4.0));
-        assert_eq!((w.adapted(&of((1, 2))), w.adaptations()), (Some(3.0), 2.0));
+        let of =
+            |types| Coefficient { bond: false, style: "peri/pmb".into(), name: "s00".into(), types }.key();
+        assert_eq!((w.adapted(of((1, 2))), w.adaptations()), (None, 0.0));
+        w.adapt(of((1, 2)), Some(3.0));
+        w.adapt(of((1, 1)), Some(4.0));
+        assert_eq!((w.adapted(of((1, 2))), w.adaptations()), (Some(3.0), 2.0));
         w.set_anew(true, None);
         w.set_anew(false, Some(&[(1, 2)]));
-        assert_eq!((w.adapted(&of((1, 2))), w.adapted(&of((1, 1)))), (None, Some(4.0)));
-        w.adapt(&of((1, 1)), None);
-        assert_eq!((w.adapted(&of((1, 1))), w.adaptations()), (None, 3.0));
+        assert_eq!((w.adapted(of((1, 2))), w.adapted(of((1, 1)))), (None, Some(4.0)));
+        w.adapt(of((1, 1)), None);
+        assert_eq!((w.adapted(of((1, 1))), w.adaptations()), (None, 3.0));
     }
 }

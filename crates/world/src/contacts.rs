@@ -1,5 +1,7 @@
 //! Contact history by pair: what grains remember while they touch each other or a wall.
 
+use super::named::Constant;
+
 /// Contacts of the last step in the order of their keys, with what each remembers.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Contacts {
@@ -32,7 +34,7 @@ pub fn mirror(history: &mut [f64]) {
 }
 
 /// Under this name contacts of plastic grains are kept (normal model `mdr`), besides those of their pair style.
-pub const PLASTIC: &str = "mdr";
+pub static PLASTIC: Constant<Contacts> = Constant::new("mdr");
 
 /// What one grain remembers of a contact of plastic grains, from what the other remembers: first its own side, then the
 /// other's, then what they have in common.

@@ -23,6 +23,7 @@ pub mod lattice;
 pub mod material;
 pub mod memory;
 pub mod minimizer;
+pub mod named;
 pub mod order;
 pub mod particles;
 pub mod potentials;
@@ -58,6 +59,7 @@ pub use groups::{Dynamic, GroupId, Groups};
 pub use images::Images;
 pub use lattice::Lattice;
 pub use minimizer::Minimizer;
+pub use named::{Constant, Key, Named, Numbers, Vectors};
 pub use particles::{AtomStyle, Own, Particles};
 pub use promises::{Promise, Promises};
 pub use properties::Properties;
@@ -72,11 +74,14 @@ pub use touched::Touched;
 pub use tracked::{Lent, Tracked};
 pub use travel::{Seen, Travel};
 
-/// How names of `memo` end that hold the energy which a fix has taken from particles for a reservoir so far (`ecouple`).
-pub const COUPLED: &str = "/coupled";
+/// The role in `memo` of the energy which a fix has taken from particles for a reservoir so far (`ecouple`).
+pub static COUPLED: Constant<Vec<f64>> = Constant::new("/coupled");
 
-/// How names of columns end that hold the mass of the rigid body a particle belongs to, 0 for none.
-pub const CONTACT_MASS: &str = "/contact mass";
+/// The role in `memo` of how fast a fix deforms the box.
+pub static RATES: Constant<Vec<f64>> = Constant::new("/rates");
+
+/// The role of columns that hold the mass of the rigid body a particle belongs to, 0 for none.
+pub static CONTACT_MASS: Constant<Vec<f64>> = Constant::new("/contact mass");
 
 /// Everything that outlives a step. It decides nothing: commands change it, ops advance it.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -96,7 +101,7 @@ pub struct World {
     /// The latest `lattice`.
     pub lattice: Lattice,
     /// Named volumes.
-    pub regions: Tracked<BTreeMap<String, Region>>,
+    pub regions: Tracked<Named<Region>>,
     /// Number of particle types, from `create_box`.
     pub types: usize,
     /// Mass of each type (index type − 1) where `mass` set one.
@@ -106,10 +111,10 @@ pub struct World {
     /// Energy and virial of the present step.
     pub tally: Tracked<Tally>,
     /// Small state of fixes that outlives a run, by `kind/ID`.
-    pub memo: Tracked<BTreeMap<String, Vec<f64>>>,
+    pub memo: Tracked<Named<Vec<f64>>>,
     /// What fixes have set internal-style variables to in the present run.
     #[serde(skip)]
-    pub controls: Tracked<BTreeMap<String, f64>>,
+    pub controls: Tracked<Named<f64>>,
     /// When neighbour lists were last rebuilt.
     pub rebuild: Tracked<Rebuild>,
     /// How far particles may have gone in this run.
@@ -125,9 +130,9 @@ pub struct World {
     /// Cracks that wait for bonds to be there.
     pub cracks: Vec<Crack>,
     /// What touching grains remember, by pair style.
-    pub contacts: Tracked<BTreeMap<String, contacts::Contacts>>,
+    pub contacts: Tracked<Named<contacts::Contacts>>,
     /// What grains touching a wall remember, by the wall's fix.
-    pub wall_contacts: Tracked<BTreeMap<String, contacts::Contacts>>,
+    pub wall_contacts: Tracked<Named<contacts::Contacts>>,
     /// Materials by ID.
     pub materials: BTreeMap<String, material::Material>,
     /// What fixes property/atom give particles, in the order in which data files name it; the deck says it again after a restart.
@@ -148,12 +153,10 @@ pub struct Parts {
     pub changed: bool,
     /// Forces and torques of the coming step have been set to zero already.
     pub cleared: bool,
-    /// Text facts that styles leave for the log's end, by name.
-    pub facts: BTreeMap<String, Arc<str>>,
     /// The first grains seen to overlap by more than a tenth of a radius during a run.
     pub deep: Option<contacts::Deep>,
     /// Springs of the contacts with each wall, by the fix's ID, at the last step; nothing where nobody has asked.
-    pub wall_springs: Option<BTreeMap<String, Vec<contacts::WallSpring>>>,
+    pub wall_springs: Option<Named<Vec<contacts::WallSpring>>>,
     /// The fix freeze in force and its group: contact laws take these grains for infinitely heavy.
     pub frozen: Option<(String, GroupId)>,
     /// What the plastic grains of the pair style in force are made of (normal model `mdr`): E, ν, Y, ψ_b and restitution.
@@ -229,8 +232,7 @@ impl World {
         if self.particles.style.peri {
             return &self.particles.volume;
         }
-        let column = self.columns.custom(columns::VOLUME_PROPERTY);
-        column.and_then(|name| self.columns.get_scalar(&name)).unwrap_or(&[])
+        self.columns.playing(*columns::VOLUME_PROPERTY).next().map_or(&[], |(_, column)| column)
     }
 
     /// Positions at the last rebuild of neighbour lists; none before the first.
@@ -269,7 +271,7 @@ impl World {
     /// Masses as contacts see them: particles of rigid bodies have that of the body.
     pub fn contact_masses(&self) -> std::borrow::Cow<'_, [f64]> {
         let own = &self.particles.mass;
-        let bodies: Vec<&[f64]> = self.columns.ending(CONTACT_MASS).collect();
+        let bodies: Vec<&[f64]> = self.columns.playing(*CONTACT_MASS).map(|(_, c)| c.as_slice()).collect();
         if bodies.is_empty() {
             return own.as_slice().into();
         }

@@ -64,8 +64,8 @@ impl World {
             let (a, b) = (*new.get(&a)?, *new.get(&b)?);
             Some(([a.min(b), a.max(b)], a > b))
         };
-        for (name, c) in &mut self.contacts {
-            c.rename(pair, if name == PLASTIC { turn_plastic } else { mirror });
+        for (key, c) in self.contacts.iter_mut() {
+            c.rename(pair, if key == *PLASTIC { turn_plastic } else { mirror });
         }
         for c in self.wall_contacts.values_mut() {
             c.rename(|[a, part]| Some(([*new.get(&a)?, part], false)), mirror);
@@ -97,6 +97,7 @@ fn left_after(marked: &[bool]) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Key;
 
     #[test]
     fn holes_are_filled_from_the_end() {
@@ -110,13 +111,14 @@ mod tests {
         let mut w = World::default();
         (1..=4).for_each(|tag| w.particles.push(10 * tag, 1, [f64::from(tag); 3]));
         w.rebuild.held = w.particles.x.to_vec();
-        *w.columns.scalar("own", 4) = vec![1.0, 2.0, 3.0, 4.0];
+        let own = Key::new("own");
+        *w.columns.scalar(own, 4) = vec![1.0, 2.0, 3.0, 4.0];
         let before = format!("{:?} {:?} {:?}", w.particles, w.columns, w.rebuild.held);
         w.line_up(&[2, 0, 3, 1]);
         assert_eq!(w.particles.tag, [30, 10, 40, 20]);
         w.line_up(&[1, 0, 2, 3]);
         assert_eq!(w.particles.tag, [10, 30, 40, 20]);
-        assert_eq!(w.columns.get_scalar("own").unwrap(), [1.0, 3.0, 4.0, 2.0]);
+        assert_eq!(w.columns.get_scalar(own).unwrap(), [1.0, 3.0, 4.0, 2.0]);
         // One is lost on the way: the others stand as they would without.
         let mut less = w.clone();
         less.gather(&[0, 2, 3]);

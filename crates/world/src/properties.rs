@@ -1,6 +1,6 @@
 //! What a fix property/atom gives particles, as sections of data files have it.
 
-use super::Particles;
+use super::{Key, Numbers, Particles};
 
 /// The name of molecule IDs among properties.
 pub const MOLECULE: &str = "mol";
@@ -17,10 +17,10 @@ pub struct Properties {
 }
 
 impl Properties {
-    /// The full name of the column of property `k`; `None` for molecule IDs, which particles have by themselves.
-    pub fn column(&self, k: usize) -> Option<String> {
+    /// The column of property `k`; `None` for molecule IDs, which particles have by themselves.
+    pub fn column(&self, k: usize) -> Option<Numbers> {
         let name = self.names.get(k).filter(|name| *name != MOLECULE)?;
-        Some(format!("property/atom/{}/{name}", self.fix))
+        Some(Key::new(&format!("property/atom/{}/{name}", self.fix)))
     }
 
     /// Whether property `k` is a whole number.

@@ -40,8 +40,7 @@ impl World {
             return declare(self);
         }
         let columns = self.columns.split_off(|name| !belongs(name));
-        let names: Vec<String> = self.memo.keys().filter(|name| belongs(name)).cloned().collect();
-        let memo: Vec<_> = names.iter().filter_map(|name| self.memo.remove_entry(name)).collect();
+        let memo = self.memo.split_off(|key| !belongs(key.text()));
         // What a fix offered then it offers still: `declare` shows it the present.
         let offered = key.rsplit('/').next().and_then(|id| self.slots.find(&format!("f_{id}")));
         let offered = offered.map(|id| (id, self.slots.get(id).clone()));

@@ -1,5 +1,7 @@
 //! Values that computes, fixes and variables have produced, ready for whoever reads them.
 
+use super::Numbers;
+
 /// Which slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SlotId(pub usize);
@@ -44,9 +46,9 @@ pub struct Slot {
     pub local_cols: usize,
     /// What other styles need of it and decks cannot name.
     pub inner: Vec<f64>,
-    /// The slot of the `compute chunk/atom` of whose chunks there is a row each, where their number may change.
+    /// What holds the number of the chunks of which there is a row each, where it may change.
     #[serde(skip)]
-    pub chunks: Option<SlotId>,
+    pub chunks: Option<Numbers>,
     /// Which of all these the producer has; set when a plan is sealed.
     pub offers: Offers,
 }

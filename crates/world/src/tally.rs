@@ -1,7 +1,8 @@
 //! Energy and virial of the present step, as force ops add them up.
 
 use perigrain_base::math::vec3::{SIX, Vec3};
-use std::collections::BTreeMap;
+
+use super::named::{Key, Named};
 
 /// What the force ops of a step have tallied.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -29,7 +30,7 @@ pub struct Tally {
     pub bond_atom: Vec<f64>,
     /// Energy of each pair style that has one, by its name.
     #[serde(default)]
-    pub styles: BTreeMap<String, f64>,
+    pub styles: Named<f64>,
     /// Whether per-particle virials were asked for.
     #[serde(default)]
     pub with_atom_virial: bool,
@@ -97,9 +98,9 @@ impl Tally {
     }
 
     /// Adds the energy of a pair style.
-    pub fn add_pair(&mut self, style: &str, energy: f64) {
+    pub fn add_pair(&mut self, style: Key<f64>, energy: f64) {
         self.pair += energy;
-        *self.styles.entry(style.to_string()).or_default() += energy;
+        *self.styles.get_or(style, || 0.0) += energy;
     }
 }
 

@@ -121,8 +121,8 @@ pub fn fill(w: &mut World, sections: &[Section], filled: &[Filled], first: usize
     for filled in filled {
         let properties = &sections[filled.section].properties;
         for (k, values) in filled.columns.iter().enumerate() {
-            let Some(name) = properties.column(k) else { continue };
-            let column = w.columns.scalar(&name, n);
+            let Some(key) = properties.column(k) else { continue };
+            let column = w.columns.scalar(key, n);
             column.iter_mut().skip(first).zip(values).for_each(|(to, value)| *to = *value);
         }
     }

@@ -53,7 +53,7 @@ pub fn write(out: &mut dyn Write, w: &World, with: With) -> Result<()> {
 fn properties(out: &mut dyn Write, w: &World, own: &Properties) -> Result<()> {
     writeln!(out, "\n{} # {}\n", own.fix, own.heading())?;
     let columns: Vec<_> =
-        (0..own.names.len()).map(|k| own.column(k).map(|name| w.columns.get_scalar(&name))).collect();
+        (0..own.names.len()).map(|k| own.column(k).map(|key| w.columns.get_scalar(key))).collect();
     for (i, tag) in w.particles.tag.iter().enumerate() {
         write!(out, "{tag}")?;
         for column in &columns {

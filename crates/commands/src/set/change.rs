@@ -7,7 +7,8 @@ use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::Param;
 use perigrain_styles::ActCx;
 use perigrain_styles::common::masses_from_density;
-use perigrain_world::World;
+use perigrain_world::columns::TEMPERATURE;
+use perigrain_world::{Numbers, World};
 use std::collections::BTreeSet;
 
 /// What a keyword sets.
@@ -61,7 +62,7 @@ pub enum Change {
     /// A property of fix property/atom.
     Custom {
         /// Its column.
-        column: String,
+        column: Numbers,
         /// Whole numbers only: fractions are cut off.
         whole: bool,
         /// The value.
@@ -208,9 +209,9 @@ fn change_particles(cx: &mut ActCx, item: &Item, chosen: &[usize]) -> Result<usi
             return Ok(set_fraction(cx.world, chosen, *kind, *fraction, *seed));
         }
         Change::Custom { column, whole, value } => {
-            let limit = column.ends_with("/temperature").then_some(Limit::NotNegative);
+            let limit = column.plays(*TEMPERATURE).then_some(Limit::NotNegative);
             let (v, n) = (checked(value, "the value", limit)?, cx.world.n());
-            let values = cx.world.columns.scalar(column, n);
+            let values = cx.world.columns.scalar(*column, n);
             values.resize(n, 0.0);
             chosen.iter().for_each(|&i| values[i] = if *whole { v[i].trunc() } else { v[i] });
         }

@@ -4,7 +4,7 @@ use super::bins::{Layers, Shells};
 use super::words::{Discard, Ids, Spec, What};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_styles::Reading;
-use perigrain_world::{Domain, Region, Slot, World};
+use perigrain_world::{Domain, Key, Numbers, Region, Slot, World};
 
 /// What has been found out once and stays until chunks are counted anew.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -46,46 +46,53 @@ impl Layout {
 /// The window in which a fix that averages chunks holds their number: its first step and its last, or none.
 type Lock = Option<(i64, Option<i64>)>;
 
-/// Names of what the world keeps for a `compute chunk/atom`.
-pub fn key(id: &str) -> String {
-    format!("compute {id} chunks")
+/// What the world keeps for a `compute chunk/atom`, in its memory and in a column.
+pub fn key(id: &str) -> Numbers {
+    Key::new(&format!("compute {id} chunks"))
 }
 
-/// Name of a window in which their number is held.
-fn lock_key(id: &str) -> String {
-    format!("compute {id} window")
+/// How the name of a window ends.
+const WINDOW: &str = " window";
+
+/// The window in which their number is held.
+pub fn window(id: &str) -> Numbers {
+    Key::new(&format!("compute {id}{WINDOW}"))
 }
 
-/// Holds the number of chunks of a `compute chunk/atom` from a step on while an average is made, to its last step or for good.
+/// Holds the number of chunks of a `compute chunk/atom`, whose window this is, from a step on while an average is made, to its
+/// last step or for good.
 ///
 /// # Errors
 /// Another fix that holds it for other steps.
-pub fn hold(w: &mut World, id: &str, step: i64, last: Option<i64>, span: Span) -> Result<()> {
+pub fn hold(w: &mut World, key: Numbers, step: i64, last: Option<i64>, span: Span) -> Result<()> {
     let mut window = vec![step as f64];
     window.extend(last.map(|last| last as f64));
-    if let Some(old) = w.memo.get(&lock_key(id)) {
+    if let Some(old) = w.memo.get(key) {
         let open = old.get(1).is_none_or(|last| *last >= step as f64);
         if open && old.len() == 1 && last.is_none() {
             return Ok(());
         }
         if open && *old != window {
-            let text = format!("another fix holds the chunks of compute {id} for other steps");
+            let text = format!(
+                "another fix holds the chunks of {} for other steps",
+                key.text().trim_end_matches(WINDOW)
+            );
             return Err(Diagnostic::error(Code::CONFLICT, span, text)
                 .help("give each of them a compute chunk/atom of its own, or the same steps")
                 .into());
         }
     }
-    w.memo.insert(lock_key(id), window);
+    w.memo.insert(key, window);
     Ok(())
 }
 
 /// Holds them no longer.
-pub fn let_go(w: &mut World, id: &str) {
-    w.memo.remove(&lock_key(id));
+pub fn let_go(w: &mut World, key: Numbers) {
+    w.memo.remove(key);
 }
 
-fn lock(w: &World, id: &str, step: i64) -> Lock {
-    let held = w.memo.get(&lock_key(id))?;
+fn lock(w: &World, key: Numbers, step: i64) -> Lock {
+    let held = w.memo.get(key)?;
     let (first, last) = (*held.first()? as i64, held.get(1).map(|a| *a as i64));
     (step >= first && last.is_none_or(|l| step <= l)).then_some((first, last))
 }
@@ -94,6 +101,8 @@ fn lock(w: &World, id: &str, step: i64) -> Lock {
 pub struct Task<'a> {
     /// Its line.
     pub spec: &'a Spec,
+    /// What the world keeps for it, and its window.
+    pub keys: [Numbers; 2],
     /// The region, if particles must be inside one.
     pub region: Option<&'a Region>,
     /// The values that number particles, if those do.
@@ -105,10 +114,10 @@ pub struct Task<'a> {
 impl Task<'_> {
     /// Numbers particles into `out`; what must stay is kept in the world.
     pub fn run(&self, w: &mut World, step: i64, out: &mut Slot) -> Result<()> {
-        let spec = self.spec;
-        let old = w.memo.get(&key(&spec.id)).and_then(|a| Layout::unpack(a));
-        let lock = lock(w, &spec.id, step);
-        let numbered = w.columns.get_scalar(&key(&spec.id)).is_some();
+        let (spec, [key, window]) = (self.spec, self.keys);
+        let old = w.memo.get(key).and_then(|a| Layout::unpack(a));
+        let lock = lock(w, window, step);
+        let numbered = w.columns.get_scalar(key).is_some();
         let keep = numbered
             && match spec.ids {
                 Ids::Once => true,
@@ -120,7 +129,7 @@ impl Task<'_> {
             Some(old) if lock.is_some() || spec.once => old,
             _ => {
                 let new = self.count(w, &raw)?;
-                w.memo.insert(key(&spec.id), new.pack());
+                w.memo.insert(key, new.pack());
                 new
             }
         };
@@ -128,13 +137,13 @@ impl Task<'_> {
         let raw = if self.binned() { self.raw(w, Some(&layout))? } else { raw };
         out.cols = 1;
         out.atom.clear();
-        match w.columns.get_scalar(&key(&spec.id)).filter(|_| keep) {
+        match w.columns.get_scalar(key).filter(|_| keep) {
             Some(kept) => out.atom.extend_from_slice(kept),
             None => out.atom.extend(raw.iter().map(|&a| self.number(a, &layout))),
         }
         if spec.ids != Ids::Every && !keep {
             let n = w.n();
-            w.columns.scalar(&key(&spec.id), n).clone_from(&out.atom);
+            w.columns.scalar(key, n).clone_from(&out.atom);
         }
         self.describe(w, &layout, out)
     }

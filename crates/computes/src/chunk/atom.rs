@@ -1,6 +1,6 @@
 //! compute chunk/atom: numbers particles by bins of space, type or any value.
 
-use super::assign::{Task, key};
+use super::assign::{Task, key, window};
 use super::words::{Spec, What};
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
@@ -73,12 +73,13 @@ impl Compute for Declared {
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&key(&self.0.id));
-        w.columns.remove(&key(&self.0.id));
+        w.memo.remove(key(&self.0.id));
+        w.columns.remove(key(&self.0.id));
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (spec, span) = (self.0.clone(), cx.span());
+        let keys = [key(&spec.id), window(&spec.id)];
         let value = match &spec.what {
             What::Value(r) => Some(cx.reading(r, Wants::PerAtom, stage, when)?),
             _ => None,
@@ -88,19 +89,19 @@ impl Compute for Declared {
         let op = StepOp::new(format!("compute {}", spec.id), stage, access, move |w: &mut World, t| {
             let region = match &spec.region {
                 None => None,
-                Some(name) => match w.regions.get(name).cloned() {
+                Some(key) => match w.regions.get(*key).cloned() {
                     Some(r) => Some(r),
                     None => {
                         return fail(
                             Code::UNKNOWN_NAME,
                             span,
-                            format!("there is no region `{name}` any more"),
+                            format!("there is no region `{key}` any more"),
                         );
                     }
                 },
             };
             let mut out = w.slots.take(slot);
-            let task = Task { spec: &spec, region: region.as_ref(), value: value.as_ref(), span };
+            let task = Task { spec: &spec, keys, region: region.as_ref(), value: value.as_ref(), span };
             let outcome = task.run(w, t.step, &mut out);
             w.slots.put(slot, out, t.step);
             outcome

@@ -1,6 +1,6 @@
 //! compute com/chunk: centre of mass of each chunk.
 
-use super::{ChunkRef, Chunks, sums, varying};
+use super::{ChunkRef, Chunks, sums};
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
@@ -55,7 +55,7 @@ impl Compute for Means {
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, kind, of, span) = (self.group, self.chunks.kind, self.of, cx.span());
         check_masses(cx.world(), span)?;
-        let chunks = self.chunks.seal(cx, stage, when)?;
+        let (chunks, varying) = (self.chunks.seal(cx, stage, when)?, self.chunks.varying());
         Ok(fill(
             &self.id,
             &Wanted { slot, stage, when },
@@ -66,7 +66,7 @@ impl Compute for Means {
                     let (m, [x, y, z]) = (masses.get(i), of(w, i));
                     [x * m, y * m, z * m, m]
                 });
-                (out.array_cols, out.chunks) = (3, varying(chunks, kind));
+                (out.array_cols, out.chunks) = (3, varying);
                 out.array.clear();
                 for [x, y, z, m] in rows {
                     out.array.extend([x, y, z].map(|a| if m > 0.0 { a / m } else { 0.0 }));

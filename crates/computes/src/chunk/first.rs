@@ -1,7 +1,7 @@
 //! compute msd/chunk, vacf/chunk: what chunks are doing, beside what they did when the first run began.
 
 use super::moments::{mean, weighted};
-use super::{ChunkRef, Chunks, varying};
+use super::{ChunkRef, Chunks};
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{Vec3, sub};
@@ -11,7 +11,7 @@ use perigrain_styles::matter::{check_masses, unwrapped};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, IMAGE, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, V, X};
-use perigrain_world::{GroupId, SlotId, World};
+use perigrain_world::{GroupId, Key, Numbers, SlotId, World};
 
 /// `compute msd/chunk`.
 pub struct MsdChunk;
@@ -93,8 +93,8 @@ struct SinceFirst {
 
 impl SinceFirst {
     /// Under which name the world remembers the beginning.
-    fn key(&self) -> String {
-        format!("compute {} beginning", self.id)
+    fn key(&self) -> Numbers {
+        Key::new(&format!("compute {} beginning", self.id))
     }
 
     fn same_number(&self, now: usize, then: usize) -> Result<()> {
@@ -119,7 +119,7 @@ impl Compute for SinceFirst {
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.key());
+        w.memo.remove(self.key());
     }
 
     fn begins(&self) -> bool {
@@ -127,7 +127,7 @@ impl Compute for SinceFirst {
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let (me, span) = (self.clone(), cx.span());
+        let (me, span, key) = (self.clone(), cx.span(), self.key());
         check_masses(cx.world(), span)?;
         let (chunks, kind) = (self.chunks.seal(cx, stage, when)?, self.chunks.kind);
         let name = format!("compute {}", self.id);
@@ -138,7 +138,7 @@ impl Compute for SinceFirst {
             move |w: &mut World, t| {
                 let now = weighted(w, me.group, &Chunks::of(w, chunks, kind), me.of);
                 let now: Vec<Vec3> = now.into_iter().map(mean).collect();
-                let first = w.memo.entry(me.key()).or_insert_with(|| now.concat());
+                let first = w.memo.get_or(key, || now.concat());
                 me.same_number(now.len(), first.len() / 3)?;
                 let rows = now.iter().zip(first.chunks_exact(3)).flat_map(|(now, then)| {
                     let [x, y, z] = (me.compare)(*now, [then[0], then[1], then[2]]);
@@ -147,7 +147,7 @@ impl Compute for SinceFirst {
                 let rows: Vec<f64> = rows.collect();
                 let out = w.slots.get_mut(slot);
                 (out.step, out.array, out.array_cols) = (Some(t.step), rows, 4);
-                out.chunks = varying(chunks, kind);
+                out.chunks = me.chunks.varying();
                 Ok(())
             },
         );

@@ -18,13 +18,13 @@ pub mod torque;
 pub mod vcm;
 mod words;
 
-pub use assign::{hold, let_go};
+pub use assign::{hold, let_go, window};
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_plan::{Stage, When};
 use perigrain_styles::{BuildCx, Chunking, SealCx, Wants};
-use perigrain_world::{Slot, SlotId, World};
+use perigrain_world::{Numbers, Slot, SlotId, World};
 
 /// A `compute chunk/atom` that another style names.
 #[derive(Clone, Debug)]
@@ -33,6 +33,8 @@ pub struct ChunkRef {
     pub id: String,
     /// What its chunks have.
     pub kind: Chunking,
+    /// Where the window is kept in which their number is held.
+    pub window: Numbers,
     span: Span,
 }
 
@@ -47,7 +49,7 @@ impl ChunkRef {
         if let Some(shape) = cx.shape(&r) {
             cx.uses(perigrain_styles::UseKind::Compute, &r.name);
             if let Some(kind) = shape.chunks {
-                return Ok(Self { id: r.name, kind, span: word.span });
+                return Ok(Self::new(r.name, kind, word.span));
             }
             let text = format!("compute `{}` makes no chunks", r.name);
             return Err(Diagnostic::error(Code::WRONG_KIND, word.span, text)
@@ -55,7 +57,16 @@ impl ChunkRef {
                 .into());
         }
         cx.reading(&r, Wants::PerAtom)?;
-        Ok(Self { id: r.name, kind: Chunking::default(), span: word.span })
+        Ok(Self::new(r.name, Chunking::default(), word.span))
+    }
+
+    fn new(id: String, kind: Chunking, span: Span) -> Self {
+        Self { window: window(&id), id, kind, span }
+    }
+
+    /// What holds the number of chunks, where it may change: for values with a row for each.
+    fn varying(&self) -> Option<Numbers> {
+        (!self.kind.fixed).then_some(self.window)
     }
 
     /// The slot with the chunks, fresh whenever `when` fires.
@@ -110,17 +121,6 @@ impl<'a> Chunks<'a> {
     pub fn coordinate(&self, k: usize, d: usize) -> f64 {
         self.slot.inner[k * self.stride + HEAD + d]
     }
-}
-
-/// Of whose chunks the rows of a compute are, where their number may change: who averages them holds it.
-fn varying(chunks: SlotId, kind: Chunking) -> Option<SlotId> {
-    (!kind.fixed).then_some(chunks)
-}
-
-/// The ID of the `compute chunk/atom` of whose chunks a value has a row each, where their number may change.
-pub fn behind(w: &World, value: &ValueRef) -> Option<String> {
-    let slot = w.slots.get(w.slots.find(&format!("{}_{}", value.kind.letter(), value.name))?);
-    w.slots.get(slot.chunks?).name.strip_prefix("c_").map(String::from)
 }
 
 /// Adds `term(i)` up by chunk over the particles of a group: rows of `N` numbers. In storage order, so that the sums

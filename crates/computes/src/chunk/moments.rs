@@ -1,6 +1,6 @@
 //! What computes of chunks have in common: centres, inertia and momenta of each, and an array with a row for each.
 
-use super::{ChunkRef, Chunks, sums, varying};
+use super::{ChunkRef, Chunks, sums};
 use crate::Compute;
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, cross, sub};
@@ -113,7 +113,7 @@ impl Compute for Rows {
             X | V | F | IMAGE | MASS | MASK | BOX | KIND | TYPE_MASS,
             move |w, _, out| {
                 let rows = (me.of)(w, &Members::new(w, me.group, Chunks::of(w, chunks, kind)));
-                out.chunks = varying(chunks, kind);
+                out.chunks = me.chunks.varying();
                 match me.columns {
                     1 => out.vector = rows,
                     n => (out.array, out.array_cols) = (rows, n),

@@ -1,6 +1,6 @@
 //! compute property/chunk: counts, original numbers and coordinates of chunks.
 
-use super::{ChunkRef, Chunks, sums, varying};
+use super::{ChunkRef, Chunks, sums};
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
@@ -91,9 +91,9 @@ impl Compute for Declared {
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, kind, list) = (self.group, self.chunks.kind, self.list.clone());
-        let chunks = self.chunks.seal(cx, stage, when)?;
+        let (chunks, varying) = (self.chunks.seal(cx, stage, when)?, self.chunks.varying());
         Ok(fill(&self.id, &Wanted { slot, stage, when }, MASK, move |w, _, out| {
-            out.chunks = varying(chunks, kind);
+            out.chunks = varying;
             let chunks = Chunks::of(w, chunks, kind);
             let counts = match list.iter().any(|a| matches!(a, Attribute::Count)) {
                 true => sums(w, group, &chunks, |_| [1.0]),

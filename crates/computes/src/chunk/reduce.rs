@@ -1,6 +1,6 @@
 //! compute reduce/chunk: a sum or an extreme of values per particle for each chunk.
 
-use super::{ChunkRef, Chunks, varying};
+use super::{ChunkRef, Chunks};
 use crate::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, RefKind, ValueRef};
@@ -101,11 +101,11 @@ impl Compute for Declared {
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, kind, mode) = (self.group, self.chunks.kind, self.mode);
-        let chunks = self.chunks.seal(cx, stage, when)?;
+        let (chunks, varying) = (self.chunks.seal(cx, stage, when)?, self.chunks.varying());
         let inputs: Vec<Reading> =
             self.inputs.iter().map(|r| cx.reading(r, Wants::PerAtom, stage, when)).collect::<Result<_>>()?;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, MASK, move |w, _, out| {
-            out.chunks = varying(chunks, kind);
+            out.chunks = varying;
             let chunks = Chunks::of(w, chunks, kind);
             let columns = inputs.len();
             let into = if columns == 1 { &mut out.vector } else { &mut out.array };

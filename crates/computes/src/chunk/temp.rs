@@ -1,7 +1,7 @@
 //! compute temp/chunk: temperature of all chunks together, and temperature and kinetic energies of each.
 
 use super::moments::mean;
-use super::{ChunkRef, Chunks, sums, varying};
+use super::{ChunkRef, Chunks, sums};
 use crate::temp::offer;
 use crate::{Compute, ComputeStyle, temp_flow};
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -153,7 +153,7 @@ impl Compute for Declared {
                 out.inner = vec![0.0];
             }
             (out.array, out.array_cols) = (me.rows(w, &chunks, &v, &centre), me.values.len());
-            out.chunks = varying(slot_of_chunks, kind);
+            out.chunks = me.chunks.varying();
             Ok(())
         }))
     }

@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::args::parse_number;
 use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_styles::{BuildCx, UseKind, Wants};
-use perigrain_world::{Face, GroupId};
+use perigrain_world::{Face, GroupId, Key, Region};
 
 /// What decides the number of a particle's chunk.
 #[derive(Clone, Debug)]
@@ -76,7 +76,7 @@ pub struct Spec {
     /// By what.
     pub what: What,
     /// Only inside this region.
-    pub region: Option<String>,
+    pub region: Option<Key<Region>>,
     /// Whether the number of chunks is found only once.
     pub once: bool,
     /// See [`Limit`].
@@ -99,7 +99,7 @@ const KEYWORDS: &[&str] =
 
 /// What the keywords say, before defaults.
 struct Options {
-    region: Option<String>,
+    region: Option<Key<Region>>,
     once: Option<bool>,
     limit: Option<Limit>,
     ids: Ids,
@@ -279,7 +279,7 @@ impl Options {
                     let name = args.expect("a region")?;
                     cx.region(name)?;
                     cx.uses(UseKind::Region, &name.text);
-                    o.region = Some(name.text.clone());
+                    o.region = Some(Key::new(&name.text));
                 }
                 "nchunk" => o.once = Some(args.choice("value of nchunk", &["once", "every"])? == "once"),
                 "limit" => o.limit = read_limit(args, !o.compress)?,

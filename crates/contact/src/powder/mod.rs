@@ -13,7 +13,7 @@ mod walls;
 
 pub use pairs::{Meetings, Sum};
 pub use side::{Pressed, Side};
-pub use state::{State, begin, begun, of};
+pub use state::{State, begin, begun};
 pub use walls::{far_pushed, gather, press};
 
 /// What grains of such a powder are made of.

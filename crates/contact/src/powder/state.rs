@@ -1,46 +1,22 @@
 //! What grains of a powder know of themselves: their first and present size, free surface, strain, mean stress.
 
 use super::Material;
-use perigrain_world::World;
-use perigrain_world::columns::{Columns, PLASTIC_BEGUN, PLASTIC_COLUMNS};
+use perigrain_world::columns::{Columns, PLASTIC_BEGUN};
+use perigrain_world::{Constant, World};
 use std::f64::consts::PI;
-use std::sync::LazyLock;
 
-/// Names of the columns, as LAMMPS' decks call them.
-const NAMES: [&str; 21] = [
-    "Ro",
-    "dRavg",
-    "Vgeo",
-    "Velas",
-    "Vcaps",
-    "eps_bar",
-    "dRnumerator",
-    "dRdenominator",
-    "Acon0",
-    "Acon1",
-    "Atot",
-    "Atot_sum",
-    "ddelta_bar",
-    "psi",
-    "sigmaxx",
-    "sigmayy",
-    "sigmazz",
-    "sigmaxy",
-    "sigmaxz",
-    "sigmayz",
-    "grown",
+macro_rules! columns {
+    ($($name:ident)*) => { [$(Constant::new(concat!("property/atom/mdr/d_", stringify!($name)))),*] };
+}
+
+/// The columns, named as LAMMPS' decks call them.
+static COLUMNS: [Constant<Vec<f64>>; 21] = columns![
+    Ro dRavg Vgeo Velas Vcaps eps_bar dRnumerator dRdenominator Acon0 Acon1 Atot Atot_sum ddelta_bar psi
+    sigmaxx sigmayy sigmazz sigmaxy sigmaxz sigmayz grown
 ];
 
 /// How slowly growth follows: each step's growth is mixed with the mean of those before.
 const FRESH: f64 = 0.1;
-
-/// The full name of a column.
-pub fn of(name: &str) -> String {
-    format!("{PLASTIC_COLUMNS}d_{name}")
-}
-
-/// The full names of the columns, in the order of [`NAMES`].
-static FULL: LazyLock<[String; 21]> = LazyLock::new(|| NAMES.map(of));
 
 /// The columns of all grains.
 #[derive(Clone, Debug, Default)]
@@ -125,8 +101,8 @@ impl State {
     /// Takes the columns out of the world; they are made where they are missing.
     pub fn take(columns: &mut Columns, n: usize) -> Self {
         let mut state = Self::default();
-        for (name, column) in FULL.iter().zip(state.all()) {
-            *column = std::mem::take(columns.scalar(name, n));
+        for (key, column) in COLUMNS.iter().zip(state.all()) {
+            *column = std::mem::take(columns.scalar(**key, n));
         }
         state
     }
@@ -134,16 +110,16 @@ impl State {
     /// Makes the columns.
     pub fn declare(w: &mut World) {
         let n = w.n();
-        for name in FULL.iter() {
-            w.columns.scalar(name, n);
+        for key in COLUMNS.iter() {
+            w.columns.scalar(**key, n);
         }
     }
 
     /// Puts them back.
     pub fn put(mut self, columns: &mut Columns) {
-        for (name, column) in FULL.iter().zip(self.all()) {
+        for (key, column) in COLUMNS.iter().zip(self.all()) {
             let n = column.len();
-            *columns.scalar(name, n) = std::mem::take(column);
+            *columns.scalar(**key, n) = std::mem::take(column);
         }
     }
 
@@ -207,7 +183,7 @@ impl State {
 
 /// Whether somebody has begun this step (`at` as for [`begin`]).
 pub fn begun(w: &World, at: (i64, bool)) -> bool {
-    !at.1 && w.memo.get(PLASTIC_BEGUN).is_some_and(|s| s[..] == [at.0 as f64])
+    !at.1 && w.memo.get(*PLASTIC_BEGUN).is_some_and(|s| s[..] == [at.0 as f64])
 }
 
 /// Begins step `at.0` for all grains, unless somebody has done so in this step; in setup (`at.1`) grains are only measured.
@@ -218,7 +194,7 @@ pub fn begin(w: &mut World, at: (i64, bool), m: &Material) -> State {
     state.welcome(&w.particles.radius);
     if !setup && !begun(w, at) {
         state.begin(m, &mut w.particles.radius);
-        w.memo.insert(PLASTIC_BEGUN.to_string(), vec![step]);
+        w.memo.insert(*PLASTIC_BEGUN, vec![step]);
     }
     state
 }

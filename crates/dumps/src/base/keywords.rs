@@ -6,6 +6,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::args::{blame, parse_number};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_styles::{BuildCx, UseKind};
+use perigrain_world::{Key, Region};
 
 /// Keywords of `dump_modify` that every style understands.
 pub const KEYWORDS: &[&str] = &[
@@ -222,14 +223,14 @@ fn refresh(args: &mut Args, cx: &BuildCx) -> Result<String> {
     }
 }
 
-fn region(args: &mut Args, cx: &BuildCx) -> Result<Option<String>> {
+fn region(args: &mut Args, cx: &BuildCx) -> Result<Option<Key<Region>>> {
     if args.eat("none") {
         return Ok(None);
     }
     let word = args.expect("a region or `none`")?;
     cx.region(word)?;
     cx.uses(UseKind::Region, &word.text);
-    Ok(Some(word.text.clone()))
+    Ok(Some(Key::new(&word.text)))
 }
 
 fn sort(args: &mut Args) -> Result<Sort> {

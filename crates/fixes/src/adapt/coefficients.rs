@@ -5,9 +5,9 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::{BuildCx, Reading, SealCx};
-use perigrain_world::World;
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{MEMO, SLOTS};
+use perigrain_world::{Numbers, World};
 
 /// `pair STYLE PARAMETER I J v_name` or `bond STYLE PARAMETER I v_name`.
 #[derive(Clone)]
@@ -77,7 +77,6 @@ impl Follows {
         }
         Ok(Box::new(Change {
             name: format!("fix {id} adapt"),
-            id: id.to_string(),
             follows: self.clone(),
             when: when.clone(),
             value,
@@ -91,7 +90,6 @@ impl Follows {
 /// Gives the coefficients their present values, and the old ones back at the end.
 struct Change {
     name: String,
-    id: String,
     follows: Follows,
     when: When,
     value: Reading,
@@ -105,14 +103,17 @@ struct Before {
     value: f64,
     /// A fix had made it.
     adapted: bool,
+    /// Where its value now is, and where this one is kept.
+    keys: [Numbers; 2],
 }
 
 impl Before {
     /// That of a run that a restart file interrupted, or what is in force.
     fn of(w: &World, id: &str, of: &Coefficient, said: f64) -> Self {
-        match (w.memo.get(&of.kept_by(id)).map(Vec::as_slice), w.adapted(of)) {
-            (Some(&[value, adapted]), _) => Before { value, adapted: adapted != 0.0 },
-            (_, now) => Before { value: now.unwrap_or(said), adapted: now.is_some() },
+        let keys @ [key, kept] = [of.key(), of.kept_by(id)];
+        match (w.memo.get(kept).map(Vec::as_slice), w.adapted(key)) {
+            (Some(&[value, adapted]), _) => Before { value, adapted: adapted != 0.0, keys },
+            (_, now) => Before { value: now.unwrap_or(said), adapted: now.is_some(), keys },
         }
     }
 }
@@ -137,20 +138,21 @@ impl Op for Change {
                 let text = format!("`{variable}` makes `{}` of {} {text}", of.name, of.style);
                 return fail(Code::BAD_VALUE, variable.span, text);
             }
-            w.memo.insert(of.kept_by(&self.id), vec![before.value, f64::from(u8::from(before.adapted))]);
-            w.adapt(of, Some(new));
+            let [key, kept] = before.keys;
+            w.memo.insert(kept, vec![before.value, f64::from(u8::from(before.adapted))]);
+            w.adapt(key, Some(new));
         }
         Ok(())
     }
     fn finish(&mut self, w: &mut World) -> Result<()> {
-        for of in &self.follows.coefficients {
-            w.memo.remove(&of.kept_by(&self.id));
+        for before in &self.before {
+            w.memo.remove(before.keys[1]);
         }
         if !self.reset {
             return Ok(());
         }
-        for (of, before) in self.follows.coefficients.iter().zip(&self.before) {
-            w.adapt(of, before.adapted.then_some(before.value));
+        for before in &self.before {
+            w.adapt(before.keys[0], before.adapted.then_some(before.value));
         }
         w.touch();
         Ok(())

@@ -56,7 +56,7 @@ pub fn tracks(fix: &Declared, cx: &mut dyn SealCx, when: &When) -> Result<[Track
     let w = cx.world();
     let (clock, domain) = (w.clock.clone(), w.domain()?.clone());
     // Of runs that share a ramp, the start is where the line was given.
-    let said = w.memo.get(&fix.key()).filter(|m| clock.first != clock.start && m.len() == 6);
+    let said = w.memo.get(fix.key()).filter(|m| clock.first != clock.start && m.len() == 6);
     let face = |k: usize, now: f64| said.map_or(now, |m| m[k]);
     let start = [0, 1, 2].map(|d| [face(d, domain.lo[d]), face(d + 3, domain.hi[d])]);
     let time = (clock.stop - clock.start) as f64 * clock.dt;

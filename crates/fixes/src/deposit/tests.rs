@@ -11,7 +11,7 @@ fn scene() -> Bench {
         ("slab", Volume::Block { lo: [-5.0, -5.0, 4.0], hi: [5.0, 5.0, 9.0] }),
         ("high", Volume::Block { lo: [-5.0, -5.0, 4.0], hi: [5.0, 5.0, 19.0] }),
     ] {
-        b.world.regions.insert(name.into(), Region::inside(shape));
+        b.world.regions.insert(Key::new(name), Region::inside(shape));
     }
     b.equal.insert("e".into(), 1.0);
     b

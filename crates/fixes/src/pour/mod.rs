@@ -12,7 +12,7 @@ use perigrain_styles::common::{bad_keyword, seed};
 use perigrain_styles::molecules::{self, Molecules};
 use perigrain_styles::newcomers::{Account, Ids};
 use perigrain_styles::{BuildCx, Doc, Pull, SealCx, Shape, Style};
-use perigrain_world::{GroupId, World};
+use perigrain_world::{GroupId, Key, Numbers, World};
 use rain::Rain;
 use sizes::Sizes;
 use volume::Volume;
@@ -196,8 +196,8 @@ struct Pouring {
 }
 
 impl Pouring {
-    fn key(&self) -> String {
-        format!("pour/{}", self.id)
+    fn key(&self) -> Numbers {
+        Key::new(&format!("pour/{}", self.id))
     }
 
     /// The acceleration downwards, times LAMMPS' factor from force/mass to acceleration.
@@ -244,12 +244,12 @@ impl Fix for Pouring {
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
-        Account::maker(w, self.seed).store(w, &self.key());
+        Account::maker(w, self.seed).store(w, self.key());
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
-        w.memo.remove(&self.key());
+        w.memo.remove(self.key());
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {

@@ -10,13 +10,13 @@ use perigrain_styles::molecules::{Copy, Molecules};
 use perigrain_styles::newcomers::{Account, Newcomer, admit};
 use perigrain_world::Fields;
 use perigrain_world::field::{RADIUS, X};
-use perigrain_world::{SlotId, World};
+use perigrain_world::{Numbers, SlotId, World};
 
 /// Pours.
 pub struct Rain {
     name: String,
     /// Where the world keeps its account.
-    key: String,
+    key: Numbers,
     fix: Pouring,
     span: Span,
     slot: SlotId,
@@ -74,13 +74,13 @@ impl Rain {
             (relative + (relative * relative + 2.0 * gravity * (hi[down] - lo[down])).sqrt()) / gravity;
         let every = ((time / w.clock.dt + 0.5) as i64).max(1);
         let key = fix.key();
-        let mut account = Account::load(w, &key).unwrap_or_else(|| Account::maker(w, fix.seed));
+        let mut account = Account::load(w, key).unwrap_or_else(|| Account::maker(w, fix.seed));
         let now = w.clock.step;
         let again = w.settings.lammps() && !w.clock.onward;
         let planned = account.next.filter(|n| (now + 1..=now + every).contains(n) && !again);
         let first = planned.unwrap_or(now + 1);
         account.next = (account.done < fix.count).then_some(first);
-        account.store(w, &key);
+        account.store(w, key);
         if let Some(left) = fix.count.checked_sub(account.done).filter(|n| *n > 0) {
             let last = first + ((left - 1) / batch) as i64 * every;
             log.line(&format!("Particle insertion: {batch} every {every} steps, {left} by step {last}"))?;
@@ -170,7 +170,7 @@ impl Op for Rain {
         About::new(&self.name, Stage::Exchange, Needs::new().read(X | RADIUS).write(Fields::ALL))
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let Some(mut account) = Account::load(w, &self.key).filter(|a| a.next == Some(t.step)) else {
+        let Some(mut account) = Account::load(w, self.key).filter(|a| a.next == Some(t.step)) else {
             return Ok(());
         };
         let wanted = self.batch.min(self.fix.count - account.done);
@@ -185,7 +185,7 @@ impl Op for Rain {
         };
         account.done += made.len();
         account.next = (account.done < self.fix.count).then_some(t.step + self.every);
-        account.store(w, &self.key);
+        account.store(w, self.key);
         let missing = wanted - made.len();
         if missing > 0 {
             let (before, step) = self.failed.unwrap_or((0, t.step));

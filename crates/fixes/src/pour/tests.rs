@@ -17,10 +17,10 @@ fn scene() -> Bench {
         ("ball", Volume::Sphere { center: [0.0; 3], radius: 3.0 }),
         ("high", Volume::Block { lo: [-5.0, -5.0, 4.0], hi: [5.0, 5.0, 19.0] }),
     ] {
-        b.world.regions.insert(name.into(), Region::inside(shape));
+        b.world.regions.insert(Key::new(name), Region::inside(shape));
     }
     let out = Region { outside: true, ..b.world.regions["slab"].clone() };
-    b.world.regions.insert("out".into(), out);
+    b.world.regions.insert(Key::new("out"), out);
     b
 }
 

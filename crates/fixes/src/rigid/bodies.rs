@@ -7,7 +7,7 @@ use perigrain_base::math::vec3::{add, cross, scale, sub};
 use perigrain_styles::matter::{Masses, unwrapped};
 use perigrain_styles::rigid_bodies::Body;
 use perigrain_styles::rigid_bodies::{WIDTH, bodies};
-use perigrain_world::{CONTACT_MASS, GroupId, World};
+use perigrain_world::{GroupId, Numbers, World};
 use std::collections::BTreeMap;
 
 /// I / (m R²) of a solid sphere.
@@ -21,7 +21,7 @@ pub enum Split {
     /// The molecule ID.
     Molecule,
     /// A column of whole numbers.
-    Custom(String),
+    Custom(Numbers),
     /// One of these groups.
     Groups(Vec<GroupId>),
 }
@@ -29,12 +29,12 @@ pub enum Split {
 impl Declared {
     /// The bodies as the world keeps them.
     pub fn load(&self, w: &World) -> Vec<Body> {
-        bodies(w, self.style, &self.id)
+        bodies(w, self.keys.bodies)
     }
 
     /// Puts the bodies back.
     pub fn store(&self, w: &mut World, bodies: &[Body]) {
-        let rows = w.memo.entry(self.key("bodies")).or_default();
+        let rows = w.memo.get_or(self.keys.bodies, Vec::new);
         rows.resize(WIDTH * bodies.len(), 0.0);
         rows.chunks_exact_mut(WIDTH).zip(bodies).for_each(|(row, body)| body.write(row));
     }
@@ -47,7 +47,7 @@ impl Declared {
             Split::Single => 0.0,
             Split::Molecule => f64::from(p.molecule[i]),
             Split::Custom(column) => {
-                w.columns.get_scalar(column).and_then(|c| c.get(i)).copied().unwrap_or(0.0)
+                w.columns.get_scalar(*column).and_then(|c| c.get(i)).copied().unwrap_or(0.0)
             }
             Split::Groups(list) => {
                 let mut mine = list.iter().enumerate().filter(|(_, g)| is(**g));
@@ -109,8 +109,8 @@ impl Declared {
                 "a rigid body needs two particles at least: the group is empty",
             );
         }
-        w.columns.scalar(&self.key("body"), n).fill(0.0);
-        w.columns.vector(&self.key("place"), n).fill([0.0; 3]);
+        w.columns.scalar(self.keys.body, n).fill(0.0);
+        w.columns.vector(self.keys.place, n).fill([0.0; 3]);
         let all: Vec<usize> = (0..n).collect();
         self.weigh(w, &all, 0.0);
         self.store(w, &[]);
@@ -123,7 +123,7 @@ impl Declared {
         if matches!(self.split, Split::Single | Split::Groups(_)) {
             return Ok(());
         }
-        let body = w.columns.get_scalar(&self.key("body")).unwrap_or_default();
+        let body = w.columns.get_scalar(self.keys.body).unwrap_or_default();
         let list = self.loose(w, body, span)?;
         if !list.is_empty() {
             self.enter(w, &list);
@@ -138,7 +138,7 @@ impl Declared {
             let body = Body { name: *name, ..of_particles(w, members) };
             bodies.push(body);
             let number = bodies.len() as f64;
-            members.iter().for_each(|&i| w.columns.scalar(&self.key("body"), n)[i] = number);
+            members.iter().for_each(|&i| w.columns.scalar(self.keys.body, n)[i] = number);
             self.weigh(w, members, body.mass);
             self.place(w, &body, members);
         }
@@ -148,7 +148,7 @@ impl Declared {
     /// In contacts these particles have the mass of a body.
     pub fn weigh(&self, w: &mut World, members: &[usize], mass: f64) {
         let n = w.n();
-        let column = w.columns.scalar(&format!("{}/{}{CONTACT_MASS}", self.style, self.id), n);
+        let column = w.columns.scalar(self.keys.mass, n);
         members.iter().for_each(|&i| column[i] = mass);
     }
 
@@ -157,7 +157,7 @@ impl Declared {
         let (n, axes) = (w.n(), axes(body.q));
         for &i in members {
             let d = sub(unwrapped(w, i), body.x);
-            w.columns.vector(&self.key("place"), n)[i] = apply(&axes, d);
+            w.columns.vector(self.keys.place, n)[i] = apply(&axes, d);
         }
     }
 

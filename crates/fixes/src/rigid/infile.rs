@@ -31,7 +31,7 @@ fn read(fix: &Declared, w: &mut World, text: &str) -> Result<()> {
     };
     let count = whole(&first, first.word(0), "the number of bodies")?;
     let mut bodies = fix.load(w);
-    let number_of = w.columns.get_scalar(&fix.key("body")).unwrap_or_default().to_vec();
+    let number_of = w.columns.get_scalar(fix.keys.body).unwrap_or_default().to_vec();
     let lengths = w.domain()?.lengths();
     for have in 0..count {
         let Some(line) = lines.take_filled() else {

@@ -1,7 +1,7 @@
 //! One step of rigid bodies and of the particles that follow them.
 
 use super::pass::{POSE, Part, Pass};
-use super::{COLUMNS, Declared};
+use super::{COLUMNS, Declared, Keys};
 use perigrain_base::math::body::{apply, apply_transposed, matrix};
 use perigrain_base::math::vec3::{SIX, Vec3, add, cross, dot, sub};
 use perigrain_base::par;
@@ -20,18 +20,13 @@ pub struct Crew {
     members: Vec<usize>,
     /// Places of the bodies.
     poses: Vec<[f64; POSE]>,
-    bodies: String,
-    body: String,
-    place: String,
-    virial: String,
+    keys: Keys,
 }
 
 impl Crew {
     /// Nobody so far.
     pub fn of(fix: &Declared) -> Self {
-        let [bodies, body, place, virial] = ["bodies", "body", "place", "virial"].map(|what| fix.key(what));
-        let (seen, first, members, poses) = (None, vec![], vec![], vec![]);
-        Self { seen, first, members, poses, bodies, body, place, virial }
+        Self { seen: None, first: vec![], members: vec![], poses: vec![], keys: fix.keys }
     }
 
     /// Sorts the particles by bodies where their order may have changed.
@@ -41,7 +36,7 @@ impl Crew {
             return;
         }
         self.seen = now;
-        let number = w.columns.get_scalar(&self.body).unwrap_or_default();
+        let number = w.columns.get_scalar(self.keys.body).unwrap_or_default();
         let mine = || {
             let body = |(i, k): (usize, &f64)| (i, *k as usize);
             number.iter().enumerate().map(body).filter(|(_, k)| (1..=bodies).contains(k))
@@ -68,7 +63,7 @@ impl Declared {
         let tally = t.virial && self.virial;
         let virial = self.follow(w, t, crew, true, tally);
         if tally {
-            w.memo.insert(crew.virial.clone(), virial.to_vec());
+            w.memo.insert(crew.keys.virial, virial.to_vec());
         }
     }
 
@@ -79,7 +74,7 @@ impl Declared {
         let tally = t.virial && self.virial;
         let virial = self.follow(w, t, crew, false, tally);
         if tally {
-            let before = w.memo.remove(&crew.virial).filter(|_| !t.setup);
+            let before = w.memo.remove(crew.keys.virial).filter(|_| !t.setup);
             for (k, total) in w.tally.fixes.iter_mut().enumerate() {
                 // In setup the other half of the step is taken to be alike.
                 *total += virial[k] + before.as_ref().map_or(virial[k], |v| v[k]);
@@ -103,7 +98,7 @@ impl Declared {
 
     /// A part of a step for the bodies alone.
     fn move_bodies(&self, w: &mut World, t: &Tick, crew: &mut Crew, part: Part) {
-        let Some(mut kept) = w.memo.get_mut(&crew.bodies).map(std::mem::take) else { return };
+        let Some(mut kept) = w.memo.get_mut(crew.keys.bodies).map(std::mem::take) else { return };
         let (rows, _) = kept.as_chunks_mut::<WIDTH>();
         if part.gathers() {
             crew.muster(w, rows.len());
@@ -121,7 +116,7 @@ impl Declared {
             members: &crew.members,
         };
         par::each((rows, &mut crew.poses[..]), |start, (rows, poses)| pass.bodies(start, rows, poses));
-        w.memo.insert(crew.bodies.clone(), kept);
+        w.memo.insert(crew.keys.bodies, kept);
     }
 
     /// Velocities and spins of the particles from those of their bodies, places too where they `move`; where it is
@@ -132,8 +127,8 @@ impl Declared {
         let p = &mut w.particles;
         let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
         let (image, f) = (&p.image, &p.f);
-        let number = w.columns.get_scalar(&crew.body).unwrap_or_default();
-        let place = w.columns.get_vector(&crew.place).unwrap_or_default();
+        let number = w.columns.get_scalar(crew.keys.body).unwrap_or_default();
+        let place = w.columns.get_vector(crew.keys.place).unwrap_or_default();
         let n = number.len().min(place.len());
         // Points do not turn.
         let turning = p.style.sphere.then(|| (&mut p.omega[..n], &p.radius[..n]));

@@ -10,7 +10,7 @@ use perigrain_lang::Args;
 use perigrain_plan::Tick;
 use perigrain_styles::common::{axis, number_or_null};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::{Face, World};
+use perigrain_world::{Face, Numbers, World};
 use std::f64::consts::PI;
 
 /// The style.
@@ -183,7 +183,7 @@ impl Flat {
 impl Form for Flat {
     const STYLE: &'static str = "wall/gran";
 
-    fn declare(&self, w: &mut World, key: &str) {
+    fn declare(&self, w: &mut World, key: Numbers) {
         w.memo.remove(key);
         Elapsed::load(w, key).store(w, key);
     }
@@ -222,7 +222,7 @@ impl Flat {
 /// The wall during a run.
 struct Running {
     form: Flat,
-    key: String,
+    key: Numbers,
     /// How far it has moved along its motion's axis.
     offset: f64,
     velocity: [f64; 3],
@@ -232,10 +232,10 @@ struct Running {
 impl Surface for Running {
     fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64> {
         let Some(motion) = self.form.motion else { return Ok(0.0) };
-        let mut elapsed = Elapsed::load(w, &self.key);
+        let mut elapsed = Elapsed::load(w, self.key);
         if !t.setup {
             elapsed.follow(t.step, t.dt);
-            elapsed.store(w, &self.key);
+            elapsed.store(w, self.key);
         }
         let lammps = (t.step as f64 - elapsed.origin) * t.dt;
         let time = if w.settings.lammps() { lammps } else { elapsed.now() };

@@ -15,7 +15,7 @@ use perigrain_contact::walls::{Wall, WallSweep};
 use perigrain_lang::{Args, Word};
 use perigrain_plan::Tick;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::World;
+use perigrain_world::{Numbers, World};
 use std::sync::Arc;
 
 /// The style.
@@ -138,15 +138,15 @@ struct Triangles {
 }
 
 /// Where the work of sliding on each triangle is kept.
-fn work_key(key: &str) -> String {
-    format!("{key}/work")
+fn work_key(key: Numbers) -> Numbers {
+    key.with("/work")
 }
 
 impl Form for Triangles {
     const STYLE: &'static str = "wall/mesh";
     const LOCAL: usize = 6;
 
-    fn declare(&self, w: &mut World, key: &str) {
+    fn declare(&self, w: &mut World, key: Numbers) {
         w.memo.remove(key);
         Elapsed::load(w, key).store(w, key);
         w.memo.insert(work_key(key), vec![0.0; self.mesh.triangles().len()]);
@@ -155,16 +155,16 @@ impl Form for Triangles {
 
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
         let key = fix.key(Self::STYLE);
-        let running = Running::new(self.mesh.clone(), &self.motion, &key, cx)?;
+        let running = Running::new(self.mesh.clone(), &self.motion, key, cx)?;
         let areas = self.mesh.triangles().iter().map(perigrain_contact::mesh::area).collect();
-        Ok(Box::new(Tracked { running, work: work_key(&key), areas }))
+        Ok(Box::new(Tracked { running, work: work_key(key), areas }))
     }
 }
 
 /// The wall during a run, with what it feels triangle by triangle.
 struct Tracked {
     running: Running,
-    work: String,
+    work: Numbers,
     areas: Vec<f64>,
 }
 
@@ -179,7 +179,7 @@ impl Surface for Tracked {
 
     fn local(&mut self, w: &mut World, contacts: &WallSweep, t: &Tick) -> Vec<f64> {
         let mut rows: Vec<[f64; 6]> = vec![[0.0; 6]; self.areas.len()];
-        let mut work = w.memo.remove(&self.work).unwrap_or_default();
+        let mut work = w.memo.remove(self.work).unwrap_or_default();
         work.resize(self.areas.len(), 0.0);
         let p = &w.particles;
         for (touch, wrench) in contacts.contacts() {
@@ -196,7 +196,7 @@ impl Surface for Tracked {
         for (k, row) in rows.iter_mut().enumerate() {
             (row[0], row[4], row[5]) = (k as f64 + 1.0, work[k], work[k] / self.areas[k]);
         }
-        w.memo.insert(self.work.clone(), work);
+        w.memo.insert(self.work, work);
         rows.into_iter().flatten().collect()
     }
 }

@@ -8,13 +8,15 @@ pub mod region;
 mod words;
 
 use super::Fix;
+use super::window::forget;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::walls::{Wall, WallSweep};
 use perigrain_lang::Param;
 use perigrain_pairs::contact::durations;
 use perigrain_plan::{Op, Tick};
 use perigrain_styles::{BuildCx, SealCx, Shape};
-use perigrain_world::{GroupId, World};
+use perigrain_world::contacts::Contacts;
+use perigrain_world::{GroupId, Key, Numbers, World};
 use words::Material;
 
 /// A wall of some form during a run.
@@ -45,7 +47,7 @@ trait Form: Clone + Send + 'static {
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>>;
 
     /// Captures what it must know of the moment it is declared, under `key`.
-    fn declare(&self, w: &mut World, key: &str);
+    fn declare(&self, w: &mut World, key: Numbers);
 }
 
 /// What all walls have.
@@ -69,8 +71,8 @@ impl Common {
     }
 
     /// Where small state of the fix is kept in the world.
-    fn key(&self, style: &str) -> String {
-        format!("{style}/{}", self.id)
+    fn key(&self, style: &str) -> Numbers {
+        Key::new(&format!("{style}/{}", self.id))
     }
 }
 
@@ -85,25 +87,23 @@ impl<F: Form> Fix for Declared<F> {
         plastic::suits(&self.common.material.model, cx)?;
         let surface = self.form.surface(&self.common, cx)?;
         let op = op::WallOp::new(F::STYLE, F::LOCAL, &self.common, surface, cx)?;
-        Ok(match plastic::Plastic::of(&self.common.material.model) {
-            Some(_) => op::halves(op),
-            None => vec![Box::new(op)],
-        })
+        Ok(if op.is_plastic() { op::halves(op) } else { vec![Box::new(op)] })
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
-        self.form.declare(w, &self.common.key(F::STYLE));
+        self.form.declare(w, self.common.key(F::STYLE));
         Ok(())
     }
 
     fn remove(&self, w: &mut World) {
         let key = self.common.key(F::STYLE);
-        let inner = format!("{key}/");
-        w.memo.retain(|name, _| *name != key && !name.starts_with(&inner));
-        w.wall_contacts.remove(&self.common.id);
-        w.wall_contacts.remove(&plastic::Plastic::key(&self.common.id));
+        forget(w, key);
+        w.memo.remove(key);
+        let contacts: Key<Contacts> = Key::new(&self.common.id);
+        w.wall_contacts.remove(contacts);
+        w.wall_contacts.remove(plastic::key(&self.common.id));
         if let Some(all) = &mut w.parts.wall_springs {
-            all.remove(&self.common.id);
+            all.remove(contacts.of());
         }
     }
 

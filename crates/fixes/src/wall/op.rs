@@ -16,7 +16,7 @@ use perigrain_world::field::{
     self, BOX, F, FACTS, LISTS, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, SLOTS, TAG, TORQUE, V,
     WALL_CONTACTS, X,
 };
-use perigrain_world::{SlotId, World};
+use perigrain_world::{Key, Numbers, SlotId, World};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Columns of `contacts`: in contact or not, force, the wall's nearest point, radius.
@@ -28,7 +28,8 @@ pub const FELT: usize = 7;
 /// Forces of one wall.
 pub struct WallOp {
     name: String,
-    id: String,
+    /// Where the memory of contacts is kept.
+    key: Key<Contacts>,
     bit: u32,
     law: Granular,
     surface: Box<dyn Surface>,
@@ -59,8 +60,8 @@ struct Warmth {
     /// Its temperature.
     wall: Reading,
     /// Columns of temperatures and heat flows of the particles.
-    temperature: String,
-    flow: String,
+    temperature: Numbers,
+    flow: Numbers,
 }
 
 impl Warmth {
@@ -69,7 +70,8 @@ impl Warmth {
         let Some((wall, _)) = &common.temperature else { return Ok(None) };
         let wall = cx.param(wall, Stage::PostForce, &When::Always)?;
         let columns = &cx.world().columns;
-        let (Some(temperature), Some(flow)) = (columns.custom(TEMPERATURE), columns.custom(HEATFLOW)) else {
+        let (Some(temperature), Some(flow)) = (columns.property(*TEMPERATURE), columns.property(*HEATFLOW))
+        else {
             let text = "walls that conduct heat need particles with a temperature";
             return Err(Diagnostic::error(Code::INCOMPLETE, cx.span(), text)
                 .help("add `fix ID all property/atom temperature heatflow` and `set group all temperature …`")
@@ -95,7 +97,7 @@ impl WallOp {
         let compat = cx.world().settings.compat;
         Ok(Self {
             name: format!("fix {} {style}", common.id),
-            id: common.id.clone(),
+            key: Key::new(&common.id),
             bit: common.group.bit(),
             law: common.material.law(compat),
             surface,
@@ -111,8 +113,13 @@ impl WallOp {
             deep: None,
             warmth,
             kept: None,
-            plastic: Plastic::of(&common.material.model),
+            plastic: Plastic::of(&common.material.model, &common.id),
         })
+    }
+
+    /// Whether it is a wall for plastic grains.
+    pub fn is_plastic(&self) -> bool {
+        self.plastic.is_some()
     }
 
     /// Finds out anew who may touch the wall, where particles or wall have moved too far since.
@@ -140,7 +147,7 @@ impl WallOp {
     /// Puts the wall where it is and finds who touches it.
     fn meet(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         self.travelled += self.surface.place(w, t)?;
-        let mut memory = take(w, &self.id);
+        let mut memory = take(w, self.key);
         // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
         self.kept = (t.setup && !w.settings.lammps()).then(|| memory.clone());
         let p = &w.particles;
@@ -151,7 +158,7 @@ impl WallOp {
         let wall = self.surface.wall(w);
         self.sweep.meet(&*wall, &grains, &self.law, &mut memory);
         drop(wall);
-        give(w, &self.id, memory);
+        give(w, self.key, memory);
         Ok(())
     }
 
@@ -162,7 +169,7 @@ impl WallOp {
         plastic.begin(w, t);
         self.meet(w, t)?;
         if let Some(plastic) = &mut self.plastic {
-            plastic.gather(w, t, &self.id, &self.sweep);
+            plastic.gather(w, t, &self.sweep);
         }
         Ok(())
     }
@@ -186,13 +193,13 @@ impl WallOp {
     fn conduct(&mut self, w: &mut World) -> f64 {
         let (Some(warmth), n) = (&self.warmth, w.n()) else { return 0.0 };
         let wall = warmth.wall.get(w);
-        let mut flow = std::mem::take(w.columns.scalar(&warmth.flow, n));
-        let temperature = w.columns.scalar(&warmth.temperature, n).clone();
+        let mut flow = std::mem::take(w.columns.scalar(warmth.flow, n));
+        let temperature = w.columns.scalar(warmth.temperature, n).clone();
         let p = &w.particles;
         let grains =
             Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
         let lost = self.sweep.conduct(&grains, &self.law, wall, &temperature, &mut flow);
-        *w.columns.scalar(&warmth.flow, n) = flow;
+        *w.columns.scalar(warmth.flow, n) = flow;
         -lost
     }
 
@@ -238,16 +245,13 @@ fn stayed(grains: &Spheres, anchors: &[(Vec3, f64)], far: f64) -> bool {
 }
 
 /// Takes out what the contacts of a wall remember.
-fn take(w: &mut World, id: &str) -> Contacts {
-    w.wall_contacts.get_mut(id).map(std::mem::take).unwrap_or_default()
+fn take(w: &mut World, key: Key<Contacts>) -> Contacts {
+    w.wall_contacts.get_mut(key).map(std::mem::take).unwrap_or_default()
 }
 
 /// Puts it back.
-fn give(w: &mut World, id: &str, memory: Contacts) {
-    match w.wall_contacts.get_mut(id) {
-        Some(place) => *place = memory,
-        None => drop(w.wall_contacts.insert(id.to_string(), memory)),
-    }
+fn give(w: &mut World, key: Key<Contacts>, memory: Contacts) {
+    w.wall_contacts.insert(key, memory);
 }
 
 /// One wall as two ops, for plastic grains: who meets it before all forces, and what it does after those of pairs.
@@ -333,9 +337,9 @@ impl Op for WallOp {
         if self.plastic.is_none() {
             self.meet(w, t)?;
         }
-        let mut memory = take(w, &self.id);
+        let mut memory = take(w, self.key);
         if let Some(plastic) = &mut self.plastic {
-            plastic.press(w, t, &self.id, &self.sweep, &mut memory);
+            plastic.press(w, t, &self.sweep, &mut memory);
         }
         let (p, masses) = (&w.particles, w.contact_masses());
         let grains =
@@ -344,9 +348,9 @@ impl Op for WallOp {
         self.sweep.act(&grains, &self.law, &mut memory, step);
         let springs = w.parts.wall_springs.is_some().then(|| self.sweep.springs(&grains, &self.law));
         if let (Some(all), Some(own)) = (&mut w.parts.wall_springs, springs) {
-            all.insert(self.id.clone(), own);
+            all.insert(self.key.of(), own);
         }
-        give(w, &self.id, self.kept.take().unwrap_or(memory));
+        give(w, self.key, self.kept.take().unwrap_or(memory));
         let p = &mut w.particles;
         let [fx, fy, fz, tx, ty, tz] = self.sweep.scatter(&mut p.f, &mut p.torque, &p.x, self.center);
         let heat = self.conduct(w);

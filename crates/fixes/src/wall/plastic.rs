@@ -7,8 +7,8 @@ use perigrain_contact::powder::{self, Manner, Material, State, TOLD, WALL};
 use perigrain_contact::walls::WallSweep;
 use perigrain_plan::Tick;
 use perigrain_styles::SealCx;
-use perigrain_world::World;
 use perigrain_world::contacts::Contacts;
+use perigrain_world::{Key, World};
 
 /// What the numbers of plastic grains are called in decks, in their order.
 const NUMBERS: [&str; 5] = ["E", "nu", "Y", "psi_b", "the restitution"];
@@ -37,18 +37,20 @@ pub fn suits(model: &Model, cx: &mut dyn SealCx) -> Result<()> {
 /// A wall under plastic grains.
 pub struct Plastic {
     material: Material,
+    /// Where their memory is kept.
+    key: Key<Contacts>,
     spare: Vec<f64>,
+}
+
+/// Where the memory of plastic grains on the wall of this ID is kept.
+pub fn key(id: &str) -> Key<Contacts> {
+    Key::new(&format!("mdr/{id}"))
 }
 
 impl Plastic {
     /// For walls whose normal model is `mdr`.
-    pub fn of(model: &Model) -> Option<Self> {
-        Some(Self { material: plastic(&model.normal)?, spare: vec![] })
-    }
-
-    /// Under which name their memory is kept.
-    pub fn key(id: &str) -> String {
-        format!("mdr/{id}")
+    pub fn of(model: &Model, id: &str) -> Option<Self> {
+        Some(Self { material: plastic(&model.normal)?, key: key(id), spare: vec![] })
     }
 
     /// Begins the step for all grains.
@@ -60,7 +62,7 @@ impl Plastic {
     }
 
     /// Tells the grains how much nearer the wall comes.
-    pub fn gather(&mut self, w: &mut World, t: &Tick, id: &str, sweep: &WallSweep) {
+    pub fn gather(&mut self, w: &mut World, t: &Tick, sweep: &WallSweep) {
         if t.setup {
             return;
         }
@@ -71,18 +73,17 @@ impl Plastic {
             let k = c.grain as usize;
             (k, w.particles.radius[k] - c.near.distance)
         });
-        if let Some(memory) = w.wall_contacts.get(&Self::key(id)) {
+        if let Some(memory) = w.wall_contacts.get(self.key) {
             powder::gather(&mut state, memory, keys, depths);
         }
         state.put(&mut w.columns);
     }
 
     /// Presses the grains; the rest of the law is told by `contacts`.
-    pub fn press(&mut self, w: &mut World, t: &Tick, id: &str, sweep: &WallSweep, contacts: &mut Contacts) {
-        let key = Self::key(id);
+    pub fn press(&mut self, w: &mut World, t: &Tick, sweep: &WallSweep, contacts: &mut Contacts) {
         let n = w.n();
         let mut state = State::take(&mut w.columns, n);
-        let mut memory = w.wall_contacts.remove(&key).unwrap_or_default();
+        let mut memory = w.wall_contacts.remove(self.key).unwrap_or_default();
         // In setup forces are only evaluated.
         let kept = t.setup.then(|| state.clone());
         let (touching, keys) = sweep.touching();
@@ -104,7 +105,7 @@ impl Plastic {
             powder::undo(&before, &mut memory.history, WALL, manner.lammps);
         }
         let state = kept.unwrap_or(state);
-        w.wall_contacts.insert(key, memory);
+        w.wall_contacts.insert(self.key, memory);
         state.put(&mut w.columns);
     }
 }

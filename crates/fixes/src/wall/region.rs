@@ -9,7 +9,7 @@ use perigrain_lang::Args;
 use perigrain_plan::Tick;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::region::Look;
-use perigrain_world::{Region, World};
+use perigrain_world::{Key, Numbers, Region, World};
 
 /// The style.
 pub struct WallGranRegion;
@@ -82,20 +82,22 @@ struct Shaped {
 impl Form for Shaped {
     const STYLE: &'static str = "wall/gran/region";
 
-    fn declare(&self, w: &mut World, key: &str) {
+    fn declare(&self, w: &mut World, key: Numbers) {
         // No step and no pose: the wall has no velocity in its first step.
-        w.memo.insert(key.to_string(), vec![]);
+        w.memo.insert(key, vec![]);
     }
 
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
         let w = cx.world();
-        let Some(region) = w.regions.get(&self.region) else {
+        let Some((name, region)) =
+            w.regions.find(&self.region).and_then(|key| Some((key, w.regions.get(key)?)))
+        else {
             let text = format!("there is no region `{}` any more", self.region);
             let d = Diagnostic::error(Code::UNKNOWN_REGION, self.span, text);
             return Err(d.help("define it again before the run, or remove the fix with `unfix`").into());
         };
         let before = region.follows().then(|| region.clone());
-        let (name, span) = (self.region.clone(), self.span);
+        let span = self.span;
         let radius = w.particles.radius.iter().copied().fold(0.0, f64::max);
         Ok(Box::new(Running { name, span, key: fix.key(Self::STYLE), before, elapsed: None, radius }))
     }
@@ -103,9 +105,9 @@ impl Form for Shaped {
 
 /// The wall during a run.
 struct Running {
-    name: String,
+    name: Key<Region>,
     span: Span,
-    key: String,
+    key: Numbers,
     /// A region that follows variables, as it was at the step before.
     before: Option<Region>,
     /// The time since then, if it was then that it was there.
@@ -116,12 +118,12 @@ struct Running {
 
 impl Surface for Running {
     fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64> {
-        let Some(region) = w.regions.get(&self.name) else {
+        let Some(region) = w.regions.get(self.name) else {
             return fail(Code::UNKNOWN_REGION, self.span, format!("region `{}` is gone", self.name));
         };
         let Some(before) = &mut self.before else { return Ok(0.0) };
         let mut nothing = vec![];
-        let memo = w.memo.get_mut(&self.key).unwrap_or(&mut nothing);
+        let memo = w.memo.get_mut(self.key).unwrap_or(&mut nothing);
         let since = memo.first().map_or(f64::INFINITY, |step| t.step as f64 - step);
         self.elapsed = (since == 1.0).then_some(t.dt);
         if memo.len() < 2 {
@@ -145,7 +147,7 @@ impl Surface for Running {
     fn wall<'a>(&'a self, w: &'a World) -> Box<dyn Wall + 'a> {
         Box::new(Faces {
             // Places were found a moment ago, so that the region is there.
-            region: w.regions.get(&self.name),
+            region: w.regions.get(self.name),
             look: Look { before: self.before.as_ref().zip(self.elapsed), lammps: w.settings.lammps() },
         })
     }

@@ -1,7 +1,7 @@
 //! Files that are whole come back; all others are refused in one sentence.
 
 use super::*;
-use perigrain_world::{AtomStyle, Boundary, Domain};
+use perigrain_world::{AtomStyle, Boundary, Domain, Key};
 use proptest::prelude::*;
 use std::path::PathBuf;
 
@@ -13,8 +13,8 @@ fn world(n: u32) -> World {
         let a = f64::from(k);
         w.particles.push(k, 1 + (k % 2) as u16, [0.1 / a, a.sqrt() * 1e-3, -0.0]);
     }
-    w.columns.scalar("move/1", n as usize)[0] = f64::MIN_POSITIVE;
-    w.memo.insert("dt/reset/2".into(), vec![1.0 / 3.0, f64::INFINITY]);
+    w.columns.scalar(Key::new("move/1"), n as usize)[0] = f64::MIN_POSITIVE;
+    w.memo.insert(Key::new("dt/reset/2"), vec![1.0 / 3.0, f64::INFINITY]);
     w.clock.step = i64::MAX - 7;
     w
 }
@@ -61,7 +61,7 @@ fn a_changed_scene_has_another_fingerprint() {
         let bit = w.groups.find_or_add("new").unwrap().bit();
         w.particles.mask[0] |= bit;
     }));
-    assert!(!differs(|w| w.columns.scalar("displace/2", 5)[1] = 2.0));
+    assert!(!differs(|w| w.columns.scalar(Key::new("displace/2"), 5)[1] = 2.0));
 }
 
 #[test]

@@ -7,8 +7,8 @@ use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::pull::{Along, Law};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::World;
 use perigrain_world::adapted::Coefficient;
+use perigrain_world::{Numbers, World};
 use std::collections::BTreeMap;
 
 /// The style.
@@ -40,7 +40,30 @@ impl BondStyle for HarmonicStyle {
 /// Stiffness and length at rest by type.
 #[derive(Clone, Default)]
 struct Harmonic {
-    springs: BTreeMap<u16, [f64; 2]>,
+    springs: BTreeMap<u16, Spring>,
+}
+
+/// A spring as the deck's line said it.
+#[derive(Clone, Copy)]
+struct Spring {
+    said: [f64; 2],
+    /// Where fixes leave what they have changed.
+    keys: [Numbers; 2],
+}
+
+impl Spring {
+    fn new(kind: u16, said: [f64; 2]) -> Self {
+        let keys = ["k", "r0"].map(|name| {
+            let (style, name, types) = ("harmonic".to_string(), name.to_string(), (kind, kind));
+            Coefficient { bond: true, style, name, types }.key()
+        });
+        Self { said, keys }
+    }
+
+    /// As fixes have changed it.
+    fn now(&self, w: &World) -> [f64; 2] {
+        std::array::from_fn(|k| w.adapted(self.keys[k]).unwrap_or(self.said[k]))
+    }
 }
 
 fn pull([k, r0]: [f64; 2], r: f64) -> Pull {
@@ -49,32 +72,22 @@ fn pull([k, r0]: [f64; 2], r: f64) -> Pull {
     Pull { energy: k * stretch * stretch, force_per_length: if r > 0.0 { force / r } else { 0.0 } }
 }
 
-/// Stiffness and length of a type as fixes have changed them.
-fn adapted(w: &World, kind: u16, [k, r0]: [f64; 2]) -> [f64; 2] {
-    let of = |name: &str| {
-        let (style, name, types) = ("harmonic".to_string(), name.to_string(), (kind, kind));
-        w.adapted(&Coefficient { bond: true, style, name, types })
-    };
-    [of("k").unwrap_or(k), of("r0").unwrap_or(r0)]
-}
-
 /// The springs of a run.
 struct Adapting {
     /// As the deck's lines said.
     said: Harmonic,
     /// As fixes have changed them.
-    now: Harmonic,
+    now: BTreeMap<u16, [f64; 2]>,
 }
 
 impl Law for Adapting {
     fn pull(&self, kind: u16, r: f64) -> Option<Pull> {
-        self.now.springs.get(&kind).map(|s| pull(*s, r))
+        self.now.get(&kind).map(|s| pull(*s, r))
     }
 
     fn adapt(&mut self, w: &World) {
-        self.now = self.said.clone();
-        for (kind, spring) in &mut self.now.springs {
-            *spring = adapted(w, *kind, *spring);
+        for (now, spring) in self.now.values_mut().zip(self.said.springs.values()) {
+            *now = spring.now(w);
         }
     }
 }
@@ -86,7 +99,7 @@ impl BondForce for Harmonic {
 
     fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
         let spring = [args.number("the stiffness K")?, args.number("the length r0")?];
-        self.springs.extend(kinds.iter().map(|&k| (k, spring)));
+        self.springs.extend(kinds.iter().map(|&k| (k, Spring::new(k, spring))));
         Ok(())
     }
 
@@ -99,7 +112,8 @@ impl BondForce for Harmonic {
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let law = Adapting { said: self.clone(), now: self.clone() };
+        let now = self.springs.iter().map(|(kind, s)| (*kind, s.said)).collect();
+        let law = Adapting { said: self.clone(), now };
         Ok(vec![Box::new(Along::new("bond harmonic", cx.span(), law))])
     }
 
@@ -108,16 +122,16 @@ impl BondForce for Harmonic {
     }
 
     fn coefficient(&self, name: &str, kind: u16) -> Option<f64> {
-        let [k, r0] = self.springs.get(&kind)?;
-        Some(if name == "k" { *k } else { *r0 })
+        let [k, r0] = self.springs.get(&kind)?.said;
+        Some(if name == "k" { k } else { r0 })
     }
 
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
-        self.springs.get(&bond.kind).map(|s| pull(adapted(w, bond.kind, *s), bond.length()))
+        self.springs.get(&bond.kind).map(|s| pull(s.now(w), bond.length()))
     }
 
     fn written(&self, kind: u16) -> Option<String> {
-        self.springs.get(&kind).map(|s| s.map(|a| general(a, 16)).join(" "))
+        self.springs.get(&kind).map(|s| s.said.map(|a| general(a, 16)).join(" "))
     }
 }
 

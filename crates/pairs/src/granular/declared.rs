@@ -177,7 +177,9 @@ impl Pair for Declared {
         let w = cx.world();
         let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
         let columns = &w.columns;
-        if conducts(&rules) && [TEMPERATURE, HEATFLOW].iter().any(|name| columns.custom(name).is_none()) {
+        if conducts(&rules)
+            && [&TEMPERATURE, &HEATFLOW].iter().any(|role| columns.property(***role).is_none())
+        {
             let text = "contacts that conduct heat need particles with a temperature";
             return Err(Diagnostic::error(Code::INCOMPLETE, cx.span(), text)
                 .help("add `fix ID all property/atom temperature heatflow` and `set group all temperature …`")

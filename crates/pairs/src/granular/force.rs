@@ -21,7 +21,7 @@ use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA,
     RADIUS, TAG, TALLY, TORQUE, TRAVEL, V, X, X0,
 };
-use perigrain_world::{Allowed, World};
+use perigrain_world::{Allowed, Key, Numbers, World};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -29,8 +29,8 @@ use std::ops::Range;
 pub struct Force {
     rules: Rules<Granular>,
     wanted: Wanted,
-    /// The style's name, under which contact history is kept in the world.
-    style: &'static str,
+    /// Where contact history is kept in the world.
+    key: Key<Contacts>,
     /// What the op is called.
     name: String,
     /// Whether fix freeze holds a particle; empty without one.
@@ -71,7 +71,7 @@ impl Force {
         Self {
             rules,
             wanted,
-            style,
+            key: Key::new(style),
             name: format!("pair {style}"),
             frozen: vec![],
             steady: false,
@@ -107,7 +107,7 @@ impl Force {
         }
         let skin = w.settings.neighbor.skin;
         if let Some(fast) = self.fast.as_mut().filter(|fast| suits(w, period, fast)) {
-            let known = if self.is_fast { None } else { w.contacts.remove(self.style) };
+            let known = if self.is_fast { None } else { w.contacts.remove(self.key) };
             let frame = Frame { lo: w.domain()?.lo, period, reach: kept.reach(skin), skin };
             let allowed = Allowed::new(w);
             let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
@@ -126,7 +126,7 @@ impl Force {
     fn hand_over(&mut self, w: &mut World) {
         if let Some(fast) = self.fast.as_mut().filter(|_| std::mem::take(&mut self.is_fast)) {
             fast.keep_contacts();
-            w.contacts.insert(self.style.to_string(), fast.contacts());
+            w.contacts.insert(self.key, fast.contacts());
             fast.clear();
         }
     }
@@ -134,7 +134,7 @@ impl Force {
     /// Contacts by the fast loop; `anew`: masses may not be those of the step before.
     fn run_fast(&mut self, w: &mut World, t: &Tick, period: Vec3, store: bool, anew: bool) -> Result<()> {
         let Some(fast) = &mut self.fast else { return Ok(()) };
-        w.contacts.remove(self.style);
+        w.contacts.remove(self.key);
         let step = Advance { dt: t.dt, history: !t.setup };
         let p = &mut w.particles;
         let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
@@ -157,7 +157,7 @@ impl Force {
             add_virial(w, virial);
         }
         if t.contacts {
-            w.contacts.insert(self.style.to_string(), fast.contacts());
+            w.contacts.insert(self.key, fast.contacts());
         }
         report(w, t, deep);
         Ok(())
@@ -182,7 +182,7 @@ impl Force {
         }
         let step = Advance { dt: t.dt, history: !t.setup };
         let mut per_list = fast.begin_per_list(&seen, step, store);
-        w.contacts.remove(self.style);
+        w.contacts.remove(self.key);
         loop {
             let p = &mut w.particles;
             let (mut f, mut torque) = (std::mem::take(&mut p.f), std::mem::take(&mut p.torque));
@@ -227,7 +227,7 @@ impl Force {
     }
 
     fn run_plain(&mut self, w: &mut World, t: &Tick, period: Vec3, store: bool) -> Result<()> {
-        let mut memory = w.contacts.remove(self.style).unwrap_or_default();
+        let mut memory = w.contacts.remove(self.key).unwrap_or_default();
         let kept: Option<Contacts> = (!store).then(|| memory.clone());
         let manner = Manner { lammps: w.settings.lammps(), setup: t.setup };
         let (plain, press) = (&mut self.plain, &mut self.press);
@@ -260,7 +260,7 @@ impl Force {
             let part = plain.sweep.virial(&w.particles.x, &period);
             add_virial(w, part);
         }
-        w.contacts.insert(self.style.to_string(), kept.unwrap_or(memory));
+        w.contacts.insert(self.key, kept.unwrap_or(memory));
         Ok(())
     }
 }
@@ -443,29 +443,26 @@ pub struct Heating {
     pub temperature: Vec<f64>,
     /// Heat [energy/time].
     pub flow: Vec<f64>,
-    /// The names of both columns.
-    names: [String; 2],
+    /// Both columns.
+    keys: [Numbers; 2],
 }
 
 impl Heating {
     /// Taken out of the world, if some contacts conduct heat and particles have both.
     pub fn take(w: &mut World, rules: &Rules<Granular>) -> Option<Self> {
-        let [Some(temperature), Some(flow)] = [TEMPERATURE, HEATFLOW].map(|name| w.columns.custom(name))
-        else {
-            return None;
-        };
-        let (n, names) = (w.n(), [temperature, flow]);
+        let keys = [w.columns.property(*TEMPERATURE)?, w.columns.property(*HEATFLOW)?];
+        let n = w.n();
         conducts(rules).then(|| {
-            let [temperature, flow] = [0, 1].map(|k| std::mem::take(w.columns.scalar(&names[k], n)));
-            Self { temperature, flow, names }
+            let [temperature, flow] = keys.map(|key| std::mem::take(w.columns.scalar(key, n)));
+            Self { temperature, flow, keys }
         })
     }
 
     /// Put back.
     pub fn give(self, w: &mut World) {
         let n = w.n();
-        *w.columns.scalar(&self.names[0], n) = self.temperature;
-        *w.columns.scalar(&self.names[1], n) = self.flow;
+        *w.columns.scalar(self.keys[0], n) = self.temperature;
+        *w.columns.scalar(self.keys[1], n) = self.flow;
     }
 }
 

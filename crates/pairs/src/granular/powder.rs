@@ -29,7 +29,7 @@ impl Press {
 
     /// Begins a step: grains grow.
     pub fn begin(&mut self, w: &mut World, t: &Tick) {
-        self.plastic = w.contacts.remove(PLASTIC).unwrap_or_default();
+        self.plastic = w.contacts.remove(*PLASTIC).unwrap_or_default();
         self.state = begin(w, (t.step, t.setup), &self.material);
     }
 
@@ -59,7 +59,7 @@ impl Press {
 
     /// Ends a step: what grains and contacts remember goes back into the world.
     pub fn end(&mut self, w: &mut World) {
-        w.contacts.insert(PLASTIC.to_string(), std::mem::take(&mut self.plastic));
+        w.contacts.insert(*PLASTIC, std::mem::take(&mut self.plastic));
         std::mem::take(&mut self.state).put(&mut w.columns);
     }
 

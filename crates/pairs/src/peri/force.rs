@@ -10,7 +10,7 @@ use perigrain_world::field::{
     BOX, DENSITY, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, RADIUS, TAG, TALLY, VOLUME, X,
     X0,
 };
-use perigrain_world::{Crack, World};
+use perigrain_world::{Crack, Key, Numbers, World};
 
 /// Bond and short-range forces of all peridynamic bodies.
 pub struct Force {
@@ -21,13 +21,25 @@ pub struct Force {
     said: PmbTable,
     /// Which changes by fixes have been seen.
     adapted: f64,
+    /// Where they are, of c, s00 and alpha of each pair of types.
+    keys: Vec<((u16, u16), [Numbers; 3])>,
+    /// Where the energy goes.
+    tally: Key<f64>,
 }
 
 impl Force {
     /// The op of a style.
     pub fn new(style: Solid, said: PmbTable, options: FamilyOptions) -> Self {
         let name = format!("pair {}", style.name);
-        Self { style, options, name, said, adapted: 0.0 }
+        let key = |types, name: &str| {
+            let (style, name) = (style.name.to_string(), name.to_string());
+            Coefficient { bond: false, style, name, types }.key()
+        };
+        let types = style.table.types() as u16;
+        let pairs = (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j)));
+        let keys = pairs.map(|p| (p, ["c", "s00", "alpha"].map(|name| key(p, name)))).collect();
+        let tally = Key::new(style.name);
+        Self { style, options, name, said, adapted: 0.0, keys, tally }
     }
 }
 
@@ -80,7 +92,7 @@ impl Op for Force {
         w.particles.f = f;
         let (energy, virial) = (sums.energy, sums.virial);
         (w.tally.atom, w.tally.atom_virial) = (atoms, virials);
-        w.tally.add_pair(self.style.name, energy);
+        w.tally.add_pair(self.tally, energy);
         for (total, part) in w.tally.virial.iter_mut().zip(virial) {
             *total += part;
         }
@@ -106,19 +118,15 @@ impl Force {
         if w.adaptations() == 0.0 {
             return Ok(table);
         }
-        let types = table.types() as u16;
-        for (i, j) in (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j))) {
+        for &((i, j), keys) in &self.keys {
             let (Some(own), Some(said)) = (self.style.table.get(i, j), self.said.get(i, j)) else { continue };
-            let of = |name: &str| {
-                let style = self.style.name.to_string();
-                w.adapted(&Coefficient { bond: false, style, name: name.to_string(), types: (i, j) })
-            };
+            let [c, s00, alpha] = keys.map(|key| w.adapted(key));
             // A calibrated micro-modulus keeps its ratio to what the line says.
             let ratio = if said.c > 0.0 { own.c / said.c } else { 1.0 };
             let new = PmbCoeff {
-                c: of("c").map_or(own.c, |c| c * ratio),
-                s00: of("s00").unwrap_or(own.s00),
-                alpha: of("alpha").unwrap_or(own.alpha),
+                c: c.map_or(own.c, |c| c * ratio),
+                s00: s00.unwrap_or(own.s00),
+                alpha: alpha.unwrap_or(own.alpha),
                 ..*own
             };
             table.set(i, j, new)?;

@@ -8,8 +8,8 @@
 use super::verlet::tick;
 use crate::{Phase, Solids, Stage, StepPlan, Tick};
 use perigrain_base::diag::Result;
-use perigrain_world::World;
-use perigrain_world::columns::{HEATFLOW, heat_of_level, of_level};
+use perigrain_world::columns::{self, HEATFLOW};
+use perigrain_world::{Vectors, World};
 use std::sync::Arc;
 
 /// Levels of steps.
@@ -19,9 +19,25 @@ pub struct Levels {
     pub loops: Vec<i64>,
     /// Who alone moves in the short steps of two lengths.
     pub solids: Option<Arc<Solids>>,
+    /// What each level has of its own, from the shortest.
+    pub(super) own: Arc<[columns::Level]>,
 }
 
 impl Levels {
+    /// Levels of which each holds so many steps of the one before.
+    pub fn new(loops: Vec<i64>, solids: Option<Arc<Solids>>) -> Self {
+        let own = (0..=loops.len()).map(columns::Level::new).collect();
+        Self { loops, solids, own }
+    }
+
+    /// Forgets what they have of their own.
+    pub(super) fn forget(&self, w: &mut World) {
+        for own in self.own.iter() {
+            own.forces.into_iter().for_each(|key| w.columns.remove(key));
+            w.columns.remove(own.heat);
+        }
+    }
+
     /// How many there are.
     fn count(&self) -> usize {
         self.loops.len() + 1
@@ -35,12 +51,12 @@ impl Levels {
 }
 
 /// Whether the forces of all levels are kept, and belong to these particles.
-pub fn stand(w: &World, levels: usize) -> bool {
+pub fn stand(w: &World, l: &Levels) -> bool {
     let (n, kinds) = (w.n(), if w.particles.style.sphere { 2 } else { 1 });
-    let whole = |name: &String| w.columns.get_vector(name).is_some_and(|c| c.len() == n);
-    let warm = w.columns.custom(HEATFLOW).is_some();
-    let heat = |k| !warm || w.columns.get_scalar(&heat_of_level(k)).is_some_and(|c| c.len() == n);
-    (0..levels).all(|k| of_level(k).iter().take(kinds).all(whole) && heat(k))
+    let whole = |key: &Vectors| w.columns.get_vector(*key).is_some_and(|c| c.len() == n);
+    let warm = w.columns.property(*HEATFLOW).is_some();
+    let heat = |key| !warm || w.columns.get_scalar(key).is_some_and(|c| c.len() == n);
+    l.own.iter().all(|own| own.forces.iter().take(kinds).all(whole) && heat(own.heat))
 }
 
 /// Forces of all levels at the start of a run, and its first outputs.
@@ -48,7 +64,7 @@ pub fn stand(w: &World, levels: usize) -> bool {
 /// # Errors
 /// The first op's that fails.
 pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool, l: &Levels) -> Result<()> {
-    if unchanged && stand(w, l.count()) {
+    if unchanged && stand(w, l) {
         return super::verlet::setup(plan, w, true);
     }
     let mut t = tick(w, true);
@@ -57,16 +73,16 @@ pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool, l: &Levels) ->
     w.columns.forget_levels();
     for stages in first_forces(w) {
         for k in 0..l.count() {
-            exchange(w, k);
+            exchange(w, l, k);
             plan.run(w, &l.at(&t, k), stages)?;
-            exchange(w, k);
+            exchange(w, l, k);
         }
     }
     // Weights are those of the masses that the outermost level leaves (`fix adapt`).
     for k in 0..l.count() {
-        exchange(w, k);
+        exchange(w, l, k);
         plan.run(w, &l.at(&t, k), &[Stage::PostForce])?;
-        exchange(w, k);
+        exchange(w, l, k);
     }
     join(w, l);
     plan.run(w, &t, &[Stage::InitialIntegrate, Stage::PostIntegrate, Stage::FinalIntegrate])?;
@@ -98,7 +114,7 @@ fn level(plan: &mut StepPlan, w: &mut World, t: &Tick, (l, k): (&Levels, usize),
     const NEWS: [Stage; 3] = [Stage::PostIntegrate, Stage::Exchange, Stage::Neighbor];
     let here = l.at(t, k);
     let (first, last) = (here.phase.nested(), here.phase.outermost());
-    exchange(w, k);
+    exchange(w, l, k);
     if !plan.goes_on() {
         plan.run(w, &here, &[Stage::InitialIntegrate])?;
     }
@@ -119,7 +135,7 @@ fn level(plan: &mut StepPlan, w: &mut World, t: &Tick, (l, k): (&Levels, usize),
     }
     forces(plan, w, &here)?;
     plan.end(w, &here, |_| more && k == 0)?;
-    exchange(w, k);
+    exchange(w, l, k);
     Ok(())
 }
 
@@ -134,23 +150,24 @@ fn forces(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
 }
 
 /// Lets the present forces, torques and heat flows and those of a level change places.
-pub(super) fn exchange(w: &mut World, level: usize) {
-    let (n, [force, torque]) = (w.n(), of_level(level));
-    std::mem::swap(&mut *w.particles.f, w.columns.vector(&force, n));
+pub(super) fn exchange(w: &mut World, l: &Levels, k: usize) {
+    let (n, own) = (w.n(), l.own[k]);
+    let [force, torque] = own.forces;
+    std::mem::swap(&mut *w.particles.f, w.columns.vector(force, n));
     if w.particles.style.sphere {
-        std::mem::swap(&mut *w.particles.torque, w.columns.vector(&torque, n));
+        std::mem::swap(&mut *w.particles.torque, w.columns.vector(torque, n));
     }
-    if let Some(heat) = w.columns.custom(HEATFLOW) {
-        w.columns.swap_scalars(&heat, &heat_of_level(level), n);
+    if let Some(heat) = w.columns.property(*HEATFLOW) {
+        w.columns.swap_scalars(heat, own.heat, n);
     }
 }
 
 /// Shows the forces, torques and heat flows of all levels together.
 fn join(w: &mut World, l: &Levels) {
     let p = &mut w.particles;
-    for k in 0..l.count() {
-        for (sum, name) in [&mut p.f, &mut p.torque].into_iter().zip(of_level(k)) {
-            let part = w.columns.get_vector(&name).unwrap_or_default();
+    for (k, own) in l.own.iter().enumerate() {
+        for (sum, key) in [&mut p.f, &mut p.torque].into_iter().zip(own.forces) {
+            let part = w.columns.get_vector(key).unwrap_or_default();
             if k == 0 {
                 sum.clear();
                 sum.extend_from_slice(part);
@@ -161,12 +178,12 @@ fn join(w: &mut World, l: &Levels) {
             }
         }
     }
-    let Some(heat) = w.columns.custom(HEATFLOW) else { return };
+    let Some(heat) = w.columns.property(*HEATFLOW) else { return };
     let n = w.n();
     let mut sum = vec![0.0; n];
-    for k in 0..l.count() {
-        let part = w.columns.get_scalar(&heat_of_level(k)).unwrap_or_default();
+    for own in l.own.iter() {
+        let part = w.columns.get_scalar(own.heat).unwrap_or_default();
         sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
     }
-    *w.columns.scalar(&heat, n) = sum;
+    *w.columns.scalar(heat, n) = sum;
 }

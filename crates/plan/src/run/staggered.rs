@@ -19,6 +19,8 @@ pub struct Staggered {
     pub solids: Arc<Solids>,
     /// Short steps per long one.
     pub ratio: Ratio,
+    /// The two levels.
+    two: Levels,
 }
 
 /// Short steps per long one.
@@ -33,6 +35,11 @@ pub enum Ratio {
 }
 
 impl Staggered {
+    /// Steps of two lengths.
+    pub fn new(solids: Arc<Solids>, ratio: Ratio) -> Self {
+        Self { solids: solids.clone(), ratio, two: Levels::new(vec![1], Some(solids)) }
+    }
+
     /// Short steps in a long one of `dt`.
     fn count(&self, dt: f64) -> i64 {
         match self.ratio {
@@ -44,7 +51,7 @@ impl Staggered {
 
     /// The two levels of a long step of `m` short ones.
     fn levels(&self, m: i64) -> Levels {
-        Levels { loops: vec![m], solids: Some(self.solids.clone()) }
+        Levels { loops: vec![m], ..self.two.clone() }
     }
 }
 
@@ -66,7 +73,7 @@ pub fn setup(plan: &mut StepPlan, w: &mut World, unchanged: bool, s: &Staggered)
         }
     }
     super::verlet::setup(plan, w, unchanged)?;
-    if m > 1 && !(unchanged && levels::stand(w, 2)) {
+    if m > 1 && !(unchanged && levels::stand(w, &s.two)) {
         split(plan, w, s)?;
     }
     Ok(())
@@ -89,10 +96,10 @@ pub fn step(plan: &mut StepPlan, w: &mut World, t: &Tick, s: &Staggered) -> Resu
     }
     let m = s.count(t.dt);
     if m == 1 && s.solids.twice == 0 {
-        w.columns.forget_levels();
+        s.two.forget(w);
         return plan.run(w, t, &MOTION);
     }
-    if !levels::stand(w, 2) {
+    if !levels::stand(w, &s.two) {
         split(plan, w, s)?;
     }
     levels::step(plan, w, t, &s.levels(m))
@@ -125,11 +132,11 @@ fn split(plan: &mut StepPlan, w: &mut World, s: &Staggered) -> Result<()> {
     let own = std::mem::replace(&mut w.particles.f, all.clone());
     let rest: Vec<[f64; 3]> =
         all.iter().zip(&own).map(|(f, b)| std::array::from_fn(|d| f[d] - b[d])).collect();
-    w.columns.forget_levels();
+    s.two.forget(w);
     let torque = w.particles.torque.clone();
     for (k, part) in [(0, (own, vec![[0.0; 3]; torque.len()])), (1, (rest.into(), torque.to_vec()))] {
         (w.particles.f, *w.particles.torque) = part;
-        exchange(w, k);
+        exchange(w, &s.two, k);
     }
     (w.particles.f, w.particles.torque) = (all, torque);
     Ok(())

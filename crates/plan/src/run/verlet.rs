@@ -5,6 +5,7 @@ use crate::{Stage, StepPlan, Tick};
 use perigrain_base::diag::Result;
 use perigrain_base::par;
 use perigrain_world::columns::HEATFLOW;
+use perigrain_world::named::Acting;
 use perigrain_world::{Halt, World};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -78,11 +79,11 @@ fn tally_anew(plan: &mut StepPlan, w: &mut World, t: &Tick) -> Result<()> {
     }
     let kept = (w.particles.f.clone(), w.particles.torque.clone());
     let n = w.particles.len();
-    let warm = w.columns.custom(HEATFLOW).map(|name| (w.columns.scalar(&name, n).clone(), name));
+    let warm = w.columns.property(*HEATFLOW).map(|key| (w.columns.scalar(key, n).clone(), key));
     // Fixes see that nothing has changed: they add their virial and leave the forces alone.
     plan.run(w, t, &[Stage::PreForce, Stage::Force, Stage::PostForce])?;
-    if let Some((heat, name)) = warm {
-        *w.columns.scalar(&name, n) = heat;
+    if let Some((heat, key)) = warm {
+        *w.columns.scalar(key, n) = heat;
     }
     (w.particles.f, w.particles.torque) = kept;
     Ok(())
@@ -152,6 +153,7 @@ pub(super) fn steps(
                 w.clock.halt = Halt::All;
                 break;
             }
+            let _names_are_known = Acting::op();
             w.clock.step += 1;
             let mut t = tick(w, false);
             plan.ask(&mut t);

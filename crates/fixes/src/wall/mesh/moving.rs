@@ -10,8 +10,8 @@ use perigrain_lang::{Args, Param, ValueRef};
 use perigrain_plan::{Stage, Tick, When};
 use perigrain_styles::common::param_or_null;
 use perigrain_styles::{BuildCx, Reading, SealCx};
-use perigrain_world::World;
 use perigrain_world::region::turned;
+use perigrain_world::{Numbers, World};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -83,8 +83,8 @@ impl Motion {
 }
 
 /// Where the place of a mesh that follows variables is kept from step to step.
-pub fn place_key(key: &str) -> String {
-    format!("{key}/place")
+pub fn place_key(key: Numbers) -> Numbers {
+    key.with("/place")
 }
 
 /// A mesh during a run.
@@ -92,7 +92,8 @@ pub struct Running {
     mesh: Arc<Mesh>,
     motion: Motion,
     readings: [Option<Reading>; 3],
-    key: String,
+    key: Numbers,
+    place: Numbers,
     shift: Vec3,
     angle: f64,
     velocity: Vec3,
@@ -105,7 +106,7 @@ impl Running {
     ///
     /// # Errors
     /// Variables that are gone.
-    pub fn new(mesh: Arc<Mesh>, motion: &Motion, key: &str, cx: &mut dyn SealCx) -> Result<Self> {
+    pub fn new(mesh: Arc<Mesh>, motion: &Motion, key: Numbers, cx: &mut dyn SealCx) -> Result<Self> {
         let mut readings = [None; 3];
         if let Motion::Variable(names) = motion {
             for (reading, name) in readings.iter_mut().zip(names) {
@@ -118,8 +119,18 @@ impl Running {
             Motion::Rotate(point, axis, _) => mesh.farthest(*point, *axis),
             _ => 0.0,
         };
-        let (motion, key) = (motion.clone(), key.to_string());
-        Ok(Self { mesh, motion, readings, key, shift: [0.0; 3], angle: 0.0, velocity: [0.0; 3], arm })
+        let motion = motion.clone();
+        Ok(Self {
+            mesh,
+            motion,
+            readings,
+            key,
+            place: place_key(key),
+            shift: [0.0; 3],
+            angle: 0.0,
+            velocity: [0.0; 3],
+            arm,
+        })
     }
 
     /// Goes to where the mesh is at this step; how far its points have moved at most.
@@ -130,10 +141,10 @@ impl Running {
         if matches!(self.motion, Motion::Rest) {
             return Ok(0.0);
         }
-        let mut elapsed = Elapsed::load(w, &self.key);
+        let mut elapsed = Elapsed::load(w, self.key);
         if !t.setup {
             elapsed.follow(t.step, t.dt);
-            elapsed.store(w, &self.key);
+            elapsed.store(w, self.key);
         }
         let (time, before) = (elapsed.now(), (self.shift, self.angle));
         match &self.motion {
@@ -155,8 +166,7 @@ impl Running {
         if self.shift.iter().any(|a| !a.is_finite()) {
             return fail(Code::NOT_FINITE, None, format!("the wall's displacement is {:?}", self.shift));
         }
-        let key = place_key(&self.key);
-        self.velocity = match w.memo.get(&key).map(Vec::as_slice) {
+        self.velocity = match w.memo.get(self.place).map(Vec::as_slice) {
             Some(&[step, x, y, z]) if t.step as f64 - step == 1.0 => {
                 scale(1.0 / t.dt, sub(self.shift, [x, y, z]))
             }
@@ -164,7 +174,7 @@ impl Running {
             _ => [0.0; 3],
         };
         let [x, y, z] = self.shift;
-        w.memo.insert(key, vec![t.step as f64, x, y, z]);
+        w.memo.insert(self.place, vec![t.step as f64, x, y, z]);
         Ok(())
     }
 

@@ -56,7 +56,7 @@ impl BondStyle for BpmPeri {
                 .help("`atom_style bond` or `hybrid sphere bond` goes with bond_style bpm/peri")
                 .into());
         }
-        if cx.world.columns.custom(VOLUME_PROPERTY).is_none() {
+        if cx.world.columns.property(*VOLUME_PROPERTY).is_none() {
             let text = "bond_style bpm/peri needs the volumes of particles, the property d_vfrac";
             let d = Diagnostic::error(Code::WRONG_ORDER, args.name_span(), text);
             return Err(d

@@ -6,8 +6,13 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_peri::families::{Families, FamilyOptions, ForceUnit, PeriTally};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::peri_view::view;
-use perigrain_world::World;
 use perigrain_world::field::{BONDS, BOX, COLUMNS, F, FAMILIES, KIND, MASS, TAG, TALLY, V, X};
+use perigrain_world::{Constant, Numbers, World};
+
+// What the deck may have made properties for.
+static DAMAGE: Constant<Vec<f64>> = Constant::new("d_damage");
+static DILATATION: Constant<Vec<f64>> = Constant::new("d_theta");
+static MULTIPLIER: Constant<Vec<f64>> = Constant::new("d_lambda");
 
 /// Forces of all peridynamic bonds of the table.
 pub struct Force {
@@ -151,19 +156,19 @@ fn take_away(w: &mut World, families: &mut Families) {
 /// Writes what the deck has made properties for.
 fn publish(w: &mut World, families: &Families) {
     let n = w.n();
-    if let Some(name) = w.columns.custom("d_damage") {
-        let mut column = std::mem::take(w.columns.scalar(&name, n));
+    if let Some(key) = w.columns.property(*DAMAGE) {
+        let mut column = std::mem::take(w.columns.scalar(key, n));
         families.damage_all(w.volumes(), &mut column);
-        *w.columns.scalar(&name, n) = column;
+        *w.columns.scalar(key, n) = column;
     }
-    fill(w, "d_theta", |i| families.dilatation(i));
-    fill(w, "d_lambda", |i| families.plastic_strain(i));
+    fill(w, *DILATATION, |i| families.dilatation(i));
+    fill(w, *MULTIPLIER, |i| families.plastic_strain(i));
 }
 
 /// Fills a column of the deck's, where it has one of this name.
-fn fill(w: &mut World, name: &str, value: impl Fn(usize) -> f64) {
+fn fill(w: &mut World, role: Numbers, value: impl Fn(usize) -> f64) {
     let n = w.n();
-    if let Some(name) = w.columns.custom(name) {
-        w.columns.scalar(&name, n).iter_mut().enumerate().for_each(|(i, v)| *v = value(i));
+    if let Some(key) = w.columns.property(role) {
+        w.columns.scalar(key, n).iter_mut().enumerate().for_each(|(i, v)| *v = value(i));
     }
 }

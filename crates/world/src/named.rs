@@ -1,0 +1,423 @@
+//! State by name: a name becomes a handle once, outside of steps, and the handle finds its entry by number.
+
+use super::{CONTACT_MASS, COUPLED, RATES};
+use serde::de::Deserialize;
+use serde::ser::SerializeMap;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::marker::PhantomData;
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+/// A name that the program knows from now on, and its number. Names are as few as the words of decks: they stay.
+struct Name {
+    number: usize,
+    text: &'static str,
+    role: Option<&'static Name>,
+}
+
+/// How names begin and end whose ends are roles.
+const ROLES: [(&str, &Constant<Vec<f64>>); 3] =
+    [("langevin/", &COUPLED), ("deform/", &RATES), ("rigid/", &CONTACT_MASS)];
+
+/// What entries of several fixes are to all others: `temperature` of `property/atom/ID/temperature`.
+fn role(text: &str) -> Option<&str> {
+    if let Some(property) = text.strip_prefix("property/atom/") {
+        return property.split_once('/').map(|(_, name)| name);
+    }
+    let of = |(begin, end): &(&str, &Constant<_>)| {
+        text.strip_prefix(begin)?.ends_with(end.text).then_some(end.text)
+    };
+    ROLES.iter().find_map(of)
+}
+
+static NAMES: Mutex<BTreeMap<&'static str, &'static Name>> = Mutex::new(BTreeMap::new());
+
+/// The handle of what stands under a name in a [`Named`] of values `T`. It holds for every scene, copies and scenes read from a
+/// file included, whether there is such an entry now or not.
+pub struct Key<T> {
+    name: &'static Name,
+    of: PhantomData<fn() -> T>,
+}
+
+/// The handle of a list of numbers, one for each particle in columns.
+pub type Numbers = Key<Vec<f64>>;
+
+/// The handle of a column of vectors.
+pub type Vectors = Key<Vec<[f64; 3]>>;
+
+impl<T> Key<T> {
+    /// The handle of a name; to be made while a style is declared or its ops are, never inside a step.
+    #[track_caller]
+    pub fn new(text: &str) -> Self {
+        by_name(text);
+        Self::known(text)
+    }
+
+    fn known(text: &str) -> Self {
+        if let Some(name) = NAMES.lock().unwrap_or_else(PoisonError::into_inner).get(text) {
+            return Self { name, of: PhantomData };
+        }
+        let role = role(text).map(|role| Self::known(role).name);
+        let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+        let number = names.len();
+        // Another thread may have been faster.
+        let name = *names
+            .entry(text.to_string().leak())
+            .or_insert_with_key(|text| Box::leak(Box::new(Name { number, text, role })));
+        Self { name, of: PhantomData }
+    }
+
+    /// The handle of this name with `tail` behind it, for values of any kind.
+    pub fn with<U>(self, tail: &str) -> Key<U> {
+        Key::new(&format!("{self}{tail}"))
+    }
+
+    /// The same name for values of another kind.
+    pub fn of<U>(self) -> Key<U> {
+        Key { name: self.name, of: PhantomData }
+    }
+
+    /// Whether it is known to others as this.
+    pub fn plays(self, role: Self) -> bool {
+        self.name.role.is_some_and(|own| own.number == role.name.number)
+    }
+
+    /// What it is known as to others, if it is.
+    pub fn role(self) -> Option<Self> {
+        self.name.role.map(|name| Self { name, of: PhantomData })
+    }
+
+    /// The name.
+    pub fn text(self) -> &'static str {
+        self.name.text
+    }
+}
+
+/// The handle of a name that the program itself has, for a constant; made when it is first used.
+pub struct Constant<T> {
+    text: &'static str,
+    key: OnceLock<Key<T>>,
+}
+
+impl<T> Constant<T> {
+    /// That of this name.
+    pub const fn new(text: &'static str) -> Self {
+        Self { text, key: OnceLock::new() }
+    }
+}
+
+impl<T> std::ops::Deref for Constant<T> {
+    type Target = Key<T>;
+    fn deref(&self) -> &Key<T> {
+        self.key.get_or_init(|| Key::known(self.text))
+    }
+}
+
+impl<T> Clone for Key<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Key<T> {}
+
+impl<T> PartialEq for Key<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.name.number == other.name.number
+    }
+}
+
+impl<T> Eq for Key<T> {}
+
+impl<T> fmt::Display for Key<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.text())
+    }
+}
+
+impl<T> fmt::Debug for Key<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.text().fmt(f)
+    }
+}
+
+/// Values by name. In files and for the eye a map in the order of names.
+#[derive(Clone)]
+pub struct Named<T> {
+    /// By the number of a name: one more than the place of its entry, 0 for none.
+    places: Vec<u32>,
+    /// In the order of names. What was taken away leaves its place until another name comes.
+    entries: Vec<(Key<T>, Option<T>)>,
+}
+
+impl<T> Default for Named<T> {
+    fn default() -> Self {
+        Self { places: vec![], entries: vec![] }
+    }
+}
+
+impl<T> Named<T> {
+    fn place(&self, key: Key<T>) -> Option<usize> {
+        (*self.places.get(key.name.number)? as usize).checked_sub(1)
+    }
+
+    /// The entry of a name, made if it is new.
+    fn slot(&mut self, key: Key<T>) -> &mut Option<T> {
+        if self.place(key).is_none() {
+            self.entries.retain(|(_, value)| value.is_some());
+            let at = self.entries.partition_point(|(k, _)| k.text() < key.text());
+            self.entries.insert(at, (key, None));
+            self.places.fill(0);
+            let numbers = self.entries.iter().map(|(k, _)| k.name.number + 1);
+            self.places.resize(numbers.max().unwrap_or(0).max(self.places.len()), 0);
+            for (at, (key, _)) in self.entries.iter().enumerate() {
+                self.places[key.name.number] = at as u32 + 1;
+            }
+        }
+        let at = self.place(key).expect("it is there now");
+        &mut self.entries[at].1
+    }
+
+    /// The value, if there is one.
+    pub fn get(&self, key: Key<T>) -> Option<&T> {
+        self.entries[self.place(key)?].1.as_ref()
+    }
+
+    /// The value, if there is one.
+    pub fn get_mut(&mut self, key: Key<T>) -> Option<&mut T> {
+        let at = self.place(key)?;
+        self.entries[at].1.as_mut()
+    }
+
+    /// The value, made if there is none.
+    pub fn get_or(&mut self, key: Key<T>, new: impl FnOnce() -> T) -> &mut T {
+        self.slot(key).get_or_insert_with(new)
+    }
+
+    /// Whether there is a value.
+    pub fn contains(&self, key: Key<T>) -> bool {
+        self.get(key).is_some()
+    }
+
+    /// The handle of a name that has a value, for names that come from a text.
+    #[track_caller]
+    pub fn find(&self, text: &str) -> Option<Key<T>> {
+        by_name(text);
+        let at = self.entries.binary_search_by(|(key, _)| key.text().cmp(text)).ok()?;
+        let (key, value) = &self.entries[at];
+        value.as_ref().map(|_| *key)
+    }
+
+    /// The value of a name that comes from a text.
+    #[track_caller]
+    pub fn look_up(&self, text: &str) -> Option<&T> {
+        self.get(self.find(text)?)
+    }
+
+    /// Puts a value in; the one before.
+    pub fn insert(&mut self, key: Key<T>, value: T) -> Option<T> {
+        self.slot(key).replace(value)
+    }
+
+    /// Takes a value out.
+    pub fn remove(&mut self, key: Key<T>) -> Option<T> {
+        let at = self.place(key)?;
+        self.entries[at].1.take()
+    }
+
+    /// Takes all values out.
+    pub fn clear(&mut self) {
+        self.entries.iter_mut().for_each(|(_, value)| *value = None);
+    }
+
+    /// Keeps those that `keep` holds.
+    pub fn retain(&mut self, keep: impl Fn(Key<T>) -> bool) {
+        self.entries.iter_mut().filter(|(key, _)| !keep(*key)).for_each(|(_, value)| *value = None);
+    }
+
+    /// Takes out those that `keep` does not hold.
+    pub fn split_off(&mut self, keep: impl Fn(Key<T>) -> bool) -> Vec<(Key<T>, T)> {
+        let gone = self.entries.iter_mut().filter(|(key, _)| !keep(*key));
+        gone.filter_map(|(key, value)| Some((*key, value.take()?))).collect()
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.iter().count()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// All in the order of names.
+    pub fn iter(&self) -> impl Iterator<Item = (Key<T>, &T)> {
+        self.entries.iter().filter_map(|(key, value)| Some((*key, value.as_ref()?)))
+    }
+
+    /// Those in a role, in the order of names.
+    pub fn playing(&self, role: Key<T>) -> impl Iterator<Item = (Key<T>, &T)> {
+        self.iter().filter(move |(key, _)| key.plays(role))
+    }
+
+    /// The names in their order.
+    pub fn keys(&self) -> impl Iterator<Item = Key<T>> {
+        self.iter().map(|(key, _)| key)
+    }
+
+    /// The values in the order of names.
+    pub fn values(&self) -> impl Iterator<Item = &T> {
+        self.iter().map(|(_, value)| value)
+    }
+
+    /// All in the order of names, to be changed.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = (Key<T>, &mut T)> {
+        self.entries.iter_mut().filter_map(|(key, value)| Some((*key, value.as_mut()?)))
+    }
+
+    /// The values in the order of names, to be changed.
+    pub fn values_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        self.iter_mut().map(|(_, value)| value)
+    }
+}
+
+impl<T> std::ops::Index<&str> for Named<T> {
+    type Output = T;
+    /// The value of a name that is there, for tests.
+    fn index(&self, text: &str) -> &T {
+        self.look_up(text).unwrap_or_else(|| panic!("no `{text}` here"))
+    }
+}
+
+impl<T> Extend<(Key<T>, T)> for Named<T> {
+    fn extend<I: IntoIterator<Item = (Key<T>, T)>>(&mut self, more: I) {
+        more.into_iter().for_each(|(key, value)| drop(self.insert(key, value)));
+    }
+}
+
+impl<T: fmt::Debug> fmt::Debug for Named<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_map().entries(self.iter()).finish()
+    }
+}
+
+impl<T: PartialEq> PartialEq for Named<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.iter().eq(other.iter())
+    }
+}
+
+impl<T: serde::Serialize> serde::Serialize for Named<T> {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let mut map = to.serialize_map(Some(self.len()))?;
+        self.iter().try_for_each(|(key, value)| map.serialize_entry(key.text(), value))?;
+        map.end()
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Named<T> {
+    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let mut all = Self::default();
+        all.extend(BTreeMap::<String, T>::deserialize(from)?.into_iter().map(|(k, v)| (Key::known(&k), v)));
+        Ok(all)
+    }
+}
+
+#[cfg(debug_assertions)]
+thread_local!(static STEP: std::cell::Cell<bool> = const { std::cell::Cell::new(false) });
+
+/// Something is found by its name: debug builds stop an op that does so.
+#[inline]
+#[track_caller]
+pub(crate) fn by_name(text: &str) {
+    #[cfg(debug_assertions)]
+    assert!(!STEP.get(), "state is looked up by its name `{text}` inside a step");
+    let _ = text;
+}
+
+/// An op acts as long as this lives, or, inside an op, a text from the deck is read: names are looked up there alone.
+pub struct Acting {
+    #[cfg(debug_assertions)]
+    before: bool,
+}
+
+impl Acting {
+    /// An op begins to act.
+    #[inline]
+    pub fn op() -> Self {
+        Self::now(true)
+    }
+
+    /// A formula or text of the deck, which names what it wants, begins to be read.
+    #[inline]
+    pub fn text() -> Self {
+        Self::now(false)
+    }
+
+    #[inline]
+    fn now(step: bool) -> Self {
+        #[cfg(not(debug_assertions))]
+        let _ = step;
+        Self {
+            #[cfg(debug_assertions)]
+            before: STEP.replace(step),
+        }
+    }
+}
+
+#[cfg(debug_assertions)]
+impl Drop for Acting {
+    fn drop(&mut self) {
+        STEP.set(self.before);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_handle_outlives_what_it_finds() {
+        let (a, b) = (Key::new("test/a"), Key::new("test/b"));
+        let mut all: Named<f64> = Named::default();
+        assert_eq!((all.insert(b, 2.0), all.insert(a, 1.0)), (None, None));
+        let before = all.clone();
+        assert_eq!((all.remove(a), all.get(a)), (Some(1.0), None));
+        assert_eq!((all.find("test/a"), all.len()), (None, 1));
+        // Another name comes, and the first once more.
+        all.insert(Key::new("test/0"), 0.0);
+        assert_eq!(*all.get_or(a, || 3.0), 3.0);
+        assert_eq!(format!("{all:?}"), r#"{"test/0": 0.0, "test/a": 3.0, "test/b": 2.0}"#);
+        assert_eq!((before.get(a), before.get(b), all["test/b"]), (Some(&1.0), Some(&2.0), 2.0));
+        assert_eq!(all.find("test/a"), Some(a));
+        all.retain(|key| key.text() < "test/a");
+        assert!(!all.contains(a) && !all.contains(b) && !all.is_empty());
+        all.clear();
+        assert!(all.is_empty() && all == Named::default());
+        let (one, two) = (Key::new("property/atom/f/d_b"), Key::new("property/atom/g/d2_c/1"));
+        all.extend([(two, 2.0), (one, 1.0), (b, 0.0)]);
+        assert!(all.playing(Key::new("d2_c/1")).eq([(two, &2.0)]) && one.role() == Some(Key::new("d_b")));
+        assert_eq!((b.role(), all.playing(Key::new("test/b")).count()), (None, 0));
+        assert_eq!(a.of::<u8>().with::<f64>("/x"), Key::new("test/a/x"));
+    }
+
+    #[test]
+    fn files_hold_a_map() {
+        let text = "\"test/a\" = 1.0\n\"test/b\" = 2.0\n";
+        let all: Named<f64> = toml::from_str(text).unwrap();
+        assert_eq!((all.get(Key::new("test/b")), toml::to_string(&all).unwrap()), (Some(&2.0), text.into()));
+    }
+
+    #[cfg(debug_assertions)]
+    #[test]
+    #[should_panic(expected = "`test/late` inside a step")]
+    fn inside_a_step_no_name_is_looked_up() {
+        let _step = Acting::op();
+        {
+            let _formula = Acting::text();
+            Key::<f64>::new("test/formula");
+        }
+        Key::<f64>::new("test/late");
+    }
+}
