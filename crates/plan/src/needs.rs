@@ -138,7 +138,7 @@ static ACCOUNTS: Mutex<Accounts> = Mutex::new(BTreeMap::new());
 static COLLECTING: AtomicBool = AtomicBool::new(false);
 
 /// From now on what ops state and touch is noted, each op by itself and none in a pass with others; nobody is stopped for what
-/// is not true.
+/// is not true, as debug builds are otherwise.
 pub fn collect() {
     COLLECTING.store(true, Ordering::Relaxed);
 }
@@ -146,18 +146,6 @@ pub fn collect() {
 /// Whether somebody collects.
 pub fn collecting() -> bool {
     cfg!(debug_assertions) && COLLECTING.load(Ordering::Relaxed)
-}
-
-static INSISTING: AtomicBool = AtomicBool::new(false);
-
-/// From now on an op that touches what it does not state ends the program (debug builds), where nobody collects.
-pub fn insist() {
-    INSISTING.store(true, Ordering::Relaxed);
-}
-
-/// Whether statements are looked at: somebody collects or insists.
-pub fn watched() -> bool {
-    cfg!(debug_assertions) && (COLLECTING.load(Ordering::Relaxed) || INSISTING.load(Ordering::Relaxed))
 }
 
 /// What was noted.
@@ -223,7 +211,6 @@ mod tests {
     }
 
     fn acts(needs: Needs, does: fn(&mut World)) {
-        insist();
         let (mut plan, mut w) = (StepPlan::default(), World::default());
         w.particles.push(1, 1, [0.5; 3]);
         plan.add(Placed::new(Box::new(Says(needs, does)), None));

@@ -87,8 +87,12 @@ pub fn begin(w: &mut World, t: &Tick) {
 
 fn remember(w: &mut World) {
     let n = w.n();
-    w.columns.vector(*BEFORE[0], n).clone_from(&w.particles.f);
-    w.columns.vector(*BEFORE[1], n).clone_from(&w.particles.torque);
+    for (key, now) in BEFORE.iter().zip([&w.particles.f, &w.particles.torque]) {
+        let column = w.columns.vector(**key, n);
+        column.clone_from(now);
+        // Nothing turns in solids; a restart file holds a column for all particles or none.
+        column.resize(n, [0.0; 3]);
+    }
 }
 
 /// After a fix has changed forces.

@@ -167,15 +167,20 @@ impl<T> Named<T> {
             self.entries.retain(|(_, value)| value.is_some());
             let at = self.entries.partition_point(|(k, _)| k.text() < key.text());
             self.entries.insert(at, (key, None));
-            self.places.fill(0);
-            let numbers = self.entries.iter().map(|(k, _)| k.name.number + 1);
-            self.places.resize(numbers.max().unwrap_or(0).max(self.places.len()), 0);
-            for (at, (key, _)) in self.entries.iter().enumerate() {
-                self.places[key.name.number] = at as u32 + 1;
-            }
+            self.find_places();
         }
         let at = self.place(key).expect("it is there now");
         &mut self.entries[at].1
+    }
+
+    /// After entries have come or gone.
+    fn find_places(&mut self) {
+        let numbers = self.entries.iter().map(|(key, _)| key.name.number + 1);
+        self.places.clear();
+        self.places.resize(numbers.max().unwrap_or(0), 0);
+        for (at, (key, _)) in self.entries.iter().enumerate() {
+            self.places[key.name.number] = at as u32 + 1;
+        }
     }
 
     /// The value, if there is one.
@@ -318,8 +323,10 @@ impl<T: serde::Serialize> serde::Serialize for Named<T> {
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Named<T> {
     fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let mut all = Self::default();
-        all.extend(BTreeMap::<String, T>::deserialize(from)?.into_iter().map(|(k, v)| (Key::known(&k), v)));
+        let map = BTreeMap::<String, T>::deserialize(from)?;
+        let entries = map.into_iter().map(|(name, value)| (Key::known(&name), Some(value)));
+        let mut all = Self { entries: entries.collect(), places: vec![] };
+        all.find_places();
         Ok(all)
     }
 }
