@@ -4,6 +4,7 @@ use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Rule};
+use perigrain_styles::ledger;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{GroupId, World};
 
@@ -73,9 +74,7 @@ impl Fix for Declared {
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
-        // The next run's setup opens the ledger.
-        w.touch();
-        Ok(())
+        ledger::open(w)
     }
 
     fn facts(&self, _: &World) -> Facts {

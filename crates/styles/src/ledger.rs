@@ -62,6 +62,24 @@ impl Book {
     }
 }
 
+/// The next run's setup opens the ledger, or goes on with the one that came with a restart file.
+///
+/// # Errors
+/// None of its own.
+pub fn open(w: &mut World) -> Result<()> {
+    w.inherit(BOOK.text(), |w| {
+        w.inherit("ledger", |w| {
+            w.touch();
+            Ok(())
+        })
+    })?;
+    // Its first step counts as well.
+    if let (true, Some(families)) = (w.memo.contains(*BOOK), &mut *w.families) {
+        families.counts_losses = true;
+    }
+    Ok(())
+}
+
 /// Forgets the ledger: the next run opens a new one.
 pub fn forget(w: &mut World) {
     w.memo.remove(*BOOK);
