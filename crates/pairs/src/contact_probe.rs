@@ -19,7 +19,7 @@ pub enum Own {
     /// `granular`: tangential force and its size, rolling force and its size, twisting torque, x_i − x_j.
     Granular,
     /// The same of plastic grains (`mdr`), and the mean area of contact of both sides.
-    Powder,
+    Mdr,
     /// `gran/…`: tangential force and its size, relative velocity along and across the line of centres.
     Gran,
 }
@@ -106,7 +106,7 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
     fn own(&self) -> usize {
         match self.own {
             Own::Granular => 12,
-            Own::Powder => 13,
+            Own::Mdr => 13,
             Own::Gran => 10,
         }
     }
@@ -137,7 +137,7 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
         let acting = self.evaluated(w, ask, |grains, _, sweep, memory| {
             let mut all: Vec<_> =
                 sweep.contacts().map(|(pair, wrench)| interaction(grains, pair, wrench, own)).collect();
-            if own == Own::Powder {
+            if own == Own::Mdr {
                 // The last of what such contacts are told.
                 let rows = memory.history.chunks_exact(memory.width.max(1));
                 all.iter_mut().zip(rows).for_each(|(a, row)| a.own[12] = row.last().copied().unwrap_or(0.0));
@@ -211,7 +211,7 @@ fn interaction(grains: &Grains, pair: &Pair, wrench: &Wrench, own: Own) -> Inter
     numbers[..3].copy_from_slice(&across);
     numbers[3] = length(across);
     match own {
-        Own::Granular | Own::Powder => {
+        Own::Granular | Own::Mdr => {
             // What the torque has beyond that of the tangential force, which acts in the middle of the overlap.
             let radii = [grains.radius[i], grains.radius[j]];
             let overlap = radii[0] + radii[1] - distance;

@@ -2,7 +2,7 @@
 
 mod declared;
 pub mod force;
-pub mod powder;
+pub mod mdr;
 pub mod reach;
 
 pub use declared::{Declared, classic};

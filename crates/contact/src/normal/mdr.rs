@@ -3,7 +3,7 @@
 
 use super::hertz::Hertz;
 use super::{Bound, Geometry, Normal, NormalLaw, Number, Push, Real, Role, Style};
-use crate::powder::{Material, TOLD};
+use crate::mdr::{Material, TOLD};
 
 /// The word.
 pub const MDR: Style = Style {

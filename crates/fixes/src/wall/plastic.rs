@@ -2,8 +2,8 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_contact::Model;
+use perigrain_contact::mdr::{self, Manner, Material, State, TOLD, WALL};
 use perigrain_contact::normal::{plastic, plastic_grain};
-use perigrain_contact::powder::{self, Manner, Material, State, TOLD, WALL};
 use perigrain_contact::walls::WallSweep;
 use perigrain_plan::Tick;
 use perigrain_styles::SealCx;
@@ -56,8 +56,8 @@ impl Plastic {
     /// Begins the step for all grains.
     pub fn begin(&self, w: &mut World, t: &Tick) {
         let at = (t.step, t.setup);
-        if !powder::begun(w, at) {
-            powder::begin(w, at, &self.material).put(&mut w.columns);
+        if !mdr::begun(w, at) {
+            mdr::begin(w, at, &self.material).put(&mut w.columns);
         }
     }
 
@@ -74,7 +74,7 @@ impl Plastic {
             (k, w.particles.radius[k] - c.near.distance)
         });
         if let Some(memory) = w.wall_contacts.get(self.key) {
-            powder::gather(&mut state, memory, keys, depths);
+            mdr::gather(&mut state, memory, keys, depths);
         }
         state.put(&mut w.columns);
     }
@@ -96,13 +96,13 @@ impl Plastic {
             let k = c.grain as usize;
             let radius = w.particles.radius[k];
             let (depth, told) = (radius - c.near.distance, &mut told[width - TOLD..]);
-            let deed = powder::press(&self.material, &state, k, radius, depth, own, told, manner);
-            let mut sum = powder::Sum::default();
+            let deed = mdr::press(&self.material, &state, k, radius, depth, own, told, manner);
+            let mut sum = mdr::Sum::default();
             sum.add(&deed, c.near.normal);
             sum.give(&mut state, k);
         }
         if let Some(before) = before {
-            powder::undo(&before, &mut memory.history, WALL, manner.lammps);
+            mdr::undo(&before, &mut memory.history, WALL, manner.lammps);
         }
         let state = kept.unwrap_or(state);
         w.wall_contacts.insert(self.key, memory);

@@ -74,7 +74,7 @@ pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
     };
     c.model.tangential = tangential;
     c.model.limit_damping = limit.is_some();
-    check_powder(first, &c)?;
+    check_mdr(first, &c)?;
     check_restitution(first, &c.model)?;
     check_cohesion(first, &c.model, limit)?;
     Ok(c)
@@ -192,7 +192,7 @@ fn heat(args: &mut Args) -> Result<Heat> {
 }
 
 /// `mdr` goes with its own damping, that damping with nothing else.
-fn check_powder(normal: &Word, c: &Coeff) -> Result<()> {
+fn check_mdr(normal: &Word, c: &Coeff) -> Result<()> {
     let own = matches!(c.model.damping, Damping::Mdr | Damping::MdrConstant);
     let text = match (c.model.normal.in_grains(), own) {
         (true, false) => "the normal model mdr goes with `damping mdr` alone",

@@ -1,14 +1,14 @@
 //! Granular pair styles with their coefficients: rules by pair of types, given or mixed.
 
 use super::force::{Force, conducts};
-use super::powder::Press;
+use super::mdr::Press;
 use crate::contact::{Coeff, durations, words};
 use crate::contact_probe::{ContactProbe, Own};
 use crate::{ByPart, Deck, Facts, Pair, Scales, TypePairs};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::driver::{Average, Curvature, Rule, Rules};
+use perigrain_contact::mdr::{Material, State};
 use perigrain_contact::normal::{plastic, plastic_grain};
-use perigrain_contact::powder::{Material, State};
 use perigrain_contact::{Damping, Granular, Model, Twisting};
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Reach, Wanted};
@@ -105,7 +105,7 @@ impl Declared {
     }
 
     /// What plastic grains are made of: all of one kind, and nothing else in the style.
-    fn powder(&self) -> Result<Option<(Material, Span)>> {
+    fn mdr(&self) -> Result<Option<(Material, Span)>> {
         let normal = |c: &Coeff| c.model.normal;
         let first = self.given.values().find_map(|c| Some((c, plastic(&normal(c))?)));
         let Some((first, material)) = first else { return Ok(None) };
@@ -185,7 +185,7 @@ impl Pair for Declared {
                 .help("add `fix ID all property/atom temperature heatflow` and `set group all temperature …`")
                 .into());
         }
-        let press = self.powder()?.map(|(material, span)| Press::new(material, span));
+        let press = self.mdr()?.map(|(material, span)| Press::new(material, span));
         if press.is_some() {
             // Walls look it up: pair styles are sealed before fixes.
             cx.world().parts.plastic = self.given.values().find_map(|c| plastic_grain(&c.model.normal));
@@ -197,7 +197,7 @@ impl Pair for Declared {
     fn probes(&self, w: &World, _bonds: bool) -> Result<ByPart<dyn Probe>> {
         let (rules, wanted) = self.tables(w.types, w.settings.compat)?;
         let own = match self.name {
-            "granular" if self.powder()?.is_some() => Own::Powder,
+            "granular" if self.mdr()?.is_some() => Own::Mdr,
             "granular" => Own::Granular,
             _ => Own::Gran,
         };
@@ -215,7 +215,7 @@ impl Pair for Declared {
 
     fn check(&self, cx: &BuildCx) {
         let w = cx.world;
-        if let Err(e) = self.powder() {
+        if let Err(e) = self.mdr() {
             e.0.into_iter().for_each(|d| cx.note(d));
         }
         if let Err(e) = self.tables(w.types, w.settings.compat) {

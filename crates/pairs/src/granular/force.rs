@@ -1,7 +1,7 @@
 //! The op of granular contacts: list when it is due, contacts, forces and torques.
 
 use super::super::shared::{add_virial, built_at, find_frozen, made_at, near};
-use super::powder::Press;
+use super::mdr::Press;
 use super::reach::reaching;
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::Vec3;
@@ -9,7 +9,7 @@ use perigrain_base::par;
 use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
 use perigrain_contact::fast::{Fast, Frame, Laws, MOST_GRAINS, Sums};
-use perigrain_contact::powder::Manner;
+use perigrain_contact::mdr::Manner;
 use perigrain_contact::{Advance, ContactLaw, Granular, Heat, MOST_MEMORY};
 use perigrain_neigh::list::{Pair, Reach, Wanted};
 use perigrain_neigh::slabs::{edges, shift_of};

@@ -2,7 +2,7 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::driver::{Grains, Sweep};
-use perigrain_contact::powder::{Manner, Material, Meetings, PAIR, State, TOLD, begin, undo};
+use perigrain_contact::mdr::{Manner, Material, Meetings, PAIR, State, TOLD, begin, undo};
 use perigrain_neigh::list::{Pair, difference};
 use perigrain_plan::Tick;
 use perigrain_world::World;
