@@ -62,6 +62,13 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("graph/row.rs", "lists", "only rows that count rebuilds"),
     ("wall/op.rs", "columns", "only with heat"),
     ("contact_atom.rs", "x0", "only beside solids"),
+    ("graph/virials.rs", "x0", "only beside solids"),
+    (
+        "fixes/src/print.rs",
+        "x f torque omega radius mass type type_mass mask image molecule columns controls memo box regions v id",
+        "what formulas read is the deck's",
+    ),
+    ("langevin.rs", "rank", "only where grains stand in the order of space"),
     ("wall/op.rs", "box", "only where grains of a restart file touch regions"),
 ];
 

@@ -6,10 +6,8 @@ use super::keywords::{self, Sources};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Value, Vars};
 use perigrain_plan::{About, Needs, Op, OpClass, Stage, Tick};
-use perigrain_world::field::{
-    BONDS, BOX, COLUMNS, CONTROLS, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, REGIONS,
-    SLOTS, TAG, TALLY, TORQUE, TYPE_MASS, V, X,
-};
+use perigrain_styles::FORMULAS;
+use perigrain_world::field::{BONDS, BOX, F, LISTS, MASS, MEMO, SLOTS, TALLY, TORQUE};
 use perigrain_world::{Fields, SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -87,25 +85,6 @@ pub(super) struct Evaluate {
     /// Whether its formula names forces or torques.
     pub(super) asks_forces: bool,
 }
-
-/// What formulas may read besides forces and torques.
-const FORMULAS: Fields = X
-    .and(V)
-    .and(OMEGA)
-    .and(RADIUS)
-    .and(MASS)
-    .and(KIND)
-    .and(TYPE_MASS)
-    .and(MASK)
-    .and(IMAGE)
-    .and(TAG)
-    .and(MOLECULE)
-    .and(COLUMNS)
-    .and(CONTROLS)
-    .and(MEMO)
-    .and(BOX)
-    .and(REGIONS)
-    .and(SLOTS);
 
 /// Whether a variable's formula, or that of one it names, has a word for forces or torques in it.
 pub(super) fn asks_forces(vars: &Vars, name: &str) -> bool {

@@ -7,7 +7,7 @@ use perigrain_styles::SealCx;
 use perigrain_styles::probe::{Ask, Probe, look_all};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG,
-    TALLY, TRAVEL, V, X,
+    TALLY, TRAVEL, V, X, X0,
 };
 use perigrain_world::{RunStyle, World};
 
@@ -55,6 +55,7 @@ impl Op for Virials {
                     | LISTS
                     | TRAVEL
                     | X
+                    | X0
                     | V
                     | OMEGA
                     | RADIUS

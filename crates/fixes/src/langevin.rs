@@ -11,7 +11,7 @@ use perigrain_styles::matter::{Masses, check_masses, publish, sum};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{
-    COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, SLOTS, TORQUE, TYPE_MASS, V,
+    COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, RANK, SLOTS, TORQUE, TYPE_MASS, V,
 };
 use perigrain_world::{COUPLED, GroupId, Key, Numbers, SlotId, Vectors, World};
 
@@ -328,7 +328,7 @@ impl Fix for Declared {
         let me = self.clone();
         let name = format!("fix {} langevin", self.id);
         let access = Needs::new()
-            .read(V | OMEGA | MASS | RADIUS | KIND | MASK | MEMO | TYPE_MASS | SLOTS)
+            .read(V | OMEGA | MASS | RADIUS | KIND | MASK | RANK | MEMO | TYPE_MASS | SLOTS)
             .add(F | TORQUE)
             .keep(MEMO | COLUMNS);
         let push = StepOp::new(name.clone(), Stage::PostForce, access, move |w, t| me.act(w, t, start, span));

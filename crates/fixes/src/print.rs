@@ -6,9 +6,9 @@ use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_out::Sheet;
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_styles::{BuildCx, Doc, FORMULAS, SealCx, Style};
 use perigrain_world::World;
-use perigrain_world::field::{SLOTS, TAG, V};
+use perigrain_world::field::{F, TORQUE};
 use std::path::PathBuf;
 
 /// The style.
@@ -130,7 +130,7 @@ impl Fix for Declared {
         let mut text = cx.text(&self.text, self.place, Stage::Output, &when)?;
         let mut sheet = self.file.as_ref().map(|(path, _)| Sheet::new(path, None));
         let (log, screen) = (cx.log(), self.screen);
-        let access = Needs::new().read(SLOTS | TAG | V);
+        let access = Needs::new().read(FORMULAS | F | TORQUE);
         let op = StepOp::new(format!("fix {} print", self.id), Stage::Output, access, move |w, t| {
             // `pre no` leaves out the line that a setup prints.
             if t.setup && w.clock.onward {

@@ -42,7 +42,7 @@ pub use compute::{Compute, ComputeStyle};
 pub use dump::{Dump, DumpStyle};
 pub use fix::{Fix, FixStyle};
 pub use pair::{Pair, PairStyle, TypePairs};
-pub use seal::{PlaceTest, Pull, Reading, SealCx, Text, Wants};
+pub use seal::{FORMULAS, PlaceTest, Pull, Reading, SealCx, Text, Wants};
 
 /// What the manual says of a style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

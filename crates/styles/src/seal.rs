@@ -7,7 +7,11 @@ use perigrain_lang::{Param, ValueRef};
 use perigrain_out::log::Log;
 use perigrain_plan::{Level, Op, Stage, When};
 use perigrain_world::adapted::Coefficient;
-use perigrain_world::{SlotId, World};
+use perigrain_world::field::{
+    BOX, COLUMNS, CONTROLS, IMAGE, KIND, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, REGIONS, SLOTS, TAG,
+    TYPE_MASS, V, X,
+};
+use perigrain_world::{Fields, SlotId, World};
 
 /// Where an op finds a value while it runs; the plan makes sure it is fresh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,7 +123,26 @@ pub enum Wants {
     Local,
 }
 
-/// A text whose values are put in anew at each call.
+/// What formulas may read besides forces and torques.
+pub const FORMULAS: Fields = X
+    .and(V)
+    .and(OMEGA)
+    .and(RADIUS)
+    .and(MASS)
+    .and(KIND)
+    .and(TYPE_MASS)
+    .and(MASK)
+    .and(IMAGE)
+    .and(TAG)
+    .and(MOLECULE)
+    .and(COLUMNS)
+    .and(CONTROLS)
+    .and(MEMO)
+    .and(BOX)
+    .and(REGIONS)
+    .and(SLOTS);
+
+/// A text whose values are put in anew at each call; who has one reads what [`FORMULAS`] may.
 pub type Text = Box<dyn FnMut(&World) -> Result<String> + Send>;
 
 /// Decides about a place: whether a variable is not zero there.
