@@ -2,10 +2,8 @@
 
 #[path = "lammps/artefacts.rs"]
 mod artefacts;
-#[path = "common/compare.rs"]
-mod compare;
 
-use compare::{Row, Rule, compare, read};
+use crate::compare::{Row, Rule, compare, read};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -5,6 +5,8 @@ mod bytes;
 #[path = "checks.rs"]
 mod checks;
 mod cli;
+#[path = "common/compare.rs"]
+mod compare;
 #[path = "computes/main.rs"]
 mod computes;
 #[path = "data/main.rs"]

@@ -1,7 +1,7 @@
 //! LAMMPS' own granular decks, unchanged from their installed places: all are checked, their first steps are run.
 
-use super::compare::{Rule, compare, read};
 use super::{installed, perigrain};
+use crate::compare::{Rule, compare, read};
 use std::fs;
 use std::path::{Path, PathBuf};
 

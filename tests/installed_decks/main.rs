@@ -1,10 +1,8 @@
 //! LAMMPS' own decks of peridynamics and of grains, from where Debian's package `lammps-examples` puts them; skipped where it is not installed.
 
-#[path = "../common/compare.rs"]
-mod compare;
 mod grains;
 
-use compare::{Rule, compare, read};
+use crate::compare::{Rule, compare, read};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

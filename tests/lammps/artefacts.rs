@@ -1,6 +1,6 @@
 //! Where LAMMPS 22Jul2025 is wrong: both sides, right by default and LAMMPS' number under `-compat lammps`.
 
-use super::compare::{Row, read};
+use crate::compare::{Row, read};
 use std::fs;
 use std::process::Command;
 

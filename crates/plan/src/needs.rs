@@ -57,6 +57,7 @@ impl Needs {
 
     /// Adds to these, after those that came before in the order of ops.
     #[must_use]
+    #[allow(clippy::should_implement_trait)] // a word of the statement, as `read` and `write`
     pub fn add(mut self, fields: Fields) -> Self {
         self.adds |= fields;
         self

@@ -120,7 +120,7 @@ impl Bench {
 
     /// The slot of a name.
     pub fn slot_of(&self, name: &str) -> &perigrain_world::Slot {
-        self.world.slots.get(self.world.slots.find(name).unwrap())
+        self.world.slots.get(self.world.slots.find(name).expect("a slot that a test has made"))
     }
 }
 
@@ -133,7 +133,7 @@ pub fn command(words: &str) -> Command {
     let mut at = 0;
     let mut args = vec![];
     for w in words.split(' ').filter(|w| !w.is_empty()) {
-        let start = at + words[at..].find(w).unwrap();
+        let start = at + words[at..].find(w).expect("a word of the line");
         at = start + w.len();
         args.push(Word::new(w, Span::new(FileId::default(), start, at)));
     }
