@@ -284,7 +284,7 @@ impl PeriView<'_> {
     }
 }
 
-/// All families of a scene: state only; `laws::peri` builds and sweeps them.
+/// All families of a scene: state only; [`crate::build`] makes them, [`crate::lattice`] and [`crate::list`] sweep them.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Families {
     /// Coefficients in force.

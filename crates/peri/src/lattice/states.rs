@@ -15,7 +15,7 @@ use crate::law::terms::{Dilatation, Norm, NormLammps, Term};
 use crate::law::{Moment, of_law};
 use perigrain_base::par::Shared;
 
-/// What the sites and bonds of a body have under a state-based law, during one evaluation.
+/// What the sites and bonds of a body have under their law, during one evaluation.
 #[derive(Clone, Copy)]
 pub struct States<'a> {
     /// The law.
