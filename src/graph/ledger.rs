@@ -53,7 +53,7 @@ pub fn mark(s: &mut Sealer, f: &FixNode, ops: &[Stage]) {
 /// # Errors
 /// What is missing in the scene.
 pub fn end(s: &mut Sealer) -> Result<()> {
-    let equations = |f: &&FixNode| ["nve", "nve/sphere"].contains(&f.style);
+    let equations = |f: &&FixNode| ["nve", "nve/sphere", "nve/bpm/sphere"].contains(&f.style);
     let free = s.graph().fixes.iter().filter(equations).fold(0, |bits, f| bits | f.group.bit());
     let mut probes = s.probes()?;
     s.ask_energy(&When::First);

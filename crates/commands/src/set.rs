@@ -1,6 +1,7 @@
 //! `set`: properties of particles that exist.
 
 mod change;
+mod orientation;
 
 use super::create_atoms::subset::Amount;
 use super::{Act, CommandStyle};
@@ -15,7 +16,7 @@ use perigrain_world::{AtomStyle, GroupId, Region};
 /// The command.
 pub struct Set;
 
-const KEYWORDS: [&str; 20] = [
+const KEYWORDS: [&str; 22] = [
     "mol",
     "bond",
     "type",
@@ -30,6 +31,8 @@ const KEYWORDS: [&str; 20] = [
     "peri/radius",
     "volume",
     "omega",
+    "quat",
+    "quat/random",
     "x",
     "y",
     "z",
@@ -37,14 +40,12 @@ const KEYWORDS: [&str; 20] = [
     "vy",
     "vz",
 ];
-const ELSEWHERE: [&str; 20] = [
+const ELSEWHERE: [&str; 18] = [
     "charge",
     "dipole",
     "dipole/random",
     "spin",
     "spin/atom",
-    "quat",
-    "quat/random",
     "shape",
     "length",
     "tri",
@@ -70,7 +71,7 @@ impl Style for Set {
             syntax: "set atom A*B | type A*B | mol A*B | group ID | region ID  KEYWORD VALUE …",
             summary: "Sets properties of the particles chosen: type, mass, density, diameter, volume, spin, place, velocity.",
             text: "Keywords: `type T`, `type/fraction T P SEED`, `type/ratio T P SEED`, `type/subset T N SEED`, `mass M`, \
-                   `density ρ`, `density/disc ρ`, `diameter D`, `volume V`, `omega WX WY WZ`, `image NX NY NZ` (`NULL` \
+                   `density ρ`, `density/disc ρ`, `diameter D`, `volume V`, `omega WX WY WZ`, `quat A B C THETA` (the orientation: turned by THETA degrees about an axis), `quat/random SEED`, `image NX NY NZ` (`NULL` \
                    leaves one alone), `mol M`, `bond T` (the type of all bonds with both ends among the chosen), `x y z`, `vx vy vz`, `temperature T` (where `fix property/atom temperature` is). A value is a number or an atom-style variable `v_name`. \
                    Who is chosen is decided once for the whole line. \
                    `density` of a sphere sets its mass to 4/3 π r³ ρ with the radius it has now; of a peridynamic particle \
@@ -136,7 +137,7 @@ fn choice(a: &mut Args, cx: &BuildCx) -> Result<Choice> {
 }
 
 fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
-    let AtomStyle { sphere, peri, .. } = cx.world.particles.style;
+    let AtomStyle { sphere, oriented, peri, .. } = cx.world.particles.style;
     let needs = |there: bool| match there {
         true => Ok(()),
         false => {
@@ -190,6 +191,26 @@ fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
             needs(sphere)?;
             let mut next = || value(a, cx, "the angular velocity", None);
             Ok(Change::Omega([next()?, next()?, next()?]))
+        }
+        "quat" => {
+            needs(oriented)?;
+            let start = a.here();
+            let axis: [Param; 3] = {
+                let mut next = || value(a, cx, "the axis", None);
+                [next()?, next()?, next()?]
+            };
+            let span = start.to(a.here());
+            let angle = value(a, cx, "the angle [degrees]", None)?;
+            let constants: Option<Vec<f64>> =
+                axis.iter().map(|p| if let Param::Number(x) = p { Some(*x) } else { None }).collect();
+            if let Some([x, y, z]) = constants.as_deref() {
+                orientation::check_axis([*x, *y, *z], cx.world).map_err(|e| e.at(span))?;
+            }
+            Ok(Change::Quat { axis, angle })
+        }
+        "quat/random" => {
+            needs(oriented)?;
+            seed(a).map(Change::AnyQuat)
         }
         "mol" => {
             needs(cx.world.particles.style.molecules)?;

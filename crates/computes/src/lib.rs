@@ -31,6 +31,7 @@ mod ke_atom;
 mod momentum;
 mod msd;
 mod origin;
+mod nbond_atom;
 mod pair;
 mod pair_local;
 mod pe;
@@ -104,6 +105,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &ke_atom::KeAtom,
     &momentum::Momentum,
     &msd::Msd,
+    &nbond_atom::NbondAtom,
     &pair::PairEnergy,
     &pair_local::PairLocal,
     &pe::Pe,

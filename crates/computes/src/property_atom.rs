@@ -12,7 +12,7 @@ use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::field::{
-    BOX, COLUMNS, F, FAMILIES, IMAGE, KIND, MASK, MASS, MOLECULE, OMEGA, RADIUS, TAG, TORQUE, TYPE_MASS, V,
+    BOX, COLUMNS, F, FAMILIES, IMAGE, KIND, MASK, MASS, MOLECULE, OMEGA, QUAT, RADIUS, TAG, TORQUE, TYPE_MASS, V,
     VOLUME, X, X0,
 };
 use perigrain_world::index::Index;
@@ -33,7 +33,7 @@ impl Style for PropertyAtom {
             text: "Per-atom vector for one attribute, array for several; 0 outside the group. Attributes: `id type proc \
                    mass x y z`; `xs ys zs` as fractions of the box; `xu yu zu` unwrapped across periodic faces; `ix iy iz` \
                    image counts; `vx vy vz fx fy fz`; with atom_style sphere `radius diameter omegax omegay omegaz tqx \
-                   tqy tqz`; with atom_style peri `vfrac`, the volume, and `s0`; with molecules `mol` and `nbonds`, how many bonds are listed \
+                   tqy tqz`; with atom_style bpm/sphere `quatw quati quatj quatk`, the orientation; with atom_style peri `vfrac`, the volume, and `s0`; with molecules `mol` and `nbonds`, how many bonds are listed \
                    with the particle (with its first end only, under `newton off` with both); with `bond_style bpm/peri` `s0`, the least critical stretch s00 − α smin of a particle's bonds, `smin`, their smallest stretch, and `lambda`, its plastic multiplier (0 without bonds). All in the deck's units. LAMMPS' other attributes \
                    belong to atom styles that perigrain does not have and are refused. `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`, `temperature`, `heatflow`: those of `fix property/atom`.\n\n\
                    `s0` of pair styles peri/… is LAMMPS' critical stretch: the largest s00 − α s of the bonds that a particle had before the \
@@ -50,6 +50,7 @@ impl Style for PropertyAtom {
 enum Needs {
     Nothing,
     Sphere,
+    Oriented,
     Peri,
     Molecules,
     Linked,
@@ -61,6 +62,7 @@ impl Needs {
         match self {
             Needs::Nothing => true,
             Needs::Sphere => style.sphere,
+            Needs::Oriented => style.oriented,
             Needs::Peri => style.peri,
             Needs::Molecules => style.molecules,
             Needs::Linked => style.bonded,
@@ -154,6 +156,10 @@ const ATTRIBUTES: &[(&str, Needs, Getter)] = &[
     ("tqx", Needs::Sphere, Getter::Own(|w, i| w.particles.torque[i][0])),
     ("tqy", Needs::Sphere, Getter::Own(|w, i| w.particles.torque[i][1])),
     ("tqz", Needs::Sphere, Getter::Own(|w, i| w.particles.torque[i][2])),
+    ("quatw", Needs::Oriented, Getter::Own(|w, i| w.particles.quat[i][0])),
+    ("quati", Needs::Oriented, Getter::Own(|w, i| w.particles.quat[i][1])),
+    ("quatj", Needs::Oriented, Getter::Own(|w, i| w.particles.quat[i][2])),
+    ("quatk", Needs::Oriented, Getter::Own(|w, i| w.particles.quat[i][3])),
     ("vfrac", Needs::Peri, Getter::Own(|w, i| w.particles.volume[i])),
     ("s0", Needs::Breaking, Getter::Whole(critical)),
     ("nbonds", Needs::Molecules, Getter::Whole(bonds_of)),
@@ -165,7 +171,7 @@ const ATTRIBUTES: &[(&str, Needs, Getter)] = &[
 /// LAMMPS' attributes of atom styles that perigrain does not have.
 const ELSEWHERE: &[&str] = &[
     "q", "mux", "muy", "muz", "mu", "spx", "spy", "spz", "sp", "fmx", "fmy", "fmz", "angmomx", "angmomy",
-    "angmomz", "shapex", "shapey", "shapez", "quatw", "quati", "quatj", "quatk", "end1x", "end1y", "end1z",
+    "angmomz", "shapex", "shapey", "shapez", "end1x", "end1y", "end1z",
     "end2x", "end2y", "end2z", "corner1x", "corner1y", "corner1z", "corner2x", "corner2y", "corner2z",
     "corner3x", "corner3y", "corner3z", "espin", "eradius", "ervel", "erforce", "rho", "drho", "e", "de",
     "cv", "buckling",
@@ -238,6 +244,7 @@ pub fn read_attribute(word: &Word, cx: &BuildCx) -> Result<Getter> {
         }
         let style = match needs {
             Needs::Sphere => "atom_style sphere",
+            Needs::Oriented => "atom_style bpm/sphere",
             Needs::Molecules => "atom_style bond",
             Needs::Linked => "bond_style bpm/peri",
             Needs::Breaking => "atom_style peri` or `bond_style bpm/peri",
@@ -306,6 +313,7 @@ impl Compute for Declared {
                 | MASK
                 | MASS
                 | OMEGA
+                | QUAT
                 | RADIUS
                 | TORQUE
                 | KIND
@@ -359,7 +367,7 @@ mod tests {
         assert_eq!(code(""), Code::MISSING_ARGUMENT);
         assert_eq!(code("x radius"), Code::INCOMPLETE);
         assert_eq!(code("vfrac"), Code::INCOMPLETE);
-        assert_eq!((code("mol"), code("quatw")), (Code::INCOMPLETE, Code::NOT_SUPPORTED));
+        assert_eq!([code("mol"), code("quatw"), code("espin")], [Code::INCOMPLETE, Code::INCOMPLETE, Code::NOT_SUPPORTED]);
         assert_eq!(code("d_mine"), Code::UNKNOWN_NAME);
         assert_eq!(code("radus"), Code::UNKNOWN_KEYWORD);
     }

@@ -10,33 +10,48 @@ use perigrain_styles::matter::Masses;
 use perigrain_styles::step_op::StepOp;
 use perigrain_world::{GroupId, World};
 
-/// Lets the op that begins a step make whole ones in blocks of particles: half kicks and drifts of a group; with `inertia`,
-/// I / (m R²), spins too: ω += Δt/2 · torque/I. How far anybody has gone at most is told to the account of ways.
-pub fn first<F>(op: StepOp<F>, group: GroupId, inertia: Option<f64>) -> StepOp<F>
+/// How particles turn.
+#[derive(Clone, Copy)]
+pub struct Turning {
+    /// I / (m R²).
+    pub inertia: f64,
+    /// They have orientations, which follow their spins.
+    pub oriented: bool,
+}
+
+/// Lets the op that begins a step make whole ones in blocks of particles: half kicks and drifts of a group; what turns gets
+/// spins too: ω += Δt/2 · torque/I. How far anybody has gone at most is told to the account of ways.
+pub fn first<F>(op: StepOp<F>, group: GroupId, turning: Option<Turning>) -> StepOp<F>
 where
     F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
 {
-    op.fusing(move |w, t| whole(w, group, inertia, t, Part::First), went)
+    op.fusing(move |w, t| whole(w, group, turning, t, Part::First), went)
 }
 
 /// The same for the op that ends a step, and can begin the next one.
-pub fn second<F>(op: StepOp<F>, group: GroupId, inertia: Option<f64>) -> StepOp<F>
+pub fn second<F>(op: StepOp<F>, group: GroupId, turning: Option<Turning>) -> StepOp<F>
 where
     F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
 {
-    op.fusing(move |w, t| whole(w, group, inertia, t, if t.on { Part::Both } else { Part::Second }), went)
+    op.fusing(move |w, t| whole(w, group, turning, t, if t.on { Part::Both } else { Part::Second }), went)
 }
 
 /// A part of a step, or of a level of steps, of which only the shortest drift; of the two lengths of steps for grains and
 /// solids see [`some`].
-fn whole(w: &World, group: GroupId, inertia: Option<f64>, t: &Tick, part: Part) -> Option<Act> {
+fn whole(w: &World, group: GroupId, turning: Option<Turning>, t: &Tick, part: Part) -> Option<Act> {
     let (short, solids) = (t.phase.level == 0, t.phase.solids.clone());
     let part = if part == Part::First && !short && solids.is_none() { Part::Second } else { part };
     // Bonds of solids turn nothing, so that short steps have none of it.
-    let inertia = inertia.filter(|_| solids.is_none() || !short);
+    let turning = turning.filter(|_| solids.is_none() || !short);
     let half = half_step(w, t.dt);
-    let k = Kick { half, spin: inertia.map_or(0.0, |i| half / i), dt: t.dt, bit: group.bit() };
-    let (spins, own) = (inertia.is_some(), w.particles.style.own_mass());
+    let k = Kick {
+        half,
+        spin: turning.map_or(0.0, |turn| half / turn.inertia),
+        dt: t.dt,
+        bit: group.bit(),
+        oriented: turning.is_some_and(|turn| turn.oriented),
+    };
+    let (spins, own) = (turning.is_some(), w.particles.style.own_mass());
     let Some(solids) = solids else {
         return Some(match own {
             true => Act::moving(move |s, beside| k.together(s, spins, part, s.all.mass, beside)),

@@ -40,6 +40,7 @@ mod move_fix;
 mod nve;
 mod nve_limit;
 mod nve_noforce;
+mod nve_bpm_sphere;
 mod nve_sphere;
 mod path;
 mod planeforce;
@@ -103,6 +104,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &nve::Nve,
     &nve_limit::NveLimit,
     &nve_noforce::NveNoForce,
+    &nve_bpm_sphere::NveBpmSphere,
     &nve_sphere::NveSphere,
     &planeforce::PlaneForce,
     &pour::Pour,

@@ -1,19 +1,22 @@
 //! fix nve/sphere: velocity Verlet of spheres, translation and rotation.
 
-use super::kick as kicks;
+use super::kick::{self as kicks, Turning};
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::field::{F, KIND, MASK, MASS, OMEGA, RADIUS, TORQUE, TRAVEL, TYPE_MASS, V, X};
+use perigrain_world::field::{F, KIND, MASK, MASS, OMEGA, QUAT, RADIUS, TORQUE, TRAVEL, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, World};
 
 /// I / (m R²) of a solid sphere.
 const INERTIA: f64 = 0.4;
 /// I / (m R²) of a disc about its axis.
 const DISC: f64 = 0.5;
+
+/// The style whose particles have orientations.
+pub(crate) const ORIENTED: &str = "nve/bpm/sphere";
 
 /// The style.
 pub struct NveSphere;
@@ -36,66 +39,74 @@ impl Style for NveSphere {
 
 impl FixStyle for NveSphere {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let mut inertia = INERTIA;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "update" => {
-                    let what = args.expect("dipole or dipole/dlm")?;
-                    if !matches!(what.text.as_str(), "dipole" | "dipole/dlm") {
-                        return Err(args.unknown(what, &["dipole", "dipole/dlm"]));
-                    }
-                    let text = "`update dipole` needs particles with a dipole, and these have none";
-                    let d = Diagnostic::error(Code::CONFLICT, word.span.to(what.span), text);
-                    return Err(d.help("leave it out").into());
-                }
-                "disc" if cx.world.settings.two_dimensional => inertia = DISC,
-                "disc" => {
-                    let text = "`disc` belongs to flat scenes (`dimension 2`)";
-                    return fail(Code::CONFLICT, word.span, text);
-                }
-                _ => return Err(args.unknown(word, &["update", "disc"])),
-            }
-        }
         if !cx.world.particles.style.sphere {
             return Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, "fix nve/sphere needs spheres")
                 .help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck")
                 .into());
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, inertia }))
+        declared("nve/sphere", args, cx)
     }
+}
+
+/// Reads the words of either style; [`ORIENTED`] turns orientations too.
+pub(crate) fn declared(name: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+    let (oriented, mut inertia) = (name == ORIENTED, INERTIA);
+    let known: &[&str] = if oriented { &["disc"] } else { &["update", "disc"] };
+    while let Some(word) = args.next() {
+        match word.text.as_str() {
+            "update" if !oriented => {
+                let what = args.expect("dipole or dipole/dlm")?;
+                if !matches!(what.text.as_str(), "dipole" | "dipole/dlm") {
+                    return Err(args.unknown(what, &["dipole", "dipole/dlm"]));
+                }
+                let text = "`update dipole` needs particles with a dipole, and these have none";
+                let d = Diagnostic::error(Code::CONFLICT, word.span.to(what.span), text);
+                return Err(d.help("leave it out").into());
+            }
+            "disc" if cx.world.settings.two_dimensional => inertia = DISC,
+            "disc" => {
+                let text = "`disc` belongs to flat scenes (`dimension 2`)";
+                return fail(Code::CONFLICT, word.span, text);
+            }
+            _ => return Err(args.unknown(word, known)),
+        }
+    }
+    let turning = Turning { inertia, oriented };
+    Ok(Box::new(Declared { name, id: cx.id.to_string(), group: cx.group, turning }))
 }
 
 #[derive(Clone)]
 struct Declared {
+    name: &'static str,
     id: String,
     group: GroupId,
-    /// I / (m R²).
-    inertia: f64,
+    turning: Turning,
 }
 
 impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let (group, inertia, span) = (self.group, self.inertia, cx.span());
+        let (group, turning, span) = (self.group, self.turning, cx.span());
         let p = &cx.world().particles;
         let member = |i: &usize| p.mask[*i] & group.bit() != 0;
         if let Some(i) = (0..p.len()).filter(member).find(|&i| p.radius[i] <= 0.0) {
-            let text = format!("fix nve/sphere needs spheres, but particle {} has no radius", p.tag[i]);
+            let text = format!("fix {} needs spheres, but particle {} has no radius", self.name, p.tag[i]);
             return Err(Diagnostic::error(Code::INCOMPLETE, span, text)
                 .help("add `set … diameter …`, or move this particle with `fix nve`")
                 .into());
         }
-        let name = format!("fix {} nve/sphere", self.id);
+        let name = format!("fix {} {}", self.id, self.name);
+        let turned = if turning.oriented { X | V | OMEGA | QUAT } else { X | V | OMEGA };
         let access = || {
             Needs::new()
                 .read(F | TORQUE | MASS | RADIUS | MASK | KIND | TYPE_MASS)
                 .add(TRAVEL)
-                .write(X | V | OMEGA)
+                .write(turned)
         };
         let idle = |_: &mut World, _: &Tick| Ok(());
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), idle);
         let second = StepOp::new(name, Stage::FinalIntegrate, access(), idle);
-        let first = kicks::first(first.in_every_level().reporting(), group, Some(inertia));
-        let second = kicks::second(second.in_every_level().reporting(), group, Some(inertia));
+        let first = kicks::first(first.in_every_level().reporting(), group, Some(turning));
+        let second = kicks::second(second.in_every_level().reporting(), group, Some(turning));
         Ok(vec![first.boxed(), second.boxed()])
     }
 

@@ -1,5 +1,6 @@
 //! Ops that act on each particle by itself, one after the other on each block of particles while that is in fast memory.
 
+use perigrain_base::math::body::Quat;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par::{self, CHUNK, Split};
 use perigrain_world::{AtomStyle, Lent, Tracked, World};
@@ -24,6 +25,8 @@ pub struct ParticleBlock<'a> {
     pub omega: Lent<'a, Vec3>,
     /// Torques; empty where nothing spins.
     pub torque: Lent<'a, Vec3>,
+    /// Orientations; empty where particles have none.
+    pub quat: Lent<'a, Quat>,
     /// What is read, of all particles.
     pub all: Known<'a>,
 }
@@ -208,7 +211,9 @@ fn some(w: &mut World, acts: &[Act]) -> [BlockSums; MOST] {
     par::reduce_each(columns, |start, rows| chunk(&passes, all, start, rows), join).unwrap_or_default()
 }
 
-type Columns<'a> = (Lent<'a, Vec3>, Lent<'a, Vec3>, Lent<'a, Vec3>, Option<(Lent<'a, Vec3>, Lent<'a, Vec3>)>);
+type Columns<'a> = (Lent<'a, Vec3>, Lent<'a, Vec3>, Lent<'a, Vec3>, Turning<'a>);
+/// Angular velocities and torques, where there are any, and orientations.
+type Turning<'a> = Option<(Lent<'a, Vec3>, Lent<'a, Vec3>, Option<Lent<'a, Quat>>)>;
 
 /// What ops read of all particles, and the columns that are cut.
 fn columns(w: &mut World) -> (Known<'_>, Columns<'_>) {
@@ -222,7 +227,9 @@ fn columns(w: &mut World) -> (Known<'_>, Columns<'_>) {
         type_mass: &w.type_mass,
     };
     let spins = p.omega.len() == p.x.len() && p.torque.len() == p.x.len();
-    let turned = spins.then_some((p.omega.lend(), p.torque.lend()));
+    let oriented = p.quat.len() == p.x.len();
+    let quat = oriented.then_some(p.quat.lend());
+    let turned = spins.then_some((p.omega.lend(), p.torque.lend(), quat));
     (all, (p.x.lend(), p.v.lend(), p.f.lend(), turned))
 }
 
@@ -232,8 +239,9 @@ fn chunk(passes: &[Pass<'_>], all: Known<'_>, mut start: usize, mut rest: Column
     while rest.rows() > 0 {
         let n = rest.rows().min(BLOCK);
         let ((x, v, f, turned), later) = rest.cut(n);
-        let (omega, torque) = turned.unwrap_or_else(|| (Lent::none(), Lent::none()));
-        let mut block = ParticleBlock { start, x, v, f, omega, torque, all };
+        let (omega, torque, quat) = turned.unwrap_or_else(|| (Lent::none(), Lent::none(), None));
+        let quat = quat.unwrap_or_else(Lent::none);
+        let mut block = ParticleBlock { start, x, v, f, omega, torque, quat, all };
         let mut came = [BlockSums::default(); MOST];
         for pass in passes {
             match pass {

@@ -28,6 +28,8 @@ fields! {
     OMEGA "omega";
     /// Torques [force·length].
     TORQUE "torque";
+    /// Orientations, unit quaternions.
+    QUAT "quat";
     /// Radii [length].
     RADIUS "radius";
     /// Masses of particles, or densities of peridynamic ones.

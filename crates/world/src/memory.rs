@@ -20,6 +20,7 @@ pub fn bytes(w: &World) -> u64 {
         + of(p.radius.past())
         + of(p.omega.past())
         + of(p.torque.past())
+        + of(p.quat.past())
         + of(p.volume.past())
         + of(p.x0.past())
         + of(p.density.past())
@@ -51,7 +52,8 @@ pub fn forecast(w: &World, more: f64) -> Result<Option<String>> {
     let style = w.particles.style;
     let sphere = if style.sphere { 8 + 24 + 24 } else { 0 };
     let peri = if style.peri { 8 + 24 } else { 0 };
-    let columns = 4 + 2 + 4 + 3 * 24 + 8 + 24 + 8 + sphere + peri;
+    let oriented = if style.oriented { 32 } else { 0 };
+    let columns = 4 + 2 + 4 + 3 * 24 + 8 + 24 + 8 + sphere + peri + oriented;
     let n = w.n() as f64 + more;
     let bytes = n * (f64::from(columns) + FORCES_PER_PARTICLE);
     if let Some(free) = available()

@@ -1,6 +1,7 @@
 //! The particles' core columns as plain fields.
 
 use super::{Images, Tracked};
+use perigrain_base::math::body::{Quat, UNTURNED};
 use perigrain_base::par;
 
 /// Which optional columns exist (`atom_style`).
@@ -12,6 +13,8 @@ pub struct AtomStyle {
     pub sphere: bool,
     /// Volume, reference position, mass per particle.
     pub peri: bool,
+    /// An orientation per particle: `bpm/sphere`.
+    pub oriented: bool,
     /// Masses start as those of spheres: `sphere`, unless `peri` follows it in `hybrid`.
     pub sphere_mass: bool,
     /// Molecule IDs.
@@ -71,6 +74,7 @@ impl AtomStyle {
             "sphere" | "bpm/sphere" => {
                 (self.sphere, self.sphere_mass) = (true, true);
                 self.bonded |= name == "bpm/sphere";
+                self.oriented |= name == "bpm/sphere";
                 self.molecules |= self.bonded;
                 match name {
                     "sphere" => &[Own::Diameter, Own::Density],
@@ -126,6 +130,8 @@ pub struct Particles {
     pub omega: Tracked<Vec<[f64; 3]>>,
     /// Sphere: torque.
     pub torque: Tracked<Vec<[f64; 3]>>,
+    /// Orientation: a unit quaternion, the real part first, that turns vectors of the body into space (`bpm/sphere`).
+    pub quat: Tracked<Vec<Quat>>,
     /// Peridynamics: volume of the node [length³].
     pub volume: Tracked<Vec<f64>>,
     /// Peridynamics: position at creation [length].
@@ -166,6 +172,9 @@ impl Particles {
             self.omega.reserve_exact(more);
             self.torque.reserve_exact(more);
         }
+        if self.style.oriented {
+            self.quat.reserve_exact(more);
+        }
         if self.style.peri {
             self.volume.reserve_exact(more);
             self.x0.reserve_exact(more);
@@ -187,12 +196,15 @@ impl Particles {
         self.x.push(x);
         self.v.push([0.0; 3]);
         self.f.push([0.0; 3]);
-        let AtomStyle { sphere, peri, sphere_mass, .. } = self.style;
+        let AtomStyle { sphere, oriented, peri, sphere_mass, .. } = self.style;
         self.mass.push(if sphere_mass { 4.0 * std::f64::consts::PI / 3.0 * 0.5 * 0.5 * 0.5 } else { 1.0 });
         if sphere {
             self.radius.push(0.5);
             self.omega.push([0.0; 3]);
             self.torque.push([0.0; 3]);
+        }
+        if oriented {
+            self.quat.push(UNTURNED);
         }
         if peri {
             self.volume.push(1.0);
@@ -217,6 +229,7 @@ impl Particles {
         self.molecule.append(&mut more.molecule);
         self.mask.append(&mut more.mask);
         self.image.append(&mut more.image);
+        self.quat.append(&mut more.quat);
         for (own, new) in [
             (&mut self.x, &mut more.x),
             (&mut self.v, &mut more.v),
@@ -254,6 +267,7 @@ impl Particles {
         pick(&mut [&mut self.kind], old);
         pick(&mut [&mut self.tag, &mut self.mask, &mut self.molecule, &mut self.rank], old);
         pick(&mut [&mut self.mass, &mut self.radius, &mut self.volume, &mut self.density], old);
+        pick(&mut [&mut self.quat], old);
         let mut vectors: [&mut Vec<_>; 6] =
             [&mut self.x, &mut self.v, &mut self.f, &mut self.omega, &mut self.torque, &mut self.x0];
         pick(&mut vectors, old);

@@ -23,6 +23,7 @@ impl World {
             (field::F, p.f.take_marks()),
             (field::OMEGA, p.omega.take_marks()),
             (field::TORQUE, p.torque.take_marks()),
+            (field::QUAT, p.quat.take_marks()),
             (field::RADIUS, p.radius.take_marks()),
             (field::MASS, p.mass.take_marks()),
             (field::KIND, p.kind.take_marks()),

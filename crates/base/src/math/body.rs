@@ -6,6 +6,9 @@ use super::vec3::{Vec3, add, cross, dot, scale};
 /// A unit quaternion, the real part first.
 pub type Quat<R = f64> = [R; 4];
 
+/// The orientation of what has not turned.
+pub const UNTURNED: Quat = [1.0, 0.0, 0.0, 0.0];
+
 /// Three rows.
 pub type Matrix<R = f64> = [Vec3<R>; 3];
 
@@ -131,10 +134,28 @@ pub fn richardson<R: Real>(
     let full = ahead(q, slope, half);
     let middle = ahead(q, slope, 0.5 * half);
     let omega = spin(momentum, middle, moments);
-    let two = ahead(middle, rate(omega, middle), 0.5 * half);
-    let ends =
-        [two[0] * 2.0 - full[0], two[1] * 2.0 - full[1], two[2] * 2.0 - full[2], two[3] * 2.0 - full[3]];
-    (normalized(ends), omega)
+    (extrapolated(full, ahead(middle, rate(omega, middle), 0.5 * half)), omega)
+}
+
+/// A step of q̇ = ½ ω q at constant ω, `half` being Δt/2, extrapolated as [`richardson`] does: the orientation of a sphere
+/// after the step.
+#[inline(always)]
+pub fn rolled<R: Real>(q: Quat<R>, omega: Vec3<R>, half: f64) -> Quat<R> {
+    let slope = rate(omega, q);
+    let full = ahead(q, slope, half);
+    let middle = ahead(q, slope, 0.5 * half);
+    extrapolated(full, ahead(middle, rate(omega, middle), 0.5 * half))
+}
+
+/// From the end of one long step and that of two short ones to a better one.
+#[inline(always)]
+fn extrapolated<R: Real>(full: Quat<R>, two: Quat<R>) -> Quat<R> {
+    normalized([
+        two[0] * 2.0 - full[0],
+        two[1] * 2.0 - full[1],
+        two[2] * 2.0 - full[2],
+        two[3] * 2.0 - full[3],
+    ])
 }
 
 /// A free step of `dt` about the principal axes one after another, each an exact rotation (NO_SQUISH: Miller et al., J. Chem.

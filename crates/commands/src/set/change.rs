@@ -1,6 +1,6 @@
 //! What `set` changes, and how it is done.
 
-use super::Choice;
+use super::{Choice, orientation};
 use crate::create_atoms::subset::{Amount, Subset};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_base::math::rng::ParkMiller;
@@ -51,6 +51,15 @@ pub enum Change {
     Volume(Param),
     /// The angular velocity.
     Omega([Param; 3]),
+    /// The orientation.
+    Quat {
+        /// The axis.
+        axis: [Param; 3],
+        /// The angle [degrees].
+        angle: Param,
+    },
+    /// Random orientations from a seed.
+    AnyQuat(u32),
     /// The molecule ID.
     Molecule(Param),
     /// The type of bonds with both ends among the chosen.
@@ -84,9 +93,14 @@ impl Item {
     fn has_variable(&self) -> bool {
         let is = |p: &Param| matches!(p, Param::Ref(_));
         match &self.change {
-            Change::Fraction { .. } | Change::Some { .. } | Change::Bond(_) | Change::OfVolume(_) => false,
+            Change::Fraction { .. }
+            | Change::Some { .. }
+            | Change::Bond(_)
+            | Change::OfVolume(_)
+            | Change::AnyQuat(_) => false,
             Change::Image(p) => p.iter().flatten().any(is),
             Change::Omega(p) => p.iter().any(is),
+            Change::Quat { axis, angle } => axis.iter().chain([angle]).any(is),
             Change::Kind(p)
             | Change::Mass(p)
             | Change::Density(p)
@@ -253,6 +267,17 @@ fn change_particles(cx: &mut ActCx, item: &Item, chosen: &[usize]) -> Result<usi
             let v = [checked(&p[0], "", None)?, checked(&p[1], "", None)?, checked(&p[2], "", None)?];
             chosen.iter().for_each(|&i| cx.world.particles.omega[i] = [v[0][i], v[1][i], v[2][i]]);
         }
+        Change::Quat { axis: [x, y, z], angle } => {
+            let [x, y, z] = [checked(x, "", None)?, checked(y, "", None)?, checked(z, "", None)?];
+            let angle = checked(angle, "", None)?;
+            for &i in chosen {
+                let axis = [x[i], y[i], z[i]];
+                orientation::check_axis(axis, cx.world)?;
+                let lammps = cx.world.settings.lammps();
+                cx.world.particles.quat[i] = orientation::about(axis, angle[i], lammps);
+            }
+        }
+        Change::AnyQuat(seed) => orientation::any(cx.world, chosen, *seed),
         Change::Molecule(p) => {
             let v = checked(p, "the molecule", Some(Limit::NotNegative))?;
             chosen.iter().for_each(|&i| cx.world.particles.molecule[i] = v[i] as u32);

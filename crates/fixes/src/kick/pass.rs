@@ -2,6 +2,7 @@
 
 use super::super::freeze::hold;
 use super::super::gravity::{pulled_each, pulled_four};
+use perigrain_base::math::body::{Quat, rolled};
 use perigrain_base::math::four::{Plain, has_avx2};
 use perigrain_base::math::lanes::Lanes;
 use perigrain_base::math::threes::{self, Threes};
@@ -30,6 +31,8 @@ struct Chunk<'a> {
     omega: &'a mut [Vec3],
     torque: &'a mut [Vec3],
     radius: &'a [f64],
+    /// Empty where none are to follow spins.
+    quat: &'a mut [Quat],
 }
 
 /// What is the same for all particles.
@@ -41,6 +44,8 @@ pub(super) struct Kick {
     pub spin: f64,
     pub dt: f64,
     pub bit: u32,
+    /// Orientations follow spins.
+    pub oriented: bool,
 }
 
 /// What comes of a chunk.
@@ -62,6 +67,7 @@ struct Fours<'a> {
     omega: &'a mut [[Vec3; 4]],
     torque: &'a mut [[Vec3; 4]],
     radius: &'a [[f64; 4]],
+    quat: &'a mut [[Quat; 4]],
 }
 
 impl Fours<'_> {
@@ -76,6 +82,7 @@ impl Fours<'_> {
             omega: self.omega.get_mut(k).map_or(&mut [][..], |four| &mut four[..]),
             torque: self.torque.get_mut(k).map_or(&mut [][..], |four| &mut four[..]),
             radius: self.radius.get(k).map_or(&[][..], |four| &four[..]),
+            quat: self.quat.get_mut(k).map_or(&mut [][..], |four| &mut four[..]),
         }
     }
 }
@@ -112,7 +119,7 @@ impl Kick {
         beside: &Beside,
     ) -> [BlockSums; 3] {
         let (masses, start, own) = (Masses::Own(mass), s.start, 0..s.x.len());
-        let came = self.block(chunk(s, own, (spins, part), beside), spins, part, &masses, start, beside);
+        let came = self.block(chunk(s, own, (spins, self.oriented, part), beside), spins, part, &masses, start, beside);
         let sums = |sums| BlockSums { sums, most: 0.0 };
         [
             sums([came.energy, 0.0, 0.0]),
@@ -133,7 +140,7 @@ impl Kick {
         let first = s.start + own.start;
         {
             let alone = Beside::default();
-            self.block(chunk(s, own, (spins, part), &alone), spins, part, masses, first, &alone).most
+            self.block(chunk(s, own, (spins, self.oriented, part), &alone), spins, part, masses, first, &alone).most
         }
     }
 
@@ -226,15 +233,17 @@ impl Kick {
         let (omega4, omega) = c.omega.as_chunks_mut::<4>();
         let (torque4, torque) = c.torque.as_chunks_mut::<4>();
         let (radius4, radius) = c.radius.as_chunks::<4>();
+        let (quat4, quat) = c.quat.as_chunks_mut::<4>();
         let mut came = Came::default();
-        let rest = Chunk { x, v, f, mask, omega, torque, radius };
+        let rest = Chunk { x, v, f, mask, omega, torque, radius, quat };
         self.each::<KICKS, DRIFT, SPIN>(rest, &masses(mask4.len()), beside, &mut came);
         let pulled = beside.pull.map_or(0, |pull| pull.bit);
         let same = |masks: &[u32]| {
             let (all, some) = masks.iter().fold((u32::MAX, 0), |(all, some), m| (all & m, some | m));
             all & self.bit != 0 && all & pulled == pulled && some & beside.held == 0
         };
-        let mut fours = Fours { x: x4, v: v4, f: f4, omega: omega4, torque: torque4, radius: radius4 };
+        let mut fours =
+            Fours { x: x4, v: v4, f: f4, omega: omega4, torque: torque4, radius: radius4, quat: quat4 };
         // SAFETY (all below): the caller's promise.
         let mut sums = unsafe { Sums::<F>::new() };
         if same(mask4.as_flattened()) {
@@ -277,6 +286,7 @@ impl Kick {
         let (v, f) = (&mut v[..n], &mut f[..n]);
         let spinning = if SPIN { own.clone() } else { 0..0 };
         let (omega, radius) = (&mut c.omega[spinning.clone()], &c.radius[spinning]);
+        let quat = if c.quat.is_empty() { &mut [][..] } else { &mut c.quat[own.clone()] };
         let torque = if c.torque.is_empty() { &mut [][..] } else { &mut c.torque[own] };
         let clears_torque = beside.clears && torque.len() == n;
         let (pulls, a) = beside.pull.map_or((false, [0.0; 3]), |pull| (true, pull.a));
@@ -304,7 +314,13 @@ impl Kick {
                 if SPIN {
                     let r = F::load(radius[k].as_ptr());
                     let turn = threes::load::<F>(torque[k].as_flattened().as_ptr());
-                    kicked::<F, KICKS>(&mut omega[k], turn, F::splat(self.spin) / (r * r * m));
+                    let spin = kicked::<F, KICKS>(&mut omega[k], turn, F::splat(self.spin) / (r * r * m));
+                    if DRIFT && let Some(four) = quat.get_mut(k) {
+                        let rows = four.as_flattened_mut().as_mut_ptr();
+                        let q = F::transpose([0, 4, 8, 12].map(|at| F::load(rows.add(at))));
+                        let now = F::transpose(rolled(q, F::parted(spin), 0.5 * self.dt));
+                        now.into_iter().enumerate().for_each(|(l, row)| row.store(rows.add(4 * l)));
+                    }
                 }
                 if clears_torque {
                     threes::store([zero; 3], torque[k].as_flattened_mut().as_mut_ptr());
@@ -346,6 +362,9 @@ impl Kick {
             if SPIN {
                 let r = c.radius[i];
                 kick::<KICKS>(&mut c.omega[i], &c.torque[i], self.spin / (r * r * m));
+                if DRIFT && let Some(q) = c.quat.get_mut(i) {
+                    *q = rolled(*q, c.omega[i], 0.5 * self.dt);
+                }
             }
         }
         if beside.clears {
@@ -359,7 +378,7 @@ impl Kick {
 fn chunk<'a>(
     s: &'a mut ParticleBlock<'_>,
     own: Range<usize>,
-    (spins, part): (bool, Part),
+    (spins, oriented, part): (bool, bool, Part),
     beside: &Beside,
 ) -> Chunk<'a> {
     let rows = s.start + own.start..s.start + own.end;
@@ -378,13 +397,18 @@ fn chunk<'a>(
             (&mut omega[own.clone()], &mut torque[own.clone()], &radius[rows])
         }
     };
+    let quat = match oriented && part != Part::Second && !s.quat.is_empty() {
+        true => &mut s.quat[own.clone()],
+        false => &mut [],
+    };
     let x = match (part, beside.pull) {
         (Part::Second, None) => s.x.past_mut(),
         (Part::Second, Some(_)) => s.x.read_mut(),
         _ => &mut s.x[..],
     };
     let f = if *beside == Beside::default() { s.f.read_mut() } else { &mut s.f[..] };
-    Chunk { x: &mut x[own.clone()], v: &mut s.v[own.clone()], f: &mut f[own], mask, omega, torque, radius }
+    let (x, v, f) = (&mut x[own.clone()], &mut s.v[own.clone()], &mut f[own]);
+    Chunk { x, v, f, mask, omega, torque, radius, quat }
 }
 
 /// v += by · f, `KICKS` times.

@@ -5,7 +5,6 @@ use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, length, scale};
 use perigrain_neigh::list::{Pair, Reach, View, Wanted, difference, pairs};
 use perigrain_peri::families::{Families, ForceUnit, PeriView};
-use perigrain_peri::stretches::unstretched;
 use perigrain_styles::near::bonds;
 use perigrain_styles::peri_view::view;
 use perigrain_styles::probe::{Ask, Interaction, Probe};
@@ -43,11 +42,9 @@ fn law(families: &Families, view: &PeriView, [i, j]: [usize; 2], r: f64, bonded:
     }
     if bonded {
         let r0 = length(families.first_bond(view, i, j));
-        let longer = if unstretched(r, r0, options) { 0.0 } else { r - r0 };
-        let weight = options.volume.weight(r0, coeff.horizon, options.lattice_spacing);
-        let k = coeff.c * volume * weight * (longer / r0);
-        force -= k;
-        energy += 0.5 * k * longer;
+        let [pull, own] = families.bond_alone([view.kind[i], view.kind[j]], r0, r);
+        force -= pull * volume;
+        energy += own * volume;
     }
     [force, energy]
 }

@@ -16,12 +16,12 @@ fn moved(parts: &[Part], wide: bool) -> (Vec<Vec3>, Vec<Vec3>, Vec<Vec3>, f64) {
     let (mut f, mut torque) = (some(4), some(5));
     let radius: Vec<f64> = (0..N).map(|i| 0.3 + 0.01 * i as f64).collect();
     let mask: Vec<u32> = (0..N).map(|i| if i == 6 { 1 } else { 3 }).collect();
-    let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 2 };
+    let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 2, oriented: false };
     let masses = |k: usize| std::array::from_fn(|l| 1.0 + (4 * k + l) as f64 / 3.0);
     let mut fastest = 0.0;
     for part in parts {
         let (x, v, f, omega, torque) = (&mut x[..], &mut v[..], &mut f[..], &mut omega[..], &mut torque[..]);
-        let c = Chunk { x, v, f, mask: &mask, omega, torque, radius: &radius };
+        let c = Chunk { x, v, f, mask: &mask, omega, torque, radius: &radius, quat: &mut [] };
         let beside = Beside::default();
         fastest = match (part, wide) {
             (_, true) => k.chunk(c, *part, true, &beside, masses),
@@ -70,7 +70,7 @@ fn the_formula_of_a_kick_and_a_drift() {
 fn what_stands_beside_a_motion_has_the_bits_it_has_alone() {
     let (pull, held) = (Pull { bit: 1, a: [0.3, -0.7, 1.1] }, 4);
     let beside = Beside { pull: Some(pull), held, clears: true };
-    let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 2 };
+    let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 2, oriented: false };
     let mass: Vec<f64> = (0..N).map(|i| 1.0 + i as f64 / 3.0).collect();
     let masses = |k: usize| std::array::from_fn(|l| mass.get(4 * k + l).copied().unwrap_or(1.0));
     let radius: Vec<f64> = (0..N).map(|i| 0.3 + 0.01 * i as f64).collect();
@@ -95,6 +95,7 @@ fn what_stands_beside_a_motion_has_the_bits_it_has_alone() {
                 omega: &mut omega,
                 torque: &mut torque,
                 radius: &radius,
+                quat: &mut [],
             };
             let with = if together { beside } else { Beside::default() };
             let came = k.chunk(c, Part::Both, true, &with, masses);
@@ -113,12 +114,12 @@ fn what_stands_beside_a_motion_has_the_bits_it_has_alone() {
 
 #[test]
 fn who_moves_by_no_number_is_infinitely_fast_whoever_follows() {
-    let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 1 };
+    let k = Kick { half: 0.01, spin: 0.025, dt: 0.02, bit: 1, oriented: false };
     for i in 0..N {
         let (mut x, mut v, mut f) = (some(1), some(2), some(4));
         v[i][1] = f64::NAN;
         let (x, v, f) = (&mut x[..], &mut v[..], &mut f[..]);
-        let c = Chunk { x, v, f, mask: &[1; N], omega: &mut [], torque: &mut [], radius: &[] };
+        let c = Chunk { x, v, f, mask: &[1; N], omega: &mut [], torque: &mut [], radius: &[], quat: &mut [] };
         let most = k.chunk(c, Part::First, false, &Beside::default(), |_| [1.0; 4]).most;
         assert_eq!(most, f64::INFINITY, "{i}");
     }
