@@ -30,7 +30,8 @@ impl Session {
         for (_, surface) in groups.surfaces() {
             let bit = surface.parent.bit();
             let turns = |f: &&crate::graph::FixNode| {
-                ["nve/sphere", "nve/bpm/sphere"].contains(&f.style) && mask.iter().any(|m| m & bit != 0 && m & f.group.bit() != 0)
+                ["nve/sphere", "nve/bpm/sphere"].contains(&f.style)
+                    && mask.iter().any(|m| m & bit != 0 && m & f.group.bit() != 0)
             };
             if let Some(f) = self.graph.fixes.iter().find(turns) {
                 let text = format!(

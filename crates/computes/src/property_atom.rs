@@ -12,8 +12,8 @@ use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::field::{
-    BOX, COLUMNS, F, FAMILIES, IMAGE, KIND, MASK, MASS, MOLECULE, OMEGA, QUAT, RADIUS, TAG, TORQUE, TYPE_MASS, V,
-    VOLUME, X, X0,
+    BOX, COLUMNS, F, FAMILIES, IMAGE, KIND, MASK, MASS, MOLECULE, OMEGA, QUAT, RADIUS, TAG, TORQUE,
+    TYPE_MASS, V, VOLUME, X, X0,
 };
 use perigrain_world::index::Index;
 use perigrain_world::{AtomStyle, GroupId, Numbers, SlotId, World};
@@ -171,10 +171,9 @@ const ATTRIBUTES: &[(&str, Needs, Getter)] = &[
 /// LAMMPS' attributes of atom styles that perigrain does not have.
 const ELSEWHERE: &[&str] = &[
     "q", "mux", "muy", "muz", "mu", "spx", "spy", "spz", "sp", "fmx", "fmy", "fmz", "angmomx", "angmomy",
-    "angmomz", "shapex", "shapey", "shapez", "end1x", "end1y", "end1z",
-    "end2x", "end2y", "end2z", "corner1x", "corner1y", "corner1z", "corner2x", "corner2y", "corner2z",
-    "corner3x", "corner3y", "corner3z", "espin", "eradius", "ervel", "erforce", "rho", "drho", "e", "de",
-    "cv", "buckling",
+    "angmomz", "shapex", "shapey", "shapez", "end1x", "end1y", "end1z", "end2x", "end2y", "end2z",
+    "corner1x", "corner1y", "corner1z", "corner2x", "corner2y", "corner2z", "corner3x", "corner3y",
+    "corner3z", "espin", "eradius", "ervel", "erforce", "rho", "drho", "e", "de", "cv", "buckling",
 ];
 
 /// The refusal of a property of fix property/atom that somebody reads and nobody has.
@@ -367,7 +366,10 @@ mod tests {
         assert_eq!(code(""), Code::MISSING_ARGUMENT);
         assert_eq!(code("x radius"), Code::INCOMPLETE);
         assert_eq!(code("vfrac"), Code::INCOMPLETE);
-        assert_eq!([code("mol"), code("quatw"), code("espin")], [Code::INCOMPLETE, Code::INCOMPLETE, Code::NOT_SUPPORTED]);
+        assert_eq!(
+            [code("mol"), code("quatw"), code("espin")],
+            [Code::INCOMPLETE, Code::INCOMPLETE, Code::NOT_SUPPORTED]
+        );
         assert_eq!(code("d_mine"), Code::UNKNOWN_NAME);
         assert_eq!(code("radus"), Code::UNKNOWN_KEYWORD);
     }

@@ -31,7 +31,9 @@ impl FixStyle for NveBpmSphere {
         if !cx.world.particles.style.oriented {
             let text = "fix nve/bpm/sphere needs particles with orientations";
             let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
-            return Err(d.help("put `atom_style bpm/sphere` (or a hybrid with it) at the top of the deck").into());
+            return Err(d
+                .help("put `atom_style bpm/sphere` (or a hybrid with it) at the top of the deck")
+                .into());
         }
         declared(ORIENTED, args, cx)
     }

@@ -97,10 +97,7 @@ impl Fix for Declared {
         let name = format!("fix {} {}", self.id, self.name);
         let turned = if turning.oriented { X | V | OMEGA | QUAT } else { X | V | OMEGA };
         let access = || {
-            Needs::new()
-                .read(F | TORQUE | MASS | RADIUS | MASK | KIND | TYPE_MASS)
-                .add(TRAVEL)
-                .write(turned)
+            Needs::new().read(F | TORQUE | MASS | RADIUS | MASK | KIND | TYPE_MASS).add(TRAVEL).write(turned)
         };
         let idle = |_: &mut World, _: &Tick| Ok(());
         let first = StepOp::new(name.clone(), Stage::InitialIntegrate, access(), idle);

@@ -82,7 +82,12 @@ impl Families {
 }
 
 /// The pull of a bond without columns and memory, and its energy.
-fn pull_and_energy<W: BondLaw>(bond: &Stretch<Single>, omega: f64, share: f64, [r0, r]: [f64; 2]) -> [f64; 2] {
+fn pull_and_energy<W: BondLaw>(
+    bond: &Stretch<Single>,
+    omega: f64,
+    share: f64,
+    [r0, r]: [f64; 2],
+) -> [f64; 2] {
     let (none, omega, now) = ([[Single(0.0); COLUMNS]; 2], Single(omega), Moment::default());
     let mut memory = [Single(0.0); 2];
     // SAFETY: plain arithmetic.

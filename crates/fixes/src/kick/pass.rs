@@ -119,7 +119,14 @@ impl Kick {
         beside: &Beside,
     ) -> [BlockSums; 3] {
         let (masses, start, own) = (Masses::Own(mass), s.start, 0..s.x.len());
-        let came = self.block(chunk(s, own, (spins, self.oriented, part), beside), spins, part, &masses, start, beside);
+        let came = self.block(
+            chunk(s, own, (spins, self.oriented, part), beside),
+            spins,
+            part,
+            &masses,
+            start,
+            beside,
+        );
         let sums = |sums| BlockSums { sums, most: 0.0 };
         [
             sums([came.energy, 0.0, 0.0]),
@@ -140,7 +147,15 @@ impl Kick {
         let first = s.start + own.start;
         {
             let alone = Beside::default();
-            self.block(chunk(s, own, (spins, self.oriented, part), &alone), spins, part, masses, first, &alone).most
+            self.block(
+                chunk(s, own, (spins, self.oriented, part), &alone),
+                spins,
+                part,
+                masses,
+                first,
+                &alone,
+            )
+            .most
         }
     }
 

@@ -27,7 +27,8 @@ pub fn fingerprint(w: &World, of: &Resume) -> u32 {
     let mut columns = w.columns.clone();
     columns.split_off(|name| of.names.iter().any(|n| n == name));
     let motion = (&p.tag, &p.kind, masks, &p.image, &p.x, &p.v, &p.f);
-    let matter = (&p.mass, &p.radius, &p.omega, &p.torque, &p.quat, &p.volume, &p.x0, &p.density, &p.molecule);
+    let matter =
+        (&p.mass, &p.radius, &p.omega, &p.torque, &p.quat, &p.volume, &p.x0, &p.density, &p.molecule);
     let c = &w.clock;
     let clock = (c.step, c.dt, c.time_base, c.time_step);
     let materials = w.materials.iter().map(|(name, material)| (name.as_str(), material));
