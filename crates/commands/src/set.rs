@@ -194,12 +194,15 @@ fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
         }
         "quat" => {
             needs(oriented)?;
-            let start = a.here();
+            let (start, mut end) = (a.here(), a.here());
             let axis: [Param; 3] = {
-                let mut next = || value(a, cx, "the axis", None);
+                let mut next = || {
+                    end = a.here();
+                    value(a, cx, "the axis", None)
+                };
                 [next()?, next()?, next()?]
             };
-            let span = start.to(a.here());
+            let span = start.to(end);
             let angle = value(a, cx, "the angle [degrees]", None)?;
             let constants: Option<Vec<f64>> =
                 axis.iter().map(|p| if let Param::Number(x) = p { Some(*x) } else { None }).collect();
@@ -314,7 +317,7 @@ fn image(a: &mut Args, cx: &BuildCx) -> Result<Change> {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{act, more, refused, scene};
-    use perigrain_world::World;
+    use perigrain_world::{Compat, World};
 
     fn balls() -> World {
         let mut w =
@@ -382,5 +385,32 @@ mod tests {
         let minus: fn(&World, usize) -> f64 = |_, _| -1.0;
         assert!(act(&mut w, "set atom * type 2 mass v_m", &[("m", minus)]).is_err());
         assert_eq!(w.particles.kind[0], 1);
+    }
+
+    // Oracle: the same lines in LAMMPS, printed with 15 digits. Without its numbers an axis of any length turns by the angle.
+    #[test]
+    fn orientations_are_lammps() {
+        let mut w = scene(
+            "units lj\natom_style bpm/sphere\nregion b block 0 3 0 3 0 3 units box\ncreate_box 1 b bond/types 1",
+        );
+        more(&mut w, "lattice sc 1\ncreate_atoms 1 box\nset atom 1 quat 1 2 2 30");
+        let angle = 15f64.to_radians();
+        let near = |a: [f64; 4], b: [f64; 4]| (0..4).all(|k| (a[k] - b[k]).abs() < 2e-15); // digits printed
+        let third = angle.sin() / 3.0;
+        assert!(near(w.particles.quat[0], [angle.cos(), third, 2.0 * third, 2.0 * third]));
+        w.settings.compat = Compat::Lammps;
+        more(
+            &mut w,
+            "set atom 1*9 quat 1 2 2 30\nset atom 10*18 quat 0 0 1 200\nset atom 19*27 quat/random 4711",
+        );
+        for (i, oracle) in [
+            (0, [0.779403831193579, 0.208840627146043, 0.417681254292085, 0.417681254292085]),
+            (9, [-0.17364817766693, 0.0, 0.0, 0.984807753012208]),
+            (18, [-0.0901235132510864, 0.76327186834414, 0.633046611149085, -0.0924434717348213]),
+            (26, [0.693429769730391, -0.0649375495220329, -0.00912362530219658, -0.717533991233221]),
+        ] {
+            assert!(near(w.particles.quat[i], oracle), "{i} {:?}", w.particles.quat[i]);
+        }
+        assert_eq!(refused(&w, "set atom 1 quat 0 0 0 30").0, "0 0 0");
     }
 }

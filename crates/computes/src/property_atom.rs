@@ -12,7 +12,7 @@ use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::field::{
-    BOX, COLUMNS, F, FAMILIES, IMAGE, KIND, MASK, MASS, MOLECULE, OMEGA, QUAT, RADIUS, TAG, TORQUE,
+    BOX, COLUMNS, F, FAMILIES, Fields, IMAGE, KIND, MASK, MASS, MOLECULE, OMEGA, QUAT, RADIUS, TAG, TORQUE,
     TYPE_MASS, V, VOLUME, X, X0,
 };
 use perigrain_world::index::Index;
@@ -218,11 +218,14 @@ fn scaled(w: &World, i: usize, d: usize) -> f64 {
 
 impl ComputeStyle for PropertyAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        let mut getters = vec![read_attribute(args.expect("an attribute, as `radius`")?, cx)?];
+        let first = args.expect("an attribute, as `radius`")?;
+        let mut oriented = first.text.starts_with("quat");
+        let mut getters = vec![read_attribute(first, cx)?];
         while let Some(word) = args.next() {
+            oriented |= word.text.starts_with("quat");
             getters.push(read_attribute(word, cx)?);
         }
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, span: cx.span, getters }))
+        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, span: cx.span, getters, oriented }))
     }
 }
 
@@ -290,6 +293,8 @@ struct Declared {
     group: GroupId,
     span: Span,
     getters: Vec<Getter>,
+    /// Some attribute is of orientations.
+    oriented: bool,
 }
 
 impl Compute for Declared {
@@ -312,7 +317,6 @@ impl Compute for Declared {
                 | MASK
                 | MASS
                 | OMEGA
-                | QUAT
                 | RADIUS
                 | TORQUE
                 | KIND
@@ -321,7 +325,8 @@ impl Compute for Declared {
                 | X0
                 | F
                 | V
-                | MOLECULE,
+                | MOLECULE
+                | if self.oriented { QUAT } else { Fields::NONE },
             move |w, _, out| {
                 let (bit, columns) = (group.bit(), getters.len());
                 out.cols = columns;
