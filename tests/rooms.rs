@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 /// Which crate may depend on which others of the house. Cargo refuses circles; this table refuses short cuts.
 const ARROWS: &[(&str, &[&str])] = &[
     ("base", &[]),
+    ("bonded", &["base"]),
     ("lang", &["base"]),
     ("neigh", &["base"]),
     ("peri", &["base"]),
@@ -14,9 +15,9 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("contact", &["base", "neigh", "peri", "world"]),
     ("plan", &["base", "world"]),
     ("out", &["base", "world"]),
-    ("styles", &["base", "lang", "neigh", "out", "peri", "plan", "world"]),
-    ("commands", &["base", "lang", "neigh", "out", "peri", "plan", "styles", "world"]),
-    ("pairs", &["base", "contact", "lang", "neigh", "peri", "plan", "styles", "world"]),
+    ("styles", &["base", "bonded", "lang", "neigh", "out", "peri", "plan", "world"]),
+    ("commands", &["base", "bonded", "lang", "neigh", "out", "peri", "plan", "styles", "world"]),
+    ("pairs", &["base", "bonded", "contact", "lang", "neigh", "peri", "plan", "styles", "world"]),
     ("computes", &["base", "commands", "lang", "neigh", "peri", "plan", "styles", "world"]),
     ("dumps", &["base", "computes", "lang", "out", "plan", "styles", "world"]),
     (

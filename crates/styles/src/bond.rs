@@ -4,6 +4,7 @@ use super::pull::{Pull, Stretched};
 use super::{BuildCx, SealCx, Style};
 use dyn_clone::DynClone;
 use perigrain_base::diag::Result;
+pub use perigrain_bonded::stiffness::Stiffness;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_world::World;
@@ -43,6 +44,12 @@ pub trait BondForce: DynClone + Send + Sync {
     /// What a bond does, by the coefficients it has at the moment, for `compute bond/local`; `None` where that takes more than
     /// its two ends.
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull>;
+
+    /// The stiffnesses of a bond of this length at rest between spheres of these radii, for small displacements; `None` where the
+    /// style has none.
+    fn stiffness(&self, _kind: u16, _length: f64, _radii: [f64; 2]) -> Option<Stiffness> {
+        None
+    }
 
     /// The pair styles of which one has to be in force besides; any will do by default.
     fn companions(&self) -> &'static [&'static str] {
