@@ -179,7 +179,8 @@ impl Compute for Declared {
                     let mut pull = Pull::default();
                     if let (true, true, Some(style)) = (needed, bond.is_on(), &style) {
                         let v = sub(p.v[a], p.v[b]);
-                        let now = Stretched { kind: bond.kind as u16, d, v, rest: bond.length };
+                        let now =
+                            Stretched { kind: bond.kind as u16, bond, ends: [a, b], d, v, rest: bond.length };
                         let Some(found) = style.single(w, &now) else {
                             let text = format!(
                                 "the force of bond_style {} is not of its two ends alone",

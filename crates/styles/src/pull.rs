@@ -1,13 +1,9 @@
-//! The op of bonds whose force depends on their length alone.
+//! Bonds as their ends are.
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
-use perigrain_base::math::vec3::{Vec3, add, dot, sub};
-use perigrain_base::par;
-use perigrain_plan::{About, Needs, Op, Stage, Tick};
+use perigrain_base::math::vec3::{Vec3, dot, sub};
 use perigrain_world::bonds::LostBond;
-use perigrain_world::field::{BONDS, BOX, F, LISTS, MEMO, TAG, TALLY, X};
 use perigrain_world::index::Index;
-use perigrain_world::tally::add_share;
 use perigrain_world::{Bond, World};
 
 /// What a bond does at some length.
@@ -24,6 +20,10 @@ pub struct Pull {
 pub struct Stretched {
     /// Type.
     pub kind: u16,
+    /// The bond itself.
+    pub bond: Bond,
+    /// Places of its ends in storage.
+    pub ends: [usize; 2],
     /// From the second end to the first [length].
     pub d: Vec3,
     /// Velocity of the first end less that of the second.
@@ -92,89 +92,4 @@ pub fn periods(w: &World) -> Result<Vec3> {
     let domain = w.domain()?;
     let (lengths, periodic) = (domain.lengths(), domain.periodic());
     Ok(std::array::from_fn(|d| if periodic[d] { lengths[d] } else { 0.0 }))
-}
-
-/// What a bond of some type does at some length.
-pub trait Law: Send + Sync {
-    /// `None` for types that are none of its business.
-    fn pull(&self, kind: u16, r: f64) -> Option<Pull>;
-
-    /// Takes the coefficients that fixes have changed.
-    fn adapt(&mut self, _w: &World) {}
-}
-
-/// Forces along the bonds of one style.
-pub struct Along<F> {
-    name: String,
-    span: Span,
-    law: F,
-    /// Which changes of coefficients have been seen.
-    adapted: f64,
-    /// Rebuild and change of bonds at which `list` was made.
-    made: Option<(u64, u64)>,
-    list: Vec<(usize, Found)>,
-    pulls: Vec<(Vec3, Pull)>,
-}
-
-impl<F: Law> Along<F> {
-    /// With a law of type and length; types without one are none of its business.
-    pub fn new(name: impl Into<String>, span: Span, law: F) -> Self {
-        Self { name: name.into(), span, law, adapted: 0.0, made: None, list: vec![], pulls: vec![] }
-    }
-}
-
-impl<F: Law> Op for Along<F> {
-    fn about(&self) -> About {
-        About::new(
-            &self.name,
-            Stage::Force,
-            Needs::new().read(X | BONDS | BOX | MEMO | LISTS | TAG).add(F).write(TALLY),
-        )
-    }
-    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        if self.adapted != w.adaptations() {
-            self.adapted = w.adaptations();
-            self.law.adapt(w);
-        }
-        let now = (w.rebuild.generation, w.bonds.changes);
-        if t.setup || self.made != Some(now) {
-            self.list = find(w, |b| self.law.pull(b.kind as u16, 1.0).is_some(), self.span)?;
-            self.made = Some(now);
-        }
-        let lengths = periods(w)?;
-        self.pulls.clear();
-        self.pulls.resize(self.list.len(), Default::default());
-        let (law, world) = (&self.law, &*w);
-        par::each((&mut self.pulls[..], &self.list[..]), |_, (pulls, list)| {
-            for (out, (_, found)) in pulls.iter_mut().zip(list) {
-                let d = apart(world, &lengths, found.ends);
-                let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-                *out = (d, law.pull(found.kind, r).unwrap_or_default());
-            }
-        });
-        for ((_, found), (d, pull)) in self.list.iter().zip(&self.pulls) {
-            let force = d.map(|d| d * pull.force_per_length);
-            tally(w, t, found.ends, d, &force, pull.energy);
-        }
-        Ok(())
-    }
-}
-
-/// Adds a force to one end of a bond and its opposite to the other, with energy and virial.
-pub fn tally(w: &mut World, t: &Tick, ends: [usize; 2], d: &Vec3, force: &Vec3, energy: f64) {
-    let f = &mut w.particles.f;
-    f[ends[0]] = add(f[ends[0]], *force);
-    f[ends[1]] = sub(f[ends[1]], *force);
-    if t.energy {
-        w.tally.bond += energy;
-    }
-    if t.atom_energy {
-        w.tally.bond_atom.resize(w.particles.x.len(), 0.0);
-        ends.iter().for_each(|&i| w.tally.bond_atom[i] += 0.5 * energy);
-    }
-    if t.virial {
-        let tally = &mut *w.tally;
-        let atoms = t.atom_virial.then_some(&mut tally.atom_bonds[..]);
-        add_share(&mut tally.bond_virial, atoms, ends, *d, *force);
-    }
 }

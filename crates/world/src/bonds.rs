@@ -1,6 +1,8 @@
 //! Bonds between particles by their ids, and which pairs they exempt from pair forces (`special_bonds`).
 
 use super::index::Index;
+use perigrain_base::math::body::{self, Quat, UNTURNED, back};
+use perigrain_base::math::vec3::{Vec3, scale};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A bond.
@@ -12,12 +14,15 @@ pub struct Bond {
     pub ends: [u32; 2],
     /// Length at rest, as a bond style has measured it [length]; 0 before.
     pub length: f64,
+    /// Unit vector at rest from the end with the higher ID to the other, as the former carries it, where a bond style has measured
+    /// it; 0 before.
+    pub axis: Vec3,
 }
 
 impl Bond {
     /// A bond that nobody has measured.
     pub fn new(kind: i32, ends: [u32; 2]) -> Self {
-        Self { kind, ends, length: 0.0 }
+        Self { kind, ends, length: 0.0, axis: [0.0; 3] }
     }
 
     /// Whether it acts.
@@ -47,6 +52,11 @@ pub enum LostBond {
     Ignore,
 }
 
+/// The ids of two ends, the lower first.
+pub fn ascending([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
 /// All bonds of a scene.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Bonds {
@@ -54,6 +64,9 @@ pub struct Bonds {
     pub types: usize,
     /// The bonds, in the order in which they were made.
     pub list: Vec<Bond>,
+    /// Of bonds whose ends were turned against each other when a bond style first saw them: the turn from the end with the lower
+    /// ID to the other, by the ids of the ends, the lower first.
+    pub turned: BTreeMap<[u32; 2], Quat>,
     /// `special_bonds`.
     pub weights: Weights,
     /// The pairs that count as bonded for the weights, ascending: as bonds were when this was last decided.
@@ -90,22 +103,46 @@ impl Bonds {
     /// Keeps the bonds that `keep` lets pass.
     pub fn retain(&mut self, keep: impl FnMut(&Bond) -> bool) {
         self.list.retain(keep);
+        self.forget_turns();
         self.changes += 1;
+    }
+
+    /// Bonds have broken, told by the ids of their ends, the lower first, and their type, ascending: they are gone, and pair forces
+    /// act between their ends.
+    pub fn lose(&mut self, broken: &[([u32; 2], i32)]) {
+        self.list.retain(|b| broken.binary_search(&(ascending(b.ends), b.kind)).is_err());
+        let parted = |p: &[u32; 2]| {
+            let at = broken.partition_point(|(ends, _)| ends < p);
+            broken.get(at).is_some_and(|(ends, _)| ends == p)
+        };
+        self.special.retain(|p| !parted(p));
+        self.forget_turns();
+        self.changes += 1;
+    }
+
+    /// Forgets how ends were turned whose bonds are gone.
+    fn forget_turns(&mut self) {
+        if self.turned.is_empty() {
+            return;
+        }
+        let mut there: Vec<[u32; 2]> = self.list.iter().map(|b| ascending(b.ends)).collect();
+        there.sort_unstable();
+        self.turned.retain(|ends, _| there.binary_search(ends).is_ok());
     }
 
     /// Takes away the bonds between some pairs of ids, and lets pair forces act between them; `pairs` ascend, the lower id
     /// of each first.
     pub fn part(&mut self, pairs: &[[u32; 2]]) {
-        let parted = |a: u32, b: u32| pairs.binary_search(&[a.min(b), a.max(b)]).is_ok();
-        self.list.retain(|b| !parted(b.ends[0], b.ends[1]));
-        self.special.retain(|p| !parted(p[0], p[1]));
+        let parted = |ends: [u32; 2]| pairs.binary_search(&ascending(ends)).is_ok();
+        self.list.retain(|b| !parted(b.ends));
+        self.special.retain(|p| !parted(*p));
+        self.forget_turns();
         self.changes += 1;
     }
 
     /// Decides anew which pairs count as bonded: those of all present bonds, turned off or not.
     pub fn find_special(&mut self) {
-        self.special =
-            self.list.iter().map(|b| [b.ends[0].min(b.ends[1]), b.ends[0].max(b.ends[1])]).collect();
+        self.special = self.list.iter().map(|b| ascending(b.ends)).collect();
         self.special.sort_unstable();
         self.special.dedup();
         self.changes += 1;
@@ -116,16 +153,32 @@ impl Bonds {
         let there: BTreeSet<u32> = tags.iter().copied().collect();
         self.list.retain(|b| b.ends.iter().any(|t| there.contains(t)));
         self.special.retain(|p| p.iter().any(|t| there.contains(t)));
+        self.forget_turns();
         self.changes += 1;
     }
 
     /// Renames particles; bonds of those without a new id are gone.
     pub fn rename(&mut self, new: impl Fn(u32) -> Option<u32>) {
         let both = |ends: [u32; 2]| Some([new(ends[0])?, new(ends[1])?]);
-        let renamed = |b: &Bond| both(b.ends).map(|ends| Bond { ends, ..*b });
-        self.list = self.list.iter().filter_map(renamed).collect();
-        self.special =
-            self.special.iter().filter_map(|p| both(*p)).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        let turned = std::mem::take(&mut self.turned);
+        let mut list = vec![];
+        for b in &self.list {
+            let Some(ends) = both(b.ends) else { continue };
+            let swapped = (ends[0] < ends[1]) != (b.ends[0] < b.ends[1]);
+            let mut turn = turned.get(&ascending(b.ends)).copied().unwrap_or(UNTURNED);
+            let mut axis = b.axis;
+            if swapped {
+                // As the other end carries it, and from there.
+                axis = scale(-1.0, body::turned(turn, axis));
+                turn = back(turn);
+            }
+            if turned.contains_key(&ascending(b.ends)) {
+                self.turned.insert(ascending(ends), turn);
+            }
+            list.push(Bond { ends, axis, ..*b });
+        }
+        self.list = list;
+        self.special = self.special.iter().filter_map(|p| both(*p)).map(ascending).collect();
         self.special.sort_unstable();
         self.changes += 1;
     }
@@ -163,7 +216,7 @@ impl Bonds {
 
     /// Whether two particles are joined by a bond that counts.
     pub fn joined(&self, a: u32, b: u32) -> bool {
-        self.special.binary_search(&[a.min(b), a.max(b)]).is_ok()
+        self.special.binary_search(&ascending([a, b])).is_ok()
     }
 }
 
@@ -244,6 +297,22 @@ mod tests {
         assert_eq!(b.list.iter().map(|b| b.ends).collect::<Vec<_>>(), [[2, 1], [2, 3], [4, 3]]);
         b.rename(|tag| (tag < 4).then(|| 10 - tag));
         assert_eq!(b.special, [[7, 8], [8, 9]]);
+        // The lower id is now at the other end.
+        let axis = [0.6, 0.0, 0.8];
+        let turn = body::turn([0.0, 1.0, 0.0], 0.3);
+        b.list[0].axis = axis;
+        b.turned.insert(ascending(b.list[0].ends), turn);
+        let before = b.clone();
+        b.rename(|tag| Some(20 - tag));
+        assert_eq!(b.list[0].axis, body::turned(turn, axis).map(|a| -a));
+        b.rename(|tag| Some(20 - tag));
+        let same = b.list[0].axis.iter().zip(&axis).all(|(a, b)| (a - b).abs() < 1e-15);
+        assert!(same && b.turned == before.turned);
+        b.list[0].axis = axis;
+        assert_eq!(b.list, before.list);
+        b.lose(&[(ascending(b.list[0].ends), 1)]);
+        assert!(b.turned.is_empty() && b.len() == 1 && b.special.len() == 1);
+        let b = before;
         let owners: Vec<[u32; 2]> = b.by_owner(&[7, 8, 9]).iter().map(|b| b.ends).collect();
         assert_eq!(owners, [[8, 9], [8, 7]]);
     }

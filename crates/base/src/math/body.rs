@@ -19,6 +19,32 @@ pub fn normalized<R: Real>(q: Quat<R>) -> Quat<R> {
     [q[0] * norm, q[1] * norm, q[2] * norm, q[3] * norm]
 }
 
+/// The turn b followed by a, a b.
+#[inline(always)]
+pub fn after<R: Real>(a: Quat<R>, b: Quat<R>) -> Quat<R> {
+    [
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    ]
+}
+
+/// The turn back.
+#[inline(always)]
+pub fn back<R: Real>(q: Quat<R>) -> Quat<R> {
+    [q[0], -q[1], -q[2], -q[3]]
+}
+
+/// A vector of the body in space, q v q*; v itself, to the bit, where the body has not turned.
+#[inline(always)]
+pub fn turned<R: Real>(q: Quat<R>, v: Vec3<R>) -> Vec3<R> {
+    let axis = [q[1], q[2], q[3]];
+    let half = cross(axis, v);
+    let t = add(half, half);
+    add(add(v, scale(q[0], t)), cross(axis, t))
+}
+
 /// The turn by an angle [rad] about a unit axis.
 pub fn turn(axis: Vec3, angle: f64) -> Quat {
     let half = 0.5 * angle;
@@ -251,6 +277,20 @@ fn rotate(a: &mut [[f64; 3]; 3], v: &mut [[f64; 3]; 3], p: usize, q: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn turns_follow_each_other() {
+        let (a, b) = (turn([0.6, 0.0, 0.8], 1.1), turn([0.0, 1.0, 0.0], -0.4));
+        let v = [0.3, -2.0, 1.5];
+        let (both, one_by_one) = (turned(after(a, b), v), turned(a, turned(b, v)));
+        let by_matrix = apply(&matrix(a), turned(b, v));
+        for k in 0..3 {
+            assert!((both[k] - one_by_one[k]).abs() < 1e-15 && (both[k] - by_matrix[k]).abs() < 1e-15);
+        }
+        assert_eq!(turned(UNTURNED, v), v);
+        let none = after(a, back(a));
+        assert!((none[0] - 1.0).abs() < 1e-15 && none[1..].iter().all(|a| a.abs() < 1e-16));
+    }
     use crate::math::vec3::SIX;
 
     fn close(a: f64, b: f64) {

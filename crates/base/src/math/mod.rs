@@ -1,11 +1,13 @@
 //! Small vectors and matrices, decompositions, random numbers.
 
+pub mod angle;
 pub mod body;
 pub mod cell;
 pub mod cformat;
 #[cfg(target_arch = "x86_64")]
 mod eight;
 pub mod forest;
+pub mod form;
 pub mod four;
 pub mod lanes;
 pub mod pair;

@@ -1,10 +1,10 @@
 //! The two lists of each slab: pairs within the skin, and of those the pairs within the thin skin.
 
-use super::form::InLanes;
 use super::near::{self, InOrder};
 use super::{Fast, NONE, NOWHERE};
 use crate::ContactLaw;
 use crate::driver::Grains;
+use perigrain_base::math::form::InLanes;
 use perigrain_base::math::lanes::{Lanes, PLACE_BITS};
 use perigrain_base::par;
 use perigrain_neigh::slabs::{HERE, Run, Slabs};

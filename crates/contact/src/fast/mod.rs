@@ -9,7 +9,6 @@
 mod batch;
 mod bidisperse;
 mod deep;
-mod form;
 mod image_shift;
 mod list_validity;
 mod lists;
@@ -20,10 +19,10 @@ mod sweep;
 
 use super::driver::Grains;
 use super::{Advance, ContactLaw, MOST_MEMORY};
-pub use form::{Form, InLanes};
 use list_validity::ListValidity;
 use lists::{Short, Slab};
 use memory::Book;
+pub use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::four::has_avx2;
 use perigrain_base::math::lanes::PLACE_BITS;
 use perigrain_base::math::vec3::Vec3;

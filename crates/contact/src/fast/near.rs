@@ -1,8 +1,8 @@
 //! Which pairs of a list are near each other, several at a time.
 
-use super::form::{Form, InLanes};
 use super::lists::FILL;
 use crate::driver::Grains;
+use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::lanes::{Lanes, PLACE_BITS, place};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_neigh::slabs::Run;

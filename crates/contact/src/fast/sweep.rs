@@ -1,12 +1,12 @@
 //! The inner loop of a step: which pairs of short lists touch, and their contacts, batch by batch.
 
 use super::batch::{BATCH, Batch};
-use super::form::InLanes;
 use super::lists::{FILL, Short, Slab, weights};
 use super::near::Places;
 use super::{Alike, Fast, Laws, NONE, Sums};
 use crate::driver::Grains;
 use crate::{Advance, ContactLaw, Loop};
+use perigrain_base::math::form::InLanes;
 use perigrain_base::math::four::Four;
 use perigrain_base::math::lanes::{Lanes, place};
 use perigrain_base::math::vec3::Vec3;

@@ -1,15 +1,15 @@
 //! bond bpm/spring: damped springs that break, at rest as they are when a run first meets them.
 
-use super::{BondForce, BondStyle, Pull, Stretched, breaking_weights};
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use super::driver::{Bonded, Driven, pull_of};
+use super::options::Options;
+use super::{BondForce, BondStyle, Pull, Stretched};
+use perigrain_base::diag::Result;
 use perigrain_base::math::cformat::general;
-use perigrain_base::math::vec3::{dot, sub};
+use perigrain_bonded::spring::Breaking;
 use perigrain_lang::Args;
-use perigrain_plan::{About, Needs, Op, Stage, Tick};
-use perigrain_styles::pull::{Found, apart, find, periods, tally};
+use perigrain_plan::Op;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::World;
-use perigrain_world::field::{BONDS, BOX, F, LISTS, TAG, TALLY, V, X};
+use perigrain_world::{Bond, World};
 use std::collections::BTreeMap;
 
 /// The style.
@@ -37,36 +37,9 @@ impl Style for BpmSpring {
     }
 }
 
-#[derive(Clone, Copy)]
-struct Options {
-    overlay: bool,
-    smooth: bool,
-    normalize: bool,
-    breaks: bool,
-}
-
 impl BondStyle for BpmSpring {
     fn build(&self, args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn BondForce>> {
-        let mut options = Options { overlay: false, smooth: true, normalize: false, breaks: true };
-        let mut last = args.here();
-        while let Some(word) = args.next() {
-            last = word.span;
-            match word.text.as_str() {
-                "overlay/pair" => options.overlay = args.flag("overlay/pair")?,
-                "smooth" => options.smooth = args.flag("smooth")?,
-                "normalize" => options.normalize = args.flag("normalize")?,
-                "break" => options.breaks = args.flag("break")?,
-                "store/local" | "volume/factor" => {
-                    let text = format!("bond_style bpm/spring: `{}` is not in perigrain yet", word.text);
-                    return fail(Code::NOT_SUPPORTED, word.span, text);
-                }
-                _ => return Err(args.unknown(word, &["overlay/pair", "smooth", "normalize", "break"])),
-            }
-        }
-        if options.smooth && !options.breaks {
-            let d = Diagnostic::error(Code::CONFLICT, last, "`break no` does not go with smoothed forces");
-            return Err(d.help("add `smooth no`").into());
-        }
+        let options = Options::read(args, self.name(), &["store/local", "volume/factor"], |_, _| Ok(false))?;
         Ok(Box::new(Declared { options, springs: BTreeMap::new() }))
     }
 }
@@ -100,14 +73,12 @@ impl BondForce for Declared {
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let span = cx.span();
-        if self.options.breaks {
-            breaking_weights(cx.world(), self.options.overlay, span)?;
-        }
-        Ok(vec![Box::new(Springs { law: self.clone(), span, made: None, list: vec![] })])
+        self.options.check(cx.world(), span)?;
+        Ok(vec![Box::new(Bonded::new(self.clone(), span))])
     }
 
-    fn single(&self, _w: &World, bond: &Stretched) -> Option<Pull> {
-        self.springs.get(&bond.kind).map(|s| self.options.pull(*s, bond))
+    fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
+        pull_of(self, w, bond)
     }
 
     fn written(&self, kind: u16) -> Option<String> {
@@ -115,80 +86,26 @@ impl BondForce for Declared {
     }
 }
 
-impl Options {
-    /// The force of a spring of this stiffness, breaking strain and damping.
-    fn pull(&self, [k, limit, gamma]: [f64; 3], bond: &Stretched) -> Pull {
-        let (r, strain) = (bond.length(), bond.strain());
-        let longer = if bond.rest == 0.0 { 0.0 } else { r - bond.rest };
-        let spring = if self.normalize { -k * strain } else { -k * longer };
-        let mut force_per_length = (spring - gamma * dot(bond.d, bond.v) / r) / r;
-        if self.smooth {
-            let near = (strain / limit).powi(2).powi(2).powi(2);
-            force_per_length *= 1.0 - near;
-        }
-        Pull { energy: -0.5 * spring * longer, force_per_length }
-    }
-}
+impl Driven<0> for Declared {
+    type Law = Breaking;
+    const NAME: &'static str = "bpm/spring";
 
-/// Forces of all springs, and their breaking.
-struct Springs {
-    law: Declared,
-    span: Span,
-    /// Rebuild and change of bonds at which `list` was made.
-    made: Option<(u64, u64)>,
-    list: Vec<(usize, Found)>,
-}
-
-impl Op for Springs {
-    fn about(&self) -> About {
-        About::new(
-            "bond bpm/spring",
-            Stage::Force,
-            Needs::new().read(X | V | BONDS | BOX | LISTS | TAG).add(F).write(BONDS | TALLY | LISTS),
-        )
+    fn law(&self) -> Breaking {
+        Breaking { smooth: self.options.smooth, normalize: self.options.normalize }
     }
-    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let now = (w.rebuild.generation, w.bonds.changes);
-        if t.setup || self.made != Some(now) {
-            self.list = find(w, |b| self.law.springs.contains_key(&(b.kind as u16)), self.span)?;
-            self.made = Some(now);
-        }
-        let lengths = periods(w)?;
-        let mut broken = vec![];
-        for (at, found) in &self.list {
-            let Some(spring) = self.law.springs.get(&found.kind).copied() else { continue };
-            let d = apart(w, &lengths, found.ends);
-            let v = sub(w.particles.v[found.ends[0]], w.particles.v[found.ends[1]]);
-            let bond = &mut w.bonds.list[*at];
-            let mut now = Stretched { kind: found.kind, d, v, rest: bond.length };
-            if bond.length == 0.0 {
-                bond.length = now.length();
-                now.rest = bond.length;
-            }
-            if self.law.options.breaks && now.strain().abs() > spring[1] {
-                broken.push(*at);
-                continue;
-            }
-            let pull = self.law.options.pull(spring, &now);
-            tally(w, t, found.ends, &d, &d.map(|d| d * pull.force_per_length), pull.energy);
-        }
-        if !broken.is_empty() {
-            take_away(w, &broken);
-        }
-        Ok(())
+    fn coeffs(&self, kind: u16) -> Option<[f64; 3]> {
+        self.springs.get(&kind).copied()
     }
-}
-
-/// Removes bonds by their place in the list (ascending); pair forces act between their ends from the next step on.
-fn take_away(w: &mut World, broken: &[usize]) {
-    let pairs: Vec<[u32; 2]> =
-        broken.iter().map(|&k| w.bonds.list[k].ends).map(|[a, b]| [a.min(b), a.max(b)]).collect();
-    let mut at = 0;
-    w.bonds.retain(|_| {
-        at += 1;
-        broken.binary_search(&(at - 1)).is_err()
-    });
-    w.bonds.special.retain(|p| !pairs.contains(p));
-    // Lists of contacts leave bonded pairs out.
-    w.rebuild.freed = true;
+    fn measures(&self) -> bool {
+        true
+    }
+    fn damped(&self) -> bool {
+        self.springs.values().any(|[_, _, gamma]| *gamma != 0.0)
+    }
+    fn breaks(&self) -> bool {
+        self.options.breaks
+    }
+    fn own(&self, _w: &World, _k: &[f64; 3], _bond: &Bond, _ends: [usize; 2]) -> [f64; 0] {
+        []
+    }
 }

@@ -1,14 +1,16 @@
 //! bond harmonic: springs along bonds.
 
+use super::driver::{Bonded, Driven, pull_of};
 use super::{BondForce, BondStyle, Pull, Stretched};
 use perigrain_base::diag::Result;
 use perigrain_base::math::cformat::general;
+use perigrain_bonded::spring::Harmonic;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::pull::{Along, Law};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::adapted::Coefficient;
-use perigrain_world::{Numbers, World};
+use perigrain_world::field::{Fields, MEMO};
+use perigrain_world::{Bond, Numbers, World};
 use std::collections::BTreeMap;
 
 /// The style.
@@ -33,13 +35,13 @@ impl Style for HarmonicStyle {
 
 impl BondStyle for HarmonicStyle {
     fn build(&self, _args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn BondForce>> {
-        Ok(Box::<Harmonic>::default())
+        Ok(Box::<Declared>::default())
     }
 }
 
 /// Stiffness and length at rest by type.
 #[derive(Clone, Default)]
-struct Harmonic {
+struct Declared {
     springs: BTreeMap<u16, Spring>,
 }
 
@@ -66,33 +68,49 @@ impl Spring {
     }
 }
 
-fn pull([k, r0]: [f64; 2], r: f64) -> Pull {
-    let stretch = r - r0;
-    let force = -2.0 * k * stretch;
-    Pull { energy: k * stretch * stretch, force_per_length: if r > 0.0 { force / r } else { 0.0 } }
-}
-
 /// The springs of a run.
+#[derive(Clone)]
 struct Adapting {
     /// As the deck's lines said.
-    said: Harmonic,
+    said: Declared,
     /// As fixes have changed them.
     now: BTreeMap<u16, [f64; 2]>,
 }
 
-impl Law for Adapting {
-    fn pull(&self, kind: u16, r: f64) -> Option<Pull> {
-        self.now.get(&kind).map(|s| pull(*s, r))
-    }
+impl Driven<0> for Adapting {
+    type Law = Harmonic;
+    const NAME: &'static str = "harmonic";
 
-    fn adapt(&mut self, w: &World) {
+    fn law(&self) -> Harmonic {
+        Harmonic
+    }
+    fn coeffs(&self, kind: u16) -> Option<[f64; 2]> {
+        self.now.get(&kind).copied()
+    }
+    fn measures(&self) -> bool {
+        false
+    }
+    fn damped(&self) -> bool {
+        false
+    }
+    fn breaks(&self) -> bool {
+        false
+    }
+    fn own(&self, _w: &World, _k: &[f64; 2], _bond: &Bond, _ends: [usize; 2]) -> [f64; 0] {
+        []
+    }
+    fn reads(&self) -> Fields {
+        MEMO
+    }
+    fn adapt(&mut self, w: &World) -> bool {
         for (now, spring) in self.now.values_mut().zip(self.said.springs.values()) {
             *now = spring.now(w);
         }
+        true
     }
 }
 
-impl BondForce for Harmonic {
+impl BondForce for Declared {
     fn name(&self) -> &'static str {
         "harmonic"
     }
@@ -114,7 +132,7 @@ impl BondForce for Harmonic {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let now = self.springs.iter().map(|(kind, s)| (*kind, s.said)).collect();
         let law = Adapting { said: self.clone(), now };
-        Ok(vec![Box::new(Along::new("bond harmonic", cx.span(), law))])
+        Ok(vec![Box::new(Bonded::new(law, cx.span()))])
     }
 
     fn coefficients(&self) -> &'static [&'static str] {
@@ -127,24 +145,11 @@ impl BondForce for Harmonic {
     }
 
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
-        self.springs.get(&bond.kind).map(|s| pull(s.now(w), bond.length()))
+        let now = self.springs.get(&bond.kind)?.now(w);
+        pull_of(&Adapting { said: self.clone(), now: [(bond.kind, now)].into() }, w, bond)
     }
 
     fn written(&self, kind: u16) -> Option<String> {
         self.springs.get(&kind).map(|s| s.said.map(|a| general(a, 16)).join(" "))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_force_is_the_slope_of_the_energy() {
-        let (spring, r, h) = ([7.0, 1.2], 1.5, 1e-6);
-        let slope = (pull(spring, r + h).energy - pull(spring, r - h).energy) / (2.0 * h);
-        // Central differences of a parabola are exact but for rounding, about 1e-16/1e-6.
-        assert!((pull(spring, r).force_per_length * r + slope).abs() < 1e-8);
-        assert_eq!(pull(spring, 1.2), Pull::default());
     }
 }

@@ -1,9 +1,12 @@
 //! Bond styles: forces along bonds between particles.
 
 pub mod bpm_peri;
+mod bpm_rotational;
 mod bpm_spring;
+mod driver;
 mod harmonic;
 mod hybrid;
+mod options;
 mod zero;
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -15,6 +18,7 @@ use perigrain_world::World;
 #[rustfmt::skip]
 pub const BONDS: &[&dyn BondStyle] = &[
     &bpm_peri::BpmPeri,
+    &bpm_rotational::BpmRotational,
     &bpm_spring::BpmSpring,
     &harmonic::HarmonicStyle,
     &hybrid::Hybrid,

@@ -1,11 +1,11 @@
-//! How many contacts are evaluated at a time, and with which instructions.
+//! How many contacts or bonds are evaluated at a time, and with which instructions.
 
-use perigrain_base::math::four::Plain;
+use super::four::Plain;
 #[cfg(target_arch = "x86_64")]
-use perigrain_base::math::four::{Avx2, Avx512, gathers_pay, has_avx2, has_avx512};
-use perigrain_base::math::lanes::Lanes;
+use super::four::{Avx2, Avx512, gathers_pay, has_avx2, has_avx512};
+use super::lanes::Lanes;
 
-/// How many contacts are evaluated at a time; all forms have the same bits.
+/// How many of them are evaluated at a time; all forms have the same bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
     /// Eight, with AVX-512 and its gathering loads.
@@ -54,7 +54,6 @@ impl Form {
     }
 
     /// All that this processor has.
-    #[cfg(test)]
     pub fn all() -> Vec<Self> {
         let mut all = vec![Self::Plain];
         #[cfg(target_arch = "x86_64")]

@@ -1,0 +1,186 @@
+//! Bonds as columns, in the order of space, and who they belong to.
+
+use perigrain_base::math::body::{Quat, UNTURNED};
+use perigrain_base::math::vec3::Vec3;
+
+/// Bonds of a type stand in groups of this many, so that whatever works on several at a time has one type.
+pub const GROUP: usize = 8;
+
+/// A bond whose ends have been found in storage.
+#[derive(Clone, Copy, Debug)]
+pub struct Member<const C: usize> {
+    /// Type.
+    pub kind: u16,
+    /// Places of the ends; the first is that with the lower ID.
+    pub ends: [u32; 2],
+    /// Length at rest [length].
+    pub length: f64,
+    /// Unit vector from the second end to the first at rest, as the second end carries it.
+    pub axis: Vec3,
+    /// The turn from the first end's orientation at birth to the second's.
+    pub turned: Quat,
+    /// What belongs to this bond alone.
+    pub own: [f64; C],
+}
+
+/// Bonds by type and place, padded to whole groups with dead ones.
+#[derive(Clone, Debug)]
+pub struct Columns<const C: usize> {
+    /// Places of the ends.
+    pub ends: [Vec<u32>; 2],
+    /// The type of each group.
+    pub kinds: Vec<u16>,
+    /// 1, or 0 for what is broken or fills up a group.
+    pub alive: Vec<f64>,
+    /// Lengths at rest [length].
+    pub length: Vec<f64>,
+    /// Components of the axes.
+    pub axis: [Vec<f64>; 3],
+    /// The turns at birth; empty where all ends were alike.
+    pub turned: Vec<Quat>,
+    /// What belongs to single bonds.
+    pub own: [Vec<f64>; C],
+    /// For each particle, where its entries begin; one more.
+    starts: Vec<u32>,
+    /// Twice the place of a bond, and one more at its second end.
+    entries: Vec<u32>,
+}
+
+impl<const C: usize> Default for Columns<C> {
+    fn default() -> Self {
+        Self {
+            ends: Default::default(),
+            kinds: vec![],
+            alive: vec![],
+            length: vec![],
+            axis: Default::default(),
+            turned: vec![],
+            own: std::array::from_fn(|_| vec![]),
+            starts: vec![0],
+            entries: vec![],
+        }
+    }
+}
+
+impl<const C: usize> Columns<C> {
+    /// Sorts bonds into columns, of `particles` particles in storage.
+    pub fn new(mut bonds: Vec<Member<C>>, particles: usize) -> Self {
+        bonds.sort_by_key(|b| (b.kind, b.ends[0].min(b.ends[1]), b.ends[0].max(b.ends[1])));
+        let mut columns = Self::default();
+        let turned = bonds.iter().any(|b| b.turned != UNTURNED);
+        for (k, bond) in bonds.iter().enumerate() {
+            columns.push(bond, 1.0, turned);
+            let last = bonds.get(k + 1).is_none_or(|next| next.kind != bond.kind);
+            while last && !columns.alive.len().is_multiple_of(GROUP) {
+                columns.push(bond, 0.0, turned);
+            }
+        }
+        columns.enter(particles);
+        columns
+    }
+
+    fn push(&mut self, bond: &Member<C>, alive: f64, turned: bool) {
+        if self.alive.len().is_multiple_of(GROUP) {
+            self.kinds.push(bond.kind);
+        }
+        self.alive.push(alive);
+        self.length.push(bond.length);
+        for k in 0..2 {
+            self.ends[k].push(bond.ends[k]);
+        }
+        for k in 0..3 {
+            self.axis[k].push(bond.axis[k]);
+        }
+        if turned {
+            self.turned.push(bond.turned);
+        }
+        for k in 0..C {
+            self.own[k].push(bond.own[k]);
+        }
+    }
+
+    /// Who has which bonds, ascending.
+    fn enter(&mut self, particles: usize) {
+        let mut starts = vec![0u32; particles + 1];
+        let living = || (0..self.alive.len()).filter(|&k| self.alive[k] > 0.0);
+        for k in living() {
+            self.ends.iter().for_each(|e| starts[e[k] as usize + 1] += 1);
+        }
+        for k in 0..particles {
+            starts[k + 1] += starts[k];
+        }
+        let mut next = starts.clone();
+        let mut entries = vec![0; starts[particles] as usize];
+        for k in living() {
+            for (end, places) in self.ends.iter().enumerate() {
+                let at = &mut next[places[k] as usize];
+                entries[*at as usize] = (2 * k + end) as u32;
+                *at += 1;
+            }
+        }
+        (self.starts, self.entries) = (starts, entries);
+    }
+
+    /// Places, with what fills up.
+    pub fn rows(&self) -> usize {
+        self.alive.len()
+    }
+
+    /// The bonds of a particle: twice their place, and one more at the second end.
+    #[inline]
+    pub fn of(&self, particle: usize) -> &[u32] {
+        &self.entries[self.starts[particle] as usize..self.starts[particle + 1] as usize]
+    }
+
+    /// The ends of a bond.
+    pub fn pair(&self, bond: usize) -> [usize; 2] {
+        [self.ends[0][bond] as usize, self.ends[1][bond] as usize]
+    }
+
+    /// The type of a bond.
+    pub fn kind(&self, bond: usize) -> u16 {
+        self.kinds[bond / GROUP]
+    }
+
+    /// The bonds that hold, in order.
+    pub fn living(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.rows()).filter(|&k| self.alive[k] > 0.0)
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let per_row = 8 + 8 * (5 + C) + if self.turned.is_empty() { 0 } else { 32 };
+        self.rows() * per_row + 4 * (self.starts.len() + self.entries.len())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_have_one_type_and_particles_know_their_bonds() {
+        let bond = |kind, ends| Member {
+            kind,
+            ends,
+            length: 1.0,
+            axis: [1.0, 0.0, 0.0],
+            turned: UNTURNED,
+            own: [f64::from(kind)],
+        };
+        let mut bonds: Vec<_> = (0..11).map(|k| bond(2, [k + 1, k])).collect();
+        bonds.extend([bond(1, [3, 5]), bond(1, [0, 2])]);
+        let c = Columns::new(bonds, 13);
+        assert_eq!((c.rows(), &c.kinds[..]), (24, &[1, 2, 2][..]));
+        assert_eq!(c.living().count(), 13);
+        assert_eq!([c.pair(0), c.pair(1)], [[0, 2], [3, 5]]);
+        assert!(c.turned.is_empty() && c.own[0][8] == 2.0);
+        let entries: usize = (0..13).map(|p| c.of(p).len()).sum();
+        assert_eq!((entries, c.of(12).len()), (26, 0));
+        for p in 0..13u32 {
+            for &e in c.of(p as usize) {
+                assert_eq!(c.ends[e as usize & 1][e as usize / 2], p);
+            }
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! The loop over bonds: what each does, side by side in lanes and threads, then what each particle gets of its bonds. Sums run in
+//! the order of the columns: the same bits for any number of threads and any form of lanes.
+
+use crate::columns::{Columns, GROUP};
+use crate::law::{BondLaw, Ends, Motion};
+use perigrain_base::math::body::{Quat, after};
+use perigrain_base::math::form::{Form, InLanes};
+use perigrain_base::math::four::Four;
+use perigrain_base::math::lanes::Lanes;
+use perigrain_base::math::real::Real;
+use perigrain_base::math::vec3::{Vec3, add, sub};
+use perigrain_base::par;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What is known of the particles. Shapes: one row per particle.
+#[derive(Clone, Copy, Debug)]
+pub struct Body<'a> {
+    /// Positions [length].
+    pub x: &'a [Vec3],
+    /// Velocities [velocity].
+    pub v: &'a [Vec3],
+    /// Spins [1/time]; may be empty where no law turns.
+    pub omega: &'a [Vec3],
+    /// Orientations; may be empty where no law turns.
+    pub quat: &'a [Quat],
+    /// Edge lengths of the box, 0 where it does not repeat [length].
+    pub periods: Vec3,
+}
+
+/// A pass over all bonds.
+#[derive(Clone, Copy, Debug)]
+pub struct Sweep<'a, const C: usize, K> {
+    /// The bonds.
+    pub columns: &'a Columns<C>,
+    /// Coefficients by type, from 1.
+    pub coeffs: &'a [Option<K>],
+    /// The particles.
+    pub body: Body<'a>,
+    /// Whether some bond is damped.
+    pub damped: bool,
+    /// Whether bonds break.
+    pub breaks: bool,
+}
+
+/// What bonds do: a row per bond.
+#[derive(Clone, Debug, Default)]
+pub struct Out {
+    /// Force on the first end, and the energy.
+    pub force: Vec<[f64; 4]>,
+    /// Torques on both ends; empty for laws without.
+    pub torque: Vec<[[f64; 4]; 2]>,
+    /// How much of what each bears.
+    pub load: Vec<f64>,
+    /// Some bond bears more than it can: its force is zero.
+    pub broken: bool,
+}
+
+/// The largest number below 1: what is above it is 1 or more.
+const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
+
+/// All bonds under a law.
+///
+/// # Panics
+/// If columns refer to particles that are not there, or to types without coefficients.
+pub fn all<const C: usize, L: BondLaw<C>>(law: &L, pass: &Sweep<'_, C, L::Coeffs>, out: &mut Out) {
+    let (rows, particles) = (pass.columns.rows(), pass.body.x.len());
+    let there = |places: &Vec<u32>| places.iter().all(|p| (*p as usize) < particles);
+    assert!(pass.columns.ends.iter().all(there) && (!pass.damped || pass.body.v.len() == particles));
+    assert!(!L::TURNS || (pass.body.quat.len() == particles && pass.body.omega.len() == particles));
+    assert!(particles < 1 << perigrain_base::math::lanes::PLACE_BITS);
+    out.force.resize(rows, [0.0; 4]);
+    out.load.resize(rows, 0.0);
+    out.torque.resize(if L::TURNS { rows } else { 0 }, [[0.0; 4]; 2]);
+    let (broken, form) = (AtomicBool::new(false), Form::here());
+    let torque = L::TURNS.then_some(&mut out.torque[..]);
+    par::each((&mut out.force[..], &mut out.load[..], torque), |first, (force, load, torque)| {
+        let chunk = Chunk { law, pass, first, force, load, torque };
+        // SAFETY: the form is one of this processor, and the lists are as long as the assertions above say.
+        if unsafe { form.run(chunk) } {
+            broken.store(true, Ordering::Relaxed);
+        }
+    });
+    out.broken = broken.into_inner();
+}
+
+/// Part of a pass: whole groups from `first` on.
+struct Chunk<'a, 'b, const C: usize, L: BondLaw<C>> {
+    law: &'a L,
+    pass: &'a Sweep<'b, C, L::Coeffs>,
+    first: usize,
+    force: &'a mut [[f64; 4]],
+    load: &'a mut [f64],
+    torque: Option<&'a mut [[[f64; 4]; 2]]>,
+}
+
+impl<const C: usize, L: BondLaw<C>> InLanes for Chunk<'_, '_, C, L> {
+    /// Whether some bond broke.
+    type Out = bool;
+
+    #[inline(always)]
+    unsafe fn run<const N: usize, V: Lanes<N>>(mut self) -> bool {
+        let (columns, body) = (self.pass.columns, &self.pass.body);
+        let mut broken = false;
+        // SAFETY: the processor has what the lanes need (the caller); all columns have as many rows as forces, in whole groups,
+        // and all places are particles (checked in `all`).
+        unsafe {
+            let (none, one) = (V::all(0.0), V::all(1.0));
+            for at in (0..self.force.len()).step_by(N) {
+                let row = self.first + at;
+                let Some(k) = &self.pass.coeffs[usize::from(columns.kinds[row / GROUP])] else { continue };
+                let (first, second) = (columns.ends[0].as_ptr().add(row), columns.ends[1].as_ptr().add(row));
+                let x = body.x.as_ptr();
+                let mut ends = Ends {
+                    r: nearest(sub(V::vectors(x, first), V::vectors(x, second)), &body.periods),
+                    length: column(&columns.length, row),
+                    axis: [none, none, one],
+                    quat: [[one, none, none, none]; 2],
+                };
+                if L::TURNS {
+                    ends.axis = [
+                        column(&columns.axis[0], row),
+                        column(&columns.axis[1], row),
+                        column(&columns.axis[2], row),
+                    ];
+                    ends.quat = [quats::<N, V>(body.quat, first), quats::<N, V>(body.quat, second)];
+                    if !columns.turned.is_empty() {
+                        ends.quat[0] = after(ends.quat[0], rows_of::<N, V>(&columns.turned[row..]));
+                    }
+                }
+                let mut motion = None;
+                if self.pass.damped {
+                    let v = body.v.as_ptr();
+                    let mut omega = [[none; 3]; 2];
+                    if L::TURNS {
+                        let o = body.omega.as_ptr();
+                        omega = [V::vectors(o, first), V::vectors(o, second)];
+                    }
+                    motion = Some(Motion { v: sub(V::vectors(v, first), V::vectors(v, second)), omega });
+                }
+                let mut own = [none; C];
+                for c in 0..C {
+                    own[c] = column(&columns.own[c], row);
+                }
+                let acts = self.law.act(k, &own, &ends, motion.as_ref());
+                let mut alive = column::<N, V>(&columns.alive, row);
+                let load = V::choose(alive.above(none), acts.load, none);
+                if self.pass.breaks {
+                    let over = load.above(V::all(BELOW_ONE));
+                    broken |= V::any(over);
+                    alive = V::choose(over, none, alive);
+                }
+                let holds = alive.above(none);
+                let f = acts.force;
+                let f = [
+                    V::choose(holds, f[0], none),
+                    V::choose(holds, f[1], none),
+                    V::choose(holds, f[2], none),
+                    V::choose(holds, acts.energy, none),
+                ];
+                let rows = V::to_rows(f);
+                for lane in 0..N {
+                    rows[lane].store(self.force[at + lane].as_mut_ptr());
+                }
+                self.load[at..at + N].copy_from_slice(&load.numbers());
+                if let Some(torque) = &mut self.torque {
+                    for end in 0..2 {
+                        let t = acts.torque[end];
+                        let t = [
+                            V::choose(holds, t[0], none),
+                            V::choose(holds, t[1], none),
+                            V::choose(holds, t[2], none),
+                            none,
+                        ];
+                        let rows = V::to_rows(t);
+                        for lane in 0..N {
+                            rows[lane].store(torque[at + lane][end].as_mut_ptr());
+                        }
+                    }
+                }
+            }
+        }
+        broken
+    }
+}
+
+/// Numbers of a column from a row on.
+///
+/// # Safety
+/// The processor must have what the lanes need; a whole group must follow.
+#[inline(always)]
+unsafe fn column<const N: usize, V: Lanes<N>>(column: &[f64], row: usize) -> V {
+    // SAFETY: columns consist of whole groups, and `row` begins N numbers of one.
+    unsafe { V::of(*column.as_ptr().add(row).cast::<[f64; N]>()) }
+}
+
+/// Rows of four numbers as lanes.
+///
+/// # Safety
+/// The processor must have what the lanes need; there must be as many rows as lanes.
+#[inline(always)]
+unsafe fn rows_of<const N: usize, V: Lanes<N>>(list: &[[f64; 4]]) -> [V; 4] {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let mut rows = [V::Row::splat(0.0); N];
+        for lane in 0..N {
+            rows[lane] = V::Row::load(list.as_ptr().add(lane).cast());
+        }
+        V::of_rows(rows)
+    }
+}
+
+/// The orientations at some places.
+///
+/// # Safety
+/// The processor must have what the lanes need; there must be as many places as lanes, all of the list.
+#[inline(always)]
+unsafe fn quats<const N: usize, V: Lanes<N>>(list: &[Quat], at: *const u32) -> Quat<V> {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let mut rows = [V::Row::splat(0.0); N];
+        for lane in 0..N {
+            rows[lane] = V::Row::load(list.as_ptr().add(*at.add(lane) as usize).cast());
+        }
+        V::of_rows(rows)
+    }
+}
+
+/// Across the nearest periodic faces, of two points in the box or hardly outside.
+#[inline(always)]
+pub fn nearest<R: Real>(d: Vec3<R>, periods: &Vec3) -> Vec3<R> {
+    [across(d[0], periods[0]), across(d[1], periods[1]), across(d[2], periods[2])]
+}
+
+#[inline(always)]
+fn across<R: Real>(d: R, period: f64) -> R {
+    if period == 0.0 {
+        return d;
+    }
+    let half = d.like(0.5 * period);
+    let d = R::choose(d.above(half), d - period, d);
+    R::choose((-d).above(half), d + period, d)
+}
+
+/// Adds to each particle what its bonds do to it; torques where there are some.
+pub fn add_up<const C: usize>(columns: &Columns<C>, out: &Out, f: &mut [Vec3], torque: Option<&mut [Vec3]>) {
+    par::each((f, torque), |first, (f, mut torque)| {
+        for (k, f) in f.iter_mut().enumerate() {
+            let entries = columns.of(first + k);
+            if entries.is_empty() {
+                continue;
+            }
+            let (mut force, mut turning) = ([0.0; 3], [0.0; 3]);
+            for entry in entries {
+                let (bond, end) = (*entry as usize / 2, *entry as usize % 2);
+                let row = &out.force[bond];
+                let along = [row[0], row[1], row[2]];
+                force = if end == 0 { add(force, along) } else { sub(force, along) };
+                if let Some(rows) = out.torque.get(bond) {
+                    let row = &rows[end];
+                    turning = add(turning, [row[0], row[1], row[2]]);
+                }
+            }
+            *f = add(*f, force);
+            if let Some(torque) = &mut torque {
+                torque[k] = add(torque[k], turning);
+            }
+        }
+    });
+}

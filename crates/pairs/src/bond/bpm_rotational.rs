@@ -1,0 +1,183 @@
+//! bond bpm/rotational: bonds that stretch, shear, twist, bend and break.
+
+use super::driver::{Bonded, Driven, pull_of};
+use super::options::Options;
+use super::{BondForce, BondStyle, Pull, Stretched};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::math::cformat::general;
+use perigrain_bonded::rotational::{Coeffs, Rotational};
+use perigrain_bonded::stiffness::Stiffness;
+use perigrain_lang::Args;
+use perigrain_plan::Op;
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::{Bond, World};
+use std::collections::BTreeMap;
+
+/// The style.
+pub struct BpmRotational;
+
+impl Style for BpmRotational {
+    fn name(&self) -> &'static str {
+        "bpm/rotational"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "bond_style bpm/rotational [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no]\n\
+                     bond_coeff T kr ks kt kb frc fsc ttc tbc gn gs gr gt",
+            summary: "Bonds between spheres that stretch, shear, twist, bend and break.",
+            text: "A run notes length and direction of each bond when it first meets it. Against them stand the stretch r − r0, the shear angle γ \
+                   between the direction then, as the end with the higher ID carries it along, and now, the twist ψ about the bond and the bending \
+                   angle θ: kr (r − r0) along the bond, ks r γ across it, the torques kt ψ and kb θ. With `normalize yes` kr and ks are divided by r0. \
+                   B = F/frc + |Fs|/fsc + |Tt|/ttc + |Tb|/tbc counts how near a bond is to its end (pressure counts as negative, B not below 0): at \
+                   B ≥ 1 it exerts no force any more and is gone, and pair forces act between its ends from the next step on. Nothing breaks in the \
+                   setup of a run. Forces and torques are multiplied with 1 − B⁴ unless `smooth no` is said; `break no` needs that. Dashpots gn along \
+                   the bond, gs across it, gr against rolling (times r) and gt against twist. Needs `atom_style bpm/sphere`, `fix nve/bpm/sphere`, and \
+                   `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` `special_bonds lj/coul 1 1 1`. The energy is counted as 0: the law \
+                   has none. Restart files hold length and direction at rest. `frame particle` and `damping dem` of newer LAMMPS say what this is; \
+                   `frame average`, `damping derivative` and `store/local` are refused.\n\
+                   LAMMPS takes the first direction for one of particles that have not turned, and lets a bond whose end with the lower ID stands \
+                   exactly below the other neither bend nor twist; so does `compat lammps`. Its limits of torque stand in this order, twist first, \
+                   though its manual has them the other way round.\n\
+                   Wang, Acta Geotechnica 4, 117 (2009); Clemmer, Monti and Lechman, Soft Matter 20, 1702 (2024).",
+            example: "units lj\natom_style bpm/sphere\nlattice sc 1.0\nregion b block 0 3 0 3 0 3\n\
+                      create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nset group all diameter 1.0\n\
+                      create_bonds many all all 1 0.9 1.1\nspecial_bonds lj 0 1 1 coul 1 1 1\nbond_style bpm/rotational\n\
+                      bond_coeff 1 1.0 0.2 0.02 0.02 0.2 0.04 0.04 0.04 0.1 0.02 0.002 0.002\nvelocity all create 0.1 4928\n\
+                      fix 1 all nve/bpm/sphere\nthermo_style custom step ke bonds\nrun 10",
+        }
+    }
+}
+
+impl BondStyle for BpmRotational {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>> {
+        if !cx.world.particles.style.oriented {
+            let text = "bond_style bpm/rotational needs particles with orientations";
+            let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
+            return Err(d
+                .help("put `atom_style bpm/sphere` (or a hybrid with it) at the top of the deck")
+                .into());
+        }
+        let options = Options::read(args, self.name(), &["store/local"], same_as_here)?;
+        Ok(Box::new(Declared { options, types: BTreeMap::new(), compat_lammps: cx.world.settings.lammps() }))
+    }
+}
+
+/// The words of newer LAMMPS for what this style is.
+fn same_as_here(word: &str, args: &mut Args) -> Result<bool> {
+    let (here, elsewhere) = match word {
+        "frame" => ("particle", "average"),
+        "damping" => ("dem", "derivative"),
+        _ => return Ok(false),
+    };
+    let said = args.expect(here)?;
+    if said.text == here {
+        return Ok(true);
+    }
+    if said.text != elsewhere {
+        return Err(args.unknown(said, &[here]));
+    }
+    let text = format!("bond_style bpm/rotational: `{word} {elsewhere}` is not in perigrain");
+    let d = Diagnostic::error(Code::NOT_SUPPORTED, said.span, text);
+    Err(d.help(format!("`{word} {here}` is; `bond_style bpm/beam` treats both ends alike")).into())
+}
+
+#[derive(Clone)]
+struct Declared {
+    options: Options,
+    types: BTreeMap<u16, Coeffs>,
+    compat_lammps: bool,
+}
+
+impl Driven<0> for Declared {
+    type Law = Rotational;
+    const NAME: &'static str = "bpm/rotational";
+
+    fn law(&self) -> Rotational {
+        let Options { smooth, normalize, .. } = self.options;
+        Rotational { smooth, normalize, compat_lammps: self.compat_lammps }
+    }
+    fn coeffs(&self, kind: u16) -> Option<Coeffs> {
+        self.types.get(&kind).copied()
+    }
+    fn measures(&self) -> bool {
+        true
+    }
+    fn damped(&self) -> bool {
+        self.types.values().any(|k| k.damping != Stiffness::default())
+    }
+    fn breaks(&self) -> bool {
+        self.options.breaks
+    }
+    fn axes_in_space(&self) -> bool {
+        self.compat_lammps
+    }
+    fn own(&self, _w: &World, _k: &Coeffs, _bond: &Bond, _ends: [usize; 2]) -> [f64; 0] {
+        []
+    }
+}
+
+/// Four numbers of a line, as stretch, shear, twist, bending.
+fn four(args: &mut Args, names: [&str; 4], positive: bool) -> Result<Stiffness> {
+    let mut next = |what: &str| if positive { args.positive(what) } else { args.non_negative(what) };
+    Ok(Stiffness {
+        normal: next(names[0])?,
+        shear: next(names[1])?,
+        twist: next(names[2])?,
+        bend: next(names[3])?,
+    })
+}
+
+impl BondForce for Declared {
+    fn name(&self) -> &'static str {
+        "bpm/rotational"
+    }
+
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        let names = ["the stiffness kr of stretch", "ks of shear", "kt of twist", "kb of bending"];
+        let stiffness = four(args, names, false)?;
+        let names =
+            ["the force frc at which it breaks", "fsc in shear", "the torque ttc of twist", "tbc of bending"];
+        let strength = four(args, names, true)?;
+        let names = ["the damping gn of stretch", "gs of shear", "gr of roll", "gt of twist"];
+        let said = four(args, names, false)?;
+        // Roll comes before twist here.
+        let damping = Stiffness { twist: said.bend, bend: said.twist, ..said };
+        let coeffs = Coeffs { stiffness, strength, damping };
+        self.types.extend(kinds.iter().map(|&k| (k, coeffs)));
+        Ok(())
+    }
+
+    fn covers(&self, kind: u16) -> bool {
+        self.types.contains_key(&kind)
+    }
+
+    fn restrict(&mut self, kinds: &[u16]) {
+        self.types.retain(|k, _| kinds.contains(k));
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        self.options.check(cx.world(), span)?;
+        Ok(vec![Box::new(Bonded::new(self.clone(), span))])
+    }
+
+    fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
+        pull_of(self, w, bond)
+    }
+
+    fn stiffness(&self, kind: u16, length: f64, _radii: [f64; 2]) -> Option<Stiffness> {
+        let k = self.types.get(&kind)?.stiffness;
+        let per = if self.options.normalize { length } else { 1.0 };
+        Some(Stiffness { normal: k.normal / per, shear: k.shear / per, ..k })
+    }
+
+    fn written(&self, kind: u16) -> Option<String> {
+        let k = self.types.get(&kind)?;
+        let ([s, b], d) = ([&k.stiffness, &k.strength], &k.damping);
+        let numbers = [
+            s.normal, s.shear, s.twist, s.bend, b.normal, b.shear, b.twist, b.bend, d.normal, d.shear,
+            d.bend, d.twist,
+        ];
+        Some(numbers.map(|a| general(a, 16)).join(" "))
+    }
+}

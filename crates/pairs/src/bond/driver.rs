@@ -1,0 +1,265 @@
+//! The op of bonds as columns: finds their ends, evaluates a law for all of them, lets them break.
+
+use perigrain_base::diag::{Result, Span};
+use perigrain_base::math::body::{Quat, UNTURNED, after, back, turned};
+use perigrain_base::math::vec3::{Vec3, dot, length, scale, sub};
+use perigrain_base::par;
+use perigrain_bonded::columns::{Columns, Member};
+use perigrain_bonded::law::{BondLaw, Ends, Motion};
+use perigrain_bonded::sweep::{Body, Out, Sweep, add_up, nearest};
+use perigrain_plan::{About, Needs, Op, Stage, Tick};
+use perigrain_styles::pull::{Found, Pull, Stretched, apart, find, periods};
+use perigrain_world::bonds::ascending;
+use perigrain_world::field::{BONDS, BOX, F, Fields, LISTS, OMEGA, QUAT, TAG, TALLY, TORQUE, V, X};
+use perigrain_world::tally::add_share;
+use perigrain_world::{Bond, World};
+
+/// A law with what the deck's lines say.
+pub trait Driven<const C: usize>: Clone + Send + Sync + 'static {
+    /// What one bond does.
+    type Law: BondLaw<C>;
+    /// The style's name.
+    const NAME: &'static str;
+
+    /// The law, as the style's line says.
+    fn law(&self) -> Self::Law;
+
+    /// The coefficients of a type, if the style has some for it.
+    fn coeffs(&self, kind: u16) -> Option<Coeffs<C, Self>>;
+
+    /// Whether the length at rest is that at which a run first meets the bond.
+    fn measures(&self) -> bool;
+
+    /// Whether some bond is damped.
+    fn damped(&self) -> bool;
+
+    /// Whether bonds break.
+    fn breaks(&self) -> bool;
+
+    /// Whether axes at rest are vectors of space, as if no particle had turned when its bond was made.
+    fn axes_in_space(&self) -> bool {
+        false
+    }
+
+    /// What belongs to a bond alone.
+    fn own(&self, w: &World, k: &Coeffs<C, Self>, bond: &Bond, ends: [usize; 2]) -> [f64; C];
+
+    /// What `own` reads of the world.
+    fn reads(&self) -> Fields {
+        Fields::NONE
+    }
+
+    /// Takes the coefficients that fixes have changed; whether there are new ones.
+    fn adapt(&mut self, _w: &World) -> bool {
+        false
+    }
+}
+
+/// The coefficients of a bond type.
+pub type Coeffs<const C: usize, L> = <<L as Driven<C>>::Law as BondLaw<C>>::Coeffs;
+
+/// A bond that a style now sees for the first time gets its length and axis at rest.
+pub fn first_sight<const C: usize, L: Driven<C>>(
+    law: &L,
+    w: &mut World,
+    list: &[(usize, Found)],
+) -> Result<()> {
+    let lengths = periods(w)?;
+    for (at, found) in list {
+        let bond = w.bonds.list[*at];
+        let known = bond.length != 0.0 || !law.measures();
+        if known && (bond.axis != [0.0; 3] || !L::Law::TURNS) {
+            continue;
+        }
+        let [a, b] = lower_first(bond.ends, found.ends);
+        let r = apart(w, &lengths, [a, b]);
+        let distance = length(r);
+        if !known {
+            w.bonds.list[*at].length = distance;
+        }
+        if !L::Law::TURNS || distance == 0.0 {
+            continue;
+        }
+        let mut axis = scale(1.0 / distance, r);
+        if !law.axes_in_space() {
+            let q = [w.particles.quat[a], w.particles.quat[b]];
+            axis = turned(back(q[1]), axis);
+            let turn = after(back(q[0]), q[1]);
+            if q[0] != q[1] {
+                w.bonds.turned.insert(ascending(bond.ends), turn);
+            }
+        }
+        w.bonds.list[*at].axis = axis;
+    }
+    Ok(())
+}
+
+/// Places of ends, that of the lower ID first.
+fn lower_first(ids: [u32; 2], places: [usize; 2]) -> [usize; 2] {
+    if ids[0] < ids[1] { places } else { [places[1], places[0]] }
+}
+
+/// What a law says of one bond as it is now: its ends, and how they move. The first end is that with the lower ID.
+pub fn ends_of(w: &World, bond: &Stretched) -> (Ends<f64>, Motion<f64>) {
+    let p = &w.particles;
+    let [a, b] = lower_first(bond.bond.ends, bond.ends);
+    let sign = if a == bond.ends[0] { 1.0 } else { -1.0 };
+    let r = scale(sign, bond.d);
+    let turn = w.bonds.turned.get(&ascending(bond.bond.ends)).copied().unwrap_or(UNTURNED);
+    let of = |list: &[Quat], i: usize| list.get(i).copied().unwrap_or(UNTURNED);
+    let quat = [after(of(&p.quat, a), turn), of(&p.quat, b)];
+    let axis = if bond.bond.axis == [0.0; 3] { scale(1.0 / length(r), r) } else { bond.bond.axis };
+    let spin = |i: usize| p.omega.get(i).copied().unwrap_or([0.0; 3]);
+    let at_rest = if bond.rest == 0.0 { bond.length() } else { bond.rest };
+    (Ends { r, length: at_rest, axis, quat }, Motion { v: scale(sign, bond.v), omega: [spin(a), spin(b)] })
+}
+
+/// What a bond of a style does now, along its line.
+pub fn pull_of<const C: usize, L: Driven<C>>(law: &L, w: &World, bond: &Stretched) -> Option<Pull> {
+    let k = law.coeffs(bond.kind)?;
+    let (ends, motion) = ends_of(w, bond);
+    let own = law.own(w, &k, &bond.bond, lower_first(bond.bond.ends, bond.ends));
+    let acts = law.law().act(&k, &own, &ends, Some(&motion));
+    let r2 = dot(ends.r, ends.r);
+    let force_per_length = if r2 > 0.0 { dot(acts.force, ends.r) / r2 } else { 0.0 };
+    Some(Pull { energy: acts.energy, force_per_length })
+}
+
+/// Forces of all bonds of one law, and their breaking.
+pub struct Bonded<const C: usize, L: Driven<C>> {
+    law: L,
+    span: Span,
+    /// Which changes of coefficients have been seen.
+    adapted: f64,
+    /// Rebuild and change of bonds at which the columns were made.
+    made: Option<(u64, u64)>,
+    columns: Columns<C>,
+    coeffs: Vec<Option<Coeffs<C, L>>>,
+    out: Out,
+}
+
+impl<const C: usize, L: Driven<C>> Bonded<C, L> {
+    /// With a law; types without coefficients are none of its business.
+    pub fn new(law: L, span: Span) -> Self {
+        let (columns, out) = (Columns::default(), Out::default());
+        Self { law, span, adapted: 0.0, made: None, columns, coeffs: vec![], out }
+    }
+
+    /// Finds bonds and their ends anew.
+    fn lay_out(&mut self, w: &mut World) -> Result<()> {
+        let list = find(w, |b| self.law.coeffs(b.kind as u16).is_some(), self.span)?;
+        first_sight(&self.law, w, &list)?;
+        self.coeffs = (0..=w.bonds.types).map(|k| self.law.coeffs(k as u16)).collect();
+        let member = |(at, found): &(usize, Found)| {
+            let bond = &w.bonds.list[*at];
+            let ends = lower_first(bond.ends, found.ends);
+            let turned = if w.bonds.turned.is_empty() {
+                UNTURNED
+            } else {
+                w.bonds.turned.get(&ascending(bond.ends)).copied().unwrap_or(UNTURNED)
+            };
+            let own = match &self.coeffs[usize::from(found.kind)] {
+                Some(k) => self.law.own(w, k, bond, ends),
+                None => [0.0; C],
+            };
+            let (kind, length, axis) = (found.kind, bond.length, bond.axis);
+            Member { kind, ends: ends.map(|e| e as u32), length, axis, turned, own }
+        };
+        self.columns = Columns::new(list.iter().map(member).collect(), w.n());
+        self.made = Some((w.rebuild.generation, w.bonds.changes));
+        Ok(())
+    }
+
+    /// Energies and virials, for those who ask.
+    fn tally(&self, w: &mut World, t: &Tick, periods: &Vec3) {
+        if t.energy {
+            let energy = par::sum(self.columns.rows(), |k| self.out.force[k][3]);
+            w.tally.bond += energy;
+        }
+        if t.atom_energy {
+            let energies = &mut w.tally.bond_atom;
+            energies.resize(w.particles.x.len(), 0.0);
+            for k in self.columns.living() {
+                self.columns.pair(k).iter().for_each(|&i| energies[i] += 0.5 * self.out.force[k][3]);
+            }
+        }
+        if t.virial {
+            let (tally, x) = (&mut *w.tally, &w.particles.x);
+            for k in self.columns.living() {
+                let ends @ [a, b] = self.columns.pair(k);
+                let d = nearest(sub(x[a], x[b]), periods);
+                let f = &self.out.force[k];
+                let atoms = t.atom_virial.then_some(&mut tally.atom_bonds[..]);
+                add_share(&mut tally.bond_virial, atoms, ends, d, [f[0], f[1], f[2]]);
+            }
+        }
+    }
+
+    /// Takes away the bonds that broke in this step; pair forces act between their ends from the next step on.
+    fn break_off(&mut self, w: &mut World) {
+        let over: Vec<usize> = self.columns.living().filter(|&k| self.out.load[k] >= 1.0).collect();
+        let tags = &w.particles.tag;
+        let told =
+            |k: &usize| (ascending(self.columns.pair(*k).map(|i| tags[i])), i32::from(self.columns.kind(*k)));
+        let mut broken: Vec<([u32; 2], i32)> = over.iter().map(told).collect();
+        broken.sort_unstable();
+        let mine = self.made == Some((w.rebuild.generation, w.bonds.changes));
+        w.bonds.lose(&broken);
+        // Lists of contacts leave bonded pairs out.
+        w.rebuild.freed = true;
+        over.iter().for_each(|&k| self.columns.alive[k] = 0.0);
+        self.made = mine.then_some((w.rebuild.generation, w.bonds.changes));
+    }
+}
+
+impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
+    fn about(&self) -> About {
+        let mut needs = Needs::new().read(X | BONDS | BOX | LISTS | TAG | self.law.reads()).add(F);
+        let mut writes = TALLY;
+        if self.law.measures() || self.law.breaks() {
+            writes = writes.and(BONDS);
+        }
+        if self.law.breaks() {
+            writes = writes.and(LISTS);
+        }
+        if self.law.damped() {
+            needs = needs.read(V);
+        }
+        if L::Law::TURNS {
+            needs = needs.read(QUAT | OMEGA).add(TORQUE);
+        }
+        About::new(format!("bond {}", L::NAME), Stage::Force, needs.write(writes))
+    }
+
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        let mut anew = t.setup || self.made != Some((w.rebuild.generation, w.bonds.changes));
+        if self.adapted != w.adaptations() {
+            self.adapted = w.adaptations();
+            anew |= self.law.adapt(w);
+        }
+        if anew {
+            self.lay_out(w)?;
+        }
+        let periods = periods(w)?;
+        let p = &mut w.particles;
+        let none: (&[Vec3], &[Quat]) = (&[], &[]);
+        let (omega, quat) = if L::Law::TURNS { (&p.omega[..], &p.quat[..]) } else { none };
+        let v = if self.law.damped() { &p.v[..] } else { &[] };
+        let pass = Sweep {
+            columns: &self.columns,
+            coeffs: &self.coeffs,
+            body: Body { x: &p.x, v, omega, quat, periods },
+            damped: self.law.damped(),
+            // Nothing breaks in the setup of a run.
+            breaks: self.law.breaks() && !t.setup,
+        };
+        self.law.law().sweep(&pass, &mut self.out);
+        let torque = L::Law::TURNS.then_some(&mut p.torque[..]);
+        add_up(&self.columns, &self.out, &mut p.f, torque);
+        self.tally(w, t, &periods);
+        if self.out.broken {
+            self.break_off(w);
+        }
+        Ok(())
+    }
+}

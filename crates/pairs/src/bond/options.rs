@@ -1,0 +1,67 @@
+//! The words after the names of bond styles whose bonds break.
+
+use super::breaking_weights;
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::Args;
+use perigrain_world::World;
+
+/// What the line of a style says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Pair forces act between bonded particles too.
+    pub overlay: bool,
+    /// Forces fade towards breaking.
+    pub smooth: bool,
+    /// Stiffnesses are divided by the length at rest.
+    pub normalize: bool,
+    /// Bonds break.
+    pub breaks: bool,
+}
+
+/// The words that all these styles know.
+pub const WORDS: [&str; 4] = ["overlay/pair", "smooth", "normalize", "break"];
+
+impl Options {
+    /// Reads the line; `absent` are words of LAMMPS that are not here yet, `more` reads what only one style knows and says
+    /// whether it did.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    pub fn read(
+        args: &mut Args,
+        style: &str,
+        absent: &[&str],
+        mut more: impl FnMut(&str, &mut Args) -> Result<bool>,
+    ) -> Result<Self> {
+        let mut options = Options { overlay: false, smooth: true, normalize: false, breaks: true };
+        let mut last = args.here();
+        while let Some(word) = args.next() {
+            last = word.span;
+            match word.text.as_str() {
+                "overlay/pair" => options.overlay = args.flag("overlay/pair")?,
+                "smooth" => options.smooth = args.flag("smooth")?,
+                "normalize" => options.normalize = args.flag("normalize")?,
+                "break" => options.breaks = args.flag("break")?,
+                other if absent.contains(&other) => {
+                    let text = format!("bond_style {style}: `{other}` is not in perigrain yet");
+                    return fail(Code::NOT_SUPPORTED, word.span, text);
+                }
+                other if more(other, args)? => {}
+                _ => return Err(args.unknown(word, &WORDS)),
+            }
+        }
+        if options.smooth && !options.breaks {
+            let d = Diagnostic::error(Code::CONFLICT, last, "`break no` does not go with smoothed forces");
+            return Err(d.help("add `smooth no`").into());
+        }
+        Ok(options)
+    }
+
+    /// Whether weights of bonded pairs are such that bonds can break.
+    ///
+    /// # Errors
+    /// They are not.
+    pub fn check(&self, w: &World, span: Span) -> Result<()> {
+        if self.breaks { breaking_weights(w, self.overlay, span) } else { Ok(()) }
+    }
+}
