@@ -21,7 +21,7 @@ pub fn wanted(s: &Sealer) -> bool {
 
 /// Before the fixes of a step.
 pub fn begin(s: &mut Sealer) {
-    let access = Needs::new().read(F | TORQUE).write(FAMILIES).keep(COLUMNS);
+    let access = Needs::new().read(F | TORQUE | BONDS).write(FAMILIES | BONDS).keep(COLUMNS);
     let op = StepOp::new("ledger begins", Stage::PostForce, access, |w, t| {
         ledger::begin(w, t);
         Ok(())

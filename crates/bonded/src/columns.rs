@@ -40,6 +40,8 @@ pub struct Columns<const C: usize> {
     pub turned: Vec<Quat>,
     /// What belongs to single bonds.
     pub own: [Vec<f64>; C],
+    /// One more than the highest place of an end.
+    pub reach: usize,
     /// For each particle, where its entries begin; one more.
     starts: Vec<u32>,
     /// Twice the place of a bond, and one more at its second end.
@@ -56,6 +58,7 @@ impl<const C: usize> Default for Columns<C> {
             axis: Default::default(),
             turned: vec![],
             own: std::array::from_fn(|_| vec![]),
+            reach: 0,
             starts: vec![0],
             entries: vec![],
         }
@@ -65,7 +68,7 @@ impl<const C: usize> Default for Columns<C> {
 impl<const C: usize> Columns<C> {
     /// Sorts bonds into columns, of `particles` particles in storage.
     pub fn new(mut bonds: Vec<Member<C>>, particles: usize) -> Self {
-        bonds.sort_by_key(|b| (b.kind, b.ends[0].min(b.ends[1]), b.ends[0].max(b.ends[1])));
+        bonds.sort_unstable_by_key(|b| (b.kind, b.ends[0].min(b.ends[1]), b.ends[0].max(b.ends[1])));
         let mut columns = Self::default();
         let turned = bonds.iter().any(|b| b.turned != UNTURNED);
         for (k, bond) in bonds.iter().enumerate() {
@@ -87,6 +90,7 @@ impl<const C: usize> Columns<C> {
         self.length.push(bond.length);
         for k in 0..2 {
             self.ends[k].push(bond.ends[k]);
+            self.reach = self.reach.max(bond.ends[k] as usize + 1);
         }
         for k in 0..3 {
             self.axis[k].push(bond.axis[k]);
@@ -135,6 +139,11 @@ impl<const C: usize> Columns<C> {
     /// The ends of a bond.
     pub fn pair(&self, bond: usize) -> [usize; 2] {
         [self.ends[0][bond] as usize, self.ends[1][bond] as usize]
+    }
+
+    /// How many particles know their bonds.
+    pub fn particles(&self) -> usize {
+        self.starts.len() - 1
     }
 
     /// The type of a bond.

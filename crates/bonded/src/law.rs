@@ -38,6 +38,8 @@ pub struct Acts<R> {
     pub energy: R,
     /// How much of what it bears; it breaks at 1.
     pub load: R,
+    /// What its dashpots turn into heat [force length/time].
+    pub power: R,
 }
 
 /// A law: what one bond does. It knows neither lists nor threads nor instruction sets.

@@ -115,7 +115,7 @@ impl BondLaw<0> for Rotational {
             on_second = scale(fade, on_second);
             torque = [scale(fade, torque[0]), scale(fade, torque[1])];
         }
-        Acts { force: scale(-one, on_second), torque, energy: none, load }
+        Acts { force: scale(-one, on_second), torque, energy: none, load, power: none }
     }
 
     fn sweep(&self, pass: &Sweep<'_, 0, Coeffs>, out: &mut Out) {

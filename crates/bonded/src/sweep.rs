@@ -40,17 +40,21 @@ pub struct Sweep<'a, const C: usize, K> {
     pub damped: bool,
     /// Whether bonds break.
     pub breaks: bool,
+    /// Whether somebody asks what dashpots take up.
+    pub counts: bool,
 }
 
 /// What bonds do: a row per bond.
 #[derive(Clone, Debug, Default)]
 pub struct Out {
-    /// Force on the first end, and the energy.
+    /// Force on the first end, and the energy, which a bond that breaks has had.
     pub force: Vec<[f64; 4]>,
     /// Torques on both ends; empty for laws without.
     pub torque: Vec<[[f64; 4]; 2]>,
     /// How much of what each bears.
     pub load: Vec<f64>,
+    /// What dashpots turn into heat; empty where nobody asks.
+    pub power: Vec<f64>,
     /// Some bond bears more than it can: its force is zero.
     pub broken: bool,
 }
@@ -64,17 +68,19 @@ const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
 /// If columns refer to particles that are not there, or to types without coefficients.
 pub fn all<const C: usize, L: BondLaw<C>>(law: &L, pass: &Sweep<'_, C, L::Coeffs>, out: &mut Out) {
     let (rows, particles) = (pass.columns.rows(), pass.body.x.len());
-    let there = |places: &Vec<u32>| places.iter().all(|p| (*p as usize) < particles);
-    assert!(pass.columns.ends.iter().all(there) && (!pass.damped || pass.body.v.len() == particles));
+    assert!(pass.columns.reach <= particles && (!pass.damped || pass.body.v.len() == particles));
     assert!(!L::TURNS || (pass.body.quat.len() == particles && pass.body.omega.len() == particles));
     assert!(particles < 1 << perigrain_base::math::lanes::PLACE_BITS);
     out.force.resize(rows, [0.0; 4]);
     out.load.resize(rows, 0.0);
     out.torque.resize(if L::TURNS { rows } else { 0 }, [[0.0; 4]; 2]);
+    out.power.resize(if pass.counts { rows } else { 0 }, 0.0);
     let (broken, form) = (AtomicBool::new(false), Form::here());
     let torque = L::TURNS.then_some(&mut out.torque[..]);
-    par::each((&mut out.force[..], &mut out.load[..], torque), |first, (force, load, torque)| {
-        let chunk = Chunk { law, pass, first, force, load, torque };
+    let power = pass.counts.then_some(&mut out.power[..]);
+    let columns = (&mut out.force[..], &mut out.load[..], torque, power);
+    par::each(columns, |first, (force, load, torque, power)| {
+        let chunk = Chunk { law, pass, first, force, load, torque, power };
         // SAFETY: the form is one of this processor, and the lists are as long as the assertions above say.
         if unsafe { form.run(chunk) } {
             broken.store(true, Ordering::Relaxed);
@@ -91,6 +97,7 @@ struct Chunk<'a, 'b, const C: usize, L: BondLaw<C>> {
     force: &'a mut [[f64; 4]],
     load: &'a mut [f64],
     torque: Option<&'a mut [[[f64; 4]; 2]]>,
+    power: Option<&'a mut [f64]>,
 }
 
 impl<const C: usize, L: BondLaw<C>> InLanes for Chunk<'_, '_, C, L> {
@@ -144,6 +151,7 @@ impl<const C: usize, L: BondLaw<C>> InLanes for Chunk<'_, '_, C, L> {
                 let acts = self.law.act(k, &own, &ends, motion.as_ref());
                 let mut alive = column::<N, V>(&columns.alive, row);
                 let load = V::choose(alive.above(none), acts.load, none);
+                let energy = V::choose(alive.above(none), acts.energy, none);
                 if self.pass.breaks {
                     let over = load.above(V::all(BELOW_ONE));
                     broken |= V::any(over);
@@ -155,13 +163,16 @@ impl<const C: usize, L: BondLaw<C>> InLanes for Chunk<'_, '_, C, L> {
                     V::choose(holds, f[0], none),
                     V::choose(holds, f[1], none),
                     V::choose(holds, f[2], none),
-                    V::choose(holds, acts.energy, none),
+                    energy,
                 ];
                 let rows = V::to_rows(f);
                 for lane in 0..N {
                     rows[lane].store(self.force[at + lane].as_mut_ptr());
                 }
                 self.load[at..at + N].copy_from_slice(&load.numbers());
+                if let Some(power) = &mut self.power {
+                    power[at..at + N].copy_from_slice(&V::choose(holds, acts.power, none).numbers());
+                }
                 if let Some(torque) = &mut self.torque {
                     for end in 0..2 {
                         let t = acts.torque[end];
@@ -242,28 +253,58 @@ fn across<R: Real>(d: R, period: f64) -> R {
 }
 
 /// Adds to each particle what its bonds do to it; torques where there are some.
+///
+/// # Panics
+/// If there are fewer particles than the columns know, or no row for each bond.
 pub fn add_up<const C: usize>(columns: &Columns<C>, out: &Out, f: &mut [Vec3], torque: Option<&mut [Vec3]>) {
-    par::each((f, torque), |first, (f, mut torque)| {
-        for (k, f) in f.iter_mut().enumerate() {
-            let entries = columns.of(first + k);
-            if entries.is_empty() {
-                continue;
-            }
-            let (mut force, mut turning) = ([0.0; 3], [0.0; 3]);
-            for entry in entries {
-                let (bond, end) = (*entry as usize / 2, *entry as usize % 2);
-                let row = &out.force[bond];
-                let along = [row[0], row[1], row[2]];
-                force = if end == 0 { add(force, along) } else { sub(force, along) };
-                if let Some(rows) = out.torque.get(bond) {
-                    let row = &rows[end];
-                    turning = add(turning, [row[0], row[1], row[2]]);
+    assert!(f.len() <= columns.particles() && out.force.len() == columns.rows());
+    assert!(torque.is_none() || out.torque.len() == columns.rows());
+    let form = Form::here();
+    par::each((f, torque), |first, (f, torque)| {
+        // SAFETY: a form of this processor; entries are bonds, and each has a row (asserted above).
+        unsafe { form.run(AddUp { columns, out, first, f, torque }) };
+    });
+}
+
+struct AddUp<'a, const C: usize> {
+    columns: &'a Columns<C>,
+    out: &'a Out,
+    first: usize,
+    f: &'a mut [Vec3],
+    torque: Option<&'a mut [Vec3]>,
+}
+
+impl<const C: usize> InLanes for AddUp<'_, C> {
+    type Out = ();
+
+    #[inline(always)]
+    unsafe fn run<const N: usize, V: Lanes<N>>(mut self) {
+        // SAFETY: the processor has what the lanes need; entries are bonds, and each has a row (the caller).
+        unsafe {
+            for k in 0..self.f.len() {
+                let entries = self.columns.of(self.first + k);
+                if entries.is_empty() {
+                    continue;
+                }
+                let (mut force, mut turning) = (V::Row::splat(0.0), V::Row::splat(0.0));
+                for entry in entries {
+                    let (bond, end) = (*entry as usize / 2, *entry as usize % 2);
+                    let sign = [1.0, -1.0][end];
+                    force = force + V::Row::load(self.out.force.as_ptr().add(bond).cast()) * sign;
+                    if self.torque.is_some() {
+                        let row = self.out.torque.as_ptr().add(bond).cast::<[f64; 4]>().add(end);
+                        turning = turning + V::Row::load(row.cast());
+                    }
+                }
+                let (mut sum, mut row) = (self.f[k], [0.0; 4]);
+                force.store(row.as_mut_ptr());
+                sum = add(sum, [row[0], row[1], row[2]]);
+                self.f[k] = sum;
+                if let Some(torque) = &mut self.torque {
+                    turning.store(row.as_mut_ptr());
+                    torque[k] = add(torque[k], [row[0], row[1], row[2]]);
                 }
             }
-            *f = add(*f, force);
-            if let Some(torque) = &mut torque {
-                torque[k] = add(torque[k], turning);
-            }
         }
-    });
+    }
 }

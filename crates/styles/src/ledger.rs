@@ -77,6 +77,7 @@ pub fn open(w: &mut World) -> Result<()> {
     if let (true, Some(families)) = (w.memo.contains(*BOOK), &mut *w.families) {
         families.counts_losses = true;
     }
+    w.bonds.counts_losses |= w.memo.contains(*BOOK);
     Ok(())
 }
 
@@ -93,6 +94,9 @@ pub fn begin(w: &mut World, t: &Tick) {
     }
     if let Some(families) = &mut *w.families {
         families.counts_losses = true;
+    }
+    if !w.bonds.counts_losses {
+        w.bonds.counts_losses = true;
     }
     let n = w.n();
     for key in FORCES.iter().chain(&TORQUES) {
@@ -188,7 +192,7 @@ pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32
     let turns = |i: usize| p.torque.get(i).zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(*q, *o));
     let forces = |i: usize| if held(i) { scale(w, i) * dot(p.f[i], p.v[i]) + turns(i) } else { 0.0 };
     let driven = par::sum(p.len(), forces);
-    let now = [power(0), power(1), power(2), contacts.damping, contacts.across, driven];
+    let now = [power(0), power(1), power(2), contacts.damping + w.bonds.power, contacts.across, driven];
     let moving: f64 = kinetic(w, held).iter().sum();
     let known = Book::read(w);
     let mut book = known.unwrap_or_default();
@@ -259,7 +263,7 @@ pub fn sheet(w: &World, probes: &mut [Box<dyn Probe>]) -> Result<Sheet> {
     }
     let contacts = balance(w, probes)?;
     let bonds = strain.iter().sum::<f64>() + w.tally.bond;
-    let released = w.families.as_ref().map_or(0.0, |f| f.released);
+    let released = w.bonds.released + w.families.as_ref().map_or(0.0, |f| f.released);
     let [walls, gravity, imposed, damping, across, _] = book.work;
     let [normal, springs] = contacts.stored;
     let channels = [

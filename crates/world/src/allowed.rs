@@ -1,5 +1,6 @@
 //! Which pairs of particles may act on each other: `neigh_modify exclude`, `special_bonds` and surfaces of solids.
 
+use super::bonds::ascending;
 use super::{Particles, World};
 use perigrain_peri::families::{Excluded, Families};
 
@@ -26,12 +27,44 @@ fn rules(w: &World) -> Excluded<'_> {
 pub struct Allowed<'a> {
     excluded: Excluded<'a>,
     particles: &'a Particles,
-    /// Bonded pairs without pair forces, ascending.
-    barred: Vec<[u32; 2]>,
+    /// Bonded pairs without pair forces.
+    barred: Barred,
     /// Group bits of solids and of their hybrid particles.
     surfaces: Vec<[u32; 2]>,
     /// Families of solids that have hybrid particles.
     families: Option<(&'a Families, [f64; 3])>,
+}
+
+/// Pairs of ids, found by the lower one.
+#[derive(Default)]
+struct Barred {
+    /// Ascending, the lower id of each first.
+    pairs: Vec<[u32; 2]>,
+    /// For each lower id where its pairs begin, and one more.
+    starts: Vec<u32>,
+}
+
+impl Barred {
+    fn new(pairs: Vec<[u32; 2]>) -> Self {
+        let most = pairs.last().map_or(0, |p| p[0] as usize + 2);
+        let mut starts = vec![0; if pairs.is_empty() { 0 } else { most }];
+        for [low, _] in &pairs {
+            starts[*low as usize + 1] += 1;
+        }
+        for k in 1..starts.len() {
+            starts[k] += starts[k - 1];
+        }
+        Self { pairs, starts }
+    }
+
+    fn has(&self, a: u32, b: u32) -> bool {
+        let [low, high] = ascending([a, b]);
+        let Some(&[from, to]) = self.starts.get(low as usize..low as usize + 2).and_then(|s| s.first_chunk())
+        else {
+            return false;
+        };
+        self.pairs[from as usize..to as usize].iter().any(|p| p[1] == high)
+    }
 }
 
 impl<'a> Allowed<'a> {
@@ -40,21 +73,26 @@ impl<'a> Allowed<'a> {
         let bits = w.groups.surfaces().iter().map(|(g, s)| [s.parent.bit(), g.bit()]);
         let surfaces: Vec<[u32; 2]> = bits.collect();
         let families = w.families.as_ref().filter(|_| !surfaces.is_empty()).map(|f| (f, w.periods()));
-        Self { barred: w.bonds.barred(), surfaces, families, ..Self::excluded(w) }
+        Self { barred: Barred::new(w.bonds.barred()), surfaces, families, ..Self::excluded(w) }
     }
 
     /// Of `neigh_modify exclude` alone.
     pub fn excluded(w: &'a World) -> Self {
-        Self { excluded: rules(w), particles: &w.particles, barred: vec![], surfaces: vec![], families: None }
+        Self {
+            excluded: rules(w),
+            particles: &w.particles,
+            barred: Barred::default(),
+            surfaces: vec![],
+            families: None,
+        }
     }
 
     /// Whether pair forces act between these two.
     pub fn pair(&self, i: usize, j: usize) -> bool {
         let p = self.particles;
-        let tags = || [p.tag[i].min(p.tag[j]), p.tag[i].max(p.tag[j])];
         !self.excluded.pair(i, j)
             && (self.surfaces.is_empty() || self.meet(i, j))
-            && (self.barred.is_empty() || self.barred.binary_search(&tags()).is_err())
+            && !self.barred.has(p.tag[i], p.tag[j])
     }
 
     /// Whether neither end lies inside a solid, and they are not of one family.
@@ -66,5 +104,22 @@ impl<'a> Allowed<'a> {
             return false;
         }
         self.families.is_none_or(|(families, period)| !families.related(&p.x0, &p.kind, period, i, j))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Barred;
+
+    #[test]
+    fn barred_pairs_are_found_from_either_end() {
+        let pairs = vec![[1, 4], [1, 9], [3, 4], [7, 8]];
+        let barred = Barred::new(pairs.clone());
+        for a in 0..12 {
+            for b in 0..12 {
+                assert_eq!(barred.has(a, b), pairs.contains(&[a.min(b), a.max(b)]), "{a} {b}");
+            }
+        }
+        assert!(!Barred::new(vec![]).has(1, 2));
     }
 }

@@ -79,6 +79,15 @@ pub struct Bonds {
     /// The forces of peridynamic bonds are true ones, not such per volume (`bond_style bpm/peri force newton`).
     #[serde(default)]
     pub newton: bool,
+    /// Somebody keeps a ledger of energy, and wants to know the next two.
+    #[serde(default)]
+    pub counts_losses: bool,
+    /// The energy of bonds that have broken since then [energy].
+    #[serde(default)]
+    pub released: f64,
+    /// What the dashpots of bonds take up at the present step [force length/time].
+    #[serde(default)]
+    pub power: f64,
     /// Grows with every change of the list or of what is special, so that others notice.
     pub changes: u64,
 }
@@ -209,6 +218,9 @@ impl Bonds {
     /// The pairs without pair forces: those whose weight is zero, ascending.
     pub fn barred(&self) -> Vec<[u32; 2]> {
         let far = (1..=3).rev().find(|k| self.weights.lj[*k - 1] == 0.0).unwrap_or(0);
+        if far == 1 {
+            return self.special.clone();
+        }
         let pairs = if far > 0 { self.apart(far as u8) } else { vec![] };
         let zero = |apart: u8| self.weights.lj[usize::from(apart) - 1] == 0.0;
         pairs.into_iter().filter(|(_, apart)| zero(*apart)).map(|(p, _)| p).collect()

@@ -33,6 +33,7 @@ impl World {
         gather_all(&mut rebuild.kept.turns, old);
         // Lists made of indices are void.
         self.rebuild.generation += 1;
+        self.rebuild.places += 1;
     }
 
     /// Puts the particles back into the order in which they were created.

@@ -34,6 +34,9 @@ pub struct Rebuild {
     pub freed: bool,
     /// Counts how often particles have come or gone since the program began.
     pub roster: u64,
+    /// Counts how often particles have changed places in storage since the program began.
+    #[serde(default)]
+    pub places: u64,
     /// What lists of grains are made from.
     #[serde(default)]
     pub kept: Kept,

@@ -7,7 +7,7 @@ use super::text::{Line, Lines, not_here, number, whole};
 use super::{Column, columns};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_lang::Command;
-use perigrain_world::index::Index;
+use perigrain_world::index::twice;
 use perigrain_world::{AtomStyle, Bond, Particles};
 
 /// What the deck says about reading.
@@ -281,7 +281,7 @@ impl<'a> Reader<'a> {
         self.data.lines.reserve_exact(count);
         self.rows("Atoms", title, count, |r, line| r.atom(line, &layout))?;
         let tags = &self.data.particles.tag;
-        match Index::new(tags).twice(tags) {
+        match twice(tags) {
             Some((a, b)) => Err(self.twice(a, b)),
             None => Ok(()),
         }

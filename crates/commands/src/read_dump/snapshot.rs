@@ -5,7 +5,7 @@ use super::super::data::text::{number, whole};
 use super::{Add, FIELDS, Wish};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_styles::common::settle;
-use perigrain_world::index::Index;
+use perigrain_world::index::{Index, twice};
 use perigrain_world::{Domain, World};
 
 /// What a snapshot says about one particle.
@@ -48,7 +48,7 @@ pub(super) fn particles(s: &Snapshot, wish: &Wish, w: &World) -> Result<Vec<Part
         Ok(())
     })?;
     let tags: Vec<u32> = list.iter().map(|p| p.tag).collect();
-    if let Some((a, _)) = Index::new(&tags).twice(&tags) {
+    if let Some((a, _)) = twice(&tags) {
         return fail(Code::DUPLICATE_NAME, s.title, format!("the snapshot has two particles {}", tags[a]));
     }
     Ok(list)

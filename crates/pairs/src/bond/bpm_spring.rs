@@ -39,7 +39,8 @@ impl Style for BpmSpring {
 
 impl BondStyle for BpmSpring {
     fn build(&self, args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn BondForce>> {
-        let options = Options::read(args, self.name(), &["store/local", "volume/factor"], |_, _| Ok(false))?;
+        let options =
+            Options::read(args, self.name(), &["store/local", "volume/factor"], true, |_, _| Ok(false))?;
         Ok(Box::new(Declared { options, springs: BTreeMap::new() }))
     }
 }
@@ -86,7 +87,7 @@ impl BondForce for Declared {
     }
 }
 
-impl Driven<0> for Declared {
+impl Driven<1> for Declared {
     type Law = Breaking;
     const NAME: &'static str = "bpm/spring";
 
@@ -105,7 +106,7 @@ impl Driven<0> for Declared {
     fn breaks(&self) -> bool {
         self.options.breaks
     }
-    fn own(&self, _w: &World, _k: &[f64; 3], _bond: &Bond, _ends: [usize; 2]) -> [f64; 0] {
-        []
+    fn own(&self, _w: &World, _k: &[f64; 3], bond: &Bond, _ends: [usize; 2]) -> [f64; 1] {
+        [1.0 / bond.length]
     }
 }

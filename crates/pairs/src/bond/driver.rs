@@ -125,14 +125,19 @@ pub fn pull_of<const C: usize, L: Driven<C>>(law: &L, w: &World, bond: &Stretche
     Some(Pull { energy: acts.energy, force_per_length })
 }
 
+/// Counts what makes columns void: places that change, particles that come or go, bonds.
+fn stand(w: &World) -> [u64; 3] {
+    [w.rebuild.places, w.rebuild.roster, w.bonds.changes]
+}
+
 /// Forces of all bonds of one law, and their breaking.
 pub struct Bonded<const C: usize, L: Driven<C>> {
     law: L,
     span: Span,
     /// Which changes of coefficients have been seen.
     adapted: f64,
-    /// Rebuild and change of bonds at which the columns were made.
-    made: Option<(u64, u64)>,
+    /// At which places of particles and which bonds the columns were made.
+    made: Option<[u64; 3]>,
     columns: Columns<C>,
     coeffs: Vec<Option<Coeffs<C, L>>>,
     out: Out,
@@ -166,7 +171,7 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
             Member { kind, ends: ends.map(|e| e as u32), length, axis, turned, own }
         };
         self.columns = Columns::new(list.iter().map(member).collect(), w.n());
-        self.made = Some((w.rebuild.generation, w.bonds.changes));
+        self.made = Some(stand(w));
         Ok(())
     }
 
@@ -203,12 +208,17 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
             |k: &usize| (ascending(self.columns.pair(*k).map(|i| tags[i])), i32::from(self.columns.kind(*k)));
         let mut broken: Vec<([u32; 2], i32)> = over.iter().map(told).collect();
         broken.sort_unstable();
-        let mine = self.made == Some((w.rebuild.generation, w.bonds.changes));
+        let mine = self.made == Some(stand(w));
         w.bonds.lose(&broken);
         // Lists of contacts leave bonded pairs out.
         w.rebuild.freed = true;
+        let energies = over.iter().map(|&k| std::mem::take(&mut self.out.force[k][3]));
+        let energy: f64 = energies.sum();
+        if w.bonds.counts_losses {
+            w.bonds.released += energy;
+        }
         over.iter().for_each(|&k| self.columns.alive[k] = 0.0);
-        self.made = mine.then_some((w.rebuild.generation, w.bonds.changes));
+        self.made = mine.then_some(stand(w));
     }
 }
 
@@ -232,7 +242,7 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
     }
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let mut anew = t.setup || self.made != Some((w.rebuild.generation, w.bonds.changes));
+        let mut anew = t.setup || self.made != Some(stand(w));
         if self.adapted != w.adaptations() {
             self.adapted = w.adaptations();
             anew |= self.law.adapt(w);
@@ -252,14 +262,18 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
             damped: self.law.damped(),
             // Nothing breaks in the setup of a run.
             breaks: self.law.breaks() && !t.setup,
+            counts: w.bonds.counts_losses && self.law.damped(),
         };
         self.law.law().sweep(&pass, &mut self.out);
         let torque = L::Law::TURNS.then_some(&mut p.torque[..]);
         add_up(&self.columns, &self.out, &mut p.f, torque);
-        self.tally(w, t, &periods);
         if self.out.broken {
             self.break_off(w);
         }
+        if w.bonds.counts_losses {
+            w.bonds.power = par::sum(self.out.power.len(), |k| self.out.power[k]);
+        }
+        self.tally(w, t, &periods);
         Ok(())
     }
 }

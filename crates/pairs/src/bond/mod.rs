@@ -1,5 +1,6 @@
 //! Bond styles: forces along bonds between particles.
 
+mod bpm_beam;
 pub mod bpm_peri;
 mod bpm_rotational;
 mod bpm_spring;
@@ -17,6 +18,7 @@ use perigrain_world::World;
 /// Every bond style.
 #[rustfmt::skip]
 pub const BONDS: &[&dyn BondStyle] = &[
+    &bpm_beam::BpmBeam,
     &bpm_peri::BpmPeri,
     &bpm_rotational::BpmRotational,
     &bpm_spring::BpmSpring,

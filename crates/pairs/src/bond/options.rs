@@ -22,8 +22,8 @@ pub struct Options {
 pub const WORDS: [&str; 4] = ["overlay/pair", "smooth", "normalize", "break"];
 
 impl Options {
-    /// Reads the line; `absent` are words of LAMMPS that are not here yet, `more` reads what only one style knows and says
-    /// whether it did.
+    /// Reads the line; `absent` are words of LAMMPS that are not here yet, `smooth` is what holds where the
+    /// line is silent, `more` reads what only one style knows and says whether it did.
     ///
     /// # Errors
     /// Every mistake in the line.
@@ -31,9 +31,10 @@ impl Options {
         args: &mut Args,
         style: &str,
         absent: &[&str],
+        smooth: bool,
         mut more: impl FnMut(&str, &mut Args) -> Result<bool>,
     ) -> Result<Self> {
-        let mut options = Options { overlay: false, smooth: true, normalize: false, breaks: true };
+        let mut options = Self { overlay: false, smooth, normalize: false, breaks: true };
         let mut last = args.here();
         while let Some(word) = args.next() {
             last = word.span;

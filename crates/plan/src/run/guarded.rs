@@ -75,9 +75,11 @@ impl Guarded {
         }
         plan.release(w)?;
         let newer = w.rebuild.generation.max(self.good.rebuild.generation);
+        let places = w.rebuild.places.max(self.good.rebuild.places);
         *w = self.good.clone();
         // Lists made since must not be taken for those to come.
         w.rebuild.generation = newer + 1;
+        w.rebuild.places = places + 1;
         w.rebuild.due = true;
         w.clock.set_dt(step);
         self.good.clock.set_dt(step);

@@ -1,0 +1,174 @@
+//! bond bpm/beam: cylindrical beams between spheres, with an energy.
+
+mod words;
+
+use super::driver::{Bonded, Driven, pull_of};
+use super::options::Options;
+use super::{BondForce, BondStyle, Pull, Stretched};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_bonded::beam::{Coeffs, Potential};
+use perigrain_bonded::stiffness::Stiffness;
+use perigrain_bonded::weibull;
+use perigrain_lang::Args;
+use perigrain_plan::Op;
+use perigrain_styles::matter::Masses;
+use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_world::field::{Fields, KIND, MASS, RADIUS, TYPE_MASS};
+use perigrain_world::{Bond, World};
+use std::collections::BTreeMap;
+use words::{Line, Radius};
+
+/// The style.
+pub struct BpmBeam;
+
+impl Style for BpmBeam {
+    fn name(&self) -> &'static str {
+        "bpm/beam"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "bond_style bpm/beam [shear paper|timoshenko [K]|none] [criterion sum|separate] [overlay/pair yes|no] [break yes|no] [smooth yes|no]\n\
+                     bond_coeff T E nu radius R|ratio L [strength S1 S2 [moment B] [weibull M SEED]] [damping Z|ZN ZS ZT ZB]",
+            summary: "Cylindrical beams between spheres whose forces and torques derive from an energy.",
+            text: "Each bond is a cylinder between two centres, of Young's modulus E, Poisson's ratio nu and the radius R, or L times the radius of \
+                   its smaller end. With A = π R², I = π R⁴/4, G = E/(2 (1 + nu)) and its length r0 when a run first met it, it resists stretch with \
+                   E A/r0, shear with G A/r0, twist with 2 G I/r0 and bending with E I/r0. `shear timoshenko` takes 1/k = r0/(K G A) + r0³/(12 E I) \
+                   (K = 0.9), with which a chain of bonds is a Timoshenko beam at its nodes however few they are; `shear none` leaves shear out.\n\
+                   All of it comes from one energy of positions and orientations: energy, momentum and angular momentum are kept, and a body as it was \
+                   made has exactly no force. `compute energy/ledger` counts the energy of each bond that breaks, and what dashpots take up.\n\
+                   A bond breaks where N/A + B M_b R/I reaches the strength S1 [pressure], or Q/A + B M_t R/(2 I) reaches S2, with the tension N, the \
+                   shear force Q, the moments M_b of bending and M_t of twist; `moment` B is between 0 and 1 (1). `criterion separate` asks each of the \
+                   four alone, N and M_b only where the bond is pulled. `weibull M SEED` multiplies both strengths of every bond with a number of a Weibull \
+                   distribution of modulus M and mean 1, which belongs to the IDs of its ends. A broken bond is gone, and pair forces act between its ends \
+                   from the next step on; nothing breaks in the setup of a run, and nothing without `strength`. `smooth yes` multiplies forces with 1 − B⁴, \
+                   B the share of the strength that is used up; energy is not kept then.\n\
+                   `damping`: dashpots of Z times the critical damping of the two ends on the bond, of all modes or of stretch, shear, twist and bending.\n\
+                   Needs `atom_style bpm/sphere` and `fix nve/bpm/sphere`; bonds that break need `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair \
+                   yes` `special_bonds lj/coul 1 1 1`. This style is perigrain's own. `kinematics incremental` and `yield` are refused.\n\
+                   Jarolin and Dosta, Comput. Part. Mech. 8 (2021); Potyondy and Cundall, Int. J. Rock Mech. Min. Sci. 41, 1329 (2004).",
+            example: "units si\natom_style bpm/sphere\nlattice sc 0.001\nregion b block 0 3 0 3 0 3\n\
+                      create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nset group all diameter 0.001 density 2000\n\
+                      create_bonds many all all 1 0.0009 0.0011\nspecial_bonds lj 0 1 1 coul 1 1 1\nbond_style bpm/beam\n\
+                      bond_coeff 1 1e9 0.2 ratio 0.8 strength 1e7 5e6 damping 0.05\nvelocity all create 1e15 4928\n\
+                      fix 1 all nve/bpm/sphere\ntimestep 1e-7\nthermo_style custom step ke ebond bonds\nrun 10",
+        }
+    }
+}
+
+impl BondStyle for BpmBeam {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>> {
+        if !cx.world.particles.style.oriented {
+            let text = "bond_style bpm/beam needs particles with orientations";
+            let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
+            return Err(d
+                .help("put `atom_style bpm/sphere` (or a hybrid with it) at the top of the deck")
+                .into());
+        }
+        let (options, law) = words::style(args)?;
+        Ok(Box::new(Declared { options, law, types: BTreeMap::new() }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    options: Options,
+    law: Potential,
+    types: BTreeMap<u16, Line>,
+}
+
+impl Declared {
+    fn any(&self, of: impl Fn(&Line) -> bool) -> bool {
+        self.types.values().any(of)
+    }
+}
+
+impl Driven<4> for Declared {
+    type Law = Potential;
+    const NAME: &'static str = "bpm/beam";
+
+    fn law(&self) -> Potential {
+        self.law
+    }
+    fn coeffs(&self, kind: u16) -> Option<Coeffs> {
+        let unbroken = |line: &Line| Coeffs { strength: [f64::INFINITY; 2], ..line.coeffs };
+        self.types.get(&kind).map(|line| if self.options.breaks { line.coeffs } else { unbroken(line) })
+    }
+    fn measures(&self) -> bool {
+        true
+    }
+    fn damped(&self) -> bool {
+        self.any(|line| line.coeffs.damping != [0.0; 4])
+    }
+    fn breaks(&self) -> bool {
+        self.options.breaks && self.any(|line| line.coeffs.strength != [f64::INFINITY; 2])
+    }
+    fn reads(&self) -> Fields {
+        let mut fields = Fields::NONE;
+        if self.damped() {
+            fields = fields.and(RADIUS).and(MASS).and(KIND).and(TYPE_MASS);
+        } else if self.any(|line| matches!(line.radius, Radius::Ratio(_))) {
+            fields = fields.and(RADIUS);
+        }
+        fields
+    }
+
+    fn own(&self, w: &World, k: &Coeffs, bond: &Bond, ends: [usize; 2]) -> [f64; 4] {
+        let Some(line) = self.types.get(&(bond.kind as u16)) else { return [1.0; 4] };
+        let radius = match line.radius {
+            Radius::Given(r) => r,
+            Radius::Ratio(ratio) => ratio * w.particles.radius[ends[0]].min(w.particles.radius[ends[1]]),
+        };
+        let factor = line.weibull.map_or(1.0, |(m, seed)| weibull::strength(m, seed, bond.ends));
+        let (mut mass, mut inertia) = (0.0, 0.0);
+        if k.damping != [0.0; 4] {
+            let masses = Masses::of(w);
+            let ftm2v = w.settings.units.constants().ftm2v;
+            let m = ends.map(|e| masses.get(e));
+            let i: [f64; 2] = std::array::from_fn(|e| 0.4 * m[e] * w.particles.radius[ends[e]].powi(2));
+            mass = m[0] * m[1] / (m[0] + m[1]) / ftm2v;
+            inertia = if i[0] + i[1] > 0.0 { i[0] * i[1] / (i[0] + i[1]) / ftm2v } else { 0.0 };
+        }
+        [radius, factor, mass, inertia]
+    }
+}
+
+impl BondForce for Declared {
+    fn name(&self) -> &'static str {
+        "bpm/beam"
+    }
+
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        let line = Line::read(args)?;
+        self.types.extend(kinds.iter().map(|&k| (k, line)));
+        Ok(())
+    }
+
+    fn covers(&self, kind: u16) -> bool {
+        self.types.contains_key(&kind)
+    }
+
+    fn restrict(&mut self, kinds: &[u16]) {
+        self.types.retain(|k, _| kinds.contains(k));
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let span = cx.span();
+        if self.breaks() {
+            self.options.check(cx.world(), span)?;
+        }
+        Ok(vec![Box::new(Bonded::new(self.clone(), span))])
+    }
+
+    fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
+        pull_of(self, w, bond)
+    }
+
+    fn stiffness(&self, kind: u16, length: f64, radii: [f64; 2]) -> Option<Stiffness> {
+        let line = self.types.get(&kind)?;
+        Some(self.law.stiffness(&line.coeffs, line.radius.of(radii), length))
+    }
+
+    fn written(&self, kind: u16) -> Option<String> {
+        self.types.get(&kind).map(Line::written)
+    }
+}
