@@ -164,6 +164,9 @@ decks! {
     mdr_pair
     mdr_box
     mdr_die
+    bpm_spring
+    bpm_rotational
+    bpm_wall
 }
 
 /// A deck without dynamics that matter: its thermo table and the lines it prints.

@@ -1,7 +1,9 @@
 //! Which fields of a scene were read and written since somebody asked last; debug builds know, release builds do not ask.
 
 use super::World;
-use super::field::{self, Fields};
+#[cfg(debug_assertions)]
+use super::field;
+use super::field::Fields;
 
 /// What was read and what was written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
