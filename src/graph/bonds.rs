@@ -1,10 +1,11 @@
 //! `bond_style` and `bond_coeff`: lines that declare forces along bonds.
 
 use super::build::{Context, Declared, needs_box, style};
-use super::node::{BondNode, Graph};
+use super::node::{BondNode, FixNode, Graph};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use perigrain_lang::Args;
-use perigrain_pairs::bond::{BONDS, BondForce};
+use perigrain_pairs::bond::{BONDS, BROUGHT, BondForce};
+use perigrain_styles::Fix;
 use perigrain_world::{GroupId, World};
 use std::collections::BTreeMap;
 
@@ -14,6 +15,7 @@ pub fn bond_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
         args.finish()?;
         graph.bond = None;
         w.bonds.coeffs = None;
+        bring_along(graph, w, vec![], cx.span)?;
         w.touch();
         return Ok(Declared::default());
     }
@@ -25,9 +27,45 @@ pub fn bond_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
     let style = style(BONDS, "bond", args)?;
     let force = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
+    bring_along(graph, w, force.fixes(), cx.span)?;
     enter(graph, w, force, cx.span, false);
     w.set_anew(true, None);
     Ok(Declared::default())
+}
+
+/// The fixes that a bond style brings along, in place of those of the one before.
+fn bring_along(
+    graph: &mut Graph,
+    w: &mut World,
+    fixes: Vec<(String, Box<dyn Fix>)>,
+    span: Span,
+) -> Result<()> {
+    for (id, _) in &fixes {
+        if let Some(old) = graph.fixes.iter().find(|f| f.id == *id && f.style != BROUGHT) {
+            let text = format!("fix `{id}` exists already, with another style");
+            let d = Diagnostic::error(Code::DUPLICATE_NAME, span, text).label(old.span, "defined here");
+            return Err(d.help("choose another ID for `store/local`").into());
+        }
+    }
+    for old in graph.fixes.iter().filter(|f| f.style == BROUGHT) {
+        old.fix.remove(w);
+    }
+    graph.fixes.retain(|f| f.style != BROUGHT);
+    for (id, fix) in fixes {
+        fix.declare(w)?;
+        let group = GroupId::ALL;
+        graph.fixes.push(FixNode {
+            id,
+            style: BROUGHT,
+            group,
+            fix,
+            energy: false,
+            level: None,
+            span,
+            lines: vec![],
+        });
+    }
+    Ok(())
 }
 
 /// `bond_coeff TYPES …`.

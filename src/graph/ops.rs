@@ -43,10 +43,11 @@ impl Op for Reneighbor {
         if t.setup {
             w.rebuild.builds = 0;
             w.rebuild.dangerous = 0;
-            (w.rebuild.due, w.rebuild.freed) = (false, false);
+            w.rebuild.due = false;
+            w.rebuild.freed.clear();
             return rebuild(w, t, self, true);
         }
-        w.rebuild.generation += u64::from(std::mem::take(&mut w.rebuild.freed));
+        w.rebuild.part();
         if std::mem::take(&mut w.rebuild.due) {
             w.rebuild.builds += 1;
             return rebuild(w, t, self, true);

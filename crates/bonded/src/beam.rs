@@ -75,6 +75,13 @@ impl Potential {
         Beam { young: k.elastic[0], poisson: k.elastic[1], radius, length }.stiffness(self.shear)
     }
 
+    /// What a bond bears: tension, shear force [force], moments of bending and twist [force length], and how much of its strength that is.
+    pub fn bears(&self, k: &Coeffs, own: &[f64; 4], b: &Ends<f64>) -> [f64; 5] {
+        let c = self.section(k, own[RADIUS], b.length);
+        let borne = elastic(&c, b).borne();
+        [borne.tension, borne.shear, borne.bend, borne.twist, load(self, k, own, c.area, &borne)]
+    }
+
     /// [`Beam::stiffness`] for lanes.
     #[inline(always)]
     fn section<R: Real>(&self, k: &Coeffs, radius: R, rest: R) -> Section<R> {

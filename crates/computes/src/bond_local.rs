@@ -1,18 +1,19 @@
 //! compute bond/local: lengths, energies and forces of bonds.
 
 use super::{Compute, ComputeStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::vec3::{Vec3, dot, sub};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
+use perigrain_styles::bond::BondForce;
 use perigrain_styles::matter::Masses;
 use perigrain_styles::near::bonds_within;
 use perigrain_styles::pull::{Pull, Stretched, apart};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::field::{BONDS, BOX, KIND, MASK, MASS, MEMO, TAG, TYPE_MASS, V, X};
+use perigrain_world::field::{BONDS, BOX, Fields, KIND, MASK, MASS, MEMO, TAG, TYPE_MASS, V, X};
 use perigrain_world::index::Index;
-use perigrain_world::{GroupId, SlotId};
+use perigrain_world::{GroupId, SlotId, World};
 
 /// The style.
 pub struct BondLocal;
@@ -23,14 +24,15 @@ impl Style for BondLocal {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "compute ID group bond/local dist|dx|dy|dz|engpot|force|fx|fy|fz|engvib|engrot|engtrans|omega|velvib …",
+            syntax: "compute ID group bond/local dist|dx|dy|dz|engpot|force|fx|fy|fz|engvib|engrot|engtrans|omega|velvib|b1|… …",
             summary: "Lengths, energies, forces and relative motion of bonds.",
             text: "Local vector for one value, array for several; a row for each bond with both ends in the group, in the order \
                    of compute property/local. `dist`: length, `dx dy dz` its components from the second end to the first; \
                    `engpot force fx fy fz`: energy and force of the bond (0 while it is turned off; negative pulls the ends \
                    together); of the ends' motion against their centre of mass: `engvib` kinetic energy along the bond, `engrot` \
                    across it, `velvib` the speed of lengthening, `omega` angular velocity; `engtrans`: kinetic energy of the \
-                   centre. Energies and forces are not told of `bond_style bpm/peri`, whose bonds depend on more than their ends.",
+                   centre. `b1 b2 …` and other names are what the bond style tells besides, as its page says; 0 of bonds that are turned off. \
+                   Energies and forces are not told of `bond_style bpm/peri`, whose bonds depend on more than their ends.",
             example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
                       create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\n\
                       create_bonds single/bond 1 1 2\nbond_style harmonic\nbond_coeff 1 50.0 1.0\nfix 1 all nve\n\
@@ -52,7 +54,13 @@ enum Value {
     EngTrans,
     Omega,
     VelVib,
+    /// What only some bond styles tell, by its name.
+    Extra(&'static str),
 }
+
+/// What only some bond styles tell.
+const EXTRAS: [&str; 12] =
+    ["b1", "b2", "b3", "b4", "b5", "b6", "b7", "tension", "shear", "bend", "twist", "load"];
 
 const VALUES: [(&str, Value); 14] = [
     ("dist", Value::Dist),
@@ -74,7 +82,7 @@ const VALUES: [(&str, Value); 14] = [
 impl Value {
     /// Whether it needs a bond style.
     fn of_force(self) -> bool {
-        matches!(self, Value::EngPot | Value::Force | Value::F(_))
+        matches!(self, Value::EngPot | Value::Force | Value::F(_) | Value::Extra(_))
     }
 }
 
@@ -88,7 +96,7 @@ impl ComputeStyle for BondLocal {
             );
             return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
         }
-        let names: Vec<&'static str> = VALUES.iter().map(|v| v.0).collect();
+        let names: Vec<&'static str> = VALUES.iter().map(|v| v.0).chain(EXTRAS).collect();
         let mut values = vec![];
         while values.is_empty() || !args.is_empty() {
             if let Some(word) = args.peek().filter(|w| w.text.starts_with("v_") || w.text == "set") {
@@ -96,7 +104,8 @@ impl ComputeStyle for BondLocal {
                 return fail(Code::NOT_SUPPORTED, word.span, text);
             }
             let name = args.choice("value of bonds", &names)?;
-            values.extend(VALUES.iter().find(|v| v.0 == name).map(|v| v.1));
+            let extra = Value::Extra(name);
+            values.push(VALUES.iter().find(|v| v.0 == name).map_or(extra, |v| v.1));
         }
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, values }))
     }
@@ -142,12 +151,43 @@ impl Row {
             }
             Value::Omega => across2.sqrt() / r,
             Value::VelVib => along,
+            Value::Extra(_) => 0.0,
         }
     }
 }
 
 fn norm(a: Vec3) -> f64 {
     dot(a, a).sqrt()
+}
+
+impl Declared {
+    /// Where the style tells what only some do.
+    fn places(&self, style: Option<&dyn BondForce>, span: Span) -> Result<Vec<usize>> {
+        let (told, name) = style.map_or((&[][..], ""), |s| (s.extras(), s.name()));
+        let mut places = vec![];
+        for value in &self.values {
+            let Value::Extra(wanted) = value else { continue };
+            let Some(place) = told.iter().position(|t| t == wanted) else {
+                let text = format!("bond_style {name} tells no `{wanted}` of its bonds");
+                let d = Diagnostic::error(Code::WRONG_KIND, span, text);
+                let told = told.iter().map(|t| format!("`{t}`")).collect::<Vec<_>>().join(", ");
+                return Err(if told.is_empty() { d } else { d.help(format!("it tells {told}")) }.into());
+            };
+            places.push(place);
+        }
+        Ok(places)
+    }
+}
+
+/// What the style says of a bond.
+fn pull_of(style: &dyn BondForce, w: &World, bond: &Stretched, span: Span) -> Result<Pull> {
+    match style.single(w, bond) {
+        Some(pull) => Ok(pull),
+        None => {
+            let text = format!("the force of bond_style {} is not of its two ends alone", style.name());
+            fail(Code::CONFLICT, span, text)
+        }
+    }
 }
 
 impl Compute for Declared {
@@ -163,10 +203,12 @@ impl Compute for Declared {
         if needed && style.is_none() {
             return fail(Code::INCOMPLETE, span, "energies and forces of bonds need a bond_style");
         }
+        let places = self.places(style.as_deref(), span)?;
+        let reads = style.as_ref().filter(|_| needed).map_or(Fields::NONE, |s| s.looks_at());
         Ok(fill(
             &self.id,
             &Wanted { slot, stage, when },
-            X | V | BONDS | MASK | BOX | TAG | MASS | MEMO | KIND | TYPE_MASS,
+            X | V | BONDS | MASK | BOX | TAG | MASS | MEMO | KIND | TYPE_MASS | reads,
             move |w, _, out| {
                 let p = &w.particles;
                 let (index, lengths, masses) = (Index::new(&p.tag), w.periods(), Masses::of(w));
@@ -176,23 +218,25 @@ impl Compute for Declared {
                 for bond in bonds_within(w, me.group) {
                     let [Some(a), Some(b)] = bond.ends.map(|t| index.find(t, &p.tag)) else { continue };
                     let d = apart(w, &lengths, [a, b]);
-                    let mut pull = Pull::default();
-                    if let (true, true, Some(style)) = (needed, bond.is_on(), &style) {
-                        let v = sub(p.v[a], p.v[b]);
-                        let now =
-                            Stretched { kind: bond.kind as u16, bond, ends: [a, b], d, v, rest: bond.length };
-                        let Some(found) = style.single(w, &now) else {
-                            let text = format!(
-                                "the force of bond_style {} is not of its two ends alone",
-                                style.name()
-                            );
-                            return fail(Code::CONFLICT, span, text);
-                        };
-                        pull = found;
-                    }
+                    let v = sub(p.v[a], p.v[b]);
+                    let now =
+                        Stretched { kind: bond.kind as u16, bond, ends: [a, b], d, v, rest: bond.length };
+                    let acts = style.as_ref().filter(|_| needed && bond.is_on());
+                    let pull = match acts {
+                        None => Pull::default(),
+                        Some(style) => pull_of(style.as_ref(), w, &now, span)?,
+                    };
+                    let extra = match acts {
+                        Some(style) if !places.is_empty() => style.extra(w, &now),
+                        _ => vec![],
+                    };
+                    let mut extra = places.iter().map(|&k| extra.get(k).copied().unwrap_or(0.0));
                     let row =
                         Row { d, pull, mass: [masses.get(a), masses.get(b)], v: [p.v[a], p.v[b]], mvv2e };
-                    out.local.extend(me.values.iter().map(|v| row.get(*v)));
+                    out.local.extend(me.values.iter().map(|v| match v {
+                        Value::Extra(_) => extra.next().unwrap_or(0.0),
+                        v => row.get(*v),
+                    }));
                 }
                 Ok(())
             },

@@ -70,9 +70,9 @@ fn operator(input: &str) -> Option<(&str, (Op, u8))> {
     Some((&rest[length..], operator))
 }
 
-/// A number or a word that starts with a letter.
+/// A number or a word that starts with a letter, which may hold slashes as the names of styles do.
 fn item(input: &str) -> IResult<&str, &str> {
-    let name = take_while(|c: char| c.is_ascii_alphanumeric() || c == '_');
+    let name = take_while(|c: char| c.is_ascii_alphanumeric() || c == '_' || c == '/');
     let word = taken((satisfy(|c| c.is_ascii_alphabetic() || c == '_'), name));
     let number = taken((opt(char('-')), number::literal));
     alt((number, word)).parse(input)

@@ -112,6 +112,42 @@ pub fn pairs(
     out
 }
 
+/// Takes those of some pairs of particles into a list of [`pairs`] that are within reach plus `skin`, in their places.
+pub fn insert(v: &View, wanted: &Wanted, skin: f64, ends: &[[usize; 2]], list: &mut Vec<Pair>) {
+    let key = |p: &Pair| (v.tag[p.i as usize], v.tag[p.j as usize], p.shift);
+    for &[i, j] in ends {
+        let Some(reach) = wanted.get(v.kind[i], v.kind[j]) else { continue };
+        let cut = cutoff(reach, skin, v.radius(i), v.radius(j));
+        for_images(images(cut, &v.period), |shift| {
+            let d: [f64; 3] =
+                std::array::from_fn(|k| v.x[i][k] - f64::from(shift[k]) * v.period[k] - v.x[j][k]);
+            if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < cut * cut {
+                let pair = oriented(v.tag, i, j, shift);
+                if let Err(at) = list.binary_search_by_key(&key(&pair), key) {
+                    list.insert(at, pair);
+                }
+            }
+        });
+    }
+}
+
+/// How many images of the box lie within `far`, along each axis.
+fn images(far: f64, period: &[f64; 3]) -> [i32; 3] {
+    std::array::from_fn(|d| match period[d] {
+        l if l > 0.0 => (far / l).ceil().min(127.0) as i32,
+        _ => 0,
+    })
+}
+
+/// How far apart two particles of these radii may be.
+fn cutoff(reach: Reach, skin: f64, ri: f64, rj: f64) -> f64 {
+    skin + match reach {
+        Reach::Touch => ri + rj,
+        Reach::Beyond(gap) => ri + rj + gap,
+        Reach::Fixed(c) => c,
+    }
+}
+
 /// Those of [`pairs`] in which one is beyond the sizes that are [`small`], in no order to rely on.
 pub fn pairs_of_large(
     v: &View,
@@ -197,10 +233,7 @@ impl<K: Fn(usize, usize) -> bool + Sync> Search<'_, K> {
         };
         let mut grid = Grid::default();
         grid.fill(self.v.x, targets, self.cutoff(self.many.largest, self.many.largest));
-        let images: [i32; 3] = std::array::from_fn(|d| match self.v.period[d] {
-            l if l > 0.0 => (far / l).ceil().min(127.0) as i32,
-            _ => 0,
-        });
+        let images = images(far, &self.v.period);
         let searchers = &self.few.members;
         let some = |range: std::ops::Range<usize>| {
             let mut found = vec![];
@@ -217,12 +250,7 @@ impl<K: Fn(usize, usize) -> bool + Sync> Search<'_, K> {
     }
 
     fn cutoff(&self, ri: f64, rj: f64) -> f64 {
-        self.skin
-            + match self.reach {
-                Reach::Touch => ri + rj,
-                Reach::Beyond(gap) => ri + rj + gap,
-                Reach::Fixed(c) => c,
-            }
+        cutoff(self.reach, self.skin, ri, rj)
     }
 
     /// Members of the larger class within `far` of the smaller one's bounding box (where nothing repeats).

@@ -1,17 +1,18 @@
 //! `pair_style bpm/spring`: damped repulsion of particles of bonded solids.
 
-use super::shared::{built_at, near, push};
+use super::shared::{built_at, near, push, view};
 use super::{ByPart, Deck, Facts, Pair, PairStyle, Scales, TypePairs};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{dot, sub};
 use perigrain_lang::Args;
-use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference};
+use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference, insert};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
     BONDS, BOX, F, FAMILIES, KIND, LISTS, MASK, MEMO, MOLECULE, RADIUS, TAG, TALLY, V, X, X0,
 };
+use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Constant, Numbers, World};
 use std::collections::BTreeMap;
 
@@ -125,6 +126,30 @@ struct Repulsion {
     list: Vec<Near>,
 }
 
+impl Repulsion {
+    /// The list, as it stands: made anew, or with the pairs that bonds have freed.
+    fn renew(&mut self, w: &World, t: &Tick) {
+        let now = (w.rebuild.generation, w.bonds.changes);
+        if !t.setup && self.made == Some(now) {
+            return;
+        }
+        let skin = w.settings.neighbor.skin;
+        let freed = self.made.filter(|_| !t.setup).and_then(|(since, _)| w.rebuild.only_parted(since));
+        if let Some(pairs) = freed {
+            let (tags, index) = (&w.particles.tag, Index::new(&w.particles.tag));
+            let place = |id: u32| index.find(id, tags);
+            let ends: Vec<[usize; 2]> =
+                pairs.iter().filter_map(|p| Some([place(p[0])?, place(p[1])?])).collect();
+            let allowed = Allowed::new(w);
+            let ends: Vec<[usize; 2]> = ends.into_iter().filter(|[i, j]| allowed.pair(*i, *j)).collect();
+            insert(&view(w, built_at(w)), &self.wanted, skin, &ends, &mut self.list);
+        } else {
+            self.list = near(w, built_at(w), &self.wanted, skin, &Allowed::new(w));
+        }
+        self.made = Some(now);
+    }
+}
+
 impl Op for Repulsion {
     fn about(&self) -> About {
         About::new(
@@ -151,23 +176,23 @@ impl Op for Repulsion {
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let period = w.periods();
-        let now = (w.rebuild.generation, w.bonds.changes);
-        if t.setup || self.made != Some(now) {
-            self.list = near(w, built_at(w), &self.wanted, w.settings.neighbor.skin, &Allowed::new(w));
-            self.made = Some(now);
-        }
+        self.renew(w, t);
         if self.adapted != w.adaptations() {
             self.adapted = w.adaptations();
             self.law = self.said.adapted(w);
         }
+        let farthest = self.law.table.values().fold(0.0, |far: f64, s| far.max(s[1]));
         let mut energy = 0.0;
         for pair in &self.list {
             let (i, j) = (pair.i as usize, pair.j as usize);
             let p = &w.particles;
-            let kinds = (p.kind[i].min(p.kind[j]), p.kind[i].max(p.kind[j]));
-            let Some([k, cut, gamma]) = self.law.table.get(&kinds).copied() else { continue };
             let d = difference(&p.x, &period, pair);
             let square = dot(d, d);
+            if square >= farthest * farthest {
+                continue;
+            }
+            let kinds = (p.kind[i].min(p.kind[j]), p.kind[i].max(p.kind[j]));
+            let Some([k, cut, gamma]) = self.law.table.get(&kinds).copied() else { continue };
             if square >= cut * cut {
                 continue;
             }

@@ -20,11 +20,15 @@ fn known_or_present<'a>(w: &'a World, known: &'a [Vec3]) -> &'a [Vec3] {
     if known.len() == w.n() { known } else { &w.particles.x }
 }
 
+/// Particles as neighbour lists see them, at the positions `x`.
+pub fn view<'a>(w: &'a World, x: &'a [Vec3]) -> View<'a> {
+    let p = &w.particles;
+    View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() }
+}
+
 /// Pairs within reach plus `skin` at the positions `x` that `allowed` lets meet, sorted by their tags.
 pub fn near(w: &World, x: &[Vec3], wanted: &Wanted, skin: f64, allowed: &Allowed) -> Vec<Pair> {
-    let p = &w.particles;
-    let view = View { x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
-    pairs(&view, wanted, skin, &|i, j| allowed.pair(i, j))
+    pairs(&view(w, x), wanted, skin, &|i, j| allowed.pair(i, j))
 }
 
 /// Which particles fix freeze holds; empty without one.

@@ -1,13 +1,14 @@
 //! What a bond style is: a style that reads its line, and what it declares.
 
 use super::pull::{Pull, Stretched};
-use super::{BuildCx, SealCx, Style};
+use super::{BuildCx, Fix, SealCx, Style};
 use dyn_clone::DynClone;
 use perigrain_base::diag::Result;
 pub use perigrain_bonded::stiffness::Stiffness;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_world::World;
+use perigrain_world::field::Fields;
 
 /// A bond style: one file, one line in `BONDS`.
 pub trait BondStyle: Style {
@@ -40,6 +41,26 @@ pub trait BondForce: DynClone + Send + Sync {
     /// # Errors
     /// What is missing in the scene.
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>>;
+
+    /// The fixes that it brings along, by their IDs: they go when the style goes.
+    fn fixes(&self) -> Vec<(String, Box<dyn Fix>)> {
+        vec![]
+    }
+
+    /// The names of further numbers that it tells of a bond, for `compute bond/local`.
+    fn extras(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// What `single` and `extra` read of the world beyond positions, velocities and the bond.
+    fn looks_at(&self) -> Fields {
+        Fields::NONE
+    }
+
+    /// These numbers, in that order.
+    fn extra(&self, _w: &World, _bond: &Stretched) -> Vec<f64> {
+        vec![]
+    }
 
     /// What a bond does, by the coefficients it has at the moment, for `compute bond/local`; `None` where that takes more than
     /// its two ends.

@@ -29,9 +29,13 @@ pub struct Rebuild {
     pub lost: u64,
     /// Particles have come or gone in this step: everything is rebuilt.
     pub due: bool,
-    /// Pairs have lost in this step what kept them from touching: in the next one lists are made anew, from the positions held.
+    /// Pairs, by their ids, that have lost in this step what kept them from touching: in the next one lists are made anew, from the
+    /// positions held.
     #[serde(skip)]
-    pub freed: bool,
+    pub freed: Vec<[u32; 2]>,
+    /// The generation that differs from the one before in such pairs alone, and these.
+    #[serde(skip)]
+    pub parted: (u64, Vec<[u32; 2]>),
     /// Counts how often particles have come or gone since the program began.
     pub roster: u64,
     /// Counts how often particles have changed places in storage since the program began.
@@ -71,6 +75,20 @@ impl Kept {
 const GROWTH: f64 = 0.25;
 
 impl Rebuild {
+    /// Pairs that were freed in the last step begin a generation of lists.
+    pub fn part(&mut self) {
+        if !self.freed.is_empty() {
+            self.generation += 1;
+            self.parted = (self.generation, std::mem::take(&mut self.freed));
+        }
+    }
+
+    /// If the present lists differ from those of a generation in freed pairs alone: these, by their ids.
+    pub fn only_parted(&self, since: u64) -> Option<&[[u32; 2]]> {
+        let (generation, pairs) = &self.parted;
+        (self.generation == since + 1 && *generation == self.generation).then_some(pairs)
+    }
+
     /// Some radius has grown by this much: lists are made anew, from the positions that are held, before growth has used up
     /// its part of the skin.
     pub fn grow(&mut self, by: f64, skin: f64) {

@@ -191,6 +191,11 @@ impl ListValidity {
         worn
     }
 
+    /// Takes the short lists of these slabs to be made from the present positions.
+    pub fn renew(&mut self, grains: &Grains, which: &[usize]) {
+        which.iter().for_each(|&k| self.see(grains, k));
+    }
+
     /// How much closer two grains of a list can have come, for each slab [length].
     fn closer(&self, grains: &Grains) -> Vec<f64> {
         let mut ways = vec![[Ways::NONE; 2]; self.members.len()];

@@ -94,19 +94,59 @@ impl<L: ContactLaw> Fast<L> {
         lists.resize(slabs.near().count(), Slab::default());
         let shared = par::Shared::new(&mut lists);
         let this = &*self;
-        let everywhere = !this.laws.which.contains(&NONE);
         par::for_rows(slabs.near().count(), |k| {
             // SAFETY: each part writes its own slab.
             let slab = unsafe { &mut shared.get(k..k + 1)[0] };
-            let keep = |i: u32, j: u32| {
-                let (i, j) = (i as usize, j as usize);
-                (everywhere || this.laws.which(grains.kind[i], grains.kind[j]) != NONE) && keep(i, j)
-            };
-            let search = Search { slabs, k, at: &at, shifts: &this.shifts, skin, keep, out: &mut slab.long };
-            // SAFETY: the processor has what its form needs.
-            unsafe { this.form.run(search) }
+            this.search(grains, (slabs, &at), k, skin, keep, &mut slab.long);
         });
         self.lists = lists;
+    }
+
+    /// The long list of slab `k`.
+    fn search(
+        &self,
+        grains: &Grains,
+        (slabs, at): (&Slabs, &InOrder),
+        k: usize,
+        skin: f64,
+        keep: &(impl Fn(usize, usize) -> bool + Sync),
+        out: &mut Pairs,
+    ) {
+        let everywhere = !self.laws.which.contains(&NONE);
+        let keep = |i: u32, j: u32| {
+            let (i, j) = (i as usize, j as usize);
+            (everywhere || self.laws.which(grains.kind[i], grains.kind[j]) != NONE) && keep(i, j)
+        };
+        let search = Search { slabs, k, at, shifts: &self.shifts, skin, keep, out };
+        // SAFETY: the processor has what its form needs.
+        unsafe { self.form.run(search) }
+    }
+
+    /// Long lists of the slabs in which these grains lie, made anew from the positions of all of them; what their contacts
+    /// remember stays. Which slabs.
+    pub(super) fn extend_long(
+        &mut self,
+        grains: &Grains,
+        slabs: &Slabs,
+        skin: f64,
+        ends: &[usize],
+        keep: &(impl Fn(usize, usize) -> bool + Sync),
+    ) -> Vec<usize> {
+        let mut mine = vec![false; grains.x.len()];
+        ends.iter().for_each(|&i| mine[i] = true);
+        let concerned = |k: &usize| slabs.order[slabs.near().members(*k)].iter().any(|i| mine[*i as usize]);
+        let which: Vec<usize> = (0..slabs.near().count()).filter(concerned).collect();
+        let at = InOrder::new(grains, &slabs.order);
+        for &k in &which {
+            let mut new = Pairs::default();
+            self.search(grains, (slabs, &at), k, skin, keep, &mut new);
+            new.fill_up();
+            let slab = &mut self.lists[k];
+            let places = moved(&slab.long, &new);
+            slab.short.t.iter_mut().for_each(|t| *t = places[*t as usize]);
+            slab.long = new;
+        }
+        which
     }
 
     /// Short lists of these slabs from the present positions; contacts keep what they remember.
@@ -164,6 +204,20 @@ impl<L: ContactLaw> Fast<L> {
         }
         new.history[new.t.len() * width..].fill(-1.0);
     }
+}
+
+/// Where the pairs of a list stand in a longer one that has them all in the same order.
+fn moved(old: &Pairs, new: &Pairs) -> Vec<u32> {
+    let mut at = 0;
+    let mut places = vec![];
+    for pair in old.i.iter().zip(&old.w) {
+        while at + 1 < new.i.len() && (&new.i[at], &new.w[at]) != pair {
+            at += 1;
+        }
+        places.push(at as u32);
+        at = (at + 1).min(new.i.len().saturating_sub(1));
+    }
+    places
 }
 
 /// Carries what contacts remember from one short list to the next one; both are in the order of the long list. (No branch asks

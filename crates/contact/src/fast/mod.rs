@@ -165,6 +165,8 @@ pub struct Fast<L> {
     now: f64,
     /// Numbers per pair in the short list: what is remembered and the step it was.
     width: usize,
+    /// Slabs whose long lists have gained pairs.
+    due: Vec<usize>,
     /// What contacts remembered before the lists were made anew.
     book: Option<Book>,
     /// Of the pairs that were the first to overlap too far, the one of smallest ids, and by which part of its radius.
@@ -194,6 +196,7 @@ impl<L: ContactLaw> Fast<L> {
             stale: true,
             now: 0.0,
             width,
+            due: vec![],
             book: None,
             deep: None,
             spare: vec![],
@@ -272,6 +275,30 @@ impl<L: ContactLaw> Fast<L> {
         self.stale = true;
     }
 
+    /// Takes pairs into the lists that `keep` has only now let in, told by their grains; `grains` and `frame` are those of the last
+    /// [`Fast::rebuild`]. The lists are those that a rebuild would make. `false`, and nothing is done, where only a rebuild will do:
+    /// before an evaluation, and beside large grains.
+    pub fn admit(
+        &mut self,
+        grains: &Grains,
+        frame: &Frame,
+        ends: &[usize],
+        keep: &(impl Fn(usize, usize) -> bool + Sync),
+    ) -> bool {
+        let reach = frame.reach + self.span;
+        let [edge, far] = edges(grains.radius, reach);
+        if self.stale || self.book.is_some() || edge != far || grains.tag != self.tag {
+            return false;
+        }
+        let mut slabs = Slabs::default();
+        slabs.sort(grains.x, grains.tag, [edge, far], &frame.lo, &frame.period);
+        if slabs.near().count() != self.lists.len() {
+            return false;
+        }
+        self.due = self.extend_long(grains, &slabs, reach, ends, keep);
+        true
+    }
+
     /// Evaluates all contacts for the grains' present state and adds forces and torques to `f` and `torque`. With `store`
     /// contacts remember, else nothing is changed but forces. With `virial` returns Σ d ⊗ F: xx yy zz xy xz yz. Heat goes where
     /// `heat` is given.
@@ -293,6 +320,10 @@ impl<L: ContactLaw> Fast<L> {
     pub(super) fn begin(&mut self, grains: &Grains) {
         let stale = std::mem::take(&mut self.stale);
         let mut strayed = self.validity.strayed(grains, self.thin, stale);
+        let mut due = std::mem::take(&mut self.due);
+        due.retain(|k| !strayed.contains(k));
+        self.validity.renew(grains, &due);
+        strayed.extend(due);
         let of_large = self.validity_of_large.strayed(grains, self.thin, stale);
         strayed.extend(of_large.into_iter().map(|k| self.validity.lists() + k));
         self.make_short(grains, &strayed);

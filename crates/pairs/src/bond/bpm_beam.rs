@@ -2,8 +2,9 @@
 
 mod words;
 
-use super::driver::{Bonded, Driven, pull_of};
+use super::driver::{Bonded, Driven, ends_of, pull_of};
 use super::options::Options;
+use super::store_local::Store;
 use super::{BondForce, BondStyle, Pull, Stretched};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_bonded::beam::{Coeffs, Potential};
@@ -12,8 +13,8 @@ use perigrain_bonded::weibull;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::matter::Masses;
-use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::field::{Fields, KIND, MASS, RADIUS, TYPE_MASS};
+use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
+use perigrain_world::field::{Fields, KIND, MASS, OMEGA, QUAT, RADIUS, TYPE_MASS};
 use perigrain_world::{Bond, World};
 use std::collections::BTreeMap;
 use words::{Line, Radius};
@@ -27,10 +28,11 @@ impl Style for BpmBeam {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "bond_style bpm/beam [shear paper|timoshenko [K]|none] [criterion sum|separate] [overlay/pair yes|no] [break yes|no] [smooth yes|no]\n\
+            syntax: "bond_style bpm/beam [shear paper|timoshenko [K]|none] [criterion sum|separate] [overlay/pair yes|no] [break yes|no] [smooth yes|no] [store/local ID N value …]\n\
                      bond_coeff T E nu radius R|ratio L [strength S1 S2 [moment B] [weibull M SEED]] [damping Z|ZN ZS ZT ZB]",
             summary: "Cylindrical beams between spheres whose forces and torques derive from an energy.",
-            text: "Each bond is a cylinder between two centres, of Young's modulus E, Poisson's ratio nu and the radius R, or L times the radius of \
+            text: with_store!(
+                "Each bond is a cylinder between two centres, of Young's modulus E, Poisson's ratio nu and the radius R, or L times the radius of \
                    its smaller end. With A = π R², I = π R⁴/4, G = E/(2 (1 + nu)) and its length r0 when a run first met it, it resists stretch with \
                    E A/r0, shear with G A/r0, twist with 2 G I/r0 and bending with E I/r0. `shear timoshenko` takes 1/k = r0/(K G A) + r0³/(12 E I) \
                    (K = 0.9), with which a chain of bonds is a Timoshenko beam at its nodes however few they are; `shear none` leaves shear out.\n\
@@ -44,8 +46,10 @@ impl Style for BpmBeam {
                    B the share of the strength that is used up; energy is not kept then.\n\
                    `damping`: dashpots of Z times the critical damping of the two ends on the bond, of all modes or of stretch, shear, twist and bending.\n\
                    Needs `atom_style bpm/sphere` and `fix nve/bpm/sphere`; bonds that break need `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair \
-                   yes` `special_bonds lj/coul 1 1 1`. This style is perigrain's own. `kinematics incremental` and `yield` are refused.\n\
-                   Jarolin and Dosta, Comput. Part. Mech. 8 (2021); Potyondy and Cundall, Int. J. Rock Mech. Min. Sci. 41, 1329 (2004).",
+                   yes` `special_bonds lj/coul 1 1 1`. `compute bond/local` tells of each bond `tension`, `shear` [force], `bend`, \
+                   `twist` [force length] and `load`, the share of its strength that is used up. This style is perigrain's own. `kinematics incremental` and `yield` are refused.\n\
+                   Jarolin and Dosta, Comput. Part. Mech. 8 (2021); Potyondy and Cundall, Int. J. Rock Mech. Min. Sci. 41, 1329 (2004)."
+            ),
             example: "units si\natom_style bpm/sphere\nlattice sc 0.001\nregion b block 0 3 0 3 0 3\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nset group all diameter 0.001 density 2000\n\
                       create_bonds many all all 1 0.0009 0.0011\nspecial_bonds lj 0 1 1 coul 1 1 1\nbond_style bpm/beam\n\
@@ -98,6 +102,9 @@ impl Driven<4> for Declared {
     }
     fn damped(&self) -> bool {
         self.any(|line| line.coeffs.damping != [0.0; 4])
+    }
+    fn store(&self) -> Option<&Store> {
+        self.options.store.as_ref()
     }
     fn breaks(&self) -> bool {
         self.options.breaks && self.any(|line| line.coeffs.strength != [f64::INFINITY; 2])
@@ -159,8 +166,27 @@ impl BondForce for Declared {
         Ok(vec![Box::new(Bonded::new(self.clone(), span))])
     }
 
+    fn fixes(&self) -> Vec<(String, Box<dyn Fix>)> {
+        self.options.store.iter().map(|s| (s.id().to_string(), Box::new(s.clone()) as _)).collect()
+    }
+
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
         pull_of(self, w, bond)
+    }
+
+    fn extras(&self) -> &'static [&'static str] {
+        &["tension", "shear", "bend", "twist", "load"]
+    }
+
+    fn looks_at(&self) -> Fields {
+        QUAT | OMEGA | RADIUS
+    }
+
+    fn extra(&self, w: &World, bond: &Stretched) -> Vec<f64> {
+        let Some(k) = self.coeffs(bond.kind) else { return vec![0.0; 5] };
+        let (ends, _) = ends_of(w, bond);
+        let own = self.own(w, &k, &bond.bond, bond.ends);
+        self.law.bears(&k, &own, &ends).to_vec()
     }
 
     fn stiffness(&self, kind: u16, length: f64, radii: [f64; 2]) -> Option<Stiffness> {

@@ -1,15 +1,18 @@
 //! bond bpm/rotational: bonds that stretch, shear, twist, bend and break.
 
-use super::driver::{Bonded, Driven, pull_of};
+use super::driver::{Bonded, Driven, ends_of, pull_of};
 use super::options::Options;
+use super::store_local::Store;
 use super::{BondForce, BondStyle, Pull, Stretched};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::cformat::general;
+use perigrain_bonded::law::BondLaw;
 use perigrain_bonded::rotational::{Coeffs, Rotational};
 use perigrain_bonded::stiffness::Stiffness;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
+use perigrain_world::field::{Fields, OMEGA, QUAT};
 use perigrain_world::{Bond, World};
 use std::collections::BTreeMap;
 
@@ -22,10 +25,11 @@ impl Style for BpmRotational {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "bond_style bpm/rotational [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no]\n\
+            syntax: "bond_style bpm/rotational [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [store/local ID N value …]\n\
                      bond_coeff T kr ks kt kb frc fsc ttc tbc gn gs gr gt",
             summary: "Bonds between spheres that stretch, shear, twist, bend and break.",
-            text: "A run notes length and direction of each bond when it first meets it. Against them stand the stretch r − r0, the shear angle γ \
+            text: with_store!(
+                "A run notes length and direction of each bond when it first meets it. Against them stand the stretch r − r0, the shear angle γ \
                    between the direction then, as the end with the higher ID carries it along, and now, the twist ψ about the bond and the bending \
                    angle θ: kr (r − r0) along the bond, ks r γ across it, the torques kt ψ and kb θ. With `normalize yes` kr and ks are divided by r0. \
                    B = F/frc + |Fs|/fsc + |Tt|/ttc + |Tb|/tbc counts how near a bond is to its end (pressure counts as negative, B not below 0): at \
@@ -33,12 +37,14 @@ impl Style for BpmRotational {
                    setup of a run. Forces and torques are multiplied with 1 − B⁴ unless `smooth no` is said; `break no` needs that. Dashpots gn along \
                    the bond, gs across it, gr against rolling (times r) and gt against twist. Needs `atom_style bpm/sphere`, `fix nve/bpm/sphere`, and \
                    `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` `special_bonds lj/coul 1 1 1`. The energy is counted as 0: the law \
-                   has none. Restart files hold length and direction at rest. `frame particle` and `damping dem` of newer LAMMPS say what this is; \
-                   `frame average`, `damping derivative` and `store/local` are refused.\n\
+                   has none. Restart files hold length and direction at rest. For `compute bond/local`: `b1` is r0, `b2 b3 b4` the direction at rest towards the end \
+                   that is listed first, `b5 b6 b7` the force on it; `force` there is what acts along the bond (LAMMPS, and `compat lammps`, multiply it with r). `frame particle` and `damping dem` of newer LAMMPS say what this is; \
+                   `frame average` and `damping derivative` are refused.\n\
                    LAMMPS takes the first direction for one of particles that have not turned, and lets a bond whose end with the lower ID stands \
                    exactly below the other neither bend nor twist; so does `compat lammps`. Its limits of torque stand in this order, twist first, \
                    though its manual has them the other way round.\n\
-                   Wang, Acta Geotechnica 4, 117 (2009); Clemmer, Monti and Lechman, Soft Matter 20, 1702 (2024).",
+                   Wang, Acta Geotechnica 4, 117 (2009); Clemmer, Monti and Lechman, Soft Matter 20, 1702 (2024)."
+            ),
             example: "units lj\natom_style bpm/sphere\nlattice sc 1.0\nregion b block 0 3 0 3 0 3\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nset group all diameter 1.0\n\
                       create_bonds many all all 1 0.9 1.1\nspecial_bonds lj 0 1 1 coul 1 1 1\nbond_style bpm/rotational\n\
@@ -57,7 +63,7 @@ impl BondStyle for BpmRotational {
                 .help("put `atom_style bpm/sphere` (or a hybrid with it) at the top of the deck")
                 .into());
         }
-        let options = Options::read(args, self.name(), &["store/local"], true, same_as_here)?;
+        let options = Options::read(args, self.name(), &[], true, same_as_here)?;
         Ok(Box::new(Declared { options, types: BTreeMap::new(), compat_lammps: cx.world.settings.lammps() }))
     }
 }
@@ -104,6 +110,9 @@ impl Driven<0> for Declared {
     }
     fn damped(&self) -> bool {
         self.types.values().any(|k| k.damping != Stiffness::default())
+    }
+    fn store(&self) -> Option<&Store> {
+        self.options.store.as_ref()
     }
     fn breaks(&self) -> bool {
         self.options.breaks
@@ -161,8 +170,35 @@ impl BondForce for Declared {
         Ok(vec![Box::new(Bonded::new(self.clone(), span))])
     }
 
+    fn fixes(&self) -> Vec<(String, Box<dyn Fix>)> {
+        self.options.store.iter().map(|s| (s.id().to_string(), Box::new(s.clone()) as _)).collect()
+    }
+
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
-        pull_of(self, w, bond)
+        let mut pull = pull_of(self, w, bond)?;
+        if self.compat_lammps {
+            // LAMMPS says force where force over length is meant.
+            pull.force_per_length *= bond.length();
+        }
+        Some(pull)
+    }
+
+    fn extras(&self) -> &'static [&'static str] {
+        &["b1", "b2", "b3", "b4", "b5", "b6", "b7"]
+    }
+
+    fn looks_at(&self) -> Fields {
+        QUAT | OMEGA
+    }
+
+    fn extra(&self, w: &World, bond: &Stretched) -> Vec<f64> {
+        let Some(k) = self.types.get(&bond.kind) else { return vec![0.0; 7] };
+        let (ends, motion) = ends_of(w, bond);
+        let force = self.law().act(k, &[], &ends, Some(&motion)).force;
+        // Seen from the end that is listed first.
+        let sign = if bond.bond.ends[0] < bond.bond.ends[1] { 1.0 } else { -1.0 };
+        let [axis, force] = [ends.axis, force].map(|a| a.map(|a| sign * a));
+        [&[ends.length][..], &axis, &force].concat()
     }
 
     fn stiffness(&self, kind: u16, length: f64, _radii: [f64; 2]) -> Option<Stiffness> {

@@ -2,13 +2,14 @@
 
 use super::driver::{Bonded, Driven, pull_of};
 use super::options::Options;
+use super::store_local::Store;
 use super::{BondForce, BondStyle, Pull, Stretched};
 use perigrain_base::diag::Result;
 use perigrain_base::math::cformat::general;
 use perigrain_bonded::spring::Breaking;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::{Bond, World};
 use std::collections::BTreeMap;
 
@@ -21,14 +22,16 @@ impl Style for BpmSpring {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "bond_style bpm/spring [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no]\nbond_coeff T k ec gamma",
+            syntax: "bond_style bpm/spring [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [store/local ID N value …]\nbond_coeff T k ec gamma",
             summary: "Damped springs that break at a strain.",
-            text: "F = w (k (r − r0) + γ r̂·v) pulls the ends together, with the distance r0 at which a run first met the bond and w = 1 − ((r − r0)/(r0 ec))⁸ \
+            text: with_store!(
+                "F = w (k (r − r0) + γ r̂·v) pulls the ends together, with the distance r0 at which a run first met the bond and w = 1 − ((r − r0)/(r0 ec))⁸ \
                    unless `smooth no` is said. With `normalize yes` the spring's force is k (r − r0)/r0. At a strain beyond ±ec a bond breaks: it is gone \
                    from the next step on, and pair forces act between its ends then. `break no` lets no bond break and needs `smooth no`. \
                    The energy is k (r − r0)²/2, with `normalize yes` k (r − r0)²/(2 r0). Pair forces between bonded particles are off, `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` on, \
-                   `special_bonds lj/coul 1 1 1`. Restart files hold r0, data files do not. `store/local` and `volume/factor` are refused. \
-                   Clemmer and Robbins, Phys. Rev. Lett. 129, 078002 (2022).",
+                   `special_bonds lj/coul 1 1 1`. Restart files hold r0, data files do not; `b1` of compute bond/local is r0. `volume/factor` is refused. \
+                   Clemmer and Robbins, Phys. Rev. Lett. 129, 078002 (2022)."
+            ),
             example: "units lj\natom_style bond\nlattice sc 1.0\nregion b block 0 4 0 4 0 4\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nmass 1 1.0\n\
                       create_bonds many all all 1 0.9 1.1\nspecial_bonds lj 0 1 1 coul 1 1 1\nbond_style bpm/spring\n\
@@ -39,8 +42,7 @@ impl Style for BpmSpring {
 
 impl BondStyle for BpmSpring {
     fn build(&self, args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn BondForce>> {
-        let options =
-            Options::read(args, self.name(), &["store/local", "volume/factor"], true, |_, _| Ok(false))?;
+        let options = Options::read(args, self.name(), &["volume/factor"], true, |_, _| Ok(false))?;
         Ok(Box::new(Declared { options, springs: BTreeMap::new() }))
     }
 }
@@ -78,8 +80,20 @@ impl BondForce for Declared {
         Ok(vec![Box::new(Bonded::new(self.clone(), span))])
     }
 
+    fn fixes(&self) -> Vec<(String, Box<dyn Fix>)> {
+        self.options.store.iter().map(|s| (s.id().to_string(), Box::new(s.clone()) as _)).collect()
+    }
+
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
         pull_of(self, w, bond)
+    }
+
+    fn extras(&self) -> &'static [&'static str] {
+        &["b1"]
+    }
+
+    fn extra(&self, _w: &World, bond: &Stretched) -> Vec<f64> {
+        vec![bond.rest]
     }
 
     fn written(&self, kind: u16) -> Option<String> {
@@ -102,6 +116,9 @@ impl Driven<1> for Declared {
     }
     fn damped(&self) -> bool {
         self.springs.values().any(|[_, _, gamma]| *gamma != 0.0)
+    }
+    fn store(&self) -> Option<&Store> {
+        self.options.store.as_ref()
     }
     fn breaks(&self) -> bool {
         self.options.breaks

@@ -1,5 +1,6 @@
 //! The op of bonds as columns: finds their ends, evaluates a law for all of them, lets them break.
 
+use super::store_local::Store;
 use perigrain_base::diag::{Result, Span};
 use perigrain_base::math::body::{Quat, UNTURNED, after, back, turned};
 use perigrain_base::math::vec3::{Vec3, dot, length, scale, sub};
@@ -10,7 +11,7 @@ use perigrain_bonded::sweep::{Body, Out, Sweep, add_up, nearest};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::pull::{Found, Pull, Stretched, apart, find, periods};
 use perigrain_world::bonds::ascending;
-use perigrain_world::field::{BONDS, BOX, F, Fields, LISTS, OMEGA, QUAT, TAG, TALLY, TORQUE, V, X};
+use perigrain_world::field::{BONDS, BOX, F, Fields, LISTS, MEMO, OMEGA, QUAT, TAG, TALLY, TORQUE, V, X};
 use perigrain_world::tally::add_share;
 use perigrain_world::{Bond, World};
 
@@ -35,6 +36,11 @@ pub trait Driven<const C: usize>: Clone + Send + Sync + 'static {
 
     /// Whether bonds break.
     fn breaks(&self) -> bool;
+
+    /// What is kept of bonds that break.
+    fn store(&self) -> Option<&Store> {
+        None
+    }
 
     /// Whether axes at rest are vectors of space, as if no particle had turned when its bond was made.
     fn axes_in_space(&self) -> bool {
@@ -201,17 +207,22 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
     }
 
     /// Takes away the bonds that broke in this step; pair forces act between their ends from the next step on.
-    fn break_off(&mut self, w: &mut World) {
+    fn break_off(&mut self, w: &mut World, step: i64) {
         let over: Vec<usize> = self.columns.living().filter(|&k| self.out.load[k] >= 1.0).collect();
         let tags = &w.particles.tag;
         let told =
             |k: &usize| (ascending(self.columns.pair(*k).map(|i| tags[i])), i32::from(self.columns.kind(*k)));
         let mut broken: Vec<([u32; 2], i32)> = over.iter().map(told).collect();
         broken.sort_unstable();
+        if let Some(store) = self.law.store() {
+            let mut places: Vec<[usize; 2]> = over.iter().map(|k| self.columns.pair(*k)).collect();
+            places.sort_unstable_by_key(|ends| ends.map(|e| w.particles.tag[e]));
+            store.keep(w, step, &places);
+        }
         let mine = self.made == Some(stand(w));
         w.bonds.lose(&broken);
         // Lists of contacts leave bonded pairs out.
-        w.rebuild.freed = true;
+        w.rebuild.freed.extend(broken.iter().map(|(ends, _)| *ends));
         let energies = over.iter().map(|&k| std::mem::take(&mut self.out.force[k][3]));
         let energy: f64 = energies.sum();
         if w.bonds.counts_losses {
@@ -234,6 +245,9 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
         }
         if self.law.damped() {
             needs = needs.read(V);
+        }
+        if let Some(store) = self.law.store() {
+            needs = needs.read(store.reads()).keep(MEMO);
         }
         if L::Law::TURNS {
             needs = needs.read(QUAT | OMEGA).add(TORQUE);
@@ -268,7 +282,7 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
         let torque = L::Law::TURNS.then_some(&mut p.torque[..]);
         add_up(&self.columns, &self.out, &mut p.f, torque);
         if self.out.broken {
-            self.break_off(w);
+            self.break_off(w, t.step);
         }
         if w.bonds.counts_losses {
             w.bonds.power = par::sum(self.out.power.len(), |k| self.out.power[k]);

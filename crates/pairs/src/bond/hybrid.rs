@@ -4,8 +4,10 @@ use super::{BONDS, BondForce, BondStyle, Pull, Stretched};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+use perigrain_styles::bond::Stiffness;
+use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::World;
+use perigrain_world::field::Fields;
 use std::collections::BTreeMap;
 
 /// The style.
@@ -91,6 +93,18 @@ impl BondForce for Declared {
             ops.append(&mut sub.ops(cx)?);
         }
         Ok(ops)
+    }
+
+    fn fixes(&self) -> Vec<(String, Box<dyn Fix>)> {
+        self.subs.iter().flat_map(|s| s.fixes()).collect()
+    }
+
+    fn looks_at(&self) -> Fields {
+        self.subs.iter().fold(Fields::NONE, |all, s| all.and(s.looks_at()))
+    }
+
+    fn stiffness(&self, kind: u16, length: f64, radii: [f64; 2]) -> Option<Stiffness> {
+        self.user(kind)?.stiffness(kind, length, radii)
     }
 
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {

@@ -1,5 +1,17 @@
 //! Bond styles: forces along bonds between particles.
 
+/// What the pages of bond styles say of `store/local`, after their own text.
+macro_rules! with_store {
+    ($text:literal) => {
+        concat!(
+            $text,
+            "\n\n`store/local ID N value …` keeps values of each bond that breaks: `id1 id2` the IDs of its ends, the lower first, `time` the step, \
+             `x y z` the middle between them then, `x/ref y/ref z/ref` in the setup of the first run. At every multiple of N those of the last N steps \
+             become the local values of a fix of this ID (of bonds that break in one step in the order of their IDs), for `dump local`."
+        )
+    };
+}
+
 mod bpm_beam;
 pub mod bpm_peri;
 mod bpm_rotational;
@@ -8,12 +20,14 @@ mod driver;
 mod harmonic;
 mod hybrid;
 mod options;
+mod store_local;
 mod zero;
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 pub use perigrain_styles::bond::{BondForce, BondStyle};
 pub use perigrain_styles::pull::{Pull, Stretched, apart};
 use perigrain_world::World;
+pub use store_local::NAME as BROUGHT;
 
 /// Every bond style.
 #[rustfmt::skip]

@@ -1,12 +1,13 @@
 //! The words after the names of bond styles whose bonds break.
 
 use super::breaking_weights;
+use super::store_local::Store;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_world::World;
 
 /// What the line of a style says.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone)]
 pub struct Options {
     /// Pair forces act between bonded particles too.
     pub overlay: bool,
@@ -16,10 +17,12 @@ pub struct Options {
     pub normalize: bool,
     /// Bonds break.
     pub breaks: bool,
+    /// What is kept of those that did.
+    pub store: Option<Store>,
 }
 
 /// The words that all these styles know.
-pub const WORDS: [&str; 4] = ["overlay/pair", "smooth", "normalize", "break"];
+pub const WORDS: [&str; 5] = ["overlay/pair", "smooth", "normalize", "break", "store/local"];
 
 impl Options {
     /// Reads the line; `absent` are words of LAMMPS that are not here yet, `smooth` is what holds where the
@@ -34,7 +37,7 @@ impl Options {
         smooth: bool,
         mut more: impl FnMut(&str, &mut Args) -> Result<bool>,
     ) -> Result<Self> {
-        let mut options = Self { overlay: false, smooth, normalize: false, breaks: true };
+        let mut options = Self { overlay: false, smooth, normalize: false, breaks: true, store: None };
         let mut last = args.here();
         while let Some(word) = args.next() {
             last = word.span;
@@ -42,6 +45,7 @@ impl Options {
                 "overlay/pair" => options.overlay = args.flag("overlay/pair")?,
                 "smooth" => options.smooth = args.flag("smooth")?,
                 "normalize" => options.normalize = args.flag("normalize")?,
+                "store/local" => options.store = Some(Store::read(args)?),
                 "break" => options.breaks = args.flag("break")?,
                 other if absent.contains(&other) => {
                     let text = format!("bond_style {style}: `{other}` is not in perigrain yet");

@@ -21,6 +21,7 @@ use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA,
     RADIUS, TAG, TALLY, TORQUE, TRAVEL, V, X, X0,
 };
+use perigrain_world::index::Index;
 use perigrain_world::{Allowed, Key, Numbers, World};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -106,6 +107,19 @@ impl Force {
             return Ok(());
         }
         let skin = w.settings.neighbor.skin;
+        if let Some(pairs) = before.and_then(|g| w.rebuild.only_parted(g))
+            && let Some(fast) = self.fast.as_mut().filter(|_| self.is_fast)
+        {
+            let index = Index::new(&w.particles.tag);
+            let ends: Vec<usize> =
+                pairs.iter().flatten().filter_map(|id| index.find(*id, &w.particles.tag)).collect();
+            let frame = Frame { lo: w.domain()?.lo, period, reach: kept.reach(skin), skin };
+            let allowed = Allowed::new(w);
+            let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
+            if fast.admit(&grains, &frame, &ends, &|i, j| allowed.pair(i, j)) {
+                return Ok(());
+            }
+        }
         if let Some(fast) = self.fast.as_mut().filter(|fast| suits(w, period, fast)) {
             let known = if self.is_fast { None } else { w.contacts.remove(self.key) };
             let frame = Frame { lo: w.domain()?.lo, period, reach: kept.reach(skin), skin };

@@ -7,16 +7,13 @@ use perigrain_bonded::beam::{Coeffs, Criterion, Potential};
 use perigrain_bonded::stiffness::Shear;
 use perigrain_lang::Args;
 
-/// Words of the line that are not here.
-const ABSENT: [&str; 1] = ["store/local"];
-
 /// Reads the line of the style.
 ///
 /// # Errors
 /// Every mistake in it.
 pub fn style(args: &mut Args) -> Result<(Options, Potential)> {
     let mut law = Potential { shear: Shear::Paper, criterion: Criterion::Sum, smooth: false };
-    let options = Options::read(args, "bpm/beam", &ABSENT, false, |word, args| {
+    let options = Options::read(args, "bpm/beam", &[], false, |word, args| {
         match word {
             "shear" => law.shear = shear(args)?,
             "criterion" => {
