@@ -4,7 +4,7 @@
     LAMMPS='/path/to/lmp' tests/oracle/random_decks.py KIND PERIGRAIN FIRST LAST
 
 Each number between FIRST and LAST is the seed of one deck of the KIND: grains, bodies, hybrid (both), sources (what comes and
-goes), motion (fixes and computes of grains), bonds (bonded grains), script (the language, and data files read crosswise), again
+goes), motion (fixes and computes of grains), bonds (bonded grains), beams (bonds that bend), script (the language, and data files read crosswise), again
 (decks of these kinds, cut in two by a restart file), scenes (what changes a scene), output (what is written), mixed (grains of
 three types), settings (what is to change nothing), reread (rerun of dumps), carried (data files read crosswise), displaced
 (solids changed by hand before and between runs) or solids (under fixes and computes). Both programs run it,
@@ -22,7 +22,7 @@ import sys
 from again import Cut, compare_cut
 from beside import REFUSED, compare
 
-KINDS = ["grains", "bodies", "hybrid", "sources", "motion", "bonds", "script", "again", "scenes", "output", "mixed", "settings", "reread", "carried", "displaced", "solids"]
+KINDS = ["grains", "bodies", "hybrid", "sources", "motion", "bonds", "beams", "script", "again", "scenes", "output", "mixed", "settings", "reread", "carried", "displaced", "solids"]
 
 
 def main():

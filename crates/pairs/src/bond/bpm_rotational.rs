@@ -6,6 +6,7 @@ use super::store_local::Store;
 use super::{BondForce, BondStyle, Pull, Stretched};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::cformat::general;
+use perigrain_base::math::vec3::scale;
 use perigrain_bonded::law::BondLaw;
 use perigrain_bonded::rotational::{Coeffs, Rotational};
 use perigrain_bonded::stiffness::Stiffness;
@@ -38,7 +39,7 @@ impl Style for BpmRotational {
                    the bond, gs across it, gr against rolling (times r) and gt against twist. Needs `atom_style bpm/sphere`, `fix nve/bpm/sphere`, and \
                    `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` `special_bonds lj/coul 1 1 1`. The energy is counted as 0: the law \
                    has none. Restart files hold length and direction at rest. For `compute bond/local`: `b1` is r0, `b2 b3 b4` the direction at rest towards the end \
-                   that is listed first, `b5 b6 b7` the force on it; `force` there is what acts along the bond (LAMMPS, and `compat lammps`, multiply it with r). `frame particle` and `damping dem` of newer LAMMPS say what this is; \
+                   that is listed first, `b5 b6 b7` the force on it; `force` there is what acts along the bond (LAMMPS, and `compat lammps`, multiply it with r, and the direction with r0). `frame particle` and `damping dem` of newer LAMMPS say what this is; \
                    `frame average` and `damping derivative` are refused.\n\
                    LAMMPS takes the first direction for one of particles that have not turned, and lets a bond whose end with the lower ID stands \
                    exactly below the other neither bend nor twist; so does `compat lammps`. Its limits of torque stand in this order, twist first, \
@@ -197,8 +198,10 @@ impl BondForce for Declared {
         let force = self.law().act(k, &[], &ends, Some(&motion)).force;
         // Seen from the end that is listed first.
         let sign = if bond.bond.ends[0] < bond.bond.ends[1] { 1.0 } else { -1.0 };
-        let [axis, force] = [ends.axis, force].map(|a| a.map(|a| sign * a));
-        [&[ends.length][..], &axis, &force].concat()
+        // LAMMPS' direction has the length at rest.
+        let long = if self.compat_lammps { ends.length } else { 1.0 };
+        let axis = scale(sign * long, ends.axis);
+        [&[ends.length][..], &axis, &scale(sign, force)].concat()
     }
 
     fn stiffness(&self, kind: u16, length: f64, _radii: [f64; 2]) -> Option<Stiffness> {
