@@ -55,7 +55,7 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("deform.rs", "x0", "only where solids follow the box"),
     ("rigid.rs", "tally", "only with virials"),
     ("viscous_sphere.rs", "slots", "only with a variable for each"),
-    ("bpm_spring.rs", "lists", "only where broken bonds free pairs"),
+    ("bond/driver.rs", "lists", "only where broken bonds free pairs"),
     ("granular/force.rs", "columns", "only with heat"),
     ("peri/force.rs", "radius lists", "only beside grains"),
     ("graph/ledger.rs", "x0", "only beside solids"),

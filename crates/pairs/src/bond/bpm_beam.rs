@@ -184,7 +184,7 @@ impl BondForce for Declared {
 
     fn extra(&self, w: &World, bond: &Stretched) -> Vec<f64> {
         let Some(k) = self.coeffs(bond.kind) else { return vec![0.0; 5] };
-        let (ends, _) = ends_of(w, bond);
+        let (ends, _) = ends_of(w, bond, true);
         let own = self.own(w, &k, &bond.bond, bond.ends);
         self.law.bears(&k, &own, &ends).to_vec()
     }

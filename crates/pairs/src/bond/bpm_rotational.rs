@@ -194,7 +194,7 @@ impl BondForce for Declared {
 
     fn extra(&self, w: &World, bond: &Stretched) -> Vec<f64> {
         let Some(k) = self.types.get(&bond.kind) else { return vec![0.0; 7] };
-        let (ends, motion) = ends_of(w, bond);
+        let (ends, motion) = ends_of(w, bond, true);
         let force = self.law().act(k, &[], &ends, Some(&motion)).force;
         // Seen from the end that is listed first.
         let sign = if bond.bond.ends[0] < bond.bond.ends[1] { 1.0 } else { -1.0 };

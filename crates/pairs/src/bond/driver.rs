@@ -55,10 +55,13 @@ pub trait Driven<const C: usize>: Clone + Send + Sync + 'static {
         Fields::NONE
     }
 
-    /// Takes the coefficients that fixes have changed; whether there are new ones.
-    fn adapt(&mut self, _w: &World) -> bool {
+    /// Whether fixes may change coefficients.
+    fn adapts(&self) -> bool {
         false
     }
+
+    /// Takes the coefficients that fixes have changed.
+    fn adapt(&mut self, _w: &World) {}
 }
 
 /// The coefficients of a bond type.
@@ -105,25 +108,28 @@ fn lower_first(ids: [u32; 2], places: [usize; 2]) -> [usize; 2] {
     if ids[0] < ids[1] { places } else { [places[1], places[0]] }
 }
 
-/// What a law says of one bond as it is now: its ends, and how they move. The first end is that with the lower ID.
-pub fn ends_of(w: &World, bond: &Stretched) -> (Ends<f64>, Motion<f64>) {
+/// What a law says of one bond as it is now: its ends, and how they move, and with `turns` how they have turned. The first end
+/// is that with the lower ID.
+pub fn ends_of(w: &World, bond: &Stretched, turns: bool) -> (Ends<f64>, Motion<f64>) {
     let p = &w.particles;
     let [a, b] = lower_first(bond.bond.ends, bond.ends);
     let sign = if a == bond.ends[0] { 1.0 } else { -1.0 };
     let r = scale(sign, bond.d);
     let turn = w.bonds.turned.get(&ascending(bond.bond.ends)).copied().unwrap_or(UNTURNED);
-    let of = |list: &[Quat], i: usize| list.get(i).copied().unwrap_or(UNTURNED);
-    let quat = [after(of(&p.quat, a), turn), of(&p.quat, b)];
+    let (mut quat, mut omega) = ([UNTURNED; 2], [[0.0; 3]; 2]);
+    if turns {
+        quat = [after(p.quat[a], turn), p.quat[b]];
+        omega = [p.omega[a], p.omega[b]];
+    }
     let axis = if bond.bond.axis == [0.0; 3] { scale(1.0 / length(r), r) } else { bond.bond.axis };
-    let spin = |i: usize| p.omega.get(i).copied().unwrap_or([0.0; 3]);
     let at_rest = if bond.rest == 0.0 { bond.length() } else { bond.rest };
-    (Ends { r, length: at_rest, axis, quat }, Motion { v: scale(sign, bond.v), omega: [spin(a), spin(b)] })
+    (Ends { r, length: at_rest, axis, quat }, Motion { v: scale(sign, bond.v), omega })
 }
 
 /// What a bond of a style does now, along its line.
 pub fn pull_of<const C: usize, L: Driven<C>>(law: &L, w: &World, bond: &Stretched) -> Option<Pull> {
     let k = law.coeffs(bond.kind)?;
-    let (ends, motion) = ends_of(w, bond);
+    let (ends, motion) = ends_of(w, bond, L::Law::TURNS);
     let own = law.own(w, &k, &bond.bond, lower_first(bond.bond.ends, bond.ends));
     let acts = law.law().act(&k, &own, &ends, Some(&motion));
     let r2 = dot(ends.r, ends.r);
@@ -257,9 +263,10 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
 
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let mut anew = t.setup || self.made != Some(stand(w));
-        if self.adapted != w.adaptations() {
+        if self.law.adapts() && self.adapted != w.adaptations() {
             self.adapted = w.adaptations();
-            anew |= self.law.adapt(w);
+            self.law.adapt(w);
+            anew = true;
         }
         if anew {
             self.lay_out(w)?;
@@ -279,7 +286,7 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
             counts: w.bonds.counts_losses && self.law.damped(),
         };
         self.law.law().sweep(&pass, &mut self.out);
-        let torque = L::Law::TURNS.then_some(&mut p.torque[..]);
+        let torque = if L::Law::TURNS { Some(&mut p.torque[..]) } else { None };
         add_up(&self.columns, &self.out, &mut p.f, torque);
         if self.out.broken {
             self.break_off(w, t.step);

@@ -102,11 +102,13 @@ impl Driven<0> for Adapting {
     fn reads(&self) -> Fields {
         MEMO
     }
-    fn adapt(&mut self, w: &World) -> bool {
+    fn adapts(&self) -> bool {
+        true
+    }
+    fn adapt(&mut self, w: &World) {
         for (now, spring) in self.now.values_mut().zip(self.said.springs.values()) {
             *now = spring.now(w);
         }
-        true
     }
 }
 
