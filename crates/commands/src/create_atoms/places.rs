@@ -1,6 +1,7 @@
 //! Where `create_atoms` puts particles: lattice sites, one place, random places, triangles of a surface.
 
 use super::mesh::Mesh;
+use super::pack::Pack;
 use super::subset::Subset;
 use perigrain_base::diag::Result;
 use perigrain_base::math::rng::ParkMiller;
@@ -40,6 +41,8 @@ pub enum Place {
     },
     /// On the triangles of a surface.
     Mesh(Mesh),
+    /// Packed densely.
+    Pack(Box<Pack>),
 }
 
 /// A particle to be made.
@@ -102,6 +105,7 @@ impl Place {
                 random.places(cx, m, *count, *seed)
             }
             Place::Mesh(mesh) => Ok(mesh.places(m)),
+            Place::Pack(pack) => pack.places(cx, m.domain, m.kind),
         }
     }
 
@@ -111,6 +115,7 @@ impl Place {
         let region = match self {
             Place::Single { .. } | Place::Mesh(_) => return 1.0,
             Place::Random { count, .. } => return *count as f64,
+            Place::Pack(pack) => return pack.expected(domain),
             Place::Lattice { region, .. } => region.as_ref(),
         };
         let (lo, hi) = bounds(domain, region);

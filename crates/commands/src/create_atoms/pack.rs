@@ -1,0 +1,381 @@
+//! `create_atoms … pack`, `opal` and `aggregate`: their words, and what they say of the packing.
+
+use super::packing::aggregate::{LINK, thin};
+use super::packing::pores::{Axis, Pores};
+use super::packing::room::Room;
+use super::packing::sizes::Sizes;
+use super::packing::{Goal, Packing, pack};
+use super::places::New;
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::math::cformat::general;
+use perigrain_base::math::rng::ParkMiller;
+use perigrain_lang::{Args, Word};
+use perigrain_styles::common::{self, seed};
+use perigrain_styles::{ActCx, BuildCx};
+use perigrain_world::{Domain, Region};
+use std::f64::consts::PI;
+
+/// Rounds that spheres get if nothing else is said.
+const ROUNDS: usize = 1000;
+/// No spheres of sizes that are at all alike are denser (equal ones reach 0.7405, on a lattice).
+const DENSEST: f64 = 0.75;
+/// Spheres that reach farther through walls, in mean diameters, do not fit into the region.
+const THROUGH: f64 = 0.05;
+/// Spheres that reach so far through walls are worth a line.
+const TOLD: f64 = 1e-3;
+
+/// What a line asks for.
+pub struct Pack {
+    form: Form,
+    region: Region,
+    name: Word,
+    share: f64,
+    share_span: Span,
+    seed: u32,
+    sizes: Sizes,
+    sizes_span: Span,
+    goal: Goal,
+}
+
+/// What is made of the packing.
+enum Form {
+    /// Nothing else.
+    Plain,
+    /// Walls round pores.
+    Opal {
+        diameter: f64,
+        /// In diameters.
+        spacing: f64,
+        axis: Axis,
+        span: Span,
+    },
+    /// What is left of it.
+    Aggregate { porosity: f64, wavelength: f64, spans: [Span; 2] },
+}
+
+/// Takes the words from the region on, up to the keywords.
+pub fn parse(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<Pack> {
+    spheres(style, cx)?;
+    let name = a.expect("a region")?.clone();
+    let region = cx.region(&name)?.clone();
+    refuse_region(&name, &region, common::domain(cx)?)?;
+    let mut form = Form::Plain;
+    if style.text == "opal" {
+        let span = a.here();
+        let diameter = a.positive("the diameter of pores")?;
+        let spacing = in_range(
+            a,
+            "the spacing of pores, in diameters",
+            0.5,
+            1.0,
+            "1 lets them just touch, less opens windows between them",
+        )?;
+        form = Form::Opal { diameter, spacing, axis: Axis::Layers, span };
+    }
+    let share_span = a.here();
+    let remedy = "random packings of equal spheres reach 0.64; write for example 0.6";
+    let share = in_range(a, "the share of the volume", 0.0, DENSEST, remedy)?;
+    let seed = seed(a)?;
+    if style.text == "aggregate" {
+        let spans = [a.here(), a.peek_at(1).map_or(a.here(), |w| w.span)];
+        let remedy = "it is the part of the region's volume without spheres";
+        let unknown = a.peek().is_some_and(|w| w.unknown);
+        let porosity = in_range(a, "the porosity", 0.0, 1.0, remedy)?;
+        if porosity <= 1.0 - share && !unknown {
+            let text =
+                format!("a packing of share {share} has porosity {} by itself", general(1.0 - share, 6));
+            let d = Diagnostic::error(Code::BAD_VALUE, spans[0], text);
+            return Err(d.help("write a larger porosity, or `pack`").into());
+        }
+        let wavelength = a.positive("the wavelength")?;
+        form = Form::Aggregate { porosity, wavelength, spans };
+    }
+    let goal = Goal { overlap: None, rounds: ROUNDS };
+    let sizes = Sizes::Mono(1.0);
+    Ok(Pack { form, region, name, share, share_span, seed, sizes, sizes_span: style.span, goal })
+}
+
+/// Refuses scenes without spheres in space.
+fn spheres(style: &Word, cx: &BuildCx) -> Result<()> {
+    if !cx.world.particles.style.sphere {
+        let text = format!("particles of atom_style {} have no radius", cx.world.particles.style.name());
+        let d = Diagnostic::error(Code::CONFLICT, style.span, text);
+        return Err(d
+            .help("write `atom_style sphere`, or `bpm/sphere` for bonds, before the box is made")
+            .into());
+    }
+    if cx.world.settings.two_dimensional {
+        let text = format!("create_atoms {} packs spheres in space, not in a plane", style.text);
+        let d = Diagnostic::error(Code::NOT_SUPPORTED, style.span, text);
+        return Err(d.help("take `dimension 2` out, or use `create_atoms random` with `overlap`").into());
+    }
+    Ok(())
+}
+
+/// Refuses regions that no distance is known to.
+fn refuse_region(name: &Word, region: &Region, domain: &Domain) -> Result<()> {
+    let Err(what) = Room::new(domain, region) else { return Ok(()) };
+    let text = format!("spheres cannot be packed in region `{}`, which {what}", name.text);
+    let d = Diagnostic::error(Code::NOT_SUPPORTED, name.span, text);
+    Err(d.help("a single shape at rest with closed faces, `side in` or `side out`, or an intersection of such ones, will do").into())
+}
+
+/// Takes a number above `low` and not above `high`.
+fn in_range(a: &mut Args, what: &str, low: f64, high: f64, remedy: &str) -> Result<f64> {
+    let (span, unknown) = (a.here(), a.peek().is_some_and(|w| w.unknown));
+    let value = a.number(what)?;
+    if unknown {
+        return Ok(high);
+    }
+    if value > low && value <= high {
+        return Ok(value);
+    }
+    let text = format!("{what} must be greater than {low} and at most {high}, not {value}");
+    Err(Diagnostic::error(Code::BAD_VALUE, span, text).help(remedy).into())
+}
+
+impl Pack {
+    /// Takes what stands behind a keyword; `false` if the keyword does not go with this form.
+    pub fn keyword(&mut self, word: &Word, a: &mut Args) -> Result<bool> {
+        match (word.text.as_str(), &mut self.form) {
+            ("sizes", form) => {
+                let plain = matches!(form, Form::Plain);
+                let last = a.peek_at(if a.peek_text() == "mono" { 1 } else { 2 });
+                self.sizes_span = word.span.to(last.map_or(a.here(), |w| w.span));
+                self.sizes = sizes(a, plain)?;
+            }
+            ("overlap", _) => {
+                let remedy = "it is a part of the distance of touching spheres, 0 for none";
+                let (span, unknown) = (a.here(), a.peek().is_some_and(|w| w.unknown));
+                let overlap = a.non_negative("the largest overlap")?;
+                if overlap >= 0.5 && !unknown {
+                    let text = format!("the largest overlap must be below 0.5, not {overlap}");
+                    return Err(Diagnostic::error(Code::BAD_VALUE, span, text).help(remedy).into());
+                }
+                self.goal.overlap = Some(overlap);
+            }
+            ("rounds", _) => {
+                let rounds = a.integer_from(1, "the number of rounds")?;
+                self.goal.rounds = usize::try_from(rounds).unwrap_or(usize::MAX);
+            }
+            ("axis", Form::Opal { axis, .. }) => {
+                *axis = match a.choice("direction along z", &["111", "100"])? {
+                    "111" => Axis::Layers,
+                    _ => Axis::Cube,
+                };
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// About how many spheres there will be.
+    pub fn expected(&self, domain: &Domain) -> f64 {
+        let volume = Room::new(domain, &self.region).map_or(0.0, |room| self.with_pores(room).volume());
+        self.share * volume / self.sizes.mean_volume()
+    }
+
+    fn with_pores(&self, room: Room) -> Room {
+        match self.form {
+            Form::Opal { diameter, spacing, axis, .. } => {
+                let pores = Pores::new(room.lo, diameter, spacing, axis);
+                room.with_pores(pores)
+            }
+            _ => room,
+        }
+    }
+
+    /// Packs the spheres and says how they lie.
+    pub fn places(&self, cx: &mut ActCx, domain: &Domain, kind: u16) -> Result<Vec<New>> {
+        refuse_region(&self.name, &self.region, domain)?;
+        let Ok(room) = Room::new(domain, &self.region) else { return Ok(vec![]) };
+        let room = self.with_pores(room);
+        self.check_periods(&room)?;
+        let volume = room.volume();
+        if volume <= 0.0 {
+            let text = format!("region `{}` leaves no place in the box", self.name.text);
+            return fail(Code::BAD_VALUE, self.name.span, text);
+        }
+        let mut stream = ParkMiller::new(self.seed);
+        stream.skip(30);
+        let radii = self.sizes.radii(self.share * volume, &mut stream);
+        if radii.is_empty() {
+            let text =
+                format!("not even one sphere makes a share {} of region `{}`", self.share, self.name.text);
+            let d = Diagnostic::error(Code::BAD_VALUE, self.sizes_span, text);
+            return Err(d
+                .help(format!("its volume is {}: write a smaller diameter", general(volume, 6)))
+                .into());
+        }
+        self.warn_of_others(cx, &room);
+        let Some(packing) = pack(&room, radii, &mut stream, &self.goal) else {
+            let text =
+                format!("region `{}` is so thin that places in it are not found at random", self.name.text);
+            return fail(Code::BAD_VALUE, self.name.span, text);
+        };
+        self.tell(cx, &packing, volume)?;
+        let kept = self.kept(cx, &room, &packing, volume, &mut stream)?;
+        let new = |k: usize| New { kind, x: packing.x[k], radius: Some(packing.radius[k]) };
+        Ok(kept.into_iter().map(new).collect())
+    }
+
+    /// Whether what repeats does so after two diameters at least, and after whole cells of pores.
+    fn check_periods(&self, room: &Room) -> Result<()> {
+        for d in (0..3).filter(|&d| room.period[d] > 0.0) {
+            let (period, axis) = (room.period[d], ["x", "y", "z"][d]);
+            if period < 2.0 * self.sizes.largest() {
+                let text = format!(
+                    "along {axis} the box repeats after {period}, less than two of the largest diameters, {}",
+                    general(self.sizes.largest(), 6)
+                );
+                let d = Diagnostic::error(Code::BAD_VALUE, self.sizes_span, text);
+                return Err(d.help("write a smaller diameter, or make the box larger").into());
+            }
+            if let Form::Opal { diameter, spacing, axis: turn, span } = self.form {
+                let cell = Pores::new([0.0; 3], diameter, spacing, turn).cell()[d];
+                let cells = (period / cell).round().max(1.0);
+                // What a deck's digits leave over is no fault of the lattice.
+                if (period - cells * cell).abs() > 1e-6 * period {
+                    let text = format!(
+                        "along {axis} the box repeats after {period}, the lattice of pores after {}",
+                        general(cell, 12)
+                    );
+                    let d = Diagnostic::error(Code::CONFLICT, span, text);
+                    let help =
+                        format!("make the box {} long, or the face not periodic", general(cells * cell, 12));
+                    return Err(d.help(help).into());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Warns of particles that are there already, which a packing does not see.
+    fn warn_of_others(&self, cx: &ActCx, room: &Room) {
+        let count = cx.world.particles.x.iter().filter(|x| room.contains(**x)).count();
+        if count > 0 {
+            let text = format!(
+                "{count} particles are in region `{}` already; spheres are packed over them",
+                self.name.text
+            );
+            cx.note(Diagnostic::warning(Code::SUSPICIOUS, self.name.span, text));
+        }
+    }
+
+    /// Says how spheres lie.
+    fn tell(&self, cx: &mut ActCx, p: &Packing, volume: f64) -> Result<()> {
+        let came = &p.came;
+        let mean = 2.0 * p.radius.iter().sum::<f64>() / p.radius.len() as f64;
+        if came.beyond > THROUGH * mean {
+            let text = format!(
+                "spheres do not fit into region `{}`: they reach {} through its walls",
+                self.name.text,
+                general(came.beyond, 3)
+            );
+            let d = Diagnostic::error(Code::BAD_VALUE, self.sizes_span, text);
+            return Err(d
+                .help("write a smaller diameter, or a region without places narrower than one")
+                .into());
+        }
+        let percent = |part: f64| format!("{} %", general(100.0 * part, 3));
+        let n = p.x.len();
+        cx.say(format!(
+            "Packed {n} spheres in {} rounds: share {} of a volume of {}",
+            came.rounds,
+            general(solid(&p.radius) / volume, 5),
+            general(volume, 6)
+        ));
+        let (average, most) = (percent(came.mean), percent(came.largest));
+        cx.say(format!("  overlap of spheres that touch {average} on average, {most} at most"));
+        if came.shrunk < 1.0 {
+            let less = percent(1.0 - came.shrunk);
+            cx.say(format!("  diameters are {less} smaller than asked for, so that nothing overlaps"));
+        }
+        if came.beyond > TOLD * mean {
+            cx.say(format!("  spheres reach {} through walls at most", general(came.beyond, 3)));
+        }
+        if !came.reached {
+            let text = format!(
+                "after {} rounds spheres of share {} still overlap, {average} on average and {most} at most",
+                self.goal.rounds, self.share
+            );
+            let help = match self.goal.overlap {
+                Some(0.0) => {
+                    "a smaller share, or more `rounds`, would leave the diameters nearer to what they should be"
+                }
+                _ => "write a smaller share or more `rounds`, or `overlap 0` for smaller diameters",
+            };
+            cx.note(Diagnostic::warning(Code::SUSPICIOUS, self.share_span, text).help(help));
+        }
+        Ok(())
+    }
+
+    /// The spheres that stay.
+    fn kept(
+        &self,
+        cx: &mut ActCx,
+        room: &Room,
+        p: &Packing,
+        volume: f64,
+        stream: &mut ParkMiller,
+    ) -> Result<Vec<usize>> {
+        let Form::Aggregate { porosity, wavelength, spans } = self.form else {
+            return Ok((0..p.x.len()).collect());
+        };
+        let edge = (0..3).map(|d| room.hi[d] - room.lo[d]).fold(f64::INFINITY, f64::min);
+        if wavelength > edge {
+            let text =
+                format!("the wavelength {wavelength} is longer than the shortest edge of the region, {edge}");
+            return fail(Code::BAD_VALUE, spans[1], text);
+        }
+        let Some(left) = thin(room, p, (1.0 - porosity) * volume, wavelength, stream) else {
+            let text =
+                format!("at porosity {porosity} no connected part reaches from end to end of the region");
+            let d = Diagnostic::error(Code::BAD_VALUE, spans[0], text);
+            return Err(d.help("write a smaller porosity, another seed, or a shorter wavelength").into());
+        };
+        let radii: Vec<f64> = left.kept.iter().map(|&k| p.radius[k]).collect();
+        cx.say(format!(
+            "  left an aggregate of {} spheres, porosity {}; {} more were lost as not connected",
+            left.kept.len(),
+            general(1.0 - solid(&radii) / volume, 5),
+            left.lost
+        ));
+        cx.say(format!(
+            "  one part from end to end along {}, over gaps of up to {LINK} diameters",
+            ["x", "y", "z"][left.axis]
+        ));
+        Ok(left.kept)
+    }
+}
+
+/// The volume of spheres.
+fn solid(radius: &[f64]) -> f64 {
+    radius.iter().map(|r| 4.0 / 3.0 * PI * r.powi(3)).sum()
+}
+
+fn sizes(a: &mut Args, all: bool) -> Result<Sizes> {
+    let known: &[&'static str] = if all { &["mono", "uniform", "lognormal"] } else { &["mono"] };
+    match a.choice("distribution of sizes", known)? {
+        "mono" => a.positive("the diameter").map(Sizes::Mono),
+        "uniform" => {
+            let low = a.positive("the smallest diameter")?;
+            let span = a.here();
+            let high = a.positive("the largest diameter")?;
+            if high < low {
+                let text = format!("the largest diameter {high} is below the smallest, {low}");
+                return fail(Code::BAD_VALUE, span, text);
+            }
+            Ok(Sizes::Uniform(low, high))
+        }
+        _ => {
+            let median = a.positive("the median diameter")?;
+            let remedy =
+                "it is the standard deviation of the logarithm: about the relative scatter of diameters";
+            Ok(Sizes::Lognormal(median, in_range(a, "the width of the distribution", 0.0, 0.5, remedy)?))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,137 @@
+//! Tests of packings as decks ask for them.
+
+use crate::testing::{act, more, refused, scene};
+use perigrain_world::World;
+use std::f64::consts::PI;
+
+fn box_of(edge: f64) -> World {
+    scene(&format!(
+        "units si\natom_style sphere\nregion b block 0 {edge} 0 {edge} 0 {edge} units box\ncreate_box 2 b"
+    ))
+}
+
+#[test]
+fn a_packing_is_told_of() {
+    let mut w = box_of(8.0);
+    more(&mut w, "create_atoms 1 single 100 100 100 units box");
+    let said = act(&mut w, "create_atoms 2 pack b 0.55 4711 sizes mono 0.8 group g", &[]).unwrap();
+    // 0.55 · 8³ / (π/6 · 0.8³) = 1050.4.
+    assert!(
+        said[0].starts_with("Packed 1050 spheres in ")
+            && said[0].contains(": share 0.54978 of a volume of 512")
+    );
+    assert!(said[1].starts_with("  overlap of spheres that touch 0.0"), "{}", said[1]);
+    assert_eq!(said[2..], ["Created 1050 atoms", "  using box units in orthogonal box = (0 0 0) to (8 8 8)"]);
+    let p = &w.particles;
+    assert!(p.radius.iter().all(|r| *r == 0.4) && p.kind.iter().all(|k| *k == 2));
+    // Density 1, as for spheres that `create_atoms` makes in other ways.
+    assert!(p.mass.iter().all(|m| (m - PI / 6.0 * 0.8f64.powi(3)).abs() < 1e-15));
+    let g = w.groups.find("g").unwrap();
+    assert!(p.mask.iter().all(|m| m & g.bit() != 0) && p.tag[1049] == 1050);
+    assert!(p.x.iter().all(|x| x.iter().all(|a| (0.0..8.0).contains(a))));
+}
+
+#[test]
+fn opals_and_aggregates_are_told_of() {
+    let mut w = scene(
+        "units si\natom_style sphere\nboundary p p f\nregion b block 0 6 0 10.392304845413264 0 10 units box",
+    );
+    more(&mut w, "create_box 1 b");
+    let said = act(&mut w, "create_atoms 1 opal b 6 1 0.4 11 sizes mono 0.5", &[]).unwrap();
+    assert!(said[0].starts_with("Packed ") && said[0].contains("share 0.39996"), "{said:?}");
+    let mut w = box_of(9.0);
+    let said = act(&mut w, "create_atoms 1 aggregate b 0.6 11 0.7 4 sizes mono 0.7", &[]).unwrap();
+    assert!(
+        said[2].starts_with(&format!("  left an aggregate of {} spheres, porosity 0.", w.n())),
+        "{said:?}"
+    );
+    assert_eq!(said[3], "  one part from end to end along z, over gaps of up to 0.1 diameters");
+    assert_eq!(said[4], format!("Created {} atoms", w.n()));
+}
+
+#[test]
+fn zero_overlap_shrinks_diameters() {
+    let mut w = box_of(6.0);
+    let said = act(&mut w, "create_atoms 1 pack b 0.6 5 overlap 0 sizes uniform 0.7 1.1", &[]).unwrap();
+    assert_eq!(said[1], "  overlap of spheres that touch 0 % on average, 0 % at most");
+    assert!(said[2].contains("smaller than asked for"), "{said:?}");
+    let r: f64 = w.particles.radius.iter().copied().fold(0.0, f64::max);
+    assert!(r < 0.55 && r > 0.52);
+}
+
+#[test]
+fn the_word_to_blame() {
+    let w = box_of(8.0);
+    let blamed = |line: &str| refused(&w, line).0;
+    for (line, word) in [
+        ("pack c 0.5 1", "c"),
+        ("pack b 0 1", "0"),
+        ("pack b -0.5 1", "-0.5"),
+        ("pack b 0.8 1", "0.8"),
+        ("pack b nan 1", "nan"),
+        ("pack b 0.5 0", "0"),
+        ("pack b 0.5", "0.5"),
+        ("pack b 0.5 1 sizes mono 0", "0"),
+        ("pack b 0.5 1 sizes mono -1", "-1"),
+        ("pack b 0.5 1 sizes bimodal 1 2", "bimodal"),
+        ("pack b 0.5 1 sizes uniform 2 1", "1"),
+        ("pack b 0.5 1 sizes lognormal 1 3", "3"),
+        ("pack b 0.5 1 overlap 0.7", "0.7"),
+        ("pack b 0.5 1 rounds 0", "0"),
+        ("pack b 0.5 1 axis 100", "axis"),
+        ("pack b 0.5 1 units box", "units"),
+        ("pack b 0.5 1 mol m 3", "mol"),
+        ("random 5 1 b sizes mono 1", "sizes"),
+        // Two diameters must fit between a face and its image.
+        ("pack b 0.5 1 sizes mono 4.5", "sizes mono 4.5"),
+        ("opal b 0 1 0.5 1", "0"),
+        ("opal b 4 1.2 0.5 1", "1.2"),
+        ("opal b 4 0.5 0.5 1", "0.5"),
+        ("opal b 4 1 0.5 1 axis 110", "110"),
+        ("opal b 4 1 0.5 1 sizes uniform 0.2 0.3", "uniform"),
+        // The lattice of pores does not fit the box.
+        ("opal b 4 1 0.5 1 sizes mono 0.3", "4"),
+        ("aggregate b 0.6 1 0.3 2", "0.3"),
+        ("aggregate b 0.6 1 1.3 2", "1.3"),
+        ("aggregate b 0.6 1 0.7 0", "0"),
+        ("aggregate b 0.6 1 0.7 20", "20"),
+        ("aggregate b 0.6 1 0.99 2", "0.99"),
+    ] {
+        assert_eq!(blamed(&format!("create_atoms 1 {line}")), word, "{line}");
+    }
+    let points = scene("units si\nregion b block 0 1 0 1 0 1\ncreate_box 1 b");
+    assert_eq!(refused(&points, "create_atoms 1 pack b 0.5 1").0, "pack");
+    let flat = scene(
+        "units si\natom_style sphere\ndimension 2\nregion b block 0 9 0 9 -1 1 units box\ncreate_box 1 b",
+    );
+    assert_eq!(refused(&flat, "create_atoms 1 pack b 0.5 1").0, "pack");
+}
+
+#[test]
+fn regions_that_will_not_do() {
+    let mut w = scene(
+        "units si\natom_style sphere\nboundary f f f\nregion b block 0 8 0 8 0 8 units box\ncreate_box 1 b",
+    );
+    more(&mut w, "region far sphere 20 0 0 1 units box\nregion s sphere 4 4 4 1 units box");
+    more(&mut w, "region slit block 1 1.7 0 8 0 8 units box\nregion none block 2 2 0 8 0 8 units box");
+    more(&mut w, "region open block 1 4 1 4 1 4 units box open 1\nregion u union 2 s slit");
+    more(&mut w, "region i intersect 2 s slit side out");
+    let why = |name: &str| refused(&w, &format!("create_atoms 1 pack {name} 0.5 1")).1;
+    for (name, part) in [
+        ("far", "no place"),
+        ("none", "no place"),
+        ("open", "open faces"),
+        ("u", "is a union"),
+        ("i", "outside of an intersection"),
+        ("slit", "do not fit"),
+    ] {
+        assert!(why(name).contains(part), "{name}: {}", why(name));
+    }
+    let d = refused(&w, "create_atoms 1 pack s 0.05 1");
+    assert!(d.1.contains("not even one"), "{}", d.1);
+    // Larger than the box: the part inside counts.
+    more(&mut w, "region large block -5 50 -5 50 -5 4 units box");
+    let said = act(&mut w, "create_atoms 1 pack large 0.5 1 sizes mono 0.7", &[]).unwrap();
+    assert!(said[0].contains("of a volume of 256"), "{said:?}");
+    assert!(w.particles.x.iter().all(|x| x[2] < 4.0 - 0.34));
+}
