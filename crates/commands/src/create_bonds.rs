@@ -1,9 +1,11 @@
 //! `create_bonds`: bonds between particles that are there.
 
+mod gap;
+
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
-use perigrain_neigh::list::{Reach, View, Wanted, pairs};
+use perigrain_neigh::list::{Pair, Reach, View, Wanted, pairs};
 use perigrain_styles::common::{self, bad_keyword, bond_type, on_particles};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::index::Index;
@@ -19,7 +21,8 @@ impl Style for CreateBonds {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "create_bonds many GROUP1 GROUP2 TYPE RMIN RMAX | single/bond TYPE ID1 ID2  [special yes|no]",
+            syntax: "create_bonds many GROUP1 GROUP2 TYPE RMIN RMAX | single/bond TYPE ID1 ID2  [special yes|no]\n\
+                     create_bonds gap GROUP1 GROUP2 TYPE GMIN GMAX [mix TYPE2 SHARE SEED]",
             summary: "Makes bonds between particles.",
             text: "`many`: a bond between each particle of one group and each of the other whose distance lies between RMIN and \
                    RMAX, both included, except where `neigh_modify exclude` or the weights of `special_bonds` (0 for both kinds) \
@@ -27,7 +30,11 @@ impl Style for CreateBonds {
                    the default weights particles two or three bonds apart are left out, too. LAMMPS also needs a pair style that \
                    reaches as far; perigrain does not. `single/bond`: one bond between two ids.\n\n\
                    `special no` leaves open for now which pairs count as bonded: say `yes` with the last of many such lines. \
-                   `single/angle` and the like are refused.",
+                   `single/angle` and the like are refused.\n\n\
+                   `gap` is perigrain's own: as `many`, for spheres whose surfaces are GMIN to GMAX apart (distance less both \
+                   radii, both ends included). A negative GMIN takes in spheres that overlap so far, as packings leave them; a \
+                   warning tells of how many a larger one leaves out. `mix` gives a part SHARE of the bonds TYPE2, drawn from the two \
+                   ids and SEED alone: the same pairs whatever the order, and whichever other bonds there are.",
             example: "units lj\natom_style bond\nlattice sc 1.0\nregion b block 0 4 0 4 0 4\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nmass 1 1.0\n\
                       create_bonds many all all 1 0.9 1.1\nprint \"$(bonds) bonds\"",
@@ -37,6 +44,7 @@ impl Style for CreateBonds {
 
 enum Choice {
     Many { groups: [GroupId; 2], range: [f64; 2] },
+    Gap(gap::Gap),
     Single { ids: [u32; 2], spans: [Span; 2] },
 }
 
@@ -48,15 +56,17 @@ impl CommandStyle for CreateBonds {
             let d = Diagnostic::error(Code::CONFLICT, a.name_span(), text);
             return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
         }
-        let style = a.expect("many or single/bond")?;
+        let style = a.expect("many, gap or single/bond")?;
         let (kind, choice) = match style.text.as_str() {
             "many" => many(a, cx)?,
+            "gap" => gap::parse(style, a, cx).map(|(kind, gap)| (kind, Choice::Gap(gap)))?,
             "single/bond" => single(a, cx)?,
             "single/angle" | "single/dihedral" | "single/improper" => {
                 return Err(common::not_here(style, "create_bonds"));
             }
             _ => {
-                return Err(common::unknown_style(style, "style of create_bonds", &["many", "single/bond"]));
+                let known = ["many", "gap", "single/bond"];
+                return Err(common::unknown_style(style, "style of create_bonds", &known));
             }
         };
         let mut special = true;
@@ -66,7 +76,7 @@ impl CommandStyle for CreateBonds {
                 "special" => special = a.flag("special")?,
                 _ => return Err(bad_keyword(a, word, &["special"], &[])),
             }
-            if !special && matches!(choice, Choice::Many { .. }) {
+            if !special && !matches!(choice, Choice::Single { .. }) {
                 return fail(Code::CONFLICT, span, "`special no` goes with single/bond only");
             }
         }
@@ -87,13 +97,21 @@ fn many(a: &mut Args, cx: &BuildCx) -> Result<(u16, Choice)> {
             format!("the largest distance {most} is below the smallest, {least}"),
         );
     }
-    let weights = cx.world.bonds.weights;
-    if weights.lj[0] != 0.0 || weights.coul[0] != 0.0 {
-        let text = "create_bonds many needs `special_bonds` weights 0 for bonded pairs, or they would be bonded twice";
-        let d = Diagnostic::error(Code::CONFLICT, a.name_span(), text);
-        return Err(d.help("put `special_bonds lj/coul 0.0 1.0 1.0` before this line").into());
-    }
+    needs_zero_weights("many", a, cx)?;
     Ok((kind, Choice::Many { groups, range: [least, most] }))
+}
+
+/// Refuses weights that leave bonded pairs in neighbour lists.
+fn needs_zero_weights(style: &str, a: &Args, cx: &BuildCx) -> Result<()> {
+    let weights = cx.world.bonds.weights;
+    if weights.lj[0] == 0.0 && weights.coul[0] == 0.0 {
+        return Ok(());
+    }
+    let text = format!(
+        "create_bonds {style} needs `special_bonds` weights 0 for bonded pairs, or they would be bonded twice"
+    );
+    let d = Diagnostic::error(Code::CONFLICT, a.name_span(), text);
+    Err(d.help("put `special_bonds lj/coul 0.0 1.0 1.0` before this line").into())
 }
 
 fn single(a: &mut Args, cx: &BuildCx) -> Result<(u16, Choice)> {
@@ -124,11 +142,16 @@ fn create(cx: &mut ActCx, kind: u16, choice: &Choice, special: bool) -> Result<(
         }
         Choice::Many { groups, range } => {
             common::settle(cx.world);
-            let new = within(cx.world, *groups, *range);
-            let before = cx.world.bonds.len();
-            new.into_iter().for_each(|ends| cx.world.bonds.push(Bond::new(kind, ends)));
-            let now = cx.world.bonds.len();
-            cx.say(format!("Added {} bonds, new total = {now}", now - before));
+            // Both ends of the range count: the list's own test is open above.
+            let reach = Reach::Fixed(range[1] * (1.0 + 1e-12));
+            let near = |_: &Pair, square: f64| square >= range[0] * range[0] && square <= range[1] * range[1];
+            let new = within(cx.world, *groups, reach, near);
+            add(cx, new.into_iter().map(|ends| Bond::new(kind, ends)));
+        }
+        Choice::Gap(gap) => {
+            common::settle(cx.world);
+            let new = gap.find(cx, kind)?;
+            add(cx, new.into_iter());
         }
     }
     if special {
@@ -138,22 +161,38 @@ fn create(cx: &mut ActCx, kind: u16, choice: &Choice, special: bool) -> Result<(
     Ok(())
 }
 
-/// The pairs of ids to be bonded, ascending.
-fn within(w: &World, groups: [GroupId; 2], range: [f64; 2]) -> Vec<[u32; 2]> {
+/// Adds bonds and says how many.
+fn add(cx: &mut ActCx, new: impl Iterator<Item = Bond>) {
+    let before = cx.world.bonds.len();
+    new.for_each(|bond| cx.world.bonds.push(bond));
+    let now = cx.world.bonds.len();
+    cx.say(format!("Added {} bonds, new total = {now}", now - before));
+}
+
+/// The pairs of ids to be bonded, ascending: of those within reach that may be in a neighbour list, the ones that `near`
+/// finds by the square of their distance.
+fn within(
+    w: &World,
+    groups: [GroupId; 2],
+    reach: Reach,
+    mut near: impl FnMut(&Pair, f64) -> bool,
+) -> Vec<[u32; 2]> {
     let p = &w.particles;
     let mut wanted = Wanted::new(w.types);
     for a in 1..=w.types as u16 {
-        // Both ends of the range count: the list's own test is open above.
-        (a..=w.types as u16).for_each(|b| wanted.set(a, b, Reach::Fixed(range[1] * (1.0 + 1e-12))));
+        (a..=w.types as u16).for_each(|b| wanted.set(a, b, reach));
     }
     let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
     let is = |i: usize, g: GroupId| p.mask[i] & g.bit() != 0;
     let weights = w.bonds.weights;
+    let zero = |apart: usize| weights.lj[apart - 1] == 0.0 && weights.coul[apart - 1] == 0.0;
+    // Looking no farther along bonds than weights are zero saves most of the time in a large network.
+    let far = (1..=3).rev().find(|apart| zero(*apart)).unwrap_or(0);
     let barred: Vec<[u32; 2]> = w
         .bonds
-        .apart(3)
+        .apart(far as u8)
         .into_iter()
-        .filter(|(_, n)| weights.lj[usize::from(*n) - 1] == 0.0 && weights.coul[usize::from(*n) - 1] == 0.0)
+        .filter(|(_, n)| zero(usize::from(*n)))
         .map(|(pair, _)| pair)
         .collect();
     let allowed = Allowed::excluded(w);
@@ -163,12 +202,12 @@ fn within(w: &World, groups: [GroupId; 2], range: [f64; 2]) -> Vec<[u32; 2]> {
             && allowed.pair(i, j)
             && barred.binary_search(&tags(i, j)).is_err()
     };
-    let near = |d: [f64; 3]| {
-        let d2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        d2 >= range[0] * range[0] && d2 <= range[1] * range[1]
+    let square = |q: &Pair| {
+        let d = view.difference(q);
+        d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
     };
     let found = pairs(&view, &wanted, 0.0, &keep);
-    let found = found.iter().filter(|q| q.i != q.j && near(view.difference(q)));
+    let found = found.iter().filter(|q| q.i != q.j && near(q, square(q)));
     let mut list: Vec<[u32; 2]> = found.map(|q| tags(q.i as usize, q.j as usize)).collect();
     // Of several images of one pair one bond is enough.
     list.dedup();

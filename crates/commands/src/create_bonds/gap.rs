@@ -1,0 +1,112 @@
+//! `create_bonds gap`: bonds between spheres by the gap of their surfaces, of one type or of two that are mixed.
+
+use super::{needs_zero_weights, within};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::math::cformat::general;
+use perigrain_base::math::rng::ParkMiller;
+use perigrain_lang::{Args, Word};
+use perigrain_neigh::list::{Pair, Reach};
+use perigrain_styles::common::{self, bond_type};
+use perigrain_styles::{ActCx, BuildCx};
+use perigrain_world::{Bond, GroupId};
+
+/// What a line asks for.
+pub struct Gap {
+    groups: [GroupId; 2],
+    range: [f64; 2],
+    spans: [Span; 2],
+    mix: Option<Mix>,
+}
+
+/// Another type for some of the bonds.
+struct Mix {
+    kind: i32,
+    share: f64,
+    seed: u32,
+}
+
+impl Mix {
+    /// Whether the bond between two ids is one of them, whichever comes first.
+    fn takes(&self, ends: [u32; 2]) -> bool {
+        let mut stream = ParkMiller::new(1);
+        stream.reset_at(self.seed, [f64::from(ends[0].min(ends[1])), f64::from(ends[0].max(ends[1])), 0.0]);
+        stream.uniform() < self.share
+    }
+}
+
+/// Takes the words from the first group on; the type with them.
+pub fn parse(style: &Word, a: &mut Args, cx: &BuildCx) -> Result<(u16, Gap)> {
+    if !cx.world.particles.style.sphere {
+        let text = format!("particles of atom_style {} have no surfaces", cx.world.particles.style.name());
+        let d = Diagnostic::error(Code::CONFLICT, style.span, text);
+        return Err(d.help("write `create_bonds many` with distances, or `atom_style bpm/sphere`").into());
+    }
+    let groups = [cx.group(a.expect("a group")?)?, cx.group(a.expect("a group")?)?];
+    let kind = bond_type(a, cx.world.bonds.types)?;
+    let mut spans = [a.here(); 2];
+    let least = a.number("the smallest gap")?;
+    spans[1] = a.here();
+    let most = a.number("the largest gap")?;
+    if most < least {
+        return fail(
+            Code::BAD_VALUE,
+            spans[1],
+            format!("the largest gap {most} is below the smallest, {least}"),
+        );
+    }
+    needs_zero_weights("gap", a, cx)?;
+    let mix = match a.eat("mix") {
+        true => Some(Mix {
+            kind: i32::from(bond_type(a, cx.world.bonds.types)?),
+            share: common::fraction(a)?,
+            seed: common::seed(a)?,
+        }),
+        false => None,
+    };
+    Ok((kind, Gap { groups, range: [least, most], spans, mix }))
+}
+
+impl Gap {
+    /// The bonds, by ascending ids.
+    pub fn find(&self, cx: &ActCx, kind: i32) -> Result<Vec<Bond>> {
+        let w = &*cx.world;
+        let radius = &w.particles.radius;
+        let largest = radius.iter().copied().fold(0.0, f64::max);
+        let [least, most] = self.range;
+        for (d, period) in w.periods().into_iter().enumerate().filter(|(_, l)| *l > 0.0) {
+            // A bond knows its ends, not which image of them is meant.
+            if 2.0 * largest + most > 0.5 * period {
+                let axis = ["x", "y", "z"][d];
+                let text = format!(
+                    "along {axis} the box repeats after {period}: spheres of diameter {} that are {most} apart would \
+                     meet farther images than the nearest",
+                    general(2.0 * largest, 6)
+                );
+                let d = Diagnostic::error(Code::BAD_VALUE, self.spans[1], text);
+                return Err(d.help("write a smaller gap, or make the box larger").into());
+            }
+        }
+        let mut deeper = 0;
+        // Both ends of the range count, whatever rounding does to the list's own test.
+        let reach = Reach::Beyond(most + 1e-9 * (largest + most.abs()));
+        let ends = within(w, self.groups, reach, |q: &Pair, square: f64| {
+            let gap = square.sqrt() - (radius[q.i as usize] + radius[q.j as usize]);
+            deeper += usize::from(gap < least && gap < 0.0);
+            gap >= least && gap <= most
+        });
+        if deeper > 0 {
+            let text =
+                format!("{deeper} pairs of spheres overlap too far for a bond: their gaps are below {least}");
+            let help = format!("a smaller GMIN, as -{}, takes them in", general(0.1 * largest, 1));
+            cx.note(Diagnostic::warning(Code::SUSPICIOUS, self.spans[0], text).help(help));
+        }
+        let kind = |ends: [u32; 2]| match &self.mix {
+            Some(mix) if mix.takes(ends) => mix.kind,
+            _ => kind,
+        };
+        Ok(ends.into_iter().map(|ends| Bond::new(kind(ends), ends)).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests;
