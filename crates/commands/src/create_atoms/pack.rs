@@ -235,7 +235,7 @@ impl Pack {
                 let cell = Pores::new([0.0; 3], diameter, spacing, turn).cell()[d];
                 let cells = (period / cell).round().max(1.0);
                 // What a deck's digits leave over is no fault of the lattice.
-                if (period - cells * cell).abs() > 1e-6 * period {
+                if (period - cells * cell).abs() > 1e-4 * period {
                     let text = format!(
                         "along {axis} the box repeats after {period}, the lattice of pores after {}",
                         general(cell, 12)

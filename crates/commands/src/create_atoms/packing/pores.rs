@@ -18,6 +18,8 @@ pub struct Pores {
     origin: Vec3,
     /// Edges of the rectangular cell that repeats.
     cell: Vec3,
+    /// Their reciprocals.
+    per_cell: Vec3,
     /// Middles within the cell.
     basis: Vec<Vec3>,
     radius: f64,
@@ -47,7 +49,7 @@ impl Pores {
             ),
         };
         let basis = basis.iter().map(|b| std::array::from_fn(|d| b[d] * cell[d])).collect();
-        Self { origin, cell, basis, radius: 0.5 * diameter }
+        Self { origin, cell, per_cell: cell.map(|l| 1.0 / l), basis, radius: 0.5 * diameter }
     }
 
     /// Edges of the cell that repeats [length].
@@ -55,41 +57,40 @@ impl Pores {
         self.cell
     }
 
-    /// Calls `f` with the vectors from the middles of pores around a place to it, those of all that can be the nearest.
-    fn around(&self, x: Vec3, mut f: impl FnMut(Vec3)) {
+    /// The vector from the middle of the nearest pore to a place, and its square.
+    fn nearest(&self, x: Vec3) -> (Vec3, f64) {
         let from = sub(x, self.origin);
+        let mut nearest = ([0.0; 3], f64::INFINITY);
         for b in &self.basis {
-            let d = sub(from, *b);
-            let low: Vec3 = std::array::from_fn(|k| d[k] - self.cell[k] * (d[k] / self.cell[k]).floor());
-            for corner in 0..8usize {
-                f(std::array::from_fn(|k| low[k] - if corner >> k & 1 == 1 { self.cell[k] } else { 0.0 }));
+            let mut d = sub(from, *b);
+            for k in 0..3 {
+                let cells = d[k] * self.per_cell[k];
+                // Rounding by a cast: what the library does is slow where a processor's own must not be counted on.
+                d[k] -= self.cell[k] * ((cells + 0.5f64.copysign(cells)) as i64 as f64);
+            }
+            if dot(d, d) < nearest.1 {
+                nearest = (d, dot(d, d));
             }
         }
+        nearest
     }
 
     /// How far a place is from the nearest pore's surface; negative inside of one [length].
     pub fn distance(&self, x: Vec3) -> f64 {
-        let mut least = f64::INFINITY;
-        self.around(x, |d| least = least.min(dot(d, d)));
-        least.sqrt() - self.radius
+        self.nearest(x).1.sqrt() - self.radius
     }
 
     /// Pushes a sphere out of all pores that it reaches into, the deepest first.
     pub fn keep(&self, x: &mut Vec3, radius: f64) {
         let least = self.radius + radius;
         for _ in 0..self.basis.len() {
-            let mut nearest = ([0.0; 3], f64::INFINITY);
-            self.around(*x, |d| {
-                if dot(d, d) < nearest.1 {
-                    nearest = (d, dot(d, d));
-                }
-            });
-            let far = nearest.1.sqrt();
+            let (from, square) = self.nearest(*x);
+            let far = square.sqrt();
             // A little is rounding.
             if far >= least * (1.0 - 1e-12) {
                 return;
             }
-            let out = if far > 0.0 { scale(1.0 / far, nearest.0) } else { [1.0, 0.0, 0.0] };
+            let out = if far > 0.0 { scale(1.0 / far, from) } else { [1.0, 0.0, 0.0] };
             *x = add(*x, scale(least - far, out));
         }
     }
