@@ -39,9 +39,9 @@ impl Style for CreateAtoms {
                      [mol ID SEED] [rotate ANGLE X Y Z]\n\
                      create_atoms TYPE pack REGION SHARE SEED [sizes mono D|uniform D1 D2|lognormal D S] [overlap O] \
                      [rounds N] [group ID]\n\
-                     create_atoms TYPE opal REGION PORE S SHARE SEED sizes mono D [axis 111|100] [overlap O] [rounds N] \
+                     create_atoms TYPE opal REGION PORE S SHARE SEED [sizes mono D] [axis 111|100] [overlap O] [rounds N] \
                      [group ID]\n\
-                     create_atoms TYPE aggregate REGION SHARE SEED POROSITY LAMBDA sizes mono D [overlap O] [rounds N] \
+                     create_atoms TYPE aggregate REGION SHARE SEED POROSITY LAMBDA [sizes mono D] [overlap O] [rounds N] \
                      [group ID]",
             summary: "Creates particles on lattice sites, at one place, at random places, on a surface, or densely packed.",
             text: "Sites are taken in LAMMPS' order (third lattice edge slowest, basis points fastest) and must lie in \

@@ -4,7 +4,7 @@ use super::packing::aggregate::{LINK, thin};
 use super::packing::pores::{Axis, Pores};
 use super::packing::room::Room;
 use super::packing::sizes::Sizes;
-use super::packing::{Goal, Packing, pack};
+use super::packing::{Goal, Packing, THROUGH, pack};
 use super::places::New;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::cformat::general;
@@ -19,8 +19,8 @@ use std::f64::consts::PI;
 const ROUNDS: usize = 1000;
 /// No spheres of sizes that are at all alike are denser (equal ones reach 0.7405, on a lattice).
 const DENSEST: f64 = 0.75;
-/// Spheres that reach farther through walls, in mean diameters, do not fit into the region.
-const THROUGH: f64 = 0.05;
+/// A packing whose diameters must become smaller than so much of what they should be has failed.
+const SMALLEST: f64 = 0.9;
 /// Spheres that reach so far through walls are worth a line.
 const TOLD: f64 = 1e-3;
 
@@ -190,11 +190,16 @@ impl Pack {
         refuse_region(&self.name, &self.region, domain)?;
         let Ok(room) = Room::new(domain, &self.region) else { return Ok(vec![]) };
         let room = self.with_pores(room);
-        self.check_periods(&room)?;
+        self.check_room(&room)?;
         let volume = room.volume();
         if volume <= 0.0 {
             let text = format!("region `{}` leaves no place in the box", self.name.text);
             return fail(Code::BAD_VALUE, self.name.span, text);
+        }
+        let number = self.share * volume / self.sizes.mean_volume();
+        if number > f64::from(u32::MAX) {
+            let text = format!("{number:.3e} spheres are more than there are ids");
+            return fail(Code::TOO_LARGE, self.sizes_span, text);
         }
         let mut stream = ParkMiller::new(self.seed);
         stream.skip(30);
@@ -219,8 +224,18 @@ impl Pack {
         Ok(kept.into_iter().map(new).collect())
     }
 
-    /// Whether what repeats does so after two diameters at least, and after whole cells of pores.
-    fn check_periods(&self, room: &Room) -> Result<()> {
+    /// Whether what repeats does so after two diameters at least, and after whole cells of pores; whether waves fit.
+    fn check_room(&self, room: &Room) -> Result<()> {
+        let edge = (0..3).map(|d| room.hi[d] - room.lo[d]).fold(f64::INFINITY, f64::min);
+        if let Form::Aggregate { wavelength, spans, .. } = self.form
+            && wavelength > edge
+            && edge > 0.0
+        {
+            let text =
+                format!("the wavelength {wavelength} is longer than the shortest edge of the region, {edge}");
+            let d = Diagnostic::error(Code::BAD_VALUE, spans[1], text);
+            return Err(d.help("write about the size that holes are to have, twice").into());
+        }
         for d in (0..3).filter(|&d| room.period[d] > 0.0) {
             let (period, axis) = (room.period[d], ["x", "y", "z"][d]);
             if period < 2.0 * self.sizes.largest() {
@@ -277,6 +292,15 @@ impl Pack {
                 .help("write a smaller diameter, or a region without places narrower than one")
                 .into());
         }
+        if came.shrunk < SMALLEST {
+            let text = format!(
+                "spheres of share {} overlap so far that diameters would have to be {} of what they should be",
+                self.share,
+                general(came.shrunk, 3)
+            );
+            let d = Diagnostic::error(Code::BAD_VALUE, self.share_span, text);
+            return Err(d.help("write a smaller share or more `rounds`").into());
+        }
         let percent = |part: f64| format!("{} %", general(100.0 * part, 3));
         let n = p.x.len();
         cx.say(format!(
@@ -322,12 +346,6 @@ impl Pack {
         let Form::Aggregate { porosity, wavelength, spans } = self.form else {
             return Ok((0..p.x.len()).collect());
         };
-        let edge = (0..3).map(|d| room.hi[d] - room.lo[d]).fold(f64::INFINITY, f64::min);
-        if wavelength > edge {
-            let text =
-                format!("the wavelength {wavelength} is longer than the shortest edge of the region, {edge}");
-            return fail(Code::BAD_VALUE, spans[1], text);
-        }
         let Some(left) = thin(room, p, (1.0 - porosity) * volume, wavelength, stream) else {
             let text =
                 format!("at porosity {porosity} no connected part reaches from end to end of the region");

@@ -25,6 +25,9 @@ const LAST: usize = 100;
 /// Neighbours that are looked at together: a row has seldom more.
 const MET: usize = 16;
 
+/// Spheres that reach farther through walls, in mean diameters, do not fit into their room.
+pub const THROUGH: f64 = 0.05;
+
 /// When a packing is done.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
@@ -104,7 +107,9 @@ pub fn pack(room: &Room, radius: Vec<f64>, stream: &mut ParkMiller, goal: &Goal)
     let (mut rounds, mut last) = bed.relax(goal.rounds, |round| round.meets(goal));
     let reached = last.meets(goal);
     let mut shrunk = 1.0;
-    if goal.overlap == Some(0.0) && last.largest > 0.0 {
+    // Where spheres do not fit they would shrink to nothing.
+    let fits = bed.beyond() <= THROUGH * bed.mean;
+    if goal.overlap == Some(0.0) && last.largest > 0.0 && fits {
         bed.shrink(1.0 - last.mean());
         rounds += bed.relax(LAST, |round| round.largest == 0.0).0;
         let rest = bed.room_left();
@@ -133,6 +138,8 @@ struct Bed<'a> {
     /// Who may reach a wall before lists are made anew.
     walled: Vec<bool>,
     skin: f64,
+    /// The mean diameter.
+    mean: f64,
 }
 
 impl<'a> Bed<'a> {
@@ -163,6 +170,7 @@ impl<'a> Bed<'a> {
             listed: vec![],
             walled: vec![true; n],
             skin: SKIN * mean,
+            mean,
             x,
             radius,
         };

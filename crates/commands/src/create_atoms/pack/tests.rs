@@ -79,6 +79,7 @@ fn the_word_to_blame() {
         ("pack b 0.5 1 overlap 0.7", "0.7"),
         ("pack b 0.5 1 rounds 0", "0"),
         ("pack b 0.5 1 axis 100", "axis"),
+        ("pack b 0.7 1 overlap 0 rounds 1", "0.7"),
         ("pack b 0.5 1 units box", "units"),
         ("pack b 0.5 1 mol m 3", "mol"),
         ("random 5 1 b sizes mono 1", "sizes"),
@@ -127,6 +128,7 @@ fn regions_that_will_not_do() {
     ] {
         assert!(why(name).contains(part), "{name}: {}", why(name));
     }
+    assert!(refused(&w, "create_atoms 1 pack slit 0.5 1 overlap 0").1.contains("do not fit"));
     let d = refused(&w, "create_atoms 1 pack s 0.05 1");
     assert!(d.1.contains("not even one"), "{}", d.1);
     // Larger than the box: the part inside counts.
