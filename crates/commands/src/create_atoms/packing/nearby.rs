@@ -80,7 +80,7 @@ fn around(
         }
     }
     // In a short period two images of one sphere may both be near; the nearest alone is meant later.
-    if images.iter().any(|i| i.end() > i.start()) {
+    if room.period.iter().any(|l| *l > 0.0 && *l < 2.0 * far) {
         let mut kept = own;
         for k in own..list.len() {
             if !list[own..kept].contains(&list[k]) {

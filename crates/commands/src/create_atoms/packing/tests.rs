@@ -72,6 +72,14 @@ fn the_share_is_reached_with_overlaps_below_a_thousandth() {
 }
 
 #[test]
+fn a_box_of_two_diameters_repeats_rightly() {
+    let room = cube(2.01, Face::Periodic);
+    let p = packed(&room, 0.4, Sizes::Mono(1.0), 6, &Goal { overlap: Some(1e-6), rounds: 3000 });
+    assert!(p.x.len() == 6 && p.came.reached, "{:?}", p.came);
+    says_the_truth(&room, &p);
+}
+
+#[test]
 fn coordination_numbers_of_a_dense_packing() {
     let room = cube(19.0, Face::Fixed);
     let p = packed(&room, 0.60, Sizes::Mono(1.0), 12, &PLAIN);
