@@ -165,7 +165,29 @@ const AVERAGES_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.00300
     f_h[4] f_h[3][2] c_ra[1] c_ra[2] c_rs[2] c_mc[1][4] c_vc[1][4] c_vv[4] c_least\n\
     thermo_modify format float %24.17g\nthermo 10\n";
 
-const SCENES: [Scene; 18] = [
+/// A block of beams with grains that have turned before they were joined, in the middle of breaking; then of bonds as LAMMPS has them.
+const BEAMS: &str = "units si\natom_style bpm/sphere\nboundary f f f\nlattice sc 0.001\n\
+    region world block -0.01 0.02 -0.01 0.02 -0.01 0.02 units box\nregion b block 0 4.1 0 3.1 0 3.1\n\
+    create_box 1 world bond/types 2 extra/bond/per/atom 20\ncreate_atoms 1 region b\n\
+    set group all diameter 0.001 density 2000\ndisplace_atoms all random 5e-5 5e-5 5e-5 4711 units box\n\
+    group odd id 1:100:3\nset group odd quat 0.6 0 0.8 40\ncreate_bonds many all all 1 0.0005 0.0012\n\
+    create_bonds many all all 2 0.0012 0.0016\nspecial_bonds lj 0 1 1 coul 1 1 1\n\
+    variable u atom 4.0*sin(2000*x)+900*z\nvariable w atom 3.0*cos(3000*y)-900*x\nvelocity all set v_u 0.3 v_w units box\n\
+    set group all omega 300 -200 100\n";
+const BEAMS_AGAIN: &str = "pair_style granular\n\
+    pair_coeff * * hertz/material 1e9 0.9 0.2 tangential mindlin NULL 0.9 0.3 damping coeff_restitution\n\
+    bond_style bpm/beam store/local gone 10 id1 id2 x/ref\nbond_coeff 1 1e9 0.2 ratio 0.4 strength 6e6 3e6 weibull 4 17 damping 0.02\n\
+    bond_coeff 2 5e8 0.2 radius 1.5e-4 strength 6e6 3e6\nfix 1 all nve/bpm/sphere\ntimestep 2e-7\n\
+    compute e all energy/ledger\ncompute nb all nbond/atom\ncompute tb all reduce sum c_nb\n\
+    thermo_style custom step time ke ebond bonds c_tb c_e[5] c_e[7]\nthermo_modify format float %24.17g norm no\nthermo 5\n";
+const ROTATIONAL_AGAIN: &str = "pair_style gran/hooke/history 1e5 NULL 50.0 NULL 0.5 1\npair_coeff * *\n\
+    bond_style hybrid bpm/rotational bpm/spring\n\
+    bond_coeff 1 bpm/rotational 1.2e5 5e4 4e-3 5e-3 4 2 3e-4 3e-4 0.05 0.02 1e-6 1e-9\n\
+    bond_coeff 2 bpm/spring 5e4 0.03 0.02\nfix 1 all nve/bpm/sphere\ntimestep 2e-7\n\
+    compute nb all nbond/atom\ncompute tb all reduce sum c_nb\n\
+    thermo_style custom step time ke ebond bonds c_tb\nthermo_modify format float %24.17g norm no\nthermo 5\n";
+
+const SCENES: [Scene; 20] = [
     Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
     Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
     Scene { name: "lps", make: BLOCK, again: LPS_AGAIN, steps: 60, list: false },
@@ -183,6 +205,8 @@ const SCENES: [Scene; 18] = [
     Scene { name: "levels pile", make: PAIR_OF_PILES, again: LEVELS_AGAIN, steps: 200, list: false },
     Scene { name: "powder pile", make: POWDER, again: POWDER_AGAIN, steps: 400, list: false },
     Scene { name: "rain", make: RAIN, again: RAIN_AGAIN, steps: 424, list: false },
+    Scene { name: "beams", make: BEAMS, again: BEAMS_AGAIN, steps: 400, list: false },
+    Scene { name: "beams as LAMMPS has them", make: BEAMS, again: ROTATIONAL_AGAIN, steps: 400, list: false },
     Scene { name: "impact", make: IMPACT, again: IMPACT_AGAIN, steps: 60, list: false },
 ];
 
@@ -241,6 +265,11 @@ fn a_run_cut_in_two_has_the_bits_of_one() {
         let streams = !whole.memo.is_empty();
         let at_stake = match s.name {
             "rain" => streams,
+            // Of 191 bonds some are gone, and some were made between ends that stand otherwise.
+            name if name.starts_with("beams") => {
+                println!("{name}: {} bonds, {} turned", whole.bonds.len(), whole.bonds.turned.len());
+                (50..185).contains(&whole.bonds.len()) && !whole.bonds.turned.is_empty()
+            }
             name if name.ends_with("pile") => springs,
             _ => broken,
         };
