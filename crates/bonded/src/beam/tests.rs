@@ -1,3 +1,5 @@
+//! The numbers of the page on bonded particles: states, slopes, strengths, what is kept.
+
 use super::*;
 use perigrain_base::math::body::{Quat, UNTURNED, turn};
 
