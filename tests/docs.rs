@@ -55,6 +55,7 @@ const BOOK: [&str; 2] = [
      - [The language](language.md)\n\
      - [Commands and styles](commands.md)\n",
     "- [Error codes](errors.md)\n\
+     - [Bonded particles](bonded.md)\n\
      - [Coming from LAMMPS](coming-from-lammps.md)\n\
      - [How fast, and what limits it](speed.md)\n\n\
      # The program inside\n\n\

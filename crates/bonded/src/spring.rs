@@ -1,9 +1,11 @@
 //! Springs along bonds.
 
+use crate::columns::Columns;
 use crate::law::{Acts, BondLaw, Ends, Motion};
-use crate::sweep::{Out, Sweep, all};
+use crate::sweep::{Body, Out, Sweep, all, nearest};
 use perigrain_base::math::real::Real;
-use perigrain_base::math::vec3::{Vec3, dot, length, scale};
+use perigrain_base::math::vec3::{Vec3, dot, length, scale, sub};
+use perigrain_base::par;
 
 /// What acts along r alone: a force over length, positive where it pushes the ends apart.
 #[inline(always)]
@@ -48,6 +50,40 @@ pub struct Breaking {
     pub normalize: bool,
 }
 
+/// A spring that is no longer by `longer` than at rest and pushes its ends apart with `spring`, damped, fading, with its load.
+#[inline(always)]
+fn damped_and_fading<R: Real>(
+    law: &Breaking,
+    &[k, limit, gamma]: &[f64; 3],
+    strain: R,
+    (longer, more): (R, R),
+    b: &Ends<R>,
+    m: Option<&Motion<R>>,
+) -> Acts<R> {
+    let r = length(b.r);
+    let spring = (if law.normalize { longer / b.length } else { longer }) * -k;
+    let per_length = r.like(1.0) / r;
+    let (mut force, mut power) = (spring + more, r.like(0.0));
+    if let Some(m) = m {
+        let rate = dot(b.r, m.v) * per_length;
+        force = force - rate * gamma;
+        power = rate * rate * gamma;
+    }
+    force = force * per_length;
+    let share = strain * (1.0 / limit);
+    if law.smooth {
+        let square = share * share;
+        let fourth = square * square;
+        let fade = r.like(1.0) - fourth * fourth;
+        force = force * fade;
+        power = power * fade;
+    }
+    // A bond at its limit still holds.
+    let over = strain.abs().above(r.like(limit));
+    let load = R::choose(over, share.abs().most(r.like(1.0)), share.abs().least(r.like(BELOW_ONE)));
+    central(b.r, force, spring * longer * -0.5, load, power)
+}
+
 impl BondLaw<1> for Breaking {
     /// Stiffness, breaking strain, damping; a bond's own number is 1 over its length at rest.
     type Coeffs = [f64; 3];
@@ -55,36 +91,114 @@ impl BondLaw<1> for Breaking {
 
     #[inline(always)]
     fn act<R: Real>(&self, k: &[f64; 3], own: &[R; 1], b: &Ends<R>, m: Option<&Motion<R>>) -> Acts<R> {
-        let &[k, limit, gamma] = k;
-        let r = length(b.r);
-        let longer = r - b.length;
-        let strain = longer * own[0];
-        let spring = (if self.normalize { strain } else { longer }) * -k;
-        let per_length = r.like(1.0) / r;
-        let (mut force, mut power) = (spring, r.like(0.0));
-        if let Some(m) = m {
-            let rate = dot(b.r, m.v) * per_length;
-            force = spring - rate * gamma;
-            power = rate * rate * gamma;
-        }
-        force = force * per_length;
-        let share = strain * (1.0 / limit);
-        if self.smooth {
-            let square = share * share;
-            let fourth = square * square;
-            let fade = r.like(1.0) - fourth * fourth;
-            force = force * fade;
-            power = power * fade;
-        }
-        // A bond at its limit still holds.
-        let over = strain.abs().above(r.like(limit));
-        let load = R::choose(over, share.abs().most(r.like(1.0)), share.abs().least(r.like(BELOW_ONE)));
-        central(b.r, force, spring * longer * -0.5, load, power)
+        let longer = length(b.r) - b.length;
+        damped_and_fading(self, k, longer * own[0], (longer, longer.like(0.0)), b, m)
     }
 
     fn sweep(&self, pass: &Sweep<'_, 1, [f64; 3]>, out: &mut Out) {
         all(self, pass, out);
     }
+}
+
+/// Such springs that feel the volume about their ends. J. Clemmer, J. Monti, J. Lechman, Soft Matter 20, 1702 (2024).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Voluminous(pub Breaking);
+
+impl BondLaw<2> for Voluminous {
+    /// As of [`Breaking`], and how hard the volume is [force]; a bond's own numbers are 1 over its length at rest and the length to
+    /// which the volumes about its ends have grown, as a share of that at rest: see [`swell`].
+    type Coeffs = ([f64; 3], f64);
+    const TURNS: bool = false;
+
+    #[inline(always)]
+    fn act<R: Real>(&self, k: &([f64; 3], f64), own: &[R; 2], b: &Ends<R>, m: Option<&Motion<R>>) -> Acts<R> {
+        let longer = length(b.r) - b.length;
+        let strain = longer * own[0];
+        let volume = (own[1] - 1.0 - strain) * k.1;
+        damped_and_fading(&self.0, &k.0, strain, (longer, volume), b, m)
+    }
+
+    fn sweep(&self, pass: &Sweep<'_, 2, ([f64; 3], f64)>, out: &mut Out) {
+        all(self, pass, out);
+    }
+}
+
+/// Such springs that yield: their length at rest follows when they are longer or shorter than a part of it allows. J. Clemmer,
+/// J. Lechman, Powder Technol. (2025).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Yielding(pub Breaking);
+
+impl BondLaw<2> for Yielding {
+    /// As of [`Breaking`], and the strain at which it yields; a bond's own numbers are 1 over its length at rest and the length to
+    /// which that has grown: see [`give_way`].
+    type Coeffs = ([f64; 3], f64);
+    const TURNS: bool = false;
+
+    #[inline(always)]
+    fn act<R: Real>(&self, k: &([f64; 3], f64), own: &[R; 2], b: &Ends<R>, m: Option<&Motion<R>>) -> Acts<R> {
+        let r = length(b.r);
+        let acts = damped_and_fading(&self.0, &k.0, (r - b.length) * own[0], (r - own[1], r.like(0.0)), b, m);
+        Acts { energy: r.like(0.0), ..acts }
+    }
+
+    fn sweep(&self, pass: &Sweep<'_, 2, ([f64; 3], f64)>, out: &mut Out) {
+        all(self, pass, out);
+    }
+}
+
+/// The distance of the ends of a bond [length].
+fn distance<const C: usize>(columns: &Columns<C>, body: &Body, bond: usize) -> f64 {
+    let [a, b] = columns.pair(bond);
+    length(nearest(sub(body.x[a], body.x[b]), &body.periods))
+}
+
+/// The second own number of each bond: (ΣV/ΣV₀)^(1/d) with the volumes about both its ends, V = Σ r^d over the bonds of a particle that
+/// hold, V₀ = Σ L^d, d the number of dimensions.
+pub fn swell(columns: &mut Columns<2>, body: &Body, dimension: i32) {
+    let mut powers = vec![[0.0; 2]; columns.rows()];
+    let known = &*columns;
+    par::each(&mut powers[..], |first, powers| {
+        for (k, power) in powers.iter_mut().enumerate() {
+            let lengths = [distance(known, body, first + k), known.length[first + k]];
+            *power = lengths.map(|l| if known.alive[first + k] > 0.0 { l.powi(dimension) } else { 0.0 });
+        }
+    });
+    let mut volumes = vec![[0.0; 2]; known.particles()];
+    par::each(&mut volumes[..], |first, volumes| {
+        for (k, volume) in volumes.iter_mut().enumerate() {
+            for entry in known.of(first + k) {
+                let power = powers[*entry as usize / 2];
+                (0..2).for_each(|d| volume[d] += power[d]);
+            }
+        }
+    });
+    let mut grown = std::mem::take(&mut columns.own[1]);
+    let known = &*columns;
+    par::each(&mut grown[..], |first, grown| {
+        for (k, grown) in grown.iter_mut().enumerate() {
+            let [a, b] = known.pair(first + k);
+            let ratio = (volumes[a][0] + volumes[b][0]) / (volumes[a][1] + volumes[b][1]);
+            *grown = if dimension == 2 { ratio.sqrt() } else { ratio.cbrt() };
+        }
+    });
+    columns.own[1] = grown;
+}
+
+/// The second own number of each bond: its length at rest r_eq follows so that |r − r_eq| ≤ ε r_eq, with ε of its type. Those that have
+/// yielded, with what they are at rest now.
+pub fn give_way(columns: &mut Columns<2>, body: &Body, limit: impl Fn(u16) -> f64) -> Vec<(usize, f64)> {
+    let mut yielded = vec![];
+    for bond in 0..columns.rows() {
+        let (r, rest, limit) =
+            (distance(columns, body, bond), columns.own[1][bond], limit(columns.kind(bond)));
+        let strain = (r - rest) / rest;
+        if columns.alive[bond] > 0.0 && strain.abs() > limit {
+            let now = if strain > 0.0 { r / (1.0 + limit) } else { r / (1.0 - limit) };
+            columns.own[1][bond] = now;
+            yielded.push((bond, now));
+        }
+    }
+    yielded
 }
 
 #[cfg(test)]

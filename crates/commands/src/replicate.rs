@@ -79,6 +79,7 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
     let molecules = world.particles.last_molecule();
     let (bonds, special) = (std::mem::take(&mut world.bonds.list), std::mem::take(&mut world.bonds.special));
     let turned = std::mem::take(&mut world.bonds.turned);
+    let memory = std::mem::take(&mut world.bonds.memory);
     world.contacts.values_mut().for_each(|c| *c = Default::default());
     world.wall_contacts.values_mut().for_each(|c| *c = Default::default());
     world.gather(&from);
@@ -91,6 +92,7 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
         let moved = |ends: [u32; 2]| ends.map(|t| t + offset as u32);
         world.bonds.list.extend(bonds.iter().map(|b| Bond { ends: moved(b.ends), ..*b }));
         world.bonds.special.extend(special.iter().map(|p| moved(*p)));
+        world.bonds.memory.extend(memory.iter().map(|(ends, m)| (moved(*ends), *m)));
         world.bonds.turned.extend(turned.iter().map(|(ends, q)| (moved(*ends), *q)));
         for (k, old) in unwrapped.iter().enumerate() {
             let i = copy as usize * n + k;

@@ -67,6 +67,10 @@ pub struct Bonds {
     /// Of bonds whose ends were turned against each other when a bond style first saw them: the turn from the end with the lower
     /// ID to the other, by the ids of the ends, the lower first.
     pub turned: BTreeMap<[u32; 2], Quat>,
+    /// Of bonds that remember a number besides (the length at rest of those that have yielded [length]), by the ids of their ends,
+    /// the lower first.
+    #[serde(default)]
+    pub memory: BTreeMap<[u32; 2], f64>,
     /// `special_bonds`.
     pub weights: Weights,
     /// The pairs that count as bonded for the weights, ascending: as bonds were when this was last decided.
@@ -112,7 +116,7 @@ impl Bonds {
     /// Keeps the bonds that `keep` lets pass.
     pub fn retain(&mut self, keep: impl FnMut(&Bond) -> bool) {
         self.list.retain(keep);
-        self.forget_turns();
+        self.forget_memory();
         self.changes += 1;
     }
 
@@ -125,18 +129,19 @@ impl Bonds {
             broken.get(at).is_some_and(|(ends, _)| ends == p)
         };
         self.special.retain(|p| !parted(p));
-        self.forget_turns();
+        self.forget_memory();
         self.changes += 1;
     }
 
-    /// Forgets how ends were turned whose bonds are gone.
-    fn forget_turns(&mut self) {
-        if self.turned.is_empty() {
+    /// Forgets what belongs to bonds that are gone.
+    fn forget_memory(&mut self) {
+        if self.turned.is_empty() && self.memory.is_empty() {
             return;
         }
         let mut there: Vec<[u32; 2]> = self.list.iter().map(|b| ascending(b.ends)).collect();
         there.sort_unstable();
         self.turned.retain(|ends, _| there.binary_search(ends).is_ok());
+        self.memory.retain(|ends, _| there.binary_search(ends).is_ok());
     }
 
     /// Takes away the bonds between some pairs of ids, and lets pair forces act between them; `pairs` ascend, the lower id
@@ -145,7 +150,7 @@ impl Bonds {
         let parted = |ends: [u32; 2]| pairs.binary_search(&ascending(ends)).is_ok();
         self.list.retain(|b| !parted(b.ends));
         self.special.retain(|p| !parted(*p));
-        self.forget_turns();
+        self.forget_memory();
         self.changes += 1;
     }
 
@@ -162,7 +167,7 @@ impl Bonds {
         let there: BTreeSet<u32> = tags.iter().copied().collect();
         self.list.retain(|b| b.ends.iter().any(|t| there.contains(t)));
         self.special.retain(|p| p.iter().any(|t| there.contains(t)));
-        self.forget_turns();
+        self.forget_memory();
         self.changes += 1;
     }
 
@@ -187,6 +192,8 @@ impl Bonds {
             list.push(Bond { ends, axis, ..*b });
         }
         self.list = list;
+        let memory = std::mem::take(&mut self.memory);
+        self.memory = memory.into_iter().filter_map(|(ends, m)| Some((ascending(both(ends)?), m))).collect();
         self.special = self.special.iter().filter_map(|p| both(*p)).map(ascending).collect();
         self.special.sort_unstable();
         self.changes += 1;

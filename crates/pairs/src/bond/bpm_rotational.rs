@@ -64,7 +64,7 @@ impl BondStyle for BpmRotational {
                 .help("put `atom_style bpm/sphere` (or a hybrid with it) at the top of the deck")
                 .into());
         }
-        let options = Options::read(args, self.name(), &[], true, same_as_here)?;
+        let options = Options::read(args, true, same_as_here)?;
         Ok(Box::new(Declared { options, types: BTreeMap::new(), compat_lammps: cx.world.settings.lammps() }))
     }
 }

@@ -6,7 +6,9 @@ use super::store_local::Store;
 use super::{BondForce, BondStyle, Pull, Stretched};
 use perigrain_base::diag::Result;
 use perigrain_base::math::cformat::general;
-use perigrain_bonded::spring::Breaking;
+use perigrain_bonded::columns::Columns;
+use perigrain_bonded::spring::{self, Breaking};
+use perigrain_bonded::sweep::Body;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
@@ -22,14 +24,15 @@ impl Style for BpmSpring {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "bond_style bpm/spring [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [store/local ID N value …]\nbond_coeff T k ec gamma",
+            syntax: "bond_style bpm/spring [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [volume/factor yes|no] [store/local ID N value …]\nbond_coeff T k ec gamma [av]",
             summary: "Damped springs that break at a strain.",
             text: with_store!(
                 "F = w (k (r − r0) + γ r̂·v) pulls the ends together, with the distance r0 at which a run first met the bond and w = 1 − ((r − r0)/(r0 ec))⁸ \
                    unless `smooth no` is said. With `normalize yes` the spring's force is k (r − r0)/r0. At a strain beyond ±ec a bond breaks: it is gone \
                    from the next step on, and pair forces act between its ends then. `break no` lets no bond break and needs `smooth no`. \
                    The energy is k (r − r0)²/2, with `normalize yes` k (r − r0)²/(2 r0). Pair forces between bonded particles are off, `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` on, \
-                   `special_bonds lj/coul 1 1 1`. Restart files hold r0, data files do not; `b1` of compute bond/local is r0. `volume/factor` is refused. \
+                   `special_bonds lj/coul 1 1 1`. Restart files hold r0, data files do not; `b1` of compute bond/local is r0. `volume/factor yes` pushes the ends apart by a further av ((ΣV/ΣV0)^(1/3) − r/r0), with V the sum of r³ of the bonds of a particle, V0 \
+                   that of r0³, both of the two ends (in flat scenes r² and the square root): it sets Poisson's ratio. \
                    Clemmer and Robbins, Phys. Rev. Lett. 129, 078002 (2022)."
             ),
             example: "units lj\natom_style bond\nlattice sc 1.0\nregion b block 0 4 0 4 0 4\n\
@@ -42,17 +45,30 @@ impl Style for BpmSpring {
 
 impl BondStyle for BpmSpring {
     fn build(&self, args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn BondForce>> {
-        let options = Options::read(args, self.name(), &["volume/factor"], true, |_, _| Ok(false))?;
-        Ok(Box::new(Declared { options, springs: BTreeMap::new() }))
+        let mut volume = false;
+        let options = Options::read(args, true, |word, args| {
+            let mine = word == "volume/factor";
+            if mine {
+                volume = args.flag(word)?;
+            }
+            Ok(mine)
+        })?;
+        Ok(Box::new(Declared { options, volume, springs: BTreeMap::new() }))
     }
 }
 
 #[derive(Clone)]
 struct Declared {
     options: Options,
-    /// Stiffness, breaking strain, damping by type.
-    springs: BTreeMap<u16, [f64; 3]>,
+    /// Whether forces feel the volume about the ends.
+    volume: bool,
+    /// Stiffness, breaking strain, damping and the stiffness of the volume by type.
+    springs: BTreeMap<u16, ([f64; 3], f64)>,
 }
+
+/// Under `volume/factor yes`.
+#[derive(Clone)]
+struct Voluminous(Declared);
 
 impl BondForce for Declared {
     fn name(&self) -> &'static str {
@@ -61,8 +77,9 @@ impl BondForce for Declared {
 
     fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
         let k = args.non_negative("the stiffness k")?;
-        let spring = [k, args.positive("the breaking strain")?, args.non_negative("the damping gamma")?];
-        self.springs.extend(kinds.iter().map(|&k| (k, spring)));
+        let spring = [k, self.options.limit(args)?, args.non_negative("the damping gamma")?];
+        let volume = if self.volume { args.number("the stiffness av of the volume")? } else { 0.0 };
+        self.springs.extend(kinds.iter().map(|&k| (k, (spring, volume))));
         Ok(())
     }
 
@@ -77,7 +94,10 @@ impl BondForce for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let span = cx.span();
         self.options.check(cx.world(), span)?;
-        Ok(vec![Box::new(Bonded::new(self.clone(), span))])
+        Ok(vec![match self.volume {
+            true => Box::new(Bonded::new(Voluminous(self.clone()), span)),
+            false => Box::new(Bonded::new(self.clone(), span)),
+        }])
     }
 
     fn fixes(&self) -> Vec<(String, Box<dyn Fix>)> {
@@ -97,7 +117,9 @@ impl BondForce for Declared {
     }
 
     fn written(&self, kind: u16) -> Option<String> {
-        self.springs.get(&kind).map(|s| s.map(|a| general(a, 16)).join(" "))
+        let (spring, volume) = self.springs.get(&kind)?;
+        let all = if self.volume { [&spring[..], &[*volume]].concat() } else { spring.to_vec() };
+        Some(all.iter().map(|a| general(*a, 16)).collect::<Vec<_>>().join(" "))
     }
 }
 
@@ -109,13 +131,13 @@ impl Driven<1> for Declared {
         Breaking { smooth: self.options.smooth, normalize: self.options.normalize }
     }
     fn coeffs(&self, kind: u16) -> Option<[f64; 3]> {
-        self.springs.get(&kind).copied()
+        self.springs.get(&kind).map(|(spring, _)| *spring)
     }
     fn measures(&self) -> bool {
         true
     }
     fn damped(&self) -> bool {
-        self.springs.values().any(|[_, _, gamma]| *gamma != 0.0)
+        self.springs.values().any(|([_, _, gamma], _)| *gamma != 0.0)
     }
     fn store(&self) -> Option<&Store> {
         self.options.store.as_ref()
@@ -125,5 +147,36 @@ impl Driven<1> for Declared {
     }
     fn own(&self, _w: &World, _k: &[f64; 3], bond: &Bond, _ends: [usize; 2]) -> [f64; 1] {
         [1.0 / bond.length]
+    }
+}
+
+impl Driven<2> for Voluminous {
+    type Law = spring::Voluminous;
+    const NAME: &'static str = "bpm/spring";
+
+    fn law(&self) -> spring::Voluminous {
+        spring::Voluminous(self.0.law())
+    }
+    fn coeffs(&self, kind: u16) -> Option<([f64; 3], f64)> {
+        self.0.springs.get(&kind).copied()
+    }
+    fn measures(&self) -> bool {
+        true
+    }
+    fn damped(&self) -> bool {
+        self.0.damped()
+    }
+    fn store(&self) -> Option<&Store> {
+        self.0.store()
+    }
+    fn breaks(&self) -> bool {
+        self.0.breaks()
+    }
+    fn own(&self, _w: &World, _k: &([f64; 3], f64), bond: &Bond, _ends: [usize; 2]) -> [f64; 2] {
+        [1.0 / bond.length, 1.0]
+    }
+    fn prepare(&self, columns: &mut Columns<2>, body: &Body, dimension: i32) -> Vec<(usize, f64)> {
+        spring::swell(columns, body, dimension);
+        vec![]
     }
 }

@@ -37,6 +37,11 @@ pub trait Driven<const C: usize>: Clone + Send + Sync + 'static {
     /// Whether bonds break.
     fn breaks(&self) -> bool;
 
+    /// What changes in the columns before forces are evaluated. Bonds whose memory has changed, with what it is now.
+    fn prepare(&self, _columns: &mut Columns<C>, _body: &Body, _dimension: i32) -> Vec<(usize, f64)> {
+        vec![]
+    }
+
     /// What is kept of bonds that break.
     fn store(&self) -> Option<&Store> {
         None
@@ -276,10 +281,16 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
         let none: (&[Vec3], &[Quat]) = (&[], &[]);
         let (omega, quat) = if L::Law::TURNS { (&p.omega[..], &p.quat[..]) } else { none };
         let v = if self.law.damped() { &p.v[..] } else { &[] };
+        let dimension = if w.settings.two_dimensional { 2 } else { 3 };
+        let body = Body { x: &p.x, v, omega, quat, periods };
+        for (bond, memory) in self.law.prepare(&mut self.columns, &body, dimension) {
+            let ends = ascending(self.columns.pair(bond).map(|i| p.tag[i]));
+            w.bonds.memory.insert(ends, memory);
+        }
         let pass = Sweep {
             columns: &self.columns,
             coeffs: &self.coeffs,
-            body: Body { x: &p.x, v, omega, quat, periods },
+            body,
             damped: self.law.damped(),
             // Nothing breaks in the setup of a run.
             breaks: self.law.breaks() && !t.setup,

@@ -16,6 +16,7 @@ mod bpm_beam;
 pub mod bpm_peri;
 mod bpm_rotational;
 mod bpm_spring;
+mod bpm_spring_plastic;
 mod driver;
 mod harmonic;
 mod hybrid;
@@ -36,6 +37,7 @@ pub const BONDS: &[&dyn BondStyle] = &[
     &bpm_peri::BpmPeri,
     &bpm_rotational::BpmRotational,
     &bpm_spring::BpmSpring,
+    &bpm_spring_plastic::BpmSpringPlastic,
     &harmonic::HarmonicStyle,
     &hybrid::Hybrid,
     &zero::ZeroStyle,

@@ -2,7 +2,7 @@
 
 use super::breaking_weights;
 use super::store_local::Store;
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_lang::Args;
 use perigrain_world::World;
 
@@ -25,15 +25,13 @@ pub struct Options {
 pub const WORDS: [&str; 5] = ["overlay/pair", "smooth", "normalize", "break", "store/local"];
 
 impl Options {
-    /// Reads the line; `absent` are words of LAMMPS that are not here yet, `smooth` is what holds where the
+    /// Reads the line; `smooth` is what holds where the
     /// line is silent, `more` reads what only one style knows and says whether it did.
     ///
     /// # Errors
     /// Every mistake in the line.
     pub fn read(
         args: &mut Args,
-        style: &str,
-        absent: &[&str],
         smooth: bool,
         mut more: impl FnMut(&str, &mut Args) -> Result<bool>,
     ) -> Result<Self> {
@@ -47,10 +45,6 @@ impl Options {
                 "normalize" => options.normalize = args.flag("normalize")?,
                 "store/local" => options.store = Some(Store::read(args)?),
                 "break" => options.breaks = args.flag("break")?,
-                other if absent.contains(&other) => {
-                    let text = format!("bond_style {style}: `{other}` is not in perigrain yet");
-                    return fail(Code::NOT_SUPPORTED, word.span, text);
-                }
                 other if more(other, args)? => {}
                 _ => return Err(args.unknown(word, &WORDS)),
             }
@@ -60,6 +54,15 @@ impl Options {
             return Err(d.help("add `smooth no`").into());
         }
         Ok(options)
+    }
+
+    /// A breaking strain: anything goes where nothing breaks.
+    ///
+    /// # Errors
+    /// What is no such strain.
+    pub fn limit(&self, args: &mut Args) -> Result<f64> {
+        let what = "the breaking strain";
+        if self.breaks { args.positive(what) } else { args.non_negative(what) }
     }
 
     /// Whether weights of bonded pairs are such that bonds can break.

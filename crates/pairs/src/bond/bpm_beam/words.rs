@@ -13,7 +13,7 @@ use perigrain_lang::Args;
 /// Every mistake in it.
 pub fn style(args: &mut Args) -> Result<(Options, Potential)> {
     let mut law = Potential { shear: Shear::Paper, criterion: Criterion::Sum, smooth: false };
-    let options = Options::read(args, "bpm/beam", &[], false, |word, args| {
+    let options = Options::read(args, false, |word, args| {
         match word {
             "shear" => law.shear = shear(args)?,
             "criterion" => {
