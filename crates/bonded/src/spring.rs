@@ -184,16 +184,15 @@ pub fn swell(columns: &mut Columns<2>, body: &Body, dimension: i32) {
     columns.own[1] = grown;
 }
 
-/// The second own number of each bond: its length at rest r_eq follows so that |r − r_eq| ≤ ε r_eq, with ε of its type. Those that have
-/// yielded, with what they are at rest now.
+/// The second own number of each bond: its length at rest r_eq follows so that |r − r_eq| ≤ ε L, with ε of its type and the length L
+/// at rest before it yielded. Those that have, with what they are at rest now.
 pub fn give_way(columns: &mut Columns<2>, body: &Body, limit: impl Fn(u16) -> f64) -> Vec<(usize, f64)> {
     let mut yielded = vec![];
     for bond in 0..columns.rows() {
-        let (r, rest, limit) =
-            (distance(columns, body, bond), columns.own[1][bond], limit(columns.kind(bond)));
-        let strain = (r - rest) / rest;
-        if columns.alive[bond] > 0.0 && strain.abs() > limit {
-            let now = if strain > 0.0 { r / (1.0 + limit) } else { r / (1.0 - limit) };
+        let most = limit(columns.kind(bond)) * columns.length[bond];
+        let (r, rest) = (distance(columns, body, bond), columns.own[1][bond]);
+        if columns.alive[bond] > 0.0 && (r - rest).abs() > most {
+            let now = if r > rest { r - most } else { r + most };
             columns.own[1][bond] = now;
             yielded.push((bond, now));
         }
@@ -204,6 +203,7 @@ pub fn give_way(columns: &mut Columns<2>, body: &Body, limit: impl Fn(u16) -> f6
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::columns::Member;
     use perigrain_base::math::body::UNTURNED;
 
     fn at(r: f64) -> Ends<f64> {
@@ -227,6 +227,51 @@ mod tests {
             let (law, k) = (Breaking { smooth: false, normalize }, [7.0, 0.5, 0.0]);
             check(&|r| law.act(&k, &[0.8], &at(r), None).energy, law.act(&k, &[0.8], &at(r), None).force[0]);
         }
+    }
+
+    /// LAMMPS 22Jul2025 of a bond of 1.25 that yields at 0.1: pulled to 1.45 it is 1.325 long at rest, pushed to 0.95 1.075.
+    #[test]
+    fn springs_give_way() {
+        let member = Member {
+            kind: 1,
+            ends: [0, 1],
+            length: 1.25,
+            axis: [1.0, 0.0, 0.0],
+            turned: UNTURNED,
+            own: [0.8, 1.25],
+        };
+        for (r, rest) in [(1.3, 1.25), (1.45, 1.325), (0.95, 1.075)] {
+            let mut columns = Columns::new(vec![member], 2);
+            let x = [[r, 0.0, 0.0], [0.0; 3]];
+            let body = Body { x: &x, v: &[], omega: &[], quat: &[], periods: [0.0; 3] };
+            let yielded = give_way(&mut columns, &body, |_| 0.1);
+            assert!((columns.own[1][0] - rest).abs() < 1e-15 && yielded.len() == usize::from(r != 1.3));
+            let law = Yielding(Breaking { smooth: false, normalize: false });
+            let acts = law.act(&([1.0, 1.0, 0.0], 0.1), &[0.8, rest], &at(r), None);
+            assert!((acts.force[0] - (rest - r)).abs() < 1e-15 && acts.energy == 0.0);
+        }
+    }
+
+    /// A chain of three: V of its middle is 1.5³ + 1, of the ends 1.5³ and 1.
+    #[test]
+    fn volumes_swell() {
+        let member = |ends| Member {
+            kind: 1,
+            ends,
+            length: 1.0,
+            axis: [1.0, 0.0, 0.0],
+            turned: UNTURNED,
+            own: [1.0, 1.0],
+        };
+        let mut columns = Columns::new(vec![member([0, 1]), member([1, 2])], 3);
+        let x = [[0.0; 3], [1.5, 0.0, 0.0], [2.5, 0.0, 0.0]];
+        let body = Body { x: &x, v: &[], omega: &[], quat: &[], periods: [0.0; 3] };
+        swell(&mut columns, &body, 3);
+        let grown = |v: f64| (v / 3.0).cbrt();
+        assert!((columns.own[1][0] - grown(2.0 * 3.375 + 1.0)).abs() < 1e-15);
+        assert!((columns.own[1][1] - grown(3.375 + 2.0)).abs() < 1e-15);
+        swell(&mut columns, &body, 2);
+        assert!((columns.own[1][0] - ((2.0 * 2.25 + 1.0) / 3.0f64).sqrt()).abs() < 1e-15);
     }
 
     #[test]
