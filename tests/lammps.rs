@@ -167,6 +167,8 @@ decks! {
     bpm_spring
     bpm_rotational
     bpm_wall
+    bpm_volume
+    bpm_plastic
 }
 
 /// A deck without dynamics that matter: its thermo table and the lines it prints.
