@@ -1,4 +1,5 @@
-"""Random decks of bonds that twist and bend (bond_style bpm/rotational), broken and whole, with what tells of them. LAMMPS takes\nsmall angles by arc cosines, which leaves 1e-6 in some columns of one deck in ten."""
+"""Random decks of bonds that twist and bend (bond_style bpm/rotational), broken and whole, with what tells of them. LAMMPS takes
+small angles by arc cosines, which leaves 1e-6 in some columns of one deck in ten."""
 from bonds import clumps
 
 
