@@ -1,4 +1,18 @@
 //! Bonded particles: spheres joined by massless beams. What one bond does, and the stiffness of a body of them. Pure functions over
 //! numbers and columns; knows neither the world nor decks nor styles.
 
+pub mod certificate;
+pub mod dsm;
+pub mod ends;
+pub mod network;
+pub mod pairs;
+pub mod pcg;
+pub mod precond;
+pub mod shares;
+pub mod six;
 pub mod stiffness;
+
+#[cfg(test)]
+mod lattices;
+#[cfg(test)]
+mod tests_statics;
