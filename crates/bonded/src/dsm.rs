@@ -41,7 +41,7 @@ impl Answer {
 }
 
 /// More steps than this mean that something is wrong with the stiffnesses.
-const MOST: usize = 200_000;
+pub const MOST: usize = 200_000;
 
 /// How many steps pass between two looks at the certificate, which takes as long as one.
 const BETWEEN: usize = 5;

@@ -7,12 +7,17 @@ pub mod ends;
 pub mod network;
 pub mod pairs;
 pub mod pcg;
+pub mod periodic;
 pub mod precond;
 pub mod shares;
 pub mod six;
+pub mod ste;
 pub mod stiffness;
+pub mod tensor;
 
 #[cfg(test)]
 mod lattices;
 #[cfg(test)]
 mod tests_statics;
+#[cfg(test)]
+mod tests_tensors;
