@@ -10,7 +10,7 @@ use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Clock, Env, Question, RefKind, Value, ValueRef, Vars, Word};
 use perigrain_plan::{Op, Stage, StepPlan, Tick, When};
-use perigrain_styles::{Flow, Motion, Reading, SealCx, Values};
+use perigrain_styles::{BondForce, Flow, Motion, Reading, SealCx, Values};
 use perigrain_world::named::Acting;
 use perigrain_world::{SlotId, World};
 use std::collections::BTreeMap;
@@ -382,6 +382,10 @@ impl Values for DeckValues<'_> {
             Some(node) => node.fix.stop(w, what, fix.span),
             None => fail(Code::UNKNOWN_NAME, fix.span, format!("there is no fix `{}`", fix.text)),
         }
+    }
+
+    fn bonds(&self) -> Option<Box<dyn BondForce>> {
+        self.graph.bond.as_ref().map(|node| node.force.clone())
     }
 }
 

@@ -47,7 +47,14 @@ pub const MOST: usize = 200_000;
 const BETWEEN: usize = 5;
 
 /// Moves and turns what is not held until the energy is least.
-pub fn relax(network: &Network, blocks: &Blocks, held: &Held, start: Vec<Six>, rotations: bool, stop: Stop) -> Answer {
+pub fn relax(
+    network: &Network,
+    blocks: &Blocks,
+    held: &Held,
+    start: Vec<Six>,
+    rotations: bool,
+    stop: Stop,
+) -> Answer {
     let mut field = start;
     let energy: f64 = network.energy(&field).iter().sum();
     let certificate = match stop {
@@ -57,16 +64,24 @@ pub fn relax(network: &Network, blocks: &Blocks, held: &Held, start: Vec<Six>, r
         _ => None,
     };
     let mut gap = None;
-    let solved = solve(|u, out| network.product(u, out), blocks, None, &mut field, energy, MOST, |now| match stop {
-        Stop::Estimate(tol) => now.fallen.is_some_and(|fallen| MARGIN * fallen <= tol * now.energy),
-        Stop::Residual(least) => now.residual < least,
-        Stop::Certified(tol) => {
-            if now.iterations % BETWEEN == 0 {
-                gap = certificate.as_ref().map(|c| c.gap(network, now.r));
+    let solved = solve(
+        |u, out| network.product(u, out),
+        blocks,
+        None,
+        &mut field,
+        energy,
+        MOST,
+        |now| match stop {
+            Stop::Estimate(tol) => now.fallen.is_some_and(|fallen| MARGIN * fallen <= tol * now.energy),
+            Stop::Residual(least) => now.residual < least,
+            Stop::Certified(tol) => {
+                if now.iterations % BETWEEN == 0 {
+                    gap = certificate.as_ref().map(|c| c.gap(network, now.r));
+                }
+                gap.is_some_and(|gap| gap <= tol * now.energy)
             }
-            gap.is_some_and(|gap| gap <= tol * now.energy)
-        }
-    });
+        },
+    );
     let modes = network.energy(&field);
     Answer { field, modes, solved, gap }
 }

@@ -194,7 +194,8 @@ pub fn affine(sample: &Sample, ends: &Ends, holds: [Hold; 2], held: &Held, delta
             let mut row = [0.0; 6];
             if !out {
                 (0..3).for_each(|d| row[d] = -nu[d] * strain * (x[d] - centre[d]));
-                row[sample.axis] = (strain * (x[sample.axis] - ends.planes[0])).clamp(delta.min(0.0), delta.max(0.0));
+                row[sample.axis] =
+                    (strain * (x[sample.axis] - ends.planes[0])).clamp(delta.min(0.0), delta.max(0.0));
             }
             row
         })

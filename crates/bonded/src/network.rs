@@ -75,8 +75,7 @@ impl Network {
     /// Of bonds between these ends; `bond(k)` tells the vector from the first end to the second and the stiffnesses of the k-th.
     pub fn new(particles: usize, ends: &[[u32; 2]], bond: impl Fn(usize) -> (Vec3, Stiffness)) -> Self {
         let pairs = Pairs::new(particles, ends);
-        let mut out =
-            Self { particles, pairs, n: vec![], length: vec![], k: Vec::with_capacity(ends.len()) };
+        let mut out = Self { particles, pairs, n: vec![], length: vec![], k: Vec::with_capacity(ends.len()) };
         out.n.reserve_exact(ends.len());
         out.length.reserve_exact(ends.len());
         for &origin in &out.pairs.origin {

@@ -29,7 +29,8 @@ impl Cell {
         let mut before = from.map_or(vec![], |cell| cell.fields);
         before.resize(6, vec![]);
         for (case, field) in before.into_iter().enumerate() {
-            let mut field = if field.len() == network.particles { field } else { vec![[0.0; 6]; network.particles] };
+            let mut field =
+                if field.len() == network.particles { field } else { vec![[0.0; 6]; network.particles] };
             let strain = strain(case);
             let mut load = vec![[0.0; 6]; network.particles];
             network.product_of_strain(&strain, &mut load);

@@ -6,7 +6,12 @@ use super::six::Six;
 use perigrain_base::par;
 
 /// Energies by kind of bond: `kind(bond)` is below `kinds`.
-pub fn by_kind(network: &Network, u: &[Six], kinds: usize, kind: impl Fn(usize) -> usize + Sync) -> Vec<Modes> {
+pub fn by_kind(
+    network: &Network,
+    u: &[Six],
+    kinds: usize,
+    kind: impl Fn(usize) -> usize + Sync,
+) -> Vec<Modes> {
     let chunk = |range: std::ops::Range<usize>| {
         let mut sums = vec![[0.0; 4]; kinds];
         for bond in range {

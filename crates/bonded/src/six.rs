@@ -117,9 +117,12 @@ mod tests {
 
     /// A Aᵀ + 1 for a matrix of small whole numbers: positive definite, of condition about 100.
     fn positive() -> Matrix6 {
-        let a: Matrix6 = std::array::from_fn(|r| std::array::from_fn(|c| ((3 * r + 5 * c * c) % 7) as f64 - 3.0));
+        let a: Matrix6 =
+            std::array::from_fn(|r| std::array::from_fn(|c| ((3 * r + 5 * c * c) % 7) as f64 - 3.0));
         std::array::from_fn(|r| {
-            std::array::from_fn(|c| (0..6).map(|k| a[r][k] * a[c][k]).sum::<f64>() + f64::from(u8::from(r == c)))
+            std::array::from_fn(|c| {
+                (0..6).map(|k| a[r][k] * a[c][k]).sum::<f64>() + f64::from(u8::from(r == c))
+            })
         })
     }
 

@@ -84,8 +84,9 @@ fn inverses(network: &Network) -> Vec<Option<[f64; 6]>> {
     });
     s.into_iter()
         .map(|s| {
-            let whole: Matrix6 =
-                std::array::from_fn(|r| std::array::from_fn(|c| if r < 3 && c < 3 { s[at(r, c)] } else { 0.0 }));
+            let whole: Matrix6 = std::array::from_fn(|r| {
+                std::array::from_fn(|c| if r < 3 && c < 3 { s[at(r, c)] } else { 0.0 })
+            });
             let found = invert(&whole, 0b111000);
             (found.without == 0).then(|| std::array::from_fn(|k| found.inverse[k]))
         })
@@ -188,7 +189,14 @@ pub struct Layers {
 
 impl Layers {
     /// `count` slabs of equal height between `lo` and `hi` along the axis of particles at `x` with these shares of the volume.
-    pub fn new(estimate: &Estimate, x: &[f64], volume: &[f64], [lo, hi]: [f64; 2], count: usize, axis: usize) -> Self {
+    pub fn new(
+        estimate: &Estimate,
+        x: &[f64],
+        volume: &[f64],
+        [lo, hi]: [f64; 2],
+        count: usize,
+        axis: usize,
+    ) -> Self {
         let height = (hi - lo) / count as f64;
         let mut members = vec![vec![]; count];
         for (k, x) in x.iter().enumerate() {

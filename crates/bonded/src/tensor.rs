@@ -49,7 +49,8 @@ impl Moduli {
             (sum(0..3), m[0][1] + m[0][2] + m[1][2], sum(3..6))
         };
         let ((along, beside, shears), (d_along, d_beside, d_shears)) = (of(c), of(&d));
-        let bulk = [(along + 2.0 * beside) / 9.0, over(d_along + 2.0 * d_beside, [0, 1, 2].into_iter().any(gone))];
+        let bulk =
+            [(along + 2.0 * beside) / 9.0, over(d_along + 2.0 * d_beside, [0, 1, 2].into_iter().any(gone))];
         let shear = [
             (along - beside + 3.0 * shears) / 15.0,
             over((4.0 * (d_along - d_beside) + 3.0 * d_shears) / 15.0, found.without != 0),

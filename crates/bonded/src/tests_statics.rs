@@ -66,11 +66,15 @@ fn blocks_of_a_lattice() {
         near(t.k, k, 3e-12);
         near(t.by_force[0], k, 1e-10);
         near(t.by_force[1], k, 1e-10);
-        println!("{hold:?} rotations {rotations} holes {holes}: {} iterations from zero", t.answer.solved.iterations);
+        println!(
+            "{hold:?} rotations {rotations} holes {holes}: {} iterations from zero",
+            t.answer.solved.iterations
+        );
         assert!(t.answer.solved.done && t.held.left_out == [0, 0]);
         // From the affine field, stopped by how fast the energy falls: within the tolerance asked for, from above.
         for tol in [0.05, 0.01, 1e-3, 1e-6] {
-            let t = test(&body, body.network(|_, l| standard(l)), hold, rotations, Stop::Estimate(tol), false);
+            let t =
+                test(&body, body.network(|_, l| standard(l)), hold, rotations, Stop::Estimate(tol), false);
             assert!(t.k >= k * (1.0 - 1e-11) && t.k <= k * (1.0 + tol), "{} {k} {tol}", t.k);
         }
     }
@@ -111,9 +115,8 @@ fn cantilevers_are_beams() {
         (40, 1.66237959758e-5),
     ] {
         for (shear, w) in [(Shear::Paper, paper), (Shear::Timoshenko(0.9), 1.66316915531e-5)] {
-            let beam = |length: f64| {
-                Beam { young: 1e9, poisson: 0.2, radius: 0.4e-3, length }.stiffness(shear)
-            };
+            let beam =
+                |length: f64| Beam { young: 1e9, poisson: 0.2, radius: 0.4e-3, length }.stiffness(shear);
             let network = chain(n, length, beam);
             let mut mask = vec![0u8; n + 1];
             mask[0] = 0b111111;
@@ -122,7 +125,8 @@ fn cantilevers_are_beams() {
             (tip[n][1], tip[n][0], tip[n][3]) = (load, 2.0 * load, 1e-6);
             let mut u = vec![[0.0; 6]; n + 1];
             let blocks = Blocks::new(network.blocks(), &mask);
-            let out = solve(|u, o| network.product(u, o), &blocks, Some(&tip), &mut u, 0.0, 10_000, |_| false);
+            let out =
+                solve(|u, o| network.product(u, o), &blocks, Some(&tip), &mut u, 0.0, 10_000, |_| false);
             // Printed with 12 digits; conjugate gradients on a chain of 40 bends leave 1e-9 of it.
             near(u[n][1], w, 1e-9);
             near(u[n][5], 2.48679598581e-3, 1e-9);
@@ -172,20 +176,29 @@ fn bounds_hold_and_fall() {
         let blocks = Blocks::new(network.blocks(), &held.mask);
         let delta = exact.delta;
         let mut u = affine(&sample, &ends, [Hold::Grip; 2], &held, delta, [0.2, 0.2, 0.0]);
-        let certificate = super::certificate::Certificate::new(&network, |k| held.mask[k] == 63, &held.out, true);
+        let certificate =
+            super::certificate::Certificate::new(&network, |k| held.mask[k] == 63, &held.out, true);
         let energy: f64 = network.energy(&u).iter().sum();
         let (mut last, mut upper, mut gap) = (f64::INFINITY, 0.0, 0.0);
         let least = exact.answer.energy();
-        solve(|u, o| network.product(u, o), &blocks, None, &mut u, energy, 5_000, |now| {
-            assert!(now.energy <= last);
-            last = now.energy;
-            upper = network.energy(now.field).iter().sum();
-            // What the steps have taken, and what is left, to rounding.
-            near(now.energy, upper, 1e-9);
-            gap = certificate.gap(&network, now.r);
-            assert!(upper >= least * (1.0 - 1e-10) && upper - gap <= least * (1.0 + 1e-10), "{seed}");
-            gap < 1e-3 * upper
-        });
+        solve(
+            |u, o| network.product(u, o),
+            &blocks,
+            None,
+            &mut u,
+            energy,
+            5_000,
+            |now| {
+                assert!(now.energy <= last);
+                last = now.energy;
+                upper = network.energy(now.field).iter().sum();
+                // What the steps have taken, and what is left, to rounding.
+                near(now.energy, upper, 1e-9);
+                gap = certificate.gap(&network, now.r);
+                assert!(upper >= least * (1.0 - 1e-10) && upper - gap <= least * (1.0 + 1e-10), "{seed}");
+                gap < 1e-3 * upper
+            },
+        );
         assert!(gap < 1e-3 * upper, "seed {seed}");
         // What the command does with it.
         let t = test(&body, body.network(beam), Hold::Grip, true, Stop::Certified(1e-3), false);
@@ -208,7 +221,8 @@ fn shares_of_the_energy_are_logarithmic_derivatives() {
     };
     let base = [2e9, 0.3e-3, 0.2];
     let t = solved(base[0], base[1], base[2]);
-    let kinds = shares::by_kind(&t.network, &t.answer.field, 2, |k| usize::from(t.network.pairs.origin[k] % 5 < 2));
+    let kinds =
+        shares::by_kind(&t.network, &t.answer.field, 2, |k| usize::from(t.network.pairs.origin[k] % 5 < 2));
     let total: f64 = kinds.iter().flatten().sum();
     near(total, t.answer.energy(), 1e-13);
     let of = |d: [f64; 4]| {

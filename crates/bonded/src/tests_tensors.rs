@@ -41,15 +41,15 @@ fn lattices_have_their_tensors() {
     let xi = beam.shear / beam.normal;
     let (root2, root3) = (2f64.sqrt(), 3f64.sqrt());
     let sc = (lattice(&SC.0, SC.1, 4, true), [1.0, 0.0, 0.5 * xi]);
-    let bcc =
-        (lattice(&BCC.0, BCC.1, 3, true), [1.0 + 2.0 * xi, 1.0 - xi, 1.0 + 0.5 * xi].map(|a| a * root3 / 3.0));
+    let bcc = (
+        lattice(&BCC.0, BCC.1, 3, true),
+        [1.0 + 2.0 * xi, 1.0 - xi, 1.0 + 0.5 * xi].map(|a| a * root3 / 3.0),
+    );
     let fcc = (
         lattice(&FCC.0, FCC.1, 3, true),
         [root2 * (1.0 + xi), root2 / 2.0 * (1.0 - xi), root2 / 2.0 * (1.0 + xi)],
     );
-    for ((body, c), edge, partners) in
-        [(sc, 4.0 * SC.1, 6), (bcc, 3.0 * BCC.1, 8), (fcc, 3.0 * FCC.1, 12)]
-    {
+    for ((body, c), edge, partners) in [(sc, 4.0 * SC.1, 6), (bcc, 3.0 * BCC.1, 8), (fcc, 3.0 * FCC.1, 12)] {
         assert_eq!(2 * body.bonds.len(), partners * body.x.len());
         let c = c.map(|c| c * beam.normal / 1e-3);
         // Lengths of bonds are those of sums of coordinates: rounding of 1e-16 of 5 mm.
@@ -87,9 +87,12 @@ fn moduli_of_the_standard_lattice() {
     let (a, b) = (1007053466.0 - 207334537.1, 503526733.0);
     near(m.shear, 0.5 * ((a + 3.0 * b) / 5.0 + 5.0 / (4.0 / a + 3.0 / b)), 1e-9);
     // No resistance to shear across the axes at all.
-    let c = Estimate::new(&lattice(&SC.0, SC.1, 4, true).network(|_, length| {
-        Beam { young: 1e9, poisson: 0.2, radius: 0.4e-3, length }.stiffness(Shear::None)
-    }), 2);
+    let c = Estimate::new(
+        &lattice(&SC.0, SC.1, 4, true).network(|_, length| {
+            Beam { young: 1e9, poisson: 0.2, radius: 0.4e-3, length }.stiffness(Shear::None)
+        }),
+        2,
+    );
     let m = Moduli::new(&c.whole(64e-9)).unwrap();
     near(m.young[2], 502654.824574367 / 1e-3, 1e-11);
     assert_eq!(m.poisson, [[0.0; 3]; 3]);
@@ -132,7 +135,8 @@ fn sweeps_of_a_periodic_pack_converge_to_its_tensor() {
     assert!(orders[..3].iter().all(|a| *a <= orders[0] && *a > fixed) && with < fixed);
     near(e(&mean_field(&network, volume)), orders[0], 1e-12);
     // In closed form, for bonds in all directions alike: E = s (2 + 3ξ)/(3 (4 + ξ)), ν = (1 − ξ)/(4 + ξ), s = Σ k_n L²/V.
-    let s: f64 = (0..network.bonds()).map(|k| network.k[k].normal * network.length[k].powi(2)).sum::<f64>() / volume;
+    let s: f64 =
+        (0..network.bonds()).map(|k| network.k[k].normal * network.length[k].powi(2)).sum::<f64>() / volume;
     let xi = network.k[0].shear / network.k[0].normal;
     // 1 %: directions of 950 bonds.
     near(orders[0], s * (2.0 + 3.0 * xi) / (3.0 * (4.0 + xi)), 0.01);

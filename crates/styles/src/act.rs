@@ -1,5 +1,6 @@
 //! What acts may use while they act.
 
+use crate::BondForce;
 use perigrain_base::diag::{Diagnostic, Diagnostics, Result, Source, Span};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::{Command, Param, ValueRef, Word};
@@ -34,6 +35,10 @@ pub trait Values {
     /// # Errors
     /// Other fixes, and bodies that cannot be.
     fn stop(&mut self, w: &mut World, fix: &Word, what: Motion) -> Result<()>;
+    /// The bond style in force.
+    fn bonds(&self) -> Option<Box<dyn BondForce>> {
+        None
+    }
 }
 
 /// What a temperature takes away from velocities before it looks at them.

@@ -4,6 +4,7 @@ use super::{BONDS, BondForce, BondStyle, Pull, Stretched};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
+use perigrain_styles::bond::Stiffness;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use std::collections::BTreeMap;
@@ -98,6 +99,21 @@ impl BondForce for Declared {
             None => Some(Pull::default()),
             Some(k) => self.subs[*k].single(w, bond),
         }
+    }
+
+    fn stiffness(&self, kind: u16, length: f64, radii: [f64; 2]) -> Option<Stiffness> {
+        match self.users.get(&kind)? {
+            None => Some(Stiffness::default()),
+            Some(k) => self.subs[*k].stiffness(kind, length, radii),
+        }
+    }
+
+    fn tuned(&self, name: &str, kind: u16, factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
+        let k = self.users.get(&kind).copied().flatten()?;
+        let mut tuned = self.clone();
+        let (sub, value) = self.subs[k].tuned(name, kind, factor)?;
+        tuned.subs[k] = sub;
+        Some((Box::new(tuned), value))
     }
 
     fn written(&self, kind: u16) -> Option<String> {

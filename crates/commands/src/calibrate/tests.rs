@@ -1,0 +1,449 @@
+//! Lines of `calibrate` on small scenes with a bond style of beams.
+
+use super::super::testing::{command, scene as world_of};
+use super::Calibrate;
+use perigrain_base::diag::{Diagnostics, Result, fail};
+use perigrain_bonded::stiffness::{Beam, Shear, Stiffness};
+use perigrain_lang::{Args, ValueRef, Word};
+use perigrain_plan::Op;
+use perigrain_styles::pull::{Pull, Stretched};
+use perigrain_styles::{
+    ActCx, BondForce, BuildCx, CommandStyle, Flow, Motion, Names, SealCx, Shape, UseKind, Values,
+};
+use perigrain_world::{GroupId, Key, World};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+/// Beams: Young's modulus, ratio and radius of each type.
+#[derive(Clone)]
+struct Beams(BTreeMap<u16, [f64; 3]>);
+
+impl Beams {
+    fn standard(types: u16) -> Self {
+        Self((1..=types).map(|kind| (kind, [1e9, 0.2, 0.4e-3])).collect())
+    }
+}
+
+impl BondForce for Beams {
+    fn name(&self) -> &'static str {
+        "beams"
+    }
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        let numbers = [args.number("E")?, args.number("nu")?, args.number("the radius")?];
+        self.0.extend(kinds.iter().map(|kind| (*kind, numbers)));
+        Ok(())
+    }
+    fn covers(&self, kind: u16) -> bool {
+        self.0.contains_key(&kind)
+    }
+    fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        Ok(vec![])
+    }
+    fn single(&self, _w: &World, _bond: &Stretched) -> Option<Pull> {
+        None
+    }
+    fn stiffness(&self, kind: u16, length: f64, _radii: [f64; 2]) -> Option<Stiffness> {
+        let [young, poisson, radius] = *self.0.get(&kind)?;
+        let beam = Beam { young, poisson, radius, length }.stiffness(Shear::Paper);
+        let spring = Stiffness { normal: beam.normal, ..Stiffness::default() };
+        (young != 7.0).then_some(if poisson == f64::INFINITY { spring } else { beam })
+    }
+    fn tunable(&self) -> &'static [&'static str] {
+        &["E", "nu", "radius"]
+    }
+    fn tuned(&self, name: &str, kind: u16, factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
+        let mut tuned = self.clone();
+        let at = ["E", "nu", "radius"].iter().position(|n| *n == name)?;
+        let value = &mut tuned.0.get_mut(&kind)?[at];
+        *value *= factor;
+        let value = *value;
+        Some((Box::new(tuned), value))
+    }
+    fn written(&self, kind: u16) -> Option<String> {
+        self.0.get(&kind).map(|[e, nu, r]| format!("{e:e} {nu} {r:e}"))
+    }
+}
+
+struct Declared(Option<Beams>);
+
+impl Names for Declared {
+    fn compute(&self, id: &str) -> Option<Shape> {
+        (id == "taken").then(Shape::default)
+    }
+    fn compute_style(&self, id: &str) -> Option<&'static str> {
+        (id == "taken").then_some("ke")
+    }
+    fn fix(&self, _id: &str) -> Option<Shape> {
+        None
+    }
+    fn variable_shape(&self, _name: &str) -> Option<Shape> {
+        None
+    }
+    fn all(&self, _kind: UseKind) -> Vec<String> {
+        vec![]
+    }
+}
+
+impl Values for Declared {
+    fn with_internal(&mut self, w: &mut World, r: &ValueRef, _set: &[(&ValueRef, f64)]) -> Result<f64> {
+        self.scalar(w, r)
+    }
+    fn scalar(&mut self, _w: &mut World, r: &ValueRef) -> Result<f64> {
+        fail(perigrain_base::diag::Code::WRONG_KIND, r.span, "no number")
+    }
+    fn per_atom(&mut self, _w: &mut World, _r: &ValueRef) -> Result<Vec<f64>> {
+        Ok(vec![])
+    }
+    fn flow(&mut self, _w: &mut World, _compute: &ValueRef) -> Result<Flow> {
+        Ok(Flow { taken: vec![], group: GroupId::ALL, whole: [false; 3], apart: vec![] })
+    }
+    fn stop(&mut self, _w: &mut World, _fix: &Word, _what: Motion) -> Result<()> {
+        Ok(())
+    }
+    fn bonds(&self) -> Option<Box<dyn BondForce>> {
+        self.0.clone().map(|b| Box::new(b) as Box<dyn BondForce>)
+    }
+}
+
+/// What a line did: its numbers, what it said, the lines it left for later, its warnings.
+#[derive(Debug)]
+struct Did {
+    numbers: Vec<f64>,
+    said: Vec<String>,
+    then: Vec<String>,
+    notes: Vec<String>,
+}
+
+fn act(w: &mut World, line: &str, beams: Beams) -> Result<Did> {
+    let line = command(line);
+    let (notes, uses) = (RefCell::new(Diagnostics::default()), RefCell::default());
+    let mut declared = Declared(Some(beams));
+    let mut args = Args::new(&line);
+    let cx = BuildCx {
+        world: w,
+        names: &declared,
+        id: "",
+        group: GroupId::ALL,
+        span: line.span,
+        checking: false,
+        notes: &notes,
+        uses: &uses,
+    };
+    let act = Calibrate.parse(&mut args, &cx)?;
+    args.finish()?;
+    let (id, _) = act.leaves().unwrap();
+    let (mut said, mut then) = (vec![], vec![]);
+    act.apply(&mut ActCx {
+        world: w,
+        values: &mut declared,
+        span: line.span,
+        said: &mut said,
+        then: &mut then,
+        notes: &notes,
+    })?;
+    Ok(Did {
+        numbers: w.memo.get(Key::new(&format!("calibrate {id}"))).unwrap().clone(),
+        said,
+        then: then.into_iter().map(|(line, _)| line.text).collect(),
+        notes: notes.into_inner().0.into_iter().map(|n| n.message).collect(),
+    })
+}
+
+fn near(a: f64, b: f64, tolerance: f64) {
+    assert!((a - b).abs() <= tolerance * b.abs(), "{a} {b}");
+}
+
+const A: f64 = 1.414_213_562_373_095_1e-3;
+
+/// Cells of a lattice of nearest distance 1 mm, bonded to nearest neighbours by bonds of type 1 of two.
+fn cells(lattice: &str, edge: f64, [x, y, z]: [i32; 3], boundary: &str) -> World {
+    let ends = |n: i32| format!("{} {}", -0.125, f64::from(n) - 0.125);
+    let mut w = world_of(&format!(
+        "units si\nboundary {boundary}\natom_style hybrid sphere bond\nlattice {lattice} {edge}\n\
+         region b block {} {} {}\ncreate_box 1 b bond/types 2 extra/bond/per/atom 12\ncreate_atoms 1 box\n\
+         set group all diameter 1e-3\nspecial_bonds lj/coul 0 1 1\ncreate_bonds many all all 1 0.9e-3 1.1e-3",
+        ends(x),
+        ends(y),
+        ends(z)
+    ));
+    w.bonds.coeffs = Some(("beams".into(), BTreeMap::new()));
+    w
+}
+
+fn fcc() -> World {
+    cells("fcc", A, [4; 3], "f f f")
+}
+
+// Section 10.4 of the page on bonded particles, printed with 12 digits.
+#[test]
+fn blocks_of_a_lattice_between_ends() {
+    let mut w = fcc();
+    assert_eq!((w.n(), w.bonds.len()), (256, 1176));
+    for (words, k) in [
+        ("low grip high grip", 5430321.8781),
+        ("low plate high plate", 5269009.41211),
+        ("low grip high grip rotations no", 5466126.86364),
+        ("low plate high plate rotations no", 5290542.81508),
+    ] {
+        let did = act(
+            &mut w,
+            &format!("calibrate dsm a all axis z strain -0.01 tol 1e-12 {words}"),
+            Beams::standard(2),
+        );
+        let did = did.unwrap();
+        near(did.numbers[0], k, 3e-12);
+        let free = 3.5 * A;
+        near(did.numbers[6], -0.01 * free, 1e-12);
+        near(did.numbers[5], k * -0.01 * free, 1e-11);
+        let area = (3.5 * A + 1e-3).powi(2);
+        near(did.numbers[1], k * free / area, 1e-11);
+        assert!(did.numbers[3].is_nan() && did.numbers[8..] == [0.0, 0.0] && did.notes.is_empty(), "{did:?}");
+    }
+    // A cylinder, a given area, the length of the body; the same along x by symmetry.
+    let did =
+        act(&mut w, "calibrate dsm a all axis x tol 1e-12 shape cylinder length body", Beams::standard(2))
+            .unwrap();
+    near(did.numbers[0], 5430321.8781, 3e-12);
+    near(did.numbers[1], 5430321.8781 / 0.25 / std::f64::consts::PI / (3.5 * A + 1e-3), 1e-11);
+    let did = act(&mut w, "calibrate dsm a all tol 1e-12 shape area 2e-5", Beams::standard(2)).unwrap();
+    near(did.numbers[1], 5430321.8781 * 3.5 * A / 2e-5, 1e-11);
+    // As in the paper, and with a bound.
+    let did = act(&mut w, "calibrate dsm a all method paper 1e-9 rotations no", Beams::standard(2)).unwrap();
+    near(did.numbers[0], 5466126.86364, 3e-12);
+    let did = act(&mut w, "calibrate dsm a all tol 0.01 bound yes fields yes", Beams::standard(2)).unwrap();
+    let [k, lower] = [did.numbers[0], did.numbers[3]];
+    assert!(lower <= 5430321.8781 && k >= 5430321.8781 && k - lower <= 0.01 * k, "{did:?}");
+    assert!(did.said[0].contains("256 particles, 1176 bonds; ends held: 32 + 32"), "{did:?}");
+    let u = w.columns.get_vector(Key::new("calibrate a/0")).unwrap();
+    let top = |i: &usize| w.particles.x[*i][2] > 3.4 * A;
+    assert!(
+        (0..256)
+            .filter(top)
+            .all(|i| u[i] == [0.0, 0.0, -0.01 * 3.5 * A] || (u[i][2] + 0.035 * A).abs() < 1e-12)
+    );
+}
+
+#[test]
+fn tensors_of_a_lattice() {
+    for line in [
+        "calibrate periodic p all tol 1e-10",
+        "calibrate ste p all",
+        "calibrate ste p all order 0 axis x slabs auto",
+    ] {
+        let mut w = cells("fcc", A, [3; 3], "p p p");
+        let did = act(&mut w, line, Beams::standard(2)).unwrap();
+        let c = &did.numbers[10..];
+        // Printed with ten digits.
+        for (at, wanted) in
+            [(0, 1007053466.0), (1, 207334537.1), (14, 1007053466.0), (21, 503526733.0), (35, 503526733.0)]
+        {
+            near(c[at], wanted, 5e-10);
+        }
+        assert!(c.len() == 36 && c[3].abs() < 1e-3);
+        near(did.numbers[1], 936256307.0, 1e-9);
+        near(did.numbers[2], 7.0 / 41.0, 1e-10);
+        let k = if line.contains("ste") {
+            936256307.0 * 3.0 * A
+        } else {
+            (1007053466.0 + 2.0 * 207334537.1) / 3.0
+        };
+        near(did.numbers[0], k, 1e-9);
+    }
+}
+
+#[test]
+fn one_type_is_fitted_by_one_solve() {
+    let mut w = fcc();
+    for (line, power, k) in [
+        ("calibrate fit f all target K 2.0e4 vary bond 1 E tol 1e-10", 1.0, 5430321.8781),
+        (
+            "calibrate fit f all target K 2.0e4 vary bond 1 E tol 1e-10 low plate high plate",
+            1.0,
+            5269009.41211,
+        ),
+    ] {
+        let did = act(&mut w, line, Beams::standard(2)).unwrap();
+        let found: Vec<f64> = did.then[0].split(' ').skip(2).map(|a| a.parse().unwrap()).collect();
+        assert!(
+            did.then.len() == 1 && did.then[0].starts_with("bond_coeff 1 ") && found[1..] == [0.2, 0.4e-3]
+        );
+        near(found[0], 1e9 * (2.0e4f64 / k).powf(1.0 / power), 2e-10);
+        near(did.numbers[0], 2.0e4, 1e-12);
+        assert!(did.said.iter().filter(|l| l.contains("solve ")).count() == 1, "{did:?}");
+        // The other way round.
+        let mut beams = Beams::standard(2);
+        beams.0.insert(1, [found[0], 0.2, 0.4e-3]);
+        let ends = if line.contains("plate") { "low plate high plate" } else { "" };
+        let did = act(&mut w, &format!("calibrate dsm d all tol 1e-12 {ends}"), beams).unwrap();
+        near(did.numbers[0], 2.0e4, 1e-9);
+    }
+    // The radius bends with another power than it stretches.
+    let did =
+        act(&mut w, "calibrate fit f all target E 2.0e9 vary bond 1 radius tol 1e-8", Beams::standard(2))
+            .unwrap();
+    near(did.numbers[1], 2.0e9, 1e-8);
+    assert!(did.said.iter().filter(|l| l.contains("solve ")).count() <= 5, "{did:?}");
+    for method in ["ste", "periodic"] {
+        let mut w = cells("fcc", A, [3; 3], "p p p");
+        let line = format!("calibrate fit f all target E 936256.307 vary bond 1 E method {method} tol 1e-8");
+        let did = act(&mut w, &line, Beams::standard(2)).unwrap();
+        near(did.then[0].split(' ').nth(2).unwrap().parse().unwrap(), 1e6, 1e-8);
+    }
+}
+
+/// A block in which bonds along the axis are of type 2.
+fn of_two_types() -> World {
+    let mut w = fcc();
+    let x = w.particles.x.to_vec();
+    for bond in &mut w.bonds.list {
+        let [a, b] = bond.ends.map(|id| x[id as usize - 1]);
+        // Lines of the lattice lie in planes across the axes: type 2 has no part along z.
+        bond.kind = if (a[2] - b[2]).abs() < 1e-6 { 2 } else { 1 };
+    }
+    w
+}
+
+#[test]
+fn two_types_meet_two_targets() {
+    let mut w = of_two_types();
+    let mut wanted = Beams::standard(2);
+    wanted.0.insert(2, [3e9, 0.2, 0.4e-3]);
+    for (method, ends) in [("dsm", "low plate high plate"), ("dsm", ""), ("ste", "")] {
+        let line = if method == "dsm" {
+            format!("calibrate dsm d all {ends} tol 1e-10")
+        } else {
+            "calibrate ste d all".into()
+        };
+        let did = act(&mut w, &line, wanted.clone()).unwrap();
+        let (k, nu) = (did.numbers[0], did.numbers[2]);
+        // From a factor of ten off, in either direction.
+        let mut start = Beams::standard(2);
+        start.0.insert(1, [1e10, 0.2, 0.4e-3]);
+        start.0.insert(2, [0.3e9, 0.2, 0.4e-3]);
+        let line = format!(
+            "calibrate fit f all target K {k} target nu {nu} vary bond 1 E vary bond 2 E method {method} tol 1e-4 {ends}"
+        );
+        let did = act(&mut w, &line, start).unwrap();
+        println!("{}", did.said.join("\n"));
+        near(did.numbers[0], k, 1.1e-4);
+        near(did.numbers[2], nu, 1.1e-4);
+        let solves = did.said.iter().filter(|l| l.contains("solve ")).count();
+        assert!(solves <= 6, "{did:?}");
+        for (line, e) in did.then.iter().zip([1e9, 3e9]) {
+            near(line.split(' ').nth(2).unwrap().parse().unwrap(), e, 2e-3);
+        }
+    }
+    // One target leaves a direction open, which is told.
+    let did = act(
+        &mut w,
+        "calibrate fit f all target K 1e6 vary bond 1 E vary bond 2 E tol 1e-6",
+        Beams::standard(2),
+    );
+    assert!(did.unwrap().said.iter().any(|l| l.contains("leave open: E of type 1 ^")));
+}
+
+/// The word that is to blame, the message, and the help.
+fn refused(w: &World, line: &str, beams: Beams) -> String {
+    let d = act(&mut w.clone(), line, beams).expect_err(line).0.remove(0);
+    let span = d.span.unwrap_or_default();
+    format!("[{}] {} | {}", &line[span.start as usize..span.end as usize], d.message, d.help.join(" "))
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let w = fcc();
+    for (line, wanted) in [
+        ("calibrate dms a all", "[dms] "),
+        ("calibrate dsm a-b all", "[a-b] `a-b` is no ID"),
+        ("calibrate dsm taken all", "[taken] there is a compute ke of the ID `taken`"),
+        ("calibrate dsm a nobody", "[nobody] there is no group"),
+        ("calibrate dsm a all strain -1", "[-1] a strain of -1 turns bonds inside out"),
+        ("calibrate dsm a all strain 0", "[0] without a strain"),
+        (
+            "calibrate dsm a all order 2",
+            "[order] `order` does not concern `calibrate dsm` | `calibrate ste` has it",
+        ),
+        ("calibrate dsm a all tolerance 2", "[tolerance] "),
+        ("calibrate dsm a all tol 2", "[2] the tolerance"),
+        ("calibrate dsm a all low plate bound yes", "[yes] `bound yes` needs both ends held wholly"),
+        ("calibrate dsm a all thick 0.004", "[calibrate dsm a all thick 0.004] the body is too short"),
+        (
+            "calibrate periodic a all",
+            "[calibrate periodic a all] `calibrate periodic` needs a box that repeats in all directions, not `boundary ff ff ff`",
+        ),
+        ("calibrate fit a all target K 1", "[calibrate] a fit needs a `target` and something to `vary`"),
+        ("calibrate fit a all vary bond 3 E target K 1", "[3] there are bond types 1 to 2"),
+        (
+            "calibrate fit a all vary bond 1 k target K 1",
+            "[k] bond_style beams has no coefficient `k` of bond type 1 to vary | known: E nu radius",
+        ),
+        (
+            "calibrate fit a all vary bond 2 E target K 1",
+            "[E] `E` of bond type 2 changes none of the targets",
+        ),
+        (
+            "calibrate fit a all vary bond 1 E target nu 0.3",
+            "[E] `E` of bond type 1 changes none of the targets",
+        ),
+        ("calibrate fit a all vary bond 1 nu target K 1e3", "the targets K 1000 are not reached"),
+    ] {
+        let said = refused(&w, line, Beams::standard(2));
+        assert!(said.contains(wanted), "{line}: {said}");
+    }
+    let mut none = Beams::standard(2);
+    none.0.clear();
+    assert!(
+        refused(&w, "calibrate dsm a all", none)
+            .contains("has no coefficients for bond type 1 | add `bond_coeff 1")
+    );
+    let mut soft = Beams::standard(2);
+    soft.0.insert(1, [7.0, 0.2, 1.0]);
+    assert!(refused(&w, "calibrate dsm a all", soft).contains("no stiffness for small displacements"));
+    let mut odd = Beams::standard(2);
+    odd.0.insert(1, [-1e9, 0.2, 0.4e-3]);
+    assert!(refused(&w, "calibrate ste a all", odd).contains("negative or infinite stiffness"));
+    let mut bare = fcc();
+    bare.bonds.list.clear();
+    assert!(
+        refused(&bare, "calibrate dsm a all", Beams::standard(2))
+            .contains("no bonds between particles of group `all`")
+    );
+    // Cut through the middle.
+    let mut cut = fcc();
+    let x = cut.particles.x.to_vec();
+    cut.bonds.retain(|b| {
+        let [a, b] = b.ends.map(|id| x[id as usize - 1][2] < 1.9 * A);
+        a == b
+    });
+    assert!(
+        refused(&cut, "calibrate dsm a all", Beams::standard(2))
+            .contains("no chain of bonds leads from end to end")
+    );
+    let periodic = cells("fcc", A, [3; 3], "p p p");
+    assert!(
+        refused(&periodic, "calibrate dsm a all axis y", Beams::standard(2))
+            .contains("has no ends along y: a bond between")
+    );
+}
+
+#[test]
+fn pieces_and_loose_particles_are_told() {
+    let mut w = fcc();
+    // Two particles torn off, bonded to each other.
+    let x = w.particles.x.to_vec();
+    let pair: Vec<u32> = (1..=256)
+        .filter(|id| {
+            let x = x[*id as usize - 1].map(|a| (2.0 * a / A).round());
+            x == [3.0, 3.0, 2.0] || x == [3.0, 4.0, 3.0]
+        })
+        .collect();
+    w.bonds.retain(|b| b.ends.iter().filter(|e| pair.contains(e)).count() != 1);
+    let did = act(&mut w, "calibrate dsm a all", Beams::standard(2)).unwrap();
+    assert_eq!((pair.len(), did.numbers[9]), (2, 2.0));
+    assert!(did.said[0].contains("1 pieces (2 particles) without support left out"), "{did:?}");
+    // Springs do not resist turning.
+    let mut beams = Beams::standard(2);
+    beams.0.insert(1, [1e9, f64::INFINITY, 0.4e-3]);
+    let did = act(&mut fcc(), "calibrate dsm a all", beams).unwrap();
+    assert!(did.notes[0].contains("can move or turn without any resistance"), "{did:?}");
+}
