@@ -2,9 +2,11 @@
 //! numbers and columns; knows neither the world nor decks nor styles.
 
 pub mod certificate;
+pub mod contacts;
 pub mod dsm;
 pub mod ends;
 pub mod network;
+pub mod newton;
 pub mod pairs;
 pub mod pcg;
 pub mod periodic;
@@ -17,6 +19,8 @@ pub mod tensor;
 
 #[cfg(test)]
 mod lattices;
+#[cfg(test)]
+mod tests_contacts;
 #[cfg(test)]
 mod tests_statics;
 #[cfg(test)]

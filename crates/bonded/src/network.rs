@@ -211,8 +211,13 @@ impl Network {
 
     /// For each particle the smallest place in the piece that bonds tie it to.
     pub fn pieces(&self) -> Vec<u32> {
+        self.pieces_with([])
+    }
+
+    /// The same where some more pairs hang together.
+    pub fn pieces_with(&self, more: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
         let mut root: Vec<u32> = (0..self.particles as u32).collect();
-        self.pairs.ends.iter().for_each(|[a, b]| forest::join(&mut root, *a, *b));
+        self.pairs.ends.iter().copied().chain(more).for_each(|[a, b]| forest::join(&mut root, a, b));
         (0..self.particles as u32).map(|k| forest::find(&mut root, k)).collect()
     }
 }

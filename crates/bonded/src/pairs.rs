@@ -57,6 +57,9 @@ impl Pairs {
         out: &mut [[f64; N]],
         pull: impl Fn(usize, [usize; 2]) -> [[f64; N]; 2] + Sync,
     ) {
+        if self.is_empty() {
+            return;
+        }
         par::each(out, |start, rows: &mut [[f64; N]]| {
             let chunk = start / par::CHUNK;
             let add = |row: &mut [f64; N], more: [f64; N]| {

@@ -3,10 +3,11 @@
 //! Gauss and Newton in logarithms, with the derivatives that energies are (K = 2U/Δ²: ∂ln K/∂ln k of a bond is its share of the
 //! energy); of ν by the adjoint field.
 
+use super::Line;
 use super::dsm::warn_unfinished;
-use super::found::Found;
 use super::model::Model;
 use super::scene::Scene;
+use super::touch::Hertz;
 use super::words::{Quantity, Target, Words};
 use nalgebra::{DMatrix, DVector};
 use perigrain_base::diag::{Code, Diagnostic, Result, Source, Span, fail};
@@ -30,31 +31,31 @@ const STEP: f64 = 1e-4;
 /// Coefficients that the bond style does not have or that change nothing, targets that cannot be reached.
 pub fn run(
     cx: &mut ActCx,
-    id: &str,
+    line: &Line,
     mut scene: Scene,
-    words: &Words,
-    style: Box<dyn BondForce>,
-    found: &Found,
+    hertz: Option<&Hertz>,
+    style: &dyn BondForce,
 ) -> Result<()> {
-    let began = Instant::now();
-    let mut model = Model::new(cx.world, &scene, words, cx.span)?;
+    let (began, words) = (Instant::now(), &line.words);
+    let mut model = Model::new(cx.world, line, &scene, hertz, cx.span)?;
     let mut params = vec![0.0; words.vary.len()];
     let (mut solves, mut best) = (0, None::<(f64, Vec<f64>)>);
     cx.say(format!(
-        "calibrate fit {id}: {} coefficients, {} targets, {} particles, {} bonds",
+        "calibrate fit {}: {} coefficients, {} targets, {} particles, {} bonds",
+        line.id,
         params.len(),
         words.targets.len(),
         scene.places.len(),
         scene.network.bonds()
     ));
     loop {
-        let now = tuned(style.as_ref(), words, &params)?;
+        let now = tuned(style, words, &params)?;
         scene.restyle(now.as_ref());
         model.solve(&scene, words, cx.span)?;
         solves += 1;
         let wrong = misses(words, &model);
         let worst = wrong.iter().fold(0.0f64, |most, a| most.max(a.abs()));
-        say_solve(cx, solves, words, &model, &values(style.as_ref(), words, &params)?);
+        say_solve(cx, solves, words, &model, &values(style, words, &params)?);
         if worst <= words.tol {
             break;
         }
@@ -82,7 +83,9 @@ pub fn run(
                 if solves == 1 {
                     say_open(cx, words, &open);
                 }
-                if let (1, Some(power)) = (words.vary.len(), uniform(&changes[0], &scene)) {
+                if let (1, true, Some(power)) =
+                    (words.vary.len(), model.linear(), uniform(&changes[0], &scene))
+                {
                     // All stiffnesses change by one factor, and so does that of the body: nothing is left to solve.
                     params[0] += step[0];
                     model.scale((power * step[0]).exp());
@@ -98,9 +101,9 @@ pub fn run(
         params = from.iter().zip(&step).map(|(p, s)| p + s.clamp(-LONGEST, LONGEST)).collect();
     }
     warn_unfinished(cx, model.done);
-    let now = tuned(style.as_ref(), words, &params)?;
-    set(cx, words, now.as_ref(), &format!("calibrate fit {id}"))?;
-    found.keep(cx.world, model.numbers(), model.tensor());
+    let now = tuned(style, words, &params)?;
+    set(cx, words, now.as_ref(), &format!("calibrate fit {}", line.id))?;
+    line.found.keep(cx.world, model.numbers(), model.tensor());
     cx.say(format!("  {}   {solves} solves, {:.2} s", reached(words, &model), began.elapsed().as_secs_f64()));
     Ok(())
 }
@@ -220,14 +223,15 @@ fn slopes(
     for (row, target) in words.targets.iter().enumerate() {
         for (column, change) in changes.iter().enumerate() {
             let poisson = target.quantity == Quantity::Poisson;
-            out[(row, column)] = match (uniform(change, scene), model.value(target.quantity)) {
-                (Some(_), _) if poisson => 0.0,
-                (Some(power), _) => power,
-                (None, now) => {
-                    let slope = model.slope(scene, words, target.quantity, change, span)?;
-                    if poisson { slope / if now > 0.0 { now } else { target.value } } else { slope }
-                }
-            };
+            out[(row, column)] =
+                match (uniform(change, scene).filter(|_| model.linear()), model.value(target.quantity)) {
+                    (Some(_), _) if poisson => 0.0,
+                    (Some(power), _) => power,
+                    (None, now) => {
+                        let slope = model.slope(scene, words, target.quantity, change, span)?;
+                        if poisson { slope / if now > 0.0 { now } else { target.value } } else { slope }
+                    }
+                };
         }
     }
     for (column, vary) in words.vary.iter().enumerate() {

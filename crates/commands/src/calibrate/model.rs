@@ -1,17 +1,20 @@
 //! What a fit solves again and again, with the slopes of its numbers over stiffnesses of bonds.
 
-use super::dsm::{Response, Setup};
+use super::Line;
+use super::cell::{cell, moduli, solve_cell};
+use super::dsm::numbers;
 use super::found::NUMBERS;
 use super::scene::Scene;
-use super::tensor::{Estimated, cell, estimate, moduli, solve_cell};
+use super::setup::{Response, Setup};
+use super::ste::{Estimated, Estimator};
+use super::touch::Hertz;
 use super::words::{Quantity, Solver, Words};
-use perigrain_base::diag::{Result, Span};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_bonded::dsm::MOST;
 use perigrain_bonded::ends::slope;
 use perigrain_bonded::network::Modes;
 use perigrain_bonded::pcg::solve;
 use perigrain_bonded::periodic::Cell;
-use perigrain_bonded::precond::Blocks;
 use perigrain_bonded::shares::change;
 use perigrain_bonded::six::{Matrix6, Six};
 use perigrain_world::World;
@@ -19,6 +22,8 @@ use perigrain_world::World;
 /// A body with its latest solution.
 pub struct Model {
     kind: Kind,
+    /// That of an estimate.
+    order: usize,
     /// By which all stiffnesses are larger than in the latest solution.
     factor: f64,
     iterations: usize,
@@ -28,9 +33,9 @@ pub struct Model {
 }
 
 enum Kind {
-    Dsm { setup: Box<Setup>, solved: Option<Box<(Response, Blocks)>>, adjoint: Option<Vec<Six>> },
+    Dsm { setup: Box<Setup>, solved: Option<Box<Response>>, adjoint: Option<Vec<Six>> },
     Periodic { volume: f64, cell: Option<Cell> },
-    Ste { found: Option<Box<Estimated>> },
+    Ste { body: Box<Estimator>, found: Option<Box<Estimated>> },
 }
 
 /// The part of the tolerance of a fit that its solutions have.
@@ -43,15 +48,34 @@ impl Model {
     ///
     /// # Errors
     /// What the solvers refuse.
-    pub fn new(w: &World, scene: &Scene, words: &Words, span: Span) -> Result<Self> {
+    pub fn new(w: &World, line: &Line, scene: &Scene, hertz: Option<&Hertz>, span: Span) -> Result<Self> {
+        let (words, group) = (&line.words, line.group);
         let kind = match words.solver {
             Solver::Dsm => {
-                Kind::Dsm { setup: Box::new(Setup::new(w, scene, words, span)?), solved: None, adjoint: None }
+                let setup = Box::new(Setup::new(w, scene, group, words, hertz, span)?);
+                if words.aims(Quantity::Poisson) && !setup.linear() {
+                    let text = "`target nu` is for bonds alone, and contacts act here";
+                    let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
+                    return Err(d.help("say `contacts no`, or give K or E as the target").into());
+                }
+                Kind::Dsm { setup, solved: None, adjoint: None }
             }
             Solver::Periodic => Kind::Periodic { volume: cell(w, scene, span)?, cell: None },
-            Solver::Ste => Kind::Ste { found: None },
+            Solver::Ste => {
+                let body = Box::new(Estimator::new(w, scene, group, words, hertz, span)?);
+                Kind::Ste { body, found: None }
+            }
         };
-        Ok(Self { kind, factor: 1.0, iterations: 0, tensor: None, done: true })
+        Ok(Self { kind, order: words.order, factor: 1.0, iterations: 0, tensor: None, done: true })
+    }
+
+    /// Whether all numbers but ν are proportional to the stiffness of bonds.
+    pub fn linear(&self) -> bool {
+        match &self.kind {
+            Kind::Dsm { setup, .. } => setup.linear(),
+            Kind::Periodic { .. } => true,
+            Kind::Ste { body, .. } => body.linear(),
+        }
     }
 
     /// Solves at the present stiffnesses of the bonds, from the latest field.
@@ -62,10 +86,10 @@ impl Model {
         let tol = tolerance(words);
         match &mut self.kind {
             Kind::Dsm { setup, solved, adjoint } => {
-                let from = solved.take().map(|s| s.0.answer.field);
+                let from = solved.take().map(|s| s.field);
                 let found = setup.solve(scene, words, tol, from);
-                self.iterations += found.0.answer.solved.iterations;
-                self.done &= found.0.answer.solved.done;
+                self.iterations += found.iterations;
+                self.done &= found.done;
                 (*solved, *adjoint) = (Some(Box::new(found)), None);
             }
             Kind::Periodic { volume, cell } => {
@@ -75,8 +99,8 @@ impl Model {
                 self.tensor = Some(found.tensor(&scene.network, *volume));
                 *cell = Some(found);
             }
-            Kind::Ste { found } => {
-                let e = estimate(scene, words, span)?;
+            Kind::Ste { body, found } => {
+                let e = body.estimate(scene, words, span)?;
                 self.tensor = Some(e.tensor);
                 *found = Some(Box::new(e));
             }
@@ -111,31 +135,22 @@ impl Model {
     /// What `calibrate` leaves behind.
     pub fn numbers(&self) -> [f64; NUMBERS] {
         let (nan, iterations, f) = (f64::NAN, self.iterations as f64, self.factor);
+        // Stiffness, modulus and force follow a factor.
+        let scaled = |mut all: [f64; NUMBERS]| {
+            [0, 1, 3, 4, 5].into_iter().for_each(|k| all[k] *= f);
+            all
+        };
         match &self.kind {
-            Kind::Dsm { setup, solved: Some(s), .. } => {
-                let (k, delta) = (f * s.0.stiffness, setup.delta);
-                let out = setup.held.left_out[0] as f64;
-                [k, f * s.0.young, s.0.poisson, nan, k, k * delta, delta, iterations, 0.0, out]
+            Kind::Dsm { setup, solved: Some(r), .. } => {
+                let mut all = scaled(numbers(setup, r));
+                all[7] = iterations;
+                all
             }
             Kind::Periodic { volume, .. } => {
                 let [bulk, young, poisson, shear] = self.tensor.as_ref().map_or([nan; 4], of_cell);
                 [bulk, young, poisson, nan, nan, shear, *volume, iterations, 0.0, 0.0]
             }
-            Kind::Ste { found: Some(e) } => {
-                let [k, young, poisson] = e.axial();
-                [
-                    f * k,
-                    f * young,
-                    poisson,
-                    nan,
-                    nan,
-                    f * k * e.delta,
-                    e.delta,
-                    iterations,
-                    0.0,
-                    e.without as f64,
-                ]
-            }
+            Kind::Ste { found: Some(e), .. } => scaled(e.numbers(self.order)),
             _ => [nan; NUMBERS],
         }
     }
@@ -155,12 +170,14 @@ impl Model {
         let network = &scene.network;
         match &mut self.kind {
             Kind::Dsm { setup, solved: Some(s), adjoint } => {
-                let u = &s.0.answer.field;
+                let u = &s.field;
                 if quantity != Quantity::Poisson {
                     let moved = |k: usize| [network.moved(k, u, None); 2];
-                    return Ok(change(network, moved, |k| changes[k]) / (2.0 * s.0.answer.energy()));
+                    // 2U where there are bonds alone; with contacts the work of the force at the ends.
+                    let work = s.stiffness * setup.delta.powi(2);
+                    return Ok(change(network, moved, |k| changes[k]) / work);
                 }
-                let lambda = &*adjoint.get_or_insert_with(|| poisson_adjoint(scene, setup, words, &s.1));
+                let lambda = &*adjoint.get_or_insert_with(|| poisson_adjoint(scene, setup, words));
                 let moved = |k: usize| [network.moved(k, lambda, None), network.moved(k, u, None)];
                 Ok(-change(network, moved, |k| changes[k]))
             }
@@ -178,19 +195,21 @@ impl Model {
                 };
                 Ok((at(STEP) - at(-STEP)) / (2.0 * STEP))
             }
-            _ => {
+            Kind::Ste { body, .. } => {
                 let before = scene.network.k.clone();
                 let mut at = |h: f64| {
                     for ((k, before), change) in scene.network.k.iter_mut().zip(&before).zip(changes) {
                         k.normal = before.normal * (h * change[0]).exp();
                         k.shear = before.shear * (h * change[1]).exp();
                     }
-                    let e = estimate(scene, words, span);
+                    let e = body.estimate(scene, words, span);
                     scene.network.k.clone_from(&before);
-                    e.map(|e| pick(quantity, &e.axial()))
+                    e.map(|e| pick(quantity, &e.numbers(words.order)))
                 };
                 Ok((at(STEP)? - at(-STEP)?) / (2.0 * STEP))
             }
+            // Nothing has been solved.
+            _ => Ok(f64::NAN),
         }
     }
 }
@@ -198,7 +217,7 @@ impl Model {
 /// To which part of the energy a solution is to be known: an error of the field is the root of that of the energy, and Poisson's ratio is of
 /// the field.
 fn tolerance(words: &Words) -> f64 {
-    let field = words.targets.iter().any(|t| t.quantity == Quantity::Poisson);
+    let field = words.aims(Quantity::Poisson);
     (PART * if field { words.tol.powi(2) } else { words.tol }).max(1e-14)
 }
 
@@ -218,7 +237,7 @@ fn pick(quantity: Quantity, values: &[f64]) -> f64 {
 }
 
 /// ν = c·u and K u = 0 where u is free: ∂ν/∂p = −λᵀ ∂K/∂p u with K λ = c.
-fn poisson_adjoint(scene: &Scene, setup: &Setup, words: &Words, blocks: &Blocks) -> Vec<Six> {
+fn poisson_adjoint(scene: &Scene, setup: &Setup, words: &Words) -> Vec<Six> {
     let sample = scene.sample(words.axis);
     let weights = slope(&sample, &setup.held.out);
     let sides: Vec<usize> = (0..2).filter(|side| scene.period[sample.across()[*side]] == 0.0).collect();
@@ -233,7 +252,7 @@ fn poisson_adjoint(scene: &Scene, setup: &Setup, words: &Words, blocks: &Blocks)
     let mut lambda = vec![[0.0; 6]; load.len()];
     let product = |u: &[Six], out: &mut [Six]| scene.network.product(u, out);
     let tol = tolerance(words);
-    solve(product, blocks, Some(&load), &mut lambda, 0.0, MOST, |now| {
+    solve(product, &setup.blocks(scene), Some(&load), &mut lambda, 0.0, MOST, |now| {
         now.fallen.is_some_and(|fallen| fallen <= tol * now.energy.abs())
     });
     lambda

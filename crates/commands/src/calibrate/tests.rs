@@ -6,6 +6,7 @@ use perigrain_base::diag::{Diagnostics, Result, fail};
 use perigrain_bonded::stiffness::{Beam, Shear, Stiffness};
 use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_plan::Op;
+use perigrain_styles::probe::{Ask, Interaction, Probe};
 use perigrain_styles::pull::{Pull, Stretched};
 use perigrain_styles::{
     ActCx, BondForce, BuildCx, CommandStyle, Flow, Motion, Names, SealCx, Shape, UseKind, Values,
@@ -64,7 +65,40 @@ impl BondForce for Beams {
     }
 }
 
-struct Declared(Option<Beams>);
+/// Contacts of 1 GPa and ν = 0.2, or of a constant stiffness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Law {
+    None,
+    Hertz,
+    Hooke,
+}
+
+impl Probe for Law {
+    fn name(&self) -> &'static str {
+        "law"
+    }
+    fn own(&self) -> usize {
+        0
+    }
+    fn listed(&self, _w: &World) -> Vec<[u32; 2]> {
+        vec![]
+    }
+    fn look(&mut self, _w: &World, _ask: Ask) -> Result<Vec<Interaction>> {
+        Ok(vec![])
+    }
+    fn pressed(&self, _types: [u16; 2], overlap: f64, curvature: f64) -> Option<[f64; 2]> {
+        let root = (curvature * overlap).sqrt();
+        match self {
+            Law::None => None,
+            Law::Hertz => {
+                Some([4.0 / 3.0 * 5.208333333333333e8 * root * overlap, 8.0 * 1.1574074074074074e8 * root])
+            }
+            Law::Hooke => Some([1e6 * overlap, 0.0]),
+        }
+    }
+}
+
+struct Declared(Option<Beams>, Law);
 
 impl Names for Declared {
     fn compute(&self, id: &str) -> Option<Shape> {
@@ -100,6 +134,9 @@ impl Values for Declared {
     fn stop(&mut self, _w: &mut World, _fix: &Word, _what: Motion) -> Result<()> {
         Ok(())
     }
+    fn probes(&self, _w: &World) -> Result<Vec<Box<dyn Probe>>> {
+        Ok(vec![Box::new(self.1)])
+    }
     fn bonds(&self) -> Option<Box<dyn BondForce>> {
         self.0.clone().map(|b| Box::new(b) as Box<dyn BondForce>)
     }
@@ -115,9 +152,13 @@ struct Did {
 }
 
 fn act(w: &mut World, line: &str, beams: Beams) -> Result<Did> {
+    act_with(w, line, beams, Law::None)
+}
+
+fn act_with(w: &mut World, line: &str, beams: Beams, law: Law) -> Result<Did> {
     let line = command(line);
     let (notes, uses) = (RefCell::new(Diagnostics::default()), RefCell::default());
-    let mut declared = Declared(Some(beams));
+    let mut declared = Declared(Some(beams), law);
     let mut args = Args::new(&line);
     let cx = BuildCx {
         world: w,
@@ -342,6 +383,92 @@ fn two_types_meet_two_targets() {
     assert!(did.unwrap().said.iter().any(|l| l.contains("leave open: E of type 1 ^")));
 }
 
+// Section 10.5 of the page: two spheres with the standard bond between rigid planes.
+#[test]
+fn a_pair_between_walls() {
+    let mut w = world_of(
+        "units si\nboundary f f f\natom_style hybrid sphere bond\nregion b block 0 1 0 1 0 1\n\
+         create_box 1 b bond/types 1 extra/bond/per/atom 2\ncreate_atoms 1 single 0.5 0.5 0.5 units box\n\
+         create_atoms 1 single 0.5 0.5 0.501 units box\nset group all diameter 1e-3\n\
+         special_bonds lj 0 1 1 coul 1 1 1\ncreate_bonds single/bond 1 1 2",
+    );
+    w.bonds.coeffs = Some(("beams".into(), BTreeMap::new()));
+    for (strain, f, k) in [
+        (-0.005, 0.315090744409, 31509.07444),
+        (-0.01, 0.858953424153, 42947.67121),
+        (-0.02, 2.31258968887, 57814.74222),
+    ] {
+        for line in [
+            format!("calibrate dsm a all strain {strain} low wall high wall tol 1e-10"),
+            format!("calibrate dsm a all strain {strain} low wall high wall method paper 1e-12 1e-12"),
+            format!("calibrate ste a all strain {strain} low wall high wall order 0"),
+        ] {
+            let did = act_with(&mut w, &line, Beams::standard(1), Law::Hertz).unwrap();
+            // Coordinates of half a metre: the length of the bond is 1 mm to 1e-13. Printed with ten digits.
+            near(did.numbers[0], k, 2e-10);
+            near(did.numbers[5], -f, 2e-10);
+            near(did.numbers[6], 2e-3 * strain, 1e-10);
+            if line.contains("tol") {
+                let steps = did.said[2].split(" steps of Newton").next().unwrap().rsplit(' ').next().unwrap();
+                assert!(steps.parse::<usize>().unwrap() <= 6 && did.notes.is_empty(), "{did:?}");
+                // Hertz' springs hold 2/5 F δ each, the bond ½ F²/k.
+                let walls = 0.8 * f * (f / 31056499.69f64).powf(2.0 / 3.0);
+                let bond = 0.5 * f * f / 502654.824574;
+                near(did.numbers[8], walls / (walls + bond), 1e-8);
+                assert!(
+                    did.said[0].contains("ends held: 1 at a wall + 1 at a wall")
+                        && did.said[2].contains("walls ")
+                );
+            }
+        }
+    }
+    // A softer bond of which the whole has the stiffness of the first case: fitted though it is one of many springs.
+    let line =
+        "calibrate fit f all target K 31509.07444 vary bond 1 E strain -0.005 low wall high wall tol 1e-9";
+    let mut start = Beams::standard(1);
+    start.0.insert(1, [0.1e9, 0.2, 0.4e-3]);
+    let did = act_with(&mut w, line, start, Law::Hertz).unwrap();
+    near(did.then[0].split(' ').nth(2).unwrap().parse().unwrap(), 1e9, 1e-6);
+}
+
+#[test]
+fn contacts_carry_load_beside_bonds() {
+    let mut w = fcc();
+    let bare = act_with(&mut w, "calibrate dsm a all strain -0.02 tol 1e-6", Beams::standard(2), Law::Hertz)
+        .unwrap();
+    // Bonded pairs have no contacts.
+    near(bare.numbers[0], 5430321.8781, 1e-6);
+    w.bonds.weights.lj = [1.0; 3];
+    let did = act_with(&mut w, "calibrate dsm a all strain -0.02 tol 1e-6", Beams::standard(2), Law::Hertz)
+        .unwrap();
+    assert!(
+        did.numbers[0] > 1.001 * bare.numbers[0] && did.numbers[8] > 0.0 && did.numbers[4].is_nan(),
+        "{did:?}"
+    );
+    assert!(did.said[0].contains(" contacts;") && did.notes.is_empty());
+    // Pulled, most contacts open; neighbours in planes across come closer.
+    let pulled =
+        act_with(&mut w, "calibrate dsm a all strain 0.02 tol 1e-6", Beams::standard(2), Law::Hertz).unwrap();
+    assert!(pulled.numbers[0] < did.numbers[0]);
+    let without = act_with(
+        &mut w,
+        "calibrate dsm a all strain -0.02 tol 1e-6 contacts no",
+        Beams::standard(2),
+        Law::Hertz,
+    );
+    near(without.unwrap().numbers[0], bare.numbers[0], 1e-12);
+    // Contacts of another law are left out, which is told.
+    let hooke = act_with(&mut w, "calibrate dsm a all strain -0.02 tol 1e-6", Beams::standard(2), Law::Hooke)
+        .unwrap();
+    near(hooke.numbers[0], bare.numbers[0], 1e-12);
+    assert!(hooke.notes[0].starts_with("contacts are left out"));
+    let e = |w: &mut World, law: Law| {
+        act_with(w, "calibrate ste a all strain -0.02", Beams::standard(2), law).unwrap()
+    };
+    let (with, bonds) = (e(&mut w, Law::Hertz), e(&mut w, Law::None));
+    assert!(with.numbers[1] > bonds.numbers[1] && with.numbers[8] > 0.0 && bonds.numbers[8] == 0.0);
+}
+
 /// The word that is to blame, the message, and the help.
 fn refused(w: &World, line: &str, beams: Beams) -> String {
     let d = act(&mut w.clone(), line, beams).expect_err(line).0.remove(0);
@@ -440,7 +567,7 @@ fn pieces_and_loose_particles_are_told() {
     w.bonds.retain(|b| b.ends.iter().filter(|e| pair.contains(e)).count() != 1);
     let did = act(&mut w, "calibrate dsm a all", Beams::standard(2)).unwrap();
     assert_eq!((pair.len(), did.numbers[9]), (2, 2.0));
-    assert!(did.said[0].contains("1 pieces (2 particles) without support left out"), "{did:?}");
+    assert!(did.said[0].contains("1 piece (2 particles) without support left out"), "{did:?}");
     // Springs do not resist turning.
     let mut beams = Beams::standard(2);
     beams.0.insert(1, [1e9, f64::INFINITY, 0.4e-3]);

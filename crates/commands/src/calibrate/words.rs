@@ -84,6 +84,8 @@ pub struct Words {
     pub rotations: bool,
     /// Whether contacts count; `None`: where the pair style has some.
     pub contacts: Option<(bool, Span)>,
+    /// Whether forces that contacts have before the load are taken away.
+    pub relaxed: bool,
     /// The part of the energy to which it is to be known.
     pub tol: f64,
     /// For certain.
@@ -116,6 +118,7 @@ const DSM: &[&str] = &[
     "thick",
     "rotations",
     "contacts",
+    "prestress",
     "tol",
     "bound",
     "method",
@@ -123,8 +126,9 @@ const DSM: &[&str] = &[
     "length",
     "fields",
 ];
-const STE: &[&str] = &["axis", "strain", "order", "slabs", "shape", "contacts"];
-const PERIODIC: &[&str] = &["rotations", "contacts", "tol"];
+const STE: &[&str] =
+    &["axis", "strain", "low", "high", "thick", "contacts", "order", "slabs", "shape", "length"];
+const PERIODIC: &[&str] = &["rotations", "tol"];
 const FIT: &[&str] = &[
     "target",
     "vary",
@@ -137,6 +141,7 @@ const FIT: &[&str] = &[
     "thick",
     "rotations",
     "contacts",
+    "prestress",
     "shape",
     "length",
     "order",
@@ -166,6 +171,7 @@ impl Words {
             thick: None,
             rotations: true,
             contacts: None,
+            relaxed: true,
             tol: if kind == "fit" { 0.005 } else { 0.01 },
             bound: None,
             method: Method::Pcg,
@@ -185,7 +191,17 @@ impl Words {
             };
             out.keyword(a, name, kind == "fit", types, word.span)?;
         }
+        if let Some(wall) = out.wall.filter(|_| out.strain > 0.0) {
+            let text = "a wall pushes only: it does not follow a strain above 0";
+            let d = Diagnostic::error(Code::CONFLICT, wall, text);
+            return Err(d.help("write a negative strain, or hold the ends with `grip` or `plate`").into());
+        }
         Ok(out)
+    }
+
+    /// Whether a fit is to reach such a number.
+    pub fn aims(&self, quantity: Quantity) -> bool {
+        self.targets.iter().any(|t| t.quantity == quantity)
     }
 
     fn unknown(
@@ -216,6 +232,7 @@ impl Words {
             "high" => self.hold(a, 1)?,
             "thick" => self.thick = Some(a.positive("the thickness of an end")?),
             "rotations" => self.rotations = a.flag("rotations")?,
+            "prestress" => self.relaxed = a.choice("prestress", &["remove", "keep"])? == "remove",
             "contacts" => self.contacts = Some((a.flag("contacts")?, at)),
             "tol" => self.tol = tolerance(a)?,
             "bound" => self.bound = a.flag("bound")?.then_some(value),
