@@ -10,7 +10,7 @@ pub struct Blocks {
     inverse: Vec<Packed>,
     /// Components that keep the value they have, a bit each: those held, and those that nothing resists.
     pub held: Vec<u8>,
-    /// How many particles have components that nothing resists.
+    /// How many particles can move in some direction without resistance. (Springs never resist turning: that is no news.)
     pub loose: usize,
 }
 
@@ -26,7 +26,7 @@ impl Blocks {
                     let found = invert(&full(block), *held);
                     *block = found.inverse;
                     *held |= found.without;
-                    loose + usize::from(found.without != 0)
+                    loose + usize::from(found.without & 0b111 != 0)
                 })
             },
             |a, b| a + b,

@@ -87,7 +87,7 @@ pub fn invert(m: &Matrix6, held: u8) -> Inverse {
             l[r][k] /= d[k];
         }
     }
-    for column in 0..6 {
+    for column in (0..6).filter(|c| d[*c] != 0.0) {
         let mut v = [0.0; 6];
         v[column] = 1.0;
         for row in 0..6 {

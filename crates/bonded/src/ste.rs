@@ -5,130 +5,231 @@
 
 use super::network::Network;
 use super::six::{Matrix6, Packed, at, full, invert};
-use super::tensor::{VOIGT, strain};
+use super::tensor::VOIGT;
 use perigrain_base::math::vec3::{Vec3, add, dot, scale, sub};
 use perigrain_base::par;
 
-/// The fluctuation of a particle for each of the six load cases.
-type Phi = [f64; 18];
+/// A vector for each of the six load cases, fluctuations φ or forces: all x, all y, all z.
+type Six3 = [f64; 18];
 
 /// What came of all particles.
 #[derive(Clone, Debug)]
 pub struct Estimate {
-    /// V C of each particle, symmetric in all ways [energy].
-    pub local: Vec<Packed>,
-    /// How many particles are left out for want of three independent partners.
-    pub without: usize,
+    /// Σ V C of all particles [energy].
+    sum: Packed,
+    /// Fluctuations as a particle sees its own and those of its partners.
+    own: Vec<Six3>,
+    other: Vec<Six3>,
+    /// Who is left out for want of three independent partners.
+    out: Vec<bool>,
 }
 
 impl Estimate {
     /// Of order 0: all follow the strain; 1, 2: as Jarolin and Dosta take them, one's own fluctuation a sweep ahead of the partners';
     /// from 3 on the same for both. Bonds are springs along and across their direction: rotations are left out.
+    ///
+    /// K is symmetric, and with T = Σ K ε d of a particle Σ V C = Σ_bonds (ε d) K (ε d) − ½ Σ_particles T (φ own + φ other): no pass over
+    /// bonds but for the sweeps.
     pub fn new(network: &Network, order: usize) -> Self {
-        let n = network.particles;
-        let inverse = if order == 0 { vec![] } else { inverses(network) };
-        let without = inverse.iter().filter(|s| s.is_none()).count();
-        let (mut own, mut other) = (vec![[0.0; 18]; n], vec![[0.0; 18]; n]);
-        for _ in 0..order {
-            other = sweep(network, &inverse, &own);
-            std::mem::swap(&mut own, &mut other);
+        let mut out =
+            Self { sum: affine(network), own: vec![], other: vec![], out: vec![false; network.particles] };
+        if order == 0 {
+            return out;
+        }
+        let forces = pulls(network);
+        let (inverse, without) = inverses(network);
+        out.out = without;
+        out.other = vec![[0.0; 18]; network.particles];
+        out.own.clone_from(&forces);
+        solve(&mut out.own, &inverse);
+        for _ in 1..order {
+            std::mem::swap(&mut out.own, &mut out.other);
+            sweep(network, &forces, &inverse, &out.other, &mut out.own);
         }
         if order > 2 {
-            other.clone_from(&own);
+            out.other.clone_from(&out.own);
         }
-        let mut local = vec![[0.0; 21]; n];
-        network.pairs.gather(&mut local, |bond, [i, j]| {
-            let pull = Pull::new(network, bond);
-            [pull.stiffness(&own[i], &other[j]), pull.stiffness(&other[i], &own[j])]
-        });
-        for (local, _) in local.iter_mut().zip(&inverse).filter(|(_, inverse)| inverse.is_none()) {
-            *local = [0.0; 21];
-        }
-        Self { local, without }
+        out.sum = match out.without() {
+            0 => add_packed(&out.sum, &relaxation(&forces, &out.own, &out.other)),
+            _ => par_sum(&out.local(network)),
+        };
+        out
     }
 
-    /// C of some particles of this volume.
-    pub fn tensor(&self, members: impl Iterator<Item = usize>, volume: f64) -> Matrix6 {
-        let mut sum = [0.0; 21];
-        for k in members {
-            sum.iter_mut().zip(&self.local[k]).for_each(|(sum, a)| *sum += a);
-        }
-        full(&sum.map(|a| a / volume))
+    /// How many particles are left out.
+    pub fn without(&self) -> usize {
+        self.out.iter().filter(|out| **out).count()
     }
 
     /// C of all.
     pub fn whole(&self, volume: f64) -> Matrix6 {
-        let add = |a: Packed, b: &Packed| std::array::from_fn(|k| a[k] + b[k]);
-        let sum = par::reduce(
-            self.local.len(),
-            |range| self.local[range].iter().fold([0.0; 21], add),
-            |a, b| add(a, &b),
-        );
-        full(&sum.unwrap_or([0.0; 21]).map(|a| a / volume))
+        full(&self.sum.map(|a| a / volume))
+    }
+
+    /// V C of each particle, symmetric in all ways [energy].
+    pub fn local(&self, network: &Network) -> Vec<Packed> {
+        let still = [0.0; 18];
+        let at = |field: &[Six3], k: usize| field.get(k).copied().unwrap_or(still);
+        let mut local = vec![[0.0; 21]; network.particles];
+        network.pairs.gather(&mut local, |bond, [i, j]| {
+            let pull = Pull::new(network, bond);
+            [
+                pull.stiffness(&at(&self.own, i), &at(&self.other, j)),
+                pull.stiffness(&at(&self.other, i), &at(&self.own, j)),
+            ]
+        });
+        local.iter_mut().zip(&self.out).filter(|(_, out)| **out).for_each(|(local, _)| *local = [0.0; 21]);
+        local
     }
 }
 
-/// S⁻¹ of every particle, six numbers; `None` where some displacement meets no resistance.
-fn inverses(network: &Network) -> Vec<Option<[f64; 6]>> {
-    let mut s = vec![[0.0; 6]; network.particles];
-    network.pairs.gather(&mut s, |bond, _| {
-        let pull = Pull::new(network, bond);
-        let mut k = [0.0; 6];
-        for c in 0..3 {
-            let mut unit = [0.0; 3];
-            unit[c] = 1.0;
-            let column = pull.times(unit);
-            (c..3).for_each(|r| k[at(r, c)] = column[r]);
-        }
-        [k, k]
-    });
-    s.into_iter()
-        .map(|s| {
-            let whole: Matrix6 = std::array::from_fn(|r| {
-                std::array::from_fn(|c| if r < 3 && c < 3 { s[at(r, c)] } else { 0.0 })
-            });
-            let found = invert(&whole, 0b111000);
-            (found.without == 0).then(|| std::array::from_fn(|k| found.inverse[k]))
-        })
-        .collect()
+fn add_packed(a: &Packed, b: &Packed) -> Packed {
+    std::array::from_fn(|k| a[k] + b[k])
 }
 
-/// φ = S⁻¹ Σ K (ε d + φ of the partner).
-fn sweep(network: &Network, inverse: &[Option<[f64; 6]>], before: &[Phi]) -> Vec<Phi> {
-    let mut phi = vec![[0.0; 18]; network.particles];
-    network.pairs.gather(&mut phi, |bond, [i, j]| {
-        let pull = Pull::new(network, bond);
-        let mut out = [[0.0; 18]; 2];
-        for case in 0..6 {
-            // Seen from the upper end d is the other way.
-            let stretch = pull.stretch(case);
-            put(&mut out[0], case, pull.times(add(vector(&before[j], case), stretch)));
-            put(&mut out[1], case, pull.times(sub(vector(&before[i], case), stretch)));
+fn par_sum(all: &[Packed]) -> Packed {
+    let chunk =
+        |range: std::ops::Range<usize>| all[range].iter().fold([0.0; 21], |sum, a| add_packed(&sum, a));
+    par::reduce(all.len(), chunk, |a, b| add_packed(&a, &b)).unwrap_or([0.0; 21])
+}
+
+/// Σ_bonds (ε_a d) K (ε_b d) = Σ k_s (ε_a d)·(ε_b d) + Σ (k_n − k_s)(n·ε_a d)(n·ε_b d).
+fn affine(network: &Network) -> Packed {
+    // k_s d d as xx yy zz yz xz xy, then the second sum.
+    let bond = |sum: &mut [f64; 27], bond: usize| {
+        let (n, l, k) = (network.n[bond], network.length[bond], &network.k[bond]);
+        let nn = VOIGT.map(|(i, j)| l * n[i] * n[j]);
+        (0..6).for_each(|a| sum[a] += k.shear * l * nn[a]);
+        let scaled = nn.map(|a| (k.normal - k.shear) * a);
+        let mut at = 6;
+        for row in 0..6 {
+            for column in 0..=row {
+                sum[at] += scaled[row] * nn[column];
+                at += 1;
+            }
+        }
+    };
+    let chunk = |range: std::ops::Range<usize>| {
+        let mut sum = [0.0; 27];
+        range.for_each(|k| bond(&mut sum, k));
+        sum
+    };
+    let sum = par::reduce(network.bonds(), chunk, |a, b| std::array::from_fn(|k| a[k] + b[k]));
+    let sum: [f64; 27] = sum.unwrap_or([0.0; 27]);
+    let [xx, yy, zz, yz, xz, xy] = [sum[0], sum[1], sum[2], sum[3], sum[4], sum[5]];
+    // (ε_a d)·(ε_b d), a shear being ½ in either place.
+    let dots = [
+        xx,
+        0.0,
+        yy,
+        0.0,
+        0.0,
+        zz,
+        0.0,
+        0.5 * yz,
+        0.5 * yz,
+        0.25 * (yy + zz),
+        0.5 * xz,
+        0.0,
+        0.5 * xz,
+        0.25 * xy,
+        0.25 * (xx + zz),
+        0.5 * xy,
+        0.5 * xy,
+        0.0,
+        0.25 * xz,
+        0.25 * yz,
+        0.25 * (xx + yy),
+    ];
+    std::array::from_fn(|k| dots[k] + sum[6 + k])
+}
+
+/// −½ Σ_particles T_a·(φ own + φ other)_b, symmetric.
+fn relaxation(forces: &[Six3], own: &[Six3], other: &[Six3]) -> Packed {
+    let chunk = |range: std::ops::Range<usize>| {
+        let mut sum = [[0.0; 6]; 6];
+        for k in range {
+            let phi: Six3 = std::array::from_fn(|c| own[k][c] + other[k][c]);
+            for a in 0..6 {
+                let [x, y, z] = vector(&forces[k], a).map(|f| 0.5 * f);
+                for b in 0..6 {
+                    sum[a][b] -= x * phi[b] + y * phi[6 + b] + z * phi[12 + b];
+                }
+            }
+        }
+        let mut out = [0.0; 21];
+        for row in 0..6 {
+            (0..=row).for_each(|column| out[at(row, column)] = 0.5 * (sum[row][column] + sum[column][row]));
         }
         out
+    };
+    par::reduce(forces.len(), chunk, |a, b| add_packed(&a, &b)).unwrap_or([0.0; 21])
+}
+
+/// T = Σ K ε d of every particle.
+fn pulls(network: &Network) -> Vec<Six3> {
+    let mut out = vec![[0.0; 18]; network.particles];
+    network.pairs.gather(&mut out, |bond, _| {
+        let pull = Pull::new(network, bond);
+        let stretches = pull.stretches();
+        let f = pull.times_all(&std::array::from_fn(|k| stretches[k % 6][k / 6]));
+        [f, f.map(|f| -f)]
     });
-    par::each((&mut phi[..], inverse), |_, (phi, inverse)| {
-        for (phi, s) in phi.iter_mut().zip(inverse) {
-            for case in 0..6 {
-                let v = vector(phi, case);
-                let moved = s.map_or([0.0; 3], |s| {
-                    std::array::from_fn(|r| s[at(r, 0)] * v[0] + s[at(r, 1)] * v[1] + s[at(r, 2)] * v[2])
-                });
-                put(phi, case, moved);
+    out
+}
+
+/// S⁻¹ of every particle, S = Σ K, six numbers; zero for those of which some displacement meets no resistance, and who they are.
+fn inverses(network: &Network) -> (Vec<[f64; 6]>, Vec<bool>) {
+    let mut s = vec![[0.0; 6]; network.particles];
+    network.pairs.gather(&mut s, |bond, _| {
+        let Pull { n: [x, y, z], along, across, .. } = Pull::new(network, bond);
+        let k = [x * x, y * x, y * y, z * x, z * y, z * z].map(|a| along * a);
+        let k = [k[0] + across, k[1], k[2] + across, k[3], k[4], k[5] + across];
+        [k, k]
+    });
+    let mut out = vec![false; network.particles];
+    par::each((&mut s[..], &mut out[..]), |_, (s, out)| {
+        for (s, out) in s.iter_mut().zip(out) {
+            let mut whole: Matrix6 = [[0.0; 6]; 6];
+            for (r, c) in (0..9).map(|k| (k / 3, k % 3)) {
+                whole[r][c] = s[at(r, c)];
+            }
+            let found = invert(&whole, 0b111000);
+            *out = found.without != 0;
+            *s = if *out { [0.0; 6] } else { std::array::from_fn(|k| found.inverse[k]) };
+        }
+    });
+    (s, out)
+}
+
+/// φ = S⁻¹ f.
+fn solve(f: &mut [Six3], inverse: &[[f64; 6]]) {
+    par::each((f, inverse), |_, (f, inverse): (&mut [Six3], &[[f64; 6]])| {
+        for (f, s) in f.iter_mut().zip(inverse) {
+            let before = *f;
+            for r in 0..3 {
+                let [a, b, c] = [0, 1, 2].map(|column| s[at(r, column)]);
+                for case in 0..6 {
+                    f[6 * r + case] = a * before[case] + b * before[6 + case] + c * before[12 + case];
+                }
             }
         }
     });
-    phi
+}
+
+/// φ = S⁻¹ Σ K (ε d + φ of the partner).
+fn sweep(network: &Network, forces: &[Six3], inverse: &[[f64; 6]], before: &[Six3], phi: &mut [Six3]) {
+    phi.copy_from_slice(forces);
+    network.pairs.gather(phi, |bond, [i, j]| {
+        let pull = Pull::new(network, bond);
+        [pull.times_all(&before[j]), pull.times_all(&before[i])]
+    });
+    solve(phi, inverse);
 }
 
 #[inline(always)]
-fn vector(phi: &Phi, case: usize) -> Vec3 {
-    [phi[3 * case], phi[3 * case + 1], phi[3 * case + 2]]
-}
-
-#[inline(always)]
-fn put(phi: &mut Phi, case: usize, v: Vec3) {
-    phi[3 * case..3 * case + 3].copy_from_slice(&v);
+fn vector(phi: &Six3, case: usize) -> Vec3 {
+    [phi[case], phi[6 + case], phi[12 + case]]
 }
 
 /// A bond as a spring along and across its direction.
@@ -152,27 +253,40 @@ impl Pull {
         add(scale(self.across, u), scale(self.along * dot(self.n, u), self.n))
     }
 
-    /// ε d.
+    /// K of all six.
     #[inline(always)]
-    fn stretch(&self, case: usize) -> Vec3 {
-        strain(case).map(|row| dot(row, self.d))
+    fn times_all(&self, u: &Six3) -> Six3 {
+        let [x, y, z] = self.n;
+        let mut out = [0.0; 18];
+        for case in 0..6 {
+            let along = self.along * (x * u[case] + y * u[6 + case] + z * u[12 + case]);
+            out[case] = self.across * u[case] + along * x;
+            out[6 + case] = self.across * u[6 + case] + along * y;
+            out[12 + case] = self.across * u[12 + case] + along * z;
+        }
+        out
+    }
+
+    /// ε d of all six strains.
+    #[inline(always)]
+    fn stretches(&self) -> [Vec3; 6] {
+        let [x, y, z] = self.d;
+        let [a, b, c] = self.d.map(|d| 0.5 * d);
+        [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z], [0.0, c, b], [c, 0.0, a], [b, a, 0.0]]
     }
 
     /// ½ d ⊗ K (ε d − φ_low + φ_high) for all six strains, symmetric in all ways: a particle's half of the bond.
-    #[inline(always)]
-    fn stiffness(&self, low: &Phi, high: &Phi) -> Packed {
-        let mut c = [[0.0; 6]; 6];
+    fn stiffness(&self, low: &Six3, high: &Six3) -> Packed {
+        let (mut c, stretches) = ([[0.0; 6]; 6], self.stretches());
         for case in 0..6 {
-            let f = self.times(add(self.stretch(case), sub(vector(high, case), vector(low, case))));
+            let f = self.times(add(stretches[case], sub(vector(high, case), vector(low, case))));
             for (row, (i, j)) in VOIGT.into_iter().enumerate() {
                 c[row][case] = 0.25 * (self.d[i] * f[j] + self.d[j] * f[i]);
             }
         }
         let mut out = [0.0; 21];
         for row in 0..6 {
-            for column in 0..=row {
-                out[at(row, column)] = 0.5 * (c[row][column] + c[column][row]);
-            }
+            (0..=row).for_each(|column| out[at(row, column)] = 0.5 * (c[row][column] + c[column][row]));
         }
         out
     }
@@ -188,9 +302,10 @@ pub struct Layers {
 }
 
 impl Layers {
-    /// `count` slabs of equal height between `lo` and `hi` along the axis of particles at `x` with these shares of the volume.
+    /// `count` slabs of equal height between `lo` and `hi` along the axis of particles at `x` with these shares of the volume and these
+    /// V C ([`Estimate::local`]).
     pub fn new(
-        estimate: &Estimate,
+        local: &[Packed],
         x: &[f64],
         volume: &[f64],
         [lo, hi]: [f64; 2],
@@ -198,21 +313,19 @@ impl Layers {
         axis: usize,
     ) -> Self {
         let height = (hi - lo) / count as f64;
-        let mut members = vec![vec![]; count];
-        for (k, x) in x.iter().enumerate() {
-            members[(((x - lo) / height).max(0.0) as usize).min(count - 1)].push(k);
+        let mut sums = vec![(0.0, [0.0; 21]); count];
+        for ((x, volume), local) in x.iter().zip(volume).zip(local) {
+            let slab = &mut sums[(((x - lo) / height).max(0.0) as usize).min(count - 1)];
+            *slab = (slab.0 + volume, add_packed(&slab.1, local));
         }
-        let slabs: Vec<f64> = members
-            .iter()
-            .map(|members| {
-                let volume: f64 = members.iter().map(|k| volume[*k]).sum();
-                if volume == 0.0 {
-                    return 0.0;
-                }
-                let c = estimate.tensor(members.iter().copied(), volume);
-                super::tensor::Moduli::new(&c).map_or(f64::NAN, |m| m.young[axis] * volume / height)
-            })
-            .collect();
+        let one = |(volume, sum): &(f64, Packed)| {
+            if *volume == 0.0 {
+                return 0.0;
+            }
+            let c = full(&sum.map(|a| a / volume));
+            super::tensor::Moduli::new(&c).map_or(f64::NAN, |m| m.young[axis] * volume / height)
+        };
+        let slabs: Vec<f64> = sums.iter().map(one).collect();
         let compliance: f64 = slabs.iter().map(|ea| height / ea).sum();
         Self { stiffness: 1.0 / compliance, slabs }
     }

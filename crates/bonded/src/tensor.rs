@@ -42,8 +42,9 @@ impl Moduli {
         // What has no pivot yields without end.
         let over = |a: f64, without: bool| if without || a <= 0.0 { 0.0 } else { 1.0 / a };
         let young = [0, 1, 2].map(|a| over(d[a][a], gone(a)));
-        let poisson = [0, 1, 2]
-            .map(|a| [0, 1, 2].map(|b| if a == b || young[a] == 0.0 { 0.0 } else { -d[a][b] * young[a] }));
+        let poisson = [0, 1, 2].map(|a| {
+            [0, 1, 2].map(|b| if a == b || young[a] == 0.0 { 0.0 } else { 0.0 - d[a][b] * young[a] })
+        });
         let of = |m: &Matrix6| {
             let sum = |rows: std::ops::Range<usize>| rows.map(|a| m[a][a]).sum::<f64>();
             (sum(0..3), m[0][1] + m[0][2] + m[1][2], sum(3..6))

@@ -65,12 +65,13 @@ fn say(cx: &mut ActCx, line: &Line, scene: &Scene, setup: &Setup, r: &Response) 
     };
     let contacts = match setup.contacts.is_empty() {
         true => String::new(),
-        false => format!(", {} contacts", setup.contacts.touching(&r.field)),
+        false => format!(", {}", count(setup.contacts.touching(&r.field), "contact")),
     };
     let without = match setup.held.left_out {
         [0, _] => String::new(),
-        [n, 1] => format!("; 1 piece ({n} particles) without support left out"),
-        [n, pieces] => format!("; {pieces} pieces ({n} particles) without support left out"),
+        [n, pieces] => {
+            format!("; {} ({}) without support left out", count(pieces, "piece"), count(n, "particle"))
+        }
     };
     cx.say(format!(
         "calibrate dsm {}: {} particles, {} bonds{contacts}; ends held: {} + {}{without}",
@@ -148,15 +149,20 @@ pub fn warn_unfinished(cx: &ActCx, done: bool) {
 pub fn warn_loose(cx: &ActCx, loose: usize) {
     if loose > 0 {
         let text = format!(
-            "{loose} particles can move or turn without any resistance of their bonds; they are held in these directions"
+            "{loose} particles can move in some direction without resistance of their bonds; they are held there"
         );
         cx.note(Diagnostic::note(Code::NO_EFFECT, cx.span, text));
     }
 }
 
-/// A part in percent with two digits.
+/// A part in percent with two digits; rounding is not worth any.
 pub fn percent(part: f64) -> String {
-    general(100.0 * part, 2)
+    general(100.0 * part.max(1e-14), 2)
+}
+
+/// A number of things.
+pub fn count(n: usize, thing: &str) -> String {
+    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
 }
 
 /// The shares of stretch, shear, bend and twist, of contacts and of walls.

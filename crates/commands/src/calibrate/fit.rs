@@ -4,7 +4,7 @@
 //! energy); of ν by the adjoint field.
 
 use super::Line;
-use super::dsm::warn_unfinished;
+use super::dsm::{count, warn_unfinished};
 use super::model::Model;
 use super::scene::Scene;
 use super::touch::Hertz;
@@ -41,10 +41,10 @@ pub fn run(
     let mut params = vec![0.0; words.vary.len()];
     let (mut solves, mut best) = (0, None::<(f64, Vec<f64>)>);
     cx.say(format!(
-        "calibrate fit {}: {} coefficients, {} targets, {} particles, {} bonds",
+        "calibrate fit {}: {}, {}, {} particles, {} bonds",
         line.id,
-        params.len(),
-        words.targets.len(),
+        count(params.len(), "coefficient"),
+        count(words.targets.len(), "target"),
         scene.places.len(),
         scene.network.bonds()
     ));
@@ -104,7 +104,8 @@ pub fn run(
     let now = tuned(style, words, &params)?;
     set(cx, words, now.as_ref(), &format!("calibrate fit {}", line.id))?;
     line.found.keep(cx.world, model.numbers(), model.tensor());
-    cx.say(format!("  {}   {solves} solves, {:.2} s", reached(words, &model), began.elapsed().as_secs_f64()));
+    let (took, seconds) = (count(solves, "solve"), began.elapsed().as_secs_f64());
+    cx.say(format!("  {}   {took}, {seconds:.2} s", reached(words, &model)));
     Ok(())
 }
 

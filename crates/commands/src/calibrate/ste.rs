@@ -13,11 +13,12 @@ use perigrain_base::math::vec3::{Vec3, dot};
 use perigrain_bonded::contacts::Walls;
 use perigrain_bonded::ends::Hold;
 use perigrain_bonded::network::Network;
-use perigrain_bonded::six::Matrix6;
+use perigrain_bonded::six::{Matrix6, Packed};
 use perigrain_bonded::ste::{Estimate, Layers};
 use perigrain_bonded::stiffness::Stiffness;
 use perigrain_styles::ActCx;
 use perigrain_world::{GroupId, World};
+use std::borrow::Cow;
 use std::time::Instant;
 
 /// A body to be estimated, perhaps again and again.
@@ -120,15 +121,16 @@ impl Estimator {
     /// # Errors
     /// A tensor that is none of a body; slabs that are too thin.
     pub fn estimate(&self, scene: &Scene, words: &Words, span: Span) -> Result<Estimated> {
-        let estimate = match self.springs.is_empty() {
-            true => Estimate::new(&scene.network, words.order),
-            false => Estimate::new(&self.with_contacts(&scene.network), words.order),
+        let network = match self.springs.is_empty() {
+            true => Cow::Borrowed(&scene.network),
+            false => Cow::Owned(self.with_contacts(&scene.network)),
         };
+        let estimate = Estimate::new(&network, words.order);
         let tensor = estimate.whole(self.length * self.area);
         let moduli = moduli(&tensor, span)?;
         let mut body = moduli.young[words.axis] * self.area / self.length;
         if let Some(height) = words.slabs {
-            body = self.in_layers(scene, words, &estimate, height, span)?;
+            body = self.in_layers(scene, words, &estimate.local(&network), height, span)?;
         }
         let [a, b] = scene.sample(words.axis).across().map(|d| moduli.poisson[words.axis][d]);
         let contacts: f64 = self.springs.iter().map(|(_, d, k)| k[0] * dot(*d, *d)).sum();
@@ -140,7 +142,7 @@ impl Estimator {
             young: body * self.length / self.area,
             poisson: 0.5 * (a + b),
             delta: self.delta,
-            without: estimate.without,
+            without: estimate.without(),
             share: if contacts == 0.0 { 0.0 } else { contacts / (contacts + bonds) },
         })
     }
@@ -150,7 +152,7 @@ impl Estimator {
         &self,
         scene: &Scene,
         words: &Words,
-        estimate: &Estimate,
+        local: &[Packed],
         height: Option<f64>,
         span: Span,
     ) -> Result<f64> {
@@ -173,8 +175,7 @@ impl Estimator {
         let total: f64 = scene.radius.iter().map(|r| r.powi(3)).sum();
         let shares: Vec<f64> = scene.radius.iter().map(|r| volume * r.powi(3) / total).collect();
         let along: Vec<f64> = scene.x.iter().map(|x| x[words.axis]).collect();
-        let layers =
-            Layers::new(estimate, &along, &shares, [lo, lo + self.length], count as usize, words.axis);
+        let layers = Layers::new(local, &along, &shares, [lo, lo + self.length], count as usize, words.axis);
         if layers.stiffness.is_nan() {
             let text = "a slab resists some strain with a negative stiffness";
             let d = Diagnostic::error(Code::CONFLICT, span, text);

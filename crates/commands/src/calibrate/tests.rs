@@ -568,9 +568,15 @@ fn pieces_and_loose_particles_are_told() {
     let did = act(&mut w, "calibrate dsm a all", Beams::standard(2)).unwrap();
     assert_eq!((pair.len(), did.numbers[9]), (2, 2.0));
     assert!(did.said[0].contains("1 piece (2 particles) without support left out"), "{did:?}");
-    // Springs do not resist turning.
+    // Springs alone: a corner with two of its three bonds left moves across both.
     let mut beams = Beams::standard(2);
     beams.0.insert(1, [1e9, f64::INFINITY, 0.4e-3]);
-    let did = act(&mut fcc(), "calibrate dsm a all", beams).unwrap();
-    assert!(did.notes[0].contains("can move or turn without any resistance"), "{did:?}");
+    let mut w = fcc();
+    let did = act(&mut w, "calibrate dsm a all low plate high plate", beams.clone()).unwrap();
+    assert!(did.notes.is_empty());
+    let middle = (1..=256).find(|id| w.particles.x[*id as usize - 1][2] > 1.2 * A).unwrap();
+    let first = w.bonds.list.iter().filter(|b| b.ends.contains(&middle)).copied().collect::<Vec<_>>();
+    w.bonds.retain(|b| !b.ends.contains(&middle) || first[..2].contains(b));
+    let did = act(&mut w, "calibrate dsm a all low plate high plate", beams).unwrap();
+    assert!(did.notes[0].starts_with("1 particles can move in some direction"), "{did:?}");
 }
