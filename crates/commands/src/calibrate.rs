@@ -9,6 +9,8 @@ mod scene;
 mod setup;
 mod ste;
 #[cfg(test)]
+mod testing;
+#[cfg(test)]
 mod tests;
 mod touch;
 mod words;
@@ -37,7 +39,7 @@ impl Style for Calibrate {
             syntax: "calibrate dsm ID GROUP axis x|y|z strain S [low|high grip|plate|wall] [thick T] [rotations yes|no] [contacts yes|no] \
                      [prestress remove|keep] [tol P] [bound yes|no] [method pcg|paper [FL [FN]]] [shape block|cylinder|area A] \
                      [length free|body] [fields yes|no]\n\
-                     calibrate ste ID GROUP axis x|y|z [order N] [slabs auto|H] [strain S] [low|high wall] [thick T] [contacts yes|no] \
+                     calibrate ste ID GROUP axis x|y|z [order N] [slabs auto|H] [map deviation|stiffness D] [strain S] [low|high wall] [thick T] [contacts yes|no] \
                      [shape …] [length free|body]\n\
                      calibrate periodic ID GROUP [rotations yes|no] [tol P]\n\
                      calibrate fit ID GROUP target K|E|nu V … vary bond T COEFF … [method dsm|ste|periodic] [tol P] and words of that method",
@@ -72,7 +74,8 @@ const DOC: &str = "\
     taken away, `prestress keep` leaves it. K is F/Δ then.\n\n\
     **ste**, the estimate of the tensor: order 0 lets everybody follow the strain, 1 and 2 are those of the paper (default 2), N from 3 on takes N sweeps. No \
     boundary conditions: on bodies with free faces 5 to 15 % off. `slabs` puts layers of two diameters (or H) one behind the other; walls are put in series. Contacts \
-    that close under the strain count as springs.\n\n\
+    that close under the strain count as springs. `map stiffness D` gives each particle the K along x, y, z that the body had if all of it were like the ball of radius D \
+    around the particle, `map deviation D` by which part these are below their mean (positive is softer): c_ID[1] to [3] per particle.\n\n\
     **periodic**: the tensor of a cell that repeats in all directions, from six load cases, with the mean field beside.\n\n\
     **fit** varies coefficients (`E`, `radius`, `nu` of bpm/beam, `k` of springs) of bond types until the targets are reached to the part P (default 0.005), and sets \
     them as `bond_coeff` lines would; K is N/m of dsm and ste, the bulk modulus of periodic. One coefficient that all bonds are proportional to takes one solve. Where \
@@ -120,7 +123,7 @@ impl CommandStyle for Calibrate {
             return Err(d.help("put `bond_style` and `bond_coeff` before this line").into());
         }
         let words = Words::read(a, name, cx.world.bonds.types)?;
-        let fields = if words.fields { 2 } else { 0 };
+        let fields = if words.fields { 2 } else { usize::from(words.map.is_some()) };
         let tensor = match kind {
             Kind::Dsm => false,
             Kind::Ste | Kind::Periodic => true,

@@ -12,6 +12,9 @@ use perigrain_world::{Key, Numbers, SlotId, Vectors, World};
 /// How many numbers there are of every kind of calibration.
 pub const NUMBERS: usize = 10;
 
+/// Fields that an earlier line of the same ID may have left.
+const MOST_FIELDS: usize = 2;
+
 /// The values under an ID.
 #[derive(Clone, Debug)]
 pub struct Found {
@@ -41,6 +44,7 @@ impl Found {
         let mut all = numbers.to_vec();
         all.extend(tensor.into_iter().flatten().flatten());
         w.memo.insert(self.numbers(), all);
+        (self.fields..MOST_FIELDS).for_each(|k| w.columns.remove(self.field(k)));
         // Who has read the values of an earlier line in this step must not get them again.
         if let Some(slot) = w.slots.find(&format!("c_{}", self.id)) {
             w.slots.get_mut(slot).step = None;

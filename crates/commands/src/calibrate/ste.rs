@@ -6,17 +6,20 @@ use super::found::{NUMBERS, lines};
 use super::scene::Scene;
 use super::setup::ends;
 use super::touch::{self, Hertz};
-use super::words::Words;
+use super::words::{Map, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_base::math::vec3::{Vec3, dot};
 use perigrain_bonded::contacts::Walls;
 use perigrain_bonded::ends::Hold;
 use perigrain_bonded::network::Network;
-use perigrain_bonded::six::{Matrix6, Packed};
+use perigrain_bonded::six::{Matrix6, Packed, full};
 use perigrain_bonded::ste::{Estimate, Layers};
 use perigrain_bonded::stiffness::Stiffness;
+use perigrain_bonded::tensor::Moduli;
+use perigrain_neigh::list::Reach;
 use perigrain_styles::ActCx;
+use perigrain_styles::near::{all_within, one_image};
 use perigrain_world::{GroupId, World};
 use std::borrow::Cow;
 use std::time::Instant;
@@ -50,6 +53,8 @@ pub struct Estimated {
     pub without: usize,
     /// The share of contacts in Σ k_n L².
     pub share: f64,
+    /// V C of each particle, for slabs and maps.
+    local: Vec<Packed>,
 }
 
 impl Estimated {
@@ -128,9 +133,11 @@ impl Estimator {
         let estimate = Estimate::new(&network, words.order);
         let tensor = estimate.whole(self.length * self.area);
         let moduli = moduli(&tensor, span)?;
+        let wanted = words.slabs.is_some() || words.map.is_some();
+        let local = if wanted { estimate.local(&network) } else { vec![] };
         let mut body = moduli.young[words.axis] * self.area / self.length;
         if let Some(height) = words.slabs {
-            body = self.in_layers(scene, words, &estimate.local(&network), height, span)?;
+            body = self.in_layers(scene, words, &local, height, span)?;
         }
         let [a, b] = scene.sample(words.axis).across().map(|d| moduli.poisson[words.axis][d]);
         let contacts: f64 = self.springs.iter().map(|(_, d, k)| k[0] * dot(*d, *d)).sum();
@@ -144,6 +151,7 @@ impl Estimator {
             delta: self.delta,
             without: estimate.without(),
             share: if contacts == 0.0 { 0.0 } else { contacts / (contacts + bonds) },
+            local,
         })
     }
 
@@ -171,9 +179,7 @@ impl Estimator {
         });
         // Planes of a lattice must not lie on a border of slabs.
         let lo = 0.5 * (lo + hi - self.length) - 1e-3 * sample.mean_radius();
-        let volume = self.length * self.area;
-        let total: f64 = scene.radius.iter().map(|r| r.powi(3)).sum();
-        let shares: Vec<f64> = scene.radius.iter().map(|r| volume * r.powi(3) / total).collect();
+        let shares = self.volumes(scene);
         let along: Vec<f64> = scene.x.iter().map(|x| x[words.axis]).collect();
         let layers = Layers::new(local, &along, &shares, [lo, lo + self.length], count as usize, words.axis);
         if layers.stiffness.is_nan() {
@@ -182,6 +188,52 @@ impl Estimator {
             return Err(d.help("take higher slabs, a lower `order`, or `calibrate dsm`").into());
         }
         Ok(layers.stiffness)
+    }
+
+    /// The shares of all particles in the volume, as their own volumes are.
+    fn volumes(&self, scene: &Scene) -> Vec<f64> {
+        let total: f64 = scene.radius.iter().map(|r| r.powi(3)).sum();
+        scene.radius.iter().map(|r| self.length * self.area * r.powi(3) / total).collect()
+    }
+
+    /// K along x, y, z of each particle's surroundings, or by which part these are below their mean; zero where a tensor is none of a
+    /// body.
+    fn map(
+        &self,
+        w: &World,
+        scene: &Scene,
+        line: &Line,
+        local: &[Packed],
+        (map, radius): (Map, f64),
+    ) -> Vec<Vec3> {
+        let volumes = self.volumes(scene);
+        let mut sums: Vec<(f64, Packed)> = volumes.iter().copied().zip(local.iter().copied()).collect();
+        let mut row = vec![0; w.n()];
+        scene.places.iter().enumerate().for_each(|(k, place)| row[*place] = k);
+        let member = |i: usize| w.particles.mask[i] & line.group.bit() != 0;
+        for pair in all_within(w, Reach::Fixed(radius), &|i, j| member(i) && member(j)) {
+            let ends = [pair.i, pair.j].map(|i| row[i as usize]);
+            for [at, from] in [ends, [ends[1], ends[0]]] {
+                sums[at].0 += volumes[from];
+                (0..21).for_each(|k| sums[at].1[k] += local[from][k]);
+            }
+        }
+        // As if all of the body were so: E A/l along its axis, and its widths along the others.
+        let scale = [0, 1, 2].map(|d| match d == line.words.axis {
+            true => self.area / self.length,
+            false => self.length * self.area / scene.width(d).powi(2),
+        });
+        let of = |(volume, sum): &(f64, Packed)| {
+            let moduli = Moduli::new(&full(&sum.map(|a| a / volume)));
+            moduli.map_or([0.0; 3], |m| std::array::from_fn(|d| m.young[d] * scale[d]))
+        };
+        let all: Vec<Vec3> = sums.iter().map(of).collect();
+        if map == Map::Stiffness {
+            return all;
+        }
+        let mean: Vec3 = std::array::from_fn(|d| all.iter().map(|k| k[d]).sum::<f64>() / all.len() as f64);
+        let part = |k: f64, mean: f64| if mean > 0.0 { (mean - k) / mean } else { 0.0 };
+        all.iter().map(|k| std::array::from_fn(|d| part(k[d], mean[d]))).collect()
     }
 
     /// F/Δ where F/K of the body and what both walls yield make Δ: halving what brackets F.
@@ -209,6 +261,11 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) ->
     let body = Estimator::new(cx.world, scene, line.group, words, hertz, cx.span)?;
     let e = body.estimate(scene, words, cx.span)?;
     line.found.keep(cx.world, e.numbers(words.order), Some(&e.tensor));
+    if let Some(map) = words.map {
+        one_image(cx.world, map.1, cx.span)?;
+        let map = body.map(cx.world, scene, line, &e.local, map);
+        line.found.keep_field(cx.world, 0, &scene.places, |k| map[k]);
+    }
     let contacts = match body.springs.len() {
         0 => String::new(),
         n => format!(", {n} contacts"),

@@ -36,6 +36,15 @@ pub enum Solver {
     Periodic,
 }
 
+/// What a map shows of the surroundings of each particle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Map {
+    /// K along the three axes if all of the body were so.
+    Stiffness,
+    /// By which part that is below the mean.
+    Deviation,
+}
+
 /// Which number a fit is to reach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
@@ -102,6 +111,8 @@ pub struct Words {
     pub order: usize,
     /// Height of slabs: `None` none, `Some(None)` two diameters.
     pub slabs: Option<Option<f64>>,
+    /// A map, and the radius of the surroundings [length].
+    pub map: Option<(Map, f64)>,
     /// To be reached.
     pub targets: Vec<Target>,
     /// To be varied.
@@ -127,7 +138,7 @@ const DSM: &[&str] = &[
     "fields",
 ];
 const STE: &[&str] =
-    &["axis", "strain", "low", "high", "thick", "contacts", "order", "slabs", "shape", "length"];
+    &["axis", "strain", "low", "high", "thick", "contacts", "order", "slabs", "map", "shape", "length"];
 const PERIODIC: &[&str] = &["rotations", "tol"];
 const FIT: &[&str] = &[
     "target",
@@ -180,6 +191,7 @@ impl Words {
             fields: false,
             order: 2,
             slabs: None,
+            map: None,
             targets: vec![],
             vary: vec![],
             solver: Solver::Dsm,
@@ -244,7 +256,7 @@ impl Words {
                 }
             }
             "method" => self.method = method(a)?,
-            "shape" | "length" | "fields" | "order" | "slabs" => self.measure(a, name)?,
+            "shape" | "length" | "fields" | "order" | "slabs" | "map" => self.measure(a, name)?,
             "target" => self.targets.push(target(a)?),
             _ => self.vary(a, types)?,
         }
@@ -263,6 +275,11 @@ impl Words {
             "length" => self.body = a.choice("length", &["free", "body"])? == "body",
             "fields" => self.fields = a.flag("fields")?,
             "order" => self.order = a.integer_from(0, "the order")?.min(1_000_000) as usize,
+            "map" => {
+                let deviation = a.choice("map", &["deviation", "stiffness"])? == "deviation";
+                let map = if deviation { Map::Deviation } else { Map::Stiffness };
+                self.map = Some((map, a.positive("the radius of the surroundings")?));
+            }
             _ => {
                 self.slabs =
                     Some(if a.eat("auto") { None } else { Some(a.positive("the height of a slab")?) })
