@@ -164,7 +164,7 @@ fn bounds_hold_and_fall() {
         // Few bonds leave chains dangling and pieces apart.
         let body = random(seed, 150, if seed % 2 == 0 { 0.45 } else { 0.9 });
         let beam = |k: usize, length: f64| {
-            let young = if k % 3 == 0 { 4e9 } else { 1e9 };
+            let young = if k.is_multiple_of(3) { 4e9 } else { 1e9 };
             Beam { young, poisson: 0.2, radius: 0.3e-3, length }.stiffness(Shear::Paper)
         };
         let exact = test(&body, body.network(beam), Hold::Grip, true, Stop::Residual(1e-10), true);
@@ -252,7 +252,7 @@ fn the_same_bits_for_any_number_of_threads() {
     assert!(body.x.len() > 3 * par::CHUNK);
     let one = |threads: usize| {
         par::set_threads(threads);
-        let young = |k: usize| if k % 7 == 0 { 0.1e9 } else { 1e9 };
+        let young = |k: usize| if k.is_multiple_of(7) { 0.1e9 } else { 1e9 };
         let network = body.network(|k, length| {
             Beam { young: young(k), poisson: 0.2, radius: 0.4e-3, length }.stiffness(Shear::Paper)
         });

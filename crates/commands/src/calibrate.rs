@@ -159,7 +159,7 @@ impl Act for Line {
             let text = "bonds count with the coefficients of the deck's lines, not with those that fix adapt has given";
             cx.note(Diagnostic::warning(Code::NO_EFFECT, cx.span, text));
         }
-        let scene = Scene::new(cx.world, self.group, style.as_ref(), cx.span)?;
+        let scene = Scene::new(cx.world, self.group, style.as_ref(), self.kind == Kind::Fit, cx.span)?;
         let hertz = match self.kind == Kind::Periodic || self.words.solver == Solver::Periodic {
             true => None,
             false => Hertz::new(cx, &self.words, scene.sample(0).mean_radius())?,

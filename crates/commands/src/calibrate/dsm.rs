@@ -21,6 +21,11 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) ->
     let setup = Setup::new(cx.world, scene, line.group, words, hertz, cx.span)?;
     refuse_bound(words, &setup)?;
     let r = setup.solve(scene, words, words.tol, None);
+    if !r.stiffness.is_finite() {
+        let text = "no stiffness has been found: forces are beyond all numbers";
+        let help = "look at the coefficients of bonds and contacts, and at the strain";
+        return Err(Diagnostic::error(Code::UNSTABLE, cx.span, text).help(help).into());
+    }
     if r.certain.is_some_and(|part| !part.is_finite()) {
         let text =
             "there is no lower bound: some bond on the way to the ends resists no shear, bend or twist";

@@ -20,7 +20,7 @@ pub struct Scene {
     pub radius: Vec<f64>,
     /// Its bonds.
     pub network: Network,
-    /// Type, length at rest and radii of the ends of each bond, in the order of the network.
+    /// What of each bond its stiffness depends on, in the order of the network; only where bonds are to be varied.
     pub bonds: Vec<Said>,
     /// Edges of the box, zero where it does not repeat.
     pub period: Vec3,
@@ -38,11 +38,11 @@ pub struct Said {
 }
 
 impl Scene {
-    /// Of the particles of a group and the bonds that act between them.
+    /// Of the particles of a group and the bonds that act between them, which may be going to be `varied`.
     ///
     /// # Errors
     /// No bonds, bonds without a stiffness, lost ends.
-    pub fn new(w: &World, group: GroupId, style: &dyn BondForce, span: Span) -> Result<Self> {
+    pub fn new(w: &World, group: GroupId, style: &dyn BondForce, varied: bool, span: Span) -> Result<Self> {
         let period = periods(w)?;
         let p = &w.particles;
         let member = |i: usize| p.mask[i] & group.bit() != 0;
@@ -74,7 +74,7 @@ impl Scene {
             check(w, &said(k), length(vector(k)), bonds[k].1.ends, style, span)?;
         }
         let network = Network::new(places.len(), &ends, |k| (vector(k), stiffness(style, &said(k))));
-        let bonds = network.pairs.origin.iter().map(|k| said(*k as usize)).collect();
+        let bonds = network.pairs.origin.iter().filter(|_| varied).map(|k| said(*k as usize)).collect();
         let x = places.iter().map(|i| p.x[*i]).collect();
         // Particles without a radius reach half way to their partners.
         let half = 0.5 * network.length.iter().sum::<f64>() / network.length.len() as f64;
