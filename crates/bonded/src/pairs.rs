@@ -62,20 +62,18 @@ impl Pairs {
         }
         par::each(out, |start, rows: &mut [[f64; N]]| {
             let chunk = start / par::CHUNK;
-            let add = |row: &mut [f64; N], more: [f64; N]| {
-                row.iter_mut().zip(more).for_each(|(sum, a)| *sum += a);
-            };
-            for k in self.first[chunk] as usize..self.first[chunk + 1] as usize {
+            let own = self.first[chunk]..self.first[chunk + 1];
+            let late = &self.late[self.first_late[chunk] as usize..self.first_late[chunk + 1] as usize];
+            // One loop, so that there is one place into which `pull` is compiled.
+            for k in own.chain(late.iter().copied()).map(|k| k as usize) {
                 let [i, j] = self.ends[k].map(|place| place as usize);
                 let [low, high] = pull(k, [i, j]);
-                add(&mut rows[i - start], low);
-                if let Some(row) = rows.get_mut(j - start) {
-                    add(row, high);
+                // An end outside of the chunk is below its first row or beyond its last.
+                for (place, more) in [(i, low), (j, high)] {
+                    if let Some(row) = rows.get_mut(place.wrapping_sub(start)) {
+                        row.iter_mut().zip(more).for_each(|(sum, a)| *sum += a);
+                    }
                 }
-            }
-            for k in &self.late[self.first_late[chunk] as usize..self.first_late[chunk + 1] as usize] {
-                let [i, j] = self.ends[*k as usize].map(|place| place as usize);
-                add(&mut rows[j - start], pull(*k as usize, [i, j])[1]);
             }
         });
     }

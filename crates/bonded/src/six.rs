@@ -10,7 +10,7 @@ pub type Packed = [f64; 21];
 pub type Matrix6 = [[f64; 6]; 6];
 
 /// Below this part of the largest one of its kind a pivot is none: the block lets a motion pass without resistance.
-const PIVOT: f64 = 1e-12;
+pub const PIVOT: f64 = 1e-12;
 
 /// Where an element of a packed matrix stands.
 #[inline(always)]

@@ -4,7 +4,7 @@
 //! fluctuation, S its Σ K; order k takes k sweeps φ ← S⁻¹ Σ K (ε d + φ of the partner).
 
 use super::network::Network;
-use super::six::{Matrix6, Packed, at, full, invert};
+use super::six::{Matrix6, PIVOT, Packed, at, full};
 use super::tensor::VOIGT;
 use perigrain_base::math::vec3::{Vec3, add, dot, scale, sub};
 use perigrain_base::par;
@@ -190,16 +190,33 @@ fn inverses(network: &Network) -> (Vec<[f64; 6]>, Vec<bool>) {
     let mut out = vec![false; network.particles];
     par::each((&mut s[..], &mut out[..]), |_, (s, out)| {
         for (s, out) in s.iter_mut().zip(out) {
-            let mut whole: Matrix6 = [[0.0; 6]; 6];
-            for (r, c) in (0..9).map(|k| (k / 3, k % 3)) {
-                whole[r][c] = s[at(r, c)];
-            }
-            let found = invert(&whole, 0b111000);
-            *out = found.without != 0;
-            *s = if *out { [0.0; 6] } else { std::array::from_fn(|k| found.inverse[k]) };
+            let found = inverse(s);
+            (*out, *s) = (found.is_none(), found.unwrap_or_default());
         }
     });
     (s, out)
+}
+
+/// The inverse of a symmetric matrix 00, 10 11, 20 21 22; `None` where a pivot is missing.
+fn inverse([xx, yx, yy, zx, zy, zz]: &[f64; 6]) -> Option<[f64; 6]> {
+    let least = PIVOT * xx.max(*yy).max(*zz);
+    let second = yy - yx * yx / xx;
+    let across = zy - zx * yx / xx;
+    let third = zz - zx * zx / xx - across * across / second;
+    // Not a number where an earlier one is missing.
+    if !(*xx > least && second > least && third > least) {
+        return None;
+    }
+    let det = xx * second * third;
+    let of = |a: f64, b: f64, c: f64, d: f64| (a * b - c * d) / det;
+    Some([
+        of(*yy, *zz, *zy, *zy),
+        of(*zx, *zy, *yx, *zz),
+        of(*xx, *zz, *zx, *zx),
+        of(*yx, *zy, *yy, *zx),
+        of(*yx, *zx, *xx, *zy),
+        of(*xx, *yy, *yx, *yx),
+    ])
 }
 
 /// φ = S⁻¹ f.
