@@ -210,6 +210,25 @@ impl BondForce for Declared {
         Some(Stiffness { normal: k.normal / per, shear: k.shear / per, ..k })
     }
 
+    fn tunable(&self) -> &'static [&'static str] {
+        &["kr", "ks", "kt", "kb"]
+    }
+
+    fn tuned(&self, name: &str, kind: u16, factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
+        let mut tuned = self.clone();
+        let k = tuned.types.get_mut(&kind)?;
+        let value = match name {
+            "kr" => &mut k.stiffness.normal,
+            "ks" => &mut k.stiffness.shear,
+            "kt" => &mut k.stiffness.twist,
+            "kb" => &mut k.stiffness.bend,
+            _ => return None,
+        };
+        *value *= factor;
+        let value = *value;
+        Some((Box::new(tuned), value))
+    }
+
     fn written(&self, kind: u16) -> Option<String> {
         let k = self.types.get(&kind)?;
         let ([s, b], d) = ([&k.stiffness, &k.strength], &k.damping);

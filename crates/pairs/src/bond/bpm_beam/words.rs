@@ -57,6 +57,13 @@ pub enum Radius {
 }
 
 impl Radius {
+    /// The number of the deck's line.
+    pub fn number(&mut self) -> &mut f64 {
+        match self {
+            Self::Given(r) | Self::Ratio(r) => r,
+        }
+    }
+
     /// Between spheres of these radii [length].
     pub fn of(self, radii: [f64; 2]) -> f64 {
         match self {
