@@ -387,7 +387,7 @@ impl Session {
     fn act(&mut self, cmd: &Command, style: &'static dyn perigrain_styles::CommandStyle) -> Result<()> {
         let (notes, uses) = (RefCell::default(), RefCell::default());
         let cx = Context { span: cmd.span, checking: self.checking(), notes: &notes, uses: &uses };
-        let (mut said, mut then) = (vec![], vec![]);
+        let (mut said, mut then, mut left) = (vec![], vec![], None);
         let outcome: Result<Vec<&'static str>> = (|| {
             let vars = Arc::new(self.vars.clone());
             let named = |name: &str| cmd.args.iter().any(|w| w.text == name);
@@ -397,6 +397,7 @@ impl Session {
             let act = style.parse(&mut args, &cx.build(&self.graph, &self.world, "", GroupId::ALL))?;
             args.finish()?;
             let settles = act.settles().to_vec();
+            left = act.leaves();
             if self.checking() && act.needs_particles() {
                 act.makes_group().map(|name| self.world.groups.find_or_add(name));
                 return Ok(settles);
@@ -421,6 +422,9 @@ impl Session {
             self.options.log.line(line)?;
         }
         let settles = outcome?;
+        if let Some((id, compute)) = left {
+            self.graph.leave(id, style.name(), compute, cmd.span);
+        }
         let provides = commands::provided(cmd);
         self.record(cmd, Role::Act, provides, uses.into_inner(), settles);
         for (line, text) in then {

@@ -10,7 +10,8 @@ use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Clock, Env, Question, RefKind, Value, ValueRef, Vars, Word};
 use perigrain_plan::{Op, Stage, StepPlan, Tick, When};
-use perigrain_styles::{Flow, Motion, Reading, SealCx, Values};
+use perigrain_styles::probe::Probe;
+use perigrain_styles::{BondForce, Flow, Motion, Reading, SealCx, Values};
 use perigrain_world::named::Acting;
 use perigrain_world::{SlotId, World};
 use std::collections::BTreeMap;
@@ -382,6 +383,16 @@ impl Values for DeckValues<'_> {
             Some(node) => node.fix.stop(w, what, fix.span),
             None => fail(Code::UNKNOWN_NAME, fix.span, format!("there is no fix `{}`", fix.text)),
         }
+    }
+
+    fn probes(&self, w: &World) -> Result<Vec<Box<dyn Probe>>> {
+        let Some(node) = &self.graph.pair else { return Ok(vec![]) };
+        let found = node.pair.probes(w, false).map_err(|e| e.at(node.span))?;
+        Ok(found.into_iter().map(|(_, probe)| probe).collect())
+    }
+
+    fn bonds(&self) -> Option<Box<dyn BondForce>> {
+        self.graph.bond.as_ref().map(|node| node.force.clone())
     }
 }
 

@@ -172,6 +172,12 @@ impl Graph {
         self.computes.iter().find(|c| c.id == id)
     }
 
+    /// Takes up what a command has left behind for formulas, in place of what it left before under this ID.
+    pub fn leave(&mut self, id: String, style: &'static str, compute: Box<dyn Compute>, span: Span) {
+        self.computes.retain(|c| c.id != id);
+        self.computes.push(ComputeNode { id, style, compute, span });
+    }
+
     /// Takes a line up.
     pub fn add(&mut self, node: Node) {
         self.latest.insert(place(node.span), self.nodes.len());

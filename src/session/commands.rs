@@ -75,13 +75,14 @@ pub fn variable_uses(cmd: &Command) -> Vec<Use> {
 
 /// What an act's line provides by name.
 pub fn provided(cmd: &Command) -> Option<Use> {
-    let kind = match cmd.name.text.as_str() {
-        "group" => UseKind::Group,
-        "region" => UseKind::Region,
-        "material" => UseKind::Material,
+    let (kind, at) = match cmd.name.text.as_str() {
+        "group" => (UseKind::Group, 0),
+        "region" => (UseKind::Region, 0),
+        "material" => (UseKind::Material, 0),
+        "calibrate" => (UseKind::Compute, 1),
         _ => return None,
     };
-    cmd.args.first().map(|w| Use { kind, name: w.text.clone() })
+    cmd.args.get(at).map(|w| Use { kind, name: w.text.clone() })
 }
 
 impl Session {

@@ -2,10 +2,33 @@
 //! numbers and columns; knows neither the world nor decks nor styles.
 
 pub mod beam;
+pub mod certificate;
 pub mod columns;
+pub mod contacts;
+pub mod dsm;
+pub mod ends;
 pub mod law;
+pub mod network;
+pub mod newton;
+pub mod pairs;
+pub mod pcg;
+pub mod periodic;
+pub mod precond;
 pub mod rotational;
+pub mod shares;
+pub mod six;
 pub mod spring;
+pub mod ste;
 pub mod stiffness;
 pub mod sweep;
+pub mod tensor;
 pub mod weibull;
+
+#[cfg(test)]
+mod lattices;
+#[cfg(test)]
+mod tests_contacts;
+#[cfg(test)]
+mod tests_statics;
+#[cfg(test)]
+mod tests_tensors;

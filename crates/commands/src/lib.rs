@@ -8,6 +8,7 @@
 mod atom_modify;
 mod atom_style;
 mod boundary;
+mod calibrate;
 mod change_box;
 mod comm_modify;
 pub mod create_atoms;
@@ -92,6 +93,7 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &neigh_modify::NeighModify,
     &write_data::WriteData,
     &create_bonds::CreateBonds,
+    &calibrate::Calibrate,
     &delete_bonds::DeleteBonds,
     &special_bonds::SpecialBonds,
     &molecule::Molecule,

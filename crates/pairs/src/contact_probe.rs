@@ -7,7 +7,7 @@ use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{cross, dot, length, scale, sub};
 use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rules, Sweep};
-use perigrain_contact::{Advance, ContactLaw, Wrench};
+use perigrain_contact::{Advance, ContactLaw, Geometry, Wrench};
 use perigrain_neigh::list::{Pair, Reach, Wanted, difference};
 use perigrain_styles::probe::{Ask, Balance, Interaction, OWN, Probe, Springs};
 use perigrain_world::contacts::Contacts;
@@ -178,6 +178,14 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
             });
             all
         })
+    }
+
+    fn pressed(&self, [a, b]: [u16; 2], overlap: f64, curvature: f64) -> Option<[f64; 2]> {
+        let law = self.rules.get(a, b)?.law;
+        let radii = [2.0 * curvature; 2];
+        let g = Geometry { normal: [1.0, 0.0, 0.0], overlap, radii, curvature, mass: 1.0 };
+        let fresh = vec![0.0; law.memory()];
+        Some([law.stored(&g, &fresh).push, law.springs(&g)[1]])
     }
 
     fn balance(&mut self, w: &World) -> Result<Balance> {

@@ -1,5 +1,7 @@
 //! What acts may use while they act.
 
+use crate::BondForce;
+use crate::probe::Probe;
 use perigrain_base::diag::{Diagnostic, Diagnostics, Result, Source, Span};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::{Command, Param, ValueRef, Word};
@@ -34,6 +36,17 @@ pub trait Values {
     /// # Errors
     /// Other fixes, and bodies that cannot be.
     fn stop(&mut self, w: &mut World, fix: &Word, what: Motion) -> Result<()>;
+    /// What the pair style in force can be asked about single pairs.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn probes(&self, _w: &World) -> Result<Vec<Box<dyn Probe>>> {
+        Ok(vec![])
+    }
+    /// The bond style in force.
+    fn bonds(&self) -> Option<Box<dyn BondForce>> {
+        None
+    }
 }
 
 /// What a temperature takes away from velocities before it looks at them.

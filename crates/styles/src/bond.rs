@@ -72,6 +72,16 @@ pub trait BondForce: DynClone + Send + Sync {
         None
     }
 
+    /// The coefficients that `calibrate fit` may vary, by name.
+    fn tunable(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// A copy in which one of them is `factor` times what it is for a type, and its value there; `None` where the type has none.
+    fn tuned(&self, _name: &str, _kind: u16, _factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
+        None
+    }
+
     /// The pair styles of which one has to be in force besides; any will do by default.
     fn companions(&self) -> &'static [&'static str] {
         &[]

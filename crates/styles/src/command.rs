@@ -1,6 +1,6 @@
 //! What a command is: a style that reads its line, and what the line will do.
 
-use super::{ActCx, BuildCx, Style};
+use super::{ActCx, BuildCx, Compute, Style};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 
@@ -28,6 +28,11 @@ pub trait Act {
 
     /// The group it makes if there is none of this name: a check may count on it although nothing acts.
     fn makes_group(&self) -> Option<&str> {
+        None
+    }
+
+    /// What it leaves behind for formulas to read as `c_ID`, with its ID; a check counts on it although nothing acts.
+    fn leaves(&self) -> Option<(String, Box<dyn Compute>)> {
         None
     }
 

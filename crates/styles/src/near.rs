@@ -12,6 +12,13 @@ pub fn within(w: &World, reach: Reach, keep: &(impl Fn(usize, usize) -> bool + S
     search(w, reach, 0.0, keep)
 }
 
+/// The same with pairs that exclusions and bonds keep apart.
+pub fn all_within(w: &World, reach: Reach, keep: &(impl Fn(usize, usize) -> bool + Sync)) -> Vec<Pair> {
+    let p = &w.particles;
+    let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
+    pairs(&view, &every_type(w, reach), 0.0, keep)
+}
+
 /// Refuses a distance beyond which a particle would meet several images of another one: pairs are counted once.
 ///
 /// # Errors
@@ -30,12 +37,17 @@ pub fn one_image(w: &World, cutoff: f64, at: Span) -> Result<()> {
         .into())
 }
 
-fn search(w: &World, reach: Reach, skin: f64, keep: &(impl Fn(usize, usize) -> bool + Sync)) -> Vec<Pair> {
-    let p = &w.particles;
+fn every_type(w: &World, reach: Reach) -> Wanted {
     let mut wanted = Wanted::new(w.types);
     for a in 1..=w.types as u16 {
         (a..=w.types as u16).for_each(|b| wanted.set(a, b, reach));
     }
+    wanted
+}
+
+fn search(w: &World, reach: Reach, skin: f64, keep: &(impl Fn(usize, usize) -> bool + Sync)) -> Vec<Pair> {
+    let p = &w.particles;
+    let wanted = every_type(w, reach);
     let view = View { x: &p.x, tag: &p.tag, kind: &p.kind, radius: &p.radius, period: w.periods() };
     let allowed = Allowed::new(w);
     pairs(&view, &wanted, skin, &|i, j| keep(i, j) && allowed.pair(i, j))

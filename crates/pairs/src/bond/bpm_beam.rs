@@ -194,6 +194,23 @@ impl BondForce for Declared {
         Some(self.law.stiffness(&line.coeffs, line.radius.of(radii), length))
     }
 
+    fn tunable(&self) -> &'static [&'static str] {
+        &["E", "radius"]
+    }
+
+    fn tuned(&self, name: &str, kind: u16, factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
+        let mut tuned = self.clone();
+        let line = tuned.types.get_mut(&kind)?;
+        let value = match (name, &mut line.radius) {
+            ("E", _) => &mut line.coeffs.elastic[0],
+            ("radius", Radius::Given(r) | Radius::Ratio(r)) => r,
+            _ => return None,
+        };
+        *value *= factor;
+        let value = *value;
+        Some((Box::new(tuned), value))
+    }
+
     fn written(&self, kind: u16) -> Option<String> {
         self.types.get(&kind).map(Line::written)
     }

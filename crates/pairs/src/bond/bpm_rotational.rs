@@ -210,6 +210,25 @@ impl BondForce for Declared {
         Some(Stiffness { normal: k.normal / per, shear: k.shear / per, ..k })
     }
 
+    fn tunable(&self) -> &'static [&'static str] {
+        &["kr", "ks", "kt", "kb"]
+    }
+
+    fn tuned(&self, name: &str, kind: u16, factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
+        let mut tuned = self.clone();
+        let k = &mut tuned.types.get_mut(&kind)?.stiffness;
+        let value = match name {
+            "kr" => &mut k.normal,
+            "ks" => &mut k.shear,
+            "kt" => &mut k.twist,
+            "kb" => &mut k.bend,
+            _ => return None,
+        };
+        *value *= factor;
+        let value = *value;
+        Some((Box::new(tuned), value))
+    }
+
     fn written(&self, kind: u16) -> Option<String> {
         let k = self.types.get(&kind)?;
         let ([s, b], d) = ([&k.stiffness, &k.strength], &k.damping);

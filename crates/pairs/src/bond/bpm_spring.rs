@@ -9,6 +9,7 @@ use perigrain_base::math::cformat::general;
 use perigrain_bonded::spring::Breaking;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
+use perigrain_styles::bond::Stiffness;
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::{Bond, World};
 use std::collections::BTreeMap;
@@ -94,6 +95,24 @@ impl BondForce for Declared {
 
     fn extra(&self, _w: &World, bond: &Stretched) -> Vec<f64> {
         vec![bond.rest]
+    }
+
+    fn stiffness(&self, kind: u16, length: f64, _radii: [f64; 2]) -> Option<Stiffness> {
+        let [k, ..] = *self.springs.get(&kind)?;
+        let normal = if self.options.normalize { k / length } else { k };
+        Some(Stiffness { normal, ..Stiffness::default() })
+    }
+
+    fn tunable(&self) -> &'static [&'static str] {
+        &["k"]
+    }
+
+    fn tuned(&self, name: &str, kind: u16, factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
+        let mut tuned = self.clone();
+        let k = tuned.springs.get_mut(&kind).filter(|_| name == "k").map(|s| &mut s[0])?;
+        *k *= factor;
+        let k = *k;
+        Some((Box::new(tuned), k))
     }
 
     fn written(&self, kind: u16) -> Option<String> {

@@ -7,6 +7,7 @@ use perigrain_base::math::cformat::general;
 use perigrain_bonded::spring::Harmonic;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
+use perigrain_styles::bond::Stiffness;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{Fields, MEMO};
@@ -149,6 +150,23 @@ impl BondForce for Declared {
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
         let now = self.springs.get(&bond.kind)?.now(w);
         pull_of(&Adapting { said: self.clone(), now: [(bond.kind, now)].into() }, w, bond)
+    }
+
+    fn stiffness(&self, kind: u16, _length: f64, _radii: [f64; 2]) -> Option<Stiffness> {
+        let [k, _] = self.springs.get(&kind)?.said;
+        Some(Stiffness { normal: 2.0 * k, ..Stiffness::default() })
+    }
+
+    fn tunable(&self) -> &'static [&'static str] {
+        &["k"]
+    }
+
+    fn tuned(&self, name: &str, kind: u16, factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
+        let mut tuned = self.clone();
+        let k = tuned.springs.get_mut(&kind).filter(|_| name == "k").map(|s| &mut s.said[0])?;
+        *k *= factor;
+        let k = *k;
+        Some((Box::new(tuned), k))
     }
 
     fn written(&self, kind: u16) -> Option<String> {

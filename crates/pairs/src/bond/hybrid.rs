@@ -103,15 +103,26 @@ impl BondForce for Declared {
         self.subs.iter().fold(Fields::NONE, |all, s| all.and(s.looks_at()))
     }
 
-    fn stiffness(&self, kind: u16, length: f64, radii: [f64; 2]) -> Option<Stiffness> {
-        self.user(kind)?.stiffness(kind, length, radii)
-    }
-
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {
         match self.users.get(&bond.kind)? {
             None => Some(Pull::default()),
             Some(k) => self.subs[*k].single(w, bond),
         }
+    }
+
+    fn stiffness(&self, kind: u16, length: f64, radii: [f64; 2]) -> Option<Stiffness> {
+        match self.users.get(&kind)? {
+            None => Some(Stiffness::default()),
+            Some(k) => self.subs[*k].stiffness(kind, length, radii),
+        }
+    }
+
+    fn tuned(&self, name: &str, kind: u16, factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
+        let k = self.users.get(&kind).copied().flatten()?;
+        let mut tuned = self.clone();
+        let (sub, value) = self.subs[k].tuned(name, kind, factor)?;
+        tuned.subs[k] = sub;
+        Some((Box::new(tuned), value))
     }
 
     fn written(&self, kind: u16) -> Option<String> {

@@ -1,0 +1,228 @@
+//! A body of bonded particles as columns, and what it does when its particles move and turn a little.
+//!
+//! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), Eq. 5–10, with rotations: the tangent at rest of beams between spheres.
+
+use super::pairs::Pairs;
+use super::six::{Matrix6, Six};
+use super::stiffness::Stiffness;
+use perigrain_base::math::forest;
+use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale, sub};
+use perigrain_base::par;
+
+/// Bonds between particles, which are places from 0.
+#[derive(Clone, Debug, Default)]
+pub struct Network {
+    /// Number of particles.
+    pub particles: usize,
+    /// Who is bonded to whom.
+    pub pairs: Pairs,
+    /// Unit vectors n from the lower end to the upper one.
+    pub n: Vec<Vec3>,
+    /// Distances of the ends [length].
+    pub length: Vec<f64>,
+    /// Stiffnesses.
+    pub k: Vec<Stiffness>,
+}
+
+/// What a bond does to its ends: −F and −M − C on the first, F and M − C on the second are the resisting forces and torques.
+#[derive(Clone, Copy, Debug)]
+pub struct Resisting {
+    /// F = K_t g [force].
+    pub force: Vec3,
+    /// M = K_r φ [force length].
+    pub moment: Vec3,
+    /// C = ½ d × F [force length].
+    pub couple: Vec3,
+}
+
+/// How the ends of a bond have moved.
+#[derive(Clone, Copy, Debug)]
+pub struct Moved {
+    /// Δu = u_j − u_i [length].
+    pub apart: Vec3,
+    /// θ_i + θ_j [rad].
+    pub together: Vec3,
+    /// φ = θ_j − θ_i [rad].
+    pub turned: Vec3,
+}
+
+impl Moved {
+    /// Of the ends of a bond.
+    #[inline(always)]
+    pub fn new(a: &Six, b: &Six) -> Self {
+        let (ua, ta) = halves(a);
+        let (ub, tb) = halves(b);
+        Self { apart: sub(ub, ua), together: add(ta, tb), turned: sub(tb, ta) }
+    }
+}
+
+/// Displacement and rotation.
+#[inline(always)]
+pub fn halves(a: &Six) -> (Vec3, Vec3) {
+    ([a[0], a[1], a[2]], [a[3], a[4], a[5]])
+}
+
+/// A row of displacement and rotation, or of force and torque.
+#[inline(always)]
+pub fn row(u: Vec3, theta: Vec3) -> Six {
+    [u[0], u[1], u[2], theta[0], theta[1], theta[2]]
+}
+
+/// Energies of stretch, shear, bend and twist [energy].
+pub type Modes = [f64; 4];
+
+impl Network {
+    /// Of bonds between these ends; `bond(k)` tells the vector from the first end to the second and the stiffnesses of the k-th.
+    pub fn new(particles: usize, ends: &[[u32; 2]], bond: impl Fn(usize) -> (Vec3, Stiffness)) -> Self {
+        let pairs = Pairs::new(particles, ends);
+        let mut out = Self { particles, pairs, n: vec![], length: vec![], k: Vec::with_capacity(ends.len()) };
+        out.n.reserve_exact(ends.len());
+        out.length.reserve_exact(ends.len());
+        for &origin in &out.pairs.origin {
+            let (d, k) = bond(origin as usize);
+            let [a, b] = ends[origin as usize];
+            let l = length(d);
+            out.n.push(scale(if a < b { 1.0 } else { -1.0 } / l, d));
+            out.length.push(l);
+            out.k.push(k);
+        }
+        out
+    }
+
+    /// Number of bonds.
+    pub fn bonds(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// The vector from the lower end of a bond to the upper one [length].
+    pub fn d(&self, k: usize) -> Vec3 {
+        scale(self.length[k], self.n[k])
+    }
+
+    /// g = Δu + ½ d × (θ_i + θ_j); F = K_t g with K_t = k_s 1 + (k_n − k_s) n nᵀ; M = K_r φ with K_r = k_b 1 + (k_t − k_b) n nᵀ.
+    #[inline(always)]
+    pub fn resist(&self, bond: usize, moved: &Moved) -> Resisting {
+        let (n, k) = (self.n[bond], &self.k[bond]);
+        let arm = scale(0.5 * self.length[bond], n);
+        let g = add(moved.apart, cross(arm, moved.together));
+        // The part of g from rotations is across n.
+        let along = (k.normal - k.shear) * dot(n, moved.apart);
+        let twisted = (k.twist - k.bend) * dot(n, moved.turned);
+        Resisting {
+            force: add(scale(k.shear, g), scale(along, n)),
+            moment: add(scale(k.bend, moved.turned), scale(twisted, n)),
+            couple: scale(k.shear, cross(arm, g)),
+        }
+    }
+
+    /// out = K u.
+    ///
+    /// # Panics
+    /// If `out` has no row for each particle.
+    pub fn product(&self, u: &[Six], out: &mut [Six]) {
+        self.gather(out, |_, [i, j]| Moved::new(&u[i], &u[j]));
+    }
+
+    /// What a strain of the whole does that nobody follows: the resisting forces where all bonds are changed by ε d.
+    pub fn product_of_strain(&self, strain: &[Vec3; 3], out: &mut [Six]) {
+        self.gather(out, |k, _| {
+            let d = self.d(k);
+            Moved { apart: strain.map(|row| dot(row, d)), together: [0.0; 3], turned: [0.0; 3] }
+        });
+    }
+
+    fn gather(&self, out: &mut [Six], moved: impl Fn(usize, [usize; 2]) -> Moved + Sync) {
+        assert_eq!(out.len(), self.particles);
+        par::each(&mut *out, |_, rows: &mut [Six]| rows.fill([0.0; 6]));
+        self.pairs.gather(out, |k, ends| {
+            let r = self.resist(k, &moved(k, ends));
+            let minus = |a: Vec3| a.map(|a| -a);
+            [row(minus(r.force), minus(add(r.moment, r.couple))), row(r.force, sub(r.moment, r.couple))]
+        });
+    }
+
+    /// What the resistance to one motion of a bond's ends does in another one, twice the energies where both are the same:
+    /// k_n (n·g)(n·g'), k_s g·g' across n, k_b φ·φ' across n, k_t (n·φ)(n·φ').
+    #[inline(always)]
+    pub fn work(&self, bond: usize, a: &Moved, b: &Moved) -> Modes {
+        let (n, k) = (self.n[bond], &self.k[bond]);
+        let arm = scale(0.5 * self.length[bond], n);
+        let split = |m: &Moved| {
+            let g = add(m.apart, cross(arm, m.together));
+            let (along, twist) = (dot(n, g), dot(n, m.turned));
+            (along, sub(g, scale(along, n)), sub(m.turned, scale(twist, n)), twist)
+        };
+        let ((along, across, bend, twist), other) = (split(a), split(b));
+        [
+            k.normal * along * other.0,
+            k.shear * dot(across, other.1),
+            k.bend * dot(bend, other.2),
+            k.twist * twist * other.3,
+        ]
+    }
+
+    /// How the ends of a bond have moved in a field, and besides as a strain of the whole says.
+    pub fn moved(&self, bond: usize, u: &[Six], strain: Option<&[Vec3; 3]>) -> Moved {
+        let [i, j] = self.pairs.ends[bond];
+        let mut moved = Moved::new(&u[i as usize], &u[j as usize]);
+        if let Some(strain) = strain {
+            let d = self.d(bond);
+            moved.apart = add(moved.apart, strain.map(|row| dot(row, d)));
+        }
+        moved
+    }
+
+    /// Energies of all bonds at a field.
+    pub fn energy(&self, u: &[Six]) -> Modes {
+        self.sum(|k| {
+            let moved = self.moved(k, u, None);
+            self.work(k, &moved, &moved).map(|a| 0.5 * a)
+        })
+    }
+
+    /// The sum of something over bonds.
+    pub fn sum(&self, of: impl Fn(usize) -> Modes + Sync) -> Modes {
+        let chunk = |range: std::ops::Range<usize>| range.fold([0.0; 4], |sum, k| plus(sum, of(k)));
+        par::reduce(self.bonds(), chunk, plus).unwrap_or_default()
+    }
+
+    /// The 6 × 6 blocks of K on its diagonal: [[K_t, −K_t X], [−Xᵀ K_t, Xᵀ K_t X + K_r]] at the lower end of a bond with X = ½ [d]×, the
+    /// other sign beside the diagonal at the upper one.
+    pub fn blocks(&self) -> Vec<[f64; 21]> {
+        let mut out = vec![[0.0; 21]; self.particles];
+        self.pairs.gather(&mut out, |k, _| {
+            let columns = |lower: bool| -> Matrix6 {
+                std::array::from_fn(|c| {
+                    let mut unit = [0.0; 6];
+                    unit[c] = 1.0;
+                    let still = [0.0; 6];
+                    if lower {
+                        let r = self.resist(k, &Moved::new(&unit, &still));
+                        return row(r.force.map(|a| -a), add(r.moment, r.couple).map(|a| -a));
+                    }
+                    let r = self.resist(k, &Moved::new(&still, &unit));
+                    row(r.force, sub(r.moment, r.couple))
+                })
+            };
+            [super::six::packed(&columns(true)), super::six::packed(&columns(false))]
+        });
+        out
+    }
+
+    /// For each particle the smallest place in the piece that bonds tie it to.
+    pub fn pieces(&self) -> Vec<u32> {
+        self.pieces_with([])
+    }
+
+    /// The same where some more pairs hang together.
+    pub fn pieces_with(&self, more: impl IntoIterator<Item = [u32; 2]>) -> Vec<u32> {
+        let mut root: Vec<u32> = (0..self.particles as u32).collect();
+        self.pairs.ends.iter().copied().chain(more).for_each(|[a, b]| forest::join(&mut root, a, b));
+        (0..self.particles as u32).map(|k| forest::find(&mut root, k)).collect()
+    }
+}
+
+/// The sum of energies, mode by mode.
+pub fn plus(a: Modes, b: Modes) -> Modes {
+    std::array::from_fn(|k| a[k] + b[k])
+}

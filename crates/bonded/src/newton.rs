@@ -1,0 +1,177 @@
+//! Bonds, contacts and walls together: Newton's method with conjugate gradients inside.
+//!
+//! K u + h(u) = 0 on what is free. The tangent is exact but for what couples the force across a contact to its overlap.
+
+use super::contacts::{Contacts, Walls};
+use super::dsm::MOST;
+use super::network::Network;
+use super::pcg::solve;
+use super::precond::Blocks;
+use super::six::Six;
+use perigrain_base::par;
+
+/// A body with what touches it.
+pub struct Body<'a> {
+    /// Its bonds.
+    pub network: &'a Network,
+    /// Contacts between its particles.
+    pub contacts: &'a Contacts,
+    /// Contacts with planes at its ends.
+    pub walls: &'a Walls,
+    /// What is held, a bit for each component.
+    pub held: &'a [u8],
+    /// By what torques are divided where they are compared with forces [length].
+    pub arm: f64,
+}
+
+/// When the method ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum End {
+    /// The force between the ends is known to this part of it.
+    Part(f64),
+    /// |r|₂ of a linear system and of the nonlinear one are below these [force].
+    Residuals([f64; 2]),
+}
+
+/// A solution.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Displacements and rotations.
+    pub field: Vec<Six>,
+    /// K u + h(u): what holds the held components.
+    pub forces: Vec<Six>,
+    /// |r|₂ of what is free, before the first step and after each [force].
+    pub residuals: Vec<f64>,
+    /// Steps of conjugate gradients.
+    pub iterations: usize,
+    /// Components that nothing resists, at the last field.
+    pub loose: usize,
+    /// Whether it ended well.
+    pub done: bool,
+}
+
+/// More steps than this are none of Newton's method.
+const STEPS: usize = 100;
+/// How much of the residual a linear solution may leave, at most.
+const FORCING: f64 = 0.1;
+/// How often a step is halved.
+const HALVES: usize = 30;
+
+impl Body<'_> {
+    fn forces(&self, u: &[Six], out: &mut [Six]) {
+        self.network.product(u, out);
+        self.contacts.add_forces(u, out);
+        self.walls.add_forces(u, out);
+    }
+
+    /// |r|₂ over what is free.
+    fn norm(&self, r: &[Six]) -> f64 {
+        let square = |k: usize| {
+            let free = |c: usize| if self.held[k] >> c & 1 == 0 { r[k][c] } else { 0.0 };
+            (0..3).map(|c| free(c).powi(2) + (free(c + 3) / self.arm).powi(2)).sum::<f64>()
+        };
+        par::sum(r.len(), square).sqrt()
+    }
+
+    /// The forces of a field that keep `delta` between the ends do this much work on it: what a residual is compared with.
+    fn work(&self, u: &[Six]) -> f64 {
+        let bonds: f64 = self.network.energy(u).iter().sum();
+        2.0 * (bonds + self.contacts.energy(u).abs() + self.walls.energy(u).abs())
+    }
+
+    /// Balances what is free, from a field.
+    pub fn relax(&self, start: Vec<Six>, end: End) -> Found {
+        let n = start.len();
+        let mut forces = vec![[0.0; 6]; n];
+        self.forces(&start, &mut forces);
+        let mut out = Found {
+            residuals: vec![self.norm(&forces)],
+            field: start,
+            forces,
+            iterations: 0,
+            loose: 0,
+            done: false,
+        };
+        let mut forcing = FORCING;
+        while out.residuals.len() <= STEPS {
+            let before = out.residuals.last().copied().unwrap_or(0.0);
+            if let End::Residuals([_, least]) = end
+                && before < least
+            {
+                out.done = true;
+                break;
+            }
+            let (step, decrement) = self.step(
+                &mut out,
+                if let End::Residuals([linear, _]) = end { Err(linear) } else { Ok(forcing) },
+            );
+            let work = self.work(&out.field);
+            if !self.search(&mut out, &step, before) {
+                // Rounding: no step makes it less.
+                out.done = decrement <= 1e-18 * work;
+                break;
+            }
+            let now = out.residuals.last().copied().unwrap_or(0.0);
+            forcing = FORCING.min((now / before).powi(2)).max(1e-12);
+            // What a step takes away squares with the error of the field, and so does what is left after it.
+            if let End::Part(tol) = end
+                && decrement <= (0.1 * tol * tol).max(1e-24) * work
+            {
+                out.done = true;
+                break;
+            }
+        }
+        out
+    }
+
+    /// The step of a linear system, and −r·step.
+    fn step(&self, out: &mut Found, limit: Result<f64, f64>) -> (Vec<Six>, f64) {
+        let springs = self.contacts.tangent(&out.field);
+        let walls = self.walls.tangent(&out.field);
+        let mut blocks = self.network.blocks();
+        self.contacts.add_blocks(&springs, &mut blocks);
+        for (particle, k) in &walls {
+            blocks[*particle as usize][super::six::at(self.walls.axis, self.walls.axis)] += k;
+        }
+        let blocks = Blocks::new(blocks, self.held);
+        out.loose = blocks.loose;
+        let load: Vec<Six> = out.forces.iter().map(|f| f.map(|a| -a)).collect();
+        let product = |p: &[Six], q: &mut [Six]| {
+            self.network.product(p, q);
+            self.contacts.add_product(&springs, p, q);
+            for (particle, k) in &walls {
+                let particle = *particle as usize;
+                q[particle][self.walls.axis] += k * p[particle][self.walls.axis];
+            }
+        };
+        let mut step = vec![[0.0; 6]; load.len()];
+        let mut first = None;
+        let solved = solve(product, &blocks, Some(&load), &mut step, 0.0, MOST, |now| {
+            let first = *first.get_or_insert(now.residual);
+            now.residual <= limit.map_or_else(|least| least, |part| part * first)
+        });
+        out.iterations += solved.iterations;
+        let decrement = par::sum(step.len(), |k| (0..6).map(|c| load[k][c] * step[k][c]).sum());
+        (step, decrement)
+    }
+
+    /// Takes the step, halved until the residual falls; whether it did.
+    fn search(&self, out: &mut Found, step: &[Six], before: f64) -> bool {
+        let mut part = 1.0;
+        for _ in 0..HALVES {
+            let field: Vec<Six> = (out.field.iter().zip(step))
+                .map(|(u, s)| std::array::from_fn(|c| u[c] + part * s[c]))
+                .collect();
+            let mut forces = vec![[0.0; 6]; field.len()];
+            self.forces(&field, &mut forces);
+            let now = self.norm(&forces);
+            if now < before {
+                (out.field, out.forces) = (field, forces);
+                out.residuals.push(now);
+                return true;
+            }
+            part *= 0.5;
+        }
+        false
+    }
+}

@@ -1,0 +1,113 @@
+//! Pairs of particles in an order in which what they do can be added up by particle, with the same bits for any number of threads.
+
+use perigrain_base::par;
+
+/// Pairs by the place of their lower end, cut where particles are cut into chunks of [`par::CHUNK`].
+#[derive(Clone, Debug, Default)]
+pub struct Pairs {
+    /// Places of both ends, the lower one first; ascending.
+    pub ends: Vec<[u32; 2]>,
+    /// Where each was in the list that this was made from.
+    pub origin: Vec<u32>,
+    /// The first pair of each chunk of particles, and the number of pairs.
+    first: Vec<u32>,
+    /// Pairs whose lower end is in an earlier chunk, by the chunk of their upper end.
+    late: Vec<u32>,
+    /// Where those of each chunk begin.
+    first_late: Vec<u32>,
+}
+
+impl Pairs {
+    /// Puts pairs of places below `particles` in order.
+    pub fn new(particles: usize, ends: &[[u32; 2]]) -> Self {
+        let sorted = |k: u32| {
+            let [a, b] = ends[k as usize];
+            [a.min(b), a.max(b)]
+        };
+        let mut origin: Vec<u32> = (0..ends.len() as u32).collect();
+        origin.sort_unstable_by_key(|k| (sorted(*k), *k));
+        let ends: Vec<[u32; 2]> = origin.iter().map(|k| sorted(*k)).collect();
+        let chunks = particles.div_ceil(par::CHUNK);
+        let chunk = |place: u32| place as usize / par::CHUNK;
+        let first = (0..=chunks).map(|c| ends.partition_point(|e| chunk(e[0]) < c) as u32).collect();
+        let mut late: Vec<u32> = (0..ends.len() as u32)
+            .filter(|k| chunk(ends[*k as usize][0]) != chunk(ends[*k as usize][1]))
+            .collect();
+        late.sort_by_key(|k| chunk(ends[*k as usize][1]));
+        let first_late =
+            (0..=chunks).map(|c| late.partition_point(|k| chunk(ends[*k as usize][1]) < c) as u32).collect();
+        Self { ends, origin, first, late, first_late }
+    }
+
+    /// Number of pairs.
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// Adds what each pair gives to its lower end and to its upper one, `pull(pair, places)`, to the rows of `out`: one for each
+    /// particle. What crosses a border of chunks is reckoned on both sides; each row is added to in the order of the pairs
+    /// within its chunk, then of those from before.
+    pub fn gather<const N: usize>(
+        &self,
+        out: &mut [[f64; N]],
+        pull: impl Fn(usize, [usize; 2]) -> [[f64; N]; 2] + Sync,
+    ) {
+        if self.is_empty() {
+            return;
+        }
+        par::each(out, |start, rows: &mut [[f64; N]]| {
+            let chunk = start / par::CHUNK;
+            let own = self.first[chunk]..self.first[chunk + 1];
+            let late = &self.late[self.first_late[chunk] as usize..self.first_late[chunk + 1] as usize];
+            // One loop, so that there is one place into which `pull` is compiled.
+            for k in own.chain(late.iter().copied()).map(|k| k as usize) {
+                let [i, j] = self.ends[k].map(|place| place as usize);
+                let [low, high] = pull(k, [i, j]);
+                // An end outside of the chunk is below its first row or beyond its last.
+                for (place, more) in [(i, low), (j, high)] {
+                    if let Some(row) = rows.get_mut(place.wrapping_sub(start)) {
+                        row.iter_mut().zip(more).for_each(|(sum, a)| *sum += a);
+                    }
+                }
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_end_gets_its_part_once() {
+        let n = 3 * par::CHUNK + 5;
+        // Some pairs within chunks, some across, in both orders of ends.
+        let ends: Vec<[u32; 2]> = (0..9 * n)
+            .map(|k| [(k * 7919) % n, (k * 104_729 + 1) % n].map(|i| i as u32))
+            .filter(|[a, b]| a != b)
+            .collect();
+        let pairs = Pairs::new(n, &ends);
+        let mut out = vec![[0.0; 2]; n];
+        pairs.gather(&mut out, |k, [i, j]| {
+            assert!(i < j);
+            let id = f64::from(pairs.origin[k]) + 1.0;
+            [[1.0, id], [1.0, -id]]
+        });
+        let mut wanted = vec![[0.0; 2]; n];
+        for (k, [a, b]) in ends.iter().enumerate() {
+            let id = k as f64 + 1.0;
+            for (place, sign) in [(a.min(b), 1.0), (a.max(b), -1.0)] {
+                wanted[*place as usize][0] += 1.0;
+                wanted[*place as usize][1] += sign * id;
+            }
+        }
+        // Whole numbers below 2^53: sums are exact in any order.
+        assert_eq!(out, wanted);
+        assert!(!pairs.is_empty() && pairs.len() == ends.len());
+    }
+}

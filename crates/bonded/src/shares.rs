@@ -1,0 +1,41 @@
+//! Who stores the energy of a strained body, and what follows from it: K = 2U/Δ² and U is stationary in the field, so that
+//! ∂ln K/∂ln p = Σ_bonds Σ_modes U ∂ln k/∂ln p / U.
+
+use super::network::{Modes, Moved, Network, plus};
+use super::six::Six;
+use perigrain_base::par;
+
+/// Energies by kind of bond: `kind(bond)` is below `kinds`.
+pub fn by_kind(
+    network: &Network,
+    u: &[Six],
+    kinds: usize,
+    kind: impl Fn(usize) -> usize + Sync,
+) -> Vec<Modes> {
+    let chunk = |range: std::ops::Range<usize>| {
+        let mut sums = vec![[0.0; 4]; kinds];
+        for bond in range {
+            let moved = network.moved(bond, u, None);
+            let sum = &mut sums[kind(bond)];
+            *sum = plus(*sum, network.work(bond, &moved, &moved).map(|a| 0.5 * a));
+        }
+        sums
+    };
+    let join = |a: Vec<Modes>, b: Vec<Modes>| a.into_iter().zip(b).map(|(a, b)| plus(a, b)).collect();
+    par::reduce(network.bonds(), chunk, join).unwrap_or_else(|| vec![[0.0; 4]; kinds])
+}
+
+/// Σ_bonds Σ_modes a K b ∂ln k/∂ln p for two fields (with strains of the whole), where `change(bond)` tells ∂ln k/∂ln p of stretch, shear,
+/// bend and twist.
+pub fn change(
+    network: &Network,
+    moved: impl Fn(usize) -> [Moved; 2] + Sync,
+    change: impl Fn(usize) -> Modes + Sync,
+) -> f64 {
+    let sum = network.sum(|bond| {
+        let [a, b] = moved(bond);
+        let (work, change) = (network.work(bond, &a, &b), change(bond));
+        std::array::from_fn(|k| if change[k] == 0.0 { 0.0 } else { work[k] * change[k] })
+    });
+    sum.iter().sum()
+}

@@ -1,0 +1,174 @@
+//! Symmetric 6 × 6 matrices: packed by rows of the lower triangle, inverted.
+
+/// Three displacements [length] and three rotations [rad], or three forces and three torques: a row for each particle.
+pub type Six = [f64; 6];
+
+/// A symmetric 6 × 6 matrix: 00, 10 11, 20 21 22 …
+pub type Packed = [f64; 21];
+
+/// A full 6 × 6 matrix.
+pub type Matrix6 = [[f64; 6]; 6];
+
+/// Below this part of the largest one of its kind a pivot is none: the block lets a motion pass without resistance.
+pub const PIVOT: f64 = 1e-12;
+
+/// Where an element of a packed matrix stands.
+#[inline(always)]
+pub fn at(row: usize, column: usize) -> usize {
+    let (row, column) = if row < column { (column, row) } else { (row, column) };
+    row * (row + 1) / 2 + column
+}
+
+/// The lower triangle of a symmetric matrix.
+pub fn packed(m: &Matrix6) -> Packed {
+    let mut out = [0.0; 21];
+    for row in 0..6 {
+        for column in 0..=row {
+            out[at(row, column)] = m[row][column];
+        }
+    }
+    out
+}
+
+/// The whole of a packed matrix.
+pub fn full(m: &Packed) -> Matrix6 {
+    std::array::from_fn(|row| std::array::from_fn(|column| m[at(row, column)]))
+}
+
+/// m v.
+#[inline(always)]
+pub fn times(m: &Packed, v: &Six) -> Six {
+    std::array::from_fn(|row| {
+        (m[at(row, 0)] * v[0] + m[at(row, 1)] * v[1] + m[at(row, 2)] * v[2])
+            + (m[at(row, 3)] * v[3] + m[at(row, 4)] * v[4] + m[at(row, 5)] * v[5])
+    })
+}
+
+/// An inverse, with what it leaves out.
+pub struct Inverse {
+    /// Of the matrix without the rows and columns left out, in which it is zero.
+    pub inverse: Packed,
+    /// Rows without a pivot, a bit each.
+    pub without: u8,
+    /// Some pivot was negative: the matrix is no stiffness.
+    pub negative: bool,
+}
+
+/// The inverse of a positive semidefinite matrix without the rows `held` (a bit each), and without those of which nothing is left
+/// once the rows before are eliminated. Rows below and from 3 on are of different units and compared among themselves.
+///
+/// Cholesky's decomposition in the form L D Lᵀ, then columns of the inverse one by one.
+pub fn invert(m: &Matrix6, held: u8) -> Inverse {
+    let largest = |rows: std::ops::Range<usize>| rows.fold(0.0, |most: f64, r| most.max(m[r][r].abs()));
+    let least = [PIVOT * largest(0..3), PIVOT * largest(3..6)];
+    let (mut l, mut d) = (*m, [0.0; 6]);
+    let mut out = Inverse { inverse: [0.0; 21], without: 0, negative: false };
+    for k in 0..6 {
+        d[k] = l[k][k];
+        out.negative |= held >> k & 1 == 0 && d[k] < -least[k / 3];
+        if held >> k & 1 == 0 && d[k] <= least[k / 3] {
+            out.without |= 1 << k;
+        }
+        if (held | out.without) >> k & 1 != 0 {
+            d[k] = 0.0;
+            for r in k + 1..6 {
+                l[r][k] = 0.0;
+            }
+            continue;
+        }
+        for r in k + 1..6 {
+            let factor = l[r][k] / d[k];
+            for c in k + 1..=r {
+                l[r][c] -= factor * l[c][k];
+            }
+        }
+        // Only now: the loop above needs the column as it was.
+        for r in k + 1..6 {
+            l[r][k] /= d[k];
+        }
+    }
+    for column in (0..6).filter(|c| d[*c] != 0.0) {
+        let mut v = [0.0; 6];
+        v[column] = 1.0;
+        for row in 0..6 {
+            for c in 0..row {
+                v[row] -= l[row][c] * v[c];
+            }
+        }
+        for row in (0..6).rev() {
+            v[row] = if d[row] == 0.0 { 0.0 } else { v[row] / d[row] };
+            for r in row + 1..6 {
+                v[row] -= l[r][row] * v[r];
+            }
+            if d[row] == 0.0 {
+                v[row] = 0.0;
+            }
+        }
+        for row in column..6 {
+            out.inverse[at(row, column)] = v[row];
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A Aᵀ + 1 for a matrix of small whole numbers: positive definite, of condition about 100.
+    fn positive() -> Matrix6 {
+        let a: Matrix6 =
+            std::array::from_fn(|r| std::array::from_fn(|c| ((3 * r + 5 * c * c) % 7) as f64 - 3.0));
+        std::array::from_fn(|r| {
+            std::array::from_fn(|c| {
+                (0..6).map(|k| a[r][k] * a[c][k]).sum::<f64>() + f64::from(u8::from(r == c))
+            })
+        })
+    }
+
+    #[test]
+    fn inverse_times_matrix_is_one() {
+        let m = positive();
+        let found = invert(&m, 0);
+        assert!(found.without == 0 && !found.negative);
+        for c in 0..6 {
+            let column = times(&found.inverse, &std::array::from_fn(|r| m[r][c]));
+            for r in 0..6 {
+                // Rounding times condition.
+                assert!((column[r] - f64::from(u8::from(r == c))).abs() < 1e-12, "{column:?}");
+            }
+        }
+        assert_eq!(full(&packed(&m)), m);
+    }
+
+    #[test]
+    fn held_rows_are_left_out() {
+        let m = positive();
+        let found = full(&invert(&m, 0b010010).inverse);
+        let mut without = m;
+        for k in [1, 4] {
+            for other in 0..6 {
+                (without[k][other], without[other][k]) = (0.0, 0.0);
+            }
+            without[k][k] = 1.0;
+        }
+        let wanted = full(&invert(&without, 0).inverse);
+        for (r, c) in (0..36).map(|k| (k / 6, k % 6)) {
+            let wanted = if [1, 4].contains(&r) || [1, 4].contains(&c) { 0.0 } else { wanted[r][c] };
+            assert!((found[r][c] - wanted).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn motions_without_resistance_are_told() {
+        // n nᵀ resists along n alone: of three pivots two are missing; no rotation resists.
+        let n = [0.6, 0.48, 0.64];
+        let m: Matrix6 = std::array::from_fn(|r| {
+            std::array::from_fn(|c| if r < 3 && c < 3 { 1e7 * n[r] * n[c] } else { 0.0 })
+        });
+        let found = invert(&m, 0);
+        assert_eq!(found.without, 0b111110);
+        assert!((found.inverse[0] - 1.0 / (1e7 * 0.36)).abs() < 1e-20 && !found.negative);
+        assert!(invert(&m.map(|row| row.map(|a| -a)), 0).negative);
+    }
+}

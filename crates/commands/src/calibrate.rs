@@ -1,0 +1,178 @@
+//! `calibrate`: the stiffness of bonded bodies without a run, and coefficients of bonds that give a stiffness.
+
+mod cell;
+mod dsm;
+mod fit;
+mod found;
+mod model;
+mod scene;
+mod setup;
+mod ste;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+mod touch;
+mod words;
+
+use super::{Act, CommandStyle};
+use found::Found;
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_lang::Args;
+use perigrain_styles::common::{self, populated};
+use perigrain_styles::{ActCx, BuildCx, Compute, Doc, Style};
+use perigrain_world::GroupId;
+use scene::Scene;
+use touch::Hertz;
+use words::{Solver, Words};
+
+/// The command.
+pub struct Calibrate;
+
+impl Style for Calibrate {
+    fn name(&self) -> &'static str {
+        "calibrate"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "calibrate dsm ID GROUP axis x|y|z strain S [low|high grip|plate|wall] [thick T] [rotations yes|no] [contacts yes|no] \
+                     [prestress remove|keep] [tol P] [bound yes|no] [method pcg|paper [FL [FN]]] [shape block|cylinder|area A] \
+                     [length free|body] [fields yes|no]\n\
+                     calibrate ste ID GROUP axis x|y|z [order N] [slabs auto|H] [map deviation|stiffness D] [strain S] [low|high wall] [thick T] [contacts yes|no] \
+                     [shape …] [length free|body]\n\
+                     calibrate periodic ID GROUP [rotations yes|no] [tol P]\n\
+                     calibrate fit ID GROUP target K|E|nu V … vary bond T COEFF … [method dsm|ste|periodic] [tol P] and words of that method",
+            summary: "The stiffness of bonded bodies without a run, and coefficients of bonds that give a stiffness.",
+            text: DOC,
+            example: "units si\natom_style hybrid sphere bond\nboundary f f f\nlattice fcc 1.4142e-3\n\
+                      region b block -0.1 2.9 -0.1 2.9 -0.1 2.9\ncreate_box 1 b bond/types 1 extra/bond/per/atom 12\ncreate_atoms 1 box\n\
+                      set group all diameter 1e-3\nspecial_bonds lj/coul 0 1 1\ncreate_bonds many all all 1 0.9e-3 1.1e-3\n\
+                      bond_style harmonic\nbond_coeff 1 2.5e5 1e-3\n\
+                      calibrate dsm a all axis z strain -0.01 low plate high plate\ncalibrate ste b all axis z\n\
+                      calibrate fit c all target K 2.0e4 vary bond 1 k low plate high plate\n\
+                      print \"before: $(c_a[1]:%.5g) N/m, estimated $(c_b[1]:%.5g) N/m; now $(c_c[1]:%.5g) N/m\"",
+        }
+    }
+}
+
+/// The page's text.
+const DOC: &str = "\
+    Linear statics of a body of bonded particles as it stands now: displacements are small, directions stay, no time passes, nothing moves. \
+    Stiffnesses of bonds come from the bond style: `bpm/beam` and `bpm/rotational` have all four (stretch, shear, twist, bend), `bpm/spring` \
+    and `harmonic` resist stretch alone. After Jarolin and Dosta, Comput. Part. Mech. 8 (2021) 1065.\n\n\
+    **dsm**, the direct stiffness method: both ends of the body along the axis are held and come closer by S times their distance (S below 0 \
+    presses). An end is everybody whose surface is within T (by default the mean radius) of the outermost one. `grip` (the default) holds its \
+    particles wholly, `plate` along the axis only; `wall` is a rigid plane at the outermost surface that pushes what touches it, by Hertz' law with \
+    the pair style's coefficients and twice the stiffness of two such particles. Particles turn unless `rotations no` is said, which makes \
+    a body some percent too stiff. The field begins with the affine one and is improved by conjugate gradients until K is known to the part P \
+    of it (default 0.01) by how fast the energy falls, with a margin: K approaches from above. ν is of the field and converges as the root of that. \
+    `bound yes` goes on until a lower bound proves it, for two `grip` ends and bonds alone. `method paper` begins from zero and stops at a residual |r| \
+    below FL (linear, 1e-6) and FN (with contacts, 1e-3) in force units. Pieces that nothing holds are left out and counted.\n\n\
+    Contacts between particles count where the pair style has Hertz contacts (`hertz/material … tangential mindlin NULL …`) unless `contacts no` is said: pairs \
+    whose bonds do not bar them (`special_bonds`), found once, closed and opened by Newton's method, without slip. The force that overlaps have before the load is \
+    taken away, `prestress keep` leaves it. K is F/Δ then.\n\n\
+    **ste**, the estimate of the tensor: order 0 lets everybody follow the strain, 1 and 2 are those of the paper (default 2), N from 3 on takes N sweeps. No \
+    boundary conditions: on bodies with free faces 5 to 15 % off. `slabs` puts layers of two diameters (or H) one behind the other; walls are put in series. Contacts \
+    that close under the strain count as springs. `map stiffness D` gives each particle the K along x, y, z that the body had if all of it were like the ball of radius D \
+    around the particle, `map deviation D` by which part these are below their mean (positive is softer): c_ID[1] to [3] per particle.\n\n\
+    **periodic**: the tensor of a cell that repeats in all directions, from six load cases, with the mean field beside.\n\n\
+    **fit** varies coefficients (`E`, `radius` of bpm/beam, which is the ratio where that is given, `kr ks kt kb` of bpm/rotational, `k` of springs) of bond types until the targets are reached to the part P (default 0.005), and sets \
+    them as `bond_coeff` lines would; K is N/m of dsm and ste, the bulk modulus of periodic. One coefficient that all bonds are proportional to takes one solve. Where \
+    there are fewer targets than coefficients the change is the smallest one, and the direction left open is told.\n\n\
+    Results are a vector: c_ID[1] K, [2] E, [3] ν, [4] the lower and [5] the upper bound of K (NaN where there is none), [6] the force, [7] the displacement \
+    Δ of the high end, [8] iterations (ste: the order), [9] the share of contacts and walls in the energy (ste: in Σ k L²), [10] particles left out. E = K l/A with the distance l of the \
+    ends (`length body`: of the outermost surfaces) and the section A: `block` the product of both widths, `cylinder` π D²/4 of the mean width, or given. Of periodic: \
+    [1] bulk modulus, [2] and [3] E and ν, means over the axes, [5] the bulk modulus of the mean field, [6] shear modulus (both the mean of the bounds of Voigt and Reuss), \
+    [7] the volume. periodic and ste have the tensor c_ID[i][j], too (xx yy zz yz xz xy, engineering shears). `fields yes`: per particle c_ID[1] to [3] the \
+    displacement, [4] to [6] the rotation. Particles without a radius count as spheres that reach half way to their partners.";
+
+/// Which calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Dsm,
+    Ste,
+    Periodic,
+    Fit,
+}
+
+impl CommandStyle for Calibrate {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        common::domain(cx)?;
+        let name = a.choice("kind of calibration", &["dsm", "ste", "periodic", "fit"])?;
+        let kind = match name {
+            "dsm" => Kind::Dsm,
+            "ste" => Kind::Ste,
+            "periodic" => Kind::Periodic,
+            _ => Kind::Fit,
+        };
+        let word = a.expect("an ID for the results")?;
+        if !word.unknown && !word.text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
+            let text = format!("`{}` is no ID: it may hold letters, digits and underscores", word.text);
+            return fail(Code::BAD_VALUE, word.span, text);
+        }
+        if let Some(style) = cx.names.compute_style(&word.text).filter(|s| *s != self.name()) {
+            let text = format!("there is a compute {style} of the ID `{}` already", word.text);
+            let d = Diagnostic::error(Code::DUPLICATE_NAME, word.span, text);
+            return Err(d.help("choose another ID: results are read as `c_ID[1]`").into());
+        }
+        let group = cx.group(a.expect("a group")?)?;
+        if cx.world.bonds.coeffs.is_none() {
+            let text = "there is no bond_style: nothing says how stiff bonds are";
+            let d = Diagnostic::error(Code::WRONG_ORDER, a.name_span(), text);
+            return Err(d.help("put `bond_style` and `bond_coeff` before this line").into());
+        }
+        let words = Words::read(a, name, cx.world.bonds.types)?;
+        let fields = if words.fields { 2 } else { usize::from(words.map.is_some()) };
+        let tensor = match kind {
+            Kind::Dsm => false,
+            Kind::Ste | Kind::Periodic => true,
+            Kind::Fit => words.solver != Solver::Dsm,
+        };
+        if kind == Kind::Fit && (words.targets.is_empty() || words.vary.is_empty()) {
+            let text = "a fit needs a `target` and something to `vary`";
+            let d = Diagnostic::error(Code::INCOMPLETE, a.name_span(), text);
+            return Err(d.help("as `target K 2.0e4 vary bond 1 E`").into());
+        }
+        let found = Found::new(&word.text, tensor, fields);
+        Ok(Box::new(Line { kind, id: word.text.clone(), group, words, found }))
+    }
+}
+
+/// A line to be worked off.
+struct Line {
+    kind: Kind,
+    id: String,
+    group: GroupId,
+    words: Words,
+    found: Found,
+}
+
+impl Act for Line {
+    fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
+        populated(cx.world, "calibrate", cx.span)?;
+        common::settle(cx.world);
+        let Some(style) = cx.values.bonds() else {
+            return fail(Code::WRONG_ORDER, cx.span, "there is no bond_style");
+        };
+        if cx.world.adaptations() > 0.0 {
+            let text = "bonds count with the coefficients of the deck's lines, not with those that fix adapt has given";
+            cx.note(Diagnostic::warning(Code::NO_EFFECT, cx.span, text));
+        }
+        let scene = Scene::new(cx.world, self.group, style.as_ref(), self.kind == Kind::Fit, cx.span)?;
+        let hertz = match self.kind == Kind::Periodic || self.words.solver == Solver::Periodic {
+            true => None,
+            false => Hertz::new(cx, &self.words, scene.sample(0).mean_radius())?,
+        };
+        match self.kind {
+            Kind::Dsm => dsm::run(cx, &self, &scene, hertz.as_ref()),
+            Kind::Ste => ste::run(cx, &self, &scene, hertz.as_ref()),
+            Kind::Periodic => cell::periodic(cx, &self, &scene),
+            Kind::Fit => fit::run(cx, &self, scene, hertz.as_ref(), style.as_ref()),
+        }
+    }
+
+    fn leaves(&self) -> Option<(String, Box<dyn Compute>)> {
+        Some((self.id.clone(), Box::new(self.found.clone())))
+    }
+}

@@ -1,0 +1,362 @@
+//! The words of a `calibrate` line.
+
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_bonded::ends::Hold;
+use perigrain_lang::Args;
+use perigrain_styles::common::axis;
+
+/// How the cross-section of a sample is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// The product of both widths.
+    Block,
+    /// π D²/4 with the mean D of both widths.
+    Cylinder,
+    /// Given [length²].
+    Area(f64),
+}
+
+/// How the linear system is solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method {
+    /// Conjugate gradients from the affine field until the energy is known to the tolerance.
+    Pcg,
+    /// From zero until |r|₂ of the linear system and of the nonlinear one is below these [force].
+    Paper([f64; 2]),
+}
+
+/// What solves for a fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solver {
+    /// `calibrate dsm`.
+    Dsm,
+    /// `calibrate ste`.
+    Ste,
+    /// `calibrate periodic`.
+    Periodic,
+}
+
+/// What a map shows of the surroundings of each particle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Map {
+    /// K along the three axes if all of the body were so.
+    Stiffness,
+    /// By which part that is below the mean.
+    Deviation,
+}
+
+/// Which number a fit is to reach.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// K.
+    Stiffness,
+    /// E.
+    Young,
+    /// ν.
+    Poisson,
+}
+
+/// A number to reach.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// Which.
+    pub quantity: Quantity,
+    /// What it is to be.
+    pub value: f64,
+}
+
+/// A coefficient to vary.
+#[derive(Clone, Debug)]
+pub struct Vary {
+    /// The type of bonds.
+    pub kind: u16,
+    /// The coefficient's name.
+    pub name: String,
+    /// The words.
+    pub span: Span,
+}
+
+/// All words, with what they are if they are not said.
+#[derive(Clone, Debug)]
+pub struct Words {
+    /// Direction of the load.
+    pub axis: usize,
+    /// Its strain.
+    pub strain: f64,
+    /// The ends.
+    pub holds: [Hold; 2],
+    /// The place of the first end that is a wall.
+    pub wall: Option<Span>,
+    /// How far an end reaches [length].
+    pub thick: Option<f64>,
+    /// Whether particles turn.
+    pub rotations: bool,
+    /// Whether contacts count; `None`: where the pair style has some.
+    pub contacts: Option<(bool, Span)>,
+    /// Whether forces that contacts have before the load are taken away.
+    pub relaxed: bool,
+    /// The part of the energy to which it is to be known.
+    pub tol: f64,
+    /// For certain.
+    pub bound: Option<Span>,
+    /// How.
+    pub method: Method,
+    /// Cross-section.
+    pub shape: Shape,
+    /// Whether E is of the length of the body, not of the distance of the ends.
+    pub body: bool,
+    /// Whether fields are kept.
+    pub fields: bool,
+    /// Order of the estimate.
+    pub order: usize,
+    /// Height of slabs: `None` none, `Some(None)` two diameters.
+    pub slabs: Option<Option<f64>>,
+    /// A map, and the radius of the surroundings [length].
+    pub map: Option<(Map, f64)>,
+    /// To be reached.
+    pub targets: Vec<Target>,
+    /// To be varied.
+    pub vary: Vec<Vary>,
+    /// What solves for a fit.
+    pub solver: Solver,
+}
+
+const DSM: &[&str] = &[
+    "axis",
+    "strain",
+    "low",
+    "high",
+    "thick",
+    "rotations",
+    "contacts",
+    "prestress",
+    "tol",
+    "bound",
+    "method",
+    "shape",
+    "length",
+    "fields",
+];
+const STE: &[&str] =
+    &["axis", "strain", "low", "high", "thick", "contacts", "order", "slabs", "map", "shape", "length"];
+const PERIODIC: &[&str] = &["rotations", "tol"];
+const FIT: &[&str] = &[
+    "target",
+    "vary",
+    "method",
+    "tol",
+    "axis",
+    "strain",
+    "low",
+    "high",
+    "thick",
+    "rotations",
+    "contacts",
+    "prestress",
+    "shape",
+    "length",
+    "order",
+];
+
+/// What of [`Words`] a kind of calibration has.
+pub fn keywords(kind: &str) -> &'static [&'static str] {
+    match kind {
+        "dsm" => DSM,
+        "ste" => STE,
+        "periodic" => PERIODIC,
+        _ => FIT,
+    }
+}
+
+impl Words {
+    /// Reads the words behind the group.
+    ///
+    /// # Errors
+    /// Every mistake in them.
+    pub fn read(a: &mut Args, kind: &str, types: usize) -> Result<Self> {
+        let mut out = Self {
+            axis: 2,
+            strain: -0.01,
+            holds: [Hold::Grip; 2],
+            wall: None,
+            thick: None,
+            rotations: true,
+            contacts: None,
+            relaxed: true,
+            tol: if kind == "fit" { 0.005 } else { 0.01 },
+            bound: None,
+            method: Method::Pcg,
+            shape: Shape::Block,
+            body: false,
+            fields: false,
+            order: 2,
+            slabs: None,
+            map: None,
+            targets: vec![],
+            vary: vec![],
+            solver: Solver::Dsm,
+        };
+        let known = keywords(kind);
+        while let Some(word) = a.next() {
+            let Some(name) = known.iter().find(|k| **k == word.text) else {
+                return Err(out.unknown(a, word, kind));
+            };
+            out.keyword(a, name, kind == "fit", types, word.span)?;
+        }
+        if let Some(wall) = out.wall.filter(|_| out.strain > 0.0) {
+            let text = "a wall pushes only: it does not follow a strain above 0";
+            let d = Diagnostic::error(Code::CONFLICT, wall, text);
+            return Err(d.help("write a negative strain, or hold the ends with `grip` or `plate`").into());
+        }
+        Ok(out)
+    }
+
+    /// Whether a fit is to reach such a number.
+    pub fn aims(&self, quantity: Quantity) -> bool {
+        self.targets.iter().any(|t| t.quantity == quantity)
+    }
+
+    fn unknown(
+        &self,
+        a: &Args,
+        word: &perigrain_lang::Word,
+        kind: &str,
+    ) -> perigrain_base::diag::Diagnostics {
+        let elsewhere =
+            ["dsm", "ste", "periodic", "fit"].into_iter().find(|k| keywords(k).contains(&word.text.as_str()));
+        match elsewhere {
+            Some(other) => {
+                let text = format!("`{}` does not concern `calibrate {kind}`", word.text);
+                Diagnostic::error(Code::BAD_VALUE, word.span, text)
+                    .help(format!("`calibrate {other}` has it"))
+                    .into()
+            }
+            None => a.unknown(word, keywords(kind)),
+        }
+    }
+
+    fn keyword(&mut self, a: &mut Args, name: &str, fit: bool, types: usize, at: Span) -> Result<()> {
+        let value = a.here();
+        match name {
+            "axis" => self.axis = axis(a, "axis of the load")?,
+            "strain" => self.strain = strain(a)?,
+            "low" => self.hold(a, 0)?,
+            "high" => self.hold(a, 1)?,
+            "thick" => self.thick = Some(a.positive("the thickness of an end")?),
+            "rotations" => self.rotations = a.flag("rotations")?,
+            "prestress" => self.relaxed = a.choice("prestress", &["remove", "keep"])? == "remove",
+            "contacts" => self.contacts = Some((a.flag("contacts")?, at)),
+            "tol" => self.tol = tolerance(a)?,
+            "bound" => self.bound = a.flag("bound")?.then_some(value),
+            "method" if fit => {
+                self.solver = match a.choice("method of a fit", &["dsm", "ste", "periodic"])? {
+                    "dsm" => Solver::Dsm,
+                    "ste" => Solver::Ste,
+                    _ => Solver::Periodic,
+                }
+            }
+            "method" => self.method = method(a)?,
+            "shape" | "length" | "fields" | "order" | "slabs" | "map" => self.measure(a, name)?,
+            "target" => self.targets.push(target(a)?),
+            _ => self.vary(a, types)?,
+        }
+        Ok(())
+    }
+
+    fn measure(&mut self, a: &mut Args, name: &str) -> Result<()> {
+        match name {
+            "shape" => {
+                self.shape = match a.choice("shape", &["block", "cylinder", "area"])? {
+                    "block" => Shape::Block,
+                    "cylinder" => Shape::Cylinder,
+                    _ => Shape::Area(a.positive("the area")?),
+                }
+            }
+            "length" => self.body = a.choice("length", &["free", "body"])? == "body",
+            "fields" => self.fields = a.flag("fields")?,
+            "order" => self.order = a.integer_from(0, "the order")?.min(1_000_000) as usize,
+            "map" => {
+                let deviation = a.choice("map", &["deviation", "stiffness"])? == "deviation";
+                let map = if deviation { Map::Deviation } else { Map::Stiffness };
+                self.map = Some((map, a.positive("the radius of the surroundings")?));
+            }
+            _ => {
+                self.slabs =
+                    Some(if a.eat("auto") { None } else { Some(a.positive("the height of a slab")?) })
+            }
+        }
+        Ok(())
+    }
+
+    fn hold(&mut self, a: &mut Args, end: usize) -> Result<()> {
+        let span = a.here();
+        self.holds[end] = match a.choice("way to hold an end", &["grip", "plate", "wall"])? {
+            "grip" => Hold::Grip,
+            "plate" => Hold::Plate,
+            _ => {
+                self.wall = self.wall.or(Some(span));
+                Hold::Wall
+            }
+        };
+        Ok(())
+    }
+
+    fn vary(&mut self, a: &mut Args, types: usize) -> Result<()> {
+        a.choice("what varies", &["bond"])?;
+        let span = a.here();
+        let kind = a.integer_from(1, "a bond type")?;
+        if kind > types as i64 {
+            return fail(Code::BAD_VALUE, span, format!("there are bond types 1 to {types}"));
+        }
+        let word = a.expect("a coefficient of the bond style")?;
+        self.vary.push(Vary { kind: kind as u16, name: word.text.clone(), span: word.span });
+        Ok(())
+    }
+}
+
+fn strain(a: &mut Args) -> Result<f64> {
+    let span = a.here();
+    let strain = a.number("the strain")?;
+    if strain == 0.0 {
+        return fail(Code::BAD_VALUE, span, "without a strain there is no stiffness: write about -0.01");
+    }
+    if strain <= -1.0 {
+        let text = format!("a strain of {strain} turns bonds inside out");
+        let d = Diagnostic::error(Code::BAD_VALUE, span, text);
+        return Err(d
+            .help("strains are above -1; displacements are small ones, so that about -0.01 is meant")
+            .into());
+    }
+    Ok(strain)
+}
+
+fn tolerance(a: &mut Args) -> Result<f64> {
+    let span = a.here();
+    let tol = a.positive("the tolerance")?;
+    if tol >= 1.0 {
+        return fail(Code::BAD_VALUE, span, "the tolerance is a part of the stiffness: it must be below 1");
+    }
+    Ok(tol)
+}
+
+fn method(a: &mut Args) -> Result<Method> {
+    if a.choice("method", &["pcg", "paper"])? == "pcg" {
+        return Ok(Method::Pcg);
+    }
+    let mut limits = [1e-6, 1e-3];
+    for limit in &mut limits {
+        if a.peek().is_some_and(|w| w.text.parse::<f64>().is_ok()) {
+            *limit = a.positive("the force that may be left")?;
+        }
+    }
+    Ok(Method::Paper(limits))
+}
+
+fn target(a: &mut Args) -> Result<Target> {
+    let quantity = match a.choice("quantity", &["K", "E", "nu"])? {
+        "K" => Quantity::Stiffness,
+        "E" => Quantity::Young,
+        _ => Quantity::Poisson,
+    };
+    Ok(Target { quantity, value: a.positive("the value to reach")? })
+}
