@@ -47,6 +47,7 @@ const BOOK: [&str; 2] = [
      - [Find what is wrong with a deck](howto/wrong-deck.md)\n\
      - [Explore at the prompt](howto/prompt.md)\n\
      - [Calibrate to a material](howto/material.md)\n\
+     - [Calibrate an agglomerate in five minutes](howto/agglomerate.md)\n\
      - [Make a movie of a crack](howto/movie.md)\n\
      - [Read results in ParaView, OVITO and pandas](howto/results.md)\n\
      - [Make a long run](howto/long-runs.md)\n\

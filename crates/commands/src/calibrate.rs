@@ -77,7 +77,7 @@ const DOC: &str = "\
     that close under the strain count as springs. `map stiffness D` gives each particle the K along x, y, z that the body had if all of it were like the ball of radius D \
     around the particle, `map deviation D` by which part these are below their mean (positive is softer): c_ID[1] to [3] per particle.\n\n\
     **periodic**: the tensor of a cell that repeats in all directions, from six load cases, with the mean field beside.\n\n\
-    **fit** varies coefficients (`E`, `radius`, `nu` of bpm/beam, `k` of springs) of bond types until the targets are reached to the part P (default 0.005), and sets \
+    **fit** varies coefficients (`E`, `nu`, `radius` of bpm/beam, which is the ratio where that is given, `kr ks kt kb` of bpm/rotational, `k` of springs) of bond types until the targets are reached to the part P (default 0.005), and sets \
     them as `bond_coeff` lines would; K is N/m of dsm and ste, the bulk modulus of periodic. One coefficient that all bonds are proportional to takes one solve. Where \
     there are fewer targets than coefficients the change is the smallest one, and the direction left open is told.\n\n\
     Results are a vector: c_ID[1] K, [2] E, [3] ν, [4] the lower and [5] the upper bound of K (NaN where there is none), [6] the force, [7] the displacement \

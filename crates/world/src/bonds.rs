@@ -123,13 +123,23 @@ impl Bonds {
     /// Bonds have broken, told by the ids of their ends, the lower first, and their type, ascending: they are gone, and pair forces
     /// act between their ends.
     pub fn lose(&mut self, broken: &[([u32; 2], i32)]) {
-        self.list.retain(|b| broken.binary_search(&(ascending(b.ends), b.kind)).is_err());
-        let parted = |p: &[u32; 2]| {
-            let at = broken.partition_point(|(ends, _)| ends < p);
-            broken.get(at).is_some_and(|(ends, _)| ends == p)
-        };
+        let place = |ends: &[u32; 2]| broken.partition_point(|(b, _)| b < ends);
+        let parted = |ends: &[u32; 2]| broken.get(place(ends)).is_some_and(|(b, _)| b == ends);
+        let mut held = vec![];
+        self.list.retain(|b| {
+            let ends = ascending(b.ends);
+            let holds = broken.binary_search(&(ends, b.kind)).is_err();
+            if holds && parted(&ends) {
+                held.push(ends);
+            }
+            holds
+        });
         self.special.retain(|p| !parted(p));
-        self.forget_memory();
+        // Another bond may join the same ends.
+        for (ends, _) in broken.iter().filter(|(ends, _)| !held.contains(ends)) {
+            self.turned.remove(ends);
+            self.memory.remove(ends);
+        }
         self.changes += 1;
     }
 

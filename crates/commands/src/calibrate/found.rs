@@ -82,7 +82,8 @@ impl Compute for Found {
         let numbers = self.numbers();
         let fields: Vec<Vectors> = (0..self.fields).map(|k| self.field(k)).collect();
         let wanted = Wanted { slot, stage, when };
-        Ok(fill(&self.id, &wanted, COLUMNS | MEMO, move |w, _, out| {
+        let reads = if fields.is_empty() { MEMO } else { COLUMNS | MEMO };
+        Ok(fill(&self.id, &wanted, reads, move |w, _, out| {
             let all = w.memo.get(numbers).map_or(&[][..], Vec::as_slice);
             let (numbers, tensor) = all.split_at(NUMBERS.min(all.len()));
             out.vector = numbers.to_vec();

@@ -195,7 +195,7 @@ impl BondForce for Declared {
     }
 
     fn tunable(&self) -> &'static [&'static str] {
-        &["E", "radius"]
+        &["E", "nu", "radius"]
     }
 
     fn tuned(&self, name: &str, kind: u16, factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
@@ -203,12 +203,14 @@ impl BondForce for Declared {
         let line = tuned.types.get_mut(&kind)?;
         let value = match name {
             "E" => &mut line.coeffs.elastic[0],
+            "nu" => &mut line.coeffs.elastic[1],
             "radius" => line.radius.number(),
             _ => return None,
         };
         *value *= factor;
         let value = *value;
-        Some((Box::new(tuned), value))
+        let possible = name != "nu" || (value > -1.0 && value <= 0.5);
+        possible.then(|| (Box::new(tuned) as _, value))
     }
 
     fn written(&self, kind: u16) -> Option<String> {

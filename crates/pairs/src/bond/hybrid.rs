@@ -42,7 +42,9 @@ impl BondStyle for Hybrid {
                 return fail(Code::DUPLICATE_NAME, span, format!("`{name}` is named twice"));
             }
             let Some(style) = BONDS.iter().find(|s| s.name() == name) else { continue };
-            subs.push(style.build(args, cx)?);
+            let mut own = args.until(|word| known.contains(&word));
+            subs.push(style.build(&mut own, cx)?);
+            own.finish()?;
         }
         Ok(Box::new(Declared { subs, users: BTreeMap::new() }))
     }
