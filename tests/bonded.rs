@@ -67,7 +67,7 @@ fn momenta_are_kept_while_beams_break() {
 /// The mean magnitude of the ledger's residual over 20 moments, with whole and half steps.
 fn residuals(coeff: &str, dt: f64) -> [f64; 2] {
     [dt, 0.5 * dt].map(|dt| {
-        let steps = (4e-4 / dt).round();
+        let steps = (4e-4 / dt).round() as i64;
         let more = format!(
             "timestep {dt}\ncompute e all energy/ledger\nthermo_style custom step c_e[11]\n\
              thermo_modify format float %.15g\nthermo {}\nrun {steps}",
