@@ -17,15 +17,16 @@ fn run(deck: &str) -> World {
     session.world
 }
 
-/// A block of n³ spheres of 1 mm joined to their neighbours and second neighbours, that spins and swings.
+/// A block of n³ spheres of 1 mm joined to their neighbours (type 1) and second neighbours (type 2), that spins and swings.
 fn block(n: u32, coeff: &str, more: &str) -> String {
     let far = f64::from(n) - 0.9;
     format!(
         "units si\natom_style bpm/sphere\nboundary f f f\nlattice sc 0.001\nregion world block -0.1 0.1 -0.1 0.1 -0.1 0.1 units box\n\
-         region b block 0 {far} 0 {far} 0 {far}\ncreate_box 1 world bond/types 1 extra/bond/per/atom 20\ncreate_atoms 1 region b\n\
-         set group all diameter 0.001 density 2000\ncreate_bonds many all all 1 0.0009 0.0015\nspecial_bonds lj 0 1 1 coul 1 1 1\n\
+         region b block 0 {far} 0 {far} 0 {far}\ncreate_box 1 world bond/types 2 extra/bond/per/atom 20\ncreate_atoms 1 region b\n\
+         set group all diameter 0.001 density 2000\ncreate_bonds many all all 1 0.0009 0.0011\n\
+         create_bonds many all all 2 0.0011 0.0015\nspecial_bonds lj 0 1 1 coul 1 1 1\n\
          pair_style granular\npair_coeff * * hertz/material 1e9 0.9 0.2 tangential mindlin NULL 0.9 0.3 damping coeff_restitution\n\
-         bond_style bpm/beam\nbond_coeff 1 1e9 0.2 ratio 0.4 {coeff}\nvariable u atom 2.8*sin(3000*x)+300*y\n\
+         bond_style bpm/beam\nbond_coeff * 1e9 0.2 ratio 0.4 {coeff}\nvariable u atom 2.8*sin(3000*x)+300*y\n\
          variable w atom 0.5*cos(2000*z)-300*x\nvelocity all set v_u v_w 0.1 units box\nset group all omega 10 200 -30\n\
          fix 1 all nve/bpm/sphere\ntimestep 2e-7\n{more}"
     )
@@ -97,6 +98,11 @@ fn the_ledger_closes() {
     let [whole, half] = residuals("strength 3e6 1.5e6 weibull 6 71", 2e-7);
     assert!(half < 0.6 * whole, "{whole} {half}");
     let [whole, half] = residuals("damping 0.02", 0.5e-7);
+    assert!(half < 0.65 * whole, "{whole} {half}");
+    // Two styles, each with dashpots.
+    let both = "\nbond_style hybrid bpm/beam bpm/spring smooth no\nbond_coeff 1 bpm/beam 1e9 0.2 ratio 0.4 damping 0.02\n\
+                bond_coeff 2 bpm/spring 1e5 1 0.02";
+    let [whole, half] = residuals(both, 0.5e-7);
     assert!(half < 0.65 * whole, "{whole} {half}");
 }
 

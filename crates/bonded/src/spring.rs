@@ -2,7 +2,7 @@
 
 use crate::columns::Columns;
 use crate::law::{Acts, BondLaw, Ends, Motion};
-use crate::sweep::{Body, Out, Sweep, all, nearest};
+use crate::sweep::{BELOW_ONE, Body, Out, Sweep, all, nearest};
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, dot, length, scale, sub};
 use perigrain_base::par;
@@ -38,9 +38,6 @@ impl BondLaw<0> for Harmonic {
     }
 }
 
-/// The largest number below 1.
-const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
-
 /// Damped springs that break at a strain. J. Clemmer, M. Robbins, Phys. Rev. Lett. 129, 078002 (2022).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Breaking {
@@ -50,7 +47,7 @@ pub struct Breaking {
     pub normalize: bool,
 }
 
-/// A spring that is no longer by `longer` than at rest and pushes its ends apart with `spring`, damped, fading, with its load.
+/// A spring that is longer by `longer` than at rest and pushes its ends apart by `more` besides, damped, fading, with its load.
 #[inline(always)]
 fn damped_and_fading<R: Real>(
     law: &Breaking,

@@ -60,7 +60,7 @@ pub struct Out {
 }
 
 /// The largest number below 1: what is above it is 1 or more.
-const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
+pub const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
 
 /// All bonds under a law.
 ///

@@ -192,7 +192,8 @@ pub fn account(w: &mut World, t: &Tick, probes: &mut [Box<dyn Probe>], free: u32
     let turns = |i: usize| p.torque.get(i).zip(p.omega.get(i)).map_or(0.0, |(q, o)| dot(*q, *o));
     let forces = |i: usize| if held(i) { scale(w, i) * dot(p.f[i], p.v[i]) + turns(i) } else { 0.0 };
     let driven = par::sum(p.len(), forces);
-    let now = [power(0), power(1), power(2), contacts.damping + w.bonds.power, contacts.across, driven];
+    let damping = contacts.damping + w.bonds.power.iter().sum::<f64>();
+    let now = [power(0), power(1), power(2), damping, contacts.across, driven];
     let moving: f64 = kinetic(w, held).iter().sum();
     let known = Book::read(w);
     let mut book = known.unwrap_or_default();

@@ -89,9 +89,9 @@ pub struct Bonds {
     /// The energy of bonds that have broken since then [energy].
     #[serde(default)]
     pub released: f64,
-    /// What the dashpots of bonds take up at the present step [force length/time].
+    /// What the dashpots of bonds take up at the present step, by bond type, from 0 [force length/time]: each style adds up its own.
     #[serde(default)]
-    pub power: f64,
+    pub power: Vec<f64>,
     /// Grows with every change of the list or of what is special, so that others notice.
     pub changes: u64,
 }

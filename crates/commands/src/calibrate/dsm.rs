@@ -87,6 +87,7 @@ fn say(cx: &mut ActCx, line: &Line, scene: &Scene, setup: &Setup, r: &Response) 
         end(1)
     ));
     let within = match (r.certain, words.method) {
+        _ if !r.done => "not converged".to_string(),
         (Some(part), _) => format!("within {} % (certified)", percent(part)),
         (None, Method::Paper(_)) => "by the residual".to_string(),
         (None, _) => format!("within {} % (estimate)", percent(r.open)),

@@ -5,8 +5,8 @@ mod words;
 use super::driver::{Bonded, Driven, ends_of, pull_of};
 use super::options::Options;
 use super::store_local::Store;
-use super::{BondForce, BondStyle, Pull, Stretched};
-use perigrain_base::diag::{Code, Diagnostic, Result};
+use super::{BondForce, BondStyle, Pull, Stretched, needs_orientations};
+use perigrain_base::diag::Result;
 use perigrain_bonded::beam::{Coeffs, Potential};
 use perigrain_bonded::stiffness::Stiffness;
 use perigrain_bonded::weibull;
@@ -61,13 +61,7 @@ impl Style for BpmBeam {
 
 impl BondStyle for BpmBeam {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>> {
-        if !cx.world.particles.style.oriented {
-            let text = "bond_style bpm/beam needs particles with orientations";
-            let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
-            return Err(d
-                .help("put `atom_style bpm/sphere` (or a hybrid with it) at the top of the deck")
-                .into());
-        }
+        needs_orientations(self.name(), cx)?;
         let (options, law) = words::style(args)?;
         Ok(Box::new(Declared { options, law, types: BTreeMap::new() }))
     }
@@ -167,7 +161,7 @@ impl BondForce for Declared {
     }
 
     fn fixes(&self) -> Vec<(String, Box<dyn Fix>)> {
-        self.options.store.iter().map(|s| (s.id().to_string(), Box::new(s.clone()) as _)).collect()
+        self.options.fixes()
     }
 
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {

@@ -3,7 +3,7 @@
 use super::driver::{Bonded, Driven, ends_of, pull_of};
 use super::options::Options;
 use super::store_local::Store;
-use super::{BondForce, BondStyle, Pull, Stretched};
+use super::{BondForce, BondStyle, Pull, Stretched, needs_orientations};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::cformat::general;
 use perigrain_base::math::vec3::scale;
@@ -57,13 +57,7 @@ impl Style for BpmRotational {
 
 impl BondStyle for BpmRotational {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>> {
-        if !cx.world.particles.style.oriented {
-            let text = "bond_style bpm/rotational needs particles with orientations";
-            let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
-            return Err(d
-                .help("put `atom_style bpm/sphere` (or a hybrid with it) at the top of the deck")
-                .into());
-        }
+        needs_orientations(self.name(), cx)?;
         let options = Options::read(args, true, same_as_here)?;
         Ok(Box::new(Declared { options, types: BTreeMap::new(), compat_lammps: cx.world.settings.lammps() }))
     }
@@ -172,7 +166,7 @@ impl BondForce for Declared {
     }
 
     fn fixes(&self) -> Vec<(String, Box<dyn Fix>)> {
-        self.options.store.iter().map(|s| (s.id().to_string(), Box::new(s.clone()) as _)).collect()
+        self.options.fixes()
     }
 
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {

@@ -89,7 +89,7 @@ impl BondForce for Declared {
     }
 
     fn fixes(&self) -> Vec<(String, Box<dyn Fix>)> {
-        self.options.store.iter().map(|s| (s.id().to_string(), Box::new(s.clone()) as _)).collect()
+        self.options.fixes()
     }
 
     fn single(&self, w: &World, bond: &Stretched) -> Option<Pull> {

@@ -1,7 +1,7 @@
 //! The op of bonds as columns: finds their ends, evaluates a law for all of them, lets them break.
 
 use super::store_local::Store;
-use perigrain_base::diag::{Result, Span};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::body::{Quat, UNTURNED, after, back, turned};
 use perigrain_base::math::vec3::{Vec3, dot, length, scale, sub};
 use perigrain_base::par;
@@ -73,10 +73,14 @@ pub trait Driven<const C: usize>: Clone + Send + Sync + 'static {
 pub type Coeffs<const C: usize, L> = <<L as Driven<C>>::Law as BondLaw<C>>::Coeffs;
 
 /// A bond that a style now sees for the first time gets its length and axis at rest.
-pub fn first_sight<const C: usize, L: Driven<C>>(
+///
+/// # Errors
+/// Ends at one place.
+fn first_sight<const C: usize, L: Driven<C>>(
     law: &L,
     w: &mut World,
     list: &[(usize, Found)],
+    span: Span,
 ) -> Result<()> {
     let lengths = periods(w)?;
     for (at, found) in list {
@@ -91,7 +95,16 @@ pub fn first_sight<const C: usize, L: Driven<C>>(
         if !known {
             w.bonds.list[*at].length = distance;
         }
-        if !L::Law::TURNS || distance == 0.0 {
+        if distance == 0.0 && (law.measures() || L::Law::TURNS) {
+            let [a, b] = bond.ends;
+            let d = Diagnostic::error(
+                Code::BAD_VALUE,
+                span,
+                format!("particles {a} and {b} are joined and at one place"),
+            );
+            return Err(d.help("`delete_bonds` takes their bond away").into());
+        }
+        if !L::Law::TURNS {
             continue;
         }
         let mut axis = scale(1.0 / distance, r);
@@ -170,7 +183,7 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
     /// Finds bonds and their ends anew.
     fn lay_out(&mut self, w: &mut World) -> Result<()> {
         let list = find(w, |b| self.law.coeffs(b.kind as u16).is_some(), self.span)?;
-        first_sight(&self.law, w, &list)?;
+        first_sight(&self.law, w, &list, self.span)?;
         self.coeffs = (0..=w.bonds.types).map(|k| self.law.coeffs(k as u16)).collect();
         let member = |(at, found): &(usize, Found)| {
             let bond = &w.bonds.list[*at];
@@ -214,6 +227,17 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
                 let atoms = t.atom_virial.then_some(&mut tally.atom_bonds[..]);
                 add_share(&mut tally.bond_virial, atoms, ends, d, [f[0], f[1], f[2]]);
             }
+        }
+    }
+
+    /// Tells the ledger what the dashpots of this style's types take up.
+    fn account(&self, w: &mut World) {
+        let power = &mut w.bonds.power;
+        power.resize(self.coeffs.len(), 0.0);
+        let mine = self.coeffs.iter().enumerate().filter(|(_, k)| k.is_some());
+        mine.for_each(|(kind, _)| power[kind] = 0.0);
+        for (bond, heat) in self.out.power.iter().enumerate() {
+            power[usize::from(self.columns.kind(bond))] += heat;
         }
     }
 
@@ -303,7 +327,7 @@ impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
             self.break_off(w, t.step);
         }
         if w.bonds.counts_losses {
-            w.bonds.power = par::sum(self.out.power.len(), |k| self.out.power[k]);
+            self.account(w);
         }
         self.tally(w, t, &periods);
         Ok(())

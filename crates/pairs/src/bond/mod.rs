@@ -25,6 +25,7 @@ mod store_local;
 mod zero;
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_styles::BuildCx;
 pub use perigrain_styles::bond::{BondForce, BondStyle};
 pub use perigrain_styles::pull::{Pull, Stretched, apart};
 use perigrain_world::World;
@@ -42,6 +43,19 @@ pub const BONDS: &[&dyn BondStyle] = &[
     &hybrid::Hybrid,
     &zero::ZeroStyle,
 ];
+
+/// Bonds that twist and bend need particles with orientations.
+///
+/// # Errors
+/// They have none.
+fn needs_orientations(style: &str, cx: &BuildCx) -> Result<()> {
+    if cx.world.particles.style.oriented {
+        return Ok(());
+    }
+    let text = format!("bond_style {style} needs particles with orientations");
+    let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
+    Err(d.help("put `atom_style bpm/sphere` (or a hybrid with it) at the top of the deck").into())
+}
 
 /// Bonds that break need weights of bonded pairs that can be taken back: no pair forces between those joined, or with
 /// `overlay` all of them.

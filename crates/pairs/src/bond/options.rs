@@ -4,6 +4,7 @@ use super::breaking_weights;
 use super::store_local::Store;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_lang::Args;
+use perigrain_styles::Fix;
 use perigrain_world::World;
 
 /// What the line of a style says.
@@ -63,6 +64,11 @@ impl Options {
     pub fn limit(&self, args: &mut Args) -> Result<f64> {
         let what = "the breaking strain";
         if self.breaks { args.positive(what) } else { args.non_negative(what) }
+    }
+
+    /// The fix that `store/local` asks for.
+    pub fn fixes(&self) -> Vec<(String, Box<dyn Fix>)> {
+        self.store.iter().map(|s| (s.id().to_string(), Box::new(s.clone()) as _)).collect()
     }
 
     /// Whether weights of bonded pairs are such that bonds can break.
