@@ -47,12 +47,25 @@ fn bring_along(
             return Err(d.help("choose another ID for `store/local`").into());
         }
     }
-    for old in graph.fixes.iter().filter(|f| f.style == BROUGHT) {
-        old.fix.remove(w);
+    let old: Vec<FixNode> = graph.fixes.extract_if(.., |f| f.style == BROUGHT).collect();
+    // A restart file says the line, and the deck says it again: what is kept then stands.
+    let again = |id: &str, fix: &dyn Fix| {
+        let (restored, shape) = (w.parts.resume.is_some(), fix.shape());
+        restored
+            && old.iter().any(|o| {
+                o.id == id && (o.fix.shape().local, o.fix.shape().every) == (shape.local, shape.every)
+            })
+    };
+    let fixes: Vec<_> = fixes.into_iter().map(|(id, fix)| (again(&id, &*fix), id, fix)).collect();
+    for node in &old {
+        if !fixes.iter().any(|(again, id, _)| *again && *id == node.id) {
+            node.fix.remove(w);
+        }
     }
-    graph.fixes.retain(|f| f.style != BROUGHT);
-    for (id, fix) in fixes {
-        fix.declare(w)?;
+    for (again, id, fix) in fixes {
+        if !again {
+            w.inherit(&format!("{BROUGHT}/{id}"), |w| fix.declare(w))?;
+        }
         let group = GroupId::ALL;
         graph.fixes.push(FixNode {
             id,
