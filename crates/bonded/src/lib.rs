@@ -1,6 +1,9 @@
 //! Bonded particles: spheres joined by massless beams. What one bond does, and the stiffness of a body of them. Pure functions over
 //! numbers and columns; knows neither the world nor decks nor styles.
 
+// Units stand in brackets in doc comments, as [length]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
+
 pub mod beam;
 pub mod certificate;
 pub mod columns;
