@@ -23,7 +23,7 @@ fn block(n: u32, coeff: &str, more: &str) -> String {
     format!(
         "units si\natom_style bpm/sphere\nboundary f f f\nlattice sc 0.001\nregion world block -0.1 0.1 -0.1 0.1 -0.1 0.1 units box\n\
          region b block 0 {far} 0 {far} 0 {far}\ncreate_box 1 world bond/types 2 extra/bond/per/atom 20\ncreate_atoms 1 region b\n\
-         set group all diameter 0.001 density 2000\ncreate_bonds many all all 1 0.0009 0.0011\n\
+         set group all diameter 0.001 density 2000\nspecial_bonds lj/coul 0 1 1\ncreate_bonds many all all 1 0.0009 0.0011\n\
          create_bonds many all all 2 0.0011 0.0015\nspecial_bonds lj 0 1 1 coul 1 1 1\n\
          pair_style granular\npair_coeff * * hertz/material 1e9 0.9 0.2 tangential mindlin NULL 0.9 0.3 damping coeff_restitution\n\
          bond_style bpm/beam\nbond_coeff * 1e9 0.2 ratio 0.4 {coeff}\nvariable u atom 2.8*sin(3000*x)+300*y\n\
