@@ -108,10 +108,18 @@ fn plans_are_printed_measured_and_drawn() {
 #[cfg(unix)]
 #[test]
 fn an_interrupt_ends_the_run_at_a_whole_step_with_all_files_closed() {
+    for signal in ["-INT", "-TERM", "-HUP"] {
+        ended_by(signal);
+    }
+}
+
+/// What a run leaves that a signal has ended: whole files, and a last restart file that goes on as if nothing had been.
+#[cfg(unix)]
+fn ended_by(signal: &str) {
     let folder = tempfile::tempdir().unwrap();
-    let deck = format!(
-        "{SCENE}dump 1 all custom 100 a.dump id x\nthermo 100\nthermo_modify flush yes\nrun 100000000\nprint \"not reached\"\n"
-    );
+    let output = "thermo 100\nthermo_modify flush yes\nrestart 1000000000 r.*\n";
+    let deck =
+        format!("{SCENE}dump 1 all custom 100 a.dump id x\n{output}run 100000000\nprint \"not reached\"\n");
     fs::write(folder.path().join("in.deck"), deck).unwrap();
     let mut child = Command::new(env!("CARGO_BIN_EXE_perigrain"))
         .args(["in.deck", "-screen", "none", "-threads", "1"])
@@ -125,12 +133,27 @@ fn an_interrupt_ends_the_run_at_a_whole_step_with_all_files_closed() {
         assert!(child.try_wait().unwrap().is_none(), "ended by itself");
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
-    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert_eq!(child.wait().unwrap().code(), Some(130));
+    Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{signal}");
     let log = fs::read_to_string(log).unwrap();
     assert!(log.contains("Loop time of") && !log.contains("not reached"), "{log}");
     let dump = fs::read_to_string(folder.path().join("a.dump")).unwrap();
     assert!(dump.ends_with('\n'));
     let rows = dump.rsplit("ITEM: ATOMS").next().unwrap().lines().skip(1).count();
     assert_eq!(rows, 125, "the last snapshot is whole");
+
+    // ten steps more from the last restart file, and as many as that in one go
+    let (_, step) = log.split_once("Interrupted at step ").unwrap();
+    let step = step.split(':').next().unwrap().parse::<i64>().unwrap();
+    let state = "print \"state $(step) $(x[1]:%.17g) $(ke:%.17g) $(pe:%.17g)\"\n";
+    let (_, fix) = SCENE.split_once("fix ").unwrap();
+    let whole = format!("{SCENE}run {}\n{state}", step + 10);
+    let rest = format!("read_restart r.{step}\nfix {}\nrun 10\n{state}", fix.lines().next().unwrap());
+    let [whole, rest] = [("whole", whole), ("rest", rest)].map(|(name, text)| {
+        fs::write(folder.path().join(name), text).unwrap();
+        let o = perigrain(folder.path(), &[name, "-log", "none", "-threads", "1"], "");
+        assert_eq!(o.status.code(), Some(0), "{}", err(&o));
+        out(&o).lines().find(|l| l.starts_with("state ")).unwrap().to_string()
+    });
+    assert_eq!(whole, rest, "{signal}");
 }

@@ -2,7 +2,7 @@
 
 use super::args::{Deck, Options, Target};
 use super::progress::{self, Progress};
-use super::{FAILED, INTERRUPTED, OK};
+use super::{FAILED, INTERRUPTED, OK, signals};
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail, render};
 use perigrain_out::log::{Echo, Log};
@@ -94,15 +94,17 @@ fn runs(mode: Mode) -> bool {
     matches!(mode, Mode::Run | Mode::Measure)
 }
 
-/// The first Ctrl-C ends the run at a whole step, the second one the program at once.
+/// The first Ctrl-C or request to end ends the run at a whole step, the second one the program at once.
 fn catch_interrupt(session: &Session) {
     let stop = session.stop_flag();
-    // Without a handler, Ctrl-C ends the program as it always did.
-    let _ = ctrlc::set_handler(move || {
+    let ask = move || {
         if stop.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(INTERRUPTED));
         }
-    });
+    };
+    signals::listen(ask.clone());
+    // Without a handler, Ctrl-C ends the program as it always did.
+    let _ = ctrlc::set_handler(ask);
 }
 
 /// Ctrl-C ends what is going on at a whole step, however often it comes.

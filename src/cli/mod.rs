@@ -8,6 +8,7 @@ pub mod manual;
 mod pages;
 pub mod progress;
 pub mod repl;
+mod signals;
 pub mod syntax;
 pub mod tasks;
 

@@ -158,6 +158,7 @@ impl Op for Write {
         About {
             when: self.when.clone(),
             in_setup: false,
+            at_parting: true,
             ..About::new("restart", Stage::Output, Needs::new().read(Fields::ALL).keep(MEMO))
         }
     }

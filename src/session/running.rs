@@ -87,7 +87,7 @@ impl Session {
         let mut out = RunArgs { steps, start: None, stop: None, pre: true, post: true, every: None };
         while let Some(key) = args.next() {
             match key.text.as_str() {
-                "upto" => steps -= self.world.clock.step,
+                "upto" => steps = steps.saturating_sub(self.world.clock.step),
                 "start" => out.start = Some(args.integer("the first step of ramps")?),
                 "stop" => out.stop = Some(args.integer("the last step of ramps")?),
                 "pre" => out.pre = args.flag("pre")?,
@@ -107,7 +107,12 @@ impl Session {
             return refuse(Code::BAD_VALUE, span, format!("a run cannot make {steps} steps"));
         }
         out.steps = steps;
-        let (first, last) = (self.world.clock.step, self.world.clock.step + steps);
+        let first = self.world.clock.step;
+        let Some(last) = first.checked_add(steps) else {
+            let text =
+                format!("step {first} and {steps} more are beyond the last step there is, {}", i64::MAX);
+            return refuse(Code::TOO_LARGE, span, text);
+        };
         if out.start.is_some_and(|s| s > first) || out.stop.is_some_and(|s| s < last) {
             return refuse(Code::BAD_VALUE, cmd.span, "start and stop must enclose the steps of this run");
         }

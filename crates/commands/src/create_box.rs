@@ -7,11 +7,13 @@ use perigrain_lang::Args;
 use perigrain_styles::common::{self, bad_keyword, setting};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::region::{INFINITE, Shape};
-use perigrain_world::{Domain, Region};
+use perigrain_world::{Domain, Region, memory};
 
 /// The command.
 pub struct CreateBox;
 
+/// What a pair style keeps for two types: laws of contacts are the largest of its entries [bytes].
+const BYTES_PER_PAIR: f64 = 256.0;
 const KEYWORDS: [&str; 3] = ["bond/types", "extra/bond/per/atom", "extra/special/per/atom"];
 
 /// Keywords LAMMPS has: room for angles and the like.
@@ -51,6 +53,11 @@ impl CommandStyle for CreateBox {
         let types = a.integer_from(1, "the number of types")?;
         if types > i64::from(u16::MAX) {
             return fail(Code::BAD_VALUE, span, format!("at most {} types are possible", u16::MAX));
+        }
+        if let Some(d) =
+            memory::lacking(types.pow(2) as f64 * BYTES_PER_PAIR, &format!("tables of {types} types"))
+        {
+            return Err(d.help("forces have a table of all pairs of types").at(span).into());
         }
         let word = a.expect("a region")?;
         if word.text == "NULL" {

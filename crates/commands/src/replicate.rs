@@ -56,11 +56,15 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
         let d = Diagnostic::error(Code::WRONG_ORDER, None, "peridynamic bonds cannot be repeated");
         return Err(d.help("put `replicate` before the first run").into());
     }
-    let (n, copies) = (cx.world.n(), count.iter().product::<i64>());
-    let last = i64::from(cx.world.particles.last_tag());
-    if last.checked_mul(copies).is_none_or(|k| k > i64::from(u32::MAX)) {
-        return fail(Code::TOO_LARGE, None, "more particles than there are ids");
-    }
+    let (n, last) = (cx.world.n(), i64::from(cx.world.particles.last_tag()));
+    let copies = count.iter().try_fold(1, |product: i64, k| product.checked_mul(*k));
+    let ids = i64::from(u32::MAX);
+    let Some(copies) = copies.filter(|k| last.max(1).checked_mul(*k).is_some_and(|n| n <= ids)) else {
+        let [x, y, z] = count;
+        let asked = count.iter().fold(last.max(1) as f64, |product, k| product * *k as f64);
+        let text = format!("{x} x {y} x {z} repetitions are {asked:.3e} particles: there are ids for {ids}");
+        return fail(Code::TOO_LARGE, None, text);
+    };
     if let Some(line) = memory::forecast(cx.world, (n as i64 * (copies - 1)) as f64)? {
         cx.say(line);
     }

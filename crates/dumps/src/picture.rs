@@ -133,13 +133,25 @@ impl Default for Options {
     }
 }
 
+/// The longest side of a picture: above it neither viewers nor memory last.
+const LONGEST: i64 = 16384;
+
+fn pixels(args: &mut Args, what: &str) -> Result<usize> {
+    let span = args.here();
+    let n = args.integer_from(16, what)?;
+    if n > LONGEST {
+        return fail(Code::BAD_VALUE, span, format!("{what} is at most {LONGEST}, not {n}"));
+    }
+    Ok(n as usize)
+}
+
 impl Options {
     /// Reads one keyword with its values; `modify` tells `dump_modify` from the dump line.
     pub fn read(&mut self, word: &Word, args: &mut Args, cx: &BuildCx, modify: bool) -> Result<bool> {
         match word.text.as_str() {
             "size" => {
-                self.look.width = args.integer_from(16, "the width in pixels")?.min(16384) as usize;
-                self.look.height = args.integer_from(16, "the height in pixels")?.min(16384) as usize;
+                self.look.width = pixels(args, "the width in pixels")?;
+                self.look.height = pixels(args, "the height in pixels")?;
             }
             "view" => {
                 self.camera.theta = args.number("the angle from the z axis")?;

@@ -280,6 +280,8 @@ pub struct About {
     pub reports_travel: bool,
     /// Whether `run` can begin the next step as well, where [`Tick::on`] asks for it.
     pub goes_on: bool,
+    /// Whether it acts too where a run is ended from outside before its last step: what saves the run.
+    pub at_parting: bool,
     /// The row of the timing table.
     pub class: OpClass,
 }
@@ -295,8 +297,19 @@ impl About {
             _ => OpClass::Modify,
         };
         let (when, in_setup, level) = (When::Always, stage.in_setup(), Level::Outermost);
-        let (reports_travel, goes_on) = (false, false);
-        Self { name: name.into(), stage, needs, when, in_setup, level, reports_travel, goes_on, class }
+        let (reports_travel, goes_on, at_parting) = (false, false, false);
+        Self {
+            name: name.into(),
+            stage,
+            needs,
+            when,
+            in_setup,
+            level,
+            reports_travel,
+            goes_on,
+            at_parting,
+            class,
+        }
     }
 }
 

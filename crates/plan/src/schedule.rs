@@ -204,6 +204,20 @@ impl StepPlan {
         Ok(())
     }
 
+    /// Runs what saves a run that ends before its last step, unless it acted at this step.
+    ///
+    /// # Errors
+    /// The first op's that fails, with the place of its command.
+    pub fn part(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        for k in 0..self.ops.len() {
+            let about = &self.ops[k].about;
+            if about.at_parting && !self.fires(&about.when, t) {
+                self.ops[k].alone(w, t, &mut Stopwatch::all(), |op, w| op.run(w, t))?;
+            }
+        }
+        Ok(())
+    }
+
     /// Runs what acts at the end of steps at the first tick of a run without motion: those that act in no setup too.
     ///
     /// # Errors

@@ -183,16 +183,22 @@ impl Lattice {
 
     /// How many sites [`Self::sites`] would visit, as a bound on what can be created.
     pub fn site_bound(&self, lo: [f64; 3], hi: [f64; 3]) -> f64 {
-        let (first, last) = self.cells(lo, hi);
-        (0..3).map(|d| (last[d] - first[d] + 1) as f64).product::<f64>() * self.basis.len() as f64
+        let (first, last) = self.span(lo, hi);
+        (0..3).map(|d| last[d] - first[d] + 1.0).product::<f64>() * self.basis.len() as f64
     }
 
     /// First and last cell along each edge that the box `lo … hi` can touch.
     fn cells(&self, lo: [f64; 3], hi: [f64; 3]) -> ([i64; 3], [i64; 3]) {
+        let (first, last) = self.span(lo, hi);
+        (first.map(|x| x as i64), last.map(|x| x as i64))
+    }
+
+    /// The same as whole numbers of any size.
+    fn span(&self, lo: [f64; 3], hi: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         let (min, max) = bounds(corners(lo, hi).map(|x| self.from_box(x)));
-        let (mut first, mut last) = (min.map(|x| x.floor() as i64 - 1), max.map(|x| x.ceil() as i64));
+        let (mut first, mut last) = (min.map(|x| x.floor() - 1.0), max.map(f64::ceil));
         if self.flat {
-            (first[2], last[2]) = (0, 0);
+            (first[2], last[2]) = (0.0, 0.0);
         }
         (first, last)
     }

@@ -56,17 +56,8 @@ pub fn forecast(w: &World, more: f64) -> Result<Option<String>> {
     let columns = 4 + 2 + 4 + 3 * 24 + 8 + 24 + 8 + sphere + peri + oriented;
     let n = w.n() as f64 + more;
     let bytes = n * (f64::from(columns) + FORCES_PER_PARTICLE);
-    if let Some(free) = available()
-        && bytes > free
-    {
-        let text = format!(
-            "about {n:.3e} particles would need {:.1} GB of memory; {:.1} GB are free",
-            bytes / 1e9,
-            free / 1e9
-        );
-        return Err(Diagnostic::error(Code::TOO_LARGE, None, text)
-            .help("use a coarser lattice or a smaller region")
-            .into());
+    if let Some(d) = lacking(bytes, &format!("about {n:.3e} particles")) {
+        return Err(d.help("use a coarser lattice or a smaller region").into());
     }
     let text = || {
         let step = n * SECONDS_PER_PARTICLE / perigrain_base::par::threads() as f64;
@@ -76,6 +67,14 @@ pub fn forecast(w: &World, more: f64) -> Result<Option<String>> {
         )
     };
     Ok((n >= LARGE).then(text))
+}
+
+/// The error of what takes more bytes than are free now.
+pub fn lacking(bytes: f64, what: &str) -> Option<Diagnostic> {
+    let free = available().filter(|free| bytes > *free)?;
+    let (needed, free) = (bytes / 1e9, free / 1e9);
+    let text = format!("{what} would need {needed:.1} GB of memory; {free:.1} GB are free");
+    Some(Diagnostic::error(Code::TOO_LARGE, None, text))
 }
 
 /// Bytes of memory that are free, where the system tells.

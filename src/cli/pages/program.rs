@@ -46,7 +46,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     - `-help`, `-h` and `-version`: print and end.\n\n\
     LAMMPS' other switches are refused by name.\n\n\
     Exit codes: 0 all well (or the status of `quit`), 1 the deck was refused or its run failed, 2 the command line is \
-    wrong, 130 ended by Ctrl-C. The first Ctrl-C ends a run at a whole step with all files complete, a second one ends the \
+    wrong, 130 ended by Ctrl-C or a signal. The first Ctrl-C (and SIGTERM, as queues send it, or SIGHUP of a closed terminal, unless \
+    `nohup` has it ignored) ends a run at a whole step with all files complete and a last file of `restart`; a second one ends the \
     program at once. On a terminal a live line shows step, time, thermo columns, speed and time left; messages have colours unless `NO_COLOR` is set.";
 
 #[cfg(test)]

@@ -148,9 +148,11 @@ pub(super) fn steps(
             if plan.begun() {
                 // Half of this step is made.
             } else if w.settings.stop.load(Ordering::Relaxed) {
+                plan.part(w, &tick(w, false))?;
                 return Ok(true);
             } else if w.settings.ends_at(w.clock.step) {
                 w.clock.halt = Halt::All;
+                plan.part(w, &tick(w, false))?;
                 break;
             }
             let _names_are_known = Acting::op();
