@@ -209,6 +209,7 @@ impl Session {
         let promised = std::mem::take(&mut self.world.parts.promised);
         self.world = World::default();
         self.world.parts.promised = promised;
+        self.world.parts.promised.instead = self.looking();
         let s = &mut self.world.settings;
         s.compat = compat;
         (s.stop, s.deadline, s.limit_every) = (stop, deadline, limit_every);
@@ -294,6 +295,11 @@ impl Session {
 
     fn checking(&self) -> bool {
         self.options.mode == Mode::Check
+    }
+
+    /// Whether nothing is written: the deck is checked or planned.
+    fn looking(&self) -> bool {
+        matches!(self.options.mode, Mode::Check | Mode::Plan)
     }
 
     fn next_line(&mut self, script: &mut Script) -> Result<Option<Line>> {

@@ -105,6 +105,27 @@ fn plans_are_printed_measured_and_drawn() {
     assert!(measured.contains("3 calls"), "{measured}");
 }
 
+#[test]
+fn a_plan_writes_no_file_and_overwrites_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let outputs = "\
+        dump 1 all custom 1 run.dump id x\nrestart 1 run.*.restart\n\
+        fix 2 all ave/time 1 1 1 v_a file run.means\nfix 3 all print 1 \"$(step)\" file run.print\n\
+        print \"not shown\" file run.said\nlog run.log\nrun 3\nwrite_dump all image run.png type type\n\
+        write_data run.data\nwrite_restart run.restart\ninfo system out overwrite run.info\n\
+        clear\nread_restart run.restart\nfix 1 all nve\nrun 3\n\
+        clear\nread_restart run.3.restart\nfix 1 all nve\nrun 2\n";
+    fs::write(folder.path().join("in.deck"), format!("{SCENE}variable a equal step\n{outputs}")).unwrap();
+    // What an earlier run left.
+    fs::write(folder.path().join("run.restart"), "old").unwrap();
+    let o = perigrain(folder.path(), &["plan", "in.deck"], "");
+    assert_eq!(o.status.code(), Some(0), "{}", err(&o));
+    let plans = out(&o).lines().filter(|l| l.trim() == "initial integrate").count();
+    assert!(plans == 3 && !out(&o).contains("not shown"), "{}", out(&o));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    assert_eq!(fs::read_to_string(folder.path().join("run.restart")).unwrap(), "old");
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupt_ends_the_run_at_a_whole_step_with_all_files_closed() {

@@ -180,7 +180,7 @@ impl Session {
         let checking = self.checking();
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking };
         let Substituted { text, unknown } = substitute_known(&word.text, word.span, &self.vars, &mut env)?;
-        if checking {
+        if self.looking() {
             if let Some(name) = file {
                 let text = (!unknown && !word.unknown).then_some(text);
                 self.world.parts.promised.print(&name.text, text, append);
@@ -205,7 +205,7 @@ impl Session {
         let word = args.expect("a file name or `none`")?;
         let append = args.eat("append");
         args.finish()?;
-        if self.checking() {
+        if self.looking() {
             self.world.parts.promised.keep(&word.text, Promise::Unseen);
             return Ok(());
         }

@@ -5,13 +5,15 @@ use perigrain_world::{Promise, Promises};
 
 /// Files as the system has them.
 pub(super) struct RealFiles<'a> {
-    /// Nothing is written (`check` mode): what the deck would have written by now.
-    pub promised: Option<&'a Promises>,
+    /// What the deck would have written by now, where nothing is.
+    pub promised: &'a Promises,
+    /// Whether the deck is only checked.
+    pub checking: bool,
 }
 
 impl Files for RealFiles<'_> {
     fn read(&self, path: &str) -> std::io::Result<String> {
-        match self.promised.and_then(|p| p.get(path)) {
+        match self.promised.get(path) {
             Some(Promise::Text(text)) => return Ok(text.clone()),
             // one that is there is an old one
             Some(_) => return Err(std::io::ErrorKind::NotFound.into()),
@@ -22,10 +24,10 @@ impl Files for RealFiles<'_> {
     }
 
     fn comes_later(&self, path: &str) -> bool {
-        self.promised.is_some_and(|p| p.may_come(path))
+        self.checking && self.promised.may_come(path)
     }
 
     fn only_checks(&self) -> bool {
-        self.promised.is_some()
+        self.checking
     }
 }

@@ -14,7 +14,7 @@ impl Session {
         let checking = self.checking();
         // taken out for the moment: the world is borrowed for the formulas in the line
         let promised = std::mem::take(&mut self.world.parts.promised);
-        let files = RealFiles { promised: checking.then_some(&promised) };
+        let files = RealFiles { promised: &promised, checking };
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking };
         let flow = script.flow(cmd, &mut self.sources, &mut self.vars, &mut env, &files);
         self.world.parts.promised = promised;

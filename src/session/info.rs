@@ -65,7 +65,7 @@ impl Session {
             }
         }
         let _ = write!(text, "{LINE}");
-        if self.checking() {
+        if self.looking() {
             if let Target::File(word, append) = target {
                 self.world.parts.promised.print(&word.text, Some(text), append);
             }

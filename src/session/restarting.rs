@@ -30,7 +30,7 @@ impl Session {
         }
         args.finish()?;
         self.record(cmd, Role::Act, None, vec![], vec![]);
-        if self.checking() {
+        if self.looking() {
             self.promise_restart(name.text().to_string());
             return Ok(());
         }
@@ -41,13 +41,13 @@ impl Session {
         save(&path, &self.world, self.ran, standing, &pair, &declared).map_err(|e| e.at(word.span))
     }
 
-    /// In check mode: files that a line would have written, for the lines that read them.
+    /// Where nothing is written: files that a line would have written, for the lines that read them.
     pub(super) fn promise_restart(&mut self, name: String) {
         let scene = Promise::Scene(Arc::new(self.world.clone()), self.graph.force_lines());
         self.world.parts.promised.keep(&name, scene);
     }
 
-    /// In check mode: files that a run would have written.
+    /// Where nothing is written: files that a run would have written.
     pub(super) fn promise_outputs(&mut self) {
         self.graph.restarts.names().into_iter().for_each(|name| self.promise_restart(name));
         let fixes = self.graph.fixes.iter().filter_map(|f| f.fix.facts(&self.world).file);
@@ -96,10 +96,10 @@ impl Session {
         self.options.log.line(&format!("  read_restart CPU = {:.3} seconds", began.elapsed().as_secs_f64()))
     }
 
-    /// In check mode: the scene that an earlier line would have written.
+    /// Where nothing is written: the scene that an earlier line would have written.
     fn promised(&self, word: &Word) -> Result<Option<Saved>> {
         let (name, span) = (word.text.as_str(), word.span);
-        if !self.checking() {
+        if !self.looking() {
             return Ok(None);
         }
         let promised = &self.world.parts.promised;

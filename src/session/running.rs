@@ -251,6 +251,7 @@ impl Session {
         if self.options.mode == Mode::Plan {
             self.options.log.line(explain::text(&plan, false).trim_end())?;
             self.world.clock.step += steps;
+            self.promise_outputs();
             return Ok(());
         }
         if !unchanged {
@@ -367,7 +368,7 @@ impl Session {
         self.notes.append(notes.into_inner());
         let dump = dump?;
         self.record(cmd, Role::Act, None, uses.into_inner(), vec![]);
-        if self.checking() {
+        if self.looking() {
             let file = cmd.args.get(2).map_or("", |w| &w.text);
             self.world.parts.promised.keep(file, Promise::Unseen);
             return Ok(());

@@ -1,6 +1,6 @@
 //! `shell`: folders, files, environment, and commands for the system's shell.
 
-use super::{Mode, Session};
+use super::Session;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Command, Word};
 use std::path::Path;
@@ -37,7 +37,7 @@ impl Session {
             return self.putenv(words);
         }
         // a deck that is only looked at changes nothing
-        if matches!(self.options.mode, Mode::Check | Mode::Plan) {
+        if self.looking() {
             self.world.parts.promised.anything = self.checking();
             return Ok(());
         }

@@ -38,7 +38,6 @@ struct Writing {
     file: Pattern,
     span: Span,
     with: write::With,
-    checking: bool,
 }
 
 impl CommandStyle for WriteData {
@@ -61,14 +60,14 @@ impl CommandStyle for WriteData {
                 _ => return Err(a.unknown(key, &["pair", "nocoeff", "nofix", "nolabelmap", "types"])),
             }
         }
-        Ok(Box::new(Writing { file, span: word.span, with, checking: cx.checking }))
+        Ok(Box::new(Writing { file, span: word.span, with }))
     }
 }
 
 impl Act for Writing {
     fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
         let w = &mut *cx.world;
-        if self.checking {
+        if w.parts.promised.instead {
             let scene = Promise::Scene(Arc::new(w.clone()), vec![]);
             w.parts.promised.keep(self.file.text(), scene);
             return Ok(());

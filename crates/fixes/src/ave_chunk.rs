@@ -80,7 +80,6 @@ struct Declared {
     bias: Option<ValueRef>,
     output: Output,
     format: Format,
-    checking: bool,
 }
 
 const KEYWORDS: &[&str] = &[
@@ -117,7 +116,6 @@ impl FixStyle for AveChunk {
             bias: None,
             output: Output::default(),
             format: Format::parse(" %g").unwrap_or_default(),
-            checking: cx.checking,
         };
         while let Some(word) = args.peek().filter(|w| !KEYWORDS.contains(&w.text.as_str())) {
             args.next();
@@ -348,7 +346,7 @@ impl Fix for Declared {
         let slot = w.slots.id(&name);
         *w.slots.get_mut(slot) =
             perigrain_world::Slot { name, array_cols: self.columns(), ..perigrain_world::Slot::default() };
-        if self.checking { Ok(()) } else { self.output.begin(w, self.kept().key, &self.titles()) }
+        self.output.begin(w, self.kept().key, &self.titles())
     }
 
     fn remove(&self, w: &mut World) {

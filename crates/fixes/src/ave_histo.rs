@@ -137,8 +137,8 @@ fn build(args: &mut Args, cx: &BuildCx, weight: bool) -> Result<Box<dyn Fix>> {
         return fail(Code::BAD_VALUE, words[0].span, text);
     }
     let bins = Bins { lo, hi, inner, beyond };
-    let (id, group, checking) = (cx.id.to_string(), cx.group, cx.checking);
-    Ok(Box::new(Declared { id, group, schedule, bins, inputs, wants, weight, ave, output, checking }))
+    let (id, group) = (cx.id.to_string(), cx.group);
+    Ok(Box::new(Declared { id, group, schedule, bins, inputs, wants, weight, ave, output }))
 }
 
 /// The inputs, all of one kind.
@@ -206,7 +206,6 @@ struct Declared {
     weight: bool,
     ave: Ave,
     output: Output,
-    checking: bool,
 }
 
 impl Declared {
@@ -328,7 +327,7 @@ impl Fix for Declared {
         let (vector, array) = (vec![0.0; 4], self.rows(&[]));
         *w.slots.get_mut(slot) =
             Slot { name, step: Some(w.clock.step), vector, array, array_cols: 3, ..Slot::default() };
-        if self.checking { Ok(()) } else { self.output.begin(w, self.kept().key, &self.titles()) }
+        self.output.begin(w, self.kept().key, &self.titles())
     }
 
     fn remove(&self, w: &mut World) {

@@ -93,7 +93,9 @@ impl Output {
     /// # Errors
     /// The file cannot be written.
     pub fn begin(&self, w: &mut World, key: Numbers, defaults: &[String]) -> Result<()> {
-        let Some((path, append)) = &self.file else { return Ok(()) };
+        let Some((path, append)) = self.file.as_ref().filter(|_| !w.parts.promised.instead) else {
+            return Ok(());
+        };
         let mut head = String::new();
         for (given, default) in self.titles.iter().zip(defaults) {
             let _ = writeln!(head, "{}", given.as_ref().unwrap_or(default));
@@ -142,7 +144,6 @@ impl FixStyle for AveTime {
             output: Output::default(),
             format: Format::parse(" %g").unwrap_or_default(),
             rows: 0,
-            checking: cx.checking,
             extensive: vec![],
         };
         let mut off = vec![];
@@ -214,7 +215,6 @@ struct Declared {
     format: Format,
     /// Length of the vectors, in mode vector; open if only a run can tell.
     rows: usize,
-    checking: bool,
     /// Which values grow with the scene.
     extensive: Vec<bool>,
 }
@@ -321,7 +321,7 @@ impl Fix for Declared {
         *w.slots.get_mut(slot) =
             perigrain_world::Slot { name: format!("f_{}", self.id), ..Default::default() };
         offer(w, slot, w.clock.step, &vec![0.0; rows * self.values.len()], self.values.len(), self.vector);
-        if self.checking { Ok(()) } else { self.output.begin(w, self.kept().key, &self.titles()) }
+        self.output.begin(w, self.kept().key, &self.titles())
     }
 
     fn remove(&self, w: &mut World) {

@@ -82,7 +82,6 @@ impl FixStyle for Print {
             file: None,
             screen: true,
             title: format!("# Fix print output for fix {}", cx.id),
-            checking: cx.checking,
         };
         while let Some(word) = args.next() {
             match word.text.as_str() {
@@ -108,7 +107,6 @@ struct Declared {
     file: Option<(PathBuf, bool)>,
     screen: bool,
     title: String,
-    checking: bool,
 }
 
 impl Fix for Declared {
@@ -116,9 +114,9 @@ impl Fix for Declared {
         Facts { file: self.file.as_ref().map(|(path, _)| path.clone()), ..Facts::default() }
     }
 
-    fn declare(&self, _w: &mut World) -> Result<()> {
+    fn declare(&self, w: &mut World) -> Result<()> {
         match &self.file {
-            Some((path, append)) if !self.checking => {
+            Some((path, append)) if !w.parts.promised.instead => {
                 Sheet::begin(path, *append, &format!("{}\n", self.title)).map(drop)
             }
             _ => Ok(()),

@@ -15,10 +15,12 @@ pub enum Promise {
     Unseen,
 }
 
-/// All that the lines so far would have written, by name; empty unless a deck is only checked.
+/// All that the lines so far would have written, by name; empty unless a deck is only looked at.
 #[derive(Clone, Debug, Default)]
 pub struct Promises {
     files: BTreeMap<String, Promise>,
+    /// Files are promised instead of written: a deck is looked at, which leaves nothing behind and overwrites nothing.
+    pub instead: bool,
     /// A shell command was passed over, which may have written any file that is not there.
     pub anything: bool,
 }
