@@ -12,6 +12,7 @@ mod later;
 mod leveling;
 mod minimizing;
 mod rerunning;
+mod resolution;
 mod restarting;
 mod running;
 mod shell;

@@ -117,7 +117,18 @@ fn farthest(w: &World, t: &Tick) -> Result<f64> {
 }
 
 fn not_finite(w: &World, i: usize, t: &Tick) -> perigrain_base::diag::Diagnostics {
-    let p = &w.particles;
+    let (p, held) = (&w.particles, w.held());
+    // Two that were in one place have no direction in which to push each other.
+    let same = |x: &[f64; 3]| (0..p.len().min(held.len())).find(|&j| j != i && held[j] == *x);
+    if let Some(j) = held.get(i).and_then(same) {
+        let tags = [p.tag[i].min(p.tag[j]), p.tag[i].max(p.tag[j])];
+        let text = format!(
+            "particles {} and {} were in the same place, {:?}: the force between them had no direction (step {})",
+            tags[0], tags[1], held[i], t.step
+        );
+        let d = Diagnostic::error(Code::NOT_FINITE, None, text);
+        return d.help("create particles where no other one is, or `delete_atoms overlap` beforehand").into();
+    }
     Diagnostic::error(
         Code::NOT_FINITE,
         None,

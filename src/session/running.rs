@@ -42,6 +42,9 @@ impl Session {
             self.promise_outputs();
             return Ok(());
         }
+        if args.steps > 0 {
+            self.check_resolution(cmd.span)?;
+        }
         self.say_notes()?;
         if self.world.settings.timed_out() {
             self.options.log.line("The limit of `timer timeout` has passed: no further run")?;
