@@ -114,14 +114,18 @@ fn a_plan_writes_no_file_and_overwrites_none() {
         print \"not shown\" file run.said\nlog run.log\nrun 3\nwrite_dump all image run.png type type\n\
         write_data run.data\nwrite_restart run.restart\ninfo system out overwrite run.info\n\
         clear\nread_restart run.restart\nfix 1 all nve\nrun 3\n\
-        clear\nread_restart run.3.restart\nfix 1 all nve\nrun 2\n";
+        clear\nread_restart run.3.restart\nfix 1 all nve\nrun 2\n\
+        clear\nunits si\natom_style peri\nboundary s s s\nread_data run.data\npair_style peri/pmb\n\
+        pair_coeff * * 2e21 0.0030001 0.004 0.0\nfix 1 all nve\nrun 3\n";
     fs::write(folder.path().join("in.deck"), format!("{SCENE}variable a equal step\n{outputs}")).unwrap();
     // What an earlier run left.
     fs::write(folder.path().join("run.restart"), "old").unwrap();
     let o = perigrain(folder.path(), &["plan", "in.deck"], "");
     assert_eq!(o.status.code(), Some(0), "{}", err(&o));
     let plans = out(&o).lines().filter(|l| l.trim() == "initial integrate").count();
-    assert!(plans == 3 && !out(&o).contains("not shown"), "{}", out(&o));
+    assert!(plans == 4 && !out(&o).contains("not shown"), "{}", out(&o));
+    let read = out(&o).lines().filter(|l| l.trim_start().starts_with("125 atoms")).count();
+    assert_eq!(read, 3, "each file brings the particles along:\n{}", out(&o));
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     assert_eq!(fs::read_to_string(folder.path().join("run.restart")).unwrap(), "old");
 }

@@ -1,4 +1,4 @@
-//! The files a deck reads, and what `check` knows of those it would have written.
+//! The files a deck reads, and what is known of those it would have written where it is only looked at.
 
 use perigrain_lang::Files;
 use perigrain_world::{Promise, Promises};

@@ -77,6 +77,7 @@ impl Session {
         self.settle_resume(span)?;
         let (mut plan, energy) = self.sealed(span, true)?;
         if self.options.mode == Mode::Plan {
+            self.promise_outputs();
             return self.options.log.line(explain::text(&plan, false).trim_end());
         }
         self.world.slots.invalidate();

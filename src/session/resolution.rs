@@ -16,8 +16,8 @@ impl Session {
     pub(super) fn check_resolution(&mut self, span: Span) -> Result<()> {
         let Some(domain) = &*self.world.domain else { return Ok(()) };
         let away = |d: usize| domain.lo[d].abs().max(domain.hi[d].abs());
-        let (d, far) =
-            [0, 1, 2].map(|d| (d, away(d))).into_iter().fold((0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
+        let d = (0..3).max_by(|&a, &b| away(a).total_cmp(&away(b))).unwrap_or(0);
+        let far = away(d);
         // An infinite box has no place.
         if far <= FAR * domain.lengths().into_iter().fold(0.0, f64::max) || !far.is_finite() {
             return Ok(());

@@ -4,7 +4,7 @@ use super::data::write;
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Result, Span};
 use perigrain_lang::Args;
-use perigrain_out::file::{Pattern, replace};
+use perigrain_out::file::{Pattern, replace, trouble};
 use perigrain_styles::common::{domain, not_here, settle};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::Promise;
@@ -38,6 +38,7 @@ struct Writing {
     file: Pattern,
     span: Span,
     with: write::With,
+    checking: bool,
 }
 
 impl CommandStyle for WriteData {
@@ -60,14 +61,15 @@ impl CommandStyle for WriteData {
                 _ => return Err(a.unknown(key, &["pair", "nocoeff", "nofix", "nolabelmap", "types"])),
             }
         }
-        Ok(Box::new(Writing { file, span: word.span, with }))
+        Ok(Box::new(Writing { file, span: word.span, with, checking: cx.checking }))
     }
 }
 
 impl Act for Writing {
     fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
         let w = &mut *cx.world;
-        if w.parts.promised.instead {
+        // A deck that is checked has no particles to write.
+        if self.checking {
             let scene = Promise::Scene(Arc::new(w.clone()), vec![]);
             w.parts.promised.keep(self.file.text(), scene);
             return Ok(());
@@ -75,6 +77,13 @@ impl Act for Writing {
         w.spread_type_masses();
         settle(w);
         let path = self.file.at(w.clock.step);
+        if w.parts.promised.instead {
+            let mut text = vec![];
+            write::write(&mut text, w, self.with).map_err(|e| trouble("write", &path, &e).at(self.span))?;
+            let text = String::from_utf8_lossy(&text).into_owned();
+            w.parts.promised.keep(&path.display().to_string(), Promise::Text(text));
+            return Ok(());
+        }
         replace(&path, |out| write::write(out, w, self.with)).map_err(|e| e.at(self.span))
     }
 

@@ -163,7 +163,7 @@ pub struct Parts {
     pub plastic: Option<[f64; 5]>,
     /// What ops have to say about the deck; told when the run is over.
     pub notes: perigrain_base::diag::Diagnostics,
-    /// While a deck is only checked: files that its lines so far would have written.
+    /// While a deck is only looked at: files that its lines so far would have written.
     pub promised: Promises,
     /// What came from a restart file and the deck may say again: `region/ID`, `material/ID`, and state of fixes and
     /// computes as `STYLE/ID`.

@@ -33,7 +33,7 @@ pub fn load(path: &Path) -> std::io::Result<Arc<Source>> {
     Ok(Arc::new(Source { name: path.display().to_string(), text }))
 }
 
-/// Finds a deck's file, which is a `what`, in the working folder or beside the deck, and reads it; in check mode perhaps one
+/// Finds a deck's file, which is a `what`, in the working folder or beside the deck, and reads it; in a deck that is only looked at perhaps one
 /// that an earlier line would have printed.
 ///
 /// # Errors
