@@ -81,6 +81,11 @@ impl Damping {
         }
     }
 
+    /// Whether η grows as the radius of the contact does.
+    pub fn by_radius(self) -> bool {
+        self == Damping::Viscoelastic
+    }
+
     /// η over its constant, for contact radius `a`, normal stiffness F/δ = `secant` and effective mass.
     #[inline(always)]
     pub fn form<R: Real>(self, a: R, secant: R, mass: R) -> R {

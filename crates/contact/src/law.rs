@@ -131,9 +131,9 @@ impl Model {
         let normals = [&self.normal, &other.normal];
         let normal = self.normal.force(&other.normal);
         let twisting = self.twisting.mixed(&other.twisting);
-        let spring = self.tangential.spring(&other.tangential, normals, eta, mixed, compat);
+        let spring = self.tangential.spring(&other.tangential, normals, (self.damping, eta), mixed, compat);
         let by_radius = normal.by_radius()
-            || self.damping == Damping::Viscoelastic
+            || self.damping.by_radius()
             || spring.by_radius()
             || twisting == Twisting::Marshall;
         Granular {

@@ -45,6 +45,8 @@ pub struct Slider<R> {
     pub slack: R,
     /// η [mass/time].
     pub damping: R,
+    /// Whether a spring that slides is rid of no more drag than the limit: a spring that must not be set beyond rest.
+    pub capped: bool,
     /// The largest force it carries.
     pub limit: R,
     /// The velocity v across the normal that it resists.
@@ -76,7 +78,7 @@ impl<R: Real> Slider<R> {
         // Both quotients by one division.
         let inverse = zero.like(1.0) / (size * slack);
         let sliding = scale(R::choose(stretched, self.limit * slack * inverse, zero), trial);
-        let elastic = sub(sliding, drag);
+        let elastic = sub(sliding, if self.capped { self.at_most_limit(drag) } else { drag });
         let (carried, fits) = if by_force {
             (elastic, R::both(slides, stretched))
         } else {
@@ -84,6 +86,13 @@ impl<R: Real> Slider<R> {
         };
         *xi = choose::<R>(fits, carried, *xi);
         choose::<R>(slides, sliding, trial)
+    }
+
+    /// `drag`, shortened to the limit where it is larger.
+    #[inline(always)]
+    fn at_most_limit(&self, drag: Vec3<R>) -> Vec3<R> {
+        let size = length(drag);
+        scale(R::choose(size.above(self.limit), self.limit / size, size.like(1.0)), drag)
     }
 
     /// The force that [`Slider::force`] gave as it left the displacement `xi` behind, where a spring that slides is

@@ -1,5 +1,6 @@
 //! Friction across the normal: the models decks name and their constants for one pair of types.
 
+use super::damping::Damping;
 use super::normal::{effective_shear, effective_young, geometric};
 use super::slider::{Look, Memory, Slider};
 use super::{Advance, Normal};
@@ -81,6 +82,11 @@ impl Friction {
         matches!(self, Friction::MindlinRescale | Friction::MindlinRescaleForce)
     }
 
+    /// Whether what a displacement carries grows with the radius of the contact.
+    fn stiffens(self) -> bool {
+        self.by_radius() && self.memory() != Memory::Force
+    }
+
     fn memory(self) -> Memory {
         match self {
             Friction::LinearHistoryClassic | Friction::MindlinClassic => Memory::Projected,
@@ -127,14 +133,14 @@ impl Tangential {
         self.kind.name()
     }
 
-    /// The spring between grains of two types whose normal damping has the constant `eta`: coefficients mix
+    /// The spring between grains of two types whose normal damping has a form and the constant `eta`: coefficients mix
     /// geometrically, G* as Mindlin's theory wants. LAMMPS 22Jul2025 takes E* of the pair for both moduli of a mixed
     /// pair and √(ν_i ν_j) for both ratios, against its own manual, which `mixed` and `compat` together reproduce.
     pub fn spring(
         &self,
         other: &Tangential,
         normals: [&Normal; 2],
-        eta: f64,
+        (form, eta): (Damping, f64),
         mixed: bool,
         compat: Compat,
     ) -> Spring {
@@ -155,6 +161,7 @@ impl Tangential {
             damping,
             mu: geometric(self.mu, other.mu),
             loose,
+            capped: compat != Compat::Lammps && damping > 0.0 && self.kind.stiffens() && !form.by_radius(),
             look: Look::First,
         }
     }
@@ -184,6 +191,10 @@ pub struct Spring {
     /// LAMMPS 22Jul2025's `…_classic` springs of granular models and walls: the contact radius stiffens
     /// `linear_history_classic` too, and is forgotten where a spring that slides is shortened.
     pub loose: bool,
+    /// Whether a spring that slides is rid of no more drag than it may carry. Luding's rule leaves −k ξ = F + η v; in
+    /// young contacts η v is beyond all friction, and a spring that k ∝ a stiffens more than η grows then drives the
+    /// sliding it should resist, the harder the shorter the first steps are. LAMMPS 22Jul2025 has it so.
+    pub capped: bool,
     /// Whether a contact is looked at once more.
     pub look: Look,
 }
@@ -269,7 +280,7 @@ impl Spring {
                     }
                 }
                 let slack = if self.loose { a.like(self.stiffness) } else { stiffness };
-                let slider = Slider { n, stiffness, slack, damping, limit, v };
+                let slider = Slider { n, stiffness, slack, damping, capped: self.capped, limit, v };
                 if let Look::Again { setup } = self.look {
                     return slider.again(xi, setup);
                 }

@@ -81,6 +81,7 @@ impl Rolling {
             stiffness: like(c.stiffness),
             slack: like(c.stiffness),
             damping: like(c.damping),
+            capped: false,
             limit: carried * c.mu,
             v,
         };

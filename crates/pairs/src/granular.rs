@@ -101,7 +101,8 @@ const TEXT: &str = "Spheres with overlap δ = R_i + R_j − r > 0 push each othe
     peridynamic solid, whose surface counts as flat (Walayat et al., table 1).\n\n\
     `-compat lammps` has LAMMPS' faults: tsuji without its √2 (and its 2/√5 for hooke); the shear stiffness of mixed types from E* \
     in the place of both moduli; springs of `…_rescale` that shrink twice, in the setup and in the first step, where grains have \
-    been moved apart between two runs; a sliding twist that takes the direction of the spin even where its \
+    been moved apart between two runs; springs of `mindlin`, `…_classic` and `…_rescale` that slide in young contacts and are set \
+    beyond rest by the drag, so that results hang on the step; a sliding twist that takes the direction of the spin even where its \
     spring pushes the other way; for mdr a contact that sticks only where a step takes more than a hundredth of its radius, and \
     neither yielding nor (of new contacts) damping in the setup of a run.";
 

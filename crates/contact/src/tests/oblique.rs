@@ -221,3 +221,46 @@ fn nothing_moves_on_in_the_setup_of_a_run() {
     law.contact(&g, &i, &Motion::default(), &mut h, Advance { dt: 1e-6, history: false });
     assert_eq!(h, [0.0, 1e-9, 0.0]);
 }
+
+/// The spin that an impact leaves on the first of two equal spheres, 10 µm apart at first: fault B4, 1 m/s against
+/// 0.7 m/s, so that they slide while the contact is young and its dashpot resists more than friction may.
+fn spin_of_a_glancing_impact(law: Granular, dt: f64) -> f64 {
+    let along = scale(0.01001, [-0.91655, -0.39992, 0.0]);
+    let balls = [
+        Ball::new(along, [1.0, 0.0, 0.0], [0.0; 3], 0.005, 2500.0),
+        Ball::new([0.0; 3], [-0.7, 0.0, 0.0], [0.0; 3], 0.005, 2500.0),
+    ];
+    let mut duel = Duel::new(balls, law, dt);
+    while duel.overlap() <= 0.0 {
+        duel.step();
+    }
+    while duel.overlap() > 0.0 {
+        duel.step();
+    }
+    duel.balls[0].motion.spin[2]
+}
+
+#[test]
+fn short_steps_through_a_young_contact_end_where_long_ones_do() {
+    let dampings = [
+        (Damping::Tsuji, 0.5),
+        (Damping::CoeffRestitution, 0.5),
+        (Damping::MassVelocity, 2e4),
+        (Damping::Velocity, 10.0),
+    ];
+    for (damping, eta) in dampings {
+        for kind in [Friction::Mindlin, Friction::MindlinClassic, Friction::MindlinRescale] {
+            let friction = Tangential::new(kind, Some(2.5e8), 1.0, 0.3);
+            let m = model(material(1.0e8, eta, NU), damping, friction);
+            let [long, middle, short] =
+                [5e-7, 1e-7, 1e-8].map(|dt| spin_of_a_glancing_impact(m.law(Compat::Perigrain), dt));
+            // First order in time: 3.8e-4 to 4.7e-4 and a fifth of it measured with tsuji, less with the others.
+            let off = [long, middle].map(|spin| (spin / short - 1.0).abs());
+            assert!(off[0] < 1e-3 && off[1] < 2e-4, "{damping:?} {kind:?}: {off:?}");
+        }
+    }
+    // LAMMPS' rule is worth the test: 2.5 % to 5 % with e from Tsuji or as asked for, a factor of five here.
+    let friction = Tangential::new(Friction::Mindlin, Some(2.5e8), 1.0, 0.3);
+    let m = model(material(1.0e8, 10.0, NU), Damping::Velocity, friction).law(Compat::Lammps);
+    assert!(spin_of_a_glancing_impact(m, 5e-7) > 5.0 * spin_of_a_glancing_impact(m, 1e-8));
+}
