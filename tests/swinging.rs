@@ -84,3 +84,20 @@ fn runs_become_unstable_at_the_limit() {
         assert!(below < 20.0 && beyond > 1e6, "{law}: {below} {beyond}");
     }
 }
+
+/// A body that breaks nowhere, or whose spheres do not overlap, draws no warning of overlaps; one whose bonds were met before neither.
+#[test]
+fn overlaps_are_told_of_once_where_bonds_break() {
+    let law = |strength: &str| {
+        format!(
+            "pair_style granular\npair_coeff * * hertz/material 1e9 0.9 0.2 tangential mindlin NULL 0.9 0.3 damping coeff_restitution\n\
+             bond_style bpm/beam\nbond_coeff 1 1e9 0.2 ratio 0.8 {strength}"
+        )
+    };
+    let told = |law: &str| {
+        let log =
+            run(&body("bpm/sphere", law, "fix 1 all nve/bpm/sphere\ntimestep 1e-9\nrun 1\nrun 1")).unwrap();
+        log.matches("would come from nowhere").count()
+    };
+    assert_eq!([told(&law("strength 1e8 1e8")), told(&law(""))], [1, 0]);
+}
