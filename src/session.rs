@@ -11,6 +11,7 @@ mod interactive;
 mod later;
 mod leveling;
 mod minimizing;
+mod overlaps;
 mod rerunning;
 mod resolution;
 mod restarting;

@@ -33,5 +33,6 @@ mod rooms;
 #[path = "scripts.rs"]
 mod scripts;
 mod staggered;
+mod swinging;
 #[path = "common/threads.rs"]
 mod threads;

@@ -34,6 +34,7 @@ impl Session {
         if moves {
             self.check_integrators(span, &mut found);
             self.check_step(span, &mut found);
+            self.check_overlaps(span, &mut found);
         }
         self.check_levels(span, &mut found);
         self.check_surfaces(&mut found);

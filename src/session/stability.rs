@@ -1,13 +1,14 @@
-//! The longest time steps of peridynamic bodies and of contacts, compared with the deck's; overlaps that are too deep.
+//! The longest time steps of peridynamic bodies, of bonded particles and of contacts, compared with the deck's; overlaps that are too deep.
 
 use super::Session;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use perigrain_styles::Pair;
 use perigrain_styles::pair::{Deck, Scales};
+use perigrain_styles::swing::swinging;
 use perigrain_world::RunStyle;
 
 impl Session {
-    /// A warning where the time step is beyond what the pair style can vouch for.
+    /// A warning where the time step is beyond what the pair style can vouch for, or what bonds stand.
     pub(super) fn check_step(&self, span: Span, found: &mut Diagnostics) {
         // A fix that chooses the step by itself knows better.
         if self.graph.fixes.iter().any(|f| f.style.starts_with("dt/")) {
@@ -19,6 +20,7 @@ impl Session {
         let line = self.graph.nodes.iter().rev().find(|n| n.text.starts_with("timestep"));
         let place = line.map_or(span, |n| n.span);
         self.check_contacts(place, &pairs, deck, found);
+        self.check_bonds(span, place, found);
         let own = |(k, p): (usize, &Scales)| Some((p.stable_step?, self.step_of(k)));
         let steps = pairs.iter().enumerate().filter_map(own);
         let worst = steps.reduce(|a, b| if b.0 * a.1 < a.0 * b.1 { b } else { a });
@@ -66,6 +68,36 @@ impl Session {
             RunStyle::Staggered { ratio: None, .. } => 0.0,
             RunStyle::Respa(r) => dt / r.steps(r.of_pair(k)) as f64,
         }
+    }
+
+    /// A warning where the step is too long for particles that a bond style joins. The cheap bound is asked first: a step within it
+    /// needs no exact limit.
+    fn check_bonds(&self, span: Span, place: Span, found: &mut Diagnostics) {
+        let Some(bond) = self.graph.bond.as_ref().filter(|_| !self.world.bonds.is_empty()) else { return };
+        let (w, whole) = (&self.world, self.world.clock.dt);
+        let integrated = self.graph.fixes.iter().filter(|f| f.fix.facts(w).integrates);
+        let bits = integrated.fold(0, |bits, f| bits | f.group.bit());
+        let moves = |i: usize| w.particles.mask[i] & bits != 0;
+        // What is wrong with bonds is said when the run is set up.
+        let Ok(Some(body)) = swinging(w, bond.force.as_ref(), moves, span) else { return };
+        let steps = match &w.settings.run_style {
+            RunStyle::Respa(r) => r.steps(r.bond),
+            _ => 1,
+        };
+        let dt = whole / steps as f64;
+        if body.bound().is_none_or(|bound| dt <= bound) {
+            return;
+        }
+        let Some(limit) = body.limit().filter(|limit| dt > *limit) else { return };
+        let whose = if steps > 1 { "the time step of their level" } else { "the time step" };
+        let text = format!("{whose} {dt:e} is longer than bonds allow: {limit:.3e}");
+        let remedy = format!("say `timestep {:.1e}` or less", 0.8 * limit * steps as f64);
+        found.push(
+            Diagnostic::warning(Code::UNSTABLE, place, text)
+                .help("beyond 2/ω, ω the largest frequency of the bonded particles as they stand, they fly apart within some tens of steps")
+                .help(remedy)
+                .help("`fix ID all dt/critical 100 0.8` lets the step follow"),
+        );
     }
 
     /// A warning where contacts of grains, with each other or with walls, last less than ten steps.

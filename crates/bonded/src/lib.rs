@@ -11,6 +11,7 @@ pub mod contacts;
 pub mod dsm;
 pub mod ends;
 pub mod law;
+pub mod limit;
 pub mod network;
 pub mod newton;
 pub mod pairs;

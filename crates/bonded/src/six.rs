@@ -111,6 +111,41 @@ pub fn invert(m: &Matrix6, held: u8) -> Inverse {
     out
 }
 
+/// The largest eigenvalue of a symmetric matrix, by Jacobi's rotations.
+pub fn largest(m: &Matrix6) -> f64 {
+    let mut a = *m;
+    // Sweeps converge quadratically: four or five are enough.
+    for _ in 0..20 {
+        let beside: f64 =
+            (0..6).flat_map(|r| (0..r).map(move |c| (r, c))).map(|(r, c)| a[r][c] * a[r][c]).sum();
+        let size: f64 = (0..6).map(|k| a[k][k] * a[k][k]).sum();
+        if beside <= 1e-30 * size {
+            break;
+        }
+        for (p, q) in (1..6).flat_map(|q| (0..q).map(move |p| (p, q))) {
+            rotate(&mut a, p, q);
+        }
+    }
+    (0..6).fold(f64::NEG_INFINITY, |most, k| most.max(a[k][k]))
+}
+
+/// Turns rows and columns p and q so that their common element vanishes.
+fn rotate(a: &mut Matrix6, p: usize, q: usize) {
+    if a[p][q] == 0.0 {
+        return;
+    }
+    let theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
+    let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+    let c = 1.0 / (t * t + 1.0).sqrt();
+    let s = t * c;
+    for row in a.iter_mut() {
+        (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
+    }
+    for k in 0..6 {
+        (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -170,5 +205,21 @@ mod tests {
         assert_eq!(found.without, 0b111110);
         assert!((found.inverse[0] - 1.0 / (1e7 * 0.36)).abs() < 1e-20 && !found.negative);
         assert!(invert(&m.map(|row| row.map(|a| -a)), 0).negative);
+    }
+
+    #[test]
+    fn the_largest_eigenvalue_is_found() {
+        // A rotation of the diagonal 1 … 6 about (1, 1, 1, 1, 1, 1)/√6: H = 1 − 2 n nᵀ.
+        let h: Matrix6 =
+            std::array::from_fn(|r| std::array::from_fn(|c| f64::from(u8::from(r == c)) - 1.0 / 3.0));
+        let m: Matrix6 = std::array::from_fn(|r| {
+            std::array::from_fn(|c| (0..6).map(|k| h[r][k] * (k as f64 + 1.0) * h[k][c]).sum())
+        });
+        assert!((largest(&m) - 6.0).abs() < 1e-13);
+        assert_eq!(largest(&[[0.0; 6]; 6]), 0.0);
+        // One block of a bond: s, and s h² + k coupled by s h.
+        let mut m = [[0.0; 6]; 6];
+        (m[1][1], m[5][5], m[1][5], m[5][1]) = (2.0, 3.0, 1.0, 1.0);
+        assert!((largest(&m) - (2.5 + 1.25f64.sqrt())).abs() < 1e-14);
     }
 }

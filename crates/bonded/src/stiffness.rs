@@ -17,6 +17,23 @@ pub struct Stiffness {
     pub bend: f64,
 }
 
+impl Stiffness {
+    /// All four times a factor.
+    pub fn times(&self, a: f64) -> Self {
+        Self { normal: a * self.normal, shear: a * self.shear, twist: a * self.twist, bend: a * self.bend }
+    }
+
+    /// The sum of two that act beside each other.
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            normal: self.normal + other.normal,
+            shear: self.shear + other.shear,
+            twist: self.twist + other.twist,
+            bend: self.bend + other.bend,
+        }
+    }
+}
+
 /// Where the shear stiffness of a beam comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Shear {

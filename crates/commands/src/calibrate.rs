@@ -51,7 +51,7 @@ impl Style for Calibrate {
                       bond_style harmonic\nbond_coeff 1 2.5e5 1e-3\n\
                       calibrate dsm a all axis z strain -0.01 low plate high plate\ncalibrate ste b all axis z\n\
                       calibrate fit c all target K 2.0e4 vary bond 1 k low plate high plate\n\
-                      print \"before: $(c_a[1]:%.5g) N/m, estimated $(c_b[1]:%.5g) N/m; now $(c_c[1]:%.5g) N/m\"",
+                      print \"before: $(c_a[1]:%.5g) N/m, estimated $(c_b[1]:%.5g) N/m; now $(c_c[1]:%.5g) N/m with k = $(c_c[11]:%.5g) N/m\"",
         }
     }
 }
@@ -85,7 +85,7 @@ const DOC: &str = "\
     Δ of the high end, [8] iterations (ste: the order), [9] the share of contacts and walls in the energy (ste: in Σ k L²), [10] particles left out. E = K l/A with the distance l of the \
     ends (`length body`: of the outermost surfaces) and the section A: `block` the product of both widths, `cylinder` π D²/4 of the mean width, or given. Of periodic: \
     [1] bulk modulus, [2] and [3] E and ν, means over the axes, [5] the bulk modulus of the mean field, [6] shear modulus (both the mean of the bounds of Voigt and Reuss), \
-    [7] the volume. periodic and ste have the tensor c_ID[i][j], too (xx yy zz yz xz xy, engineering shears). `fields yes`: per particle c_ID[1] to [3] the \
+    [7] the volume. Of fit: those of its method, and from [11] on the coefficients found, in the order of the words `vary`. periodic and ste have the tensor c_ID[i][j], too (xx yy zz yz xz xy, engineering shears). `fields yes`: per particle c_ID[1] to [3] the \
     displacement, [4] to [6] the rotation. Particles without a radius count as spheres that reach half way to their partners.";
 
 /// Which calibration.
@@ -135,7 +135,7 @@ impl CommandStyle for Calibrate {
             let d = Diagnostic::error(Code::INCOMPLETE, a.name_span(), text);
             return Err(d.help("as `target K 2.0e4 vary bond 1 E`").into());
         }
-        let found = Found::new(&word.text, tensor, fields);
+        let found = Found::new(&word.text, words.vary.len(), tensor, fields);
         Ok(Box::new(Line { kind, id: word.text.clone(), group, words, found }))
     }
 }

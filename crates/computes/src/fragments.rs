@@ -1,17 +1,21 @@
-//! compute fragments: the pieces of a peridynamic body, what has been eroded from it, and how fast it flies.
+//! compute fragments: the pieces of a body that bonds hold together, what has been eroded from it, and how fast it flies.
 
 use super::{Compute, ComputeStyle};
-use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_peri::families::ForceUnit;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::matter::{Masses, check_masses, unwrapped};
-use perigrain_styles::near::{Clusters, bonds};
+use perigrain_styles::near::{Clusters, held_together};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::field::{BOX, FAMILIES, IMAGE, KIND, MASK, MASS, TAG, TYPE_MASS, V, VOLUME, X};
+use perigrain_world::columns::VOLUME_PROPERTY;
+use perigrain_world::field::{
+    BONDS, BOX, COLUMNS, FAMILIES, IMAGE, KIND, MASK, MASS, RADIUS, TAG, TYPE_MASS, V, VOLUME, X,
+};
 use perigrain_world::{GroupId, SlotId, World};
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 /// The style.
 pub struct Fragments;
@@ -32,9 +36,10 @@ impl Style for Fragments {
                    fragment. Global array, a row for each fragment of at least n particles, the heaviest first (equal \
                    ones by id): the smallest id in it, the number of particles, mass, volume, centre of mass x y z, its velocity x y z, \
                    kinetic energy of its particles. Masses are true masses also where LAMMPS' convention has densities in \
-                   their place; volumes are the peridynamic ones.\n\n\
+                   their place; volumes are the peridynamic ones, elsewhere those of spheres. Bonds are those of families and those of the bond table \
+                   (`bond_style bpm/*`, `harmonic`), turned off or not.\n\n\
                    A crack leaves crushed particles behind it, and single bonds across such dust are enough to make one fragment \
-                   of its two sides. With `damage phi` a particle that has lost the share `phi` of its family or more (compute \
+                   of its two sides. With `damage phi`, of peridynamic particles only, a particle that has lost the share `phi` of its family or more (compute \
                    damage/atom) holds nothing together: it counts as one by itself, with the dust. Particles at a clean crack through \
                    planes of bonds have lost up to a half, less farther from it; values of 0.5 to 0.8 part what is crushed from what \
                    is not.",
@@ -45,11 +50,21 @@ impl Style for Fragments {
 
 impl ComputeStyle for Fragments {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
-        super::need_bonds("fragments", cx)?;
+        let w = cx.world;
+        let families = w.particles.style.peri || w.columns.property(*VOLUME_PROPERTY).is_some();
+        if !w.particles.style.bonded {
+            super::need_bonds("fragments", cx)?;
+        }
         let (mut least, mut damage) = (2, None);
         while let Some(word) = args.next() {
             match word.text.as_str() {
                 "least" => least = args.integer_from(1, "the least number of particles")? as usize,
+                "damage" if !families => {
+                    let text =
+                        "only peridynamic particles have a damage: bonds of the bond table hold or are gone";
+                    let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+                    return Err(d.help("leave `damage` out").into());
+                }
                 "damage" => {
                     let at = args.here();
                     let share = args.positive("the damage of what holds nothing together")?;
@@ -110,7 +125,7 @@ fn pieces(w: &World, group: GroupId, damage: Option<f64>) -> Vec<Piece> {
     }
     let holds = |i: usize| of(i) && damage.is_none_or(|d| lost.get(i).is_none_or(|lost| *lost < d));
     let mut clusters = Clusters::new(&p.tag);
-    bonds(w, |i, j| {
+    held_together(w, |i, j| {
         if holds(i as usize) && holds(j as usize) {
             clusters.join(i, j);
         }
@@ -120,7 +135,7 @@ fn pieces(w: &World, group: GroupId, damage: Option<f64>) -> Vec<Piece> {
     let densities = w.families.as_ref().is_some_and(|f| f.options.unit == ForceUnit::Density);
     let mut found: BTreeMap<u32, Piece> = BTreeMap::new();
     for i in (0..w.n()).filter(|&i| of(i)) {
-        let volume = volumes.get(i).copied().unwrap_or(0.0);
+        let volume = volumes.get(i).copied().unwrap_or_else(|| sphere(p.radius.get(i)));
         let m = if densities && volume > 0.0 { masses.get(i) * volume } else { masses.get(i) };
         let name = clusters.name(i) as u32;
         let piece = found.entry(name).or_insert(Piece { name, ..Piece::default() });
@@ -137,6 +152,11 @@ fn pieces(w: &World, group: GroupId, damage: Option<f64>) -> Vec<Piece> {
     let mut list: Vec<Piece> = found.into_values().collect();
     list.sort_by(|a, b| b.mass.total_cmp(&a.mass).then(a.name.cmp(&b.name)));
     list
+}
+
+/// The volume of a sphere; none of a point.
+fn sphere(radius: Option<&f64>) -> f64 {
+    radius.map_or(0.0, |r| 4.0 / 3.0 * PI * r.powi(3))
 }
 
 /// The global vector.
@@ -160,21 +180,34 @@ fn spectrum(list: &[Piece], least: usize) -> Vec<f64> {
 }
 
 /// Columns of the array.
-const COLUMNS: usize = 11;
+const WIDTH: usize = 11;
 
 impl Compute for Declared {
     fn shape(&self) -> Shape {
-        Shape { vector: 8, array: COLUMNS, array_rows: Shape::OPEN, ..Shape::default() }
+        Shape { vector: 8, array: WIDTH, array_rows: Shape::OPEN, ..Shape::default() }
     }
 
     fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (group, least, damage, span) = (self.group, self.least, self.damage, cx.span());
         check_masses(cx.world(), span)?;
-        let reads = KIND | TAG | TYPE_MASS | BOX | X | V | IMAGE | MASS | VOLUME | MASK | FAMILIES;
+        let reads = KIND
+            | TAG
+            | TYPE_MASS
+            | BOX
+            | X
+            | V
+            | IMAGE
+            | MASS
+            | VOLUME
+            | COLUMNS
+            | RADIUS
+            | MASK
+            | FAMILIES
+            | BONDS;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
             let list = pieces(w, group, damage);
             out.vector = spectrum(&list, least);
-            out.array_cols = COLUMNS;
+            out.array_cols = WIDTH;
             out.array.clear();
             for p in list.iter().filter(|p| p.count >= least) {
                 let place = p.place.map(|x| if p.mass > 0.0 { x / p.mass } else { 0.0 });
@@ -192,7 +225,7 @@ mod tests {
     use perigrain_peri::families::{Families, FamilyOptions, PmbCoeff, PmbTable};
     use perigrain_styles::peri_view::view;
     use perigrain_styles::testing::Bench;
-    use perigrain_world::AtomStyle;
+    use perigrain_world::{AtomStyle, Bond};
 
     /// Six points in a row, one apart, of mass 2 and volume 3, bonds to the next one only; cut after the third and fifth.
     fn row() -> Bench {
@@ -238,5 +271,25 @@ mod tests {
         for words in ["least 0", "most 3", "least", "damage 0", "damage 1.5", "damage"] {
             assert!(b.compute(&Fragments, words).is_err(), "{words}");
         }
+    }
+
+    #[test]
+    fn bonds_of_the_table_hold_spheres_together() {
+        let places: Vec<[f64; 3]> = (0..5).map(|i| [f64::from(i), 0.0, 0.0]).collect();
+        let style = AtomStyle { sphere: true, bonded: true, ..AtomStyle::default() };
+        let mut b = Bench::new(style, &places);
+        b.world.particles.radius = vec![0.5; 5].into();
+        for ends in [[1, 2], [3, 2], [5, 4]] {
+            b.world.bonds.push(Bond::new(1, ends));
+        }
+        let c = b.compute(&Fragments, "").unwrap();
+        let slot = b.evaluate(&*c).unwrap();
+        let volume = PI / 6.0;
+        assert_eq!(slot.vector[..5], [2.0, 6.0, 4.0, 0.0, 4.0]);
+        assert!((slot.vector[5] - 2.0 * volume).abs() < 1e-15);
+        assert_eq!((slot.array[0], slot.array[1], slot.array[11], slot.array[12]), (1.0, 3.0, 4.0, 2.0));
+        b.world.bonds.lose(&[([1, 2], 1)]);
+        assert_eq!(b.evaluate(&*c).unwrap().vector[..4], [2.0, 4.0, 4.0, 2.0]);
+        assert!(b.compute(&Fragments, "damage 0.5").is_err());
     }
 }

@@ -6,8 +6,8 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::critical::{self, Estimate};
-use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::field::{CONTACTS, FAMILIES, KIND, MASS, RADIUS, V, VOLUME, X};
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, swing};
+use perigrain_world::field::{CONTACTS, FAMILIES, KIND, MASS, RADIUS, TYPE_MASS, V, VOLUME, X};
 use perigrain_world::{GroupId, RunStyle, World};
 
 /// The style.
@@ -19,11 +19,11 @@ impl Style for DtCritical {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID all dt/critical N safety [pd cfl|silling|exact] [max T]",
-            summary: "Sets the time step to a part of what peridynamic solids and contacts stand.",
-            text: "In the setup of a run and every N steps the step becomes `safety` times the shorter of the two limits of \
-                   compute dt/critical (`pd exact` unless said otherwise), at most T. As bonds break and contacts come and go \
-                   the limits change, and the step follows. Under `run_style staggered` the long step becomes the grains' \
+            syntax: "fix ID all dt/critical N safety [pd cfl|silling|exact] [bonds local|exact|none] [max T]",
+            summary: "Sets the time step to a part of what peridynamic solids, contacts and bonds stand.",
+            text: "In the setup of a run and every N steps the step becomes `safety` times the shortest of the limits of \
+                   compute dt/critical (`pd exact` and `bonds local` unless said otherwise), at most T. As bonds break and contacts come and go \
+                   the limits change, and the step follows. Under `run_style staggered` bonded particles count as grains: the long step becomes the grains' \
                    limit, shortened to what `m N` short steps of the solids fill; with `faster grains` the step becomes the \
                    grains', shortened to the N-th part of the solids'. Where no limit is known, as for grains that do not \
                    touch, the step is T, or stays. Scalar (intensive): the last step at which it changed.\n\n\
@@ -49,12 +49,14 @@ impl FixStyle for DtCritical {
                 format!("a part of the limit is below 1: {safety} lets waves grow"),
             );
         }
-        let mut rule = Rule { how: Estimate::Exact, safety, longest: None };
+        let bonds = swing::Estimate::Local;
+        let mut rule = Rule { how: Estimate::Exact, bonds, safety, longest: None };
         while let Some(word) = args.next() {
             match word.text.as_str() {
                 "pd" => rule.how = Estimate::read(args)?,
+                "bonds" => rule.bonds = swing::Estimate::read(args)?,
                 "max" => rule.longest = Some(args.positive("the longest step")?),
-                _ => return Err(args.unknown(word, &["pd", "max"])),
+                _ => return Err(args.unknown(word, &["pd", "bonds", "max"])),
             }
         }
         Ok(Box::new(Declared { follower: Follower::new("dt/critical", cx.id, every), rule }))
@@ -65,12 +67,16 @@ impl FixStyle for DtCritical {
 #[derive(Clone, Copy)]
 struct Rule {
     how: Estimate,
+    bonds: swing::Estimate,
     safety: f64,
     longest: Option<f64>,
 }
 
 impl Rule {
-    fn step(&self, w: &World, solids: f64, grains: f64) -> f64 {
+    fn step(&self, w: &World, solids: f64, grains: f64, bonds: f64) -> f64 {
+        let contacts = grains;
+        // Only levels of steps tell contacts and bonds apart.
+        let grains = contacts.min(bonds);
         let limit = match &w.settings.run_style {
             RunStyle::Verlet => solids.min(grains),
             RunStyle::Staggered { ratio: None, .. } => grains,
@@ -79,7 +85,7 @@ impl Rule {
             // Whoever acts in the longest steps of all has the last word.
             RunStyle::Respa(r) => {
                 let pairs = r.subs.iter().flatten().copied().max().unwrap_or(r.pair);
-                solids.min(grains) * r.steps(pairs) as f64
+                (solids.min(contacts) * r.steps(pairs) as f64).min(bonds * r.steps(r.bond) as f64)
             }
         };
         let step = (self.safety * limit).min(self.longest.unwrap_or(f64::INFINITY));
@@ -105,12 +111,13 @@ impl Fix for Declared {
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        let rule = self.rule;
+        let (rule, style, span) = (self.rule, cx.bonds(), cx.span());
         let mut probes = cx.probes()?;
-        let reads = X | V | RADIUS | MASS | KIND | VOLUME | FAMILIES | CONTACTS;
+        let reads = X | V | RADIUS | MASS | TYPE_MASS | KIND | VOLUME | FAMILIES | CONTACTS;
         Ok(self.follower.ops(cx, reads, move |w| {
             let (solids, grains) = (critical::solids(w, rule.how)?, critical::grains(w, &mut probes)?);
-            Ok(rule.step(w, solids, grains))
+            let bonds = rule.bonds.step(w, style.as_deref(), span)?;
+            Ok(rule.step(w, solids, grains, bonds))
         }))
     }
 
@@ -129,7 +136,7 @@ mod tests {
     fn the_step_suits_the_way_steps_are_made() {
         let mut w = World::default();
         w.clock.dt = 7.0;
-        let rule = Rule { how: Estimate::Cfl, safety: 0.5, longest: None };
+        let rule = Rule { how: Estimate::Cfl, bonds: swing::Estimate::Local, safety: 0.5, longest: None };
         let staggered = |ratio, rare| RunStyle::Staggered { ratio, rare, twice: None };
         let inf = f64::INFINITY;
         let levels = |subs| RunStyle::Respa(Respa { loops: vec![3, 5], bond: 0, pair: 2, subs });
@@ -146,9 +153,13 @@ mod tests {
             (levels(Some(vec![0, 1])), 2.0, 8.0, 5.0),
         ] {
             w.settings.run_style = style.clone();
-            assert_eq!(rule.step(&w, solids, grains), step, "{style:?}");
+            assert_eq!(rule.step(&w, solids, grains, inf), step, "{style:?}");
         }
-        assert_eq!(Rule { longest: Some(0.25), ..rule }.step(&w, inf, inf), 0.25);
+        // Bonds are of the innermost level of three: fifteen of their steps in the longest one.
+        assert_eq!(rule.step(&w, 2.0, inf, 0.1), 0.75);
+        w.settings.run_style = RunStyle::Verlet;
+        assert_eq!(rule.step(&w, inf, 8.0, 0.5), 0.25);
+        assert_eq!(Rule { longest: Some(0.25), ..rule }.step(&w, inf, inf, inf), 0.25);
     }
 
     #[test]

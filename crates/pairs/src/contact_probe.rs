@@ -180,12 +180,13 @@ impl<L: ContactLaw + Send> Probe for ContactProbe<L> {
         })
     }
 
-    fn pressed(&self, [a, b]: [u16; 2], overlap: f64, curvature: f64) -> Option<[f64; 2]> {
+    fn pressed(&self, [a, b]: [u16; 2], overlap: f64, curvature: f64) -> Option<[f64; 3]> {
         let law = self.rules.get(a, b)?.law;
         let radii = [2.0 * curvature; 2];
         let g = Geometry { normal: [1.0, 0.0, 0.0], overlap, radii, curvature, mass: 1.0 };
         let fresh = vec![0.0; law.memory()];
-        Some([law.stored(&g, &fresh).push, law.springs(&g)[1]])
+        let stored = law.stored(&g, &fresh);
+        Some([stored.push, law.springs(&g)[1], stored.normal])
     }
 
     fn balance(&mut self, w: &World) -> Result<Balance> {

@@ -19,6 +19,28 @@ pub trait BondStyle: Style {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>>;
 }
 
+/// A bond as it stands, of which is asked how fast its ends may swing.
+#[derive(Clone, Copy, Debug)]
+pub struct Standing {
+    /// Type.
+    pub kind: u16,
+    /// Length at rest [length].
+    pub length: f64,
+    /// Radii of the ends [length].
+    pub radii: [f64; 2],
+    /// Their masses, in units of force and time [force time²/length].
+    pub masses: [f64; 2],
+}
+
+/// What stands against the motion of a bond's ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Swing {
+    /// How hard it may become: not less than the slope of its forces wherever it is near rest.
+    pub stiffness: Stiffness,
+    /// What its dashpots do: force per velocity, torque per spin.
+    pub dashpots: Stiffness,
+}
+
 /// A declared bond style with its coefficients.
 pub trait BondForce: DynClone + Send + Sync {
     /// The style's name.
@@ -70,6 +92,18 @@ pub trait BondForce: DynClone + Send + Sync {
     /// style has none.
     fn stiffness(&self, _kind: u16, _length: f64, _radii: [f64; 2]) -> Option<Stiffness> {
         None
+    }
+
+    /// What stands against the motion of a bond's ends, for the longest stable step; `None` where the style has no bonds of its own, or
+    /// they do nothing.
+    fn swing(&self, bond: &Standing) -> Option<Swing> {
+        let stiffness = self.stiffness(bond.kind, bond.length, bond.radii)?;
+        Some(Swing { stiffness, ..Swing::default() })
+    }
+
+    /// Whether bonds of a type may break, after which the pair style acts between their ends.
+    fn may_break(&self, _kind: u16) -> bool {
+        false
     }
 
     /// The coefficients that `calibrate fit` may vary, by name.

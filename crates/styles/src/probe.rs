@@ -125,9 +125,9 @@ pub trait Probe: Send {
         Ok(vec![])
     }
 
-    /// The elastic force of a new contact between grains of two types at an overlap, and its stiffness across the normal; `None` where the
-    /// style says nothing of it.
-    fn pressed(&self, _types: [u16; 2], _overlap: f64, _curvature: f64) -> Option<[f64; 2]> {
+    /// The elastic force of a new contact between grains of two types at an overlap, its stiffness across the normal, and the work that
+    /// the force can give back; `None` where the style says nothing of it.
+    fn pressed(&self, _types: [u16; 2], _overlap: f64, _curvature: f64) -> Option<[f64; 3]> {
         None
     }
 

@@ -9,6 +9,7 @@ mod eight;
 pub mod forest;
 pub mod form;
 pub mod four;
+pub mod lanczos;
 pub mod lanes;
 pub mod pair;
 pub mod real;

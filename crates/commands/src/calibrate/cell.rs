@@ -77,7 +77,7 @@ pub fn periodic(cx: &mut ActCx, line: &Line, scene: &Scene) -> Result<()> {
         0.0,
         0.0,
     ];
-    line.found.keep(cx.world, numbers, Some(&c));
+    line.found.keep(cx.world, numbers, &[], Some(&c));
     cx.say(format!(
         "calibrate periodic {}: {} particles, {} bonds in a cell of volume {}",
         line.id,

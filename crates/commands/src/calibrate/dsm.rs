@@ -34,7 +34,7 @@ pub fn run(cx: &mut ActCx, line: &Line, scene: &Scene, hertz: Option<&Hertz>) ->
     warn_unfinished(cx, r.done);
     warn_loose(cx, r.loose);
     warn_untouched(cx, words, &setup, &r);
-    line.found.keep(cx.world, numbers(&setup, &r), None);
+    line.found.keep(cx.world, numbers(&setup, &r), &[], None);
     if words.fields {
         line.found.keep_motion(cx.world, &scene.places, &r.field);
     }

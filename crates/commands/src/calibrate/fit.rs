@@ -103,7 +103,7 @@ pub fn run(
     warn_unfinished(cx, model.done);
     let now = tuned(style, words, &params)?;
     set(cx, words, now.as_ref(), &format!("calibrate fit {}", line.id))?;
-    line.found.keep(cx.world, model.numbers(), model.tensor());
+    line.found.keep(cx.world, model.numbers(), &values(style, words, &params)?, model.tensor());
     let (took, seconds) = (count(solves, "solve"), began.elapsed().as_secs_f64());
     cx.say(format!("  {}   {took}, {seconds:.2} s", reached(words, &model)));
     Ok(())

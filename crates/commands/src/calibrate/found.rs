@@ -19,6 +19,8 @@ const MOST_FIELDS: usize = 2;
 #[derive(Clone, Debug)]
 pub struct Found {
     id: String,
+    /// Coefficients that were fitted.
+    coefficients: usize,
     /// Whether there is a tensor.
     tensor: bool,
     /// Vectors per particle.
@@ -27,8 +29,8 @@ pub struct Found {
 
 impl Found {
     /// Under this ID.
-    pub fn new(id: &str, tensor: bool, fields: usize) -> Self {
-        Self { id: id.to_string(), tensor, fields }
+    pub fn new(id: &str, coefficients: usize, tensor: bool, fields: usize) -> Self {
+        Self { id: id.to_string(), coefficients, tensor, fields }
     }
 
     fn numbers(&self) -> Numbers {
@@ -39,9 +41,15 @@ impl Found {
         Key::new(&format!("calibrate {}/{k}", self.id))
     }
 
-    /// Keeps the numbers, and the tensor behind them.
-    pub fn keep(&self, w: &mut World, numbers: [f64; NUMBERS], tensor: Option<&Matrix6>) {
-        let mut all = numbers.to_vec();
+    /// Keeps the numbers, the coefficients fitted, and the tensor behind them.
+    pub fn keep(
+        &self,
+        w: &mut World,
+        numbers: [f64; NUMBERS],
+        coefficients: &[f64],
+        tensor: Option<&Matrix6>,
+    ) {
+        let mut all = [&numbers[..], coefficients].concat();
         all.extend(tensor.into_iter().flatten().flatten());
         w.memo.insert(self.numbers(), all);
         (self.fields..MOST_FIELDS).for_each(|k| w.columns.remove(self.field(k)));
@@ -70,7 +78,8 @@ impl Compute for Found {
     fn shape(&self) -> Shape {
         let array = if self.tensor { 6 } else { 0 };
         let atom = (self.fields > 0).then_some(3 * self.fields);
-        Shape { vector: NUMBERS, array, array_rows: array, atom, ..Shape::default() }
+        let vector = NUMBERS + self.coefficients;
+        Shape { vector, array, array_rows: array, atom, ..Shape::default() }
     }
 
     fn remove(&self, w: &mut World) {
@@ -79,13 +88,13 @@ impl Compute for Found {
     }
 
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
-        let numbers = self.numbers();
+        let (numbers, many) = (self.numbers(), NUMBERS + self.coefficients);
         let fields: Vec<Vectors> = (0..self.fields).map(|k| self.field(k)).collect();
         let wanted = Wanted { slot, stage, when };
         let reads = if fields.is_empty() { MEMO } else { COLUMNS | MEMO };
         Ok(fill(&self.id, &wanted, reads, move |w, _, out| {
             let all = w.memo.get(numbers).map_or(&[][..], Vec::as_slice);
-            let (numbers, tensor) = all.split_at(NUMBERS.min(all.len()));
+            let (numbers, tensor) = all.split_at(many.min(all.len()));
             out.vector = numbers.to_vec();
             out.array = tensor.to_vec();
             out.array_cols = if tensor.is_empty() { 0 } else { 6 };

@@ -86,14 +86,15 @@ impl Probe for Law {
     fn look(&mut self, _w: &World, _ask: Ask) -> Result<Vec<Interaction>> {
         Ok(vec![])
     }
-    fn pressed(&self, _types: [u16; 2], overlap: f64, curvature: f64) -> Option<[f64; 2]> {
+    fn pressed(&self, _types: [u16; 2], overlap: f64, curvature: f64) -> Option<[f64; 3]> {
         let root = (curvature * overlap).sqrt();
         match self {
             Law::None => None,
             Law::Hertz => {
-                Some([4.0 / 3.0 * 5.208333333333333e8 * root * overlap, 8.0 * 1.1574074074074074e8 * root])
+                let push = 4.0 / 3.0 * 5.208333333333333e8 * root * overlap;
+                Some([push, 8.0 * 1.1574074074074074e8 * root, 0.4 * push * overlap])
             }
-            Law::Hooke => Some([1e6 * overlap, 0.0]),
+            Law::Hooke => Some([1e6 * overlap, 0.0, 0.5e6 * overlap * overlap]),
         }
     }
 }

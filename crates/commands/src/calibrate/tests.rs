@@ -147,6 +147,7 @@ fn one_type_is_fitted_by_one_solve() {
         );
         near(found[0], 1e9 * (2.0e4f64 / k).powf(1.0 / power), 2e-10);
         near(did.numbers[0], 2.0e4, 1e-12);
+        near(did.numbers[10], found[0], 1e-12);
         assert!(did.said.iter().filter(|l| l.contains("solve ")).count() == 1, "{did:?}");
         // The other way round.
         let mut beams = Beams::standard(2);
@@ -207,8 +208,10 @@ fn two_types_meet_two_targets() {
         near(did.numbers[2], nu, 1.1e-4);
         let solves = did.said.iter().filter(|l| l.contains("solve ")).count();
         assert!(solves <= 6, "{did:?}");
-        for (line, e) in did.then.iter().zip([1e9, 3e9]) {
-            near(line.split(' ').nth(2).unwrap().parse().unwrap(), e, 2e-3);
+        for (k, (line, e)) in did.then.iter().zip([1e9, 3e9]).enumerate() {
+            let set = line.split(' ').nth(2).unwrap().parse().unwrap();
+            near(set, e, 2e-3);
+            near(did.numbers[10 + k], set, 1e-12);
         }
     }
     // One target leaves a direction open, which is told.

@@ -81,7 +81,7 @@ fn law(probes: &[Box<dyn Probe>], types: [u16; 2], radius: f64) -> Option<[f64; 
     let curvature = 0.5 * radius;
     let at = |overlap: f64| {
         let mut sum = [0.0; 2];
-        for [push, across] in probes.iter().filter_map(|p| p.pressed(types, overlap, curvature)) {
+        for [push, across, _] in probes.iter().filter_map(|p| p.pressed(types, overlap, curvature)) {
             let root = (curvature * overlap).sqrt();
             sum = [sum[0] + push / (root * overlap), sum[1] + across / root];
         }

@@ -311,23 +311,30 @@ impl Pack {
         ));
         let (average, most) = (percent(came.mean), percent(came.largest));
         cx.say(format!("  overlap of spheres that touch {average} on average, {most} at most"));
+        let less = percent(1.0 - came.shrunk);
         if came.shrunk < 1.0 {
-            let less = percent(1.0 - came.shrunk);
             cx.say(format!("  diameters are {less} smaller than asked for, so that nothing overlaps"));
         }
         if came.beyond > TOLD * mean {
             cx.say(format!("  spheres reach {} through walls at most", general(came.beyond, 3)));
         }
         if !came.reached {
-            let text = format!(
-                "after {} rounds spheres of share {} still overlap, {average} on average and {most} at most",
-                self.goal.rounds, self.share
-            );
-            let help = match self.goal.overlap {
-                Some(0.0) => {
-                    "a smaller share, or more `rounds`, would leave the diameters nearer to what they should be"
-                }
-                _ => "write a smaller share or more `rounds`, or `overlap 0` for smaller diameters",
+            let (rounds, share) = (self.goal.rounds, self.share);
+            let (text, help) = match self.goal.overlap {
+                Some(0.0) => (
+                    format!(
+                        "after {rounds} rounds spheres of share {share} still overlapped: `overlap 0` has made their diameters {less} \
+                         smaller, and the share is {}",
+                        general(solid(&p.radius) / volume, 3)
+                    ),
+                    "a smaller share, or more `rounds`, would leave the diameters nearer to what they should be",
+                ),
+                _ => (
+                    format!(
+                        "after {rounds} rounds spheres of share {share} still overlap, {average} on average and {most} at most"
+                    ),
+                    "write a smaller share or more `rounds`, or `overlap 0` for smaller diameters",
+                ),
             };
             cx.note(Diagnostic::warning(Code::SUSPICIOUS, self.share_span, text).help(help));
         }

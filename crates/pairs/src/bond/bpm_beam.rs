@@ -12,6 +12,7 @@ use perigrain_bonded::stiffness::Stiffness;
 use perigrain_bonded::weibull;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
+use perigrain_styles::bond::{Standing, Swing};
 use perigrain_styles::matter::Masses;
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::field::{Fields, KIND, MASS, OMEGA, QUAT, RADIUS, TYPE_MASS};
@@ -186,6 +187,28 @@ impl BondForce for Declared {
     fn stiffness(&self, kind: u16, length: f64, radii: [f64; 2]) -> Option<Stiffness> {
         let line = self.types.get(&kind)?;
         Some(self.law.stiffness(&line.coeffs, line.radius.of(radii), length))
+    }
+
+    fn may_break(&self, kind: u16) -> bool {
+        self.coeffs(kind).is_some_and(|k| k.strength != [f64::INFINITY; 2])
+    }
+
+    fn swing(&self, bond: &Standing) -> Option<Swing> {
+        let line = self.types.get(&bond.kind)?;
+        let stiffness = self.stiffness(bond.kind, bond.length, bond.radii)?;
+        let [m, other] = bond.masses;
+        let inertia: [f64; 2] = std::array::from_fn(|e| 0.4 * bond.masses[e] * bond.radii[e].powi(2));
+        let reduced = |a: f64, b: f64| if a + b > 0.0 { a * b / (a + b) } else { 0.0 };
+        let (mass, inertia) = (reduced(m, other), reduced(inertia[0], inertia[1]));
+        let zeta = line.coeffs.damping;
+        let critical = |share: f64, k: f64, m: f64| 2.0 * share * (k * m).sqrt();
+        let dashpots = Stiffness {
+            normal: critical(zeta[0], stiffness.normal, mass),
+            shear: critical(zeta[1], stiffness.shear, mass),
+            twist: critical(zeta[2], stiffness.twist, inertia),
+            bend: critical(zeta[3], stiffness.bend, inertia),
+        };
+        Some(Swing { stiffness, dashpots })
     }
 
     fn tunable(&self) -> &'static [&'static str] {

@@ -12,6 +12,7 @@ use perigrain_bonded::rotational::{Coeffs, Rotational};
 use perigrain_bonded::stiffness::Stiffness;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
+use perigrain_styles::bond::{Standing, Swing};
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::field::{Fields, OMEGA, QUAT};
 use perigrain_world::{Bond, World};
@@ -202,6 +203,17 @@ impl BondForce for Declared {
         let k = self.types.get(&kind)?.stiffness;
         let per = if self.options.normalize { length } else { 1.0 };
         Some(Stiffness { normal: k.normal / per, shear: k.shear / per, ..k })
+    }
+
+    fn may_break(&self, kind: u16) -> bool {
+        self.options.breaks && self.types.contains_key(&kind)
+    }
+
+    fn swing(&self, bond: &Standing) -> Option<Swing> {
+        let stiffness = self.stiffness(bond.kind, bond.length, bond.radii)?;
+        let d = self.types.get(&bond.kind)?.damping;
+        let dashpots = Stiffness { twist: 0.5 * d.twist, bend: 0.5 * d.bend * bond.length, ..d };
+        Some(Swing { stiffness, dashpots })
     }
 
     fn tunable(&self) -> &'static [&'static str] {

@@ -11,7 +11,7 @@ use perigrain_bonded::spring::{self, Breaking};
 use perigrain_bonded::sweep::Body;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::bond::Stiffness;
+use perigrain_styles::bond::{Standing, Stiffness, Swing};
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::{Bond, World};
 use std::collections::BTreeMap;
@@ -121,6 +121,19 @@ impl BondForce for Declared {
         let ([k, ..], _) = *self.springs.get(&kind)?;
         let normal = if self.options.normalize { k / length } else { k };
         Some(Stiffness { normal, ..Stiffness::default() })
+    }
+
+    fn may_break(&self, kind: u16) -> bool {
+        self.options.breaks && self.springs.contains_key(&kind)
+    }
+
+    fn swing(&self, bond: &Standing) -> Option<Swing> {
+        let ([_, _, gamma], volume) = *self.springs.get(&bond.kind)?;
+        let mut stiffness = self.stiffness(bond.kind, bond.length, bond.radii)?;
+        // What the volume adds where the length changes and the volume does not; what the volume does is of the other sign.
+        stiffness.normal += volume.max(0.0) / bond.length;
+        let dashpots = Stiffness { normal: gamma, ..Stiffness::default() };
+        Some(Swing { stiffness, dashpots })
     }
 
     fn tunable(&self) -> &'static [&'static str] {

@@ -11,6 +11,7 @@ use perigrain_bonded::spring::{Breaking, Yielding, give_way};
 use perigrain_bonded::sweep::Body;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
+use perigrain_styles::bond::{Standing, Stiffness, Swing};
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::bonds::ascending;
 use perigrain_world::{Bond, World};
@@ -102,6 +103,17 @@ impl BondForce for Declared {
 
     fn extra(&self, w: &World, bond: &Stretched) -> Vec<f64> {
         vec![bond.rest, at_rest(w, &bond.bond)]
+    }
+
+    fn may_break(&self, kind: u16) -> bool {
+        self.options.breaks && self.springs.contains_key(&kind)
+    }
+
+    fn swing(&self, bond: &Standing) -> Option<Swing> {
+        let ([k, _, gamma], _) = *self.springs.get(&bond.kind)?;
+        let along = |normal: f64| Stiffness { normal, ..Stiffness::default() };
+        let stiffness = along(if self.options.normalize { k / bond.length } else { k });
+        Some(Swing { stiffness, dashpots: along(gamma) })
     }
 
     fn written(&self, kind: u16) -> Option<String> {

@@ -4,7 +4,7 @@ use super::{BONDS, BondForce, BondStyle, Pull, Stretched};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::bond::Stiffness;
+use perigrain_styles::bond::{Standing, Stiffness, Swing};
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::field::Fields;
@@ -117,6 +117,14 @@ impl BondForce for Declared {
             None => Some(Stiffness::default()),
             Some(k) => self.subs[*k].stiffness(kind, length, radii),
         }
+    }
+
+    fn may_break(&self, kind: u16) -> bool {
+        self.user(kind).is_some_and(|sub| sub.may_break(kind))
+    }
+
+    fn swing(&self, bond: &Standing) -> Option<Swing> {
+        self.user(bond.kind)?.swing(bond)
     }
 
     fn tuned(&self, name: &str, kind: u16, factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
