@@ -182,3 +182,21 @@ fn ended_by(signal: &str) {
     });
     assert_eq!(whole, rest, "{signal}");
 }
+
+#[test]
+fn as_many_threads_as_openmp_may_have() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("in.deck"), "info communication\n").unwrap();
+    let run = |allowed: &str, args: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_perigrain"));
+        let command = command.args(["in.deck", "-log", "none"]).args(args);
+        command.current_dir(folder.path()).env("OMP_NUM_THREADS", allowed).output().unwrap()
+    };
+    for (allowed, args, obtained) in [("3", &[][..], 3), ("3,2", &[], 3), ("3", &["-threads", "2"], 2)] {
+        let o = run(allowed, args);
+        assert!(out(&o).contains(&format!("Nthreads = {obtained}\n")), "{allowed} {args:?}: {}", out(&o));
+        assert_eq!(err(&o), "");
+    }
+    let o = run("many", &[]);
+    assert!(err(&o).contains("OMP_NUM_THREADS is `many`") && o.status.success(), "{}", err(&o));
+}

@@ -131,10 +131,15 @@ pub const SWITCHES: &[Switch] = &[
             Ok(())
         },
     ),
-    switch(&["-threads"], "N", "use N threads; results are the same bits for any N (all cores)", |o, v| {
-        o.threads = Some(v.count("a number of threads")?);
-        Ok(())
-    }),
+    switch(
+        &["-threads"],
+        "N",
+        "use at most N threads; results are the same bits for any N (OMP_NUM_THREADS, else all cores)",
+        |o, v| {
+            o.threads = Some(v.count("a number of threads")?);
+            Ok(())
+        },
+    ),
     switch(&["-compat"], "lammps", "LAMMPS' numbers also where LAMMPS is wrong", |o, v| {
         let word = v.one("lammps")?;
         if word != "lammps" {

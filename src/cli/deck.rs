@@ -73,7 +73,7 @@ pub fn draw(o: &Options) -> u8 {
 /// # Errors
 /// Variables of the command line that cannot be set.
 pub(super) fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
-    session::set_threads(o.threads.unwrap_or(0));
+    session::set_threads(o.threads.or_else(asked_of_openmp).unwrap_or(0));
     Session::new(session::Options {
         mode,
         log: log.clone(),
@@ -87,6 +87,21 @@ pub(super) fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
             Deck::File(path) => folder_of(path),
         },
     })
+}
+
+/// The threads that `OMP_NUM_THREADS` allows: batch systems set it to the cores that were given.
+fn asked_of_openmp() -> Option<usize> {
+    let value = std::env::var("OMP_NUM_THREADS").ok()?;
+    let threads = openmp_threads(&value);
+    if threads.is_none() && !value.trim().is_empty() {
+        eprintln!("warning: OMP_NUM_THREADS is `{value}`, not a number of threads; all cores are used");
+    }
+    threads
+}
+
+/// The first of the numbers that OpenMP takes, one per level of loops within loops.
+fn openmp_threads(value: &str) -> Option<usize> {
+    value.split(',').next()?.trim().parse().ok().filter(|&n| n > 0)
 }
 
 /// Whether steps are made and files written.

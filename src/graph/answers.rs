@@ -26,7 +26,7 @@ pub fn setting(w: &World, checking: bool, name: &str) -> Option<Value> {
     let number = match name {
         "dimension" => flag(!w.settings.two_dimensional) + 2.0,
         "box_exist" => flag(w.domain.is_some()),
-        "nthreads" => perigrain_base::par::threads() as f64,
+        "nthreads" => perigrain_base::par::most_threads() as f64,
         "newton_pair" => flag(w.settings.newton.pair),
         "newton_bond" => flag(w.settings.newton.bond),
         "nlocal" | "nall" if checking => return Some(Value::Unknown),

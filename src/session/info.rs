@@ -100,7 +100,7 @@ impl Session {
             "communication" => {
                 format!(
                     "\nCommunication information:\nNprocs = 1,   Nthreads = {}\n",
-                    perigrain_base::par::threads()
+                    perigrain_base::par::most_threads()
                 )
             }
             "system" => self.system_text(),

@@ -337,7 +337,7 @@ impl Session {
             cpu: o.cpu,
             steps: o.steps,
             atoms: self.world.n() as u64,
-            threads: perigrain_base::par::threads(),
+            threads: perigrain_base::par::most_threads(),
             units: self.world.settings.units.name(),
             time: o.steps as f64 * self.world.clock.dt,
             sections: if post { &sections } else { &[] },

@@ -282,7 +282,7 @@ impl Families {
     ) {
         let Self { list, scratch, options, law, table, breaking_enabled, counts_losses, .. } = self;
         let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest };
-        scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
+        scratch.windows.resize_with(par::most_threads().max(scratch.windows.len()), Mutex::default);
         let settling = lattice::settling((law, table), options, (advance, tallied, *counts_losses));
         if list.inverse.len() != list.partner.len() {
             // Read from a restart file.

@@ -39,7 +39,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     - `-echo none|screen|log|both`, `-e`: where each line of the deck is repeated (`log`);\n\
     - `-var NAME value …`, `-v`: defines an index variable; the deck's own `variable NAME index …` then does nothing. It \
     takes all words up to the next switch, so put the deck first or write `-in`;\n\
-    - `-threads N`: uses N threads (all cores); results are the same bits for any N;\n\
+    - `-threads N`: uses at most N threads (without it as many as `OMP_NUM_THREADS` says, else one per core); runs find out by themselves whether one is faster; results are the same bits for any N;\n\
     - `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md);\n\
     - `-suffix omp`, `-sf` and `-nocite`, `-nc`: taken for LAMMPS' command lines, without effect;\n\
     - `-package omp N`, `-pk`: the same as `-threads N`;\n\

@@ -4,13 +4,17 @@
 //! [`for_rows`], [`for_chunks`] and [`each`] where parts do not touch each other's data, [`two_colours`] and [`neighbours`] where a part
 //! also writes into the next one, [`sum`], [`reduce`] and [`best`] where parts are added up along a fixed tree. Who does which
 //! part may depend on the threads, the order of additions never does. All run inline on one thread or when there is only one
-//! part; [`both`] does two things beside each other.
+//! part; [`both`] does two things beside each other. [`Trial`] finds out whether threads pay.
 
+mod pays;
 mod pool;
 mod split;
 mod sum;
 
-pub use pool::{both, for_rows, in_turn, inside, neighbours, set_threads, slot, threads, two_colours};
+pub use pays::Trial;
+pub use pool::{
+    both, for_rows, in_turn, inside, most_threads, neighbours, set_threads, slot, threads, two_colours,
+};
 pub use split::{Rows, Shared, Split, each, for_chunks};
 pub use sum::{along_tree, best, max, reduce, reduce_each, sum};
 

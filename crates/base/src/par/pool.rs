@@ -6,6 +6,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use super::pays;
 use rayon::{ThreadPool, Yield};
 
 static POOL: RwLock<Option<Arc<Pool>>> = RwLock::new(None);
@@ -37,13 +38,19 @@ pub fn set_threads(n: usize) -> usize {
     threads()
 }
 
-/// The number of threads in use.
+/// The number of threads in use: one where more do not pay.
 #[inline]
 pub fn threads() -> usize {
+    if pays::alone() { 1 } else { most_threads() }
+}
+
+/// The largest number of threads that may be in use.
+#[inline]
+pub fn most_threads() -> usize {
     THREADS.load(Ordering::Relaxed)
 }
 
-/// The calling thread's number, below [`threads`]: for scratch memory of one piece per thread.
+/// The calling thread's number, below [`most_threads`]: for scratch memory of one piece per thread.
 pub fn slot() -> usize {
     rayon::current_thread_index().unwrap_or(0)
 }
@@ -64,6 +71,10 @@ pub fn inside<R: Send>(work: impl FnOnce() -> R + Send) -> R {
 /// Runs `work` inside the pool if there is one and `parts` are worth it, else right here.
 pub(super) fn enter<R: Send>(parts: usize, work: impl FnOnce(bool) -> R + Send) -> R {
     if parts < 2 {
+        return work(false);
+    }
+    pays::shares();
+    if pays::alone() {
         return work(false);
     }
     match pool() {
@@ -119,7 +130,7 @@ fn look_out(awake: &AtomicUsize) {
         Looks::ForAnEnd => return awake.store(0, Ordering::Relaxed),
     }
     let mut last = Instant::now();
-    while last.elapsed() < PATIENCE {
+    while last.elapsed() < PATIENCE && !pays::alone() {
         if rayon::yield_now() == Some(Yield::Executed) {
             last = Instant::now();
         } else {
@@ -215,7 +226,10 @@ pub fn neighbours(weights: &[usize], f: impl Fn(usize) + Sync) {
         }
         at.0
     };
-    enter(n, |_| {
+    enter(n, |threaded| {
+        if !threaded {
+            return in_turn(n).for_each(f);
+        }
         halve(0, ranges, &|range| {
             let first = bound(range);
             for even in (first..bound(range + 1)).step_by(2) {

@@ -43,7 +43,7 @@ impl Families {
     ) {
         let Self { lattices, scratch, options, law, table, breaking_enabled, counts_losses, .. } = self;
         let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest };
-        scratch.windows.resize_with(par::threads().max(scratch.windows.len()), Mutex::default);
+        scratch.windows.resize_with(par::most_threads().max(scratch.windows.len()), Mutex::default);
         let windows: &[Mutex<Window>] = &scratch.windows;
         let settling = settling((law, table), options, (advance, tallied, *counts_losses));
         let f = Shared::new(f);

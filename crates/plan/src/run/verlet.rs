@@ -143,6 +143,7 @@ pub(super) fn steps(
         None => None,
     };
     // All of it on one thread of the pool: to hand over at every step would take longer than many a step.
+    let mut trial = par::Trial::begin();
     let interrupted = par::inside(|| -> Result<bool> {
         while w.clock.step < w.clock.last && w.clock.halt == Halt::No {
             if plan.begun() {
@@ -156,6 +157,7 @@ pub(super) fn steps(
                 break;
             }
             let _names_are_known = Acting::op();
+            let builds = w.rebuild.builds;
             w.clock.step += 1;
             let mut t = tick(w, false);
             plan.ask(&mut t);
@@ -176,9 +178,13 @@ pub(super) fn steps(
             let c = &w.clock;
             let (done, total) = (c.step - first, c.last - first);
             watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });
+            if let Some(trial) = &mut trial {
+                trial.step(w.rebuild.builds != builds);
+            }
         }
         Ok(false)
     })?;
+    drop(trial);
     plan.guard = guard.map(Guarded::into_guard);
     let steps = w.clock.step - first;
     Ok(Outcome { steps, time: begin.elapsed(), cpu: cpu_seconds() - cpu, interrupted })

@@ -1,0 +1,219 @@
+//! Whether threads pay: now and then a run is timed with all of them and without.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Whether the calling thread does all work by itself.
+static ALONE: AtomicBool = AtomicBool::new(false);
+/// Whether a loop has had parts to share since somebody asked.
+static SHARED: AtomicBool = AtomicBool::new(false);
+/// What the last run has found out; taken out while a run goes on.
+static LAST: Mutex<Option<Found>> = Mutex::new(None);
+
+/// Whether loops are to be left to the calling thread.
+#[inline]
+pub(super) fn alone() -> bool {
+    ALONE.load(Ordering::Relaxed)
+}
+
+/// A loop has parts that threads could share.
+#[inline]
+pub(super) fn shares() {
+    if !SHARED.load(Ordering::Relaxed) {
+        SHARED.store(true, Ordering::Relaxed);
+    }
+}
+
+/// How long a window lasts, at least.
+const SPAN: Duration = Duration::from_millis(5);
+/// What is not counted after a change: threads fall asleep or wake up, memory moves from core to core.
+const SETTLING: (u32, Duration) = (3, Duration::from_millis(1));
+/// Steps that take longer are many threads' work on any machine, and a trial would be dear.
+const LONG: Duration = Duration::from_millis(10);
+/// Of two that take nearly the same time the one that is in use stays.
+const CLEARLY: f64 = 0.95;
+/// Windows between the first two trials.
+const FIRST_REST: f64 = 8.0;
+/// A trial may take this part of the time: as many windows lie between trials as one without threads takes times more, over this.
+const COST: f64 = 0.01;
+
+/// Time and number of steps of one kind.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    steps: u32,
+    time: Duration,
+}
+
+impl Sum {
+    fn add(&mut self, time: Duration) {
+        self.steps += 1;
+        self.time += time;
+    }
+
+    /// Seconds per step, if there are enough to tell.
+    fn mean(self) -> Option<f64> {
+        (self.steps > 0).then(|| self.time.as_secs_f64() / f64::from(self.steps))
+    }
+}
+
+/// Which way of working wins, and how long it has been left alone.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    alone: bool,
+    rest: f64,
+}
+
+/// Where a trial stands.
+#[derive(Clone, Copy, Debug)]
+enum Phase {
+    /// The way that won goes on for some windows.
+    Rest(u32),
+    /// It is timed.
+    Before,
+    /// The other way is timed.
+    Other { before: f64 },
+    /// The way that won is timed again: scenes change.
+    After { before: f64, other: f64 },
+}
+
+/// Times the steps of a run with all threads and with one, and goes on with what is faster. Which it is hangs on the scene (small
+/// loops are done before another thread has seen them) and on what else the machine does; results do not hang on it.
+#[derive(Debug)]
+pub struct Trial {
+    found: Found,
+    phase: Phase,
+    /// End of the last step, where the clock was looked at.
+    last: Option<Instant>,
+    /// When the present window began, and its steps so far.
+    since: Instant,
+    seen: u32,
+    /// Steps that made lists anew, and the others.
+    sums: [Sum; 2],
+}
+
+impl Trial {
+    /// The trial of a run that begins; `None` where there is one thread only. Of two runs at a time in one program each tries for
+    /// both, which costs time and changes no result.
+    pub fn begin() -> Option<Self> {
+        if super::threads() < 2 {
+            return None;
+        }
+        let fresh = Found { alone: false, rest: FIRST_REST };
+        let found = LAST.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or(fresh);
+        Some(Self::of(Found { rest: FIRST_REST, ..found }))
+    }
+
+    fn of(found: Found) -> Self {
+        ALONE.store(found.alone, Ordering::Relaxed);
+        SHARED.store(false, Ordering::Relaxed);
+        let now = Instant::now();
+        Self { found, phase: Phase::Before, last: None, since: now, seen: 0, sums: Default::default() }
+    }
+
+    /// A step is made; `anew`: lists were made in it, which is another kind of work.
+    #[inline]
+    pub fn step(&mut self, anew: bool) {
+        // Where no loop has parts to share there is nothing to try, and to look at the clock takes longer than small loops.
+        if SHARED.load(Ordering::Relaxed) {
+            self.timed(anew, Instant::now());
+        }
+    }
+
+    fn timed(&mut self, anew: bool, now: Instant) {
+        let Some(last) = self.last.replace(now) else {
+            self.open(now);
+            return;
+        };
+        self.seen += 1;
+        let waits = self.seen <= SETTLING.0 && now - self.since < SETTLING.1;
+        if !waits {
+            self.sums[usize::from(!anew)].add(now - last);
+        }
+        if now - self.since >= SPAN {
+            self.close();
+            self.open(now);
+        }
+    }
+
+    /// Begins a window.
+    fn open(&mut self, now: Instant) {
+        (self.since, self.seen, self.sums) = (now, 0, Default::default());
+        SHARED.store(false, Ordering::Relaxed);
+        let other = matches!(self.phase, Phase::Other { .. });
+        ALONE.store(self.found.alone != other, Ordering::Relaxed);
+    }
+
+    /// Ends a window.
+    fn close(&mut self) {
+        let [anew, quiet] = self.sums;
+        let quiet = quiet.mean();
+        self.phase = match (self.phase, quiet) {
+            (Phase::Rest(left), _) if left > 0 => Phase::Rest(left - 1),
+            (Phase::Rest(_), _) => Phase::Before,
+            // Not one quiet step, of a scene that has some or of one that has none.
+            (_, None) => Phase::Rest(if anew.steps > 0 { FIRST_REST as u32 } else { 0 }),
+            (Phase::Before, Some(before)) if before > LONG.as_secs_f64() => {
+                self.found.alone = false;
+                Phase::Rest((1.0 / COST) as u32)
+            }
+            (Phase::Before, Some(before)) => Phase::Other { before },
+            (Phase::Other { before }, Some(other)) => Phase::After { before, other },
+            (Phase::After { before, other }, Some(after)) => self.judge(other, 0.5 * (before + after)),
+        };
+    }
+
+    /// Goes on with what is faster: the `other` way or `this` one [seconds per step].
+    fn judge(&mut self, other: f64, this: f64) -> Phase {
+        if other < CLEARLY * this {
+            self.found = Found { alone: !self.found.alone, rest: FIRST_REST };
+        } else {
+            let most = (other / this - 1.0).max(0.1) / COST;
+            self.found.rest = (2.0 * self.found.rest).min(most.max(FIRST_REST));
+        }
+        Phase::Rest(self.found.rest as u32)
+    }
+}
+
+impl Drop for Trial {
+    fn drop(&mut self) {
+        ALONE.store(false, Ordering::Relaxed);
+        *LAST.lock().unwrap_or_else(PoisonError::into_inner) = Some(self.found);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps through `windows` windows of a scene whose steps take `together` or `alone` milliseconds; the part of them
+    /// made alone.
+    fn part_alone(trial: &mut Trial, windows: u32, [together, alone]: [f64; 2]) -> f64 {
+        let mut now = trial.last.unwrap_or(trial.since);
+        let mut made = [0.0; 2];
+        let end = now + SPAN * windows;
+        while now < end {
+            SHARED.store(true, Ordering::Relaxed);
+            let is_alone = ALONE.load(Ordering::Relaxed);
+            let takes = if is_alone { alone } else { together };
+            now += Duration::from_secs_f64(takes * 1e-3);
+            made[usize::from(is_alone)] += takes;
+            trial.timed(false, now);
+        }
+        made[1] / (made[0] + made[1])
+    }
+
+    #[test]
+    fn the_faster_way_is_found_again_when_the_machine_changes() {
+        let mut trial = Trial::of(Found { alone: false, rest: FIRST_REST });
+        // Two threads pay: a trial takes a hundredth of the time in the long run.
+        assert!(part_alone(&mut trial, 1000, [0.1, 0.18]) < 0.02);
+        // Another program takes a core.
+        assert!(part_alone(&mut trial, 1000, [0.3, 0.2]) > 0.85);
+        assert!(part_alone(&mut trial, 1000, [0.1, 0.18]) < 0.3);
+        // Of two ways alike the one in use stays.
+        assert!(part_alone(&mut trial, 1000, [0.1, 0.1]) < 0.2);
+        drop(trial);
+        assert!(!alone());
+    }
+}
