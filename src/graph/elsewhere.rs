@@ -18,7 +18,6 @@ pub const STYLES: &[(&str, &str)] = &[
     ("fix", "ave/correlate/long"),
     ("fix", "ave/grid"),
     ("fix", "ave/moments"),
-    ("fix", "bond/break"),
     ("fix", "bond/create"),
     ("fix", "damping/cundall"),
     ("fix", "heat"),

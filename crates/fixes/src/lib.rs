@@ -13,6 +13,7 @@ mod ave_time;
 mod aveforce;
 mod balance;
 mod bins;
+mod bond_break;
 mod components;
 mod controller;
 mod crowd;
@@ -82,6 +83,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &ave_time::AveTime,
     &aveforce::AveForce,
     &balance::Balance,
+    &bond_break::BondBreak,
     &controller::Controller,
     &deform::Deform,
     &deposit::Deposit,
