@@ -12,6 +12,7 @@ mod later;
 mod leveling;
 mod minimizing;
 mod overlaps;
+mod planning;
 mod rerunning;
 mod resolution;
 mod restarting;
@@ -38,7 +39,7 @@ use perigrain_out::log::Log;
 use perigrain_plan::StepPlan;
 pub use perigrain_plan::run::{Made, Watch};
 use perigrain_styles::ActCx;
-use perigrain_world::{Compat, GroupId, World};
+use perigrain_world::{Compat, GroupId, Unseen, World};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -140,6 +141,10 @@ pub struct Session {
     later: (usize, Arc<std::collections::BTreeSet<String>>),
     /// The variable table's names as the graph knows them.
     seen_names: u64,
+    /// The plans so far, where a deck is planned.
+    plans: planning::Plans,
+    /// Where plans are told.
+    told_to: Log,
 }
 
 /// No progress shown.
@@ -154,7 +159,12 @@ impl Session {
     ///
     /// # Errors
     /// Variables of the command line that cannot be set.
-    pub fn new(options: Options) -> Result<Self> {
+    pub fn new(mut options: Options) -> Result<Self> {
+        let told_to = options.log.clone();
+        if options.mode == Mode::Plan {
+            // What lines would say of a run that is not made is no part of a plan.
+            options.log = Log::silent();
+        }
         let mut s = Self {
             sources: Sources::default(),
             vars: Vars::new(),
@@ -177,6 +187,8 @@ impl Session {
             pairless: false,
             later: Default::default(),
             seen_names: 0,
+            plans: Default::default(),
+            told_to,
         };
         for (name, values) in s.options.vars.clone() {
             s.vars.set_index(&name, &values)?;
@@ -212,6 +224,7 @@ impl Session {
         self.world = World::default();
         self.world.parts.promised = promised;
         self.world.parts.promised.instead = self.looking();
+        self.world.parts.unseen = self.sight();
         let s = &mut self.world.settings;
         s.compat = compat;
         (s.stop, s.deadline, s.limit_every) = (stop, deadline, limit_every);
@@ -226,14 +239,24 @@ impl Session {
         self.ran = false;
     }
 
+    /// What is not known of a scene at its beginning.
+    fn sight(&self) -> Unseen {
+        if self.checking() { Unseen::in_a_check() } else { Unseen::default() }
+    }
+
     /// Works off a deck.
     ///
     /// # Errors
     /// The first line that is refused or fails; in check mode all problems of the whole deck.
     pub fn run_text(&mut self, name: &str, text: &str) -> Result<Ending> {
         let file = self.sources.add(name, text);
-        let mut script = Script::new(file);
+        let script = Script::new(file);
+        let mut script = if self.planning() { script.first_branches() } else { script };
         let outcome = self.work_off(&mut script);
+        if self.planning() {
+            self.told_to.line(&self.plans.text(&self.sources))?;
+            self.told_to.flush()?;
+        }
         if self.checking() && !self.blind {
             let given: Vec<String> = self.options.vars.iter().map(|v| v.0.clone()).collect();
             self.notes.append(unused::unused(&self.sources, &given));
@@ -251,6 +274,10 @@ impl Session {
             let line = match self.next_line(script) {
                 Ok(None) => break,
                 Ok(Some(line)) => line,
+                Err(e) if self.forgives(script, None, &e) => {
+                    self.read_on(None, &script.raw().to_string(), e, &mut refused);
+                    continue;
+                }
                 Err(e) if self.checking() => {
                     let hopeless = problems.0.len() > 200;
                     problems.append(refused.causes(script.raw(), e));
@@ -261,6 +288,9 @@ impl Session {
                 }
                 Err(e) => return Err(e),
             };
+            if let Some(cmd) = line.command.as_ref().filter(|_| script.is_speculative()) {
+                refused.perhaps(cmd);
+            }
             match self.line(script, &line) {
                 Ok(Some(code)) => self.quit = Some(code),
                 Ok(None) => {}
@@ -269,7 +299,16 @@ impl Session {
                         break;
                     }
                 }
+                Err(e) if self.forgives(script, Some(&line), &e) => {
+                    self.read_on(Some(&line), &line.raw, e, &mut refused);
+                }
                 Err(e) if self.checking() => problems.append(refused.causes(&line.raw, e)),
+                Err(e) if self.planning() => {
+                    let causes = refused.causes(&line.raw, e);
+                    if !causes.is_empty() {
+                        return Err(causes);
+                    }
+                }
                 Err(e) => return Err(e),
             }
             self.interrupted |= self.stop_flag().load(Ordering::Relaxed);
@@ -281,15 +320,19 @@ impl Session {
         if problems.is_empty() { Ok(Ending { status, interrupted: self.interrupted }) } else { Err(problems) }
     }
 
-    /// Whether a line of a check failed for want of a file that only a run writes; the note is taken.
+    /// Whether a line of a deck that is only looked at failed for want of a file that only a run writes; the note is taken.
     fn unseen(&mut self, script: &Script, e: &Diagnostics) -> bool {
-        if !self.checking() || e.is_empty() || e.has_errors() {
+        if !self.looking() || e.is_empty() || e.has_errors() {
             return false;
         }
         let help = match script.is_speculative() {
             true => "what it would change is not known in the lines below",
             false => "the check ends here: what follows depends on this file",
         };
+        for d in &e.0 {
+            let why = if script.is_speculative() { "left out" } else { "the plan ends here" };
+            self.plans.leave_open(d.span.unwrap_or_default(), format!("{why}: {}", d.message));
+        }
         self.blind = true;
         self.notes.0.extend(e.0.iter().map(|d| d.clone().help(help)));
         true
@@ -305,8 +348,7 @@ impl Session {
     }
 
     fn next_line(&mut self, script: &mut Script) -> Result<Option<Line>> {
-        let checking = self.checking();
-        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking };
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         script.next(&mut self.sources, &self.vars, &mut env)
     }
 
@@ -346,6 +388,11 @@ impl Session {
             Flow::NotMine => {}
         }
         let name = cmd.name.text.as_str();
+        // Of branches that only a run can choose, a plan has taken another one; and a scene that may be gone is there.
+        if script.is_aside() || (name == "clear" && self.looking() && script.is_speculative()) {
+            return Ok(None);
+        }
+        self.note_open(script, cmd);
         if !["print", "log", "echo", "info"].contains(&name) {
             script.changed();
         }
@@ -377,7 +424,7 @@ impl Session {
     fn declare(&mut self, cmd: &Command) -> Result<()> {
         self.thermo_computes();
         let (notes, uses) = (RefCell::default(), RefCell::default());
-        let cx = Context { span: cmd.span, checking: self.checking(), notes: &notes, uses: &uses };
+        let cx = Context { span: cmd.span, checking: self.unsure(), notes: &notes, uses: &uses };
         if cmd.name.text == "fix" {
             self.graph.later = later::defined(&self.sources, &mut self.later);
         }
@@ -399,29 +446,38 @@ impl Session {
         let outcome: Result<Vec<&'static str>> = (|| {
             let vars = Arc::new(self.vars.clone());
             let named = |name: &str| cmd.args.iter().any(|w| w.text == name);
-            let checking = self.checking();
-            place_now(&mut self.world, &self.graph, &vars, checking, named)?;
+            place_now(&mut self.world, &self.graph, &vars, named)?;
             let mut args = perigrain_lang::Args::new(cmd);
             let act = style.parse(&mut args, &cx.build(&self.graph, &self.world, "", GroupId::ALL))?;
             args.finish()?;
             let settles = act.settles().to_vec();
             left = act.leaves();
-            if self.checking() && act.needs_particles() {
+            if act.needs_particles() && self.passes(cmd, left.is_some()) {
                 act.makes_group().map(|name| self.world.groups.find_or_add(name));
                 return Ok(settles);
             }
             let mut values = DeckValues { graph: &self.graph, vars };
             self.world.spread_type_masses();
+            let forgiving = self.planning() && self.unsure() && act.needs_particles();
+            let group = act.makes_group().map(str::to_owned).filter(|_| forgiving);
             let world = &mut self.world;
-            act.apply(&mut ActCx {
+            let outcome = act.apply(&mut ActCx {
                 world,
                 values: &mut values,
                 span: cmd.span,
                 said: &mut said,
                 then: &mut then,
                 notes: &notes,
-            })?;
+            });
             self.world.touch();
+            match outcome {
+                Err(e) if forgiving => {
+                    group.map(|name| self.world.groups.find_or_add(&name));
+                    let why = e.0.first().map_or("", |d| d.message.as_str());
+                    self.plans.leave_open(cmd.span, format!("left out: {why}"));
+                }
+                outcome => outcome?,
+            }
             Ok(settles)
         })();
         let notes = self.sources.adopt(notes.into_inner());
@@ -439,6 +495,19 @@ impl Session {
             self.declare(&line).map_err(|e| e.at(line.span).within(&text))?;
         }
         Ok(())
+    }
+}
+
+impl Session {
+    /// Whether an act on particles is passed over: in a check, and in a plan where what it does hangs on a run.
+    fn passes(&mut self, cmd: &Command, leaves: bool) -> bool {
+        let unseen = &mut self.world.parts.unseen;
+        // A result of what the particles are by then is not known.
+        if self.options.mode == Mode::Check || (unseen.particles && leaves) {
+            return true;
+        }
+        unseen.vague |= self.options.mode == Mode::Plan && planning::hangs_on_a_run(cmd);
+        unseen.vague
     }
 }
 

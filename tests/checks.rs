@@ -10,6 +10,8 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// Ten mistakes, each with the columns of the word at fault and a part of what is said.
@@ -58,8 +60,12 @@ fn ten_planted_mistakes_are_all_found_at_once() {
 }
 
 fn check(deck: &str, folder: &Path) -> (Vec<Diagnostic>, Session) {
-    let options =
-        Options { mode: Mode::Check, log: Log::silent(), folder: folder.into(), ..Options::default() };
+    looked_at(Mode::Check, deck, folder)
+}
+
+/// All that is said against a deck that is checked or planned.
+fn looked_at(mode: Mode, deck: &str, folder: &Path) -> (Vec<Diagnostic>, Session) {
+    let options = Options { mode, log: Log::silent(), folder: folder.into(), ..Options::default() };
     let mut session = Session::new(options).unwrap();
     let outcome = session.run_text("in.deck", deck);
     let mut all = session.notes.0.clone();
@@ -98,7 +104,7 @@ fn nothing_is_said_against_decks_that_are_right() {
         let (said, _) = check(&text, path.parent().unwrap());
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         count += 1;
-        for d in said.iter().filter(|d| d.severity == Severity::Warning) {
+        for d in said.iter().filter(|d| d.severity > Severity::Note) {
             if !RIGHTLY.iter().any(|(n, part)| *n == name && d.message.contains(part)) {
                 let _ = writeln!(wrong, "{name}: {}", d.message);
             }
@@ -137,6 +143,31 @@ fn small_good_decks_are_good_for_check_too() {
         }
     }
     assert!(count > 100, "only {count} decks");
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn small_good_decks_have_plans() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scripts/good");
+    let files: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    let next = AtomicUsize::new(0);
+    let wrong: Mutex<String> = Mutex::default();
+    let work = || {
+        while let Some(file) = files.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let text = fs::read_to_string(file).unwrap();
+            for block in text.split("--- ").skip(1) {
+                let (name, deck) = block.split_once('\n').unwrap();
+                let deck = deck.replace("@scene\n", &format!("{SCENE}\n"));
+                let (said, _) = looked_at(Mode::Plan, &deck, Path::new("."));
+                for d in said.iter().filter(|d| d.severity == Severity::Error) {
+                    let file = file.file_name().unwrap().to_string_lossy();
+                    let _ = writeln!(wrong.lock().unwrap(), "{file} {name}: {}", d.message);
+                }
+            }
+        }
+    };
+    std::thread::scope(|s| (0..2).for_each(|_| drop(s.spawn(work))));
+    let wrong = wrong.into_inner().unwrap();
     assert!(wrong.is_empty(), "{wrong}");
 }
 

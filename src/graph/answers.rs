@@ -20,7 +20,7 @@ pub fn mask(w: &World, group: Option<&Word>, region: Option<&Word>) -> Result<Ve
 }
 
 /// `extract_setting(name)`; `None` if there is no such setting.
-pub fn setting(w: &World, checking: bool, name: &str) -> Option<Value> {
+pub fn setting(w: &World, blind: bool, name: &str) -> Option<Value> {
     let s = &w.particles.style;
     let flag = |b: bool| f64::from(u8::from(b));
     let number = match name {
@@ -29,7 +29,7 @@ pub fn setting(w: &World, checking: bool, name: &str) -> Option<Value> {
         "nthreads" => perigrain_base::par::most_threads() as f64,
         "newton_pair" => flag(w.settings.newton.pair),
         "newton_bond" => flag(w.settings.newton.bond),
-        "nlocal" | "nall" if checking => return Some(Value::Unknown),
+        "nlocal" | "nall" if blind => return Some(Value::Unknown),
         "nlocal" | "nall" => w.n() as f64,
         "ntypes" => w.types as f64,
         "rmass_flag" => flag(s.own_mass()),

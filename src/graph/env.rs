@@ -13,7 +13,7 @@ use perigrain_plan::{Op, Stage, StepPlan, Tick, When};
 use perigrain_styles::probe::Probe;
 use perigrain_styles::{BondForce, Flow, Motion, Reading, SealCx, Values};
 use perigrain_world::named::Acting;
-use perigrain_world::{SlotId, World};
+use perigrain_world::{Domain, Face, SlotId, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -154,14 +154,33 @@ impl Env for RunEnv<'_> {
     }
 }
 
-/// While the deck is read: values are computed on the spot.
+/// While the deck is read: values are computed on the spot; what only a run can tell is unknown where a deck is only looked at.
 pub struct DeckEnv<'a> {
     /// The world.
     pub w: &'a mut World,
     /// What is declared.
     pub graph: &'a Graph,
-    /// `perigrain check`: what only particles or a run can tell is unknown.
-    pub checking: bool,
+}
+
+/// Whether only a run can tell a keyword's value, where a scene is only looked at.
+fn hidden(w: &World, name: &str) -> bool {
+    let u = &w.parts.unseen;
+    let follows =
+        |d: &Domain| d.boundary.0.iter().flatten().any(|f| matches!(f, Face::Shrink | Face::ShrinkMin));
+    // Faces that follow particles are where these are.
+    let space = u.space || (u.particles && w.domain.as_ref().is_some_and(follows));
+    match name {
+        "step" | "elapsed" | "elaplong" => u.step,
+        "time" | "dt" => u.time,
+        "vol" | "lx" | "ly" | "lz" | "xlo" | "xhi" | "ylo" | "yhi" | "zlo" | "zhi" | "cella" | "cellb"
+        | "cellc" | "avecx" | "bvecy" | "cvecz" => space,
+        "xlat" | "ylat" | "zlat" | "xy" | "xz" | "yz" | "cellalpha" | "cellbeta" | "cellgamma" | "avecy"
+        | "avecz" | "bvecx" | "bvecz" | "cvecx" | "cvecy" => false,
+        "ecoul" | "eangle" | "edihed" | "eimp" | "elong" | "etail" | "angles" | "dihedrals" | "impropers" => {
+            false
+        }
+        _ => u.particles,
+    }
 }
 
 impl DeckEnv<'_> {
@@ -182,7 +201,7 @@ impl DeckEnv<'_> {
         vars: &Vars,
         ask: impl FnOnce(&mut Sealer) -> Result<Box<dyn Op>>,
     ) -> Result<()> {
-        regions::place_all(self.w, self.graph, vars, self.checking);
+        regions::place_all(self.w, self.graph, vars);
         let (mut op, mut plan, t) = self.planned(span, vars, ask)?;
         plan.run(self.w, &t, &Stage::ALL)?;
         op.run(self.w, &t)?;
@@ -226,17 +245,22 @@ impl DeckEnv<'_> {
 }
 
 impl DeckEnv<'_> {
-    /// What `read` makes of the slot that a reference means, filled for this moment; unknown while a deck is checked.
+    /// Whether only a run can tell what particles do.
+    fn blind(&self) -> bool {
+        self.w.parts.unseen.particles
+    }
+
+    /// What `read` makes of the slot that a reference means, filled for this moment; unknown where only a run can tell.
     fn filled(
         &mut self,
         r: &ValueRef,
         vars: &Vars,
         read: fn(&World, SlotId, &ValueRef) -> Result<Value>,
     ) -> Result<Value> {
-        if self.checking {
+        if self.blind() {
             return Ok(Value::Unknown);
         }
-        regions::place_all(self.w, self.graph, vars, self.checking);
+        regions::place_all(self.w, self.graph, vars);
         let slot = self.now(r.span, vars, |s| s.reference(r))?;
         read(self.w, slot, r)
     }
@@ -244,11 +268,8 @@ impl DeckEnv<'_> {
 
 impl Env for DeckEnv<'_> {
     fn keyword(&mut self, name: &str, span: Span, vars: &Vars) -> Option<Result<Value>> {
-        let (name, _, needs) = keywords::find(name)?;
-        let particles = ["atoms", "bonds", "density", "fmax", "fnorm"].contains(name);
-        // A deck may loop until a time is reached; no run of a check ever reaches it.
-        let clock = ["step", "elapsed", "elaplong", "time", "dt"].contains(name);
-        if self.checking && (!needs.is_empty() || particles || clock) {
+        let (name, ..) = keywords::find(name)?;
+        if hidden(self.w, name) {
             return Some(Ok(Value::Unknown));
         }
         let reading = self.now(span, vars, |s| s.keyword(name, span, Stage::Output, &When::Always));
@@ -264,7 +285,7 @@ impl Env for DeckEnv<'_> {
     }
 
     fn particle(&mut self, attribute: &str, tag: usize, span: Span) -> Result<Value> {
-        if self.checking { Ok(Value::Unknown) } else { one(self.w, attribute, tag, span) }
+        if self.blind() { Ok(Value::Unknown) } else { one(self.w, attribute, tag, span) }
     }
 
     fn column(&mut self, attribute: &str) -> Option<Result<Vec<f64>>> {
@@ -274,31 +295,29 @@ impl Env for DeckEnv<'_> {
 
     fn group_function(&mut self, name: &str, args: &[Word], span: Span, vars: &Vars) -> Result<Value> {
         self.w.spread_type_masses();
-        regions::place_now(self.w, self.graph, vars, self.checking, |name| {
-            args.iter().any(|a| a.text == name)
-        })?;
+        regions::place_now(self.w, self.graph, vars, |name| args.iter().any(|a| a.text == name))?;
         let value = measure::group_function(self.w, name, args, span)?;
-        Ok(if self.checking { Value::Unknown } else { Value::Number(value) })
+        Ok(if self.blind() { Value::Unknown } else { Value::Number(value) })
     }
 
     fn vector(&mut self, r: &ValueRef, vars: &Vars) -> Result<Value> {
-        if self.checking {
+        if self.blind() {
             return Ok(Value::Unknown);
         }
-        regions::place_all(self.w, self.graph, vars, self.checking);
+        regions::place_all(self.w, self.graph, vars);
         let slot = self.now(r.span, vars, |s| s.reference(r))?;
         whole_vector(self.w, slot, r)
     }
 
     fn mask(&mut self, group: Option<&Word>, region: Option<&Word>, vars: &Vars) -> Result<Value> {
         let named = |name: &str| region.is_some_and(|r| r.text == name);
-        regions::place_now(self.w, self.graph, vars, self.checking, named)?;
+        regions::place_now(self.w, self.graph, vars, named)?;
         let list = answers::mask(self.w, group, region)?;
-        Ok(if self.checking { Value::Unknown } else { Value::Atom(list) })
+        Ok(if self.blind() { Value::Unknown } else { Value::Atom(list) })
     }
 
     fn setting(&self, name: &str) -> Option<Value> {
-        answers::setting(self.w, self.checking, name)
+        answers::setting(self.w, self.blind(), name)
     }
 
     fn answer(&self, question: Question, category: &Word, name: &Word) -> Result<bool> {
@@ -307,6 +326,14 @@ impl Env for DeckEnv<'_> {
 
     fn timed_out(&self) -> bool {
         self.w.settings.timed_out()
+    }
+
+    fn sees_particles(&self) -> bool {
+        !self.blind()
+    }
+
+    fn may_be_written(&self, path: &str) -> bool {
+        self.w.parts.promised.may_come(path)
     }
 
     fn control(&self, name: &str) -> Option<f64> {
@@ -343,7 +370,7 @@ impl Values for DeckValues<'_> {
             }
         }
         let vars = self.vars.clone();
-        let mut env = DeckEnv { w, graph: self.graph, checking: false };
+        let mut env = DeckEnv { w, graph: self.graph };
         match vars.value(&r.name, r.span, &mut env)? {
             Value::Number(a) => Ok(a),
             _ => fail(Code::WRONG_KIND, r.span, format!("`{r}` has no single number")),
@@ -398,8 +425,8 @@ impl Values for DeckValues<'_> {
 
 impl DeckValues<'_> {
     fn reading(&mut self, w: &mut World, r: &ValueRef) -> Result<Reading> {
-        let mut env = DeckEnv { w, graph: self.graph, checking: false };
-        regions::place_all(env.w, env.graph, &self.vars, env.checking);
+        let mut env = DeckEnv { w, graph: self.graph };
+        regions::place_all(env.w, env.graph, &self.vars);
         env.now(r.span, &self.vars, |s| s.value(r, Stage::Output, &When::Always))
     }
 }

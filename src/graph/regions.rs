@@ -18,19 +18,13 @@ const STAGES: [Stage; 2] = [Stage::PreForce, Stage::Output];
 ///
 /// # Errors
 /// Variables that are gone, have no number, or give a region no shape.
-pub fn place_now(
-    w: &mut World,
-    graph: &Graph,
-    vars: &Vars,
-    checking: bool,
-    meant: impl Fn(&str) -> bool,
-) -> Result<()> {
+pub fn place_now(w: &mut World, graph: &Graph, vars: &Vars, meant: impl Fn(&str) -> bool) -> Result<()> {
     let follows = w.regions.iter().filter(|(key, region)| region.follows() && meant(key.text()));
     let keys: Vec<Key<Region>> = follows.map(|(key, _)| key).collect();
     for key in keys {
         // Out of the world meanwhile: a formula that asks the region it places would never end.
         let Some(region) = w.regions.remove(key) else { continue };
-        let placed = placed(w, graph, vars, checking, &region);
+        let placed = placed(w, graph, vars, &region);
         w.regions.insert(key, placed.as_ref().unwrap_or(&region).clone());
         placed.map_err(|mut e| {
             e.0.iter_mut().for_each(|d| d.help.push(format!("region `{key}` follows this variable")));
@@ -42,25 +36,25 @@ pub fn place_now(
 
 /// Puts all regions in their places that can be put now; the others stay where they were, and whoever names one of
 /// them in a line or formula is told.
-pub fn place_all(w: &mut World, graph: &Graph, vars: &Vars, checking: bool) {
+pub fn place_all(w: &mut World, graph: &Graph, vars: &Vars) {
     // All of them out of the world meanwhile: what their variables ask for comes here again.
     let following: Vec<Key<Region>> =
         w.regions.iter().filter(|(_, r)| r.follows()).map(|(key, _)| key).collect();
     let taken: Vec<_> = following.into_iter().filter_map(|key| Some((key, w.regions.remove(key)?))).collect();
     for (key, region) in taken {
-        let placed = placed(w, graph, vars, checking, &region).unwrap_or(region);
+        let placed = placed(w, graph, vars, &region).unwrap_or(region);
         w.regions.insert(key, placed);
     }
 }
 
-fn placed(w: &mut World, graph: &Graph, vars: &Vars, checking: bool, region: &Region) -> Result<Region> {
+fn placed(w: &mut World, graph: &Graph, vars: &Vars, region: &Region) -> Result<Region> {
     let mut region = region.clone();
-    region.place(&mut |v| number(w, graph, vars, checking, v))?;
+    region.place(&mut |v| number(w, graph, vars, v))?;
     Ok(region)
 }
 
-fn number(w: &mut World, graph: &Graph, vars: &Vars, checking: bool, v: &Variable) -> Result<Option<f64>> {
-    let mut env = DeckEnv { w, graph, checking };
+fn number(w: &mut World, graph: &Graph, vars: &Vars, v: &Variable) -> Result<Option<f64>> {
+    let mut env = DeckEnv { w, graph };
     match vars.value(&v.name, v.span, &mut env)? {
         Value::Number(a) => Ok(Some(a)),
         Value::Unknown => Ok(None),

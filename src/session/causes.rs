@@ -1,6 +1,7 @@
 //! Check mode reports causes, not their consequences: what a refused line would have provided is not missed again.
 
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics};
+use perigrain_lang::Command;
 use std::collections::BTreeSet;
 
 /// What refused lines would have provided.
@@ -19,8 +20,31 @@ const NAMING: [&str; 7] = ["variable", "region", "group", "compute", "fix", "dum
 const HARMLESS: [&str; 9] =
     ["thermo", "thermo_style", "thermo_modify", "timestep", "velocity", "print", "run", "if", "dump_modify"];
 
+/// Commands that may be said only before or behind others.
+const SETTING: [&str; 17] = [
+    "units",
+    "atom_style",
+    "boundary",
+    "dimension",
+    "newton",
+    "lattice",
+    "create_box",
+    "create_atoms",
+    "read_data",
+    "read_restart",
+    "replicate",
+    "clear",
+    "mass",
+    "pair_style",
+    "pair_coeff",
+    "bond_style",
+    "bond_coeff",
+];
+
 impl Refused {
     /// Those of a line's problems that no earlier refusal explains; the line counts as refused from now on.
+    ///
+    /// Where none is left, the line is a consequence.
     pub fn causes(&mut self, line: &str, problems: Diagnostics) -> Diagnostics {
         let causes = problems.0.into_iter().filter(|d| !self.explains(d)).collect();
         let mut words = line.split_whitespace();
@@ -34,10 +58,20 @@ impl Refused {
         Diagnostics(causes)
     }
 
+    /// Takes note of a line about which only a run can tell whether it is reached: the names and the scene it changes may be
+    /// as before or as it says.
+    pub fn perhaps(&mut self, cmd: &Command) {
+        let name = cmd.name.text.as_str();
+        if NAMING.contains(&name) || ["unfix", "uncompute", "undump"].contains(&name) {
+            self.names.extend(cmd.args.first().map(|w| w.text.clone()));
+        }
+        self.scene |= SETTING.contains(&name);
+    }
+
     fn explains(&self, d: &Diagnostic) -> bool {
         match d.code {
             Code::UNKNOWN_NAME if self.table && d.message.starts_with("no thermo column") => true,
-            code if code.is_unknown_name() => {
+            code if code.is_unknown_name() || code == Code::DUPLICATE_NAME => {
                 self.names.iter().any(|n| d.message.contains(&format!("`{n}`")))
             }
             Code::WRONG_ORDER | Code::INCOMPLETE => self.scene,

@@ -177,8 +177,7 @@ impl Session {
             }
         }
         let _ = universe;
-        let checking = self.checking();
-        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking };
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         let Substituted { text, unknown } = substitute_known(&word.text, word.span, &self.vars, &mut env)?;
         if self.looking() {
             if let Some(name) = file {

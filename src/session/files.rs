@@ -4,14 +4,14 @@ use perigrain_lang::Files;
 use perigrain_world::{Promise, Promises};
 
 /// Files as the system has them.
-pub(super) struct RealFiles<'a> {
+pub(super) struct RealFiles {
     /// What the deck would have written by now, where nothing is.
-    pub promised: &'a Promises,
-    /// Whether the deck is only checked.
-    pub checking: bool,
+    pub promised: Promises,
+    /// Whether the deck is only looked at.
+    pub looking: bool,
 }
 
-impl Files for RealFiles<'_> {
+impl Files for RealFiles {
     fn read(&self, path: &str) -> std::io::Result<String> {
         match self.promised.get(path) {
             Some(Promise::Text(text)) => return Ok(text.clone()),
@@ -24,10 +24,10 @@ impl Files for RealFiles<'_> {
     }
 
     fn comes_later(&self, path: &str) -> bool {
-        self.checking && self.promised.may_come(path)
+        self.looking && self.promised.may_come(path)
     }
 
-    fn only_checks(&self) -> bool {
-        self.checking
+    fn only_looks(&self) -> bool {
+        self.looking
     }
 }

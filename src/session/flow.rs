@@ -11,14 +11,10 @@ use perigrain_styles::{Use, UseKind};
 impl Session {
     pub(super) fn flow(&mut self, script: &mut Script, cmd: &Command) -> Result<Flow> {
         self.refuse_jump(cmd)?;
-        let checking = self.checking();
-        // taken out for the moment: the world is borrowed for the formulas in the line
-        let promised = std::mem::take(&mut self.world.parts.promised);
-        let files = RealFiles { promised: &promised, checking };
-        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking };
-        let flow = script.flow(cmd, &mut self.sources, &mut self.vars, &mut env, &files);
-        self.world.parts.promised = promised;
-        let flow = flow?;
+        // a copy: the world is borrowed for the formulas in the line
+        let files = RealFiles { promised: self.world.parts.promised.clone(), looking: self.looking() };
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
+        let flow = script.flow(cmd, &mut self.sources, &mut self.vars, &mut env, &files)?;
         if flow == Flow::NotMine {
             return Ok(flow);
         }

@@ -118,6 +118,8 @@ impl Session {
             pairless: _,
             later: _,
             seen_names: _,
+            plans: _,
+            told_to: _,
         } = self;
         let shared = earlier.filter(|e| self.same_particles(e)).map(|e| e.world.clone());
         let bytes = if shared.is_some() { 0 } else { self.bytes() };
@@ -208,7 +210,7 @@ impl Session {
     pub fn per_particle(&mut self, formula: &str) -> Result<Vec<f64>> {
         let file = self.sources.add("formula", formula);
         let expr = Expr::parse(formula, Span::new(file, 0, formula.len()))?;
-        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking: false };
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         Ok(expr.per_particle(&self.vars, &mut env)?.unwrap_or_default())
     }
 

@@ -33,6 +33,7 @@ impl Session {
         self.note_absent();
         if self.checking() {
             self.promise_outputs();
+            self.unsee(false);
             return Ok(());
         }
         self.say_notes()?;
@@ -75,11 +76,13 @@ impl Session {
         c.began = Some(Instant::now());
         c.begin_minimizing();
         self.settle_resume(span)?;
-        let (mut plan, energy) = self.sealed(span, true)?;
-        if self.options.mode == Mode::Plan {
+        if self.planning() {
+            self.plan_of(span, true)?;
             self.promise_outputs();
-            return self.options.log.line(explain::text(&plan, false).trim_end());
+            self.unsee(false);
+            return Ok(());
         }
+        let (mut plan, energy) = self.sealed(span, true)?;
         self.world.slots.invalidate();
         let normalized = self.graph.thermo.normalized(&self.world);
         let read = |w: &perigrain_world::World| {

@@ -1,12 +1,11 @@
 //! `rerun`: forces and output for the snapshots of dumps, without motion.
 
-use super::{Mode, Session};
+use super::Session;
 use crate::graph::Role;
 use crate::graph::build::Context;
 use perigrain_base::diag::Result;
 use perigrain_commands::read_dump::Rerun;
 use perigrain_lang::{Args, Command};
-use perigrain_plan::explain;
 use perigrain_plan::run::verlet;
 use perigrain_world::GroupId;
 use std::cell::RefCell;
@@ -26,6 +25,7 @@ impl Session {
         if self.checking() {
             rerun.reel.comes(&self.world)?;
             self.promise_outputs();
+            self.unsee(false);
             return Ok(());
         }
         self.say_notes()?;
@@ -35,10 +35,13 @@ impl Session {
         (c.began, c.step) = (None, first);
         self.world.parts.resume = None;
         self.world.slots.invalidate();
-        let mut plan = self.seal(cmd.span)?;
-        if self.options.mode == Mode::Plan {
-            return self.options.log.line(explain::text(&plan, false).trim_end());
+        if self.planning() {
+            self.plan_of(cmd.span, false)?;
+            self.promise_outputs();
+            self.unsee(false);
+            return Ok(());
         }
+        let mut plan = self.seal(cmd.span)?;
         self.world.clock.running = true;
         self.world.clock.began = Some(Instant::now());
         // What contacts remember belongs to the scene before, not to the snapshot before.

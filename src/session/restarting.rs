@@ -9,7 +9,7 @@ use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, unseen};
 use perigrain_base::math::cformat::general;
 use perigrain_lang::{Args, Command, Word};
 use perigrain_out::restart::{Saved, fingerprint, read, resume};
-use perigrain_world::{Halt, Key, Numbers, Particles, Promise, Said, World};
+use perigrain_world::{Halt, Key, Numbers, Particles, Parts, Promise, Said, Unseen, World};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -105,7 +105,10 @@ impl Session {
         let promised = &self.world.parts.promised;
         Ok(match promised.get(name) {
             Some(Promise::Scene(world, pair)) => Some(Saved {
-                world: World { parts: Default::default(), ..World::clone(world) },
+                world: World {
+                    parts: Parts { unseen: world.parts.unseen, ..Parts::default() }.into(),
+                    ..World::clone(world)
+                },
                 ran: false,
                 standing: false,
                 pair: pair.clone(),
@@ -159,6 +162,9 @@ impl Session {
         let names = world.regions.keys().map(|n| format!("region/{n}"));
         let names = names.chain(world.materials.keys().map(|n| format!("material/{n}")));
         world.parts.restored = names.chain(state.map(str::to_string)).collect();
+        if self.checking() {
+            world.parts.unseen = Unseen { space: world.parts.unseen.space, ..Unseen::in_a_check() };
+        }
         self.world = world;
         self.replay(&pair, span)?;
         let parts = &mut self.world.parts;
@@ -213,7 +219,7 @@ impl Session {
     pub(super) fn settle_resume(&mut self, span: Span) -> Result<()> {
         self.drop_unclaimed(span);
         let Some(resume) = self.world.parts.resume.take() else { return Ok(()) };
-        place_all(&mut self.world, &self.graph, &self.vars, false);
+        place_all(&mut self.world, &self.graph, &self.vars);
         let declared = self.graph.declared();
         let other = declared.iter().find(|l| !resume.declared.contains(l));
         let gone = resume.declared.iter().find(|l| !declared.contains(l));

@@ -1,5 +1,6 @@
 //! `run` and `write_dump`: seal the declarations, step, say how it went.
 
+use super::planning::hangs_on_a_run;
 use super::{Mode, Session, refuse};
 use crate::graph::Role;
 use crate::graph::build::Context;
@@ -21,6 +22,9 @@ use std::cell::RefCell;
 use std::sync::Arc;
 use std::time::Instant;
 
+/// How many stretches of a `run … every` a plan follows.
+const PLANNED_STRETCHES: u32 = 1000;
+
 /// What a `run` line asks for.
 struct RunArgs {
     steps: i64,
@@ -40,9 +44,10 @@ impl Session {
         self.check_run(cmd.span, args.steps > 0)?;
         if self.checking() {
             self.promise_outputs();
+            self.unsee(false);
             return Ok(());
         }
-        if args.steps > 0 {
+        if args.steps > 0 && !self.unsure() {
             self.check_resolution(cmd.span)?;
         }
         self.say_notes()?;
@@ -57,11 +62,12 @@ impl Session {
         let last = c.step + args.steps;
         c.start = args.start.unwrap_or(c.step);
         c.stop = args.stop.unwrap_or(last);
+        let known = !hangs_on_a_run(cmd);
         match args.every {
             None => self.leg(args.steps, args.pre, args.post, cmd.span),
             Some((every, commands)) => {
                 let mut left = args.steps;
-                let mut first = true;
+                let (mut first, mut stretches) = (true, 0);
                 // A run of no steps is one stretch, too.
                 while left > 0 || first {
                     let n = left.min(every);
@@ -72,15 +78,25 @@ impl Session {
                     if self.interrupted || self.world.clock.halt == Halt::All {
                         break;
                     }
-                    let mut script = Script::of_commands(&commands);
+                    let script = Script::of_commands(&commands);
+                    let mut script = if self.planning() { script.first_branches() } else { script };
                     self.work_off(&mut script)?;
+                    stretches += 1;
                     if self.quit.is_some() {
+                        break;
+                    }
+                    if self.planning() && stretches == PLANNED_STRETCHES {
+                        self.world.clock.step += left;
                         break;
                     }
                 }
                 Ok(())
             }
+        }?;
+        if self.planning() {
+            self.unsee(known);
         }
+        Ok(())
     }
 
     fn read_run(&mut self, cmd: &Command) -> Result<RunArgs> {
@@ -248,15 +264,16 @@ impl Session {
         c.onward = self.ran && !pre;
         self.settle_resume(span)?;
         let unchanged = self.ran && !self.world.parts.changed && (!self.world.settings.lammps() || !pre);
+        if self.planning() {
+            self.plan_of(span, false)?;
+            self.world.clock.step += steps;
+            self.promise_outputs();
+            self.unsee(true);
+            return Ok(());
+        }
         let mut plan = self.seal(span)?;
         self.notes.append(std::mem::take(&mut self.world.parts.notes));
         self.say_notes()?;
-        if self.options.mode == Mode::Plan {
-            self.options.log.line(explain::text(&plan, false).trim_end())?;
-            self.world.clock.step += steps;
-            self.promise_outputs();
-            return Ok(());
-        }
         if !unchanged {
             self.world.slots.invalidate();
         }
@@ -377,7 +394,7 @@ impl Session {
             return Ok(());
         }
         self.world.spread_type_masses();
-        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking: false };
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         env.once(cmd.span, &self.vars, |s| dump.op(s, 0))
     }
 }

@@ -17,6 +17,8 @@ const DEPTH: usize = 100;
 enum Item<'a> {
     Number(f64),
     Text(&'a str),
+    /// Only a run can tell.
+    Unknown,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,15 +34,16 @@ enum Op {
     GreaterEqual,
 }
 
-/// Whether a condition (values put in) holds.
-pub(super) fn holds(text: &Mapped) -> Result<bool> {
+/// Whether a condition (values put in) holds; `None` if that hangs on a value that only a run can tell.
+pub(super) fn holds(text: &Mapped) -> Result<Option<bool>> {
     let reader = Reader { line: text, text: &text.text };
     let (rest, item) = reader.binary(&text.text, 1, 0)?;
     if !rest.trim().is_empty() {
         return Err(reader.unexpected(rest.trim_start()));
     }
     match item {
-        Item::Number(v) => Ok(v != 0.0),
+        Item::Number(v) => Ok(Some(v != 0.0)),
+        Item::Unknown => Ok(None),
         Item::Text(t) => {
             let span = reader.line.span(0..reader.text.len());
             fail(
@@ -70,6 +73,20 @@ fn operator(input: &str) -> Option<(&str, (Op, u8))> {
     Some((&rest[length..], operator))
 }
 
+/// What an operator makes of a value that is not known; `None` if both are. `0 && x` is false whatever x is.
+fn unsure<'a>(op: Op, a: &Item<'_>, b: &Item<'_>) -> Option<Item<'a>> {
+    let settled =
+        |truth: bool| matches!((a, b), (Item::Number(v), _) | (_, Item::Number(v)) if (*v != 0.0) == truth);
+    if *a != Item::Unknown && *b != Item::Unknown {
+        return None;
+    }
+    Some(match op {
+        Op::And if settled(false) => Item::Number(0.0),
+        Op::Or if settled(true) => Item::Number(1.0),
+        _ => Item::Unknown,
+    })
+}
+
 /// A number or a word that starts with a letter, which may hold slashes as the names of styles do.
 fn item(input: &str) -> IResult<&str, &str> {
     let name = take_while(|c: char| c.is_ascii_alphanumeric() || c == '_' || c == '/');
@@ -91,7 +108,10 @@ impl<'a> Reader<'a> {
                 break;
             }
             let (next, right) = self.binary(after, l + 1, depth)?;
-            left = Item::Number(self.apply(op, &left, &right, input, next)?);
+            left = match unsure(op, &left, &right) {
+                Some(item) => item,
+                None => Item::Number(self.apply(op, &left, &right, input, next)?),
+            };
             rest = next;
         }
         Ok((rest, left))
@@ -109,7 +129,11 @@ impl<'a> Reader<'a> {
         if nots == 0 {
             return Ok((rest, item));
         }
-        let Item::Number(v) = item else { return Err(self.not_a_number(start, rest)) };
+        let v = match item {
+            Item::Number(v) => v,
+            Item::Unknown => return Ok((rest, Item::Unknown)),
+            Item::Text(_) => return Err(self.not_a_number(start, rest)),
+        };
         let truth = (v != 0.0) ^ (nots % 2 == 1);
         Ok((rest, Item::Number(f64::from(u8::from(truth)))))
     }
@@ -129,6 +153,10 @@ impl<'a> Reader<'a> {
         let Ok((rest, word)) = item(input) else { return Err(self.unexpected(input)) };
         if rest.starts_with(|c: char| !(c.is_ascii_whitespace() || "()=!<>&|".contains(c))) {
             return Err(self.unexpected(rest));
+        }
+        let at = place(self.text, input);
+        if self.line.unknown(at..at + word.len()) {
+            return Ok((rest, Item::Unknown));
         }
         match number::parse(word) {
             Some(v) => Ok((rest, Item::Number(v))),

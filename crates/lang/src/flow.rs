@@ -3,29 +3,29 @@
 use super::args::{Args, blame};
 use super::command::{Command, Word};
 use super::condition;
-use super::script::{Frame, Script};
+use super::script::{Frame, Passed, Script};
 use super::substitute::expand;
 use super::text::Mapped;
 use super::value::Env;
-use super::vars::Vars;
+use super::vars::{Next, Vars};
 use perigrain_base::diag::{Code, Diagnostic, FileId, Result, Sources, fail, unseen};
 
 /// How deep includes and then-commands may nest.
 const NESTING: usize = 100;
 
-/// How many turns of a loop `check` follows.
+/// How many turns of a loop are followed where a deck is only looked at.
 const CHECKED_TURNS: u64 = 10_000;
 
 /// Reads files for `include` and `jump`.
 pub trait Files {
     /// The whole text of a file.
     fn read(&self, path: &str) -> std::io::Result<String>;
-    /// Whether an earlier line of the deck may have written this file (`check` mode, which writes nothing).
+    /// Whether an earlier line of the deck may have written this file (where a deck is only looked at, nothing is written).
     fn comes_later(&self, _path: &str) -> bool {
         false
     }
-    /// Whether the deck is only read (`check` mode), so that long loops need not be followed to their end.
-    fn only_checks(&self) -> bool {
+    /// Whether the deck is only looked at, so that long loops need not be followed to their end.
+    fn only_looks(&self) -> bool {
         false
     }
 }
@@ -60,45 +60,68 @@ impl Script {
         match command.name.text.as_str() {
             "if" => self.branch(command, vars, env)?,
             "jump" => self.jump(command, sources, vars, files)?,
-            "include" => self.include(command, sources, files)?,
+            "include" => self.include(command, sources, vars, files)?,
             "label" => {
                 let mut args = Args::new(command);
                 args.expect("the label's name")?;
                 args.finish()?;
+                self.pass_label(vars);
             }
             "next" => {
                 Args::new(command).expect("a variable's name")?;
-                self.skip_jump |= vars.next(&command.args)?;
-            }
-            "quit" => return self.quit(command),
-            "variable" => {
-                vars.define(command, env, files)?;
-                if let Some(name) = command.args.first().filter(|_| self.speculative) {
-                    vars.mark_unknown(&name.text);
+                match vars.next(&command.args, self.speculative, self.escapes > 0)? {
+                    Next::More => {}
+                    Next::Over => self.skip_jump = true,
+                    Next::Unknown => (self.skip_jump, self.unsure) = (true, true),
                 }
             }
+            "quit" => return self.quit(command),
+            "variable" => self.variable(command, vars, env, files)?,
             _ => return Ok(Flow::NotMine),
         }
         Ok(Flow::Done)
     }
 
+    fn variable(
+        &mut self,
+        command: &Command,
+        vars: &mut Vars,
+        env: &mut dyn Env,
+        files: &dyn Files,
+    ) -> Result<()> {
+        let Some(name) = command.args.first().filter(|_| self.speculative) else {
+            return vars.define(command, env, files);
+        };
+        // One that may be gone still has a value that a later line may ask for.
+        if command.args.get(1).is_none_or(|style| style.text != "delete") {
+            vars.define(command, env, files)?;
+        }
+        vars.set_adrift(&name.text);
+        Ok(())
+    }
+
     fn branch(&mut self, command: &Command, vars: &Vars, env: &mut dyn Env) -> Result<()> {
-        self.room(command)?;
-        let mut chosen: Vec<Word> = Vec::new();
+        let mut possible: Vec<&[Word]> = Vec::new();
         let mut unsure = false;
         for (condition, commands) in branches(command)? {
             let holds = condition.map_or(Ok(Some(true)), |c| evaluate(c, vars, env))?;
             if holds == Some(false) {
                 continue;
             }
-            chosen.extend_from_slice(commands);
+            possible.push(commands);
             unsure |= holds.is_none();
             if holds == Some(true) {
                 break;
             }
         }
         let speculative = unsure || self.speculative;
-        self.frames.push(Frame::Commands { queue: chosen.into(), speculative });
+        self.room(command)?;
+        // The last one pushed is the first one read.
+        for (k, commands) in possible.into_iter().enumerate().rev() {
+            let aside = self.aside || (k > 0 && self.first_only);
+            let queue = commands.iter().cloned().collect();
+            self.frames.push(Frame::Commands { queue, speculative, aside });
+        }
         Ok(())
     }
 
@@ -106,34 +129,33 @@ impl Script {
         &mut self,
         command: &Command,
         sources: &mut Sources,
-        vars: &Vars,
+        vars: &mut Vars,
         files: &dyn Files,
     ) -> Result<()> {
         let mut args = Args::new(command);
         let target = args.expect("a file, or SELF")?;
         let label = args.next();
         args.finish()?;
-        if std::mem::take(&mut self.skip_jump) {
-            return Ok(());
-        }
-        if self.speculative {
-            self.escaped = true;
-            return Ok(());
-        }
-        let place = (command.span.file, command.span.start);
-        let again = !self.made.insert(place);
-        if self.escaped && again {
+        let skip = std::mem::take(&mut self.skip_jump);
+        // Whether only a run can tell that the jump is passed over.
+        let maybe = std::mem::take(&mut self.unsure) || self.speculative;
+        if skip && !maybe {
             return Ok(());
         }
         let Some((level, current)) = self.file() else {
             return fail(Code::WRONG_ORDER, command.span, "there is no file to jump in");
         };
-        let file = if target.text == "SELF" { Some(current) } else { load(target, sources, files)? };
-        let Some(file) = file else {
-            self.escaped = true;
+        self.escapes += u64::from(maybe && !skip);
+        let file = match target.text.as_str() {
+            "SELF" => Some(current),
+            _ if maybe => return Ok(()),
+            _ => load(target, sources, files)?,
+        };
+        let Some(file) = file.filter(|_| label.is_none_or(|l| !l.unknown)) else {
+            self.escapes += 1;
+            vars.set_adrift_since(0);
             return Ok(());
         };
-        self.comes_back(file);
         let at = match label {
             None => 0,
             Some(l) => match self.behind_label(&l.text, file, sources)? {
@@ -141,37 +163,75 @@ impl Script {
                 None => return no_label(l),
             },
         };
+        // A loop with a way out that a run may take ends after this turn, unless a `next` brings it to its end.
+        let left = |p: &Passed| self.escapes > p.escapes && !vars.moved_since(p.sets);
+        if maybe || self.passed.get(&(file, at)).is_some_and(left) {
+            self.pass_over((file, at), vars);
+            return Ok(());
+        }
+        let place = (command.span.file, command.span.start);
+        self.comes_back(file);
         let Some(turns) = self.progress.turn(place, vars.fingerprint() ^ self.position()) else {
             return stuck(command, target);
         };
-        if turns > CHECKED_TURNS && files.only_checks() {
+        if turns > CHECKED_TURNS && files.only_looks() {
+            self.pass_over((file, at), vars);
             return Ok(());
         }
-        self.frames[level] = Frame::File { file, at };
+        self.passed.insert((file, at), Passed { sets: vars.sets(), escapes: self.escapes });
+        if let Frame::File { file: now, at: byte, .. } = &mut self.frames[level] {
+            (*now, *byte) = (file, at);
+        }
         if label.is_some() {
             self.frames.truncate(level + 1);
         }
         Ok(())
     }
 
+    /// Passes over a jump that a run may make: what the lines between here and its label set is unknown behind them.
+    fn pass_over(&mut self, label: (FileId, usize), vars: &mut Vars) {
+        match self.passed.get(&label) {
+            Some(p) => vars.set_adrift_since(p.sets),
+            None => drop(self.awaited.entry(label).or_insert_with(|| vars.sets())),
+        }
+    }
+
+    /// Passes a `label` line: where a jump to it may have left lines out, what they set is unknown.
+    fn pass_label(&mut self, vars: &mut Vars) {
+        let Some(Frame::File { file, at, .. }) = self.frames.last() else { return };
+        let place = (*file, *at);
+        if let Some(since) = self.awaited.remove(&place) {
+            vars.set_adrift_since(since);
+        }
+        self.passed.insert(place, Passed { sets: vars.sets(), escapes: self.escapes });
+    }
+
     /// A number for what waits to be read below and above the jump at hand.
     fn position(&self) -> u64 {
         self.frames.iter().fold(0, |h: u64, f| {
             let part = match f {
-                Frame::File { file, at } => (u64::from(file.0) << 32) ^ *at as u64,
+                Frame::File { file, at, .. } => (u64::from(file.0) << 32) ^ *at as u64,
                 Frame::Commands { queue, .. } => !(queue.len() as u64),
             };
             h.rotate_left(13).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ part
         })
     }
 
-    fn include(&mut self, command: &Command, sources: &mut Sources, files: &dyn Files) -> Result<()> {
+    fn include(
+        &mut self,
+        command: &Command,
+        sources: &mut Sources,
+        vars: &Vars,
+        files: &dyn Files,
+    ) -> Result<()> {
         let mut args = Args::new(command);
         let target = args.expect("a file")?;
         args.finish()?;
         self.room(command)?;
         if let Some(file) = load(target, sources, files)? {
-            self.frames.push(Frame::File { file, at: 0 });
+            let (speculative, aside) = (self.speculative, self.aside);
+            self.passed.insert((file, 0), Passed { sets: vars.sets(), escapes: self.escapes });
+            self.frames.push(Frame::File { file, at: 0, speculative, aside });
         }
         Ok(())
     }
@@ -185,7 +245,7 @@ impl Script {
         };
         args.finish()?;
         if self.speculative {
-            self.escaped = true;
+            self.escapes += 1;
             return Ok(Flow::Done);
         }
         Ok(Flow::Quit(status))
@@ -241,15 +301,11 @@ fn until_next<'a>(args: &mut Args<'a>) -> &'a [Word] {
     &all[..n]
 }
 
-/// Whether a condition holds; `None` if that is unknown.
+/// Whether a condition holds; `None` if only a run can tell.
 fn evaluate(word: &Word, vars: &Vars, env: &mut dyn Env) -> Result<Option<bool>> {
     let text = Mapped::whole(&word.text, word.span, word.origin, word.unknown);
     let full = expand(&text, vars, env, None)?;
-    let truth = condition::holds(&full);
-    if word.unknown || full.unknown(0..full.text.len()) {
-        return Ok(None);
-    }
-    truth.map(Some)
+    condition::holds(&full)
 }
 
 /// A label that is nowhere.
@@ -275,7 +331,7 @@ pub(super) fn unreadable(path: &Word, e: &std::io::Error) -> Diagnostic {
     blame(path, Code::NO_FILE, format!("the file `{}` {reason}", path.text))
 }
 
-/// Reads a file into the sources, once per content; `None` if its name is not known yet (`check` mode).
+/// Reads a file into the sources, once per content; `None` if only a run can tell its name.
 fn load(path: &Word, sources: &mut Sources, files: &dyn Files) -> Result<Option<FileId>> {
     let text = match files.read(&path.text) {
         Ok(text) => text,

@@ -8,16 +8,25 @@ use super::text::Mapped;
 use super::value::Env;
 use super::vars::Vars;
 use perigrain_base::diag::{FileId, Result, Sources};
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 /// Where lines come from.
 #[derive(Clone, Debug)]
 pub(super) enum Frame {
     /// A text, from byte `at` on.
-    File { file: FileId, at: usize },
+    File { file: FileId, at: usize, speculative: bool, aside: bool },
     /// Commands given as words (`if … then "…"`).
-    Commands { queue: VecDeque<Word>, speculative: bool },
+    Commands { queue: VecDeque<Word>, speculative: bool, aside: bool },
+}
+
+/// The moment when a label was passed.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Passed {
+    /// How many lines had set variables.
+    pub sets: u64,
+    /// How many jumps and quits that a run may make had been passed over.
+    pub escapes: u64,
 }
 
 /// A logical line, taken apart as far as it does not depend on variables.
@@ -53,12 +62,20 @@ pub struct Script {
     pub(super) frames: Vec<Frame>,
     /// `next` has run out: the next `jump` is passed over.
     pub(super) skip_jump: bool,
-    /// The command at hand stands in a branch that may not be taken (`check` mode).
+    /// Only a run can tell whether that `next` has run out.
+    pub(super) unsure: bool,
+    /// Only a run can tell whether the command at hand is reached.
     pub(super) speculative: bool,
-    /// A jump or quit in such a branch was passed over, so that loops must end by themselves.
-    pub(super) escaped: bool,
-    /// Jumps that have been made.
-    pub(super) made: BTreeSet<(FileId, u32)>,
+    /// The command at hand stands in another branch than the first one that a run may take.
+    pub(super) aside: bool,
+    /// Of several branches that a run may take only the first one is carried out.
+    pub(super) first_only: bool,
+    /// How many jumps and quits that a run may make have been passed over.
+    pub(super) escapes: u64,
+    /// Labels that have been passed, by the byte behind them.
+    pub(super) passed: BTreeMap<(FileId, usize), Passed>,
+    /// Labels further down that a run may have jumped to, each with the number of lines up to the jump that set variables.
+    pub(super) awaited: BTreeMap<(FileId, usize), u64>,
     /// Whether loops get anywhere.
     pub(super) progress: Progress,
     raw: Arc<str>,
@@ -68,27 +85,40 @@ pub struct Script {
 impl Script {
     /// A cursor at the start of a text.
     pub fn new(file: FileId) -> Self {
-        Self::with(Frame::File { file, at: 0 })
+        let mut script = Self::with(Frame::File { file, at: 0, speculative: false, aside: false });
+        script.passed.insert((file, 0), Passed::default());
+        script
     }
 
     /// A cursor through a text typed after the one this cursor has read: a `next` that has run out there
     /// still passes over the first `jump` here.
     pub fn then(&self, file: FileId) -> Self {
-        Self { skip_jump: self.skip_jump, ..Self::new(file) }
+        Self { skip_jump: self.skip_jump, unsure: self.unsure, ..Self::new(file) }
     }
 
     /// A cursor through commands given as words, as in `run … every N "command"`.
     pub fn of_commands(words: &[Word]) -> Self {
-        Self::with(Frame::Commands { queue: words.iter().cloned().collect(), speculative: false })
+        let queue = words.iter().cloned().collect();
+        Self::with(Frame::Commands { queue, speculative: false, aside: false })
+    }
+
+    /// The same cursor, which takes only the first of several branches of an `if` whose condition only a run can tell.
+    /// Of the others it yields the commands with [`Script::is_aside`] set.
+    pub fn first_branches(self) -> Self {
+        Self { first_only: true, ..self }
     }
 
     fn with(frame: Frame) -> Self {
         Self {
             frames: vec![frame],
             skip_jump: false,
+            unsure: false,
             speculative: false,
-            escaped: false,
-            made: BTreeSet::new(),
+            aside: false,
+            first_only: false,
+            escapes: 0,
+            passed: BTreeMap::new(),
+            awaited: BTreeMap::new(),
             progress: Progress::default(),
             raw: "".into(),
             known: BTreeMap::new(),
@@ -103,14 +133,19 @@ impl Script {
     /// What is left of the file that the line at hand stands in; `None` if it is a command of an `if`.
     pub fn unread(&self) -> Option<(FileId, usize)> {
         match self.frames.last() {
-            Some(Frame::File { file, at }) => Some((*file, *at)),
+            Some(Frame::File { file, at, .. }) => Some((*file, *at)),
             _ => None,
         }
     }
 
-    /// Whether the command at hand may or may not be reached (`check` mode).
+    /// Whether only a run can tell if the command at hand is reached.
     pub fn is_speculative(&self) -> bool {
         self.speculative
+    }
+
+    /// Whether the command at hand stands in a branch that is left aside: see [`Script::first_branches`].
+    pub fn is_aside(&self) -> bool {
+        self.aside
     }
 
     /// Tells the cursor that a command has changed something outside the variables.
@@ -141,16 +176,16 @@ impl Script {
         loop {
             match self.frames.last_mut() {
                 None => return Ok(None),
-                Some(Frame::Commands { queue, speculative }) => {
-                    self.speculative = *speculative;
+                Some(Frame::Commands { queue, speculative, aside }) => {
+                    (self.speculative, self.aside) = (*speculative, *aside);
                     if let Some(w) = queue.pop_front() {
                         self.raw = w.text.as_str().into();
                         let line = lex::standalone(Mapped::whole(&w.text, w.span, w.origin, w.unknown))?;
                         return prepared(line).map(|l| Some(Arc::new(l)));
                     }
                 }
-                Some(Frame::File { file, at }) => {
-                    self.speculative = false;
+                Some(Frame::File { file, at, speculative, aside }) => {
+                    (self.speculative, self.aside) = (*speculative, *aside);
                     let (file, start) = (*file, *at);
                     if let Some(line) = self.known.get(&file).and_then(|k| k.lines.get(&start)) {
                         *at = line.next;

@@ -23,7 +23,7 @@ pub struct Clock {
 /// What a formula yields.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// Not known before the run (`check` mode only); whatever is computed from it is unknown too.
+    /// What only a run can tell, where a deck is looked at without one; whatever is computed from it is unknown too.
     Unknown,
     /// One number.
     Number(f64),
@@ -78,6 +78,14 @@ pub trait Env {
     fn column(&mut self, attribute: &str) -> Option<Result<Vec<f64>>>;
     /// `count(group)`, `xcm(group,dim[,region])` …; number and form of the arguments have been checked.
     fn group_function(&mut self, name: &str, args: &[Word], span: Span, vars: &Vars) -> Result<Value>;
+    /// Whether columns tell of the particles as they are in a run.
+    fn sees_particles(&self) -> bool {
+        true
+    }
+    /// Whether a file may be there in a run that is not there, or is another one, where a deck is only looked at.
+    fn may_be_written(&self, _path: &str) -> bool {
+        false
+    }
     /// For every particle 1 if it is in the group and in the region, else 0.
     fn mask(&mut self, group: Option<&Word>, region: Option<&Word>, _: &Vars) -> Result<Value> {
         fail(Code::WRONG_ORDER, group.or(region).map(|w| w.span), "there are no particles here")

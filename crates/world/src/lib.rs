@@ -40,6 +40,7 @@ pub mod template;
 pub mod touched;
 pub mod tracked;
 pub mod travel;
+pub mod unseen;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -73,6 +74,7 @@ pub use template::Template;
 pub use touched::Touched;
 pub use tracked::{Lent, Tracked};
 pub use travel::{Seen, Travel};
+pub use unseen::Unseen;
 
 /// The role in `memo` of the energy which a fix has taken from particles for a reservoir so far (`ecouple`).
 pub static COUPLED: Constant<Vec<f64>> = Constant::new("/coupled");
@@ -165,6 +167,8 @@ pub struct Parts {
     pub notes: perigrain_base::diag::Diagnostics,
     /// While a deck is only looked at: files that its lines so far would have written.
     pub promised: Promises,
+    /// What only a run could tell, while a deck is only looked at.
+    pub unseen: Unseen,
     /// What came from a restart file and the deck may say again: `region/ID`, `material/ID`, and state of fixes and
     /// computes as `STYLE/ID`.
     pub restored: BTreeSet<String>,

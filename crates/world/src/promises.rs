@@ -15,10 +15,10 @@ pub enum Promise {
     Unseen,
 }
 
-/// All that the lines so far would have written, by name; empty unless a deck is only looked at.
+/// All that the lines so far would have written, by name; empty unless a deck is only looked at. A copy is cheap.
 #[derive(Clone, Debug, Default)]
 pub struct Promises {
-    files: BTreeMap<String, Promise>,
+    files: Arc<BTreeMap<String, Promise>>,
     /// Files are promised instead of written: a deck is looked at, which leaves nothing behind and overwrites nothing.
     pub instead: bool,
     /// A shell command was passed over, which may have written any file that is not there.
@@ -33,12 +33,12 @@ fn bare(name: &str) -> &str {
 impl Promises {
     /// Takes note of a file that would be there now.
     pub fn keep(&mut self, name: &str, content: Promise) {
-        self.files.insert(bare(name).to_owned(), content);
+        Arc::make_mut(&mut self.files).insert(bare(name).to_owned(), content);
     }
 
     /// Takes note of a text that a line would have printed, behind what is there already or in its place.
     pub fn print(&mut self, name: &str, text: Option<String>, append: bool) {
-        let before = self.files.remove(bare(name)).filter(|_| append);
+        let before = Arc::make_mut(&mut self.files).remove(bare(name)).filter(|_| append);
         let content = match (text, before) {
             (Some(text), None) => Promise::Text(format!("{text}\n")),
             (Some(text), Some(Promise::Text(before))) => Promise::Text(format!("{before}{text}\n")),

@@ -100,7 +100,7 @@ pub(super) const IF: Entry = (
             condition first. It knows no arithmetic: write `$(v_a+1) > 2`.\n\n\
             Every command is one word, so put quotes around it; inside `\"…\"` use `'…'` or `\"\"\"…\"\"\"`. The commands of \
             the first branch whose condition holds are carried out as if they stood in the deck, `jump` included.\n\n\
-            `perigrain check` looks at all branches whose condition it cannot know.",
+            Where a deck is only looked at, a condition may hang on what only a run can tell; `0 && …` is false all the             same. `perigrain check` then looks at every branch that may be taken, `perigrain plan` carries out the first of them.             Variables that any of them sets are unknown behind it, a `jump` or `quit` in them is passed over, and `clear` is left out.",
         example: "variable v index 35\n\
             if \"$v > 100 && $(count(plate)) > 0\" then &\n    \"print 'fast'\" &\n  elif \"$v == 35\" &\n    \"print 'slow'\" \
             \"variable slow index yes\" &\n  else \"print 'neither'\"",
@@ -129,7 +129,7 @@ pub(super) const JUMP: Entry = (
             A file is looked for in the working folder. As in LAMMPS no values are put into `label` lines while they are \
             searched.\n\n\
             A loop that can never end is refused: when a jump is made again and no variable, file or scene has changed \
-            since. `perigrain check` follows a loop for 10,000 turns.\n\n\
+            since. `perigrain check` and `perigrain plan` follow a loop for 10,000 turns, and one that ends by something only a             run can tell for one turn: what its lines set is unknown behind it.\n\n\
             `jump SELF` also works for a deck on standard input. Inside `run … every` it is refused.",
         example: "jump SELF later\nprint \"this line is passed over\"\nlabel later",
     },

@@ -28,7 +28,9 @@ pub(super) const PERIGRAIN: Entry = (
 
 const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off. `check` reads it, changes and writes \
     nothing, and reports every problem of one or more decks at once, with `--json` as JSON. `plan` prints what each step of \
-    the deck's runs will do, in which order, and what was left out and why; with `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
+    the deck's runs will do, in which order, and what was left out and why: each plan once, with the lines whose runs have it and how often. \
+    It makes the particles that the first run begins with, so that large scenes take their time, and no step; behind that run nothing is known of \
+    particles, and lines that hang on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
     prints the command graph for graphviz. `doc` prints a page of this manual, `explain` the story behind the code of a \
     message. `repl`, and `perigrain` alone on a terminal, work lines off as they are typed: see [the \
     prompt](prompt.md).\n\n\

@@ -115,6 +115,9 @@ impl Expr {
         if !particles {
             return self.each(step, args, one);
         }
+        if !env.sees_particles() {
+            return Ok(Value::Unknown);
+        }
         // one number per particle, also if all particles share the arguments
         let spread = Value::Atom(vec![0.0; env.natoms()]);
         let mut args = args.to_vec();
@@ -136,6 +139,7 @@ impl Expr {
                 }
             }
             Op::Column(name) => match env.column(name) {
+                Some(v) if !env.sees_particles() => v.map(|_| Value::Unknown).map_err(|d| d.at(span)),
                 Some(v) => v.map(Value::Atom).map_err(|d| d.at(span)),
                 None => fail(Code::WRONG_KIND, span, format!("the particles have no `{name}`")),
             },

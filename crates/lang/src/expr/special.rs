@@ -111,6 +111,9 @@ pub(super) fn value(
         Special::Next => vars.take_next(word(0), span, env),
         Special::IsFile => {
             vars.event();
+            if env.may_be_written(word(0)) {
+                return Ok(Value::Unknown);
+            }
             Ok(truth(std::fs::File::open(word(0)).is_ok_and(|f| f.metadata().is_ok_and(|m| m.is_file()))))
         }
         Special::IsOs => match pattern::matches(word(0), &pattern::os_info()) {
@@ -130,6 +133,9 @@ pub(super) fn value(
         Special::Timeout => {
             vars.event();
             Ok(truth(env.timed_out()))
+        }
+        Special::Ask(Question::Defined) if word(0) == "variable" && vars.is_adrift(word(1)) => {
+            Ok(Value::Unknown)
         }
         Special::Ask(Question::Defined) if word(0) == "variable" => Ok(truth(vars.kind(word(1)).is_some())),
         Special::Ask(q) => env.answer(q, name(0), name(1)).map(truth),

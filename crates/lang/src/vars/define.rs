@@ -48,10 +48,10 @@ impl Vars {
         }
         let kind = kind_of(style)?;
         let old = self.find(&name.text);
-        if old.is_some() && kind.stays() {
+        if old.is_some_and(|v| !v.adrift) && kind.stays() {
             return Ok(());
         }
-        if let Some(old) = old.filter(|v| v.kind != kind) {
+        if let Some(old) = old.filter(|v| v.kind != kind && !v.adrift) {
             let (name, old_kind) = (&name.text, old.kind.name());
             let message = format!("variable `{name}` is of style {old_kind} already");
             let mut d = blame(style, Code::DUPLICATE_NAME, message)
@@ -64,7 +64,7 @@ impl Vars {
         let mut variable = self.read(kind, args, env, files)?;
         variable.unknown |= command.args.iter().any(|w| w.unknown);
         variable.span = Some(command.span);
-        self.put(&name.text, variable);
+        self.put_line(&name.text, variable);
         Ok(())
     }
 
@@ -133,7 +133,7 @@ impl Vars {
                 (Data::Range { last, .. }, Kind::Uloop) => *last,
                 _ => continue,
             };
-            if other != turns && !v.unknown {
+            if other != turns && v.turns_known() {
                 let message = format!(
                     "universe and uloop variables must have equally many values: `{name}` has {other}, this one {turns}"
                 );
@@ -209,13 +209,17 @@ fn read_file(kind: Kind, path: &Word, files: &dyn Files) -> Result<Option<Data>>
 /// `loop N [pad]`, and where `from` is allowed `loop N1 N2 [pad]`.
 fn read_loop(args: &mut Args<'_>, from: bool) -> Result<Data> {
     let mut span = args.here();
+    let unknown = args.clone().rest().iter().any(|w| w.unknown);
     let mut bounds = vec![args.integer("the last number of the loop")?];
     if from && args.peek().is_some_and(|w| w.text != "pad") {
         span = span.to(args.here());
         bounds.push(args.integer("the last number of the loop, or pad")?);
     }
     let pad = args.eat("pad");
-    let (now, last) = if bounds.len() == 1 { (1, bounds[0]) } else { (bounds[0], bounds[1]) };
+    let (now, mut last) = if bounds.len() == 1 { (1, bounds[0]) } else { (bounds[0], bounds[1]) };
+    if unknown {
+        last = last.max(now);
+    }
     if last < now || last < 0 {
         return fail(Code::BAD_VALUE, span, format!("a loop from {now} to {last} has no turns"));
     }

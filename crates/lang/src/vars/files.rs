@@ -143,6 +143,9 @@ impl AtomFile {
             return fail(Code::WRONG_KIND, span, "the particles have no numbers");
         };
         let ids = ids?;
+        if !env.sees_particles() {
+            return Ok(Value::Unknown);
+        }
         let mut place = std::collections::BTreeMap::new();
         ids.iter().enumerate().for_each(|(k, id)| {
             place.insert(*id as usize, k);

@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+pub(super) use moving::Next;
 pub(super) use text::Text;
 
 /// The style of a variable.
@@ -119,15 +120,21 @@ struct Variable {
     data: Data,
     /// Where it was defined; nowhere if on the command line.
     span: Option<Span>,
-    /// Its definition holds an unknown value (`check` mode).
+    /// Only a run can tell its value (`check` and `plan`).
     unknown: bool,
+    /// Only a run can tell which line has set or moved it last, or whether one has deleted it.
+    adrift: bool,
+    /// When it was defined, in lines that set variables.
+    born: u64,
+    /// When it was set or moved last.
+    set: u64,
     /// A hash of its name and definition, the position in a list left out.
     print: u64,
 }
 
 impl Variable {
     fn new(kind: Kind, data: Data) -> Self {
-        Self { kind, data, span: None, unknown: false, print: 0 }
+        Self { kind, data, span: None, unknown: false, adrift: false, born: 0, set: 0, print: 0 }
     }
 }
 
@@ -147,6 +154,8 @@ pub struct Vars {
     state: u64,
     /// Counts changes of names and styles.
     names: u64,
+    /// Counts lines that set or move variables.
+    sets: u64,
 }
 
 /// Formulas by file, first and last byte.
@@ -270,19 +279,54 @@ impl Vars {
         gone.iter().for_each(|n| self.remove(n));
     }
 
-    /// Forgets what a variable's value is (`check` mode: a branch that may not be taken has set it).
-    pub fn mark_unknown(&mut self, name: &str) {
-        if let Some(v) = Arc::make_mut(&mut self.table).get_mut(name) {
-            v.unknown = true;
-        }
+    /// How many lines have set or moved variables so far.
+    pub(super) fn sets(&self) -> u64 {
+        self.sets
+    }
+
+    /// Whether only a run can tell if there is such a variable, or which line has set it.
+    pub(super) fn is_adrift(&self, name: &str) -> bool {
+        self.table.get(name).is_some_and(|v| v.adrift)
+    }
+
+    /// Whether `next` has brought a variable to a further value behind the moment `since` that was defined before it.
+    pub(super) fn moved_since(&self, since: u64) -> bool {
+        self.table.values().any(|v| v.turns_known() && v.set > since && v.born <= since)
+    }
+
+    /// Forgets what a variable's value is: only a run can tell whether a line that sets it is reached.
+    pub(super) fn set_adrift(&mut self, name: &str) {
+        let Some(old) = self.table.get(name) else { return };
+        let new = Variable { unknown: true, adrift: true, ..old.clone() };
+        self.put(name, new);
+    }
+
+    /// Forgets the values of all variables that lines behind the moment `since` have set or moved.
+    pub(super) fn set_adrift_since(&mut self, since: u64) {
+        let names: Vec<String> =
+            self.table.iter().filter(|(_, v)| v.set > since).map(|(n, _)| n.clone()).collect();
+        names.iter().for_each(|n| self.set_adrift(n));
+    }
+
+    /// Forgets the numbers of all internal-style variables: a run that is only looked at may have set them.
+    pub fn forget_internal(&mut self) {
+        let names: Vec<String> =
+            self.table.iter().filter(|(_, v)| v.kind == Kind::Internal).map(|(n, _)| n.clone()).collect();
+        names.iter().for_each(|n| self.set_adrift(n));
     }
 
     /// Sets the number of an internal-style variable.
     pub fn set_internal(&mut self, name: &str, value: f64) -> bool {
         let Some(old) = self.find(name).filter(|v| v.kind == Kind::Internal) else { return false };
-        let new = Variable { data: Data::Number(value), ..old.clone() };
+        let new = Variable { data: Data::Number(value), unknown: false, adrift: false, ..old.clone() };
         self.put(name, new);
         true
+    }
+
+    /// As [`Vars::put`], for a line of the deck.
+    fn put_line(&mut self, name: &str, variable: Variable) {
+        self.sets += 1;
+        self.put(name, Variable { born: self.sets, set: self.sets, ..variable });
     }
 
     fn put(&mut self, name: &str, variable: Variable) {

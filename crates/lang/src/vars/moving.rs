@@ -19,6 +19,11 @@ impl Variable {
         }
     }
 
+    /// Whether it is known how often it can still move on: the values of a list may be unknown, not their number.
+    pub fn turns_known(&self) -> bool {
+        !self.adrift && (!self.unknown || matches!(self.data, Data::List { .. }))
+    }
+
     /// Leaves the position in a file to those it was shared with, and goes on with one of its own.
     pub fn detach(&mut self) {
         match &mut self.data {
@@ -46,9 +51,23 @@ impl Variable {
     }
 }
 
+/// What became of the variables that `next` has moved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Next {
+    /// All have a further value.
+    More,
+    /// One has none.
+    Over,
+    /// Only a run can tell; they are taken to have none.
+    Unknown,
+}
+
 impl Vars {
-    /// `next`: moves all of `names` on; true if one of them has no further value (it is then forgotten).
-    pub fn next(&mut self, names: &[Word]) -> Result<bool> {
+    /// `next`: moves all of `names` on; says if one of them has no further value (it is then forgotten).
+    ///
+    /// `maybe` says that only a run can tell whether the line is reached: nothing moves, and positions are unknown. With `keep` only
+    /// a run can tell whether variables get as far as to their last value: none is forgotten, for lines that ask for them.
+    pub fn next(&mut self, names: &[Word], maybe: bool, keep: bool) -> Result<Next> {
         let family = |k: Kind| if k == Kind::Uloop { Kind::Universe } else { k };
         let mut first = None;
         for name in names {
@@ -67,26 +86,41 @@ impl Vars {
                 return fail(Code::CONFLICT, name.span, "all variables of one next must have the same style");
             }
         }
+        if maybe {
+            names.iter().for_each(|n| self.set_adrift(&n.text));
+            return Ok(Next::More);
+        }
+        self.sets += 1;
+        let known = names.iter().all(|n| self.find(&n.text).is_some_and(Variable::turns_known));
         let mut exhausted = false;
         for name in names {
             let Some(v) = Arc::make_mut(&mut self.table).get_mut(&name.text) else { continue };
             self.state = self.state.wrapping_sub(v.state());
-            let more = v.advance();
+            v.set = self.sets;
+            let more = v.turns_known() && v.advance();
             let in_file = matches!(v.data, Data::Lines(_) | Data::Atoms(_));
             self.state = self.state.wrapping_add(v.state());
             if in_file {
                 self.event();
             }
-            if !more {
-                self.remove(&name.text);
-                exhausted = true;
+            if more {
+                continue;
+            }
+            exhausted = true;
+            match keep {
+                true => self.set_adrift(&name.text),
+                false => self.remove(&name.text),
             }
         }
         // all partitions of a universe end together
-        if exhausted && first == Some(Kind::Universe) {
+        if exhausted && !keep && first == Some(Kind::Universe) {
             names.iter().for_each(|n| self.remove(&n.text));
         }
-        Ok(exhausted)
+        Ok(match (known, exhausted) {
+            (false, _) => Next::Unknown,
+            (true, true) => Next::Over,
+            (true, false) => Next::More,
+        })
     }
 
     /// `next(name)` in a formula: the present value of a file- or atomfile-style variable, which then moves on.

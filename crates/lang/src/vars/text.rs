@@ -118,6 +118,7 @@ impl Vars {
             }
             Data::Formula(e) if variable.kind == Kind::Atom => {
                 let all = match trail.inside(r, Yields::Particles, |trail| e.run(self, env, trail))? {
+                    Value::Number(_) if !env.sees_particles() => Value::Unknown,
                     Value::Number(v) => Value::Atom(vec![v; env.natoms()]),
                     other => other,
                 };
