@@ -1,5 +1,6 @@
 //! One deck being worked off: text in, diagnostics and results out.
 
+mod acts;
 mod causes;
 mod checking;
 mod commands;
@@ -25,9 +26,8 @@ mod timer;
 mod unused;
 
 use crate::graph::build::{Context, DECLARATIONS, declare};
-use crate::graph::env::{DeckEnv, DeckValues};
+use crate::graph::env::DeckEnv;
 pub use crate::graph::keywords::KEYWORDS as THERMO;
-use crate::graph::regions::place_now;
 use crate::graph::{Graph, Role};
 pub use commands::OWN;
 pub use interactive::{Heard, Known, Snapshot};
@@ -38,8 +38,7 @@ use perigrain_lang::{Command, Flow, Line, Script, Vars};
 use perigrain_out::log::Log;
 use perigrain_plan::StepPlan;
 pub use perigrain_plan::run::{Made, Watch};
-use perigrain_styles::ActCx;
-use perigrain_world::{Compat, GroupId, Unseen, World};
+use perigrain_world::{Compat, Unseen, World};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -437,77 +436,6 @@ impl Session {
         let declared = outcome?;
         self.record(cmd, Role::Declare, declared.provides, uses.into_inner(), vec![]);
         Ok(())
-    }
-
-    fn act(&mut self, cmd: &Command, style: &'static dyn perigrain_styles::CommandStyle) -> Result<()> {
-        let (notes, uses) = (RefCell::default(), RefCell::default());
-        let cx = Context { span: cmd.span, checking: self.checking(), notes: &notes, uses: &uses };
-        let (mut said, mut then, mut left) = (vec![], vec![], None);
-        let outcome: Result<Vec<&'static str>> = (|| {
-            let vars = Arc::new(self.vars.clone());
-            let named = |name: &str| cmd.args.iter().any(|w| w.text == name);
-            place_now(&mut self.world, &self.graph, &vars, named)?;
-            let mut args = perigrain_lang::Args::new(cmd);
-            let act = style.parse(&mut args, &cx.build(&self.graph, &self.world, "", GroupId::ALL))?;
-            args.finish()?;
-            let settles = act.settles().to_vec();
-            left = act.leaves();
-            if act.needs_particles() && self.passes(cmd, left.is_some()) {
-                act.makes_group().map(|name| self.world.groups.find_or_add(name));
-                return Ok(settles);
-            }
-            let mut values = DeckValues { graph: &self.graph, vars };
-            self.world.spread_type_masses();
-            let forgiving = self.planning() && self.unsure() && act.needs_particles();
-            let group = act.makes_group().map(str::to_owned).filter(|_| forgiving);
-            let world = &mut self.world;
-            let outcome = act.apply(&mut ActCx {
-                world,
-                values: &mut values,
-                span: cmd.span,
-                said: &mut said,
-                then: &mut then,
-                notes: &notes,
-            });
-            self.world.touch();
-            match outcome {
-                Err(e) if forgiving => {
-                    group.map(|name| self.world.groups.find_or_add(&name));
-                    let why = e.0.first().map_or("", |d| d.message.as_str());
-                    self.plans.leave_open(cmd.span, format!("left out: {why}"));
-                }
-                outcome => outcome?,
-            }
-            Ok(settles)
-        })();
-        let notes = self.sources.adopt(notes.into_inner());
-        self.notes.append(notes);
-        for line in &said {
-            self.options.log.line(line)?;
-        }
-        let settles = outcome?;
-        if let Some((id, compute)) = left {
-            self.graph.leave(id, style.name(), compute, cmd.span);
-        }
-        let provides = commands::provided(cmd);
-        self.record(cmd, Role::Act, provides, uses.into_inner(), settles);
-        for (line, text) in then {
-            self.declare(&line).map_err(|e| e.at(line.span).within(&text))?;
-        }
-        Ok(())
-    }
-}
-
-impl Session {
-    /// Whether an act on particles is passed over: in a check, and in a plan where what it does hangs on a run.
-    fn passes(&mut self, cmd: &Command, leaves: bool) -> bool {
-        let unseen = &mut self.world.parts.unseen;
-        // A result of what the particles are by then is not known.
-        if self.options.mode == Mode::Check || (unseen.particles && leaves) {
-            return true;
-        }
-        unseen.vague |= self.options.mode == Mode::Plan && planning::hangs_on_a_run(cmd);
-        unseen.vague
     }
 }
 

@@ -215,6 +215,55 @@ fn horizons_on_a_shell_of_neighbours_are_seen() {
 }
 
 #[test]
+fn warnings_are_given_where_they_belong_and_nowhere_near() {
+    let grains =
+        "units si\natom_style sphere\nboundary f f f\nregion b block -5 5 -5 5 -5 15\ncreate_box 1 b\n";
+    let law = "pair_style gran/hooke/history 20000.0 NULL 50.0 NULL 0.5 0\npair_coeff * *\ntimestep 0.0001\n";
+    let pour = "region s block -4 4 -4 4 10 14\nfix g all gravity 1 vector 0 0 -1\n\
+                fix p all pour 9 1 44 region s dens 2500 2500\n";
+    let one = "create_atoms 1 single 0 0 0\n";
+    let sized = "set group all diameter 1\nset group all density 2500\n";
+    let (move_it, go) = ("fix 1 all nve/sphere\n", "run 10\n");
+    // no forces
+    warns(&[grains, one, sized, "timestep 0.0001\n", move_it, go].concat(), &["11:1 no pair_style"]);
+    warns(&[grains, one, sized, law, move_it, go].concat(), &[]);
+    // no motion, but none is wanted in a run of no steps
+    warns(&[grains, one, sized, law, go].concat(), &["12:1 no fix moves any particle"]);
+    warns(&[grains, one, sized, law, "run 0\n"].concat(), &[]);
+    // moved twice
+    warns(
+        &[grains, one, sized, law, move_it, "fix 2 all nve\n", go].concat(),
+        &["13:1 fixes `1` and `2` both"],
+    );
+    warns(&[grains, one, sized, law, move_it, "unfix 1\nfix 2 all nve\n", go].concat(), &[]);
+    // never set, also where some are poured and others are not
+    let never = ["13:1 the diameter of particles", "13:1 the density of particles"];
+    warns(&[grains, pour, law, move_it, go].concat(), &[]);
+    warns(
+        &[grains, one, pour, law, move_it, go].concat(),
+        &never.map(|w| w.replacen("13", "14", 1)).each_ref().map(String::as_str),
+    );
+    warns(&[grains, one, pour, sized, law, move_it, go].concat(), &[]);
+}
+
+#[test]
+fn what_only_a_run_can_tell_is_no_mistake() {
+    let deck = "run 10\nvariable n equal count(all)-count(all)\nvariable a equal 1/v_n\nvariable l equal ln(-v_n)\n\
+        print \"$(v_a) $(c_thermo_pe/0) $(x[1]/(x[2]-x[2]))\"\nvariable i loop 3 ${n}\nlabel turn\nvariable k equal $(v_i+1)\n\
+        next i\njump SELF turn\nif \"${k} == 1\" then \"unfix 1\" else \"unfix 1\"\nlabel wait\nvariable m loop 3\nlabel more\n\
+        if \"$(ke) > 1\" then \"variable q equal 0\" \"jump SELF out\"\nnext m\njump SELF more\nlabel out\nprint \"$m\"\n\
+        if \"$(ke) > 1\" then \"jump SELF wait\"\nvariable q equal 5\nprint \"$(1/(v_q-5+v_n))\"\n\
+        fix 2 all ave/time ${n} 1 ${n} c_thermo_pe\nif \"0 && ${n}\" then nonsense\nregion r sphere 0 0 0 $(-v_n)\n\
+        create_atoms 1 region r\nfix 1 all nve\nrun ${n}\n";
+    for mode in [Mode::Check, Mode::Plan] {
+        let (said, session) = looked_at(mode, &format!("{SCENE}\n{deck}"), Path::new("."));
+        let errors: Vec<_> = said.iter().filter(|d| d.severity == Severity::Error).collect();
+        assert!(errors.is_empty(), "{mode:?}: {errors:?}");
+        assert!(session.world.n() <= 125);
+    }
+}
+
+#[test]
 fn lines_behind_quit_and_names_nobody_uses() {
     warns("units si\nquit\n# the rest\n\nrun 100\nrun 200\n", &["5:1 this line is never reached"]);
     warns("units si\nif \"1 > 2\" then quit\nprint a\n", &[]);

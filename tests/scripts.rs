@@ -1,7 +1,7 @@
 //! Small decks, one idea each: good ones print what they promise, bad ones are refused with the right word underlined.
 //!
 //! A file in `tests/scripts/{good,bad}` holds blocks that open with `--- name`. Lines that begin with `# error:`,
-//! `# run error:`, `# warning:`, `# help:` or `# print:` are expectations about the deck line above them:
+//! `# run error:`, `# warning:`, `# help:`, `# print:` or `# not:` (no printed line holds this) are expectations about the deck line above them:
 //!
 //! ```text
 //! pair_sytle peri/pmb
@@ -55,6 +55,7 @@ struct Block {
     deck: String,
     expected: Vec<Expected>,
     prints: Vec<String>,
+    never: Vec<String>,
 }
 
 #[test]
@@ -120,6 +121,9 @@ fn good_decks_run_and_print_what_they_promise() {
                 break;
             }
         }
+        for line in out.lines().filter(|l| block.never.iter().any(|part| l.contains(part.as_str()))) {
+            let _ = writeln!(report, "  prints {line:?}, which it should not");
+        }
         report
     });
 }
@@ -161,7 +165,7 @@ fn blocks(text: &str) -> Vec<Block> {
     for line in text.lines() {
         if let Some(name) = line.strip_prefix("--- ") {
             let name = name.trim().to_string();
-            found.push(Block { name, deck: String::new(), expected: vec![], prints: vec![] });
+            found.push(Block { name, deck: String::new(), expected: vec![], prints: vec![], never: vec![] });
             (number, above) = (0, 0);
             continue;
         }
@@ -181,6 +185,8 @@ fn blocks(text: &str) -> Vec<Block> {
             block.expected.push(Expected { kind, line: above, columns, part: part.into(), help: vec![] });
         } else if let Some(help) = line.strip_prefix("# help: ") {
             block.expected.last_mut().expect("help follows an error").help.push(help.into());
+        } else if let Some(part) = line.strip_prefix("# not: ") {
+            block.never.push(part.into());
         } else if let Some(print) = line.strip_prefix("# print: ") {
             block.prints.push(print.into());
         } else {

@@ -12,6 +12,7 @@ use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::{BuildCx, SealCx, Wants};
 use perigrain_world::bonds::LostBond;
 use perigrain_world::{Face, World};
+use std::collections::BTreeSet;
 
 /// What the step table shows and when.
 #[derive(Clone, Debug)]
@@ -26,8 +27,10 @@ pub struct Thermo {
     pub lost_bond: LostBond,
     /// `thermo_modify temp` names another temperature, which the pressure is still to take.
     pub new_temperature: Option<ValueRef>,
-    /// Something was set by `thermo_modify`, which a new style forgets.
-    modified: bool,
+    /// What `thermo_modify` has set, which a new style forgets.
+    modified: BTreeSet<String>,
+    /// What a new style has forgotten and no `thermo_modify` has set since, and the place of that style.
+    forgotten: (Span, BTreeSet<String>),
     /// Columns and formats.
     pub layout: Layout,
     /// What each column reads.
@@ -64,7 +67,8 @@ impl Default for Thermo {
             lost: Lost::Error,
             lost_bond: LostBond::Error,
             new_temperature: None,
-            modified: false,
+            modified: BTreeSet::new(),
+            forgotten: Default::default(),
             layout,
             sources,
             temp: id("temp"),
@@ -125,17 +129,28 @@ impl Thermo {
                 (layout, sources)
             }
         };
-        if self.modified {
-            let text = "this thermo_style forgets what thermo_modify has set before";
-            cx.note(
-                Diagnostic::note(Code::SUSPICIOUS, args.name_span(), text)
-                    .help("put the thermo_modify line behind it"),
-            );
+        let Self { every, named, modified, mut forgotten, .. } = std::mem::take(self);
+        if !modified.is_empty() {
+            forgotten.0 = args.name_span();
+            forgotten.1.extend(modified);
         }
-        let Self { every, named, .. } = std::mem::take(self);
+        self.forgotten = forgotten;
         (self.every, self.named, self.layout, self.sources) = (every, named, layout, sources);
         self.built_in = style != "custom";
         Ok(())
+    }
+
+    /// A note on what a new style has forgotten, if nothing has set it again by the time of a run.
+    pub fn forgotten(&self) -> Option<Diagnostic> {
+        let (span, words) = &self.forgotten;
+        if words.is_empty() {
+            return None;
+        }
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let text =
+            format!("this thermo_style forgets what thermo_modify has set before: {}", words.join(", "));
+        let note = Diagnostic::note(Code::SUSPICIOUS, *span, text);
+        Some(note.help("put the thermo_modify line behind it"))
     }
 
     /// `thermo_modify …`.
@@ -148,8 +163,9 @@ impl Thermo {
         if args.is_empty() {
             return fail(Code::MISSING_ARGUMENT, args.here(), "thermo_modify needs a keyword");
         }
-        self.modified = true;
         while let Some(word) = args.next() {
+            self.modified.insert(word.text.clone());
+            self.forgotten.1.remove(&word.text);
             match word.text.as_str() {
                 "norm" => self.norm = Some(args.flag("norm")?),
                 "flush" => self.layout.flush = args.flag("flush")?,

@@ -41,6 +41,7 @@ impl Session {
         self.check_breaking(&mut found);
         self.check_box(&mut found);
         self.check_variables(&mut found);
+        found.0.extend(self.graph.thermo.forgotten());
         crate::graph::dynamic::check(&self.graph, &self.world, &mut found);
         let (errors, notes) =
             found.0.into_iter().partition(|d| d.severity == perigrain_base::diag::Severity::Error);
@@ -131,6 +132,9 @@ impl Session {
             if self.world.settings.units.name() == "lj" && ["diameter", "density"].contains(fact) {
                 continue;
             }
+            if ["diameter", "density"].contains(fact) && self.all_are_poured() {
+                continue;
+            }
             // `set … mass` is as good as a density.
             if self.settled(fact) || (*fact == "density" && self.settled("mass")) {
                 continue;
@@ -142,6 +146,15 @@ impl Session {
             let warning = Diagnostic::warning(Code::NEVER_SET, span, text);
             found.push(warning.help(format!("add `set group all {fact} …`")));
         }
+    }
+
+    /// Whether every particle there is comes from a fix pour, which gives it a diameter and a density.
+    fn all_are_poured(&self) -> bool {
+        let pours = |text: &str| {
+            let mut words = text.split_whitespace();
+            words.next() == Some("fix") && words.nth(2) == Some("pour")
+        };
+        !self.settled("particles") && self.graph.nodes.iter().any(|n| pours(&n.text))
     }
 
     /// Force densities and forces added up in one column.

@@ -348,7 +348,7 @@ impl Session {
             section("Output", OpClass::Output),
             section("Modify", OpClass::Modify),
         ];
-        let (neighbors, full) = perigrain_world::memory::neighbors(&self.world);
+        let full = perigrain_world::memory::neighbors(&self.world);
         let finish = Finish {
             seconds: o.time.as_secs_f64(),
             cpu: o.cpu,
@@ -358,7 +358,7 @@ impl Session {
             units: self.world.settings.units.name(),
             time: o.steps as f64 * self.world.clock.dt,
             sections: if post { &sections } else { &[] },
-            neighbors,
+            neighbors: None,
             full,
             builds: self.world.rebuild.builds,
             dangerous: self.world.rebuild.dangerous,

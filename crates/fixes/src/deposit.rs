@@ -287,8 +287,11 @@ impl Op for Drop {
         Ok(())
     }
     fn finish(&mut self, w: &mut World) -> Result<()> {
-        if self.failed > 0 {
-            let (steps, tries) = (std::mem::take(&mut self.failed), self.fix.tries);
+        let steps = std::mem::take(&mut self.failed);
+        // Later steps may have made up for them.
+        let all_in = Account::load(w, self.key).is_some_and(|a| a.done >= self.fix.count);
+        if steps > 0 && !all_in {
+            let tries = self.fix.tries;
             let text = format!("at {steps} steps no place was found for a particle in {tries} attempts");
             w.parts.notes.push(
                 Diagnostic::warning(Code::SUSPICIOUS, self.span, text)

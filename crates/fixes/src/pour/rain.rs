@@ -196,7 +196,10 @@ impl Op for Rain {
         Ok(())
     }
     fn finish(&mut self, w: &mut World) -> Result<()> {
-        if let Some((count, step)) = self.failed.take() {
+        let left = Account::load(w, self.key).map_or(0, |a| self.fix.count.saturating_sub(a.done));
+        // Those that later batches have made up for are in.
+        let failed = self.failed.take().map(|(count, step)| (count.min(left), step));
+        if let Some((count, step)) = failed.filter(|(count, _)| *count > 0) {
             let text =
                 format!("fewer insertions than planned: {count} spheres found no place, from step {step} on");
             w.parts.notes.push(

@@ -296,3 +296,36 @@ fn unknown_values_lead_into_both_branches() {
     }
     assert!(words.last().unwrap().unknown);
 }
+
+#[test]
+fn conditions_are_settled_by_what_is_known() {
+    for (condition, branches) in [
+        ("0 && $n", "b"),
+        ("$n && 1 < 0", "b"),
+        ("1 || $n", "a"),
+        ("!$n || 2 > 1", "a"),
+        ("$n || 0", "ab"),
+        ("!($n && 1)", "ab"),
+        ("$n == a", "ab"),
+    ] {
+        let mut run = Run::new();
+        run.world.check = true;
+        let deck = format!("variable n equal vol\nif \"{condition}\" then \"print a\" else \"print b\"\n");
+        assert_eq!(run.deck(&deck).replace('\n', ""), branches, "{condition}");
+    }
+}
+
+#[test]
+fn what_a_run_may_leave_out_is_unknown_behind_it() {
+    let mut run = Run::new();
+    run.world.check = true;
+    // the loop is left after one turn, `a` may have been set again; `b` may have been passed over
+    let deck = "variable n equal vol\nvariable a equal 0\nvariable b equal 1\nlabel top\nvariable a equal 2\n\
+        if \"$n > 1\" then \"jump SELF top\"\nif \"$n > 1\" then \"jump SELF down\"\nvariable b equal 5\n\
+        if \"$b != 5\" then \"print never\"\nlabel down\n\
+        if \"$a == 2\" then \"print yes\" else \"print no\"\nif \"$b == 5\" then \"print yes\" else \"print no\"\n\
+        variable i loop 4\nlabel turn\nif \"$n > 1\" then \"jump SELF out\"\nprint $i\nnext i\njump SELF turn\n\
+        label out\nprint \"end $i\"\n";
+    // a loop that `next` ends is followed to its end; its variable may still be there
+    assert_eq!(run.deck(deck), "yes\nno\nyes\nno\n1\n2\n3\n4\nend 1\n");
+}

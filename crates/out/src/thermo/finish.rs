@@ -30,8 +30,8 @@ pub struct Finish<'a> {
     pub time: f64,
     /// Where the time went; the rest of `seconds` is `Other`.
     pub sections: &'a [Section<'a>],
-    /// Pairs in half neighbour lists.
-    pub neighbors: u64,
+    /// Pairs in half neighbour lists, where they are counted.
+    pub neighbors: Option<u64>,
     /// Entries of full lists (peridynamic families among them), if there are any.
     pub full: Option<u64>,
     /// Neighbour list builds.
@@ -132,21 +132,19 @@ impl Finish<'_> {
         text
     }
 
-    /// LAMMPS' counts; there are no ghosts here.
+    /// LAMMPS' counts, without those that nobody knows; there are no ghosts here.
     fn counts(&self) -> String {
-        let mut text =
-            count("Nlocal:", self.atoms) + &count("Nghost:", 0) + &count("Neighs:", self.neighbors);
-        if let Some(full) = self.full {
-            text.push_str(&count("FullNghs:", full));
+        let mut text = count("Nlocal:", self.atoms) + &count("Nghost:", 0);
+        for (name, number) in [("Neighs:", self.neighbors), ("FullNghs:", self.full)] {
+            number.iter().for_each(|n| text.push_str(&count(name, *n)));
         }
-        let total = self.full.unwrap_or(self.neighbors);
-        let average = if self.atoms > 0 { total as f64 / self.atoms as f64 } else { 0.0 };
-        text.push_str(&format!(
-            "\nTotal # of neighbors = {total}\nAve neighs/atom = {}\nNeighbor list builds = {}\nDangerous builds = {}",
-            general(average, 8),
-            self.builds,
-            self.dangerous
-        ));
+        if let Some(total) = self.full.or(self.neighbors) {
+            let average = if self.atoms > 0 { total as f64 / self.atoms as f64 } else { 0.0 };
+            let average = general(average, 8);
+            text.push_str(&format!("\nTotal # of neighbors = {total}\nAve neighs/atom = {average}"));
+        }
+        let (builds, dangerous) = (self.builds, self.dangerous);
+        text.push_str(&format!("\nNeighbor list builds = {builds}\nDangerous builds = {dangerous}"));
         text
     }
 }
@@ -238,7 +236,7 @@ Dangerous builds = 0";
             units: "si",
             time: 700.0 * 5e-8,
             sections: &sections,
-            neighbors: 23615,
+            neighbors: Some(23615),
             full: Some(51146),
             builds: 14,
             dangerous: 0,

@@ -1,0 +1,106 @@
+//! Lines that change the scene, done at once; where a deck is only looked at, only as far as the scene is known.
+
+use super::planning::hangs_on_a_run;
+use super::{Mode, Session, commands};
+use crate::graph::Role;
+use crate::graph::build::Context;
+use crate::graph::env::DeckValues;
+use crate::graph::regions::place_now;
+use perigrain_base::diag::Result;
+use perigrain_lang::{Args, Command};
+use perigrain_styles::{ActCx, CommandStyle};
+use perigrain_world::{GroupId, Promise};
+use std::cell::RefCell;
+use std::sync::Arc;
+
+impl Session {
+    /// Carries out a line that changes the scene.
+    ///
+    /// # Errors
+    /// Every mistake in the line, and what can only be known with the particles at hand.
+    pub(super) fn act(&mut self, cmd: &Command, style: &'static dyn CommandStyle) -> Result<()> {
+        let (notes, uses) = (RefCell::default(), RefCell::default());
+        let cx = Context { span: cmd.span, checking: self.checking(), notes: &notes, uses: &uses };
+        let (mut said, mut then, mut left) = (vec![], vec![], None);
+        let outcome: Result<Vec<&'static str>> = (|| {
+            let vars = Arc::new(self.vars.clone());
+            let named = |name: &str| cmd.args.iter().any(|w| w.text == name);
+            place_now(&mut self.world, &self.graph, &vars, named)?;
+            let mut args = Args::new(cmd);
+            let act = style.parse(&mut args, &cx.build(&self.graph, &self.world, "", GroupId::ALL))?;
+            args.finish()?;
+            self.world.parts.unseen.vague |= self.planning() && hangs_on_a_run(cmd);
+            let settles = act.settles().to_vec();
+            left = act.leaves();
+            if act.needs_particles() && self.passes(left.is_some()) {
+                act.makes_group().map(|name| self.world.groups.find_or_add(name));
+                return Ok(settles);
+            }
+            let mut values = DeckValues { graph: &self.graph, vars };
+            self.world.spread_type_masses();
+            let forgiving = self.planning() && self.unsure() && act.needs_particles();
+            let group = act.makes_group().map(str::to_owned).filter(|_| forgiving);
+            let world = &mut self.world;
+            let outcome = act.apply(&mut ActCx {
+                world,
+                values: &mut values,
+                span: cmd.span,
+                said: &mut said,
+                then: &mut then,
+                notes: &notes,
+            });
+            self.world.touch();
+            match outcome {
+                Err(e) if forgiving => {
+                    group.map(|name| self.world.groups.find_or_add(&name));
+                    let why = e.0.first().map_or("", |d| d.message.as_str());
+                    self.plans.leave_open(cmd.span, format!("left out: {why}"));
+                }
+                outcome => outcome?,
+            }
+            self.inherit_sight(cmd);
+            Ok(settles)
+        })();
+        let notes = self.sources.adopt(notes.into_inner());
+        self.notes.append(notes);
+        for line in &said {
+            self.options.log.line(line)?;
+        }
+        let settles = outcome?;
+        if let Some((id, compute)) = left {
+            self.graph.leave(id, style.name(), compute, cmd.span);
+        }
+        let provides = commands::provided(cmd);
+        self.record(cmd, Role::Act, provides, uses.into_inner(), settles);
+        for (line, text) in then {
+            self.declare(&line).map_err(|e| e.at(line.span).within(&text))?;
+        }
+        Ok(())
+    }
+
+    /// A scene read from a file that the deck would have written is known as far as the scene was that went into it; what
+    /// other commands read from such a file is not.
+    fn inherit_sight(&mut self, cmd: &Command) {
+        let parts = &mut *self.world.parts;
+        for word in &cmd.args {
+            let (particles, vague) = match parts.promised.get(&word.text) {
+                Some(Promise::Scene(stored, _)) => (stored.parts.unseen.particles, stored.parts.unseen.vague),
+                Some(Promise::Text(_)) if cmd.name.text == "read_data" => continue,
+                Some(_) if !cmd.name.text.starts_with("write_") => (true, true),
+                _ => continue,
+            };
+            parts.unseen.particles |= particles;
+            parts.unseen.vague |= vague;
+        }
+    }
+
+    /// Whether an act on particles is passed over: in a check, and in a plan where what it does hangs on a run.
+    fn passes(&self, leaves: bool) -> bool {
+        let unseen = self.world.parts.unseen;
+        // A result of what the particles are by then is not known.
+        if self.options.mode == Mode::Check || (unseen.particles && leaves) {
+            return true;
+        }
+        self.options.mode == Mode::Plan && unseen.vague
+    }
+}
