@@ -139,6 +139,8 @@ pub struct Session {
     later: (usize, Arc<std::collections::BTreeSet<String>>),
     /// The variable table's names as the graph knows them.
     seen_names: u64,
+    /// Lines worked off, each turn of a loop by itself.
+    turns: u64,
 }
 
 /// No progress shown.
@@ -176,6 +178,7 @@ impl Session {
             pairless: false,
             later: Default::default(),
             seen_names: 0,
+            turns: 0,
         };
         for (name, values) in s.options.vars.clone() {
             s.vars.set_index(&name, &values)?;
@@ -387,6 +390,9 @@ impl Session {
             self.pairless = outcome.is_err();
         }
         let declared = outcome?;
+        if let Some(name) = &declared.deletes {
+            self.graph.lines.delete(name);
+        }
         self.record(cmd, Role::Declare, declared.provides, uses.into_inner(), vec![]);
         Ok(())
     }
@@ -432,7 +438,11 @@ impl Session {
         if let Some((id, compute)) = left {
             self.graph.leave(id, style.name(), compute, cmd.span);
         }
-        let provides = commands::provided(cmd);
+        let deleted = commands::deleted(cmd);
+        if let Some(name) = &deleted {
+            self.graph.lines.delete(name);
+        }
+        let provides = commands::provided(cmd).filter(|_| deleted.is_none());
         self.record(cmd, Role::Act, provides, uses.into_inner(), settles);
         for (line, text) in then {
             self.declare(&line).map_err(|e| e.at(line.span).within(&text))?;
