@@ -144,6 +144,8 @@ pub struct Session {
     plans: planning::Plans,
     /// Where plans are told.
     told_to: Log,
+    /// Lines worked off, each turn of a loop by itself.
+    turns: u64,
 }
 
 /// No progress shown.
@@ -188,6 +190,7 @@ impl Session {
             seen_names: 0,
             plans: Default::default(),
             told_to,
+            turns: 0,
         };
         for (name, values) in s.options.vars.clone() {
             s.vars.set_index(&name, &values)?;
@@ -434,6 +437,9 @@ impl Session {
             self.pairless = outcome.is_err();
         }
         let declared = outcome?;
+        if let Some(name) = &declared.deletes {
+            self.graph.lines.delete(name);
+        }
         self.record(cmd, Role::Declare, declared.provides, uses.into_inner(), vec![]);
         Ok(())
     }

@@ -32,6 +32,7 @@ const ARROWS: &[(&str, &[&str])] = &[
 /// Maps by string in the world, and why no step looks into them: where else state has a name it is a `Named`, whose handles are
 /// made outside of steps (debug builds refuse to make one inside).
 const BY_STRING: &[(&str, &str)] = &[
+    ("by_name", "slots are found by name while plans are made; steps have their ids"),
     ("files", "promises are kept while a deck is checked, where no step is made"),
     ("materials", "words of a line that is being read"),
     ("templates", "words of a line that is being read; fixes hold the molecules themselves"),

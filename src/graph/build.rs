@@ -62,6 +62,8 @@ pub fn style<'t, S: Style + ?Sized>(table: &[&'t S], kind: &str, args: &mut Args
 pub struct Declared {
     /// What the line provides now.
     pub provides: Option<Use>,
+    /// What it has deleted.
+    pub deletes: Option<Use>,
 }
 
 /// Handles one declaring line. The caller has a copy of nothing: every change happens last, after all checks.
@@ -122,24 +124,27 @@ pub(super) fn keep_line(graph: &mut Graph, w: &World, cmd: &Command) {
     match cmd.name.text.as_str() {
         "pair_style" | "pair_coeff" | "peri_modify" => {
             if let Some(node) = &mut graph.pair {
-                let said = Said { words, lattice: w.lattice.clone() };
-                // A line said once more counts where it was said last.
-                node.lines.retain(|line| *line != said);
-                node.lines.push(said);
+                say(&mut node.lines, Said { words, lattice: w.lattice.clone() });
             }
         }
         "bond_style" | "bond_coeff" => {
             if let Some(node) = &mut graph.bond {
-                node.lines.push(Said { words, lattice: w.lattice.clone() });
+                say(&mut node.lines, Said { words, lattice: w.lattice.clone() });
             }
         }
         "fix" | "fix_modify" => {
             if let Some(node) = graph.fixes.iter_mut().find(|f| f.id == id) {
-                node.lines.push(words.join(" "));
+                say(&mut node.lines, words.join(" "));
             }
         }
         _ => {}
     }
+}
+
+/// A line said once more counts where it was said last.
+fn say<T: PartialEq>(lines: &mut Vec<T>, line: T) {
+    lines.retain(|old| *old != line);
+    lines.push(line);
 }
 
 /// What the session lends while a line is read.
@@ -173,8 +178,12 @@ impl<'a> Context<'a> {
     }
 }
 
-fn provides(kind: UseKind, id: &str) -> Declared {
-    Declared { provides: Some(Use { kind, name: id.to_string() }) }
+pub(super) fn provides(kind: UseKind, id: &str) -> Declared {
+    Declared { provides: Some(Use { kind, name: id.to_string() }), deletes: None }
+}
+
+pub(super) fn deletes(kind: UseKind, id: &str) -> Declared {
+    Declared { provides: None, deletes: Some(Use { kind, name: id.to_string() }) }
 }
 
 /// Refuses a line that needs a box before there is one.
@@ -284,8 +293,9 @@ fn unfix(graph: &mut Graph, w: &mut World, args: &mut Args) -> Result<Declared> 
     let k = find_fix(graph, id, span)?;
     args.finish()?;
     graph.fixes.remove(k).fix.remove(w);
+    w.slots.forget(&format!("f_{id}"));
     w.touch();
-    Ok(Declared::default())
+    Ok(deletes(UseKind::Fix, id))
 }
 
 fn fix_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
@@ -354,7 +364,8 @@ fn uncompute(graph: &mut Graph, w: &mut World, args: &mut Args) -> Result<Declar
     let k = find_compute(graph, id, span)?;
     args.finish()?;
     graph.computes.remove(k).compute.remove(w);
-    Ok(Declared::default())
+    w.slots.forget(&format!("c_{id}"));
+    Ok(deletes(UseKind::Compute, id))
 }
 
 fn compute_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {

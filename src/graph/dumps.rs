@@ -1,10 +1,11 @@
 //! `dump`, `undump`, `dump_modify`, `write_dump`: lines that declare snapshots.
 
-use super::build::{Context, Declared, find, needs_box, style};
+use super::build::{Context, Declared, deletes, find, needs_box, provides, style};
 use super::node::{DumpNode, Graph};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_dumps::DUMPS;
 use perigrain_lang::Args;
+use perigrain_styles::UseKind;
 use perigrain_world::{GroupId, World};
 
 /// The ID of a dump: any word, for nothing but its own commands names it.
@@ -35,7 +36,7 @@ pub fn dump(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> 
     let dump = style.build(args, &cx.build(graph, w, id, group))?;
     args.finish()?;
     graph.dumps.push(DumpNode { id: id.to_string(), style: style.name(), every, file, dump, span: cx.span });
-    Ok(Declared::default())
+    Ok(provides(UseKind::Dump, id))
 }
 
 /// `undump ID`.
@@ -44,7 +45,7 @@ pub fn undump(graph: &mut Graph, args: &mut Args) -> Result<Declared> {
     let k = find_dump(graph, id, span)?;
     args.finish()?;
     graph.dumps.remove(k);
-    Ok(Declared::default())
+    Ok(deletes(UseKind::Dump, id))
 }
 
 /// `dump_modify ID …`.

@@ -17,6 +17,7 @@ mod offered;
 pub mod ops;
 mod pair_modify;
 pub mod pairs;
+pub mod record;
 pub mod regions;
 pub mod restarts;
 mod row;
@@ -29,4 +30,5 @@ mod values;
 pub mod virials;
 pub mod welcome;
 
-pub use node::{ComputeNode, DumpNode, FixNode, Graph, Node, NodeId, PairNode, Role};
+pub use node::{ComputeNode, DumpNode, FixNode, Graph, NodeId, PairNode};
+pub use record::{Node, Role};

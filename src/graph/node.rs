@@ -1,8 +1,9 @@
-//! The graph's nodes: what has been declared, done and run, each with the line it came from.
+//! What is in force, each with the line it came from.
 
+use super::record::Record;
 use super::restarts::Restarts;
 use super::thermo::Thermo;
-use perigrain_base::diag::{FileId, Span};
+use perigrain_base::diag::Span;
 use perigrain_lang::{RefKind, ValueRef};
 use perigrain_pairs::bond::BondForce;
 use perigrain_styles::{Compute, Dump, Fix, Names, Pair, Shape, Use, UseKind};
@@ -13,34 +14,6 @@ use std::collections::BTreeMap;
 /// Which node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct NodeId(pub usize);
-
-/// The three kinds of node that keep LAMMPS' imperative order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// Replaces or removes what an earlier line said.
-    Declare,
-    /// Changes the world once.
-    Act,
-    /// Seals the declarations and steps.
-    Run,
-}
-
-/// A line of the deck as a node.
-#[derive(Clone, Debug)]
-pub struct Node {
-    /// Kind.
-    pub role: Role,
-    /// What it provides, as `fix ball`, `group left`; empty for most acts.
-    pub provides: Option<Use>,
-    /// The line after substitution.
-    pub text: String,
-    /// Where it stands.
-    pub span: Span,
-    /// What it names.
-    pub uses: Vec<Use>,
-    /// Facts an act settles (`volume`, `density` …).
-    pub settles: Vec<&'static str>,
-}
 
 /// The pair style in force.
 #[derive(Clone)]
@@ -133,18 +106,11 @@ pub struct Graph {
     /// What the step table shows.
     pub thermo: Thermo,
     /// Every line.
-    pub nodes: Vec<Node>,
+    pub lines: Record,
     /// Variables by name and what they offer. Kept in step with the variable table for look-ups.
     pub variables: BTreeMap<String, Shape>,
     /// While a fix is read: variables that the deck defines somewhere, perhaps after it.
     pub later: std::sync::Arc<std::collections::BTreeSet<String>>,
-    /// The latest node of each place of a deck.
-    latest: BTreeMap<(FileId, u32, u32), usize>,
-}
-
-/// A span as a key.
-fn place(span: Span) -> (FileId, u32, u32) {
-    (span.file, span.start, span.end)
 }
 
 impl Graph {
@@ -176,32 +142,6 @@ impl Graph {
     pub fn leave(&mut self, id: String, style: &'static str, compute: Box<dyn Compute>, span: Span) {
         self.computes.retain(|c| c.id != id);
         self.computes.push(ComputeNode { id, style, compute, span });
-    }
-
-    /// Takes a line up.
-    pub fn add(&mut self, node: Node) {
-        self.latest.insert(place(node.span), self.nodes.len());
-        self.nodes.push(node);
-    }
-
-    /// The node of this place, if it provided the same.
-    pub fn repeated(&mut self, span: Span, provides: &Option<Use>) -> Option<&mut Node> {
-        let node = self.nodes.get_mut(*self.latest.get(&place(span))?)?;
-        (node.span == span && node.provides == *provides).then_some(node)
-    }
-
-    /// The latest node that provides a name.
-    pub fn provider(&self, wanted: &Use) -> Option<NodeId> {
-        self.nodes.iter().rposition(|n| n.provides.as_ref() == Some(wanted)).map(NodeId)
-    }
-
-    /// Whether some fix or the pair style depends on this variable, directly or through variables, regions and groups.
-    pub fn forces_use_variable(&self, name: &str) -> bool {
-        let between = [UseKind::Fix, UseKind::Variable, UseKind::Region, UseKind::Group];
-        let wanted = Use { kind: UseKind::Variable, name: name.to_string() };
-        self.nodes.iter().any(|n| {
-            n.uses.contains(&wanted) && n.provides.as_ref().is_none_or(|p| between.contains(&p.kind))
-        })
     }
 }
 
@@ -275,10 +215,15 @@ impl Names for Graph {
     }
 
     fn users(&self, name: &Use) -> Vec<String> {
-        let uses = |span: Span| self.nodes.iter().any(|n| n.span == span && n.uses.contains(name));
-        let fixes = self.fixes.iter().filter(|f| uses(f.span)).map(|f| format!("fix {}", f.id));
-        let computes = self.computes.iter().filter(|c| uses(c.span)).map(|c| format!("compute {}", c.id));
-        let dumps = self.dumps.iter().filter(|d| uses(d.span)).map(|d| format!("dump {}", d.id));
+        let uses = |kind: UseKind, id: &str, span: Span| {
+            self.lines.uses(Some(&Use { kind, name: id.to_string() }), span, name)
+        };
+        let fixes = self.fixes.iter().filter(|f| uses(UseKind::Fix, &f.id, f.span));
+        let fixes = fixes.map(|f| format!("fix {}", f.id));
+        let computes = self.computes.iter().filter(|c| uses(UseKind::Compute, &c.id, c.span));
+        let computes = computes.map(|c| format!("compute {}", c.id));
+        let dumps = self.dumps.iter().filter(|d| uses(UseKind::Dump, &d.id, d.span));
+        let dumps = dumps.map(|d| format!("dump {}", d.id));
         fixes.chain(computes).chain(dumps).collect()
     }
 
@@ -287,7 +232,7 @@ impl Names for Graph {
             UseKind::Compute => self.computes.iter().map(|c| c.id.clone()).collect(),
             UseKind::Fix => self.fixes.iter().map(|f| f.id.clone()).collect(),
             UseKind::Variable => self.variables.keys().cloned().collect(),
-            UseKind::Group | UseKind::Region | UseKind::Material => vec![],
+            UseKind::Group | UseKind::Region | UseKind::Material | UseKind::Dump => vec![],
         }
     }
 }

@@ -222,7 +222,7 @@ impl Graph {
 
     /// The lines of the variables and computes that fixes use, directly or through others, sorted.
     fn behind_fixes(&self) -> BTreeSet<String> {
-        let provider = |u: &Use| self.provider(u).map(|k| &self.nodes[k.0]);
+        let provider = |u: &Use| self.lines.provider(u);
         let fix = |f: &FixNode| provider(&Use { kind: UseKind::Fix, name: f.id.clone() });
         let mut open: Vec<&Use> = self.fixes.iter().filter_map(fix).flat_map(|n| &n.uses).collect();
         let (mut seen, mut lines) = (BTreeSet::new(), BTreeSet::new());

@@ -70,7 +70,11 @@ impl Session {
         if let Some((id, compute)) = left {
             self.graph.leave(id, style.name(), compute, cmd.span);
         }
-        let provides = commands::provided(cmd);
+        let deleted = commands::deleted(cmd);
+        if let Some(name) = &deleted {
+            self.graph.lines.delete(name);
+        }
+        let provides = commands::provided(cmd).filter(|_| deleted.is_none());
         self.record(cmd, Role::Act, provides, uses.into_inner(), settles);
         for (line, text) in then {
             self.declare(&line).map_err(|e| e.at(line.span).within(&text))?;

@@ -84,7 +84,7 @@ impl Session {
     }
 
     fn settled(&self, fact: &str) -> bool {
-        self.graph.nodes.iter().any(|n| n.settles.contains(&fact))
+        self.graph.lines.settled(fact)
     }
 
     fn check_pair(&self, span: Span, found: &mut Diagnostics) {
@@ -191,8 +191,8 @@ impl Session {
     fn check_variables(&self, found: &mut Diagnostics) {
         for f in &self.graph.fixes {
             let wanted = Use { kind: UseKind::Fix, name: f.id.clone() };
-            let Some(id) = self.graph.provider(&wanted) else { continue };
-            for u in self.graph.nodes[id.0].uses.iter().filter(|u| u.kind == UseKind::Variable) {
+            let Some(node) = self.graph.lines.provider(&wanted) else { continue };
+            for u in node.uses.iter().filter(|u| u.kind == UseKind::Variable) {
                 if !self.graph.variables.contains_key(&u.name) {
                     let text =
                         format!("fix `{}` needs variable `{}`, which is not defined yet", f.id, u.name);

@@ -85,6 +85,13 @@ pub fn provided(cmd: &Command) -> Option<Use> {
     cmd.args.get(at).map(|w| Use { kind, name: w.text.clone() })
 }
 
+/// What an act's line deletes by name.
+pub fn deleted(cmd: &Command) -> Option<Use> {
+    let deletes = matches!(cmd.name.text.as_str(), "group" | "region");
+    let deletes = deletes && cmd.args.get(1).is_some_and(|w| w.text == "delete");
+    provided(cmd).filter(|_| deletes)
+}
+
 impl Session {
     /// LAMMPS defines three computes by itself; they appear with the box.
     pub(super) fn thermo_computes(&mut self) {

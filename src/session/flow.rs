@@ -8,6 +8,10 @@ use perigrain_base::diag::Result;
 use perigrain_lang::{Command, Flow, Script};
 use perigrain_styles::{Use, UseKind};
 
+/// Commands after which particles and everything that goes with them are as before.
+const LIGHT: [&str; 10] =
+    ["variable", "next", "print", "info", "echo", "log", "label", "thermo", "thermo_style", "thermo_modify"];
+
 impl Session {
     pub(super) fn flow(&mut self, script: &mut Script, cmd: &Command) -> Result<Flow> {
         self.refuse_jump(cmd)?;
@@ -23,7 +27,7 @@ impl Session {
             "next" => &cmd.args,
             _ => &[],
         };
-        if moved.iter().any(|w| self.graph.forces_use_variable(&w.text)) {
+        if moved.iter().any(|w| self.graph.lines.forces_use_variable(&w.text)) {
             self.world.touch();
         }
         if self.seen_names != self.vars.names_version() {
@@ -31,20 +35,22 @@ impl Session {
             self.graph.variables = commands::variable_kinds(&self.vars);
         }
         let defines = cmd.name.text == "variable";
-        let provides = cmd.args.first().filter(|_| defines);
-        let provides = provides.map(|w| Use { kind: UseKind::Variable, name: w.text.clone() });
+        let named = cmd.args.first().filter(|_| defines);
+        let named = named.map(|w| Use { kind: UseKind::Variable, name: w.text.clone() });
+        let deleted = named.clone().filter(|_| cmd.args.get(1).is_some_and(|w| w.text == "delete"));
+        if let Some(name) = &deleted {
+            self.graph.lines.delete(name);
+            self.world.slots.forget(&format!("v_{}", name.name));
+        }
+        let provides = named.filter(|_| deleted.is_none());
         self.record_once(cmd, if defines { Role::Declare } else { Role::Act }, provides);
         Ok(flow)
     }
 
-    /// Records a line that loops may repeat a million times: one node for all its turns.
+    /// Records a line that loops may repeat a million times: what it names is found from its words, if they have changed.
     pub(super) fn record_once(&mut self, cmd: &Command, role: Role, provides: Option<Use>) {
-        let text = cmd.text.trim();
-        if let Some(node) = self.graph.repeated(cmd.span, &provides) {
-            if node.text != text {
-                node.text = text.to_owned();
-                node.uses = commands::variable_uses(cmd);
-            }
+        let turn = self.turn(cmd);
+        if self.graph.lines.again(cmd.span, &provides, cmd.text.trim(), turn) {
             return;
         }
         self.record(cmd, role, provides, commands::variable_uses(cmd), vec![]);
@@ -60,7 +66,49 @@ impl Session {
     ) {
         uses.sort();
         uses.dedup();
-        let text = cmd.text.trim().to_string();
-        self.graph.add(Node { role, provides, text, span: cmd.span, uses, settles });
+        let turn = self.turn(cmd);
+        let mut node = Node::new(role, provides, cmd.text.trim().to_string(), cmd.span);
+        (node.uses, node.settles) = (uses, settles);
+        self.graph.lines.add(node, turn);
+    }
+
+    /// The number of this turn of a line; no two in a session are the same.
+    fn turn(&mut self, cmd: &Command) -> u64 {
+        self.turns += 1;
+        if !LIGHT.contains(&cmd.name.text.as_str()) {
+            self.graph.lines.change(self.turns);
+        }
+        self.turns
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::session::{Options, Session};
+
+    /// How many nodes, slots and variables are left by cycles of all that can be declared and deleted.
+    fn left(cycles: usize, id: &str) -> (usize, usize, usize) {
+        let turn = "region r# block 0 1 0 1 0 1\ngroup g# empty\nvariable v# equal $i\ncompute c# all ke\n\
+                    fix f# all ave/time 1 1 1 c_c#\nfix k# g# setforce v_v# 0 0\ndump d# g# custom 100 none.txt id x\n\
+                    run 0\nundump d#\nunfix f#\nunfix k#\nuncompute c#\nvariable v# delete\ngroup g# delete\n\
+                    region r# delete\nnext i\njump SELF a\n";
+        let file = std::env::temp_dir().join(format!("perigrain-cycles-{}", std::process::id()));
+        let turn = turn.replace("none.txt", &file.to_string_lossy());
+        let deck = format!(
+            "units lj\nregion b block 0 3 0 3 0 3\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\nmass 1 1\n\
+             variable i loop {cycles}\nlabel a\n{}",
+            turn.replace('#', id)
+        );
+        let mut s = Session::new(Options::default()).unwrap();
+        s.run_text("in.cycles", &deck).unwrap();
+        std::fs::remove_file(file).unwrap();
+        (s.graph.lines.nodes().len(), s.world.slots.len(), s.graph.variables.len())
+    }
+
+    #[test]
+    fn what_cycles_have_deleted_leaves_nothing() {
+        for id in ["", "$i"] {
+            assert_eq!(left(2, id), left(40, id), "names with `{id}`");
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Session;
 use crate::graph::env::DeckEnv;
-use crate::graph::{Graph, Role};
+use crate::graph::{Graph, NodeId, Role};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Command, Expr, Script, Vars};
 use perigrain_plan::explain;
@@ -52,10 +52,6 @@ pub struct Snapshot {
     /// Bytes of the world; 0 where it is shared with an earlier snapshot.
     pub bytes: u64,
 }
-
-/// Commands after which particles and everything that goes with them are as before.
-const LIGHT: [&str; 10] =
-    ["variable", "next", "print", "info", "echo", "log", "label", "thermo", "thermo_style", "thermo_modify"];
 
 impl Session {
     /// Works off a text that was typed; `name` stands in messages about it.
@@ -120,6 +116,7 @@ impl Session {
             seen_names: _,
             plans: _,
             told_to: _,
+            turns: _,
         } = self;
         let shared = earlier.filter(|e| self.same_particles(e)).map(|e| e.world.clone());
         let bytes = if shared.is_some() { 0 } else { self.bytes() };
@@ -136,11 +133,7 @@ impl Session {
     }
 
     fn same_particles(&self, e: &Snapshot) -> bool {
-        let (old, now) = (&e.graph.nodes, &self.graph.nodes);
-        let goes_on =
-            now.len() >= old.len() && old.last().map(|n| n.span) == now[..old.len()].last().map(|n| n.span);
-        let light = |text: &str| text.split_whitespace().next().is_some_and(|c| LIGHT.contains(&c));
-        goes_on && now[old.len()..].iter().all(|n| light(&n.text))
+        e.graph.lines.changed() == self.graph.lines.changed()
     }
 
     /// Goes back to a snapshot. Files that were written stay, and so do the settings of the log.
@@ -183,24 +176,22 @@ impl Session {
         if self.world.domain.is_none() {
             return fail(Code::WRONG_ORDER, None, "there is nothing to plan: no box has been defined");
         }
-        let span = self.graph.nodes.last().map_or(Span::default(), |n| n.span);
+        let span = self.graph.lines.nodes().last().map_or(Span::default(), |n| n.span);
         self.thermo_computes();
         Ok(explain::text(&self.seal(span)?, false))
     }
 
     /// The lines worked off so far: number, kind, text, numbers of the lines whose names it uses.
     pub fn lines(&self) -> Vec<(usize, &'static str, &str, Vec<usize>)> {
-        let nodes = &self.graph.nodes;
-        let from = |k: usize| {
-            let earlier = |u| nodes[..k].iter().rposition(|m| m.provides.as_ref() == Some(u));
-            nodes[k].uses.iter().filter_map(earlier).map(|n| n + 1).collect()
-        };
+        let (nodes, edges) = (self.graph.lines.nodes(), self.graph.lines.edges());
         let kind = |role| match role {
             Role::Declare => "declare",
             Role::Act => "act",
             Role::Run => "run",
         };
-        nodes.iter().enumerate().map(|(k, n)| (k + 1, kind(n.role), n.text.as_str(), from(k))).collect()
+        let numbers = |from: Vec<NodeId>| from.iter().map(|n| n.0 + 1).collect();
+        let lines = nodes.iter().zip(edges).enumerate();
+        lines.map(|(k, (n, from))| (k + 1, kind(n.role), n.text.as_str(), numbers(from))).collect()
     }
 
     /// The value of a formula for every particle, as an atom-style variable would have it.

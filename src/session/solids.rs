@@ -12,7 +12,7 @@ impl Session {
         let mut parts = node.pair.parts();
         parts.push(node.pair.as_ref());
         // Cracks that are cut need no strength.
-        let cut = self.graph.nodes.iter().any(|n| n.text.starts_with("peri_crack"));
+        let cut = self.graph.lines.latest("peri_crack").is_some();
         let Some(kind) = parts.into_iter().find_map(|p| p.facts().unbreakable).filter(|_| !cut) else {
             return;
         };

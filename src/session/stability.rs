@@ -14,10 +14,10 @@ impl Session {
         if self.graph.fixes.iter().any(|f| f.style.starts_with("dt/")) {
             return;
         }
-        let deck = Deck { density: self.density(), diameter: self.said("diameter").reduce(f64::min) };
+        let deck = self.said();
         let pairs = self.graph.pair.iter().flat_map(|n| sub_styles(n.pair.as_ref()));
         let pairs: Vec<Scales> = pairs.map(|p| p.scales(&self.world, deck)).collect();
-        let line = self.graph.nodes.iter().rev().find(|n| n.text.starts_with("timestep"));
+        let line = self.graph.lines.latest("timestep");
         let place = line.map_or(span, |n| n.span);
         self.check_contacts(place, &pairs, deck, found);
         self.check_bonds(span, place, found);
@@ -124,20 +124,11 @@ impl Session {
         );
     }
 
-    /// The largest density that the deck has set, for a check that has no particles: no other particles' density
-    /// shall draw a warning.
-    fn density(&self) -> Option<f64> {
-        self.said("density").reduce(f64::max)
-    }
-
-    /// The positive numbers that the deck has set for all particles of some kind.
-    fn said<'a>(&'a self, fact: &'a str) -> impl Iterator<Item = f64> + 'a {
-        let sets = self.graph.nodes.iter().filter(move |n| n.settles.contains(&fact));
-        let said = sets.filter_map(move |n| {
-            let mut words = n.text.split_whitespace().skip_while(|w| *w != fact);
-            words.nth(1)?.parse::<f64>().ok()
-        });
-        said.filter(|d| *d > 0.0)
+    /// The largest density and the smallest diameter that the deck has set, for a check that has no particles: no other
+    /// particles' numbers shall draw a warning.
+    fn said(&self) -> Deck {
+        let said = |fact| self.graph.lines.said(fact);
+        Deck { density: said("density").map(|d| d.most), diameter: said("diameter").map(|d| d.least) }
     }
 
     /// Tells once of grains that a run has pushed far into each other.

@@ -74,8 +74,7 @@ impl Session {
 
     /// The line that asked for steps of two lengths.
     pub(super) fn run_style_place(&self, span: Span) -> Span {
-        let line = self.graph.nodes.iter().rev().find(|n| n.text.starts_with("run_style"));
-        line.map_or(span, |n| n.span)
+        self.graph.lines.latest("run_style").map_or(span, |n| n.span)
     }
 
     /// Who moves in short steps.

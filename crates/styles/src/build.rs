@@ -22,6 +22,8 @@ pub enum UseKind {
     Variable,
     /// A material.
     Material,
+    /// A dump.
+    Dump,
 }
 
 /// An edge of the graph: this line uses that name.

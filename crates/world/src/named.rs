@@ -164,22 +164,33 @@ impl<T> Named<T> {
     /// The entry of a name, made if it is new.
     fn slot(&mut self, key: Key<T>) -> &mut Option<T> {
         if self.place(key).is_none() {
-            self.entries.retain(|(_, value)| value.is_some());
+            self.drop_gone();
             let at = self.entries.partition_point(|(k, _)| k.text() < key.text());
             self.entries.insert(at, (key, None));
-            self.find_places();
+            self.find_places(at);
         }
         let at = self.place(key).expect("it is there now");
         &mut self.entries[at].1
     }
 
-    /// After entries have come or gone.
-    fn find_places(&mut self) {
-        let numbers = self.entries.iter().map(|(key, _)| key.name.number + 1);
-        self.places.clear();
-        self.places.resize(numbers.max().unwrap_or(0), 0);
-        for (at, (key, _)) in self.entries.iter().enumerate() {
-            self.places[key.name.number] = at as u32 + 1;
+    /// Makes room where values were taken away.
+    fn drop_gone(&mut self) {
+        let Some(first) = self.entries.iter().position(|(_, value)| value.is_none()) else { return };
+        for (key, _) in self.entries.iter().filter(|(_, value)| value.is_none()) {
+            self.places[key.name.number] = 0;
+        }
+        self.entries.retain(|(_, value)| value.is_some());
+        self.find_places(first);
+    }
+
+    /// After entries from `first` on have moved.
+    fn find_places(&mut self, first: usize) {
+        for (at, (key, _)) in self.entries.iter().enumerate().skip(first) {
+            let number = key.name.number;
+            if number >= self.places.len() {
+                self.places.resize(number + 1, 0);
+            }
+            self.places[number] = at as u32 + 1;
         }
     }
 
@@ -326,7 +337,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Named<T> {
         let map = BTreeMap::<String, T>::deserialize(from)?;
         let entries = map.into_iter().map(|(name, value)| (Key::known(&name), Some(value)));
         let mut all = Self { entries: entries.collect(), places: vec![] };
-        all.find_places();
+        all.find_places(0);
         Ok(all)
     }
 }

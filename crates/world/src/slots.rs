@@ -1,6 +1,7 @@
 //! Values that computes, fixes and variables have produced, ready for whoever reads them.
 
 use super::Numbers;
+use std::collections::BTreeMap;
 
 /// Which slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -86,9 +87,30 @@ fn column(rows: &[f64], cols: usize, c: usize) -> Vec<f64> {
 
 /// All slots; ids stay valid while their producer exists.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+#[serde(from = "Kept")]
 pub struct Slots {
     #[serde(serialize_with = "of_fixes")]
     slots: Vec<Slot>,
+    #[serde(skip)]
+    by_name: BTreeMap<String, usize>,
+    /// Slots whose producers have gone, for the next ones.
+    #[serde(skip)]
+    free: Vec<usize>,
+}
+
+/// Slots as a restart file holds them.
+#[derive(serde::Deserialize)]
+#[serde(rename = "Slots")]
+struct Kept {
+    slots: Vec<Slot>,
+}
+
+impl From<Kept> for Slots {
+    fn from(kept: Kept) -> Self {
+        let names = kept.slots.iter().enumerate().rev();
+        let by_name = names.map(|(k, s)| (s.name.clone(), k)).collect();
+        Self { slots: kept.slots, by_name, free: vec![] }
+    }
 }
 
 /// A restart file holds what fixes offer: they act within steps, all others are evaluated anew.
@@ -100,16 +122,44 @@ fn of_fixes<S: serde::Serializer>(slots: &[Slot], to: S) -> Result<S::Ok, S::Err
 impl Slots {
     /// The slot of this name, new if there is none.
     pub fn id(&mut self, name: &str) -> SlotId {
-        if let Some(k) = self.slots.iter().position(|s| s.name == name) {
-            return SlotId(k);
+        if let Some(k) = self.by_name.get(name) {
+            return SlotId(*k);
         }
-        self.slots.push(Slot { name: name.to_string(), ..Slot::default() });
-        SlotId(self.slots.len() - 1)
+        let k = self.free.pop().unwrap_or(self.slots.len());
+        if k == self.slots.len() {
+            self.slots.push(Slot::default());
+        }
+        self.slots[k].name = name.to_string();
+        self.by_name.insert(name.to_string(), k);
+        SlotId(k)
     }
 
     /// The slot of this name, if it exists.
     pub fn find(&self, name: &str) -> Option<SlotId> {
-        self.slots.iter().position(|s| s.name == name).map(SlotId)
+        self.by_name.get(name).copied().map(SlotId)
+    }
+
+    /// Gives the slots of a producer that has gone back, and those of what was evaluated for it (`NAME#PRODUCER …`).
+    pub fn forget(&mut self, producer: &str) {
+        let mut gone = vec![];
+        self.by_name.retain(|name, k| {
+            let (of, by) = name.split_once('#').unwrap_or((name, ""));
+            let stays = of != producer && by.split(' ').next() != Some(producer);
+            gone.extend((!stays).then_some(*k));
+            stays
+        });
+        gone.iter().for_each(|k| self.slots[*k] = Slot::default());
+        self.free.extend(gone);
+    }
+
+    /// How many there are, those that wait for a new producer included.
+    pub fn len(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.slots.is_empty()
     }
 
     /// Reads a slot.
@@ -158,5 +208,27 @@ mod tests {
         assert_eq!((s.cell(2, 1), s.cell(3, 0), s.cell(0, 2)), (Some(6.0), None, None));
         assert_eq!(s.array_column(1), [2.0, 4.0, 6.0]);
         assert!(s.array_column(2).is_empty() && s.local_column(0).is_empty());
+    }
+
+    #[test]
+    fn slots_of_producers_that_have_gone_are_used_again() {
+        let mut s = Slots::default();
+        let stays = s.id("f_ball");
+        for k in 0..100 {
+            let (name, of) = (format!("c_c{k}"), format!("ke#c_c{k} Output 1"));
+            let (own, read) = (s.id(&name), s.id(&of));
+            s.get_mut(own).scalar = 7.0;
+            assert_eq!((s.id(&name), s.find(&of)), (own, Some(read)));
+            s.id(&format!("v_v{k}#3"));
+            s.forget(&name);
+            s.forget(&format!("v_v{k}"));
+            assert_eq!((s.find(&name), s.find(&of), s.find("f_ball")), (None, None, Some(stays)));
+        }
+        let anew = s.id("c_c");
+        assert_eq!((s.slots.len(), s.get(anew).scalar, &*s.get(anew).name), (4, 0.0, "c_c"));
+        s.get_mut(stays).scalar = 3.0;
+        let mut read: Slots = toml::from_str(&toml::to_string(&s).unwrap()).unwrap();
+        let ball = read.id("f_ball");
+        assert_eq!((read.slots.len(), read.get(ball).scalar), (1, 3.0));
     }
 }

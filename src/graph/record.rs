@@ -1,0 +1,319 @@
+//! The deck's lines as nodes: one for each place and name, however often a loop passes it; what has gone makes room.
+
+use super::node::NodeId;
+use perigrain_base::diag::{FileId, Span};
+use perigrain_styles::{Use, UseKind};
+use std::collections::BTreeMap;
+
+/// The three kinds of node that keep LAMMPS' imperative order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Replaces or removes what an earlier line said.
+    Declare,
+    /// Changes the world once.
+    Act,
+    /// Seals the declarations and steps.
+    Run,
+}
+
+/// A line of the deck as a node.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Kind.
+    pub role: Role,
+    /// What it provides, as `fix ball`, `group left`; empty for most acts.
+    pub provides: Option<Use>,
+    /// The line after substitution, as it was last.
+    pub text: String,
+    /// Where it stands.
+    pub span: Span,
+    /// What it names.
+    pub uses: Vec<Use>,
+    /// Facts an act settles (`volume`, `density` …).
+    pub settles: Vec<&'static str>,
+    /// When it was taken up last, in turns of the session.
+    turn: u64,
+    /// What it provided has been deleted.
+    gone: bool,
+}
+
+impl Node {
+    /// A line that names and settles nothing yet.
+    pub fn new(role: Role, provides: Option<Use>, text: String, span: Span) -> Self {
+        Self { role, provides, text, span, uses: vec![], settles: vec![], turn: 0, gone: false }
+    }
+
+    /// Whether forces may follow the variables it names: all that declares or acts without a name of its own, and what is
+    /// between variables and forces.
+    fn leads_to_forces(&self) -> bool {
+        let between = [UseKind::Fix, UseKind::Variable, UseKind::Region, UseKind::Group];
+        self.provides.as_ref().is_none_or(|p| between.contains(&p.kind))
+    }
+
+    /// The positive number said for a fact.
+    fn said(&self, fact: &str) -> Option<f64> {
+        let mut words = self.text.split_whitespace().skip_while(|w| *w != fact);
+        words.nth(1)?.parse::<f64>().ok().filter(|d| *d > 0.0)
+    }
+}
+
+/// A span as a key.
+type Place = (FileId, u32, u32);
+
+fn place(span: Span) -> Place {
+    (span.file, span.start, span.end)
+}
+
+/// The smallest and the largest of some positive numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extremes {
+    /// The smallest.
+    pub least: f64,
+    /// The largest.
+    pub most: f64,
+}
+
+/// Every line so far.
+#[derive(Clone, Default)]
+pub struct Record {
+    nodes: Vec<Node>,
+    /// The node of each place and of what it provides there.
+    known: BTreeMap<(Place, Option<Use>), usize>,
+    /// Nodes of a place whose names have gone, for the next name.
+    free: BTreeMap<Place, Vec<usize>>,
+    /// The nodes that provide a name, the latest last.
+    providers: BTreeMap<Use, Vec<usize>>,
+    /// How many nodes that lead to forces name a variable.
+    followed: BTreeMap<String, usize>,
+    /// What has been settled, with the numbers said.
+    settled: BTreeMap<&'static str, Option<Extremes>>,
+    /// The latest turn that may have changed particles.
+    changed: u64,
+}
+
+impl Record {
+    /// All nodes, in the order in which their lines were first met.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// The turn that may have changed particles last: two records that agree in it belong to the same particles.
+    pub fn changed(&self) -> u64 {
+        self.changed
+    }
+
+    /// Notes that particles may have changed in this turn.
+    pub fn change(&mut self, turn: u64) {
+        self.changed = turn;
+    }
+
+    /// Takes up once more a line that has not changed since its last turn; `false` if it has.
+    pub fn again(&mut self, span: Span, provides: &Option<Use>, text: &str, turn: u64) -> bool {
+        let Some(&k) = self.known.get(&(place(span), provides.clone())) else { return false };
+        if self.nodes[k].text != text {
+            return false;
+        }
+        self.nodes[k].turn = turn;
+        self.is_latest(k);
+        true
+    }
+
+    /// Takes a line up.
+    pub fn add(&mut self, mut node: Node, turn: u64) {
+        node.turn = turn;
+        for fact in &node.settles {
+            let before = self.settled.entry(fact).or_default();
+            let Some(x) = node.said(fact) else { continue };
+            let old = before.unwrap_or(Extremes { least: x, most: x });
+            *before = Some(Extremes { least: old.least.min(x), most: old.most.max(x) });
+        }
+        let place = place(node.span);
+        let key = (place, node.provides.clone());
+        let same = self.known.get(&key).copied();
+        let Some(k) = same.or_else(|| self.free.get_mut(&place)?.pop()) else {
+            let k = self.nodes.len();
+            self.nodes.push(node);
+            return self.put(k, key);
+        };
+        self.count(k, false);
+        let old = std::mem::replace(&mut self.nodes[k], node);
+        // Declarations without a name add to what they have said before.
+        if same.is_some() && old.provides.is_none() && old.role == Role::Declare {
+            let uses = &mut self.nodes[k].uses;
+            uses.extend(old.uses);
+            uses.sort();
+            uses.dedup();
+        }
+        self.put(k, key);
+    }
+
+    fn put(&mut self, k: usize, key: (Place, Option<Use>)) {
+        self.known.insert(key, k);
+        self.count(k, true);
+        self.is_latest(k);
+    }
+
+    /// Counts the variables that a node names, or no longer.
+    fn count(&mut self, k: usize, more: bool) {
+        let node = &self.nodes[k];
+        if node.gone || !node.leads_to_forces() {
+            return;
+        }
+        for u in node.uses.iter().filter(|u| u.kind == UseKind::Variable) {
+            if more {
+                *self.followed.entry(u.name.clone()).or_default() += 1;
+            } else if let Some(count) = self.followed.get_mut(&u.name) {
+                *count -= 1;
+                if *count == 0 {
+                    self.followed.remove(&u.name);
+                }
+            }
+        }
+    }
+
+    fn is_latest(&mut self, k: usize) {
+        let Some(name) = &self.nodes[k].provides else { return };
+        let list = self.providers.entry(name.clone()).or_default();
+        if list.last() != Some(&k) {
+            list.retain(|n| *n != k);
+            list.push(k);
+        }
+    }
+
+    /// Forgets who provided a name that has been deleted: a loop that goes through names leaves no more nodes than it has
+    /// lines.
+    pub fn delete(&mut self, name: &Use) {
+        for k in self.providers.remove(name).unwrap_or_default() {
+            self.count(k, false);
+            let node = &mut self.nodes[k];
+            node.gone = true;
+            let place = place(node.span);
+            self.known.remove(&(place, node.provides.clone()));
+            self.free.entry(place).or_default().push(k);
+        }
+    }
+
+    /// The latest node that provides a name.
+    pub fn provider(&self, wanted: &Use) -> Option<&Node> {
+        self.providers.get(wanted)?.last().map(|k| &self.nodes[*k])
+    }
+
+    /// The latest line of this command.
+    pub fn latest(&self, command: &str) -> Option<&Node> {
+        let of = |n: &&Node| n.text.split_whitespace().next() == Some(command);
+        self.nodes.iter().filter(of).max_by_key(|n| n.turn)
+    }
+
+    /// Whether a line at this place uses a name, and is the one that provides `by` if that is known.
+    pub fn uses(&self, by: Option<&Use>, span: Span, name: &Use) -> bool {
+        if let Some(node) = by.and_then(|by| self.provider(by)) {
+            return node.span == span && node.uses.contains(name);
+        }
+        let first = (place(span), None);
+        let here = self.known.range(first..).take_while(|((at, _), _)| *at == place(span));
+        here.map(|(_, k)| &self.nodes[*k]).any(|n| n.uses.contains(name))
+    }
+
+    /// Whether some fix or the pair style depends on this variable, directly or through variables, regions and groups.
+    pub fn forces_use_variable(&self, name: &str) -> bool {
+        self.followed.contains_key(name)
+    }
+
+    /// Whether some act has settled a fact.
+    pub fn settled(&self, fact: &str) -> bool {
+        self.settled.contains_key(fact)
+    }
+
+    /// The positive numbers that acts have said for a fact, if any.
+    pub fn said(&self, fact: &str) -> Option<Extremes> {
+        self.settled.get(fact).copied().flatten()
+    }
+
+    /// For each node the nodes before it whose names it uses.
+    pub fn edges(&self) -> Vec<Vec<NodeId>> {
+        let mut providers: BTreeMap<&Use, usize> = BTreeMap::new();
+        let mut edges = vec![];
+        for (k, node) in self.nodes.iter().enumerate() {
+            let from = node.uses.iter().filter_map(|u| providers.get(u).map(|n| NodeId(*n)));
+            edges.push(from.collect());
+            if let Some(name) = &node.provides {
+                providers.insert(name, k);
+            }
+        }
+        edges
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn name(kind: UseKind, name: &str) -> Use {
+        Use { kind, name: name.into() }
+    }
+
+    fn line(at: usize, provides: Option<Use>, text: &str, uses: &[Use]) -> Node {
+        let span = Span::new(FileId(0), at, at + 5);
+        let mut node = Node::new(Role::Declare, provides, text.into(), span);
+        node.uses = uses.to_vec();
+        node
+    }
+
+    #[test]
+    fn a_loop_leaves_a_node_for_each_of_its_lines() {
+        let mut r = Record::default();
+        for turn in 0..1000 {
+            // Names that stay the same, and names that are new in each turn.
+            for (at, id) in [(0, "f".to_string()), (20, format!("f{turn}"))] {
+                let (fix, v) = (name(UseKind::Fix, &id), name(UseKind::Variable, &format!("v{turn}")));
+                r.add(line(at, Some(fix.clone()), &format!("fix {id}"), &[v]), turn);
+                assert!(r.forces_use_variable(&format!("v{turn}")) && r.provider(&fix).is_some());
+                r.add(line(at + 10, None, "unfix", &[]), turn);
+                r.delete(&fix);
+                assert!(!r.forces_use_variable(&format!("v{turn}")) && r.provider(&fix).is_none());
+            }
+        }
+        assert_eq!(r.nodes().len(), 4);
+        let indexed = r.known.len() + r.providers.len() + r.followed.len() + r.free.len();
+        assert!(indexed <= 8, "{indexed} entries are left");
+    }
+
+    #[test]
+    fn the_latest_turn_provides_a_name_wherever_it_stands() {
+        let mut r = Record::default();
+        let v = name(UseKind::Variable, "v");
+        r.add(line(0, Some(v.clone()), "variable v equal 1", &[]), 1);
+        r.add(line(50, Some(v.clone()), "variable v equal 2", &[]), 2);
+        assert!(
+            r.provider(&v).unwrap().text.ends_with('2') && r.latest("variable").unwrap().text.ends_with('2')
+        );
+        assert!(r.again(Span::new(FileId(0), 0, 5), &Some(v.clone()), "variable v equal 1", 3));
+        assert!(
+            r.provider(&v).unwrap().text.ends_with('1') && r.latest("variable").unwrap().text.ends_with('1')
+        );
+        assert!(!r.again(Span::new(FileId(0), 0, 5), &Some(v.clone()), "variable v equal 3", 4));
+        assert_eq!(r.nodes().len(), 2);
+    }
+
+    #[test]
+    fn declarations_without_a_name_keep_what_they_use() {
+        let mut r = Record::default();
+        for id in ["a", "b"] {
+            r.add(line(0, None, "pair_coeff", &[name(UseKind::Variable, id)]), 1);
+        }
+        assert!(r.forces_use_variable("a") && r.forces_use_variable("b"));
+        assert_eq!(r.nodes().len(), 1);
+    }
+
+    #[test]
+    fn numbers_said_in_all_turns_count() {
+        let mut r = Record::default();
+        for (turn, density) in [2, 5, 3].into_iter().enumerate() {
+            let mut set = line(0, None, &format!("set type {turn} density {density}"), &[]);
+            set.settles = vec!["density"];
+            r.add(set, turn as u64);
+        }
+        assert_eq!(r.said("density"), Some(Extremes { least: 2.0, most: 5.0 }));
+        assert!(r.settled("density") && !r.settled("mass") && r.said("mass").is_none());
+    }
+}
