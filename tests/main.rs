@@ -23,6 +23,7 @@ mod impact;
 mod installed_decks;
 #[path = "lammps.rs"]
 mod lammps;
+mod partitions;
 #[path = "peri/main.rs"]
 mod peri;
 mod plans;
@@ -33,5 +34,6 @@ mod rooms;
 #[path = "scripts.rs"]
 mod scripts;
 mod staggered;
+mod sweep;
 #[path = "common/threads.rs"]
 mod threads;

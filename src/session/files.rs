@@ -1,12 +1,18 @@
 //! The files a deck reads, and what is known of those it would have written where it is only looked at.
 
 use perigrain_lang::Files;
+use perigrain_world::reading::{ReadFiles, place};
 use perigrain_world::{Promise, Promises};
+use std::path::Path;
 
 /// Files as the system has them.
 pub(super) struct RealFiles<'a> {
     /// What the deck would have written by now, where nothing is.
     pub promised: &'a Promises,
+    /// The deck's folder.
+    pub folder: &'a Path,
+    /// Takes note of what is read.
+    pub read: ReadFiles,
     /// Whether the deck is only checked.
     pub checking: bool,
 }
@@ -19,7 +25,9 @@ impl Files for RealFiles<'_> {
             Some(_) => return Err(std::io::ErrorKind::NotFound.into()),
             None => {}
         }
-        let bytes = std::fs::read(path)?;
+        let path = place(path, self.folder);
+        let bytes = std::fs::read(&path)?;
+        self.read.note(&path);
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 

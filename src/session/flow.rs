@@ -14,7 +14,8 @@ impl Session {
         let checking = self.checking();
         // taken out for the moment: the world is borrowed for the formulas in the line
         let promised = std::mem::take(&mut self.world.parts.promised);
-        let files = RealFiles { promised: &promised, checking };
+        let (folder, read) = (&self.options.folder, self.world.read_files.clone());
+        let files = RealFiles { promised: &promised, folder, read, checking };
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph, checking };
         let flow = script.flow(cmd, &mut self.sources, &mut self.vars, &mut env, &files);
         self.world.parts.promised = promised;

@@ -10,6 +10,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain [switch …] < DECK\n\
             perigrain plan|run DECK [switch …]\n\
             perigrain check DECK … [--json] [switch …]\n\
+            perigrain sweep DECK -each NAME VALUE … [switch …]\n\
             perigrain repl [DECK] [switch …]\n\
             perigrain doc [name]\n\
             perigrain explain CODE",
@@ -29,7 +30,7 @@ pub(super) const PERIGRAIN: Entry = (
 const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off. `check` reads it, changes and writes \
     nothing, and reports every problem of one or more decks at once, with `--json` as JSON. `plan` prints what each step of \
     the deck's runs will do, in which order, and what was left out and why; with `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
-    prints the command graph for graphviz. `doc` prints a page of this manual, `explain` the story behind the code of a \
+    prints the command graph for graphviz. `sweep` makes many runs of a deck side by side: see [sweep](sweep.md). `doc` prints a page of this manual, `explain` the story behind the code of a \
     message. `repl`, and `perigrain` alone on a terminal, work lines off as they are typed: see [the \
     prompt](prompt.md).\n\n\
     Switches, before or behind the deck:\n\n\
@@ -41,6 +42,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     takes all words up to the next switch, so put the deck first or write `-in`;\n\
     - `-threads N`: uses N threads (all cores); results are the same bits for any N;\n\
     - `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md);\n\
+    - `-partition MxN …`, `-p`: works the deck off M times beside each other, each time with N threads, as LAMMPS' partitions (`4x1 2x8` are six); `-plog FILE|none`, \
+    `-pl`, and `-pscreen FILE|none`, `-ps`: their logs and screens (`log.lammps.0` …, `screen.0` …);\n\
     - `-suffix omp`, `-sf` and `-nocite`, `-nc`: taken for LAMMPS' command lines, without effect;\n\
     - `-package omp N`, `-pk`: the same as `-threads N`;\n\
     - `-help`, `-h` and `-version`: print and end.\n\n\
