@@ -24,6 +24,7 @@
 pub mod cli;
 pub mod graph;
 pub mod session;
+pub mod sweep;
 
 pub use perigrain_base::{diag, math, par, units};
 pub use perigrain_lang as lang;

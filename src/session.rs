@@ -1,6 +1,7 @@
 //! One deck being worked off: text in, diagnostics and results out.
 
 mod acts;
+pub mod axes;
 mod causes;
 mod checking;
 mod commands;
@@ -11,6 +12,7 @@ mod info;
 mod interactive;
 mod later;
 mod leveling;
+mod measuring;
 mod minimizing;
 mod overlaps;
 mod planning;
@@ -22,6 +24,7 @@ mod shell;
 mod solids;
 mod stability;
 mod staggering;
+mod sweeping;
 mod timer;
 mod unused;
 
@@ -31,10 +34,11 @@ pub use crate::graph::keywords::KEYWORDS as THERMO;
 use crate::graph::{Graph, Role};
 pub use commands::OWN;
 pub use interactive::{Heard, Known, Snapshot};
+pub use measuring::Worked;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Sources, Span, fail, nearest};
 pub use perigrain_base::par::{set_threads, threads};
 use perigrain_commands::COMMANDS;
-use perigrain_lang::{Command, Flow, Line, Script, Vars};
+use perigrain_lang::{Command, Flow, Line, Partition, Script, Vars};
 use perigrain_out::log::Log;
 use perigrain_plan::StepPlan;
 pub use perigrain_plan::run::{Made, Watch};
@@ -43,6 +47,7 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+pub use sweeping::Swept;
 
 /// What a session is asked to do with a deck.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,6 +82,8 @@ pub struct Options {
     pub vars: Vec<(String, Vec<String>)>,
     /// The deck's folder, for files named in it.
     pub folder: PathBuf,
+    /// Which of several partitions this is.
+    pub partition: Option<Partition>,
 }
 
 impl Default for Options {
@@ -90,6 +97,7 @@ impl Default for Options {
             portable: false,
             vars: vec![],
             folder: PathBuf::new(),
+            partition: None,
         }
     }
 }
@@ -133,6 +141,9 @@ pub struct Session {
     /// A file could not be looked into (`check` mode).
     blind: bool,
     timer: timer::Timer,
+    worked: Worked,
+    /// What the deck's `sweep` line says.
+    swept: Option<Swept>,
     born: std::time::Instant,
     /// The pair style was refused (`check` mode): that there is none is no news.
     pairless: bool,
@@ -184,6 +195,8 @@ impl Session {
             told: Default::default(),
             blind: false,
             timer: Default::default(),
+            worked: Worked::default(),
+            swept: None,
             born: std::time::Instant::now(),
             pairless: false,
             later: Default::default(),
@@ -192,6 +205,7 @@ impl Session {
             told_to,
             turns: 0,
         };
+        s.vars.set_partition(s.options.partition.clone());
         for (name, values) in s.options.vars.clone() {
             s.vars.set_index(&name, &values)?;
         }
@@ -223,7 +237,9 @@ impl Session {
             false => Compat::Perigrain,
         };
         let promised = std::mem::take(&mut self.world.parts.promised);
+        let read_files = std::mem::take(&mut self.world.read_files);
         self.world = World::default();
+        self.world.read_files = read_files;
         self.world.parts.promised = promised;
         self.world.parts.promised.instead = self.looking();
         self.world.parts.unseen = self.sight();

@@ -23,6 +23,7 @@ mod impact;
 mod installed_decks;
 #[path = "lammps.rs"]
 mod lammps;
+mod partitions;
 #[path = "peri/main.rs"]
 mod peri;
 mod plans;
@@ -33,6 +34,7 @@ mod rooms;
 #[path = "scripts.rs"]
 mod scripts;
 mod staggered;
+mod sweep;
 mod swinging;
 #[path = "common/threads.rs"]
 mod threads;

@@ -39,7 +39,8 @@ const BY_STRING: &[(&str, &str)] = &[
 ];
 
 /// Within the root package: the command graph knows no session, a session no program.
-const UPWARDS: &[(&str, &[&str])] = &[("graph", &["session", "cli"]), ("session", &["cli"])];
+const UPWARDS: &[(&str, &[&str])] =
+    &[("graph", &["session", "sweep", "cli"]), ("session", &["sweep", "cli"]), ("sweep", &["cli"])];
 
 /// Past this many lines a file is two files.
 const LONGEST: usize = 600;

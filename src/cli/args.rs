@@ -1,5 +1,6 @@
 //! LAMMPS' command-line switches, read by hand because `-var name a b c` fits no option parser.
 
+use super::partitions::{self, World};
 use perigrain_base::diag::nearest;
 use std::path::PathBuf;
 
@@ -42,6 +43,14 @@ pub struct Options {
     pub threads: Option<usize>,
     /// `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong.
     pub compat: bool,
+    /// `-partition 4x1 2x8`: the threads of each partition; empty where there is one.
+    pub partition: Vec<usize>,
+    /// `-plog file|none`.
+    pub plog: Target,
+    /// `-pscreen file|none`.
+    pub pscreen: Target,
+    /// Which of several partitions this process works off.
+    pub world: Option<World>,
     /// `-layout list`: no lattice layout, for tests.
     pub list_layout: bool,
     /// `-rest full`: particles at rest are computed too, for tests.
@@ -64,11 +73,11 @@ pub struct Usage {
 }
 
 impl Usage {
-    fn new(message: impl Into<String>) -> Self {
+    pub(super) fn new(message: impl Into<String>) -> Self {
         Self { message: message.into(), help: None }
     }
 
-    fn help(mut self, text: impl Into<String>) -> Self {
+    pub(super) fn help(mut self, text: impl Into<String>) -> Self {
         self.help = Some(text.into());
         self
     }
@@ -168,6 +177,33 @@ pub const SWITCHES: &[Switch] = &[
         v.rest();
         Ok(())
     }),
+    switch(
+        &["-partition", "-p"],
+        "MxN|N…",
+        "work the deck off M times beside each other, each with N threads",
+        |o, v| {
+            o.partition = partitions::threads(&v.rest())?;
+            Ok(())
+        },
+    ),
+    switch(
+        &["-plog", "-pl"],
+        "FILE|none",
+        "the partitions' logs FILE.0, FILE.1 … (log.lammps.0 …)",
+        |o, v| {
+            o.plog = target(v.one("a file or `none`")?);
+            Ok(())
+        },
+    ),
+    switch(
+        &["-pscreen", "-ps"],
+        "FILE|none",
+        "the partitions' screens FILE.0, FILE.1 … (screen.0 …)",
+        |o, v| {
+            o.pscreen = target(v.one("a file or `none`")?);
+            Ok(())
+        },
+    ),
     switch(&["-nocite", "-nc"], "", "for LAMMPS' command lines: there is no citation file anyway", |_, _| {
         Ok(())
     }),
@@ -177,6 +213,12 @@ pub const SWITCHES: &[Switch] = &[
     }),
     switch(&["-version", "--version", "-V"], "", "the version", |o, _| {
         o.version = true;
+        Ok(())
+    }),
+    switch(&["-world"], "", "", |o, v| {
+        let number = v.number("a partition")?;
+        let parent = v.number("a process")? as u32;
+        o.world = Some(World { number, parent, turns: v.one("a file")?.into() });
         Ok(())
     }),
     switch(&["-layout"], "list|auto", "", |o, v| {
@@ -201,12 +243,6 @@ const LAMMPS_ONLY: &[&str] = &[
     "-mdi",
     "-mpicolor",
     "-m",
-    "-partition",
-    "-p",
-    "-plog",
-    "-pl",
-    "-pscreen",
-    "-ps",
     "-reorder",
     "-ro",
     "-r",
@@ -274,7 +310,7 @@ impl Values<'_> {
 }
 
 /// Begins like a switch: a dash that starts no number.
-fn is_switch(word: &str) -> bool {
+pub(super) fn is_switch(word: &str) -> bool {
     word.strip_prefix('-').is_some_and(|w| w.starts_with(|c: char| c.is_ascii_alphabetic() || c == '-'))
 }
 
@@ -388,7 +424,8 @@ mod tests {
         ] {
             assert!(read(line).is_err(), "{line}");
         }
-        assert!(read("-partition 2x1").unwrap_err().message.contains("LAMMPS"));
+        assert_eq!(read("a -p 2x1 3 -ps none").unwrap().partition, [1, 1, 3]);
+        assert!(read("-reorder nth 2").unwrap_err().message.contains("LAMMPS"));
         for switch in ["-r", "-restart2data", "-r2dump"] {
             assert!(
                 read(&format!("{switch} a b")).unwrap_err().help.unwrap().contains("write_data"),

@@ -2,7 +2,7 @@
 
 use super::args::{Deck, Options, Target};
 use super::progress::{self, Progress};
-use super::{FAILED, INTERRUPTED, OK, signals};
+use super::{FAILED, INTERRUPTED, OK, partitions, signals};
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail, render};
 use perigrain_out::log::{Echo, Log};
@@ -86,6 +86,7 @@ pub(super) fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
             Deck::Stdin => Default::default(),
             Deck::File(path) => folder_of(path),
         },
+        partition: partitions::of(o),
     })
 }
 

@@ -6,9 +6,11 @@ pub mod deck;
 pub mod grammar;
 pub mod manual;
 mod pages;
+pub mod partitions;
 pub mod progress;
 pub mod repl;
 mod signals;
+mod sweeping;
 pub mod syntax;
 pub mod tasks;
 
@@ -48,8 +50,19 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Help(None) => show(&(tasks::help() + "\n" + &manual::list())),
         Task::Help(Some(name)) => show(&manual::page(&name)?),
         Task::Doc(Some(name)) => show(&manual::page(&name)?),
-        Task::Run(o) => return Ok(deck::work_off(&o, Mode::Run)),
+        Task::Run(o) => {
+            return match &o.world {
+                Some(world) => {
+                    partitions::settle(world);
+                    Ok(deck::work_off(&partitions::own(&o, world), Mode::Run))
+                }
+                None if !o.partition.is_empty() => partitions::work_off(&o),
+                None => Ok(deck::work_off(&o, Mode::Run)),
+            };
+        }
         Task::Repl(o) => return Ok(repl::run(&o)),
+        Task::Sweep(request) => return sweeping::perform(&request),
+        Task::Worker => return Ok(if crate::sweep::worker::main() { OK } else { FAILED }),
         Task::Check { decks, json } => return Ok(checking::check(&decks, json)),
         Task::Plan { options, dot: true, .. } => return Ok(deck::draw(&options)),
         Task::Plan { options, measure: true, .. } => return Ok(deck::work_off(&options, Mode::Measure)),

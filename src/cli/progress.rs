@@ -79,6 +79,49 @@ impl Progress {
     }
 }
 
+/// The line of many runs: a bar of those that have ended and some words, hidden when standard error is no terminal.
+pub struct Tally {
+    bar: ProgressBar,
+}
+
+impl Tally {
+    /// A line that shows itself when there is something to show.
+    pub fn new() -> Self {
+        let target = if stderr().is_terminal() {
+            ProgressDrawTarget::stderr_with_hz(5)
+        } else {
+            ProgressDrawTarget::hidden()
+        };
+        let bar = ProgressBar::with_draw_target(Some(0), target);
+        if let Ok(style) = ProgressStyle::with_template("{bar:20} {pos}/{len} runs  {wide_msg}") {
+            bar.set_style(style);
+        }
+        Self { bar }
+    }
+
+    /// Shows how many of how many have ended, and some words.
+    pub fn show(&self, done: usize, of: usize, words: &str) {
+        self.bar.set_length(of as u64);
+        self.bar.set_position(done as u64);
+        self.bar.set_message(words.to_owned());
+    }
+
+    /// Takes the line away.
+    pub fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    /// Does something with the line out of the way.
+    pub fn suspend(&self, what: impl FnOnce()) {
+        self.bar.suspend(what);
+    }
+
+    /// A writer for the terminal that steps around the line.
+    pub fn around<W: Write>(&self, inner: W) -> Around<W> {
+        Around { bar: self.bar.clone(), inner }
+    }
+}
+
 /// Step, time, step size and the latest thermo row, as `step 120  t 1.2e-6  dt 1e-8  pe 0.31`.
 fn words(made: &Made, log: Option<&Log>) -> String {
     let mut text = format!("step {}  t {}  dt {}", made.step, short(made.time), short(made.dt));

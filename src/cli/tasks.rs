@@ -2,6 +2,7 @@
 
 use super::args::{self, Deck, Options, SWITCHES, Usage};
 use super::checking;
+use super::sweeping::args::Request;
 use clap::{CommandFactory, Parser};
 
 /// One call of the program.
@@ -27,6 +28,10 @@ pub enum Task {
         /// Print the command graph for `dot` instead.
         dot: bool,
     },
+    /// Make many runs of a deck.
+    Sweep(Box<Request>),
+    /// Make one of them, as standard input says.
+    Worker,
     /// Explain a diagnostic code.
     Explain(String),
     /// Print the manual page of a command or style, or the list of all.
@@ -73,6 +78,16 @@ enum Sub {
         #[arg(value_name = "DECK [SWITCH]", trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
+    /// Make many runs of a deck side by side, each with other values of variables, and one table of what they give
+    Sweep {
+        /// The deck, lists of values, and LAMMPS' switches
+        #[arg(
+            value_name = "DECK -each NAME VALUE… [SWITCH]",
+            trailing_var_arg = true,
+            allow_hyphen_values = true
+        )]
+        rest: Vec<String>,
+    },
     /// Explain the code of a message, as PG0102
     Explain {
         /// The code
@@ -92,7 +107,9 @@ enum Sub {
 pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
     let first = words.first().map(String::as_str);
     let is_sub = Sub::command().get_subcommands().any(|c| Some(c.get_name()) == first);
-    let task = if first == Some("help") {
+    let task = if words.len() == 1 && first == Some(crate::sweep::worker::WORD) {
+        return Ok(Task::Worker);
+    } else if first == Some("help") {
         help_on(&words[1..])
     } else if is_sub {
         subcommand(words)?
@@ -110,10 +127,10 @@ pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
         return Ok(task);
     }
     match &task {
-        Task::Check { .. } | Task::Plan { .. } => {
+        Task::Check { .. } | Task::Plan { .. } | Task::Sweep(_) => {
             Err(Usage { message: "no deck".into(), help: Some("name one: `perigrain check in.deck`".into()) })
         }
-        Task::Run(o) => swallowed(o).map_or(Ok(Task::Repl(o.clone())), Err),
+        Task::Run(o) if o.partition.is_empty() => swallowed(o).map_or(Ok(Task::Repl(o.clone())), Err),
         _ => Ok(task),
     }
 }
@@ -124,6 +141,7 @@ impl Task {
         match self {
             Task::Run(o) | Task::Repl(o) | Task::Plan { options: o, .. } => Some(o),
             Task::Check { decks, .. } => decks.first(),
+            Task::Sweep(request) => Some(&request.options),
             _ => None,
         }
     }
@@ -163,6 +181,7 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
             Task::Check { decks: checking::each(&options, decks), json }
         }
         Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
+        Sub::Sweep { rest } => Task::Sweep(Box::new(Request::parse(rest)?)),
         Sub::Explain { code } => Task::Explain(code),
         Sub::Doc { name } => Task::Doc((!name.is_empty()).then(|| name.join(" "))),
     })

@@ -10,7 +10,7 @@ use perigrain_pairs::bond::BONDS;
 use perigrain_world::minimizer::MinStyle;
 
 /// Commands of the session and of the cursor through the deck, which stand in no table.
-pub const SESSION_COMMANDS: [&str; 25] = [
+pub const SESSION_COMMANDS: [&str; 26] = [
     "print",
     "log",
     "echo",
@@ -36,6 +36,7 @@ pub const SESSION_COMMANDS: [&str; 25] = [
     "partition",
     "balance",
     "comm_style",
+    "sweep",
 ];
 
 /// The categories of styles.

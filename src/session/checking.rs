@@ -154,7 +154,7 @@ impl Session {
             let mut words = text.split_whitespace();
             words.next() == Some("fix") && words.nth(2) == Some("pour")
         };
-        !self.settled("particles") && self.graph.nodes.iter().any(|n| pours(&n.text))
+        !self.settled("particles") && self.graph.lines.nodes().iter().any(|n| pours(&n.text))
     }
 
     /// Force densities and forces added up in one column.

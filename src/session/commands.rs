@@ -162,6 +162,7 @@ impl Session {
             "shell" => self.shell(cmd)?,
             "info" => self.info(&mut args)?,
             "timer" => self.timer(&mut args)?,
+            "sweep" => self.sweep(&mut args, cmd.span)?,
             _ if self.inert(cmd)? => {}
             _ => return Ok(false),
         }

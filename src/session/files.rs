@@ -1,17 +1,23 @@
 //! The files a deck reads, and what is known of those it would have written where it is only looked at.
 
 use perigrain_lang::Files;
+use perigrain_world::reading::{ReadFiles, place};
 use perigrain_world::{Promise, Promises};
+use std::path::Path;
 
 /// Files as the system has them.
-pub(super) struct RealFiles {
+pub(super) struct RealFiles<'a> {
     /// What the deck would have written by now, where nothing is.
     pub promised: Promises,
+    /// The deck's folder.
+    pub folder: &'a Path,
+    /// Takes note of what is read.
+    pub read: ReadFiles,
     /// Whether the deck is only looked at.
     pub looking: bool,
 }
 
-impl Files for RealFiles {
+impl Files for RealFiles<'_> {
     fn read(&self, path: &str) -> std::io::Result<String> {
         match self.promised.get(path) {
             Some(Promise::Text(text)) => return Ok(text.clone()),
@@ -19,7 +25,9 @@ impl Files for RealFiles {
             Some(_) => return Err(std::io::ErrorKind::NotFound.into()),
             None => {}
         }
-        let bytes = std::fs::read(path)?;
+        let path = place(path, self.folder);
+        let bytes = std::fs::read(&path)?;
+        self.read.note(&path);
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 

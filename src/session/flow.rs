@@ -16,7 +16,9 @@ impl Session {
     pub(super) fn flow(&mut self, script: &mut Script, cmd: &Command) -> Result<Flow> {
         self.refuse_jump(cmd)?;
         // a copy: the world is borrowed for the formulas in the line
-        let files = RealFiles { promised: self.world.parts.promised.clone(), looking: self.looking() };
+        let promised = self.world.parts.promised.clone();
+        let (folder, read) = (&self.options.folder, self.world.read_files.clone());
+        let files = RealFiles { promised, folder, read, looking: self.looking() };
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         let flow = script.flow(cmd, &mut self.sources, &mut self.vars, &mut env, &files)?;
         if flow == Flow::NotMine {

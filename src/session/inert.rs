@@ -46,7 +46,7 @@ impl Session {
         Ok(true)
     }
 
-    /// `partition yes|no N command …`: the one partition there is has the number 1.
+    /// `partition yes|no N command …`.
     ///
     /// # Errors
     /// A partition that does not exist, and what the command refuses.
@@ -54,16 +54,16 @@ impl Session {
         let mut args = Args::new(cmd);
         let wanted = args.flag("whether these or the other partitions are meant")?;
         let which = args.expect("the number of a partition")?;
-        let ok = match which.text.split_once('*') {
-            None => which.text == "1",
-            Some((a, b)) => ["", "1"].contains(&a) && ["", "1"].contains(&b),
-        };
-        if !ok {
-            let text = format!("`{}` is no partition: there is one, with the number 1", which.text);
+        let (own, of) = self.vars.partition();
+        let Some((first, last)) = range(&which.text, of) else {
+            let text = match of {
+                1 => format!("`{}` is no partition: there is one, with the number 1", which.text),
+                _ => format!("`{}` names no partitions: they have the numbers 1 to {of}", which.text),
+            };
             return refuse(Code::BAD_VALUE, which.span, text);
-        }
+        };
         let name = args.expect("a command")?.clone();
-        if !wanted {
+        if wanted != (first..=last).contains(&(own + 1)) {
             return Ok(None);
         }
         let words = args.rest().to_vec();
@@ -72,6 +72,19 @@ impl Session {
         let span = words.last().map_or(name.span, |w| name.span.to(w.span));
         self.command(script, &Command { name, args: words, span, text })
     }
+}
+
+/// The numbers that `3`, `*`, `*3`, `2*` or `2*3` mean.
+fn range(word: &str, of: usize) -> Option<(usize, usize)> {
+    let number = |word: &str, open: usize| match word {
+        "" => Some(open),
+        word => word.parse().ok().filter(|n| (1..=of).contains(n)),
+    };
+    let (first, last) = match word.split_once('*') {
+        Some((a, b)) => (number(a, 1)?, number(b, of)?),
+        None => (number(word, 0).filter(|n| *n > 0)?, number(word, 0)?),
+    };
+    (first <= last).then_some((first, last))
 }
 
 /// `off`, `on`, a package, or `hybrid` with two of them.

@@ -105,6 +105,8 @@ impl Session {
             shown: _,
             plan: _,
             watch: _,
+            worked: _,
+            swept: _,
             interrupted: _,
             quit: _,
             prompt: _,

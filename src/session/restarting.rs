@@ -83,6 +83,7 @@ impl Session {
             Some(saved) => (PathBuf::from(&word.text), saved),
             None => {
                 let path = self.find(word)?;
+                self.world.read_files.note(&path);
                 let saved = read(&path).map_err(|e| e.at(word.span))?;
                 (path, saved)
             }
@@ -156,6 +157,7 @@ impl Session {
             (families.options.skip_rest, families.options.portable) = (!now.no_skipping, now.portable);
         }
         world.folder = std::mem::take(&mut old.folder);
+        world.read_files = std::mem::take(&mut old.read_files);
         world.parts.promised = std::mem::take(&mut old.parts.promised);
         (world.clock.running, world.clock.halt) = (false, Halt::No);
         let state = world.memo.keys().map(Key::text).chain(world.columns.names()).filter(|n| claimable(n));

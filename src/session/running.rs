@@ -335,6 +335,7 @@ impl Session {
         minimized: Option<&str>,
         post: bool,
     ) -> Result<()> {
+        self.worked.add(o);
         let log = &self.options.log;
         let times = plan.time_by_class();
         let section = |name, class| Section {

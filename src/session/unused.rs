@@ -64,6 +64,24 @@ pub(super) fn unused(sources: &Sources, given: &[String]) -> Diagnostics {
     found
 }
 
+/// Whether the texts use a variable, as `$v`, `${v}`, `v_v`, or perhaps by a name that is put together.
+pub(super) fn uses(sources: &Sources, name: &str) -> bool {
+    sources.texts().any(|text| {
+        let (mut defines, mut lists) = (false, false);
+        tokens(text).iter().any(|t| {
+            // A `sweep` line names variables, and uses none.
+            lists = if t.opens { t.text == "sweep" } else { lists };
+            let defined = std::mem::replace(&mut defines, t.opens && t.text == "variable");
+            let bare = t.text.strip_prefix("v_").unwrap_or(t.text);
+            // `$vm` is the value of `v` and an m.
+            let single = name.len() == 1 && text[..t.at].ends_with('$') && t.text.starts_with(name);
+            !defined
+                && !lists
+                && (single || bare == name || t.text == name || (t.part && name.starts_with(bare)))
+        })
+    })
+}
+
 /// The words of a deck outside comments.
 fn tokens(text: &str) -> Vec<Token<'_>> {
     let bytes = text.as_bytes();
@@ -143,6 +161,25 @@ mod tests {
         check("group g1 type 1\nfix 1 g$n nve", &[]);
         check("if \"1 > 0\" then \"variable k equal 1\"\nprint $k", &[]);
         check("group g union a b\nset group g density 1", &[]);
+    }
+
+    #[test]
+    fn uses_of_a_given_variable_are_found() {
+        for (deck, name, wanted) in [
+            ("variable v index 1\nprint \"$v\"", "v", true),
+            ("velocity all set $vm 0 0", "v", true),
+            ("fix 1 all move v_speed", "speed", true),
+            ("print ${v$k}", "v12", true),
+            ("next seed", "seed", true),
+            ("variable v index 1\nprint w # $v", "v", false),
+            ("print ${speed}", "v", false),
+            ("sweep each v 1 2", "v", false),
+            ("sweep each v 1 2\nprint $v", "v", true),
+        ] {
+            let mut sources = Sources::default();
+            sources.add("in.deck", deck);
+            assert_eq!(uses(&sources, name), wanted, "{deck}");
+        }
     }
 
     #[test]

@@ -137,6 +137,9 @@ fn from_file(name: &Word, cx: &BuildCx) -> Result<Material> {
             }
         }
     })?;
+    if !found.embedded() {
+        cx.world.read_files.note(std::path::Path::new(&found.place));
+    }
     let material =
         Material::parse(&found.text, FileId::default()).map_err(|d| retell(d, &found, name.span))?;
     Ok(material.in_units(scale))

@@ -46,6 +46,8 @@ struct Inner {
     echo: Echo,
     /// Rows of step tables, once somebody wants them kept.
     tables: Option<Tables>,
+    /// Only the last of them is wanted.
+    last_row: bool,
 }
 
 impl std::fmt::Debug for Log {
@@ -62,7 +64,8 @@ impl std::fmt::Debug for Log {
 impl Log {
     /// A log with this screen (`None`: silent) and no file yet.
     pub fn new(screen: Option<Box<dyn Write + Send>>) -> Self {
-        Self(Arc::new(Mutex::new(Inner { screen, file: None, echo: Echo::default(), tables: None })))
+        let (echo, tables, last_row) = (Echo::default(), None, false);
+        Self(Arc::new(Mutex::new(Inner { screen, file: None, echo, tables, last_row })))
     }
 
     /// A log that goes nowhere.
@@ -138,10 +141,21 @@ impl Log {
         self.inner().tables.get_or_insert_default();
     }
 
+    /// From now on the latest row of a step table is kept as numbers, and none before it.
+    pub fn keep_last_row(&self) {
+        self.keep_rows();
+        self.inner().last_row = true;
+    }
+
     /// A row of a step table, kept if [`Log::keep_rows`] asked for it.
     pub fn row(&self, make: impl FnOnce() -> (Vec<String>, Row)) {
-        if let Some(tables) = &mut self.inner().tables {
+        let mut inner = self.inner();
+        let last_row = inner.last_row;
+        if let Some(tables) = &mut inner.tables {
             let (columns, row) = make();
+            if last_row {
+                tables.0.clear();
+            }
             tables.push(columns, row);
         }
     }

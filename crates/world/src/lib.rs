@@ -29,6 +29,7 @@ pub mod particles;
 pub mod potentials;
 pub mod promises;
 pub mod properties;
+pub mod reading;
 pub mod rebuild;
 pub mod region;
 pub mod resume;
@@ -143,6 +144,9 @@ pub struct World {
     /// What the deck's folder is, for files beside it.
     #[serde(skip)]
     pub folder: PathBuf,
+    /// The files read so far.
+    #[serde(skip)]
+    pub read_files: reading::ReadFiles,
     /// State that rooms above own: families, contact histories, materials.
     #[serde(skip)]
     pub parts: Tracked<Parts>,

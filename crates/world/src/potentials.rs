@@ -26,6 +26,13 @@ pub struct Found {
     pub text: String,
 }
 
+impl Found {
+    /// Whether it is one of the embedded files.
+    pub fn embedded(&self) -> bool {
+        self.place.starts_with('<')
+    }
+}
+
 /// Looks for `name` beside the deck, in the working folder, then among the embedded files.
 /// An embedded file may also be called `potentials/NAME`.
 ///

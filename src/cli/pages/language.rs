@@ -69,8 +69,10 @@ pub(super) const VARIABLE: Entry = (
             nothing else.\n\
             - `timer`: the moment of this line in seconds; the difference of two is the time between them.\n\
             - `internal`: a number that some commands change.\n\
-            - `world` `universe` `uloop`: for LAMMPS' several partitions, of which there is one here: `world` takes one \
-            value, `universe` and `uloop` are like `index` and `loop`.\n\
+            - `world` `universe` `uloop`: for the partitions of `-partition`: `world` takes one value for each of them; of `universe` \
+            (a list of texts) and `uloop` (the numbers from 1 to N) each begins with its own, and `next` takes the first that no partition has had. \
+            All such variables have equally many values, at least one per partition, and stand in the same `next`. With one \
+            partition they are like `index` and `loop`.\n\
             - `delete` forgets the variable.\n\n\
             Names have letters, digits and underscores. An `index loop world universe uloop file` or `atomfile` line for \
             a name that exists does nothing: that is how `-var NAME value` on the command line wins over the deck, and how \
@@ -126,7 +128,7 @@ pub(super) const JUMP: Entry = (
         text: "Reading goes on at the top of `FILE` (`SELF`: the present one), with `LABEL` at the first `label LABEL` \
             after that. There is no way back: `include` is the command that returns. A `jump` right after a `next` that \
             ran out is passed over, which is how loops end. From an included file it leaves the rest of that file only. \
-            A file is looked for in the working folder. As in LAMMPS no values are put into `label` lines while they are \
+            A file is looked for in the working folder, then beside the deck. As in LAMMPS no values are put into `label` lines while they are \
             searched.\n\n\
             A loop that can never end is refused: when a jump is made again and no variable, file or scene has changed \
             since. `perigrain check` and `perigrain plan` follow a loop for 10,000 turns, and one that ends by something only a             run can tell for one turn: what its lines set is unknown behind it.\n\n\
@@ -152,7 +154,7 @@ pub(super) const INCLUDE: Entry = (
     Doc {
         syntax: "include FILE",
         summary: "Works off another file, then goes on.",
-        text: "The name is taken from the working folder. Files and then-commands may nest 100 deep, so a file that \
+        text: "The file is looked for in the working folder, then beside the deck. Files and then-commands may nest 100 deep, so a file that \
             includes itself is refused. `if … then \"include FILE\"` includes under a condition.",
         example: "include plate.inc",
     },

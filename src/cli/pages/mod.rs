@@ -60,6 +60,7 @@ pub const COMMANDS: &[Entry] = &[
     session::INFO,
     session::TIMER,
     session::PARTITION,
+    session::SWEEP,
     session::SUFFIX,
     session::PACKAGE,
     session::COMM_STYLE,

@@ -10,6 +10,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain [switch …] < DECK\n\
             perigrain plan|run DECK [switch …]\n\
             perigrain check DECK … [--json] [switch …]\n\
+            perigrain sweep DECK -each NAME VALUE … [switch …]\n\
             perigrain repl [DECK] [switch …]\n\
             perigrain doc [name]\n\
             perigrain explain CODE",
@@ -31,7 +32,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     the deck's runs will do, in which order, and what was left out and why: each plan once, with the lines whose runs have it and how often. \
     It makes the particles that the first run begins with, so that large scenes take their time, and no step; behind that run nothing is known of \
     particles, and lines that hang on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
-    prints the command graph for graphviz. `doc` prints a page of this manual, `explain` the story behind the code of a \
+    prints the command graph for graphviz. `sweep` makes many runs of a deck side by side: see [sweep](sweep.md). `doc` prints a page of this manual, `explain` the story behind the code of a \
     message. `repl`, and `perigrain` alone on a terminal, work lines off as they are typed: see [the \
     prompt](prompt.md).\n\n\
     Switches, before or behind the deck:\n\n\
@@ -43,6 +44,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     takes all words up to the next switch, so put the deck first or write `-in`;\n\
     - `-threads N`: uses at most N threads (without it as many as `OMP_NUM_THREADS` says, else one per core); runs find out by themselves whether one is faster; results are the same bits for any N;\n\
     - `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md);\n\
+    - `-partition MxN …`, `-p`: works the deck off M times beside each other, each time with N threads, as LAMMPS' partitions (`4x1 2x8` are six); `-plog FILE|none`, \
+    `-pl`, and `-pscreen FILE|none`, `-ps`: their logs and screens (`log.lammps.0` …, `screen.0` …);\n\
     - `-suffix omp`, `-sf` and `-nocite`, `-nc`: taken for LAMMPS' command lines, without effect;\n\
     - `-package omp N`, `-pk`: the same as `-threads N`;\n\
     - `-help`, `-h` and `-version`: print and end.\n\n\

@@ -168,12 +168,44 @@ pub(super) const PARTITION: Entry = (
     "partition",
     Doc {
         syntax: "partition yes|no N command word …",
-        summary: "Carries out a command on some of LAMMPS' partitions, of which there is one here.",
-        text: "With `yes` and `1` (or a range such as `1*`) the command is carried out as if it stood alone, with `no` it is \
-            passed over. A partition that does not exist is refused.",
+        summary: "Carries out a command on some of the partitions.",
+        text: "Partitions are the processes that `-partition` on the command line makes; without it there is one, with the number 1. N is a \
+            number or a range: `*`, `*3`, `2*`, `2*3`. With `yes` the command is carried out in the partitions that N means as if it \
+            stood alone, and passed over in the others; with `no` it is the other way round. A partition that does not exist is refused.",
         example: "partition yes 1 print \"on the first partition\"",
     },
 );
+
+pub(super) const SWEEP: Entry = (
+    "sweep",
+    Doc {
+        syntax: "sweep each NAME VALUE … [each NAME VALUE …] [zip NAME NAME …] [table FILE] [report WORD …]\n\
+            perigrain sweep DECK [-each NAME VALUE …] [-zip NAME NAME …] [-table FILE] [-report WORD …]\n\
+            \u{20}                    [-jobs N] [-threads N] [-out DIR] [-retry N] [-anew] [switch …]\n\
+            perigrain sweep DIR -status",
+        summary: "Many runs of the deck side by side, each with other values of variables, and one table of what they give.",
+        text: SWEEP_TEXT,
+        example: "sweep each v 10 20 30 each angle 0..90:30 report v_force pe\n\
+            velocity ball set 0 0 -$v units box\n\
+            print \"${angle} degrees\"",
+    },
+);
+
+const SWEEP_TEXT: &str = "`each` gives a list of values for an index variable; several lists mean all combinations, the last one \
+    fastest. `a..b` and `a..b:step` are whole numbers, `a:b:n` are n numbers evenly from a to b; anything else is a text. `zip` ties lists \
+    together that are equally long, `table` reads one run per line below a line with the variables' names, between commas or blanks. \
+    `report` names what each run tells at its end, in the words of formulas: `c_ID`, `f_ID[2]`, `v_NAME`, words of thermo output.\n\n\
+    In a deck that is run by itself the line defines the variables that are not there yet with their first values, and says so. `perigrain sweep` makes \
+    all runs; lists on its command line take the place of those in the deck, and `-report` adds to what the deck reports. `perigrain check` \
+    checks all combinations, of more than 64 the first and the last.\n\n\
+    - `-jobs N`: so many runs at once (one per core); `-threads N`: threads of each (the cores shared out);\n\
+    - `-out DIR`: the folder (`DECK.sweep`), with a folder for each run, `table.csv`, `times.csv` and the journal;\n\
+    - `-retry N`: a run that fails is tried N times more;\n\
+    - `-anew`: forgets an earlier sweep there; without it the same command goes on where the earlier one ended;\n\
+    - `-status`: only shows where a sweep stands;\n\
+    - `-var`, `-compat`, `-screen none` and others hold for all runs.\n\n\
+    [Make many runs of one deck](../howto/sweep.md) shows it. Exit codes: 0 all runs are done and well, 1 a run failed or the sweep is refused, 2 the \
+    command line is wrong, 130 interrupted: the same command goes on.";
 
 pub(super) const SUFFIX: Entry = (
     "suffix",

@@ -172,6 +172,9 @@ codes! {
     BAD_FILE = 139, "file damaged or of another kind",
         "The file is not what its place in the deck asks for: a restart file that is cut off, damaged, of another program or of a newer version.",
         "print \"no scene\" file old.restart\nclear\nread_restart old.restart", "write_restart old.restart\nclear\nread_restart old.restart";
+    OTHER_SWEEP = 147, "the sweep in this folder is another",
+        "The journal in the folder of a sweep tells of another deck, other runs or another version of perigrain, a file that runs have read has changed since, or somebody is at work there. Results of both in one table would be of no use. `-anew` forgets the earlier runs, `-out DIR` puts the new ones elsewhere.",
+        "", "";
     LOST = 201, "particles lost",
         "A particle left a box with fixed faces. Enlarge the box, use boundary s or m, or shorten the time step.",
         "units si\natom_style sphere\nboundary f f f\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\ncreate_atoms 1 single 0.5 0.5 0.5\nvelocity all set 1 0 0\nfix 1 all nve\ntimestep 0.01\nrun 100",

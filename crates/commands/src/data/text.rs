@@ -48,7 +48,10 @@ pub fn find(w: &World, word: &Word, what: &str) -> Result<Arc<Source>> {
     let mut trouble = None;
     for path in [PathBuf::from(name), w.folder.join(name)] {
         match load(&path) {
-            Ok(text) => return Ok(text),
+            Ok(text) => {
+                w.read_files.note(&path);
+                return Ok(text);
+            }
             Err(e) => drop(trouble.get_or_insert(e)),
         }
     }

@@ -18,6 +18,7 @@ const WORDS: usize = 20;
 pub fn apply(fix: &Declared, w: &mut World, file: &Word) -> Result<()> {
     let beside = w.folder.join(&file.text);
     let path = if beside.exists() { beside } else { file.text.clone().into() };
+    w.read_files.note(&path);
     let text = load(&path).map_err(|e| {
         Diagnostic::error(Code::NO_FILE, file.span, format!("the file `{}` cannot be read: {e}", file.text))
     })?;

@@ -96,7 +96,7 @@ impl FixStyle for WallMesh {
 
 /// Reads the file's triangles into their place.
 fn surface(file: &Word, factor: f64, shift: [f64; 3], cx: &BuildCx) -> Result<Mesh> {
-    let bytes = match std::fs::read(&file.text) {
+    let bytes = match std::fs::read(cx.world.to_read(&file.text)) {
         Ok(bytes) => bytes,
         Err(_) if cx.world.parts.promised.may_come(&file.text) => return Ok(Mesh::default()),
         Err(e) => {

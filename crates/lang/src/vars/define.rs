@@ -7,7 +7,7 @@ use crate::command::{Command, Word};
 use crate::flow::Files;
 use crate::substitute::{float_format, substitute_known};
 use crate::value::Env;
-use perigrain_base::diag::{Code, Result, Span, fail, nearest};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_base::math::cformat::Spec;
 use std::time::Instant;
 
@@ -62,6 +62,9 @@ impl Vars {
             return Err(d.into());
         }
         let mut variable = self.read(kind, args, env, files)?;
+        if kind.is_shared() {
+            self.begin_round(&mut variable);
+        }
         variable.unknown |= command.args.iter().any(|w| w.unknown);
         variable.span = Some(command.span);
         self.put_line(&name.text, variable);
@@ -75,13 +78,28 @@ impl Vars {
             Kind::Index | Kind::Universe => {
                 args.clone().expect("at least one value")?;
                 let span = args.here();
-                let values: Vec<String> = args.rest().iter().map(|w| w.text.clone()).collect();
+                let words = args.rest();
+                let span = words.last().map_or(span, |last| span.to(last.span));
+                let values: Vec<String> = words.iter().map(|w| w.text.clone()).collect();
                 self.same_turns(kind, values.len() as i64, span)?;
                 Data::List { values: values.into(), at: 0 }
             }
             Kind::World => {
-                let value = args.expect("the value for the one partition there is")?;
-                Data::Text(value.text.clone())
+                let (number, of) = self.partition();
+                args.clone().expect("a value for each partition")?;
+                let words = args.rest();
+                if words.len() != of {
+                    let span = words[0].span.to(words[words.len() - 1].span);
+                    let text = match of {
+                        1 => format!("{} values for the one partition there is", words.len()),
+                        _ => format!("{} values for {of} partitions", words.len()),
+                    };
+                    let d = Diagnostic::error(Code::CONFLICT, span, text);
+                    return Err(d
+                        .help("`-partition` on the command line says how many partitions there are")
+                        .into());
+                }
+                Data::Text(words[number].text.clone())
             }
             Kind::Loop => read_loop(&mut args, true)?,
             Kind::Uloop => {
@@ -126,6 +144,11 @@ impl Vars {
     fn same_turns(&self, kind: Kind, turns: i64, span: Span) -> Result<()> {
         if kind == Kind::Index {
             return Ok(());
+        }
+        let (_, of) = self.partition();
+        if turns < of as i64 {
+            let text = format!("{turns} values are too few for {of} partitions, which begin with one each");
+            return fail(Code::CONFLICT, span, text);
         }
         for (name, v) in self.table.iter() {
             let other = match (&v.data, v.kind) {

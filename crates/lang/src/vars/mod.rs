@@ -4,6 +4,7 @@ mod define;
 mod files;
 mod hash;
 mod moving;
+mod partition;
 mod text;
 
 use super::expr::Expr;
@@ -16,6 +17,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 pub(super) use moving::Next;
+pub use partition::{Partition, Turn};
 pub(super) use text::Text;
 
 /// The style of a variable.
@@ -25,7 +27,7 @@ pub enum Kind {
     Index,
     /// `loop`: a run of whole numbers.
     Loop,
-    /// `world`: one text per partition, of which there is one.
+    /// `world`: one text per partition.
     World,
     /// `universe`: a list of texts that partitions share.
     Universe,
@@ -94,6 +96,11 @@ impl Kind {
         )
     }
 
+    /// Whether partitions take its values in turn.
+    fn is_shared(self) -> bool {
+        matches!(self, Kind::Universe | Kind::Uloop)
+    }
+
     /// Whether `next` can move it.
     fn moves(self) -> bool {
         self.stays() && self != Kind::World
@@ -150,6 +157,8 @@ pub struct Vars {
     events: Arc<AtomicU64>,
     /// Environment variables set by `shell putenv`.
     environment: Arc<BTreeMap<String, String>>,
+    /// Which of several partitions works the deck off, if there are several.
+    partition: Option<Partition>,
     /// The sum of all variables' hashes.
     state: u64,
     /// Counts changes of names and styles.
@@ -168,6 +177,16 @@ impl Vars {
     /// No variables.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// From now on this is one of several partitions.
+    pub fn set_partition(&mut self, partition: Option<Partition>) {
+        self.partition = partition;
+    }
+
+    /// The number of this partition, from 0, and how many there are.
+    pub fn partition(&self) -> (usize, usize) {
+        self.partition.as_ref().map_or((0, 1), |p| (p.number, p.of))
     }
 
     /// A copy that shares nothing with this table: its random streams and files stand where these stand now.

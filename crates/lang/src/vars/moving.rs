@@ -33,6 +33,21 @@ impl Variable {
         }
     }
 
+    /// Goes to a turn, from 0; false if there are not so many.
+    fn go_to(&mut self, turn: usize) -> bool {
+        match &mut self.data {
+            Data::List { values, at } => {
+                *at = turn;
+                turn < values.len()
+            }
+            Data::Range { now, last, .. } => {
+                *now = turn as i64 + 1;
+                *now <= *last
+            }
+            _ => false,
+        }
+    }
+
     /// Moves on; false if there is nothing further.
     pub fn advance(&mut self) -> bool {
         match &mut self.data {
@@ -93,11 +108,15 @@ impl Vars {
         self.sets += 1;
         let known = names.iter().all(|n| self.find(&n.text).is_some_and(Variable::turns_known));
         let mut exhausted = false;
+        let turn = if first == Some(Kind::Universe) { self.take_turn(names)? } else { None };
         for name in names {
             let Some(v) = Arc::make_mut(&mut self.table).get_mut(&name.text) else { continue };
             self.state = self.state.wrapping_sub(v.state());
             v.set = self.sets;
-            let more = v.turns_known() && v.advance();
+            let more = match turn {
+                Some(turn) => v.go_to(turn),
+                None => v.turns_known() && v.advance(),
+            };
             let in_file = matches!(v.data, Data::Lines(_) | Data::Atoms(_));
             self.state = self.state.wrapping_add(v.state());
             if in_file {
@@ -121,6 +140,28 @@ impl Vars {
             (true, true) => Next::Over,
             (true, false) => Next::More,
         })
+    }
+
+    /// A variable whose values partitions take in turn begins with this partition's own; the first of several begins a round.
+    pub(super) fn begin_round(&mut self, variable: &mut Variable) {
+        let shared = self.table.values().any(|v| v.kind.is_shared());
+        let Some(partition) = &mut self.partition else { return };
+        if !shared {
+            partition.rounds += 1;
+        }
+        variable.go_to(partition.number);
+    }
+
+    /// The next turn that no partition has had; `None` where there is one partition.
+    fn take_turn(&self, names: &[Word]) -> Result<Option<usize>> {
+        let Some(partition) = &self.partition else { return Ok(None) };
+        match (partition.turn)(partition.rounds.saturating_sub(1)) {
+            Ok(turn) => Ok(Some(turn)),
+            Err(e) => {
+                let text = format!("the partitions cannot agree on who is next: {e}");
+                fail(Code::NO_FILE, names.first().map(|n| n.span), text)
+            }
+        }
     }
 
     /// `next(name)` in a formula: the present value of a file- or atomfile-style variable, which then moves on.

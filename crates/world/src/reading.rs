@@ -1,0 +1,55 @@
+//! Files that a deck reads: where they are looked for, and which ones were read.
+
+use super::World;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The files that were read so far; copies take note of the same.
+#[derive(Clone, Debug, Default)]
+pub struct ReadFiles(Arc<Mutex<BTreeSet<PathBuf>>>);
+
+impl ReadFiles {
+    /// Takes note of one.
+    pub fn note(&self, path: &Path) {
+        if let Ok(whole) = std::path::absolute(path) {
+            self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(whole);
+        }
+    }
+
+    /// All of them, as absolute paths in their order.
+    pub fn all(&self) -> Vec<PathBuf> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+    }
+}
+
+/// Where the file `name` of a deck is: in the working folder, else in `folder`, the deck's own.
+pub fn place(name: &str, folder: &Path) -> PathBuf {
+    let (plain, beside) = (PathBuf::from(name), folder.join(name));
+    if !plain.exists() && beside.exists() { beside } else { plain }
+}
+
+impl World {
+    /// Where the file `name` is that a line is about to read; it is taken note of.
+    pub fn to_read(&self, name: &str) -> PathBuf {
+        let path = place(name, &self.folder);
+        self.read_files.note(&path);
+        path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_looked_for_beside_the_deck_too() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("rock.stl"), "").unwrap();
+        let w = World { folder: folder.path().to_owned(), ..World::default() };
+        assert_eq!(w.to_read("rock.stl"), folder.path().join("rock.stl"));
+        assert_eq!(w.to_read("nowhere.stl"), Path::new("nowhere.stl"));
+        let read = w.read_files.all();
+        assert!(read.len() == 2 && read.iter().all(|p| p.is_absolute()), "{read:?}");
+    }
+}

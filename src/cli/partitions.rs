@@ -1,0 +1,191 @@
+//! `-partition`: the same deck worked off several times beside each other, each a process with its own log and screen.
+
+use super::args::{Deck, Options, Target, Usage};
+use super::{FAILED, INTERRUPTED, OK};
+use crate::sweep::worker::live_with;
+use perigrain_lang::{Partition, Turn};
+use std::fs::File;
+use std::io::{Read, Seek, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What one of several processes is told about itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct World {
+    /// Its number, from 0.
+    pub number: usize,
+    /// The process that waits for it.
+    pub parent: u32,
+    /// Where the processes share out turns.
+    pub turns: PathBuf,
+}
+
+/// `8x2 4 5`: partitions, each with the number of its threads.
+///
+/// # Errors
+/// A word that is neither `N` nor `MxN`.
+pub fn threads(words: &[String]) -> Result<Vec<usize>, Usage> {
+    let mut all = vec![];
+    for word in words {
+        let (count, each) = word.split_once('x').unwrap_or(("1", word));
+        match (count.parse::<usize>(), each.parse::<usize>()) {
+            (Ok(count @ 1..=10_000), Ok(each @ 1..)) => all.extend(std::iter::repeat_n(each, count)),
+            _ => {
+                let usage = Usage::new(format!("`-partition {word}` is neither N nor MxN"));
+                return Err(
+                    usage.help("`-partition 4x1 2x8` makes four runs with a thread each and two with eight")
+                );
+            }
+        }
+    }
+    if all.is_empty() {
+        return Err(Usage::new("`-partition` needs the threads of each partition, as 4x1"));
+    }
+    Ok(all)
+}
+
+/// The options of the process that is one of several: its threads, log and screen.
+pub fn own(o: &Options, world: &World) -> Options {
+    let mut own = o.clone();
+    own.threads = o.partition.get(world.number).copied();
+    own.log = file(&o.plog, &o.log, "log.lammps", world.number);
+    own.screen = file(&o.pscreen, &o.screen, "screen", world.number);
+    own
+}
+
+/// `FILE.N` by the switch for partitions, else by the one for all, else by the usual name.
+fn file(own: &Target, all: &Target, usual: &str, number: usize) -> Target {
+    let base = match (own, all) {
+        (Target::None, _) | (Target::Usual, Target::None) => return Target::None,
+        (Target::File(path), _) | (Target::Usual, Target::File(path)) => path.display().to_string(),
+        (Target::Usual, Target::Usual) => usual.to_owned(),
+    };
+    Target::File(format!("{base}.{number}").into())
+}
+
+/// The partition that a session belongs to, if there are several; a deck that is only looked at is seen by the first.
+pub fn of(o: &Options) -> Option<Partition> {
+    let of = o.partition.len();
+    let Some(world) = &o.world else {
+        let next = AtomicUsize::new(of);
+        let turn: Turn = Arc::new(move |_| Ok(next.fetch_add(1, Ordering::Relaxed)));
+        return (of > 0).then(|| Partition::new(0, of, turn));
+    };
+    let file = world.turns.clone();
+    Some(Partition::new(world.number, of, Arc::new(move |round| take(&file, round as usize, of))))
+}
+
+/// Takes the next turn of a round from the file that all processes share; those below `of` are where they began.
+fn take(path: &Path, round: usize, of: usize) -> std::io::Result<usize> {
+    let mut file = File::options().read(true).write(true).open(path)?;
+    file.lock()?;
+    let mut text = String::new();
+    file.read_to_string(&mut text)?;
+    let mut next: Vec<usize> = text.split_whitespace().filter_map(|w| w.parse().ok()).collect();
+    next.resize(next.len().max(round + 1), of);
+    let turn = next[round];
+    next[round] += 1;
+    let text: Vec<String> = next.iter().map(usize::to_string).collect();
+    file.set_len(0)?;
+    file.rewind()?;
+    file.write_all(text.join(" ").as_bytes())?;
+    file.unlock()?;
+    Ok(turn)
+}
+
+/// Has every partition worked off by a process and waits for all; the exit code is that of the worst.
+///
+/// # Errors
+/// A deck from standard input, which several cannot read.
+pub fn work_off(o: &Options) -> Result<u8, Usage> {
+    if o.deck == Deck::Stdin {
+        return Err(Usage::new("several partitions cannot all read the deck from standard input")
+            .help("write `-in FILE`"));
+    }
+    let turns = std::env::temp_dir().join(format!("perigrain.{}.turns", std::process::id()));
+    let outcome = all(o, &turns);
+    // It is of no use to anybody any more.
+    let _ = std::fs::remove_file(&turns);
+    Ok(outcome.unwrap_or_else(|e| {
+        eprintln!("error: the partitions cannot be started: {e}");
+        FAILED
+    }))
+}
+
+fn all(o: &Options, turns: &Path) -> std::io::Result<u8> {
+    // Ctrl-C and requests to end reach the partitions, which end at whole steps; this process waits for them.
+    let _ = ctrlc::set_handler(|| {});
+    File::create(turns)?;
+    let mut log = match &o.log {
+        Target::None => None,
+        Target::Usual => Some(File::create("log.lammps")?),
+        Target::File(path) => Some(File::create(path)?),
+    };
+    let mut say = |text: String| {
+        if o.screen == Target::Usual {
+            super::show(&text);
+        }
+        log.as_mut().map_or(Ok(()), |log| log.write_all(text.as_bytes()))
+    };
+    say(format!("Running on {} partitions of processors\n", o.partition.len()))?;
+    let children =
+        (0..o.partition.len()).map(|number| start(number, turns)).collect::<std::io::Result<Vec<_>>>();
+    let mut worst = OK;
+    for (number, mut child) in children?.into_iter().enumerate() {
+        let code = child.wait()?.code().map_or(FAILED, |code| code.clamp(0, 255) as u8);
+        if code != OK {
+            let how = if code == INTERRUPTED { "was interrupted" } else { "failed" };
+            say(format!("partition {} {how} (exit code {code})\n", number + 1))?;
+        }
+        worst = worst.max(code);
+    }
+    Ok(worst)
+}
+
+/// This program again, with the same words and its place among the partitions.
+fn start(number: usize, turns: &Path) -> std::io::Result<Child> {
+    let mut command = Command::new(std::env::current_exe()?);
+    command.args(std::env::args_os().skip(1)).arg("-world").arg(number.to_string());
+    command.arg(std::process::id().to_string()).arg(turns);
+    command.stdin(Stdio::null()).spawn()
+}
+
+/// One of several processes ends when the one that waits for it is gone.
+pub fn settle(world: &World) {
+    live_with(world.parent);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn partitions_have_threads_and_files() {
+        let words = |text: &str| text.split(' ').map(String::from).collect::<Vec<_>>();
+        assert_eq!(threads(&words("2x1 8 1x3")).unwrap(), [1, 1, 8, 3]);
+        for bad in ["0x1", "x", "2x0", "two", "1x2x3", "99999x1"] {
+            assert!(threads(&words(bad)).is_err(), "{bad}");
+        }
+        assert_eq!(file(&Target::Usual, &Target::Usual, "screen", 1), Target::File("screen.1".into()));
+        assert_eq!(file(&Target::File("p".into()), &Target::None, "screen", 0), Target::File("p.0".into()));
+        assert_eq!(file(&Target::Usual, &Target::None, "screen", 0), Target::None);
+    }
+
+    #[test]
+    fn every_turn_is_taken_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("turns");
+        File::create(&path).unwrap();
+        let mut taken: Vec<usize> = std::thread::scope(|s| {
+            let threads: Vec<_> = (0..4)
+                .map(|_| s.spawn(|| (0..25).map(|_| take(&path, 1, 4).unwrap()).collect::<Vec<_>>()))
+                .collect();
+            threads.into_iter().flat_map(|t| t.join().unwrap()).collect()
+        });
+        taken.sort_unstable();
+        assert_eq!(taken, (4..104).collect::<Vec<_>>());
+        assert_eq!(take(&path, 0, 4).unwrap(), 4, "another round");
+    }
+}

@@ -1,0 +1,105 @@
+//! What a deck that has been worked off can tell in numbers: what its runs took, and values by their words.
+
+use super::Session;
+use crate::graph::env::DeckEnv;
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, nearest};
+use perigrain_lang::{Expr, Kind, RefKind, ValueRef, substitute};
+use perigrain_out::rows::Row;
+use perigrain_plan::run::verlet;
+
+/// What all runs of a session together have made.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Worked {
+    /// Steps.
+    pub steps: i64,
+    /// Wall time of the steps, setups not included [s].
+    pub seconds: f64,
+}
+
+impl Worked {
+    pub(super) fn add(&mut self, run: &verlet::Outcome) {
+        self.steps += run.steps;
+        self.seconds += run.time.as_secs_f64();
+    }
+}
+
+impl Session {
+    /// What all runs so far have made.
+    pub fn worked(&self) -> Worked {
+        self.worked
+    }
+
+    /// The last row of the step table with its columns, if the log keeps rows.
+    pub fn last_row(&self) -> Option<(Vec<String>, Row)> {
+        self.options.log.tables(|t| t.last().map(|(columns, row)| (columns.to_vec(), row.clone())))
+    }
+
+    /// The value of what is called `word` now, as text: a word of thermo output, `v_name`, `c_ID[2]`, `f_ID`, or a formula of them.
+    /// Variables that hold text tell their text. Words that the last row of the step table has are taken from there.
+    ///
+    /// # Errors
+    /// Words that mean nothing here, values that are not there or not computed.
+    pub fn measure(&mut self, word: &str) -> Result<String> {
+        let row = self.last_row().filter(|(_, row)| row.step == self.world.clock.step);
+        if let Some(at) = row.as_ref().and_then(|(columns, _)| columns.iter().position(|c| c == word)) {
+            return Ok(row.map_or(String::new(), |(_, row)| number(row.values[at])));
+        }
+        let file = self.sources.add("report", word);
+        let span = Span::new(file, 0, word.len());
+        let text = word.strip_prefix("v_").filter(|name| self.vars.kind(name).is_some_and(holds_text));
+        let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
+        if let Some(name) = text {
+            return substitute(&format!("${{{name}}}"), span, &self.vars, &mut env);
+        }
+        let value = Expr::parse(word, span)?.number(&self.vars, &mut env)?;
+        Ok(value.map_or(String::new(), number))
+    }
+
+    /// Whether the texts read so far use a variable.
+    pub fn uses_variable(&self, name: &str) -> bool {
+        super::unused::uses(&self.sources, name)
+    }
+
+    /// Whether a check has seen all of the deck: none of its files comes from a run only.
+    pub fn has_seen_all(&self) -> bool {
+        !self.blind
+    }
+
+    /// Whether [`Session::measure`] could know `word`, as far as a deck that was only checked can tell.
+    ///
+    /// # Errors
+    /// A name that nothing has.
+    pub fn knows_measure(&mut self, word: &str) -> Result<()> {
+        let file = self.sources.add("report", word);
+        let span = Span::new(file, 0, word.len());
+        Expr::parse(word, span)?;
+        let Ok(Some(r)) = ValueRef::parse(word, span) else { return Ok(()) };
+        let known = self.known();
+        let (names, kind) = match r.kind {
+            RefKind::Variable => (known.variables, "variable"),
+            RefKind::Compute | RefKind::ComputeAtom => (known.computes, "compute"),
+            RefKind::Fix | RefKind::FixAtom => (known.fixes, "fix"),
+        };
+        if names.contains(&r.name) {
+            return Ok(());
+        }
+        let text = format!("at its end the deck has no {kind} `{}`, which is to be reported", r.name);
+        let d = Diagnostic::error(Code::unknown(kind), span, text);
+        Err(match nearest(&r.name, names.iter().map(String::as_str)) {
+            Some(near) => d.help(format!("did you mean `{}{near}`?", &word[..2])),
+            None => d,
+        }
+        .into())
+    }
+}
+
+/// Whether a variable's value is text, which may be no number.
+fn holds_text(kind: Kind) -> bool {
+    !matches!(kind, Kind::Equal | Kind::Atom | Kind::Vector | Kind::Atomfile | Kind::Internal | Kind::Timer)
+}
+
+/// A number with as few digits as mean it and no other.
+fn number(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or(text.clone(), String::from)
+}

@@ -1,0 +1,422 @@
+//! Many runs of one deck side by side: a table of jobs in, worker processes, a journal, a table of results out.
+//!
+//! [`Job::all`] makes the jobs, [`work_off`] has them run, [`Results`] holds what each of them tells; nothing here knows the command line.
+
+mod ahead;
+mod crew;
+mod folder;
+mod journal;
+mod outcome;
+mod record;
+pub mod table;
+pub mod worker;
+
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::session::axes::{Axis, combined};
+pub use ahead::{Ahead, look_ahead};
+use crew::Crew;
+use folder::Folder;
+use journal::Journal;
+pub use outcome::Outcome;
+
+/// How often running processes are looked at.
+const PAUSE: Duration = Duration::from_millis(4);
+
+/// How often the table is written anew while runs go on.
+const TABLE: Duration = Duration::from_secs(1);
+
+/// One run: index variables with one value each.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Job {
+    /// Name and value, in the order of the lists.
+    pub vars: Vec<(String, String)>,
+}
+
+impl Job {
+    /// One for each combination of values, the last list fastest.
+    ///
+    /// # Errors
+    /// A variable in two lists, more runs than anybody means.
+    pub fn all(axes: &[Axis]) -> Result<Vec<Self>> {
+        Ok(combined(axes)?.into_iter().map(|vars| Self { vars }).collect())
+    }
+
+    /// The variables as `v=20 seed=3`.
+    pub fn title(&self) -> String {
+        self.vars.iter().map(|(n, v)| format!("{n}={v}")).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// The deck, as it was when the sweep began.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Deck {
+    /// What it is called in messages.
+    pub name: String,
+    /// All of it.
+    pub text: String,
+    /// Its folder, where files that it reads are looked for.
+    pub folder: PathBuf,
+}
+
+/// How every run is worked off.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Settings {
+    /// Index variables that all runs share.
+    pub vars: Vec<(String, Vec<String>)>,
+    /// LAMMPS' artefacts too.
+    pub compat: bool,
+    /// The list layout for every peridynamic body.
+    pub force_list: bool,
+    /// Work also where everything is at rest.
+    pub no_skipping: bool,
+    /// The portable kernels only.
+    pub portable: bool,
+}
+
+/// Runs of one deck, and how they are to be made.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// The deck.
+    pub deck: Deck,
+    /// One run each; their numbers count from 1.
+    pub jobs: Vec<Job>,
+    /// What each run reports at its end, by the words of formulas.
+    pub report: Vec<String>,
+    /// What all runs share.
+    pub settings: Settings,
+    /// Where journal, table and the runs' own folders are.
+    pub folder: PathBuf,
+    /// How many run at once; 0 for as many as there are cores.
+    pub at_once: usize,
+    /// Threads of each run; 0 shares the cores out. Numbers do not depend on it.
+    pub threads: usize,
+    /// How often a run that has failed is tried again.
+    pub retry: usize,
+    /// The program that works off a run when called with [`worker::WORD`]: this one, as a rule.
+    pub program: PathBuf,
+    /// Whether runs tell how far they are.
+    pub telling: bool,
+}
+
+/// Where a sweep stands.
+#[derive(Clone, Debug, Default)]
+pub struct State {
+    /// Runs in all.
+    pub jobs: usize,
+    /// Runs that are done and went well.
+    pub ok: usize,
+    /// Runs that have failed.
+    pub failed: usize,
+    /// Those under way.
+    pub running: Vec<Running>,
+    /// Time left, from the median of what is done; `None` as long as nothing is.
+    pub left: Option<Duration>,
+}
+
+/// A run under way.
+#[derive(Clone, Debug)]
+pub struct Running {
+    /// Its place among the jobs, from 0.
+    pub job: usize,
+    /// Since when.
+    pub since: Duration,
+    /// Steps made and steps of the present `run`, if it has told.
+    pub steps: Option<(i64, i64)>,
+}
+
+/// Told of what happens.
+pub trait Watch {
+    /// The sweep goes on where an earlier one ended; `done` runs are left alone.
+    fn resumed(&mut self, _done: usize, _state: &State) {}
+    /// Something worth knowing about the journal or the table.
+    fn note(&mut self, _note: &Diagnostics) {}
+    /// A run has ended.
+    fn ended(&mut self, _job: usize, _outcome: &Outcome, _state: &State) {}
+    /// Time has passed.
+    fn waited(&mut self, _state: &State) {}
+}
+
+/// Nobody looks.
+impl Watch for () {}
+
+/// What all runs tell.
+#[derive(Clone, Debug, Default)]
+pub struct Results {
+    /// What became of each job, in their order; `None` where it has not been run.
+    pub outcomes: Vec<Option<Outcome>>,
+    /// Ended from outside.
+    pub interrupted: bool,
+    /// The table could not be written.
+    pub tableless: bool,
+}
+
+impl Results {
+    /// Whether every run went well.
+    pub fn all_ok(&self) -> bool {
+        !self.tableless && self.outcomes.iter().all(|o| o.as_ref().is_some_and(Outcome::is_ok))
+    }
+}
+
+/// What is known of a sweep's folder.
+#[derive(Clone, Debug, Default)]
+pub struct Standing {
+    /// The deck's name.
+    pub deck: String,
+    /// The jobs.
+    pub jobs: Vec<Job>,
+    /// What they report.
+    pub report: Vec<String>,
+    /// What became of them so far.
+    pub results: Results,
+    /// Whether somebody is at work there.
+    pub at_work: bool,
+}
+
+/// Looks at the folder of a sweep.
+///
+/// # Errors
+/// A folder without a journal, and one that cannot be read.
+pub fn look(folder: &std::path::Path) -> Result<Standing> {
+    let (head, outcomes) = journal::look(folder)?;
+    let results = Results { outcomes, ..Results::default() };
+    Ok(Standing {
+        deck: head.deck,
+        jobs: head.jobs,
+        report: head.report,
+        results,
+        at_work: folder::at_work(folder),
+    })
+}
+
+/// Has all runs made that are not done yet. With `anew` an earlier sweep in the folder is forgotten.
+///
+/// # Errors
+/// A folder that holds another sweep or is in use, a journal that cannot be written. That runs fail is none: it stands in the results.
+pub fn work_off(sweep: &Sweep, anew: bool, watch: &mut dyn Watch, stop: &AtomicBool) -> Result<Results> {
+    let folder = Folder::open(sweep)?;
+    let mut journal = Journal::open(sweep, &folder, anew)?;
+    if !journal.notes.is_empty() {
+        watch.note(&journal.notes);
+    }
+    let mut work = Work::new(sweep, &folder, &mut journal)?;
+    work.adopt()?;
+    let done = work.done();
+    if done > 0 || !work.journal.is_new {
+        watch.resumed(done, &work.state());
+    }
+    let outcome = work.all(watch, stop);
+    work.crew.stop();
+    outcome?;
+    work.write_table(watch);
+    let outcomes = work.outcomes;
+    Ok(Results { outcomes, interrupted: stop.load(Ordering::Relaxed), tableless: work.tableless })
+}
+
+/// A sweep at work.
+struct Work<'a> {
+    sweep: &'a Sweep,
+    folder: &'a Folder,
+    journal: &'a mut Journal,
+    crew: Crew,
+    outcomes: Vec<Option<Outcome>>,
+    /// How often each run was tried, this time.
+    tries: Vec<usize>,
+    /// Digests of the files that runs have read, and which run was the first.
+    read: BTreeMap<PathBuf, (String, usize)>,
+    tableless: bool,
+}
+
+impl<'a> Work<'a> {
+    fn new(sweep: &'a Sweep, folder: &'a Folder, journal: &'a mut Journal) -> Result<Self> {
+        let outcomes = std::mem::take(&mut journal.outcomes);
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let left = outcomes.iter().filter(|o| !o.as_ref().is_some_and(Outcome::is_ok)).count();
+        let at_once = if sweep.at_once == 0 { cores } else { sweep.at_once }.min(left).max(1);
+        let threads = if sweep.threads == 0 { (cores / at_once).max(1) } else { sweep.threads };
+        let tries = vec![0; outcomes.len()];
+        let crew = Crew::new(at_once, threads);
+        let mut work =
+            Self { sweep, folder, journal, crew, outcomes, tries, read: BTreeMap::new(), tableless: false };
+        work.check_read_files()?;
+        Ok(work)
+    }
+
+    /// Refuses a sweep whose runs have read files that are others now.
+    fn check_read_files(&mut self) -> Result<()> {
+        let done: Vec<Outcome> = self.outcomes.iter().flatten().filter(|o| o.is_ok()).cloned().collect();
+        for (k, outcome) in done.iter().enumerate() {
+            if let Some(changed) = self.changed(k, outcome) {
+                return Err(other(self.sweep, changed));
+            }
+        }
+        for (path, (digest, run)) in &self.read {
+            if worker::digest_of(path).as_ref() != Some(digest) {
+                let text = format!("`{}` has changed since run {} read it", path.display(), run + 1);
+                return Err(other(self.sweep, text));
+            }
+        }
+        Ok(())
+    }
+
+    /// Notes what a run has read; a sentence if an earlier one found something else there.
+    fn changed(&mut self, job: usize, outcome: &Outcome) -> Option<String> {
+        for (path, digest) in &outcome.read {
+            let (first, run) = self.read.entry(path.clone()).or_insert_with(|| (digest.clone(), job));
+            if first != digest {
+                return Some(format!("`{}` has changed since run {} read it", path.display(), *run + 1));
+            }
+        }
+        None
+    }
+
+    /// Takes in runs that had ended when the sweep was killed before it could say so.
+    fn adopt(&mut self) -> Result<()> {
+        for job in 0..self.outcomes.len() {
+            if self.outcomes[job].is_some() || !self.journal.begun[job] {
+                continue;
+            }
+            let left = self.folder.left_by(self.sweep, job, &self.journal.print(job));
+            if let Some(outcome) = left.filter(Outcome::is_ok) {
+                self.end(job, outcome)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn done(&self) -> usize {
+        self.outcomes.iter().flatten().filter(|o| o.is_ok()).count()
+    }
+
+    fn all(&mut self, watch: &mut dyn Watch, stop: &AtomicBool) -> Result<()> {
+        // What has failed before is tried again.
+        let mut waiting: Vec<usize> = (0..self.outcomes.len())
+            .rev()
+            .filter(|k| !self.outcomes[*k].as_ref().is_some_and(Outcome::is_ok))
+            .collect();
+        waiting.iter().for_each(|k| self.outcomes[*k] = None);
+        let mut written = Instant::now();
+        let mut told = Instant::now();
+        self.write_table(watch);
+        while !stop.load(Ordering::Relaxed) {
+            while self.crew.has_room()
+                && let Some(job) = waiting.pop()
+            {
+                self.begin(job)?;
+            }
+            if self.crew.is_idle() {
+                break;
+            }
+            let ended = self.crew.ended();
+            if ended.is_empty() {
+                std::thread::sleep(PAUSE);
+            }
+            for (job, outcome) in ended {
+                let outcome = outcome.unwrap_or_else(|| self.outcome(job));
+                self.take(job, outcome, &mut waiting, watch)?;
+            }
+            if written.elapsed() > TABLE {
+                self.write_table(watch);
+                written = Instant::now();
+            }
+            if told.elapsed() > Duration::from_millis(200) {
+                watch.waited(&self.state());
+                told = Instant::now();
+            }
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self, job: usize) -> Result<()> {
+        self.tries[job] += 1;
+        let home = self.folder.of(self.sweep, job);
+        if !self.journal.begun[job] && home.exists() {
+            let text = format!("`{}` is in the way, and no run of this sweep has made it", home.display());
+            self.crew.failed(job, Outcome::failed(text, 0.0));
+            return Ok(());
+        }
+        self.journal.begin(job)?;
+        let task = self.folder.task(self.sweep, job, self.crew.threads, self.journal.print(job));
+        let started = self.folder.clear(self.sweep, job).and_then(|home| {
+            self.crew.start(job, self.sweep, &home, &task).map_err(|e| {
+                let text = format!("`{}` cannot be started: {e}", self.sweep.program.display());
+                Diagnostic::error(Code::NO_FILE, None, text).into()
+            })
+        });
+        if let Err(e) = started {
+            let text = e.0.first().map_or(String::new(), |d| format!("error[{}]: {}", d.code, d.message));
+            self.crew.failed(job, Outcome::failed(text, 0.0));
+        }
+        Ok(())
+    }
+
+    /// What a run has left that ended by itself; its process may have crashed.
+    fn outcome(&mut self, job: usize) -> Outcome {
+        let left = self.folder.left_by(self.sweep, job, &self.journal.print(job));
+        let mut outcome = left.unwrap_or_else(|| self.folder.crashed(self.sweep, job, &self.crew.last));
+        if outcome.is_ok() {
+            outcome.problem = self.changed(job, &outcome);
+        }
+        outcome
+    }
+
+    fn take(
+        &mut self,
+        job: usize,
+        outcome: Outcome,
+        waiting: &mut Vec<usize>,
+        watch: &mut dyn Watch,
+    ) -> Result<()> {
+        if !outcome.is_ok() && self.tries[job] <= self.sweep.retry {
+            waiting.push(job);
+            return Ok(());
+        }
+        self.end(job, outcome)?;
+        if let Some(outcome) = &self.outcomes[job] {
+            watch.ended(job, outcome, &self.state());
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, job: usize, outcome: Outcome) -> Result<()> {
+        self.journal.end(job, &outcome)?;
+        self.outcomes[job] = Some(outcome);
+        Ok(())
+    }
+
+    fn write_table(&mut self, watch: &mut dyn Watch) {
+        let written = table::write(&self.sweep.folder, &self.sweep.jobs, &self.sweep.report, &self.outcomes);
+        if let Err(e) = &written
+            && !self.tableless
+        {
+            watch.note(e);
+        }
+        self.tableless = written.is_err();
+    }
+
+    fn state(&self) -> State {
+        let ended = || self.outcomes.iter().flatten();
+        let ok = self.done();
+        let mut times: Vec<f64> = ended().filter(|o| o.is_ok()).map(|o| o.seconds).collect();
+        times.sort_by(f64::total_cmp);
+        let running = self.crew.running(|job| self.folder.steps(self.sweep, job));
+        let missing = self.outcomes.len() - ended().count();
+        let left = times.get(times.len() / 2).map(|median| {
+            let spent: f64 = running.iter().map(|r| r.since.as_secs_f64().min(*median)).sum();
+            Duration::from_secs_f64((missing as f64 * median - spent).max(0.0) / self.crew.at_once as f64)
+        });
+        State { jobs: self.outcomes.len(), ok, failed: ended().count() - ok, running, left }
+    }
+}
+
+/// The sweep in the folder is not the one that is asked for.
+fn other(sweep: &Sweep, what: String) -> Diagnostics {
+    let text = format!("the sweep in `{}` cannot go on: {what}", sweep.folder.display());
+    Diagnostic::error(Code::OTHER_SWEEP, None, text)
+        .help("`-anew` begins it anew and forgets its runs; `-out DIR` puts this one elsewhere")
+        .into()
+}
