@@ -35,3 +35,4 @@ mod scripts;
 mod staggered;
 #[path = "common/threads.rs"]
 mod threads;
+mod verify;

@@ -11,6 +11,7 @@ pub mod repl;
 mod signals;
 pub mod syntax;
 pub mod tasks;
+pub mod verifying;
 
 use crate::session::Mode;
 use args::Usage;
@@ -50,6 +51,7 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Doc(Some(name)) => show(&manual::page(&name)?),
         Task::Run(o) => return Ok(deck::work_off(&o, Mode::Run)),
         Task::Repl(o) => return Ok(repl::run(&o)),
+        Task::Verify(wanted) => return verifying::verify(&wanted),
         Task::Check { decks, json } => return Ok(checking::check(&decks, json)),
         Task::Plan { options, dot: true, .. } => return Ok(deck::draw(&options)),
         Task::Plan { options, measure: true, .. } => return Ok(deck::work_off(&options, Mode::Measure)),
