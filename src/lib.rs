@@ -23,8 +23,10 @@
 
 pub mod cli;
 pub mod graph;
+mod json;
 pub mod session;
 pub mod sweep;
+pub mod verify;
 
 pub use perigrain_base::{diag, math, par, units};
 pub use perigrain_lang as lang;

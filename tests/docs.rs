@@ -58,6 +58,7 @@ const BOOK: [&str; 2] = [
      - [Commands and styles](commands.md)\n",
     "- [Error codes](errors.md)\n\
      - [Bonded particles](bonded.md)\n\
+     - [Verification](verification.md)\n\
      - [Coming from LAMMPS](coming-from-lammps.md)\n\
      - [How fast, and what limits it](speed.md)\n\n\
      # The program inside\n\n\

@@ -38,3 +38,4 @@ mod sweep;
 mod swinging;
 #[path = "common/threads.rs"]
 mod threads;
+mod verify;

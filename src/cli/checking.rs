@@ -2,11 +2,11 @@
 
 use super::args::{Deck, Options};
 use super::{FAILED, OK, deck, show};
+use crate::json::quoted;
 use crate::session::axes::{Axis, combined};
 use crate::session::{Mode, Session};
 use perigrain_base::diag::{Diagnostic, Diagnostics, Severity, Sources, Span};
 use perigrain_out::log::Log;
-use std::fmt::Write;
 
 /// So many combinations of a `sweep` line are checked each, of more only the first and the last.
 const MOST_CHECKED: usize = 64;
@@ -127,23 +127,6 @@ fn place(span: Option<Span>, deck: &str, sources: &Sources) -> String {
         "\"file\": {}, \"line\": {line}, \"column\": {column}, \"end_column\": {end}",
         quoted(&source.name)
     )
-}
-
-/// A text as a JSON string.
-fn quoted(text: &str) -> String {
-    let mut out = String::from('"');
-    for c in text.chars() {
-        match c {
-            '"' => out.push_str("\\\""),
-            '\\' => out.push_str("\\\\"),
-            '\n' => out.push_str("\\n"),
-            '\t' => out.push_str("\\t"),
-            c if u32::from(c) < 0x20 => drop(write!(out, "\\u{:04x}", u32::from(c))),
-            c => out.push(c),
-        }
-    }
-    out.push('"');
-    out
 }
 
 /// One set of options per deck; standard input if none is named.

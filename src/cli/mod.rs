@@ -13,6 +13,7 @@ mod signals;
 mod sweeping;
 pub mod syntax;
 pub mod tasks;
+pub mod verifying;
 
 use crate::session::Mode;
 use args::Usage;
@@ -63,6 +64,7 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Repl(o) => return Ok(repl::run(&o)),
         Task::Sweep(request) => return sweeping::perform(&request),
         Task::Worker => return Ok(if crate::sweep::worker::main() { OK } else { FAILED }),
+        Task::Verify(wanted) => return verifying::verify(&wanted),
         Task::Check { decks, json } => return Ok(checking::check(&decks, json)),
         Task::Plan { options, dot: true, .. } => return Ok(deck::draw(&options)),
         Task::Plan { options, measure: true, .. } => return Ok(deck::work_off(&options, Mode::Measure)),

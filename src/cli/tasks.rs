@@ -1,8 +1,8 @@
 //! What the program is asked to do: a subcommand, or a deck as LAMMPS would be given it.
 
 use super::args::{self, Deck, Options, SWITCHES, Usage};
-use super::checking;
 use super::sweeping::args::Request;
+use super::{checking, verifying};
 use clap::{CommandFactory, Parser};
 
 /// One call of the program.
@@ -32,6 +32,8 @@ pub enum Task {
     Sweep(Box<Request>),
     /// Make one of them, as standard input says.
     Worker,
+    /// Run the published cases that the program carries.
+    Verify(verifying::Wanted),
     /// Explain a diagnostic code.
     Explain(String),
     /// Print the manual page of a command or style, or the list of all.
@@ -88,6 +90,8 @@ enum Sub {
         )]
         rest: Vec<String>,
     },
+    /// Run published cases and say whether this build on this machine gives their numbers
+    Verify(verifying::Wanted),
     /// Explain the code of a message, as PG0102
     Explain {
         /// The code
@@ -161,6 +165,9 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
     if ["plan", "check"].contains(&words[0].as_str()) {
         words[1..].sort_by_key(|w| !matches!(w.as_str(), "--measure" | "--dot" | "--json"));
     }
+    if words[0] == "verify" {
+        verifying::with_two_dashes(&mut words);
+    }
     let sub = match Sub::try_parse_from(std::iter::once("perigrain".to_string()).chain(words)) {
         Ok(sub) => sub,
         Err(e) if e.use_stderr() => {
@@ -182,6 +189,7 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
         }
         Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
         Sub::Sweep { rest } => Task::Sweep(Box::new(Request::parse(rest)?)),
+        Sub::Verify(wanted) => Task::Verify(wanted),
         Sub::Explain { code } => Task::Explain(code),
         Sub::Doc { name } => Task::Doc((!name.is_empty()).then(|| name.join(" "))),
     })
@@ -278,6 +286,14 @@ mod tests {
         assert_eq!(read("help pg0101").unwrap(), Task::Explain("pg0101".into()));
         assert!(read("check in.plate -logg x").unwrap_err().help.unwrap().contains("`-log`"));
         assert!(read("explain").is_err());
+        let wanted = verifying::Wanted {
+            only: Some("chung".into()),
+            json: Some("a.json".into()),
+            threads: Some(2),
+            ..Default::default()
+        };
+        assert_eq!(read("verify -only chung -json a.json --threads 2").unwrap(), Task::Verify(wanted));
+        assert!(read("verify -onyl chung").unwrap_err().help.unwrap().contains("--only"));
         for hidden in ["-layout", "-rest", "-portable"] {
             assert!(!help().contains(hidden));
         }

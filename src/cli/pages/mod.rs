@@ -8,6 +8,7 @@ mod prompt;
 mod restart;
 mod session;
 mod thermo;
+mod verify;
 
 use perigrain_styles::Doc;
 
@@ -15,7 +16,8 @@ use perigrain_styles::Doc;
 pub type Entry = (&'static str, Doc);
 
 /// What is no command: how decks are written, what formulas know, how the program is called.
-pub const TOPICS: &[Entry] = &[program::PERIGRAIN, prompt::PROMPT, language::DECKS, formulas::FORMULAS];
+pub const TOPICS: &[Entry] =
+    &[program::PERIGRAIN, prompt::PROMPT, verify::VERIFY, language::DECKS, formulas::FORMULAS];
 
 /// Commands that act by themselves, in the order of the manual.
 pub const COMMANDS: &[Entry] = &[

@@ -12,6 +12,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain check DECK … [--json] [switch …]\n\
             perigrain sweep DECK -each NAME VALUE … [switch …]\n\
             perigrain repl [DECK] [switch …]\n\
+            perigrain verify [-only PATTERN] [-html FILE] …\n\
             perigrain doc [name]\n\
             perigrain explain CODE",
         summary: "The program: how it is called, its switches and exit codes.",
@@ -22,6 +23,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain plan in.plate --measure\n\
             perigrain plan --dot in.plate\n\
             perigrain -in in.plate -screen none -threads 2 -compat lammps\n\
+            perigrain verify -only chung -html verify.html\n\
             perigrain doc fix nve\n\
             perigrain explain PG0102",
     },
@@ -33,7 +35,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     It makes the particles that the first run begins with, so that large scenes take their time, and no step; behind that run nothing is known of \
     particles, and lines that hang on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
     prints the command graph for graphviz. `sweep` makes many runs of a deck side by side: see [sweep](sweep.md). `doc` prints a page of this manual, `explain` the story behind the code of a \
-    message. `repl`, and `perigrain` alone on a terminal, work lines off as they are typed: see [the \
+    message. `verify` runs published cases that the program carries and says whether this build on this machine gives \
+    their numbers: see [verify](verify.md). `repl`, and `perigrain` alone on a terminal, work lines off as they are typed: see [the \
     prompt](prompt.md).\n\n\
     Switches, before or behind the deck:\n\n\
     - `-in FILE`, `-i`: the deck; without a deck or with `none` it is read from standard input;\n\

@@ -1,0 +1,105 @@
+//! The subcommand `verify`: published cases, run here, with a verdict.
+
+use super::args::Usage;
+use super::{FAILED, OK, show};
+use crate::session;
+use crate::verify::case::Case;
+use crate::verify::report::{self, Report};
+use crate::verify::running::run_all;
+use crate::verify::{DECKS, chosen};
+use perigrain_base::diag::nearest;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// What is asked of `verify`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, clap::Args)]
+pub struct Wanted {
+    /// Print the cases instead of running them
+    #[arg(long)]
+    pub list: bool,
+    /// Run the cases whose name or title holds PATTERN
+    #[arg(long, value_name = "PATTERN")]
+    pub only: Option<String>,
+    /// Print the deck of each case instead of running it
+    #[arg(long)]
+    pub deck: bool,
+    /// Run N cases at a time (all cores)
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+    /// Write the report as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Write it as JUnit XML, for test servers
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Write it as a web page with curves
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+    /// Write it as Markdown
+    #[arg(long, value_name = "FILE")]
+    pub markdown: Option<PathBuf>,
+}
+
+/// The words of the command line with two dashes where LAMMPS' switches have one.
+pub fn with_two_dashes(words: &mut [String]) {
+    for word in words {
+        if word.strip_prefix('-').is_some_and(|name| name.starts_with(|c: char| c.is_ascii_alphabetic())) {
+            word.insert(0, '-');
+        }
+    }
+}
+
+/// Runs what is wanted; the exit code says whether every number is the field's.
+///
+/// # Errors
+/// A pattern that no case has, a file that cannot be written.
+pub fn verify(wanted: &Wanted) -> Result<u8, Usage> {
+    let cases = named(wanted.only.as_deref().unwrap_or_default())?;
+    if wanted.list {
+        show(&report::list(&cases));
+        return Ok(OK);
+    }
+    if wanted.deck {
+        cases.iter().for_each(|case| show(&case.deck));
+        return Ok(OK);
+    }
+    // Cases are small: several side by side are faster than one on several threads.
+    let workers = session::set_threads(wanted.threads.unwrap_or(0));
+    session::set_threads(1);
+    let begin = Instant::now();
+    let outcomes = run_all(cases, workers, |outcome| show(&report::of_case(outcome)));
+    let report =
+        Report { outcomes, machine: report::machine(), workers, seconds: begin.elapsed().as_secs_f64() };
+    show(&report::summary(&report));
+    write(wanted, &report)?;
+    Ok(if report.is_well() { OK } else { FAILED })
+}
+
+fn named(pattern: &str) -> Result<Vec<Case>, Usage> {
+    let cases = chosen(pattern).map_err(|message| Usage { message, help: None })?;
+    if !cases.is_empty() {
+        return Ok(cases);
+    }
+    let last = |name: &'static str| name.rsplit('/').next().unwrap_or(name);
+    let near = nearest(pattern, DECKS.iter().flat_map(|(name, _)| [*name, last(name)]));
+    let near = near.map(|name| format!("did you mean `{name}`? "));
+    let help = format!("{}`perigrain verify -list` lists all", near.unwrap_or_default());
+    Err(Usage { message: format!("no case has `{pattern}` in its name or title"), help: Some(help) })
+}
+
+/// Writes the reports that are asked for.
+fn write(wanted: &Wanted, report: &Report) -> Result<(), Usage> {
+    type Make = fn(&Report) -> String;
+    let all: [(&Option<PathBuf>, Make); 4] = [
+        (&wanted.json, report::json),
+        (&wanted.junit, report::junit),
+        (&wanted.html, report::html),
+        (&wanted.markdown, report::markdown),
+    ];
+    for (file, make) in all {
+        let Some(file) = file else { continue };
+        std::fs::write(file, make(report))
+            .map_err(|e| Usage { message: format!("cannot write `{}`: {e}", file.display()), help: None })?;
+    }
+    Ok(())
+}

@@ -1,0 +1,67 @@
+//! Published cases and closed forms that the program carries with it: decks that say what must come out, and why.
+
+pub mod case;
+pub mod plot;
+pub mod report;
+pub mod running;
+
+use case::Case;
+
+macro_rules! decks {
+    ($($name:literal,)*) => {
+        &[$(($name, include_str!(concat!("cases/", $name, ".in")))),*]
+    };
+}
+
+/// The name and text of every case, in the order of the report.
+pub const DECKS: &[(&str, &str)] = decks![
+    "grains/chung_ooi_1",
+    "grains/chung_ooi_2",
+    "grains/chung_ooi_3",
+    "grains/chung_ooi_4",
+    "grains/chung_ooi_5",
+    "grains/chung_ooi_6",
+    "grains/chung_ooi_7",
+    "grains/chung_ooi_8",
+    "grains/restitution_cut",
+    "grains/restitution_regressions",
+    "grains/pull_off",
+    "grains/cattaneo_mindlin",
+    "grains/sliding_to_rolling",
+    "grains/rolling_and_twisting",
+    "grains/bouncing",
+    "grains/haff_cooling",
+    "grains/order_in_time",
+    "peridynamics/lattice_moduli",
+    "peridynamics/lattice_moduli_states",
+    "peridynamics/dispersion",
+    "peridynamics/wave_speed",
+    "peridynamics/stable_step",
+    "peridynamics/order_in_time",
+    "peridynamics/elastic_wave",
+    "peridynamics/bar_wave",
+    "peridynamics/tension",
+    "peridynamics/plate_impact",
+    "peridynamics/kalthoff_winkler",
+    "peridynamics/mode_one",
+    "bonded/one_bond",
+    "bonded/one_state",
+    "bonded/free_pair",
+    "bonded/chain_waves",
+    "bonded/cantilever",
+    "bonded/stiffness",
+    "bonded/pressed_pair",
+];
+
+/// The cases whose name or title holds a text, whatever its case; all for an empty one.
+///
+/// # Errors
+/// A case whose first lines cannot be read.
+pub fn chosen(text: &str) -> Result<Vec<Case>, String> {
+    let wanted = text.to_lowercase();
+    let all = DECKS.iter().map(|(name, deck)| Case::read(name, deck));
+    let holds = |case: &Case| {
+        case.name.to_lowercase().contains(&wanted) || case.title.to_lowercase().contains(&wanted)
+    };
+    Ok(all.collect::<Result<Vec<Case>, String>>()?.into_iter().filter(holds).collect())
+}
