@@ -30,6 +30,7 @@ mod prompt;
 #[path = "restart/main.rs"]
 mod restart;
 mod rooms;
+mod runaway;
 #[path = "scripts.rs"]
 mod scripts;
 mod staggered;

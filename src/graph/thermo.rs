@@ -3,6 +3,7 @@
 use super::keywords;
 use super::ops::Lost;
 use super::row::Row;
+use super::runaway::Runaway;
 use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
@@ -28,6 +29,8 @@ pub struct Thermo {
     pub new_temperature: Option<ValueRef>,
     /// Something was set by `thermo_modify`, which a new style forgets.
     modified: bool,
+    /// `thermo_modify energy`.
+    pub runaway: Option<Runaway>,
     /// Columns and formats.
     pub layout: Layout,
     /// What each column reads.
@@ -65,6 +68,7 @@ impl Default for Thermo {
             lost_bond: LostBond::Error,
             new_temperature: None,
             modified: false,
+            runaway: None,
             layout,
             sources,
             temp: id("temp"),
@@ -143,8 +147,19 @@ impl Thermo {
     /// # Errors
     /// Unknown keywords and formats that do not fit.
     pub fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        const KNOWN: [&str; 10] =
-            ["lost", "lost/bond", "warn", "norm", "flush", "line", "colname", "format", "temp", "press"];
+        const KNOWN: [&str; 11] = [
+            "lost",
+            "lost/bond",
+            "energy",
+            "warn",
+            "norm",
+            "flush",
+            "line",
+            "colname",
+            "format",
+            "temp",
+            "press",
+        ];
         if args.is_empty() {
             return fail(Code::MISSING_ARGUMENT, args.here(), "thermo_modify needs a keyword");
         }
@@ -173,6 +188,14 @@ impl Thermo {
                         "warn" => LostBond::Warn,
                         _ => LostBond::Ignore,
                     }
+                }
+                "energy" => {
+                    self.runaway =
+                        Some(match args.choice("value of energy", &["error", "warn", "ignore"])? {
+                            "error" => Runaway::Error,
+                            "warn" => Runaway::Warn,
+                            _ => Runaway::Ignore,
+                        });
                 }
                 "warn" => {
                     if !["ignore", "reset", "default", "always"].contains(&args.peek_text()) {
@@ -240,7 +263,10 @@ impl Thermo {
     }
 
     /// At which steps a row is printed.
-    fn when(&self, s: &mut Sealer) -> Result<When> {
+    ///
+    /// # Errors
+    /// A variable that is gone.
+    pub fn when(&self, s: &mut Sealer) -> Result<When> {
         let ends = vec![When::First, When::Last];
         Ok(match (&self.named, self.every) {
             (Some(r), _) => When::Any([vec![s.steps(r)?], ends].concat()),

@@ -75,7 +75,7 @@ impl Session {
         c.began = Some(Instant::now());
         c.begin_minimizing();
         self.settle_resume(span)?;
-        let (mut plan, energy) = self.sealed(span, true)?;
+        let (mut plan, energy) = self.sealed(span, true, false)?;
         if self.options.mode == Mode::Plan {
             self.promise_outputs();
             return self.options.log.line(explain::text(&plan, false).trim_end());

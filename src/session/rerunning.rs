@@ -35,7 +35,7 @@ impl Session {
         (c.began, c.step) = (None, first);
         self.world.parts.resume = None;
         self.world.slots.invalidate();
-        let mut plan = self.seal(cmd.span)?;
+        let mut plan = self.sealed(cmd.span, false, false)?.0;
         if self.options.mode == Mode::Plan {
             return self.options.log.line(explain::text(&plan, false).trim_end());
         }

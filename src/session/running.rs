@@ -143,11 +143,17 @@ impl Session {
     /// # Errors
     /// What styles miss in the scene.
     pub fn seal(&mut self, span: Span) -> Result<StepPlan> {
-        Ok(self.sealed(span, false)?.0)
+        Ok(self.sealed(span, false, true)?.0)
     }
 
-    /// As `seal`. A minimization leaves fixes out that do not act in it, and reads the energy.
-    pub(super) fn sealed(&mut self, span: Span, minimizing: bool) -> Result<(StepPlan, Option<Reading>)> {
+    /// As `seal`. A minimization leaves fixes out that do not act in it, and reads the energy. Where steps are made, the run
+    /// is `watched`.
+    pub(super) fn sealed(
+        &mut self,
+        span: Span,
+        minimizing: bool,
+        watched: bool,
+    ) -> Result<(StepPlan, Option<Reading>)> {
         let vars = Arc::new(self.vars.clone());
         let respa = self.respa().filter(|_| !minimizing).cloned();
         self.graph.computes.iter().for_each(|c| c.compute.welcome(&mut self.world));
@@ -233,6 +239,11 @@ impl Session {
         crate::graph::virials::seal(&mut s)?;
         if !minimizing {
             crate::graph::guard::seal(&mut s)?;
+        }
+        if watched {
+            // Behind the guard, whose blocks end where others act.
+            let rows = self.graph.thermo.when(&mut s)?;
+            crate::graph::runaway::seal(&mut s, &rows);
         }
         s.say_what_is_missing();
         s.plan.settle();
