@@ -10,6 +10,7 @@ mod info;
 mod interactive;
 mod later;
 mod leveling;
+mod limits;
 mod minimizing;
 mod rerunning;
 mod resolution;
@@ -141,6 +142,8 @@ pub struct Session {
     seen_names: u64,
     /// Lines worked off, each turn of a loop by itself.
     turns: u64,
+    /// Steps made in all runs.
+    made: i64,
 }
 
 /// No progress shown.
@@ -179,6 +182,7 @@ impl Session {
             later: Default::default(),
             seen_names: 0,
             turns: 0,
+            made: 0,
         };
         for (name, values) in s.options.vars.clone() {
             s.vars.set_index(&name, &values)?;
@@ -319,7 +323,7 @@ impl Session {
             self.options.log.echo(text)?;
         }
         let Some(cmd) = &line.command else { return Ok(None) };
-        let outcome = self.command(script, cmd);
+        let outcome = self.within_limits(cmd).and_then(|()| self.command(script, cmd));
         self.say_notes()?;
         outcome.map_err(|e| checking::with_origins(self.sources.adopt(e).at(cmd.span), cmd))
     }

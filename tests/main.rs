@@ -31,6 +31,7 @@ mod prompt;
 mod restart;
 mod rooms;
 mod runaway;
+mod safe;
 #[path = "scripts.rs"]
 mod scripts;
 mod staggered;

@@ -19,7 +19,7 @@ impl Files for RealFiles<'_> {
             Some(_) => return Err(std::io::ErrorKind::NotFound.into()),
             None => {}
         }
-        let bytes = std::fs::read(path)?;
+        let bytes = perigrain_base::gate::read(path)?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 

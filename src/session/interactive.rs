@@ -115,6 +115,7 @@ impl Session {
             later: _,
             seen_names: _,
             turns: _,
+            made: _,
         } = self;
         let shared = earlier.filter(|e| self.same_particles(e)).map(|e| e.world.clone());
         let bytes = if shared.is_some() { 0 } else { self.bytes() };

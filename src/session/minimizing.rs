@@ -23,6 +23,8 @@ impl Session {
             evaluations: args.integer_from(0, "the most evaluations of forces")?,
         };
         args.finish()?;
+        self.steps_left(goal.iterations, cmd.span)?;
+        self.made = self.made.saturating_add(goal.iterations);
         self.thermo_computes();
         self.record(cmd, Role::Run, None, vec![], vec![]);
         self.ready(cmd.span)?;

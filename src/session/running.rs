@@ -1,5 +1,6 @@
 //! `run` and `write_dump`: seal the declarations, step, say how it went.
 
+use super::limits::Warden;
 use super::{Mode, Session, refuse};
 use crate::graph::Role;
 use crate::graph::build::Context;
@@ -10,6 +11,7 @@ use crate::graph::ops::{ClearForces, Reneighbor};
 use crate::graph::seal::Sealer;
 use crate::graph::spatial;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::gate;
 use perigrain_fixes::Minimizing;
 use perigrain_lang::{Args, Command, Script, Word};
 use perigrain_out::thermo::{Finish, Section};
@@ -110,6 +112,7 @@ impl Session {
             return refuse(Code::BAD_VALUE, span, format!("a run cannot make {steps} steps"));
         }
         out.steps = steps;
+        self.steps_left(steps, span)?;
         let first = self.world.clock.step;
         let Some(last) = first.checked_add(steps) else {
             let text =
@@ -298,6 +301,7 @@ impl Session {
         let outcome = outcome.map_err(|e| e.at(span))?;
         finished?;
         self.ran = true;
+        self.made = self.made.saturating_add(outcome.steps);
         self.interrupted |= outcome.interrupted;
         self.say_notes()?;
         self.say_end(&plan, &outcome, None, post && self.timer.tables())?;
@@ -318,7 +322,15 @@ impl Session {
         pace.setup(plan, w, unchanged)?;
         plan.reset_meters();
         w.clock.began = Some(Instant::now());
-        pace.run(plan, w, watch)
+        if gate::limits().is_none() {
+            return pace.run(plan, w, watch);
+        }
+        if let Some(d) = gate::too_much_memory() {
+            return Err(d.into());
+        }
+        let mut warden = Warden { watch, stop: w.settings.stop.clone(), problem: None };
+        let outcome = pace.run(plan, w, &mut warden)?;
+        warden.problem.map_or(Ok(outcome), |d| Err(d.into()))
     }
 
     /// What a run, or a minimization with its own block of text, says at its end.

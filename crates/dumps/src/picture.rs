@@ -1,6 +1,7 @@
 //! The options of `dump image` and what they mean for camera, colours and text.
 
 use perigrain_base::diag::{Code, Result, fail, nearest};
+use perigrain_base::gate;
 use perigrain_base::math::cformat::general;
 use perigrain_lang::args::{blame, parse_number};
 use perigrain_lang::{Args, Word};
@@ -157,7 +158,9 @@ impl Options {
                 self.look.width = pixels(args, "the width in pixels")?;
                 self.look.height = pixels(args, "the height in pixels")?;
                 let all = self.look.width as f64 * self.look.height as f64;
-                if let Some(d) = memory::lacking(BYTES_PER_PIXEL * all, "a picture of this size") {
+                let allowed = gate::beyond(all, |l| l.pixels, "pixels", &format!("a picture of {all}"));
+                let fits = || memory::lacking(BYTES_PER_PIXEL * all, "a picture of this size");
+                if let Some(d) = allowed.or_else(fits) {
                     return Err(d.at(word.span).into());
                 }
             }

@@ -41,6 +41,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     takes all words up to the next switch, so put the deck first or write `-in`;\n\
     - `-threads N`: uses N threads (all cores); results are the same bits for any N;\n\
     - `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md);\n\
+    - `-safe`: keeps the deck in its own folder, without `shell` and environment and with limits to all it uses, for [decks of \
+    others](../safe.md); `-limit memory|steps|lines|files|pixels N` is the same with another limit (memory in MB);\n\
     - `-suffix omp`, `-sf` and `-nocite`, `-nc`: taken for LAMMPS' command lines, without effect;\n\
     - `-package omp N`, `-pk`: the same as `-threads N`;\n\
     - `-help`, `-h` and `-version`: print and end.\n\n\
