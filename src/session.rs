@@ -12,6 +12,7 @@ mod info;
 mod interactive;
 mod later;
 mod leveling;
+mod limits;
 mod measuring;
 mod minimizing;
 mod overlaps;
@@ -157,6 +158,8 @@ pub struct Session {
     told_to: Log,
     /// Lines worked off, each turn of a loop by itself.
     turns: u64,
+    /// Steps made in all runs.
+    made: i64,
 }
 
 /// No progress shown.
@@ -204,6 +207,7 @@ impl Session {
             plans: Default::default(),
             told_to,
             turns: 0,
+            made: 0,
         };
         s.vars.set_partition(s.options.partition.clone());
         for (name, values) in s.options.vars.clone() {
@@ -377,7 +381,7 @@ impl Session {
             self.options.log.echo(text)?;
         }
         let Some(cmd) = &line.command else { return Ok(None) };
-        let outcome = self.command(script, cmd);
+        let outcome = self.within_limits(cmd).and_then(|()| self.command(script, cmd));
         self.say_notes()?;
         outcome.map_err(|e| checking::with_origins(self.sources.adopt(e).at(cmd.span), cmd))
     }

@@ -60,6 +60,7 @@ const BOOK: [&str; 2] = [
      - [Bonded particles](bonded.md)\n\
      - [Verification](verification.md)\n\
      - [Coming from LAMMPS](coming-from-lammps.md)\n\
+     - [Decks of others](safe.md)\n\
      - [How fast, and what limits it](speed.md)\n\n\
      # The program inside\n\n\
      - [The house](architecture.md)\n\

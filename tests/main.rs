@@ -31,6 +31,8 @@ mod prompt;
 #[path = "restart/main.rs"]
 mod restart;
 mod rooms;
+mod runaway;
+mod safe;
 #[path = "scripts.rs"]
 mod scripts;
 mod staggered;

@@ -209,3 +209,48 @@ fn crates() -> Vec<String> {
     names.sort();
     names
 }
+
+/// Who opens files beside the gate, and why.
+const OPENERS: &[(&str, &str)] = &[
+    ("crates/base/src/gate.rs", "the gate itself"),
+    ("crates/out/src/file.rs", "what the gate has let pass"),
+    ("crates/out/src/sheet.rs", "what the gate has let pass"),
+    ("crates/fixes/src/halt.rs", "what the gate has let pass"),
+    ("src/session/shell.rs", "refused as a whole under -safe"),
+    ("crates/world/src/memory.rs", "memory of the machine"),
+    ("crates/plan/src/run/verlet.rs", "time of the processor"),
+    ("crates/lang/src/expr/pattern.rs", "name of the system"),
+    ("src/cli/", "files that the command line names, or whoever types"),
+];
+
+/// Every file that a deck names is opened at the gate, so that `-safe` keeps it in its folder.
+#[test]
+fn files_are_opened_at_the_gate() {
+    const CALLS: [&str; 11] = [
+        "fs::read(",
+        "fs::read_to_string(",
+        "fs::write(",
+        "fs::read_dir(",
+        "fs::remove_file(",
+        "fs::rename(",
+        "File::open(",
+        "File::create(",
+        "File::options(",
+        "Command::new(",
+        "env::var",
+    ];
+    let mut wrong = String::new();
+    for path in ["crates", "src"].into_iter().flat_map(rust_files) {
+        let name = path.strip_prefix(root()).unwrap().to_string_lossy().into_owned();
+        let text = fs::read_to_string(&path).unwrap();
+        let text = text.split("#[cfg(test)]").next().unwrap_or("");
+        let known = OPENERS.iter().any(|(opener, _)| name.starts_with(opener)) || name.contains("test");
+        for call in CALLS.iter().filter(|call| !known && text.contains(**call)) {
+            // An environment variable is refused where it is defined.
+            if (*call, &*name) != ("env::var", "crates/lang/src/vars/text.rs") {
+                let _ = writeln!(wrong, "{name} calls {call}…): perigrain_base::gate does that");
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "\n{wrong}");
+}

@@ -2,6 +2,7 @@
 
 use super::partitions::{self, World};
 use perigrain_base::diag::nearest;
+use perigrain_base::gate::Limits;
 use std::path::PathBuf;
 
 /// Where the deck comes from.
@@ -57,6 +58,8 @@ pub struct Options {
     pub no_skipping: bool,
     /// `-portable`: no AVX2, for tests.
     pub portable: bool,
+    /// `-safe`, `-limit NAME N`: what a deck that nobody trusts may use.
+    pub safe: Option<Limits>,
     /// `-help`.
     pub help: bool,
     /// `-version`.
@@ -207,6 +210,32 @@ pub const SWITCHES: &[Switch] = &[
     switch(&["-nocite", "-nc"], "", "for LAMMPS' command lines: there is no citation file anyway", |_, _| {
         Ok(())
     }),
+    switch(
+        &["-safe"],
+        "",
+        "keep the deck in its folder: no shell, no environment, limits to all it uses",
+        |o, _| {
+            o.safe.get_or_insert_default();
+            Ok(())
+        },
+    ),
+    switch(
+        &["-limit"],
+        "NAME N",
+        "as -safe, with at most N of memory (MB), steps, lines, files or pixels",
+        |o, v| {
+            let name = v.one("memory, steps, lines, files or pixels")?;
+            let n = v.whole("a whole number")?;
+            let mut limits = o.safe.unwrap_or_default();
+            let Some((_, limit)) = limits.named().into_iter().find(|(known, _)| *known == name) else {
+                let usage = Usage::new(format!("there is no limit of `{name}`"));
+                return Err(usage.help("limits are memory, steps, lines, files and pixels"));
+            };
+            *limit = n;
+            o.safe = Some(limits);
+            Ok(())
+        },
+    ),
     switch(&["-help", "-h", "--help"], "", "this page", |o, _| {
         o.help = true;
         Ok(())
@@ -295,6 +324,15 @@ impl Values<'_> {
     fn number(&mut self, what: &str) -> Result<usize, Usage> {
         let word = self.one(what)?;
         word.parse().map_err(|_| Usage::new(format!("`{} {word}`: `{word}` is not {what}", self.switch)))
+    }
+
+    /// A whole number from 1, as `5000` or `5e3`.
+    fn whole(&mut self, what: &str) -> Result<u64, Usage> {
+        let word = self.one(what)?;
+        match word.parse::<f64>() {
+            Ok(n) if n >= 1.0 && n < 1e18 && n.fract() == 0.0 => Ok(n as u64),
+            _ => Err(Usage::new(format!("`{}`: `{word}` is not {what} from 1", self.switch))),
+        }
     }
 
     fn count(&mut self, what: &str) -> Result<usize, Usage> {
@@ -431,6 +469,18 @@ mod tests {
                 read(&format!("{switch} a b")).unwrap_err().help.unwrap().contains("write_data"),
                 "{switch}"
             );
+        }
+    }
+
+    #[test]
+    fn limits_have_names_and_close_the_gate() {
+        let o = read("a -limit steps 5e3 -safe -limit memory 100").unwrap();
+        assert_eq!(o.safe, Some(Limits { steps: 5000, memory: 100, ..Limits::default() }));
+        assert_eq!((read("a -safe").unwrap().safe, read("a").unwrap().safe), (Some(Limits::default()), None));
+        for line in
+            ["a -limit", "a -limit steps", "a -limit steps 0", "a -limit time 5", "a -limit lines 1.5"]
+        {
+            assert!(read(line).is_err(), "{line}");
         }
     }
 

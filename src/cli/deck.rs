@@ -5,6 +5,8 @@ use super::progress::{self, Progress};
 use super::{FAILED, INTERRUPTED, OK, partitions, signals};
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail, render};
+use perigrain_base::gate;
+use perigrain_out::file::trouble;
 use perigrain_out::log::{Echo, Log};
 use perigrain_out::thermo::wall_time;
 use std::io::{IsTerminal, LineWriter, Read, Write, stderr, stdin, stdout};
@@ -74,6 +76,14 @@ pub fn draw(o: &Options) -> u8 {
 /// Variables of the command line that cannot be set.
 pub(super) fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
     session::set_threads(o.threads.or_else(asked_of_openmp).unwrap_or(0));
+    let folder = match &o.deck {
+        Deck::Stdin => Default::default(),
+        Deck::File(path) => folder_of(path),
+    };
+    if let Some(limits) = o.safe {
+        // What the command line itself names has been opened before.
+        gate::close(&folder, limits).map_err(|e| trouble("find the deck's folder", &folder, &e))?;
+    }
     Session::new(session::Options {
         mode,
         log: log.clone(),
@@ -82,10 +92,7 @@ pub(super) fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
         no_skipping: o.no_skipping,
         portable: o.portable,
         vars: o.vars.clone(),
-        folder: match &o.deck {
-            Deck::Stdin => Default::default(),
-            Deck::File(path) => folder_of(path),
-        },
+        folder,
         partition: partitions::of(o),
     })
 }

@@ -21,6 +21,7 @@ pub mod record;
 pub mod regions;
 pub mod restarts;
 mod row;
+pub mod runaway;
 mod said;
 pub mod seal;
 pub mod show;

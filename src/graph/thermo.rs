@@ -3,6 +3,7 @@
 use super::keywords;
 use super::ops::Lost;
 use super::row::Row;
+use super::runaway::Runaway;
 use super::seal::Sealer;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
@@ -31,6 +32,8 @@ pub struct Thermo {
     modified: BTreeSet<String>,
     /// What a new style has forgotten and no `thermo_modify` has set since, and the place of that style.
     forgotten: (Span, BTreeSet<String>),
+    /// `thermo_modify energy`.
+    pub runaway: Option<Runaway>,
     /// Columns and formats.
     pub layout: Layout,
     /// What each column reads.
@@ -69,6 +72,7 @@ impl Default for Thermo {
             new_temperature: None,
             modified: BTreeSet::new(),
             forgotten: Default::default(),
+            runaway: None,
             layout,
             sources,
             temp: id("temp"),
@@ -158,8 +162,19 @@ impl Thermo {
     /// # Errors
     /// Unknown keywords and formats that do not fit.
     pub fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        const KNOWN: [&str; 10] =
-            ["lost", "lost/bond", "warn", "norm", "flush", "line", "colname", "format", "temp", "press"];
+        const KNOWN: [&str; 11] = [
+            "lost",
+            "lost/bond",
+            "energy",
+            "warn",
+            "norm",
+            "flush",
+            "line",
+            "colname",
+            "format",
+            "temp",
+            "press",
+        ];
         if args.is_empty() {
             return fail(Code::MISSING_ARGUMENT, args.here(), "thermo_modify needs a keyword");
         }
@@ -189,6 +204,14 @@ impl Thermo {
                         "warn" => LostBond::Warn,
                         _ => LostBond::Ignore,
                     }
+                }
+                "energy" => {
+                    self.runaway =
+                        Some(match args.choice("value of energy", &["error", "warn", "ignore"])? {
+                            "error" => Runaway::Error,
+                            "warn" => Runaway::Warn,
+                            _ => Runaway::Ignore,
+                        });
                 }
                 "warn" => {
                     if !["ignore", "reset", "default", "always"].contains(&args.peek_text()) {
@@ -256,7 +279,10 @@ impl Thermo {
     }
 
     /// At which steps a row is printed.
-    fn when(&self, s: &mut Sealer) -> Result<When> {
+    ///
+    /// # Errors
+    /// A variable that is gone.
+    pub fn when(&self, s: &mut Sealer) -> Result<When> {
         let ends = vec![When::First, When::Last];
         Ok(match (&self.named, self.every) {
             (Some(r), _) => When::Any([vec![s.steps(r)?], ends].concat()),

@@ -26,7 +26,7 @@ impl Files for RealFiles<'_> {
             None => {}
         }
         let path = place(path, self.folder);
-        let bytes = std::fs::read(&path)?;
+        let bytes = perigrain_base::gate::read(&path)?;
         self.read.note(&path);
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }

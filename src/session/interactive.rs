@@ -119,6 +119,7 @@ impl Session {
             plans: _,
             told_to: _,
             turns: _,
+            made: _,
         } = self;
         let shared = earlier.filter(|e| self.same_particles(e)).map(|e| e.world.clone());
         let bytes = if shared.is_some() { 0 } else { self.bytes() };

@@ -23,6 +23,8 @@ impl Session {
             evaluations: args.integer_from(0, "the most evaluations of forces")?,
         };
         args.finish()?;
+        self.steps_left(goal.iterations, cmd.span)?;
+        self.made = self.made.saturating_add(goal.iterations);
         self.thermo_computes();
         self.record(cmd, Role::Run, None, vec![], vec![]);
         self.ready(cmd.span)?;
@@ -77,12 +79,12 @@ impl Session {
         c.begin_minimizing();
         self.settle_resume(span)?;
         if self.planning() {
-            self.plan_of(span, true)?;
+            self.plan_of(span, true, false)?;
             self.promise_outputs();
             self.unsee(false);
             return Ok(());
         }
-        let (mut plan, energy) = self.sealed(span, true)?;
+        let (mut plan, energy) = self.sealed(span, true, false)?;
         self.world.slots.invalidate();
         let normalized = self.graph.thermo.normalized(&self.world);
         let read = |w: &perigrain_world::World| {

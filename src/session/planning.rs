@@ -126,8 +126,8 @@ impl Session {
     ///
     /// # Errors
     /// What styles miss in a scene of which everything is known.
-    pub(super) fn plan_of(&mut self, span: Span, minimizing: bool) -> Result<()> {
-        match self.sealed(span, minimizing) {
+    pub(super) fn plan_of(&mut self, span: Span, minimizing: bool, watched: bool) -> Result<()> {
+        match self.sealed(span, minimizing, watched) {
             Ok((plan, _)) => self.plans.add(explain::text(&plan, false), span),
             Err(e) if self.unsure() => {
                 let why = e.0.first().map_or("", |d| d.message.as_str());

@@ -36,12 +36,12 @@ impl Session {
         self.world.parts.resume = None;
         self.world.slots.invalidate();
         if self.planning() {
-            self.plan_of(cmd.span, false)?;
+            self.plan_of(cmd.span, false, false)?;
             self.promise_outputs();
             self.unsee(false);
             return Ok(());
         }
-        let mut plan = self.seal(cmd.span)?;
+        let mut plan = self.sealed(cmd.span, false, false)?.0;
         self.world.clock.running = true;
         self.world.clock.began = Some(Instant::now());
         // What contacts remember belongs to the scene before, not to the snapshot before.

@@ -6,6 +6,7 @@ use crate::graph::build::{Context, declare};
 use crate::graph::regions::place_all;
 use crate::graph::restarts::{claimable, one_process, pattern, save};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, unseen};
+use perigrain_base::gate;
 use perigrain_base::math::cformat::general;
 use perigrain_lang::{Args, Command, Word};
 use perigrain_out::restart::{Saved, fingerprint, read, resume};
@@ -135,7 +136,8 @@ impl Session {
         };
         let places = [PathBuf::new(), self.world.folder.clone()];
         if !word.text.contains('*') {
-            let found = places.iter().map(|p| p.join(&word.text)).find(|p| p.exists());
+            let mut paths = places.iter().map(|p| p.join(&word.text));
+            let found = paths.find(|p| gate::refuses(p) || p.exists());
             return found.ok_or_else(|| missing(format!("there is no restart file `{}`", word.text)));
         }
         let latest = places.iter().find_map(|p| latest(&p.join(&word.text)));
@@ -279,7 +281,7 @@ fn latest(pattern: &Path) -> Option<PathBuf> {
         let step = file.strip_prefix(before)?.strip_suffix(after)?;
         step.bytes().all(|b| b.is_ascii_digit()).then(|| step.parse().ok()).flatten()
     };
-    let files = std::fs::read_dir(folder).ok()?.flatten();
+    let files = gate::list(folder).ok()?.flatten();
     let names = files.filter_map(|f| f.file_name().into_string().ok());
     let last = names.filter_map(|n| step(&n).map(|s| (s, n))).max()?;
     Some(pattern.with_file_name(last.1))

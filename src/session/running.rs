@@ -1,5 +1,6 @@
 //! `run` and `write_dump`: seal the declarations, step, say how it went.
 
+use super::limits::Warden;
 use super::planning::hangs_on_a_run;
 use super::{Mode, Session, refuse};
 use crate::graph::Role;
@@ -11,6 +12,7 @@ use crate::graph::ops::{ClearForces, Reneighbor};
 use crate::graph::seal::Sealer;
 use crate::graph::spatial;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::gate;
 use perigrain_fixes::Minimizing;
 use perigrain_lang::{Args, Command, Script, Word};
 use perigrain_out::thermo::{Finish, Section};
@@ -126,6 +128,7 @@ impl Session {
             return refuse(Code::BAD_VALUE, span, format!("a run cannot make {steps} steps"));
         }
         out.steps = steps;
+        self.steps_left(steps, span)?;
         let first = self.world.clock.step;
         let Some(last) = first.checked_add(steps) else {
             let text =
@@ -159,11 +162,17 @@ impl Session {
     /// # Errors
     /// What styles miss in the scene.
     pub fn seal(&mut self, span: Span) -> Result<StepPlan> {
-        Ok(self.sealed(span, false)?.0)
+        Ok(self.sealed(span, false, true)?.0)
     }
 
-    /// As `seal`. A minimization leaves fixes out that do not act in it, and reads the energy.
-    pub(super) fn sealed(&mut self, span: Span, minimizing: bool) -> Result<(StepPlan, Option<Reading>)> {
+    /// As `seal`. A minimization leaves fixes out that do not act in it, and reads the energy. Where steps are made, the run
+    /// is `watched`.
+    pub(super) fn sealed(
+        &mut self,
+        span: Span,
+        minimizing: bool,
+        watched: bool,
+    ) -> Result<(StepPlan, Option<Reading>)> {
         let vars = Arc::new(self.vars.clone());
         let respa = self.respa().filter(|_| !minimizing).cloned();
         self.graph.computes.iter().for_each(|c| c.compute.welcome(&mut self.world));
@@ -250,6 +259,11 @@ impl Session {
         if !minimizing {
             crate::graph::guard::seal(&mut s)?;
         }
+        if watched {
+            // Behind the guard, whose blocks end where others act.
+            let rows = self.graph.thermo.when(&mut s)?;
+            crate::graph::runaway::seal(&mut s, &rows);
+        }
         s.say_what_is_missing();
         s.plan.settle();
         Ok((s.plan, energy))
@@ -265,7 +279,7 @@ impl Session {
         self.settle_resume(span)?;
         let unchanged = self.ran && !self.world.parts.changed && (!self.world.settings.lammps() || !pre);
         if self.planning() {
-            self.plan_of(span, false)?;
+            self.plan_of(span, false, true)?;
             self.world.clock.step += steps;
             self.promise_outputs();
             self.unsee(true);
@@ -304,6 +318,7 @@ impl Session {
         let outcome = outcome.map_err(|e| e.at(span))?;
         finished?;
         self.ran = true;
+        self.made = self.made.saturating_add(outcome.steps);
         self.interrupted |= outcome.interrupted;
         self.say_notes()?;
         self.say_end(&plan, &outcome, None, post && self.timer.tables())?;
@@ -324,7 +339,15 @@ impl Session {
         pace.setup(plan, w, unchanged)?;
         plan.reset_meters();
         w.clock.began = Some(Instant::now());
-        pace.run(plan, w, watch)
+        if gate::limits().is_none() {
+            return pace.run(plan, w, watch);
+        }
+        if let Some(d) = gate::too_much_memory() {
+            return Err(d.into());
+        }
+        let mut warden = Warden { watch, stop: w.settings.stop.clone(), problem: None };
+        let outcome = pace.run(plan, w, &mut warden)?;
+        warden.problem.map_or(Ok(outcome), |d| Err(d.into()))
     }
 
     /// What a run, or a minimization with its own block of text, says at its end.

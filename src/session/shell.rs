@@ -11,6 +11,9 @@ impl Session {
     /// # Errors
     /// Missing words.
     pub(super) fn shell(&mut self, cmd: &Command) -> Result<()> {
+        if let Some(d) = perigrain_base::gate::forbids("a deck may not use `shell`") {
+            return Err(d.at(cmd.span).into());
+        }
         let mut args = Args::new(cmd);
         let what = args.expect("cd, mkdir, mv, rm, rmdir, putenv or a command")?;
         let words = match what.text.as_str() {

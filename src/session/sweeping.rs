@@ -90,7 +90,7 @@ impl Session {
 
     fn table(&self, file: &Word) -> Result<Axis> {
         let path = place(&file.text, &self.options.folder);
-        let text = match std::fs::read_to_string(&path) {
+        let text = match perigrain_base::gate::read_to_string(&path) {
             Ok(text) => text,
             Err(e) => {
                 let text = format!("the table `{}` cannot be read: {e}", file.text);

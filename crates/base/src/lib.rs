@@ -7,6 +7,7 @@
 #![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod diag;
+pub mod gate;
 pub mod math;
 pub mod par;
 pub mod units;

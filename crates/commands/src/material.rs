@@ -126,7 +126,7 @@ fn from_file(name: &Word, cx: &BuildCx) -> Result<Material> {
     };
     let found = potentials::find(&name.text, Some(&cx.world.folder)).map_err(|e| {
         let d = Diagnostic::error(
-            Code::NO_FILE,
+            perigrain_base::gate::code(&e),
             name.span,
             format!("material file `{}` cannot be read: {e}", name.text),
         );

@@ -9,7 +9,7 @@ use perigrain_lang::{Args, Param, Word};
 use perigrain_styles::common::{self, free_id, scales, setting, units_lattice, unknown_style};
 use perigrain_styles::{BuildCx, Doc, Style, Use, UseKind};
 use perigrain_world::region::{Motion, Shape, Turn, Variable};
-use perigrain_world::{Key, Region};
+use perigrain_world::{Key, Region, memory};
 use shapes::Reader;
 
 /// The command.
@@ -53,7 +53,8 @@ impl Style for RegionCommand {
                    through P along R, first turned, then shifted. Such a region is where its variables say at each \
                    moment it is used: by a command, a formula, and in every step of a run by fixes, groups and dumps. \
                    The displacement is in box units.\n\n\
-                   `union` and `intersect` combine regions as they are declared now, their motions included; they cannot \
+                   `union` and `intersect` combine regions as they are declared now, their motions included, at most 10,000 of them in all and nested at \
+                   most 100 deep; they cannot \
                    move by themselves. `open` names faces that walls made of the region leave open: for a block or prism 1 \
                    to 6 (xlo xhi ylo yhi zlo zhi), for a cylinder or cone 1 (lower end) 2 (upper end) 3 (mantle). Whatever asks \
                    which particles are in a region takes it as if it were closed, as LAMMPS' manual says; LAMMPS 22Jul2025 takes \
@@ -226,14 +227,36 @@ fn equal_variable(a: &mut Args, cx: &BuildCx, what: &str) -> Result<Variable> {
     }
 }
 
+/// How many regions one may be made of, and how deep they may be nested: each holds its parts.
+const MOST_PARTS: usize = 10_000;
+const DEEPEST: usize = 100;
+
 fn parts(a: &mut Args, cx: &BuildCx) -> Result<Vec<Region>> {
     let n = a.integer_from(2, "the number of regions")?;
-    let mut parts = vec![];
+    let (mut parts, mut count) = (vec![], 1);
     for _ in 0..n {
         let word = a.expect("a region")?;
-        parts.push(cx.region(word)?.clone());
+        let part = cx.region(word)?;
+        let (more, depth) = part.extent();
+        count += more;
+        if count > MOST_PARTS || depth >= DEEPEST {
+            let text = if depth >= DEEPEST {
+                format!("regions would be nested more than {DEEPEST} deep")
+            } else {
+                format!(
+                    "this region would be made of more than {MOST_PARTS} others, those of its parts included"
+                )
+            };
+            let d = Diagnostic::error(Code::TOO_LARGE, word.span, text);
+            return Err(d.help("say one union or intersection of all its parts, each of them once").into());
+        }
+        parts.push(part.clone());
     }
-    Ok(parts)
+    let bytes = (count * size_of::<Region>()) as f64;
+    match memory::lacking(bytes, "this region") {
+        Some(d) => Err(d.at(cx.span).into()),
+        None => Ok(parts),
+    }
 }
 
 /// The shape's words must end here: a keyword or the end of the line.

@@ -330,7 +330,7 @@ impl Base {
         state.kept.push_back(path);
         while state.kept.len() > most {
             if let Some(old) = state.kept.pop_front() {
-                std::fs::remove_file(&old).map_err(|e| trouble("delete", &old, &e))?;
+                perigrain_base::gate::remove(&old).map_err(|e| trouble("delete", &old, &e))?;
             }
         }
         Ok(())

@@ -1,11 +1,13 @@
 //! The options of `dump image` and what they mean for camera, colours and text.
 
 use perigrain_base::diag::{Code, Result, fail, nearest};
+use perigrain_base::gate;
 use perigrain_base::math::cformat::general;
 use perigrain_lang::args::{blame, parse_number};
 use perigrain_lang::{Args, Word};
 use perigrain_out::image::{Camera, Colour, Look, MAPS, Map, View, colour_by_name};
 use perigrain_styles::BuildCx;
+use perigrain_world::memory;
 use perigrain_world::{Domain, World};
 
 /// All keywords.
@@ -133,6 +135,9 @@ impl Default for Options {
     }
 }
 
+/// What a pixel takes until it is in its file: depth, what is seen there, colour, and the packed bytes.
+const BYTES_PER_PIXEL: f64 = 20.0;
+
 /// The longest side of a picture: above it neither viewers nor memory last.
 const LONGEST: i64 = 16384;
 
@@ -152,6 +157,12 @@ impl Options {
             "size" => {
                 self.look.width = pixels(args, "the width in pixels")?;
                 self.look.height = pixels(args, "the height in pixels")?;
+                let all = self.look.width as f64 * self.look.height as f64;
+                let allowed = gate::beyond(all, |l| l.pixels, "pixels", &format!("a picture of {all}"));
+                let fits = || memory::lacking(BYTES_PER_PIXEL * all, "a picture of this size");
+                if let Some(d) = allowed.or_else(fits) {
+                    return Err(d.at(word.span).into());
+                }
             }
             "view" => {
                 self.camera.theta = args.number("the angle from the z axis")?;

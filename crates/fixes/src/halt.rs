@@ -123,6 +123,10 @@ impl Declared {
 
 /// Free space of the file system a path is on.
 fn free_megabytes(path: &Path) -> Result<f64> {
+    perigrain_base::gate::pass(path).map_err(|e| {
+        let text = format!("the free space at `{}` is not told: {e}", path.display());
+        Diagnostic::error(perigrain_base::gate::code(&e), None::<Span>, text)
+    })?;
     // `df` is asked because the standard library cannot tell.
     let output = std::process::Command::new("df").arg("-Pk").arg("--").arg(path).output();
     let text =

@@ -328,7 +328,7 @@ pub(super) fn unreadable(path: &Word, e: &std::io::Error) -> Diagnostic {
         std::io::ErrorKind::NotFound => "does not exist".to_owned(),
         _ => format!("cannot be read: {e}"),
     };
-    blame(path, Code::NO_FILE, format!("the file `{}` {reason}", path.text))
+    blame(path, perigrain_base::gate::code(e), format!("the file `{}` {reason}", path.text))
 }
 
 /// Reads a file into the sources, once per content; `None` if only a run can tell its name.

@@ -17,6 +17,12 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 /// What stands for a value that is not known yet, so that the line around it can still be checked.
 const STAND_IN: &str = "1";
 
+/// How many bytes a line may have with its values in.
+const LONGEST: usize = 1 << 24;
+
+/// How many bytes the echoes of one line may have; of the others the last is kept.
+const ECHOED: usize = 1 << 20;
+
 /// A text after substitution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Substituted {
@@ -55,6 +61,7 @@ pub(super) fn expand(
     let mut out = Mapped::with_room(text.len());
     let (mut rest, mut from) = (text, 0);
     let mut quote: Option<(Quote, usize)> = None;
+    let (mut echoed, mut passed_over) = (0, false);
     while let Some(k) = rest.find(['"', '\'', '$']) {
         rest = &rest[k..];
         let at = place(text, rest);
@@ -74,9 +81,15 @@ pub(super) fn expand(
         let value = lookup(line, &dollar, range.clone(), vars, env)?;
         out.append(line, from..at);
         let shown = if value.unknown { STAND_IN } else { &value.text };
+        if out.text.len() + shown.len() > LONGEST {
+            let text = format!("with this value in, the line would be longer than {LONGEST} characters");
+            return fail(Code::TOO_LARGE, line.span(range), text);
+        }
         out.push_value(shown, line.span(range.clone()), value.origin, value.unknown);
         (rest, from) = (after, range.end);
-        if let Some(echoes) = &mut echoes {
+        echoed += out.text.len() + rest.len();
+        passed_over = echoed > ECHOED;
+        if let Some(echoes) = echoes.as_mut().filter(|_| !passed_over) {
             let mut echo = String::with_capacity(out.text.len() + rest.len());
             echo.push_str(&out.text);
             echo.push_str(rest);
@@ -90,6 +103,9 @@ pub(super) fn expand(
         return Ok(line.clone());
     }
     out.append(line, from..text.len());
+    if let Some(echoes) = echoes.filter(|_| passed_over) {
+        echoes.push(out.text.clone());
+    }
     Ok(out)
 }
 

@@ -57,7 +57,7 @@ impl Mapped {
 
     /// Appends `range` of another text with its places.
     pub fn append(&mut self, other: &Mapped, range: Range<usize>) {
-        for (k, part) in other.parts.iter().enumerate() {
+        for (k, part) in other.from(range.start).take_while(|(_, p)| p.start < range.end) {
             let piece = other.extent(k);
             let (lo, hi) = (piece.start.max(range.start), piece.end.min(range.end));
             if lo >= hi {
@@ -101,10 +101,14 @@ impl Mapped {
     }
 
     fn overlapping(&self, range: Range<usize>) -> impl Iterator<Item = &Part> {
-        self.parts.iter().enumerate().filter_map(move |(k, p)| {
-            let e = self.extent(k);
-            (e.start < range.end && range.start < e.end).then_some(p)
-        })
+        let near = self.from(range.start).take_while(move |(_, p)| p.start < range.end);
+        near.filter_map(move |(k, p)| (range.start < self.extent(k).end).then_some(p))
+    }
+
+    /// The parts from the one on that holds byte `at`: lines are joined of many.
+    fn from(&self, at: usize) -> impl Iterator<Item = (usize, &Part)> {
+        let first = self.parts.partition_point(|p| p.start <= at).saturating_sub(1);
+        self.parts.iter().enumerate().skip(first)
     }
 
     fn extent(&self, k: usize) -> Range<usize> {

@@ -6,6 +6,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::gate;
 
 /// Endings that LAMMPS writes compressed or binary and perigrain does not; some dumps are binary.
 const REFUSED_ENDINGS: &[&str] = &[".zst", ".bz2", ".xz", ".lz4", ".bin", ".lammpsbin"];
@@ -97,7 +98,8 @@ impl Pattern {
 
 /// What a failing operation on a file is reported as.
 pub fn trouble(doing: &str, path: &Path, error: &std::io::Error) -> Diagnostic {
-    let d = Diagnostic::error(Code::NO_FILE, None, format!("cannot {doing} `{}`: {error}", path.display()));
+    let d =
+        Diagnostic::error(gate::code(error), None, format!("cannot {doing} `{}`: {error}", path.display()));
     match path.parent() {
         Some(folder) if error.kind() == std::io::ErrorKind::NotFound && !folder.as_os_str().is_empty() => {
             d.help(format!("create the folder `{}` first", folder.display()))
@@ -108,8 +110,7 @@ pub fn trouble(doing: &str, path: &Path, error: &std::io::Error) -> Diagnostic {
 
 /// Opens a file for writing, at its end or from scratch.
 pub fn open(path: &Path, append: bool) -> Result<BufWriter<File>> {
-    let file = File::options().create(true).write(true).append(append).truncate(!append).open(path);
-    match file {
+    match gate::create(path, append) {
         Ok(file) => Ok(BufWriter::with_capacity(1 << 16, file)),
         Err(e) => Err(trouble("write", path, &e).into()),
     }
@@ -129,6 +130,8 @@ pub fn replace_durably(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::i
 fn put(path: &Path, durably: bool, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
     let part = beside(path);
     let outcome = (|| {
+        gate::pass_written(path)?;
+        gate::pass(&part)?;
         let mut file = BufWriter::with_capacity(1 << 20, File::create(&part)?);
         write(&mut file)?;
         file.flush()?;

@@ -49,6 +49,7 @@ impl Sheet {
         let file = match &mut self.file {
             Some(file) => file,
             None => {
+                perigrain_base::gate::pass_written(&self.path)?;
                 let mut options = File::options();
                 // A file of the latest block is cut, which appending files cannot be.
                 let file = match self.keep {

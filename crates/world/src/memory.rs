@@ -71,7 +71,8 @@ pub fn forecast(w: &World, more: f64) -> Result<Option<String>> {
 
 /// The error of what takes more bytes than are free now.
 pub fn lacking(bytes: f64, what: &str) -> Option<Diagnostic> {
-    let free = available().filter(|free| bytes > *free)?;
+    let allowed = perigrain_base::gate::memory_left();
+    let free = available().into_iter().chain(allowed).reduce(f64::min).filter(|free| bytes > *free)?;
     let (needed, free) = (bytes / 1e9, free / 1e9);
     let text = format!("{what} would need {needed:.1} GB of memory; {free:.1} GB are free");
     Some(Diagnostic::error(Code::TOO_LARGE, None, text))

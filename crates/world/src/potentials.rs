@@ -41,7 +41,7 @@ impl Found {
 pub fn find(name: &str, deck_folder: Option<&Path>) -> std::io::Result<Found> {
     let beside = deck_folder.map(|f| f.join(name));
     for path in beside.into_iter().chain([PathBuf::from(name)]) {
-        match std::fs::read_to_string(&path) {
+        match perigrain_base::gate::read_to_string(&path) {
             Ok(text) => return Ok(Found { place: path.display().to_string(), text }),
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {}
             Err(e) => return Err(e),

@@ -95,6 +95,14 @@ impl Region {
         !self.variables().is_empty()
     }
 
+    /// How many regions it is made of, itself included, and how deep they are nested.
+    pub fn extent(&self) -> (usize, usize) {
+        let (Shape::Union(parts) | Shape::Intersect(parts)) = &self.shape else { return (1, 1) };
+        let all = parts.iter().map(Region::extent);
+        let (count, depth) = all.fold((0, 0), |a, b| (a.0 + b.0, a.1.max(b.1)));
+        (count + 1, depth + 1)
+    }
+
     /// Puts the region where its variables say.
     ///
     /// # Errors

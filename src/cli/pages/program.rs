@@ -49,6 +49,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     - `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md);\n\
     - `-partition MxN …`, `-p`: works the deck off M times beside each other, each time with N threads, as LAMMPS' partitions (`4x1 2x8` are six); `-plog FILE|none`, \
     `-pl`, and `-pscreen FILE|none`, `-ps`: their logs and screens (`log.lammps.0` …, `screen.0` …);\n\
+    - `-safe`: keeps the deck in its own folder, without `shell` and environment and with limits to all it uses, for [decks of \
+    others](../safe.md); `-limit memory|steps|lines|files|pixels N` is the same with another limit (memory in MB);\n\
     - `-suffix omp`, `-sf` and `-nocite`, `-nc`: taken for LAMMPS' command lines, without effect;\n\
     - `-package omp N`, `-pk`: the same as `-threads N`;\n\
     - `-help`, `-h` and `-version`: print and end.\n\n\

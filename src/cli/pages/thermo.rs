@@ -52,7 +52,7 @@ const COLUMNS: &str = "`one` is `step temp epair emol etotal press`, the default
 pub(super) const THERMO_MODIFY: Entry = (
     "thermo_modify",
     Doc {
-        syntax: "thermo_modify [norm yes|no] [flush yes|no] [line one|multi|yaml] [format …] [colname …] [temp ID] [press ID] [lost error|warn|ignore]",
+        syntax: "thermo_modify [norm yes|no] [flush yes|no] [line one|multi|yaml] [format …] [colname …] [temp ID] [press ID] [lost error|warn|ignore] [energy error|warn|ignore]",
         summary: "Sets how the step table looks and what it uses.",
         text: "- `norm`: energies per particle; without it yes in `units lj` and no elsewhere;\n\
             - `flush yes`: every row reaches the log file at once;\n\
@@ -65,6 +65,10 @@ pub(super) const THERMO_MODIFY: Entry = (
             pressure, unless `press` follows;\n\
             - `lost error` (default): a particle beyond a fixed face ends the run; `warn` and `ignore` delete it, with its \
             bonds and contacts, when neighbour lists are built, and `warn` says so once;\n\
+            - `energy error` (default; `compat lammps`: `warn`): a run ends where energy has grown beyond reason, made from nothing, mostly by a \
+            time step that is too long. That is a mean speed beyond 10 times that of waves, which the stiffness of bonds and contacts \
+            tells, and 1000 times that at the run's beginning; among peridynamic solids on which no fix does work also a kinetic energy of 10⁶ \
+            times all energy at the beginning, if a row has shown it. It is looked at with each row and every 1000 steps;\n\
             - `lost/bond error` (default): a bond of which one end is lost ends the run; `ignore` and `warn` go on without its \
             force;\n\
             - `warn` is read for LAMMPS' decks, and a note says that it has no effect.\n\n\

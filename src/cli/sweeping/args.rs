@@ -110,6 +110,10 @@ impl Request {
             let usage = Usage::new("`-log`, `-echo` and `-screen FILE` have no meaning for a sweep");
             return Err(usage.help("each run has a log.lammps in its own folder; `-screen none` keeps quiet"));
         }
+        if o.safe.is_some() {
+            return Err(Usage::new("`-safe` and `-limit` keep one deck in one folder, and each run of a sweep has a folder of its own")
+                .help("make the runs one by one: `perigrain in.deck -safe -var NAME VALUE`"));
+        }
         if let Some((name, _)) = o
             .vars
             .iter()
@@ -180,6 +184,7 @@ mod tests {
     fn what_makes_no_sense_is_refused() {
         for line in [
             "in.x -each v",
+            "in.x -each v 1 2 -safe",
             "in.x -each",
             "in.x -zip a",
             "in.x -jobs 0",

@@ -185,6 +185,12 @@ codes! {
     TOO_LARGE = 203, "scene does not fit",
         "The forecast says that memory will not suffice.",
         "units si\natom_style sphere\nlattice sc 1e-6\nregion b block 0 1 0 1 0 1 units box\ncreate_box 1 b\ncreate_atoms 1 box", "units si\natom_style sphere\nlattice sc 0.1\nregion b block 0 1 0 1 0 1 units box\ncreate_box 1 b\ncreate_atoms 1 box";
+    RUNAWAY = 206, "energy out of control",
+        "Particles move ten times as fast as waves with more than a million times the energy that the run began with, or no fix does work and there is a million times as much energy all the same: it was made from nothing, by a time step that is too long or by particles that overlap heavily. `thermo_modify energy ignore` lets such a run go on; under `compat lammps` it is a warning.",
+        "", "";
+    NOT_ALLOWED = 207, "not allowed by -safe",
+        "The program was started with `-safe`, which keeps a deck in its own folder: no `shell`, no environment, no file outside, and so much memory, so many steps, lines, files and pixels. `Decks of others` in the manual says what exactly, and how to allow more.",
+        "", "";
     HALTED = 205, "halted",
         "A `fix halt … error hard` found its condition met: the deck ends here, as it asked for. With `error soft` the run ends and the deck goes on.",
         "variable late equal step\nfix 2 all halt 1 v_late > 5 error hard\nrun 10", "variable late equal step\nfix 2 all halt 1 v_late > 5 error soft\nrun 10";

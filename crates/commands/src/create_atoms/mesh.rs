@@ -133,9 +133,13 @@ pub fn parse(a: &mut Args, cx: &BuildCx) -> Result<(Mesh, Vec<String>)> {
     let word = a.expect("the name of an STL file")?;
     let mesh = |triangles| Mesh { triangles, mode: Mode::Bisect(1.0), radius_scale: 1.0 };
     let bad = |text: String| fail(Code::NO_FILE, word.span, text);
-    match std::fs::read(cx.world.to_read(&word.text)) {
+    match perigrain_base::gate::read(cx.world.to_read(&word.text)) {
         Err(_) if cx.world.parts.promised.may_come(&word.text) => Ok((mesh(vec![]), vec![])),
-        Err(e) => bad(format!("the file `{}` cannot be read: {e}", word.text)),
+        Err(e) => fail(
+            perigrain_base::gate::code(&e),
+            word.span,
+            format!("the file `{}` cannot be read: {e}", word.text),
+        ),
         Ok(bytes) => match read(&bytes) {
             Err(what) => bad(format!("`{}` is no STL file: {what}", word.text)),
             Ok((name, binary, triangles)) => {

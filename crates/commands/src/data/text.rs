@@ -1,6 +1,7 @@
 //! A data file as text: lines without comments, words with places, numbers.
 
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Source, Span, fail, unseen};
+use perigrain_base::gate;
 use perigrain_lang::Word;
 use perigrain_out::binary;
 use perigrain_world::{Promise, World};
@@ -13,10 +14,12 @@ use std::sync::Arc;
 /// # Errors
 /// Files that cannot be read, are no text, or are too large for places in them to be counted.
 pub fn load(path: &Path) -> std::io::Result<Arc<Source>> {
-    let file = std::fs::File::open(path)?;
+    let file = gate::open(path)?;
     let mut bytes = vec![];
     if path.extension().is_some_and(|e| e == "gz") {
-        flate2::read::MultiGzDecoder::new(file).read_to_end(&mut bytes)?;
+        // A small file may be packed from a huge one.
+        let unpacked = flate2::read::MultiGzDecoder::new(file);
+        unpacked.take(u64::from(u32::MAX)).read_to_end(&mut bytes)?;
     } else {
         bytes.reserve_exact(file.metadata().map_or(0, |m| m.len() as usize).saturating_add(1));
         std::io::BufReader::new(file).read_to_end(&mut bytes)?;
@@ -55,6 +58,9 @@ pub fn find(w: &World, word: &Word, what: &str) -> Result<Arc<Source>> {
             Err(e) => drop(trouble.get_or_insert(e)),
         }
     }
+    if let Some(e) = trouble.as_ref().filter(|e| gate::code(e) == Code::NOT_ALLOWED) {
+        return fail(Code::NOT_ALLOWED, word.span, format!("the {what} `{name}` cannot be read: {e}"));
+    }
     if promised.anything {
         return Err(unseen(word.span, name));
     }
@@ -68,6 +74,10 @@ pub fn find(w: &World, word: &Word, what: &str) -> Result<Arc<Source>> {
 /// It will not be.
 pub fn comes(w: &World, word: &Word, what: &str) -> Result<()> {
     let name = &word.text;
+    if gate::refuses(Path::new(name)) {
+        let text = format!("the {what} `{name}` is not one that -safe lets a deck read");
+        return fail(Code::NOT_ALLOWED, word.span, text);
+    }
     if w.parts.promised.may_come(name) || Path::new(name).exists() || w.folder.join(name).exists() {
         return Ok(());
     }

@@ -20,7 +20,8 @@ pub fn apply(fix: &Declared, w: &mut World, file: &Word) -> Result<()> {
     let path = if beside.exists() { beside } else { file.text.clone().into() };
     w.read_files.note(&path);
     let text = load(&path).map_err(|e| {
-        Diagnostic::error(Code::NO_FILE, file.span, format!("the file `{}` cannot be read: {e}", file.text))
+        let text = format!("the file `{}` cannot be read: {e}", file.text);
+        Diagnostic::error(perigrain_base::gate::code(&e), file.span, text)
     })?;
     read(fix, w, &text.text).map_err(|e| e.within(&text))
 }

@@ -96,11 +96,12 @@ impl FixStyle for WallMesh {
 
 /// Reads the file's triangles into their place.
 fn surface(file: &Word, factor: f64, shift: [f64; 3], cx: &BuildCx) -> Result<Mesh> {
-    let bytes = match std::fs::read(cx.world.to_read(&file.text)) {
+    let bytes = match perigrain_base::gate::read(cx.world.to_read(&file.text)) {
         Ok(bytes) => bytes,
         Err(_) if cx.world.parts.promised.may_come(&file.text) => return Ok(Mesh::default()),
         Err(e) => {
-            return fail(Code::NO_FILE, file.span, format!("the file `{}` cannot be read: {e}", file.text));
+            let text = format!("the file `{}` cannot be read: {e}", file.text);
+            return fail(perigrain_base::gate::code(&e), file.span, text);
         }
     };
     let (_, _, mut triangles) = match read(&bytes) {

@@ -13,6 +13,10 @@ use std::cell::RefCell;
 /// How many variables may stand for one another in a chain.
 const CHAIN: usize = 100;
 
+/// How many variables may be evaluated for one value: variables that each name the one before twice need 2 to the power of
+/// their number.
+const EVALUATIONS: u32 = 1_000_000;
+
 /// What a formula is for: it decides which of a compute's values a name means, and what `random` draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in super::super) enum Yields {
@@ -29,6 +33,8 @@ pub(in super::super) enum Yields {
 #[derive(Clone, Debug, Default)]
 pub(in super::super) struct Trail {
     names: Vec<String>,
+    /// How many variables have been entered so far.
+    entered: u32,
     /// What the innermost formula is for.
     pub yields: Yields,
 }
@@ -36,7 +42,7 @@ pub(in super::super) struct Trail {
 impl Trail {
     /// For a formula that yields a value per particle.
     pub fn for_particles() -> Self {
-        Self { names: vec![], yields: Yields::Particles }
+        Self { yields: Yields::Particles, ..Self::default() }
     }
 
     /// Goes into a variable; refuses circles and endless chains.
@@ -48,6 +54,14 @@ impl Trail {
         }
         if self.names.len() >= CHAIN {
             return fail(Code::BAD_VALUE, span, format!("more than {CHAIN} variables depend on one another"));
+        }
+        self.entered += 1;
+        if self.entered > EVALUATIONS {
+            let text = format!("more than {EVALUATIONS} variables would be evaluated for this one value");
+            let d = Diagnostic::error(Code::TOO_LARGE, span, text);
+            return Err(d
+                .help("let `${name}` put in the value of a variable that is named more than once")
+                .into());
         }
         self.names.push(name.to_owned());
         Ok(())

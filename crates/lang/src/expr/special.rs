@@ -6,6 +6,7 @@ use super::super::value::{Env, Question, Value};
 use super::super::vars::Vars;
 use super::pattern;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::gate;
 
 /// What is done with a vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,7 +115,12 @@ pub(super) fn value(
             if env.may_be_written(word(0)) {
                 return Ok(Value::Unknown);
             }
-            Ok(truth(std::fs::File::open(word(0)).is_ok_and(|f| f.metadata().is_ok_and(|m| m.is_file()))))
+            match gate::open(word(0)) {
+                Err(e) if gate::code(&e) == Code::NOT_ALLOWED => {
+                    fail(Code::NOT_ALLOWED, name(0).span, format!("is_file({}): {e}", word(0)))
+                }
+                file => Ok(truth(file.is_ok_and(|f| f.metadata().is_ok_and(|m| m.is_file())))),
+            }
         }
         Special::IsOs => match pattern::matches(word(0), &pattern::os_info()) {
             Ok(found) => Ok(truth(found)),

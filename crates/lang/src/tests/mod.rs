@@ -1,5 +1,6 @@
 //! Tests of the room as a whole: decks are pulled through cursor, variables and flow.
 
+mod limits;
 mod properties;
 mod refusals;
 

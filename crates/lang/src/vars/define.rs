@@ -116,7 +116,13 @@ impl Vars {
                 unknown = value.unknown;
                 Data::Text(value.text)
             }
-            Kind::Getenv => Data::Getenv(args.expect("the environment variable's name")?.text.clone()),
+            Kind::Getenv => {
+                let name = args.expect("the environment variable's name")?;
+                if let Some(d) = perigrain_base::gate::forbids("a deck may not read the environment") {
+                    return Err(d.at(name.span).into());
+                }
+                Data::Getenv(name.text.clone())
+            }
             Kind::File | Kind::Atomfile => {
                 let path = args.expect("a file name")?;
                 match read_file(kind, path, files)? {

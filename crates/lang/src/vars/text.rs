@@ -21,6 +21,17 @@ pub(crate) struct Text {
 impl Vars {
     /// The value that replaces `$name`. `longer` is what follows a `$` without braces.
     pub(crate) fn text(&self, name: &str, longer: &str, span: Span, env: &mut dyn Env) -> Result<Text> {
+        self.text_below(name, longer, span, env, &mut Trail::default())
+    }
+
+    fn text_below(
+        &self,
+        name: &str,
+        longer: &str,
+        span: Span,
+        env: &mut dyn Env,
+        trail: &mut Trail,
+    ) -> Result<Text> {
         let Some(variable) = self.find(name) else {
             let mut d = self.unknown(name, span);
             let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -32,7 +43,7 @@ impl Vars {
         };
         let text = match variable.unknown {
             true => None,
-            false => self.text_of(name, variable, span, env)?,
+            false => self.text_of(name, variable, span, env, trail)?,
         };
         let origin = variable.span;
         Ok(Text { unknown: text.is_none(), text: text.unwrap_or_default(), origin })
@@ -45,7 +56,10 @@ impl Vars {
         variable: &Variable,
         span: Span,
         env: &mut dyn Env,
+        trail: &mut Trail,
     ) -> Result<Option<String>> {
+        let below =
+            |name: &str| ValueRef { kind: RefKind::Variable, name: name.to_owned(), index: vec![], span };
         Ok(match &variable.data {
             Data::List { values, at } => values.get(*at).cloned(),
             Data::Range { now, width, .. } => Some(format!("{now:0width$}")),
@@ -57,21 +71,29 @@ impl Vars {
             Data::Lines(l) => Some(l.now().to_owned()),
             Data::Number(v) => Some(value_text(env.control(name).unwrap_or(*v))),
             Data::Formula(e) if variable.kind == Kind::Equal => {
-                let mut trail = Trail::default();
-                trail.enter(name, span)?;
-                e.scalar(self, env, &mut trail).map_err(|d| used(d, name, span))?.map(value_text)
+                let own = below(name);
+                trail.inside(&own, Yields::Any, |trail| e.scalar(self, env, trail))?.map(value_text)
             }
-            Data::Formula(_) if variable.kind == Kind::Vector => match self.value(name, span, env)? {
-                Value::Vector(list) => {
-                    let list: Vec<String> = list.into_iter().map(value_text).collect();
-                    Some(format!("[{}]", list.join(",")))
+            Data::Formula(_) if variable.kind == Kind::Vector => {
+                match self.reference(&below(name), env, trail)? {
+                    Value::Vector(list) => {
+                        let list: Vec<String> = list.into_iter().map(value_text).collect();
+                        Some(format!("[{}]", list.join(",")))
+                    }
+                    _ => None,
                 }
-                _ => None,
-            },
-            Data::Format { name: of, format } => match self.value(of, span, env)? {
-                Value::Number(v) => Some(printf(format, v + 0.0).or_else(|e| fail(Code::SYNTAX, span, e))?),
-                _ => None,
-            },
+            }
+            Data::Format { name: of, format } => {
+                let own = below(name);
+                let value =
+                    trail.inside(&own, Yields::Any, |trail| self.reference(&below(of), env, trail))?;
+                match value {
+                    Value::Number(v) => {
+                        Some(printf(format, v + 0.0).or_else(|e| fail(Code::SYNTAX, span, e))?)
+                    }
+                    _ => None,
+                }
+            }
             Data::Formula(_) | Data::Atoms(_) => {
                 let message = format!("variable `{name}` has one value per particle and cannot become text");
                 return fail(Code::WRONG_KIND, span, message);
@@ -131,13 +153,13 @@ impl Vars {
                 let message = format!("`{}` is of style {style} and has no elements", r.name);
                 fail(Code::WRONG_KIND, r.span, message)
             }
-            _ => self.number_in_text(r, env),
+            _ => self.number_in_text(r, env, trail),
         }
     }
 
     /// The number that a text-style variable holds.
-    fn number_in_text(&self, r: &ValueRef, env: &mut dyn Env) -> Result<Value> {
-        let text = self.text(&r.name, "", r.span, env)?;
+    fn number_in_text(&self, r: &ValueRef, env: &mut dyn Env, trail: &mut Trail) -> Result<Value> {
+        let text = self.text_below(&r.name, "", r.span, env, trail)?;
         if text.unknown {
             return Ok(Value::Unknown);
         }
@@ -203,11 +225,22 @@ fn picked_particle(all: Value, r: &ValueRef, env: &mut dyn Env) -> Result<Value>
     Ok(Value::Number(found.map_or(0.0, |k| element(&all, k))))
 }
 
-/// Marks a failure inside a variable's formula with the place that used the variable.
+/// How many of the variables on the way to a failure are shown.
+const SHOWN: usize = 4;
+
+/// Marks a failure inside a variable's formula with the place that used the variable: the innermost and the outermost.
 fn used(d: Diagnostics, name: &str, span: Span) -> Diagnostics {
     let mark = |d: Diagnostic| {
-        let d = d.at(span);
-        if d.span == Some(span) { d } else { d.label(span, format!("while `{name}` was evaluated here")) }
+        let mut d = d.at(span);
+        if d.span == Some(span) {
+            return d;
+        }
+        if d.labels.iter().filter(|l| l.text.ends_with(EVALUATED)).count() >= SHOWN {
+            d.labels.pop();
+        }
+        d.label(span, format!("while `{name}` {EVALUATED}"))
     };
     Diagnostics(d.0.into_iter().map(mark).collect())
 }
+
+const EVALUATED: &str = "was evaluated here";

@@ -112,7 +112,7 @@ pub fn read(path: &Path) -> Result<Saved> {
     let refuse = |why: String| {
         Diagnostic::error(Code::BAD_FILE, None, format!("the restart file `{}` {why}", path.display()))
     };
-    let mut file = File::open(path).map_err(failed)?;
+    let mut file = perigrain_base::gate::open(path).map_err(failed)?;
     let size = file.metadata().map_err(failed)?.len();
     let mut head = Vec::new();
     Read::by_ref(&mut file).take(16).read_to_end(&mut head).map_err(failed)?;

@@ -1,0 +1,299 @@
+//! What a deck that nobody trusts may touch (`-safe`): the files of one folder, and so much of everything.
+//!
+//! Every file that a deck names is opened here. Without `-safe` the gate is open and nothing is looked at.
+
+use crate::diag::{Code, Diagnostic};
+use std::collections::BTreeSet;
+use std::fmt;
+use std::fs::{self, File, ReadDir};
+use std::io::{Error, ErrorKind, Result};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
+
+/// How much a deck may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Memory of the program [MB].
+    pub memory: u64,
+    /// Steps of all runs, iterations of minimizations among them.
+    pub steps: u64,
+    /// Lines worked off, each turn of a loop counted.
+    pub lines: u64,
+    /// Files written.
+    pub files: u64,
+    /// Pixels of a picture.
+    pub pixels: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { memory: 4000, steps: 10_000_000, lines: 10_000_000, files: 1000, pixels: 4_000_000 }
+    }
+}
+
+impl Limits {
+    /// The limits by name, for the command line.
+    pub fn named(&mut self) -> [(&'static str, &mut u64); 5] {
+        [
+            ("memory", &mut self.memory),
+            ("steps", &mut self.steps),
+            ("lines", &mut self.lines),
+            ("files", &mut self.files),
+            ("pixels", &mut self.pixels),
+        ]
+    }
+}
+
+struct Gate {
+    folder: PathBuf,
+    limits: Limits,
+    written: Mutex<BTreeSet<PathBuf>>,
+}
+
+static GATE: RwLock<Option<Arc<Gate>>> = RwLock::new(None);
+
+fn closed() -> Option<Arc<Gate>> {
+    GATE.read().unwrap_or_else(PoisonError::into_inner).clone()
+}
+
+/// Closes the gate around the folder of the next deck; it is never opened again.
+///
+/// # Errors
+/// No such folder.
+pub fn close(folder: &Path, limits: Limits) -> Result<()> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let gate = Gate { folder: folder.canonicalize()?, limits, written: Mutex::default() };
+    *GATE.write().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(gate));
+    Ok(())
+}
+
+/// The limits, if the gate is closed.
+pub fn limits() -> Option<Limits> {
+    closed().map(|gate| gate.limits)
+}
+
+/// Why a file may not be touched.
+#[derive(Debug)]
+struct Refusal(String);
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Refusal {}
+
+fn refuse<T>(why: String) -> Result<T> {
+    Err(Error::new(ErrorKind::PermissionDenied, Refusal(why)))
+}
+
+/// The code for an error with a file: refused here, or one of the system's.
+pub fn code(error: &Error) -> Code {
+    match error.get_ref().is_some_and(|e| e.is::<Refusal>()) {
+        true => Code::NOT_ALLOWED,
+        false => Code::NO_FILE,
+    }
+}
+
+/// The error of what decks may not do at all, if the gate is closed.
+pub fn forbids(what: &str) -> Option<Diagnostic> {
+    let gate = closed()?;
+    let text = format!("-safe: {what}");
+    let help =
+        format!("without `-safe` it may; files of `{}` are all it may touch now", gate.folder.display());
+    Some(Diagnostic::error(Code::NOT_ALLOWED, None, text).help(help))
+}
+
+/// The error of what is more than a limit allows.
+pub fn beyond(wanted: f64, limit: impl Fn(&Limits) -> u64, name: &str, what: &str) -> Option<Diagnostic> {
+    let most = limit(&limits()?);
+    if wanted <= most as f64 {
+        return None;
+    }
+    let text = format!("-safe: {what} would be more than the {most} {name} that are allowed");
+    Some(Diagnostic::error(Code::NOT_ALLOWED, None, text).help(format!("`-limit {name} N` allows more")))
+}
+
+/// The error of a program that has more memory than it may.
+pub fn too_much_memory() -> Option<Diagnostic> {
+    let most = limits()?.memory;
+    let used = resident()? / 1e6;
+    if used <= most as f64 {
+        return None;
+    }
+    let text = format!("-safe: {used:.0} MB of memory are used, {most} are allowed");
+    Some(Diagnostic::error(Code::NOT_ALLOWED, None, text).help("`-limit memory MB` allows more"))
+}
+
+/// Bytes that may still be used; nothing where the gate is open.
+pub fn memory_left() -> Option<f64> {
+    Some((1e6 * limits()?.memory as f64 - resident().unwrap_or(0.0)).max(0.0))
+}
+
+/// Bytes of memory that the program has, where the system tells.
+fn resident() -> Option<f64> {
+    let text = fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find(|l| l.starts_with("VmRSS:"))?;
+    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(1024.0 * kilobytes)
+}
+
+/// Whether a path leads to a plain file or folder inside, or would do so once it is made; links are followed.
+fn inside(gate: &Gate, path: &Path) -> Result<PathBuf> {
+    let there = fs::symlink_metadata(path).is_ok();
+    let whole = match (there, path.file_name()) {
+        (false, Some(name)) => {
+            let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            folder.canonicalize()?.join(name)
+        }
+        _ => match path.canonicalize() {
+            Ok(whole) => whole,
+            // Whoever writes there would make the file that the link names.
+            Err(_) if there => return refuse("-safe: it is a link that leads nowhere".into()),
+            Err(e) => return Err(e),
+        },
+    };
+    if !whole.starts_with(&gate.folder) {
+        let text = format!("-safe: it is outside of the deck's folder `{}`", gate.folder.display());
+        return refuse(text);
+    }
+    match fs::metadata(&whole) {
+        Ok(m) if !m.is_file() && !m.is_dir() => refuse("-safe: it is no plain file".into()),
+        Ok(m) if m.len() / 1_000_000 >= gate.limits.memory => refuse(format!(
+            "-safe: it is larger than the {} MB of memory that are allowed",
+            gate.limits.memory
+        )),
+        _ => Ok(whole),
+    }
+}
+
+/// Refuses a path that leads outside.
+///
+/// # Errors
+/// It does, or to something that is no plain file; a folder on the way that is not there.
+pub fn pass(path: &Path) -> Result<()> {
+    closed().map_or(Ok(()), |gate| inside(&gate, path).map(drop))
+}
+
+/// Whether [`pass`] refuses a path; one that is not there is another matter.
+pub fn refuses(path: &Path) -> bool {
+    pass(path).is_err_and(|e| code(&e) == Code::NOT_ALLOWED)
+}
+
+/// As [`pass`], for a file that will be written: there may be so many.
+///
+/// # Errors
+/// As `pass`, and one file too many.
+pub fn pass_written(path: &Path) -> Result<()> {
+    let Some(gate) = closed() else { return Ok(()) };
+    let whole = inside(&gate, path)?;
+    let mut written = gate.written.lock().unwrap_or_else(PoisonError::into_inner);
+    if written.contains(&whole) {
+        return Ok(());
+    }
+    if written.len() as u64 >= gate.limits.files {
+        let text = format!("-safe: {} files have been written, as many as are allowed", written.len());
+        return refuse(text);
+    }
+    written.insert(whole);
+    Ok(())
+}
+
+/// Opens a file to read it.
+///
+/// # Errors
+/// As [`pass`], and the system's.
+pub fn open(path: impl AsRef<Path>) -> Result<File> {
+    pass(path.as_ref())?;
+    File::open(path)
+}
+
+/// Opens a file to write it, at its end or from scratch.
+///
+/// # Errors
+/// As [`pass_written`], and the system's.
+pub fn create(path: impl AsRef<Path>, append: bool) -> Result<File> {
+    pass_written(path.as_ref())?;
+    File::options().create(true).write(true).append(append).truncate(!append).open(path)
+}
+
+/// All bytes of a file.
+///
+/// # Errors
+/// As [`open`].
+pub fn read(path: impl AsRef<Path>) -> Result<Vec<u8>> {
+    pass(path.as_ref())?;
+    fs::read(path)
+}
+
+/// All text of a file.
+///
+/// # Errors
+/// As [`open`], and bytes that are no text.
+pub fn read_to_string(path: impl AsRef<Path>) -> Result<String> {
+    pass(path.as_ref())?;
+    fs::read_to_string(path)
+}
+
+/// What a folder holds.
+///
+/// # Errors
+/// As [`open`].
+pub fn list(folder: &Path) -> Result<ReadDir> {
+    pass(folder)?;
+    fs::read_dir(folder)
+}
+
+/// Deletes a file.
+///
+/// # Errors
+/// As [`open`].
+pub fn remove(path: &Path) -> Result<()> {
+    pass(path)?;
+    fs::remove_file(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_followed_to_where_they_lead() {
+        let outer = std::env::temp_dir().join(format!("perigrain-gate-{}", std::process::id()));
+        let folder = outer.join("deck");
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join("in"), "").unwrap();
+        fs::write(outer.join("out"), "").unwrap();
+        let gate = Gate {
+            folder: folder.canonicalize().unwrap(),
+            limits: Limits::default(),
+            written: Mutex::default(),
+        };
+        let passes = |name: &str| inside(&gate, &folder.join(name)).is_ok();
+        assert!(passes("in") && passes("new") && passes("."));
+        assert!(!passes("../out") && !passes("../new") && !passes("..") && !passes("/dev/null"));
+        assert!(passes("../deck/in") && !passes("no/such"));
+        let largest = Limits { memory: 0, ..Limits::default() };
+        let small = Gate { folder: gate.folder.clone(), limits: largest, written: Mutex::default() };
+        assert!(inside(&small, &folder.join("in")).is_err() && inside(&small, &folder.join("new")).is_ok());
+        #[cfg(unix)]
+        {
+            let link = |to: &str, name: &str| std::os::unix::fs::symlink(to, folder.join(name)).unwrap();
+            link("../out", "there");
+            link("../new", "nowhere");
+            link("..", "up");
+            link("in", "back");
+            assert!(!passes("there") && !passes("nowhere") && !passes("up/out") && !passes("up/new"));
+            assert!(passes("back"));
+        }
+        fs::remove_dir_all(outer).unwrap();
+    }
+
+    #[test]
+    fn an_open_gate_looks_at_nothing() {
+        assert!(pass(Path::new("/dev/null")).is_ok() && limits().is_none() && forbids("anything").is_none());
+        assert!(beyond(1e99, |l| l.steps, "steps", "all").is_none() && too_much_memory().is_none());
+        assert_eq!(code(&Error::other("disk")), Code::NO_FILE);
+    }
+}

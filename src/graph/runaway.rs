@@ -1,0 +1,233 @@
+//! A run whose energy has grown beyond reason ends: where time steps are too long, it is made from nothing.
+
+use super::seal::Sealer;
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::math::vec3::{dot, length};
+use perigrain_base::par;
+use perigrain_out::log::Log;
+use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
+use perigrain_styles::matter::Masses;
+use perigrain_styles::pair::Deck;
+use perigrain_styles::{Pair, SealCx};
+use perigrain_world::field::{KIND, MASS, TALLY, TYPE_MASS, V};
+use perigrain_world::{RunStyle, World};
+
+/// What becomes of a run whose energy has grown beyond reason (`thermo_modify energy`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Runaway {
+    /// It ends with an error.
+    Error,
+    /// The log says so once.
+    Warn,
+    /// Nothing.
+    Ignore,
+}
+
+/// The energy over that at the beginning of the run from which on it is beyond reason: of a scene that nobody does work on, or
+/// kinetic energy where speeds are beyond reason too.
+const GROWN: f64 = 1e6;
+
+/// Speeds over those of waves in solids and beds of grains: there neither bonds nor contacts mean anything any more.
+const FASTER: f64 = 10.0;
+
+/// The interval in steps at which a run is looked at besides the rows of the step table.
+const INTERVAL: i64 = 1000;
+
+/// Fixes that do no work on particles, or take energy alone.
+const IDLE: [&str; 22] = [
+    "ave/atom",
+    "ave/chunk",
+    "ave/histo",
+    "ave/histo/weight",
+    "ave/time",
+    "balance",
+    "dt/critical",
+    "dt/guard",
+    "dt/reset",
+    "extremes",
+    "halt",
+    "nve",
+    "nve/limit",
+    "nve/noforce",
+    "nve/sphere",
+    "print",
+    "property/atom",
+    "store/force",
+    "store/state",
+    "vector",
+    "viscous",
+    "viscous/sphere",
+];
+
+/// What the scene can tell of speeds and steps.
+struct Scales {
+    /// The speed of the fastest waves, roughly; across the box in one step where nobody knows.
+    waves: f64,
+    /// Whether it is that of waves.
+    known: bool,
+    /// The longest stable step of solids, where all steps are alike.
+    step: Option<f64>,
+}
+
+/// Adds the op that looks at speeds with each row of the step table.
+pub fn seal(s: &mut Sealer, rows: &When) {
+    let (graph, lammps) = (s.graph(), s.world().settings.lammps());
+    let how = graph.thermo.runaway.unwrap_or(if lammps { Runaway::Warn } else { Runaway::Error });
+    let Some(pair) = graph.pair.as_ref().filter(|_| how != Runaway::Ignore) else { return };
+    let mut parts = pair.pair.parts();
+    parts.push(pair.pair.as_ref());
+    let scales = scales(s.world(), &parts);
+    let timestep = graph.lines.latest("timestep").map(|n| n.span);
+    let when = rows.clone().or(When::Every(INTERVAL));
+    // The energies of solids are known, those of touching grains are not.
+    let solids = parts.iter().all(|p| p.facts().true_forces.is_some() || !p.parts().is_empty());
+    let closed = solids && graph.bond.is_none() && graph.fixes.iter().all(|f| IDLE.contains(&f.style));
+    let op = Look {
+        how,
+        scales,
+        closed,
+        timestep,
+        when,
+        log: s.log.clone(),
+        begin: State::default(),
+        budget: None,
+        told: false,
+    };
+    let span = s.span();
+    s.add(vec![Box::new(op)], span);
+}
+
+fn scales(w: &World, parts: &[&dyn Pair]) -> Scales {
+    let widest = |list: &[f64]| list.iter().copied().fold(0.0, f64::max);
+    let (grain, site) = (2.0 * widest(&w.particles.radius), widest(w.volumes()).cbrt());
+    let (mut waves, mut step) = (0.0, f64::INFINITY);
+    for s in parts.iter().map(|p| p.scales(w, Deck::default())) {
+        let solid = s.stable_step.map_or(0.0, |t| site / t);
+        let bed = s.contact_time.map_or(0.0, |t| grain / t);
+        waves = f64::max(waves, f64::max(solid, bed));
+        step = s.stable_step.map_or(step, |t| step.min(t));
+    }
+    let known = waves > 0.0 && waves.is_finite();
+    let across = || w.domain.as_ref().map_or(f64::INFINITY, |d| length(d.lengths()) / w.clock.dt);
+    let even = matches!(w.settings.run_style, RunStyle::Verlet);
+    Scales {
+        waves: if known { FASTER * waves } else { across() },
+        known,
+        step: Some(step).filter(|t| even && t.is_finite()),
+    }
+}
+
+/// How particles move.
+#[derive(Clone, Copy, Default)]
+struct State {
+    /// The mean square speed.
+    square: f64,
+    /// The kinetic energy; not known where it is not needed.
+    kinetic: f64,
+}
+
+/// Looks at speeds.
+struct Look {
+    how: Runaway,
+    scales: Scales,
+    /// Whether nobody does work on particles and all energies are known.
+    closed: bool,
+    /// The line that set the step.
+    timestep: Option<Span>,
+    when: When,
+    log: Log,
+    /// As the run began.
+    begin: State,
+    /// All energy of that time, if it is known.
+    budget: Option<f64>,
+    told: bool,
+}
+
+impl Look {
+    /// How particles move now.
+    fn state(&self, w: &World) -> State {
+        let (n, v) = (w.n(), &w.particles.v);
+        let square = par::sum(n, |i| dot(v[i], v[i])) / n.max(1) as f64;
+        if !self.closed {
+            return State { square, kinetic: 0.0 };
+        }
+        let masses = Masses::of(w);
+        let half = 0.5 * w.settings.units.constants().mvv2e;
+        State { square, kinetic: half * par::sum(n, |i| masses.get(i) * dot(v[i], v[i])) }
+    }
+
+    /// What is beyond reason, if something is.
+    fn beyond(&self, now: State) -> Option<String> {
+        if let Some(budget) = self.budget.filter(|b| *b > 0.0 && now.kinetic > GROWN * b) {
+            let (kinetic, times) = (now.kinetic, now.kinetic / budget);
+            return Some(format!(
+                "kinetic energy is {kinetic:.3e}, {times:.1e} times all there was when the run began, and nothing does work on \
+                 the scene"
+            ));
+        }
+        let fastest = self.scales.waves * self.scales.waves;
+        if now.square <= GROWN * self.begin.square || now.square <= fastest {
+            return None;
+        }
+        let (speed, before) = (now.square.sqrt(), self.begin.square.sqrt());
+        let times = match self.scales.known {
+            true => format!("{:.1e} times as fast as waves", FASTER * speed / self.scales.waves),
+            false => format!("{:.1e} times across the box in a step", speed / self.scales.waves),
+        };
+        Some(format!(
+            "particles move at {speed:.1e} in the mean, {times}, and at {before:.1e} when the run began"
+        ))
+    }
+
+    fn problem(&self, t: &Tick, why: &str) -> Diagnostic {
+        let dt = t.dt;
+        let text = format!("energy has grown beyond reason at step {}: {why}", t.step);
+        let d = Diagnostic::error(Code::RUNAWAY, None, text);
+        let d = match self.timestep {
+            Some(span) => d.label(span, "the time step"),
+            None => d,
+        };
+        let d = match self.scales.step {
+            Some(limit) if dt > limit => d.help(format!(
+                "the time step {dt:.3e} is {:.2} times the longest that is stable, about {limit:.2e}: say `timestep {:.1e}` or \
+                 less",
+                dt / limit,
+                0.8 * limit
+            )),
+            _ => d
+                .help(format!("take a shorter time step than {dt:.3e}: `compute dt/critical` tells the longest stable one"))
+                .help("`fix dt/guard` goes back where energy was made, and on in shorter steps"),
+        };
+        d.help("`thermo_modify energy ignore` lets such runs go on")
+    }
+}
+
+impl Op for Look {
+    fn about(&self) -> About {
+        let reads = if self.closed { V | MASS | KIND | TYPE_MASS | TALLY } else { V };
+        About {
+            when: self.when.clone(),
+            ..About::new("energy watch", Stage::Output, Needs::new().read(reads))
+        }
+    }
+
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if self.told {
+            return Ok(());
+        }
+        let now = self.state(w);
+        if t.setup {
+            self.begin = now;
+            let tallied = self.closed && w.tally.step == Some(t.step);
+            self.budget = tallied.then(|| now.kinetic + w.tally.pair.abs());
+            return Ok(());
+        }
+        let Some(why) = self.beyond(now) else { return Ok(()) };
+        self.told = true;
+        let problem = self.problem(t, &why);
+        match self.how {
+            Runaway::Error => Err(problem.into()),
+            _ => self.log.line(&format!("WARNING: {}", problem.message)),
+        }
+    }
+}
