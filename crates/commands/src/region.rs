@@ -231,7 +231,16 @@ fn parts(a: &mut Args, cx: &BuildCx) -> Result<Vec<Region>> {
     let mut parts = vec![];
     for _ in 0..n {
         let word = a.expect("a region")?;
-        parts.push(cx.region(word)?.clone());
+        let part = cx.region(word)?;
+        if part.layers() >= Region::DEEPEST {
+            let text = format!(
+                "region `{}` is made of regions of regions, {} layers deep already",
+                word.text,
+                part.layers()
+            );
+            return fail(Code::TOO_LARGE, word.span, text);
+        }
+        parts.push(part.clone());
     }
     Ok(parts)
 }
