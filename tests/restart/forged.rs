@@ -255,7 +255,7 @@ impl Random {
 }
 
 /// So many forged files in the ordinary tests.
-const FORGED: u64 = 1000;
+const FORGED: u64 = 500;
 
 /// Files of all scenes with a few bytes changed and the checksum mended: refused or gone on with. As many as stand above from a
 /// seed that stays; with `PERIGRAIN_FUZZ_SECONDS` for that long, from `PERIGRAIN_FUZZ_SEED` on.
