@@ -391,6 +391,9 @@ impl Session {
         if self.checking() {
             return Ok(());
         }
+        if let Some(path) = self.options.log.take_shared() {
+            self.notes.push(files::shared(&path));
+        }
         for d in &self.notes.0[self.shown..] {
             let one = Diagnostics(vec![d.clone()]);
             let text = perigrain_base::diag::render::plain(&one, &self.sources);

@@ -4,7 +4,7 @@
 //! What panics is left in the system's folder for temporary files, named in the report.
 
 #[path = "../fuzz/src/lib.rs"]
-mod bodies;
+pub mod bodies;
 
 use std::fs;
 use std::panic::catch_unwind;
@@ -206,3 +206,28 @@ fn read_restart() {
     }
     hunt("read_restart", &corpus, bodies::read_restart);
 }
+
+/// Forged restart files of all scenes: a few of each from one seed that stays, and on for as long as `PERIGRAIN_FUZZ_SECONDS` says.
+#[test]
+fn forged_restart() {
+    let seconds: Option<f64> = std::env::var("PERIGRAIN_FUZZ_SECONDS").ok().and_then(|s| s.parse().ok());
+    let seed = std::env::var("PERIGRAIN_FUZZ_SEED").ok().and_then(|s| s.parse().ok()).unwrap_or(4711);
+    let (mut r, begin, mut count, mut slowest) = (Random(seed), Instant::now(), 0_u64, (Duration::ZERO, 0));
+    while seconds.map_or(count < FORGED, |s| begin.elapsed().as_secs_f64() < s) {
+        let recipe: Vec<u8> = (0..1 + 6 * (1 + r.below(3))).map(|_| r.next() as u8).collect();
+        let start = Instant::now();
+        let outcome = catch_unwind(|| bodies::forged_restart(&recipe));
+        let took = start.elapsed();
+        if count > 8 && took > slowest.0 {
+            slowest = (took, count);
+        }
+        if outcome.is_err() {
+            panic!("case {count} of seed {seed} panics: recipe {recipe:?}");
+        }
+        count += 1;
+    }
+    println!("forged_restart: {count} cases without a panic, the slowest {slowest:?} (seed {seed})");
+}
+
+/// So many in the ordinary tests.
+const FORGED: u64 = 2000;

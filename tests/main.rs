@@ -12,6 +12,7 @@ mod compare;
 mod computes;
 #[path = "data/main.rs"]
 mod data;
+mod disk;
 #[path = "dumps/main.rs"]
 mod dumps;
 mod examples;

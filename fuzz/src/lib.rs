@@ -1,5 +1,8 @@
 //! What the targets share: a deck worked off in a folder of its own, with a file of any bytes beside it.
 
+pub mod forged;
+
+pub use forged::forged_restart;
 use perigrain::session::{Mode, Options, Session};
 use std::path::Path;
 

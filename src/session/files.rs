@@ -1,5 +1,6 @@
 //! The files a deck reads, and what is known of those it would have written where it is only looked at.
 
+use perigrain_base::diag::{Code, Diagnostic};
 use perigrain_lang::Files;
 use perigrain_world::reading::{ReadFiles, place};
 use perigrain_world::{Promise, Promises};
@@ -38,4 +39,14 @@ impl Files for RealFiles<'_> {
     fn only_looks(&self) -> bool {
         self.looking
     }
+}
+
+/// What is said of a log file that another run is writing.
+pub(super) fn shared(path: &Path) -> Diagnostic {
+    let text = format!(
+        "another run is writing `{}` now: each of them writes over what the other has written",
+        path.display()
+    );
+    Diagnostic::warning(Code::SUSPICIOUS, None, text)
+        .help("start each run in a folder of its own, or with `-log FILE`")
 }

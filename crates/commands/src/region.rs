@@ -229,7 +229,6 @@ fn equal_variable(a: &mut Args, cx: &BuildCx, what: &str) -> Result<Variable> {
 
 /// How many regions one may be made of, and how deep they may be nested: each holds its parts.
 const MOST_PARTS: usize = 10_000;
-const DEEPEST: usize = 100;
 
 fn parts(a: &mut Args, cx: &BuildCx) -> Result<Vec<Region>> {
     let n = a.integer_from(2, "the number of regions")?;
@@ -239,9 +238,9 @@ fn parts(a: &mut Args, cx: &BuildCx) -> Result<Vec<Region>> {
         let part = cx.region(word)?;
         let (more, depth) = part.extent();
         count += more;
-        if count > MOST_PARTS || depth >= DEEPEST {
-            let text = if depth >= DEEPEST {
-                format!("regions would be nested more than {DEEPEST} deep")
+        if count > MOST_PARTS || depth >= Region::DEEPEST {
+            let text = if depth >= Region::DEEPEST {
+                format!("regions would be nested more than {} deep", Region::DEEPEST)
             } else {
                 format!(
                     "this region would be made of more than {MOST_PARTS} others, those of its parts included"

@@ -1,7 +1,7 @@
 //! File names with a step in them, and files that appear whole or not at all.
 
 use std::ffi::OsString;
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -116,6 +116,21 @@ pub fn open(path: &Path, append: bool) -> Result<BufWriter<File>> {
     }
 }
 
+/// As [`open`], and marks the file as being written for as long as it is open; whether another process has marked it before.
+pub fn claim(path: &Path, append: bool) -> Result<(BufWriter<File>, bool)> {
+    let opened = gate::pass_written(path)
+        .and_then(|()| File::options().create(true).write(true).append(append).truncate(false).open(path));
+    let claimed = opened.and_then(|file| {
+        // Elsewhere a lock would keep readers away; where a file system knows none, nobody is told.
+        let shared = cfg!(unix) && matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+        if !append && file.metadata()?.is_file() {
+            file.set_len(0)?;
+        }
+        Ok((BufWriter::with_capacity(1 << 16, file), shared))
+    });
+    claimed.map_err(|e| trouble("write", path, &e).into())
+}
+
 /// Writes a whole file beside its place and moves it there at the end: readers see the old or the new file,
 /// never half of one.
 pub fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
@@ -128,11 +143,10 @@ pub fn replace_durably(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::i
 }
 
 fn put(path: &Path, durably: bool, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
-    let part = beside(path);
+    let opened = gate::pass_written(path).and_then(|()| beside(path));
+    let (part, file) = opened.map_err(|e| trouble("write", path, &e))?;
     let outcome = (|| {
-        gate::pass_written(path)?;
-        gate::pass(&part)?;
-        let mut file = BufWriter::with_capacity(1 << 20, File::create(&part)?);
+        let mut file = BufWriter::with_capacity(1 << 20, file);
         write(&mut file)?;
         file.flush()?;
         if durably {
@@ -169,12 +183,20 @@ pub fn pack(
     packer.finish().map(|_| ())
 }
 
-/// `.NAME.part` in the same folder.
-fn beside(path: &Path) -> PathBuf {
-    let mut name = OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(".part");
-    path.with_file_name(name)
+/// A new file `.NAME.PROCESS.part` in the same folder: no other process writes into it, even one of this number on another machine.
+fn beside(path: &Path) -> std::io::Result<(PathBuf, File)> {
+    let (process, mut more) = (std::process::id(), 0);
+    loop {
+        let mut name = OsString::from(".");
+        name.push(path.file_name().unwrap_or_default());
+        name.push(if more == 0 { format!(".{process}.part") } else { format!(".{process}-{more}.part") });
+        let part = path.with_file_name(name);
+        match File::create_new(&part) {
+            Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => more += 1,
+            Err(e) => return Err(e),
+            Ok(file) => return Ok((part, file)),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -210,6 +232,12 @@ mod tests {
             Err(std::io::Error::other("disk full"))
         });
         assert!(failing.unwrap_err().to_string().contains("disk full"));
+        // A file that another process is writing beside the same place is left alone.
+        let theirs = dir.path().join(format!(".a.txt.{}.part", std::process::id()));
+        fs::write(&theirs, b"theirs").unwrap();
+        replace(&path, |w| w.write_all(b"one")).unwrap();
+        assert_eq!(fs::read(&theirs).unwrap(), b"theirs");
+        fs::remove_file(&theirs).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"one");
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
         let nowhere = replace(&dir.path().join("no/such.txt"), |_| Ok(())).unwrap_err();

@@ -43,6 +43,8 @@ pub struct Log(Arc<Mutex<Inner>>);
 struct Inner {
     screen: Option<Box<dyn Write + Send>>,
     file: Option<(PathBuf, BufWriter<File>)>,
+    /// The file, if another process was writing it when it was opened and nobody has been told.
+    shared: Option<PathBuf>,
     echo: Echo,
     /// Rows of step tables, once somebody wants them kept.
     tables: Option<Tables>,
@@ -64,8 +66,9 @@ impl std::fmt::Debug for Log {
 impl Log {
     /// A log with this screen (`None`: silent) and no file yet.
     pub fn new(screen: Option<Box<dyn Write + Send>>) -> Self {
-        let (echo, tables, last_row) = (Echo::default(), None, false);
-        Self(Arc::new(Mutex::new(Inner { screen, file: None, echo, tables, last_row })))
+        let (shared, tables, last_row) = (None, None, false);
+        let inner = Inner { screen, file: None, shared, echo: Echo::default(), tables, last_row };
+        Self(Arc::new(Mutex::new(inner)))
     }
 
     /// A log that goes nowhere.
@@ -87,8 +90,15 @@ impl Log {
     pub fn open(&self, path: &Path, append: bool) -> Result<()> {
         let mut inner = self.inner();
         inner.close()?;
-        inner.file = Some((path.to_path_buf(), file::open(path, append)?));
+        let (file, shared) = file::claim(path, append)?;
+        inner.file = Some((path.to_path_buf(), file));
+        inner.shared = shared.then(|| path.to_path_buf());
         Ok(())
+    }
+
+    /// The log file, if another process writes it too: told once.
+    pub fn take_shared(&self) -> Option<PathBuf> {
+        self.inner().shared.take()
     }
 
     /// Finishes the log file, `log none`.

@@ -88,7 +88,7 @@ impl Contacts {
 
     /// Whether keys and history fit together.
     pub fn sound(&self) -> bool {
-        self.keys.len() * self.width == self.history.len()
+        self.keys.len().checked_mul(self.width) == Some(self.history.len())
     }
 
     /// Renames grains (LAMMPS gives new ids when some are deleted); `new(key)` is the new key, `None` for those gone,

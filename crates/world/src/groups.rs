@@ -49,6 +49,18 @@ impl Default for Groups {
 }
 
 impl Groups {
+    /// Whether `all` is the first one, and groups are made of others that are there.
+    pub fn are_sound(&self) -> bool {
+        let there = |g: GroupId| self.names.get(usize::from(g.0)).is_some_and(Option::is_some);
+        let dynamic = self.dynamic.iter().zip(&self.names).all(|(rule, name)| {
+            rule.as_ref().is_none_or(|d| name.is_some() && there(d.parent) && d.every >= 1)
+        });
+        // The group that a surface was chosen from may be gone.
+        let surface =
+            |(own, s): &(GroupId, Surface)| there(*own) && s.parent.0 < 32 && s.every.is_none_or(|n| n >= 1);
+        self.names[0].as_deref() == Some("all") && dynamic && self.surfaces.iter().all(surface)
+    }
+
     /// The group of this name.
     pub fn find(&self, name: &str) -> Option<GroupId> {
         self.names.iter().position(|n| n.as_deref() == Some(name)).map(|k| GroupId(k as u8))

@@ -110,6 +110,15 @@ impl Default for Lattice {
 }
 
 impl Lattice {
+    /// Whether all its lengths and directions are numbers, and spacings more than nothing.
+    pub fn is_sound(&self) -> bool {
+        let matrices = [self.edges, self.inverse, self.turn];
+        let vectors = matrices.as_flattened().iter().chain(&self.basis).chain([&self.shift]);
+        self.spacing.iter().all(|l| l.is_finite() && *l > 0.0)
+            && self.scale.is_finite()
+            && vectors.into_iter().flatten().all(|x| x.is_finite())
+    }
+
     /// `lattice none`: a unit of length only.
     pub fn none(scale: f64) -> Self {
         Self {

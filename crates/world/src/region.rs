@@ -64,6 +64,28 @@ impl Region {
         self.shape.contains(x) != self.outside
     }
 
+    /// Regions may be made of regions made of regions so many times: files are read, and shapes looked at, one within the other.
+    pub const DEEPEST: usize = 100;
+
+    /// Of how many layers of regions it is made, itself included.
+    pub fn layers(&self) -> usize {
+        self.extent().1
+    }
+
+    /// The regions that it is made of.
+    fn made_of(&self) -> &[Region] {
+        match &self.shape {
+            Shape::Union(parts) | Shape::Intersect(parts) => parts,
+            _ => &[],
+        }
+    }
+
+    /// Whether its directions are directions, and variables give numbers that it has.
+    pub fn is_sound(&self) -> bool {
+        let (axes, numbers) = self.shape.has();
+        axes && self.given.iter().all(|g| g.number < numbers) && self.made_of().iter().all(Region::is_sound)
+    }
+
     /// Lets open faces mean what they mean in LAMMPS, where a region that has some holds every point, or for walls alone.
     pub fn open_holds_all(&mut self, yes: bool) {
         self.everywhere = yes && self.open != 0;

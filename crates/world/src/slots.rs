@@ -120,6 +120,16 @@ fn of_fixes<S: serde::Serializer>(slots: &[Slot], to: S) -> Result<S::Ok, S::Err
 }
 
 impl Slots {
+    /// Whether rows of values are whole.
+    pub fn are_sound(&self) -> bool {
+        let whole = |len: usize, cols: usize| if cols == 0 { len == 0 } else { len.is_multiple_of(cols) };
+        self.slots.iter().all(|s| {
+            whole(s.atom.len(), s.cols)
+                && whole(s.array.len(), s.array_cols)
+                && whole(s.local.len(), s.local_cols)
+        })
+    }
+
     /// The slot of this name, new if there is none.
     pub fn id(&mut self, name: &str) -> SlotId {
         if let Some(k) = self.by_name.get(name) {

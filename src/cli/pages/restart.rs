@@ -50,7 +50,8 @@ pub(super) const READ_RESTART: Entry = (
             ramps across the cut, `run … start … stop …` says where they begin and end; `run N upto` makes the steps that \
             are left.\n\n\
             The format is perigrain's own: portable between machines, versioned, with a checksum. Files that are cut off, \
-            damaged, LAMMPS' own, or of a version that stores scenes otherwise are refused. LAMMPS' switches \
+            damaged, LAMMPS' own, or of a version that stores scenes otherwise are refused, and so are those whose parts do not \
+            fit together, whatever their checksum says. LAMMPS' switches \
             `-restart2data` and the like are not here: read the file and `write_data`.",
         example: "write_restart plate.restart\nclear\nread_restart plate.restart\nfix motion all nve",
     },

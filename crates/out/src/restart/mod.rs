@@ -9,12 +9,14 @@
 
 mod layout;
 mod scene;
+mod sound;
 
 pub use scene::{fingerprint, resume};
 
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
+use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
@@ -67,14 +69,16 @@ pub struct Saved {
 /// The disk's.
 pub fn write(path: &Path, saving: &Saving) -> Result<()> {
     replace_durably(path, |out| {
-        let mut out = Counted { out, crc: crc32fast::Hasher::new(), count: 0 };
+        let mut out = Counted { out, crc: crc32fast::Hasher::new(), count: 0, failed: None };
         let program = env!("CARGO_PKG_VERSION").as_bytes();
         out.write_all(&MAGIC)?;
         out.write_all(&FORMAT.to_le_bytes())?;
-        out.write_all(&layout::fingerprint::<Saved>().to_le_bytes())?;
+        out.write_all(&layout().to_le_bytes())?;
         out.write_all(&[program.len() as u8])?;
         out.write_all(program)?;
-        postcard::to_io(saving, &mut out).map_err(std::io::Error::other)?;
+        let outcome = postcard::to_io(saving, &mut out).map(|_| ()).map_err(std::io::Error::other);
+        // postcard has one word for all that goes wrong with what it writes to.
+        outcome.map_err(|e| out.failed.take().unwrap_or(e))?;
         let count = out.count;
         out.write_all(&count.to_le_bytes())?;
         let crc = out.crc.clone().finalize();
@@ -83,23 +87,44 @@ pub fn write(path: &Path, saving: &Saving) -> Result<()> {
     })
 }
 
+/// The fingerprint of what is stored, found once: it takes as long as a small file.
+fn layout() -> u32 {
+    static LAYOUT: OnceLock<u32> = OnceLock::new();
+    *LAYOUT.get_or_init(layout::fingerprint::<Saved>)
+}
+
 /// Adds up what is written.
 struct Counted<'a> {
     out: &'a mut dyn Write,
     crc: crc32fast::Hasher,
     count: u64,
+    /// What the system said when it refused.
+    failed: Option<std::io::Error>,
+}
+
+impl Counted<'_> {
+    /// Keeps what the system says; who asked gets the kind of it.
+    fn note<T>(&mut self, outcome: std::io::Result<T>) -> std::io::Result<T> {
+        outcome.map_err(|e| {
+            let kind = e.kind();
+            self.failed = Some(e);
+            kind.into()
+        })
+    }
 }
 
 impl Write for Counted<'_> {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        let n = self.out.write(bytes)?;
+        let outcome = self.out.write(bytes);
+        let n = self.note(outcome)?;
         self.crc.update(&bytes[..n]);
         self.count += n as u64;
         Ok(n)
     }
 
     fn flush(&mut self) -> std::io::Result<()> {
-        self.out.flush()
+        let outcome = self.out.flush();
+        self.note(outcome)
     }
 }
 
@@ -126,7 +151,7 @@ pub fn read(path: &Path) -> Result<Saved> {
     reader.read_exact(&mut program).map_err(failed)?;
     let mut version = vec![0u8; usize::from(program[0])];
     reader.read_exact(&mut version).map_err(failed)?;
-    if head.get(12..16) != Some(&layout::fingerprint::<Saved>().to_le_bytes()) {
+    if head.get(12..16) != Some(&layout().to_le_bytes()) {
         let why = format!(
             "was written by perigrain {}, whose scenes are stored otherwise than by this one, {}",
             String::from_utf8_lossy(&version),
@@ -137,11 +162,21 @@ pub fn read(path: &Path) -> Result<Saved> {
     }
     // Room for the longest text in it: names and words of a deck.
     let mut room = vec![0u8; 1 << 20];
-    let (saved, _): (Saved, _) = postcard::from_io((reader, &mut room)).map_err(|e| {
+    let (mut saved, _): (Saved, _) = postcard::from_io((reader, &mut room)).map_err(|e| {
         refuse(format!("holds no scene: {e}")).help("it was made by hand or by another program")
     })?;
-    scene::check(&saved.world).map_err(|what| refuse(format!("contradicts itself: {what}")))?;
+    sound::check(&saved.world).map_err(|fault| contradiction(refuse, fault.section, &fault.what))?;
+    saved.standing &= sound::stand(&saved.world);
+    if !saved.pair.iter().all(|said| said.lattice.is_sound()) {
+        return Err(contradiction(refuse, "pair", "a line was said under a lattice that is none").into());
+    }
     Ok(saved)
+}
+
+/// A file that is whole and yet not what a perigrain writes.
+fn contradiction(refuse: impl Fn(String) -> Diagnostic, section: &str, what: &str) -> Diagnostic {
+    refuse(format!("contradicts itself in its section `{section}`: {what}"))
+        .help("its checksum fits, so this is no damage: it was made by hand or by another program")
 }
 
 /// Why a file is refused, and what to do.

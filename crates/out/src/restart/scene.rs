@@ -1,4 +1,4 @@
-//! Whether a scene read from a restart file is sound, and whether it is still the scene of the file.
+//! Whether the scene is still that of a restart file which was read.
 
 use super::sum_of;
 use perigrain_world::{Named, Resume, World};
@@ -43,44 +43,4 @@ pub fn fingerprint(w: &World, of: &Resume) -> u32 {
         names,
         (&w.rebuild, &w.families, &w.contacts, &w.wall_contacts, &w.bonds.list, &w.bonds.weights),
     ))
-}
-
-/// Columns of one length, types and bonds within bounds: what every loop relies on.
-///
-/// # Errors
-/// What does not fit.
-pub fn check(w: &World) -> Result<(), &'static str> {
-    let (p, n) = (&w.particles, w.particles.x.len());
-    let own = |there: bool, len: usize| len == if there { n } else { 0 };
-    let style = p.style;
-    let same = [p.tag.len(), p.kind.len(), p.mask.len(), p.v.len(), p.f.len(), p.mass.len()];
-    if same.iter().any(|len| *len != n)
-        || !own(style.sphere, p.radius.len())
-        || !own(style.sphere, p.omega.len())
-        || !own(style.sphere, p.torque.len())
-        || !own(style.oriented, p.quat.len())
-        || !own(style.peri, p.volume.len())
-        || !own(style.peri, p.x0.len())
-        || !own(style.own_mass(), p.density.len())
-        || !own(style.molecules, p.molecule.len())
-        || !p.image.are_for(n)
-        || !w.columns.have(n)
-    {
-        return Err("columns of particles differ in length");
-    }
-    if n > 0 && w.domain.is_none() {
-        return Err("there are particles without a box");
-    }
-    if w.type_mass.len() != w.types || p.kind.iter().any(|k| *k == 0 || usize::from(*k) > w.types) {
-        return Err("a particle's type is beyond the number of types");
-    }
-    if w.contacts.values().chain(w.wall_contacts.values()).any(|c| !c.sound()) {
-        return Err("contacts and their history differ in length");
-    }
-    let Some(f) = &*w.families else { return Ok(()) };
-    let lengths = [f.place.len(), f.family_volume.len(), f.family_size.len(), f.damaged.len()];
-    if lengths.iter().any(|len| *len != n) || f.reference.as_ref().is_some_and(|r| r.len() != n) {
-        return Err("families and particles differ in number");
-    }
-    Ok(())
 }

@@ -143,6 +143,7 @@ impl Force {
         }
         let families = match w.families.take() {
             Some(mut families) => {
+                families.takes(self.style.law.kind, None)?;
                 families.options = self.options;
                 families.law = self.style.law.clone();
                 families.refresh(&view(w)?, &table);

@@ -37,7 +37,9 @@ pub fn lay_out(
     let mut body = LatticeBody { spacing: sites.nearest, basis: frame.basis, horizon, ..Default::default() };
     stencil(&mut body, cut)?;
     rows(&mut body, members, &frame);
-    prune(&mut body);
+    let all = std::mem::take(&mut body.stencil);
+    let Pruned { stencil, steps, step_of } = prune(&body, all);
+    (body.stencil, body.steps, body.step_of) = (stencil, steps, step_of);
     columns(&mut body);
     connect(&mut body, view, table, options, (family_volume, family_size));
     Some(body)
@@ -127,46 +129,72 @@ impl Frame {
 
 /// Half of all lattice vectors within the cut; `None` if there are more than can be numbered.
 fn stencil(body: &mut LatticeBody, cut: f64) -> Option<()> {
+    body.reach = reach(&body.basis, cut)?;
+    body.stencil = half_stencil(&body.basis, body.reach, cut * cut);
+    (body.stencil.len() < usize::from(u16::MAX)).then_some(())
+}
+
+/// How far vectors up to a length reach along those of a lattice.
+pub fn reach(basis: &Basis, cut: f64) -> Option<[i32; 3]> {
     // n is the product of a vector with a reciprocal one.
-    let reach = reciprocal(&body.basis)?.map(|r| (cut * length(r) * (1.0 + 1e-9)).floor() as i32);
-    let most = cut * cut * (1.0 + 2e-9);
-    body.reach = reach;
+    Some(reciprocal(basis)?.map(|r| (cut * length(r) * (1.0 + 1e-9)).floor() as i32))
+}
+
+/// Half of all lattice vectors within this reach whose square is no larger, in the order of stencils.
+pub fn half_stencil(basis: &Basis, reach: [i32; 3], square: f64) -> Vec<[i32; 3]> {
+    let most = square * (1.0 + 2e-9);
+    let mut stencil = vec![];
     for along in -reach[0]..=reach[0] {
         for up in 0..=reach[2] {
             for across in -reach[1]..=reach[1] {
-                let xi = point(&body.basis, [along, across, up]);
+                let xi = point(basis, [along, across, up]);
                 if (up, across, along) > (0, 0, 0) && dot(xi, xi) <= most {
-                    body.stencil.push([along, across, up]);
+                    stencil.push([along, across, up]);
                 }
             }
         }
     }
-    (body.stencil.len() < usize::from(u16::MAX)).then_some(())
+    stencil
 }
 
-/// Leaves of the stencil what leads from rows to rows, and finds the row steps in it.
-fn prune(body: &mut LatticeBody) {
+/// What of a stencil leads from rows to rows.
+pub struct Pruned {
+    /// Its vectors.
+    pub stencil: Vec<[i32; 3]>,
+    /// The row steps in it.
+    pub steps: Vec<(i32, usize)>,
+    /// Which of the steps each vector takes.
+    pub step_of: Vec<u16>,
+}
+
+/// Leaves of a stencil what leads from rows to rows of a body, and finds the row steps in it.
+pub fn prune(body: &LatticeBody, all: Vec<[i32; 3]>) -> Pruned {
     let slots: Vec<usize> = (0..body.planes * body.width).filter(|&slot| body.rows[slot].len > 0).collect();
-    let mut steps: Vec<((i32, usize), bool)> = vec![];
-    let mut step_of = |vector: &[i32; 3]| {
-        let step = (vector[1], vector[2] as usize);
-        let known = steps.iter().position(|s| s.0 == step).unwrap_or_else(|| {
+    let mut known: Vec<((i32, usize), bool)> = vec![];
+    let mut leads = |step: (i32, usize)| {
+        let found = known.iter().position(|s| s.0 == step).unwrap_or_else(|| {
             let ahead = |slot: &usize| (slot + step.1 * body.width).wrapping_add_signed(step.0 as isize);
-            steps.push((step, slots.iter().any(|slot| body.rows[ahead(slot)].len > 0)));
-            steps.len() - 1
+            known.push((step, slots.iter().any(|slot| body.rows[ahead(slot)].len > 0)));
+            known.len() - 1
         });
-        steps[known]
+        known[found].1
     };
-    let kept: Vec<[i32; 3]> = body.stencil.iter().copied().filter(|vector| step_of(vector).1).collect();
-    for vector in &kept {
-        let step = (vector[1], vector[2] as usize);
-        let known = body.steps.iter().position(|&s| s == step);
-        body.step_of.push(known.unwrap_or(body.steps.len()) as u16);
+    let step = |vector: &[i32; 3]| (vector[1], vector[2] as usize);
+    let stencil: Vec<[i32; 3]> = all.into_iter().filter(|vector| leads(step(vector))).collect();
+    let (mut steps, mut step_of): (Vec<(i32, usize)>, _) = (vec![], vec![]);
+    for step in stencil.iter().map(step) {
+        let known = steps.iter().position(|&s| s == step);
+        step_of.push(known.unwrap_or(steps.len()) as u16);
         if known.is_none() {
-            body.steps.push(step);
+            steps.push(step);
         }
     }
-    body.stencil = kept;
+    Pruned { stencil, steps, step_of }
+}
+
+/// Planes per slab: thick slabs hand over fewer forces twice, many slabs keep threads equally busy.
+pub fn thickness(planes: usize, above: usize) -> usize {
+    planes.div_ceil(16).clamp(above, 2 * above).max(1)
 }
 
 fn rows(body: &mut LatticeBody, members: &[u32], frame: &Frame) {
@@ -174,8 +202,7 @@ fn rows(body: &mut LatticeBody, members: &[u32], frame: &Frame) {
     let [_, beside, above] = body.reach.map(|r| r as usize);
     body.planes = up;
     body.width = across + 2 * beside;
-    // Thick slabs hand over fewer forces twice, many slabs keep threads equally busy.
-    body.thickness = up.div_ceil(16).clamp(above, 2 * above).max(1);
+    body.thickness = thickness(up, above);
     let mut extent = vec![(i32::MAX, i32::MIN); body.width * (up + above + 1)];
     let slot = |at: &[i32; 3]| at[2] as usize * body.width + at[1] as usize + beside;
     for at in &frame.at {

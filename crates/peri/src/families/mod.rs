@@ -12,6 +12,7 @@ pub mod lattice;
 pub mod law;
 pub mod list;
 mod measures;
+mod sound;
 
 pub use cells::Cells;
 pub use excluded::Excluded;

@@ -1,4 +1,7 @@
 //! Forces of a body on a lattice: slabs swept, forces handed back.
+//!
+//! Rows, stencil, bits of bonds and lengths of columns are as `build::lattice` makes them; of bodies from restart files
+//! `families::sound` has looked at each of them.
 
 use crate::families::Window;
 use crate::families::lattice::{LANES, LatticeBody, PAD, PAGE, RowMotion, STAGGER, staggered};

@@ -1,4 +1,7 @@
 //! Sweeps over the bonds of the list under any law: sums that forces need, then forces.
+//!
+//! Slabs, groups, partners and lengths of columns are as `build::list` makes them; of lists from restart files `families::sound` has
+//! looked at each of them.
 
 use std::marker::PhantomData;
 use std::ops::Range;

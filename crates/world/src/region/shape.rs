@@ -2,6 +2,8 @@
 
 use super::Region;
 use perigrain_base::math::vec3::{dot, sub};
+use serde::de::{Deserialize, Deserializer, Error};
+use std::cell::Cell;
 
 /// The shapes there are. Surfaces belong to the inside.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -70,9 +72,9 @@ pub enum Shape {
         tilt: [f64; 3],
     },
     /// Points in at least one.
-    Union(Vec<Region>),
+    Union(#[serde(deserialize_with = "nested")] Vec<Region>),
     /// Points in all.
-    Intersect(Vec<Region>),
+    Intersect(#[serde(deserialize_with = "nested")] Vec<Region>),
 }
 
 /// The two coordinates across an axis, in LAMMPS' order.
@@ -84,7 +86,33 @@ pub fn across(axis: usize) -> [usize; 2] {
     }
 }
 
+thread_local!(static LAYERS: Cell<usize> = const { Cell::new(0) });
+
+/// Reads the regions of a region, no deeper than [`Region::DEEPEST`]: a file that somebody has made must not use up the stack.
+fn nested<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Region>, D::Error> {
+    let layers = LAYERS.get() + 1;
+    if layers >= Region::DEEPEST {
+        return Err(D::Error::custom("regions are made of regions too many times"));
+    }
+    LAYERS.set(layers);
+    let outcome = Vec::deserialize(from);
+    LAYERS.set(layers - 1);
+    outcome
+}
+
 impl Shape {
+    /// Whether its axis is one, and how many numbers variables may give it.
+    pub(super) fn has(&self) -> (bool, usize) {
+        match self {
+            Shape::Block { .. } | Shape::Ellipsoid { .. } | Shape::Plane { .. } => (true, 6),
+            Shape::Cylinder { axis, .. } => (*axis < 3, 3),
+            Shape::Cone { axis, .. } => (*axis < 3, 6),
+            Shape::Sphere { .. } => (true, 4),
+            Shape::Prism { .. } => (true, 9),
+            Shape::Union(_) | Shape::Intersect(_) => (true, 0),
+        }
+    }
+
     /// Whether the point belongs to the shape.
     pub(super) fn contains(&self, x: [f64; 3]) -> bool {
         match self {

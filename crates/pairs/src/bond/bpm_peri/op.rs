@@ -67,6 +67,7 @@ impl Force {
         options.no_repulsion = true;
         let mut families = match w.families.take() {
             Some(mut families) => {
+                families.takes(law.kind, Some(of_bonds.len())).map_err(|e| e.at(self.span))?;
                 let mut known: Vec<([u32; 2], u8)> = links;
                 known.iter_mut().for_each(|l| l.0.sort_unstable());
                 known.sort_unstable();

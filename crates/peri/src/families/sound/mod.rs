@@ -1,0 +1,137 @@
+//! Whether families that were read from a file fit together: what every kernel relies on, and trusts without looking.
+//!
+//! Kernels reach cells, records, bonds and constants by pointers. What makes that safe is true of families by the way they are built
+//! and changed; of families from a file it is true because of what is looked at here: every length, every place that leads
+//! somewhere, every bit that says there is a bond.
+
+mod lattice;
+mod list;
+
+use crate::families::lattice::{LANES, PAD};
+use crate::families::law::SiteState;
+use crate::families::{Families, LawKind};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::math::vec3::{Vec3, length, sub};
+
+/// What does not fit.
+pub(super) type Fault = std::result::Result<(), String>;
+
+/// Reference positions of particles may differ from where their cells lie by this part of the distance of neighbours: far more
+/// than rounding, far less than what would be another bond.
+const OFF: f64 = 1e-6;
+
+/// A fault if `actual` is not what it must be.
+fn equal<T: PartialEq + std::fmt::Display>(what: &str, actual: T, expected: T) -> Fault {
+    if actual == expected { Ok(()) } else { Err(format!("{what} {actual}, not {expected}")) }
+}
+
+/// A fault unless all is well.
+fn must(well: bool, what: &str) -> Fault {
+    if well { Ok(()) } else { Err(what.to_string()) }
+}
+
+impl Families {
+    /// Whether everything leads where there is something, for so many types of particles that were at `x0` when they were created.
+    ///
+    /// # Errors
+    /// What does not fit, as the end of a sentence.
+    pub fn sound(&self, types: usize, x0: &[Vec3]) -> std::result::Result<(), String> {
+        let n = self.place.len();
+        equal("the number of types of its coefficients is", self.table.types, types)?;
+        equal("the number of pairs of types is", self.table.pairs.len(), types * types)?;
+        for (what, len) in [
+            ("volumes", self.family_volume.len()),
+            ("sizes", self.family_size.len()),
+            ("damages", self.damaged.len()),
+            ("reference positions", self.reference.as_ref().map_or(x0.len(), Vec::len)),
+            ("lasting particles", if self.lasting.is_empty() { n } else { self.lasting.len() }),
+        ] {
+            equal(&format!("the number of {what} is"), len, n)?;
+        }
+        let reference = self.reference.as_deref().unwrap_or(x0);
+        for (k, body) in self.lattices.iter().enumerate() {
+            body.sound((&self.law, types), reference)
+                .map_err(|what| format!("body {} of lattices: {what}", k + 1))?;
+        }
+        self.list
+            .sound((&self.law, types, self.of_bonds.len()), reference)
+            .map_err(|what| format!("list of bonds: {what}"))?;
+        self.places_are_sound()?;
+        let near = self.near.pairs.iter().flatten();
+        must(
+            near.clone().all(|p| p.ends[0] < p.ends[1] && (p.ends[1] as usize) < n),
+            "a near pair has no two particles",
+        )?;
+        must(self.near.loose.iter().all(|l| (l.0 as usize) < n), "a loose particle is none of the scene")
+    }
+
+    /// Cells and records are counted through all bodies, and each particle has one of them at most.
+    fn places_are_sound(&self) -> Fault {
+        let mut place = vec![u32::MAX; self.place.len()];
+        let mut first = 0u32;
+        let lattices = self.lattices.iter().map(|b| (b.first_place, &b.particle));
+        for (own, particle) in lattices.chain([(self.list.first_place, &self.list.particle)]) {
+            equal("the first place of a body is", own, first)?;
+            for (k, &p) in particle.iter().enumerate().filter(|(_, p)| **p != u32::MAX) {
+                let Some(place) = place.get_mut(p as usize) else {
+                    return Err(format!("particle number {p} is none of the scene"));
+                };
+                must(*place == u32::MAX, "a particle has two places")?;
+                *place = first + k as u32;
+            }
+            let next = u32::try_from(particle.len()).ok().and_then(|len| first.checked_add(len));
+            first = next.filter(|n| *n < u32::MAX).ok_or("there are more places than can be counted")?;
+        }
+        must(place == self.place, "a particle is not at its place")
+    }
+
+    /// Whether these families can go on under a law, and with coefficients by types of bonds where there are any.
+    ///
+    /// # Errors
+    /// Where bonds do not remember what the law asks for.
+    pub fn takes(&self, law: LawKind, of_bonds: Option<usize>) -> Result<()> {
+        let lattice = |b: &super::lattice::LatticeBody| {
+            states(&b.state, law, (b.particle.len() + 2 * PAD, b.alive.len() * LANES))
+        };
+        let list = || states(&self.list.state, law, (self.list.record.len(), self.list.partner.len()));
+        let by_bonds = match of_bonds {
+            _ if self.list.record.is_empty() => true,
+            None => true,
+            Some(types) => {
+                !self.of_bonds.is_empty() && self.list.group_kind.iter().all(|k| usize::from(*k) < types)
+            }
+        };
+        if by_bonds && self.lattices.iter().all(|b| lattice(b).is_ok()) && list().is_ok() {
+            return Ok(());
+        }
+        let text = "the peridynamic bonds of this scene were made under another style: they do not remember what this one asks for";
+        let help =
+            "declare the style that was in force at the first run, or `clear` the scene and make it anew";
+        Err(Diagnostic::error(Code::CONFLICT, None, text).help(help).into())
+    }
+}
+
+/// Whether columns of sites and memory of bonds are as long as a law needs: `sites` entries, and numbers for `bonds` bonds.
+fn states(state: &SiteState, law: LawKind, (sites, bonds): (usize, usize)) -> Fault {
+    let (sites, numbers) = if law.has_states() { (sites, bonds * law.memory()) } else { (0, 0) };
+    for (what, column) in [
+        ("weighted volumes", &state.weighted),
+        ("spreads", &state.spread),
+        ("dilatations", &state.theta),
+        ("former dilatations", &state.before),
+        ("unrelaxed dilatations", &state.unrelaxed),
+        ("plastic multipliers", &state.plastic),
+    ] {
+        equal(&format!("the number of {what} is"), column.len(), sites)?;
+    }
+    equal("the number of numbers that bonds remember is", state.memory.len(), numbers)
+}
+
+/// A fault if a particle's reference position is off.
+fn at_home(own: Vec3, home: Vec3, spacing: f64) -> Fault {
+    let off = length(sub(own, home));
+    must(
+        off <= OFF * spacing || !own.iter().all(|x| x.is_finite()),
+        "a particle's cell is not where the particle was",
+    )
+}
