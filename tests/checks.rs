@@ -254,7 +254,7 @@ fn what_only_a_run_can_tell_is_no_mistake() {
         if \"$(ke) > 1\" then \"variable q equal 0\" \"jump SELF out\"\nnext m\njump SELF more\nlabel out\nprint \"$m\"\n\
         if \"$(ke) > 1\" then \"jump SELF wait\"\nvariable q equal 5\nprint \"$(1/(v_q-5+v_n))\"\n\
         fix 2 all ave/time ${n} 1 ${n} c_thermo_pe\nif \"0 && ${n}\" then nonsense\nregion r sphere 0 0 0 $(-v_n)\n\
-        create_atoms 1 region r\nfix 1 all nve\nrun ${n}\n";
+        create_atoms 1 region r\nfix 1 all nve\nrun ${n}\nrun 10 upto\nrun 10 start 10 stop 40\nrun 1000000 every 1 NULL\n";
     for mode in [Mode::Check, Mode::Plan] {
         let (said, session) = looked_at(mode, &format!("{SCENE}\n{deck}"), Path::new("."));
         let errors: Vec<_> = said.iter().filter(|d| d.severity == Severity::Error).collect();

@@ -67,9 +67,11 @@ impl Plans {
         if !self.open.is_empty() {
             out += "what only a run can tell\n";
         }
-        for (span, why) in &self.open {
-            let _ = writeln!(out, "  {:<34} {why}", line(*span));
-        }
+        let mut open: Vec<String> =
+            self.open.iter().map(|(span, why)| format!("  {:<34} {why}\n", line(*span))).collect();
+        // Commands of one line that have the same to say.
+        open.dedup();
+        out += &open.concat();
         out.trim_end().to_owned()
     }
 }
@@ -203,6 +205,7 @@ mod tests {
         }
         plans.leave_open(at(2), "why");
         plans.leave_open(at(2), "why else");
+        plans.leave_open(Span::new(file, 13, 14), "why");
         let wanted = "run at in.d:1, in.d:2 (2 times), used 3 times\na\n\nrun at in.d:3, used once\nb\n\n\
                       what only a run can tell\n  in.d:3                             why";
         assert_eq!(plans.text(&sources), wanted);

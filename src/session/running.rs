@@ -89,6 +89,8 @@ impl Session {
                     }
                     if self.planning() && stretches == PLANNED_STRETCHES {
                         self.world.clock.step += left;
+                        let text = format!("followed for the first {stretches} stretches only");
+                        self.plans.leave_open(cmd.span, text);
                         break;
                     }
                 }
@@ -105,10 +107,15 @@ impl Session {
         let mut args = Args::new(cmd);
         let span = args.here();
         let mut steps = args.integer("the number of steps")?;
+        let unsure = self.world.parts.unseen.step;
         let mut out = RunArgs { steps, start: None, stop: None, pre: true, post: true, every: None };
         while let Some(key) = args.next() {
             match key.text.as_str() {
-                "upto" => steps = steps.saturating_sub(self.world.clock.step),
+                "upto" => {
+                    steps = steps.saturating_sub(self.world.clock.step);
+                    // A run before may have ended earlier than the step counted here.
+                    steps = if unsure { steps.max(0) } else { steps };
+                }
                 "start" => out.start = Some(args.integer("the first step of ramps")?),
                 "stop" => out.stop = Some(args.integer("the last step of ramps")?),
                 "pre" => out.pre = args.flag("pre")?,
@@ -135,7 +142,8 @@ impl Session {
                 format!("step {first} and {steps} more are beyond the last step there is, {}", i64::MAX);
             return refuse(Code::TOO_LARGE, span, text);
         };
-        if out.start.is_some_and(|s| s > first) || out.stop.is_some_and(|s| s < last) {
+        let encloses = out.start.is_none_or(|s| s <= first) && out.stop.is_none_or(|s| s >= last);
+        if !encloses && !unsure {
             return refuse(Code::BAD_VALUE, cmd.span, "start and stop must enclose the steps of this run");
         }
         Ok(out)
