@@ -169,17 +169,11 @@ mod tests {
         assert_eq!((r.jobs, r.anew, r.options.threads, r.report.len()), (Some(3), true, Some(2), 2));
         assert_eq!(r.folder(), PathBuf::from("in.x.sweep"));
         let r = read("-table runs.csv dir/in.y -out here -var w 1 2").unwrap();
+        assert_eq!(r.folder(), PathBuf::from("here"));
         assert_eq!(
             (r.lists, r.options.deck),
             (vec![List::Table("runs.csv".into())], Deck::File("dir/in.y".into()))
         );
-        assert_eq!(r.folder_of_test(), PathBuf::from("here"));
-    }
-
-    impl Request {
-        fn folder_of_test(&self) -> PathBuf {
-            self.out.clone().unwrap_or_default()
-        }
     }
 
     #[test]
