@@ -258,6 +258,35 @@ fn what_would_go_wrong_in_every_run_is_said_before_the_first() {
     assert!(o.status.code() == Some(1) && said(&o).contains("nowhere"), "{}", said(&o));
 }
 
+#[test]
+fn one_sweep_at_a_time_works_in_a_folder() {
+    let folder = with_deck("variable n index 1\nprint \"$n\"\nshell sleep 3\n");
+    let at = folder.path();
+    let args = ["sweep", "in.x", "-each", "n", "1", "2", "-jobs", "2", "-screen", "none"];
+    let mut first = Command::new(env!("CARGO_BIN_EXE_perigrain"))
+        .args(args)
+        .current_dir(at)
+        .stdin(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !at.join("in.x.sweep/0002-n=2/log.lammps").exists() {
+        assert!(first.try_wait().unwrap().is_none(), "ended by itself");
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let status = said(&sweep(at, &["in.x.sweep", "-status"]));
+    assert!(status.contains("0 runs ok, 2 left, at work on 2"), "{status}");
+    let o = sweep(at, &args[1..]);
+    assert!(
+        o.status.code() == Some(1) && said(&o).contains("another sweep is at work in `in.x.sweep`"),
+        "{}",
+        said(&o)
+    );
+    // The sweep is asked to end: nothing was done.
+    Command::new("kill").args(["-TERM", &first.id().to_string()]).status().unwrap();
+    assert_eq!(first.wait().unwrap().code(), Some(130));
+    assert!(said(&sweep(at, &["in.x.sweep", "-status"])).contains("0 runs ok, 2 left, not at work"));
+}
+
 /// Kills sweeps with signal 9 at moments that are as good as random, and starts them again.
 #[cfg(unix)]
 #[test]
