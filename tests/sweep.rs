@@ -1,8 +1,10 @@
 //! `perigrain sweep` from outside: tables, resumption after a kill, what fails and what is refused.
 
+use perigrain::sweep::{self, Deck, Job, Outcome, Settings, State, Sweep, Watch};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use std::sync::atomic::AtomicBool;
 
 /// A block that flies, and is done at once.
 const DECK: &str = "\
@@ -256,6 +258,35 @@ fn what_would_go_wrong_in_every_run_is_said_before_the_first() {
     assert!(o.status.code() == Some(1) && said(&o).contains("nowhere"), "{}", said(&o));
 }
 
+#[test]
+fn one_sweep_at_a_time_works_in_a_folder() {
+    let folder = with_deck("variable n index 1\nprint \"$n\"\nshell sleep 3\n");
+    let at = folder.path();
+    let args = ["sweep", "in.x", "-each", "n", "1", "2", "-jobs", "2", "-screen", "none"];
+    let mut first = Command::new(env!("CARGO_BIN_EXE_perigrain"))
+        .args(args)
+        .current_dir(at)
+        .stdin(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !at.join("in.x.sweep/0002-n=2/log.lammps").exists() {
+        assert!(first.try_wait().unwrap().is_none(), "ended by itself");
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let status = said(&sweep(at, &["in.x.sweep", "-status"]));
+    assert!(status.contains("0 runs ok, 2 left, at work on 2"), "{status}");
+    let o = sweep(at, &args[1..]);
+    assert!(
+        o.status.code() == Some(1) && said(&o).contains("another sweep is at work in `in.x.sweep`"),
+        "{}",
+        said(&o)
+    );
+    // The sweep is asked to end: nothing was done.
+    Command::new("kill").args(["-TERM", &first.id().to_string()]).status().unwrap();
+    assert_eq!(first.wait().unwrap().code(), Some(130));
+    assert!(said(&sweep(at, &["in.x.sweep", "-status"])).contains("0 runs ok, 2 left, not at work"));
+}
+
 /// Kills sweeps with signal 9 at moments that are as good as random, and starts them again.
 #[cfg(unix)]
 #[test]
@@ -351,4 +382,51 @@ fn a_deck_may_carry_its_values() {
             assert!(o.status.code() == Some(1) && said(&o).contains(why), "{line}: {}", said(&o));
         }
     }
+}
+
+/// Ends a sweep after its first run.
+struct Impatient<'a>(&'a AtomicBool, Vec<usize>);
+
+impl Watch for Impatient<'_> {
+    fn ended(&mut self, job: usize, outcome: &Outcome, state: &State) {
+        assert!(outcome.is_ok() && state.ok == 1 && state.left.is_some(), "{outcome:?}");
+        self.1.push(job);
+        self.0.store(true, std::sync::atomic::Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn jobs_give_outcomes_from_rust() {
+    let folder = tempfile::tempdir().unwrap();
+    let job = |v: &str| Job { vars: vec![("v".into(), v.into())] };
+    let mut sweep = Sweep {
+        deck: Deck { name: "in.x".into(), text: DECK.into(), folder: folder.path().into() },
+        jobs: vec![job("10"), job("20")],
+        report: vec!["c_k".into()],
+        settings: Settings::default(),
+        folder: folder.path().join("out"),
+        at_once: 1,
+        threads: 2,
+        retry: 0,
+        program: env!("CARGO_BIN_EXE_perigrain").into(),
+        telling: true,
+    };
+    assert!(sweep::look_ahead(&sweep).problems.is_empty());
+    let stop = AtomicBool::new(false);
+    let mut watch = Impatient(&stop, vec![]);
+    let some = sweep::work_off(&sweep, false, &mut watch, &stop).unwrap();
+    assert!(some.interrupted && !some.all_ok() && watch.1 == [0]);
+    assert_eq!(some.outcomes.iter().flatten().count(), 1);
+    let all = sweep::work_off(&sweep, false, &mut (), &AtomicBool::new(false)).unwrap();
+    assert!(all.all_ok());
+    let of = |k: usize| all.outcomes[k].as_ref().unwrap();
+    assert_eq!((of(1).steps, of(1).atoms, of(1).threads), (10, 125, 2));
+    assert!(of(1).loop_seconds > 0.0 && of(1).seconds > of(1).loop_seconds);
+    assert_eq!(of(1).value("step"), Some(10.0));
+    assert!(of(0).value("c_k").unwrap() > 0.0 && of(0).value("c_nothing").is_none());
+    let standing = sweep::look(&sweep.folder).unwrap();
+    assert_eq!((standing.deck.as_str(), standing.jobs.len(), standing.running), ("in.x", 2, None));
+    sweep.jobs.pop();
+    let other = sweep::work_off(&sweep, false, &mut (), &AtomicBool::new(false)).unwrap_err();
+    assert!(other.0[0].message.contains("it has 2 runs, not 1"), "{other}");
 }

@@ -84,9 +84,9 @@ pub struct Tally {
     bar: ProgressBar,
 }
 
-impl Tally {
+impl Default for Tally {
     /// A line that shows itself when there is something to show.
-    pub fn new() -> Self {
+    fn default() -> Self {
         let target = if stderr().is_terminal() {
             ProgressDrawTarget::stderr_with_hz(5)
         } else {
@@ -98,7 +98,9 @@ impl Tally {
         }
         Self { bar }
     }
+}
 
+impl Tally {
     /// Shows how many of how many have ended, and some words.
     pub fn show(&self, done: usize, of: usize, words: &str) {
         self.bar.set_length(of as u64);

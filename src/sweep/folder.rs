@@ -7,6 +7,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_out::file::{replace, trouble};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// Held by the process that has the runs made.
 const LOCK: &str = ".lock";
@@ -14,6 +15,8 @@ const LOCK: &str = ".lock";
 const WORKERS: &str = ".workers";
 /// The deck as it was when the sweep began.
 pub(super) const DECK: &str = "deck";
+/// How long an earlier sweep may take to go.
+const PATIENCE: Duration = Duration::from_secs(1);
 /// A run's folder is not named longer than this.
 const LONGEST: usize = 100;
 
@@ -32,7 +35,7 @@ impl Folder {
         let path = std::path::absolute(&sweep.folder).unwrap_or_else(|_| sweep.folder.clone());
         std::fs::create_dir_all(&path).map_err(|e| trouble("make the folder", &path, &e))?;
         let lock = locked(&path.join(LOCK))?;
-        if let Err(TryLockError::WouldBlock) = lock.try_lock() {
+        if !held(&lock) {
             let text = format!("another sweep is at work in `{}`", sweep.folder.display());
             let d = Diagnostic::error(Code::OTHER_SWEEP, None, text);
             return Err(d.help("wait for it, or put this one elsewhere with `-out DIR`").into());
@@ -128,6 +131,18 @@ impl Folder {
         let (done, total) = text.trim().split_once(' ')?;
         Some((done.parse().ok()?, total.parse().ok()?))
     }
+}
+
+/// Takes the lock; false if somebody else keeps it. A process that a killed sweep was just starting holds it for a moment more.
+fn held(lock: &File) -> bool {
+    let begin = Instant::now();
+    while let Err(TryLockError::WouldBlock) = lock.try_lock() {
+        if begin.elapsed() > PATIENCE {
+            return false;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    true
 }
 
 /// Whether somebody is at work in a folder.

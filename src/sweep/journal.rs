@@ -298,18 +298,18 @@ impl Read {
 ///
 /// # Errors
 /// A folder without one, and a damaged one.
-pub(super) fn look(folder: &Path) -> Result<(Head, Vec<Option<Outcome>>)> {
+pub(super) fn look(folder: &Path) -> Result<(Head, Vec<bool>, Vec<Option<Outcome>>)> {
     let path = folder.join(NAME);
     let bytes = std::fs::read(&path).map_err(|e| {
         let d = trouble("read", &path, &e);
         d.help("name the folder of a sweep, as `perigrain sweep in.deck.sweep -status`")
     })?;
-    let Read { head, outcomes, .. } = read(&path, &bytes)?;
+    let Read { head, begun, outcomes, .. } = read(&path, &bytes)?;
     let nothing = || {
         let text = format!("`{}` is empty: no run has begun", path.display());
         Diagnostics::from(Diagnostic::error(Code::BAD_FILE, None, text))
     };
-    Ok((head.ok_or_else(nothing)?, outcomes))
+    Ok((head.ok_or_else(nothing)?, begun, outcomes))
 }
 
 #[cfg(test)]

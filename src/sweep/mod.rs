@@ -173,8 +173,10 @@ pub struct Standing {
     pub report: Vec<String>,
     /// What became of them so far.
     pub results: Results,
-    /// Whether somebody is at work there.
-    pub at_work: bool,
+    /// Runs under way, if somebody is at work there.
+    pub running: Option<usize>,
+    /// Time left then, from the median of what is done.
+    pub left: Option<Duration>,
 }
 
 /// Looks at the folder of a sweep.
@@ -182,15 +184,22 @@ pub struct Standing {
 /// # Errors
 /// A folder without a journal, and one that cannot be read.
 pub fn look(folder: &std::path::Path) -> Result<Standing> {
-    let (head, outcomes) = journal::look(folder)?;
+    let (head, begun, outcomes) = journal::look(folder)?;
+    let under_way =
+        begun.iter().zip(&outcomes).filter(|(begun, outcome)| **begun && outcome.is_none()).count();
+    let running = folder::at_work(folder).then_some(under_way);
+    let left = running.and_then(|n| time_left(&outcomes, 0.0, n));
     let results = Results { outcomes, ..Results::default() };
-    Ok(Standing {
-        deck: head.deck,
-        jobs: head.jobs,
-        report: head.report,
-        results,
-        at_work: folder::at_work(folder),
-    })
+    Ok(Standing { deck: head.deck, jobs: head.jobs, report: head.report, results, running, left })
+}
+
+/// The time that the missing runs take, so many at once: the median of those that went well for each, less the seconds `spent`.
+fn time_left(outcomes: &[Option<Outcome>], spent: f64, at_once: usize) -> Option<Duration> {
+    let mut times: Vec<f64> = outcomes.iter().flatten().filter(|o| o.is_ok()).map(|o| o.seconds).collect();
+    times.sort_by(f64::total_cmp);
+    let median = times.get(times.len() / 2)?;
+    let missing = outcomes.iter().filter(|o| o.is_none()).count() as f64;
+    Duration::try_from_secs_f64((missing * median - spent).max(0.0) / at_once.max(1) as f64).ok()
 }
 
 /// Has all runs made that are not done yet. With `anew` an earlier sweep in the folder is forgotten.
@@ -399,17 +408,13 @@ impl<'a> Work<'a> {
     }
 
     fn state(&self) -> State {
-        let ended = || self.outcomes.iter().flatten();
-        let ok = self.done();
-        let mut times: Vec<f64> = ended().filter(|o| o.is_ok()).map(|o| o.seconds).collect();
-        times.sort_by(f64::total_cmp);
+        let (ended, ok) = (self.outcomes.iter().flatten().count(), self.done());
         let running = self.crew.running(|job| self.folder.steps(self.sweep, job));
-        let missing = self.outcomes.len() - ended().count();
-        let left = times.get(times.len() / 2).map(|median| {
-            let spent: f64 = running.iter().map(|r| r.since.as_secs_f64().min(*median)).sum();
-            Duration::from_secs_f64((missing as f64 * median - spent).max(0.0) / self.crew.at_once as f64)
-        });
-        State { jobs: self.outcomes.len(), ok, failed: ended().count() - ok, running, left }
+        // A run that takes longer than all others is as good as done.
+        let longest = self.outcomes.iter().flatten().map(|o| o.seconds).fold(0.0, f64::max);
+        let spent: f64 = running.iter().map(|r| r.since.as_secs_f64().min(longest)).sum();
+        let left = time_left(&self.outcomes, spent, self.crew.at_once);
+        State { jobs: self.outcomes.len(), ok, failed: ended - ok, running, left }
     }
 }
 

@@ -160,7 +160,7 @@ fn prepared(request: &Request, swept: Swept, text: String) -> Result<Sweep> {
 
 fn run(request: &Request, sweep: &Sweep) -> Result<u8> {
     let quiet = request.options.screen == Target::None;
-    let mut show = Show { jobs: &sweep.jobs, quiet, tally: Tally::new() };
+    let mut show = Show { jobs: &sweep.jobs, quiet, tally: Tally::default() };
     let stop = Arc::new(AtomicBool::new(false));
     listen(&stop);
     let results = sweep::work_off(sweep, request.anew, &mut show, &stop);
@@ -217,8 +217,11 @@ fn counts(results: &Results) -> String {
 /// Tells where the sweep in a folder stands.
 fn status(request: &Request) -> Result<u8> {
     let folder = request.folder();
-    let Standing { deck, jobs, report, results, at_work } = sweep::look(&folder)?;
-    let work = if at_work { "at work" } else { "not at work" };
+    let Standing { deck, jobs, report, results, running, left } = sweep::look(&folder)?;
+    let mut work = running.map_or("not at work".into(), |n| format!("at work on {n}"));
+    if let Some(left) = left {
+        work += &format!(", {} to go", show::short(left));
+    }
     let mut text = table::text(&jobs, &report, &results.outcomes, WIDTH, SHOWN);
     text += &format!("{}: {deck}, {}, {work}\n", folder.display(), counts(&results));
     super::show(&text);
