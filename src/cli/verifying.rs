@@ -63,6 +63,11 @@ pub fn verify(wanted: &Wanted) -> Result<u8, Usage> {
         cases.iter().for_each(|case| show(&case.deck));
         return Ok(OK);
     }
+    judged(cases, wanted)
+}
+
+/// Runs cases, shows and writes what came out; the exit code says whether anything failed.
+fn judged(cases: Vec<Case>, wanted: &Wanted) -> Result<u8, Usage> {
     // Cases are small: several side by side are faster than one on several threads.
     let workers = session::set_threads(wanted.threads.unwrap_or(0));
     session::set_threads(1);
@@ -102,4 +107,22 @@ fn write(wanted: &Wanted, report: &Report) -> Result<(), Usage> {
             .map_err(|e| Usage { message: format!("cannot write `{}`: {e}", file.display()), help: None })?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wrong_expectation_is_the_exit_code() {
+        let wanted = Wanted { threads: Some(1), ..Wanted::default() };
+        let expecting = |number: &str| {
+            let head = "#| title = \"t\"\n#| about = \"a\"\n#| source = \"s\"\n#| [[check]]\n#| what = \"seven\"\n\
+                        #| measure = \"v_seven\"\n#| tolerance = 1e-6\n#| why = \"w\"\n";
+            let deck = format!("{head}#| expected = {number}\nvariable seven equal 7\n");
+            Case::read("tests/planted", &deck).unwrap()
+        };
+        assert_eq!(judged(vec![expecting("7.0")], &wanted), Ok(OK));
+        assert_eq!(judged(vec![expecting("7.0"), expecting("7.1")], &wanted), Ok(FAILED));
+    }
 }

@@ -23,7 +23,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain plan in.plate --measure\n\
             perigrain plan --dot in.plate\n\
             perigrain -in in.plate -screen none -threads 2 -compat lammps\n\
-            perigrain verify -only chung -html verify.html\n\
+            perigrain verify -only pull_off -html pull_off.html\n\
             perigrain doc fix nve\n\
             perigrain explain PG0102",
     },

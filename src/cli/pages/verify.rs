@@ -9,11 +9,10 @@ pub(super) const VERIFY: Entry = (
         syntax: "perigrain verify [-list] [-only PATTERN] [-deck] [-threads N] [-json FILE] [-junit FILE] [-html FILE] [-markdown FILE]",
         summary: "Published cases and closed forms, run by the program, with a verdict in the exit code.",
         text: TEXT,
-        example: "perigrain verify\n\
-            perigrain verify -list\n\
-            perigrain verify -only chung -html chung.html\n\
+        example: "perigrain verify -list\n\
+            perigrain verify -only pull_off -html pull_off.html\n\
             perigrain verify -only peridynamics/dispersion -deck\n\
-            perigrain verify -threads 2 -json verify.json -junit verify.xml",
+            perigrain verify -threads 2 -only bonded/one -json bonds.json -junit bonds.xml",
     },
 );
 
