@@ -129,6 +129,8 @@ pub struct Session {
     pub plan: Option<StepPlan>,
     watch: Box<dyn Watch>,
     ran: bool,
+    /// The step with which the present scene has passed the check of its bonds.
+    checked_step: Option<f64>,
     shown: usize,
     interrupted: bool,
     /// `quit` was said, here or inside `run … every`.
@@ -190,6 +192,7 @@ impl Session {
             plan: None,
             watch: Box::new(Unwatched),
             ran: false,
+            checked_step: None,
             shown: 0,
             interrupted: false,
             quit: None,

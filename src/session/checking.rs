@@ -34,6 +34,7 @@ impl Session {
         if moves {
             self.check_integrators(span, &mut found);
             self.check_step(span, &mut found);
+            self.checked_step = Some(self.world.clock.dt);
             self.check_overlaps(span, &mut found);
         }
         self.check_levels(span, &mut found);

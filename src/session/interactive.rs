@@ -120,6 +120,7 @@ impl Session {
             told_to: _,
             turns: _,
             made: _,
+            checked_step: _,
         } = self;
         let shared = earlier.filter(|e| self.same_particles(e)).map(|e| e.world.clone());
         let bytes = if shared.is_some() { 0 } else { self.bytes() };
@@ -147,6 +148,7 @@ impl Session {
         self.world = World::clone(&s.world);
         self.options.compat = s.compat;
         self.ran = s.ran;
+        self.checked_step = None;
         self.typed.clone_from(&s.typed);
         self.timer = s.timer;
         self.plan = None;

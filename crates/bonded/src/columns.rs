@@ -23,6 +23,53 @@ pub struct Member<const C: usize> {
     pub own: [f64; C],
 }
 
+/// What decides where a bond stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// Type.
+    pub kind: u16,
+    /// Places of the ends.
+    pub ends: [u32; 2],
+}
+
+/// Bonds by type, place of the lower end and place of the upper one; alike ones as they were.
+fn in_order(keys: &[Key], particles: usize) -> Vec<u32> {
+    // Ends stand near each other and have few bonds each: counting is faster than comparing.
+    let lower = |key: &Key| key.ends[0].min(key.ends[1]) as usize;
+    let upper = |k: u32| keys[k as usize].ends[0].max(keys[k as usize].ends[1]);
+    let (starts, mut order) = counted(particles, keys.len(), |k| lower(&keys[k]), |k| k);
+    for range in starts.windows(2) {
+        order[range[0] as usize..range[1] as usize].sort_by_key(|k| upper(*k));
+    }
+    let kinds = keys.iter().map(|key| usize::from(key.kind) + 1).max().unwrap_or(0);
+    if keys.iter().all(|key| key.kind == keys[0].kind) {
+        return order;
+    }
+    let by_place = order;
+    counted(kinds, keys.len(), |k| usize::from(keys[by_place[k] as usize].kind), |k| by_place[k] as usize).1
+}
+
+/// Things in the order of a small number of each, those alike as they come: where each number begins, and `what` stands there.
+fn counted(
+    numbers: usize,
+    things: usize,
+    number: impl Fn(usize) -> usize,
+    what: impl Fn(usize) -> usize,
+) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0u32; numbers + 1];
+    (0..things).for_each(|k| starts[number(k) + 1] += 1);
+    for k in 0..numbers {
+        starts[k + 1] += starts[k];
+    }
+    let (mut next, mut out) = (starts.clone(), vec![0; things]);
+    for k in 0..things {
+        let at = &mut next[number(k)];
+        out[*at as usize] = what(k) as u32;
+        *at += 1;
+    }
+    (starts, out)
+}
+
 /// Bonds by type and place, padded to whole groups with dead ones.
 #[derive(Clone, Debug)]
 pub struct Columns<const C: usize> {
@@ -66,23 +113,44 @@ impl<const C: usize> Default for Columns<C> {
 }
 
 impl<const C: usize> Columns<C> {
-    /// Sorts bonds into columns, of `particles` particles in storage.
-    pub fn new(mut bonds: Vec<Member<C>>, particles: usize) -> Self {
-        bonds.sort_unstable_by_key(|b| (b.kind, b.ends[0].min(b.ends[1]), b.ends[0].max(b.ends[1])));
+    /// Columns of bonds, of `particles` particles in storage.
+    pub fn new(bonds: &[Member<C>], particles: usize) -> Self {
+        let keys: Vec<Key> = bonds.iter().map(|b| Key { kind: b.kind, ends: b.ends }).collect();
         let mut columns = Self::default();
-        let turned = bonds.iter().any(|b| b.turned != UNTURNED);
-        for (k, bond) in bonds.iter().enumerate() {
-            columns.push(bond, 1.0, turned);
-            let last = bonds.get(k + 1).is_none_or(|next| next.kind != bond.kind);
-            while last && !columns.alive.len().is_multiple_of(GROUP) {
-                columns.push(bond, 0.0, turned);
-            }
-        }
-        columns.enter(particles);
+        columns.fill(&keys, particles, |k| bonds[k]);
         columns
     }
 
-    fn push(&mut self, bond: &Member<C>, alive: f64, turned: bool) {
+    /// Puts other bonds into the columns: as many as there are keys, of `particles` particles in storage.
+    pub fn fill(&mut self, keys: &[Key], particles: usize, bond: impl Fn(usize) -> Member<C>) {
+        self.clear();
+        let order = in_order(keys, particles);
+        let mut next = order.iter().peekable();
+        while let Some(&k) = next.next() {
+            let k = k as usize;
+            let one = bond(k);
+            self.push(&one, 1.0);
+            let last = next.peek().is_none_or(|k| keys[**k as usize].kind != one.kind);
+            while last && !self.alive.len().is_multiple_of(GROUP) {
+                self.push(&one, 0.0);
+            }
+        }
+        self.enter(particles);
+    }
+
+    /// Empties the columns; their memory stays for the next bonds.
+    fn clear(&mut self) {
+        self.ends.iter_mut().for_each(Vec::clear);
+        self.kinds.clear();
+        self.alive.clear();
+        self.length.clear();
+        self.axis.iter_mut().for_each(Vec::clear);
+        self.turned.clear();
+        self.own.iter_mut().for_each(Vec::clear);
+        self.reach = 0;
+    }
+
+    fn push(&mut self, bond: &Member<C>, alive: f64) {
         if self.alive.len().is_multiple_of(GROUP) {
             self.kinds.push(bond.kind);
         }
@@ -95,7 +163,9 @@ impl<const C: usize> Columns<C> {
         for k in 0..3 {
             self.axis[k].push(bond.axis[k]);
         }
-        if turned {
+        // Until the first one that is turned there is none.
+        if bond.turned != UNTURNED || !self.turned.is_empty() {
+            self.turned.resize(self.alive.len() - 1, UNTURNED);
             self.turned.push(bond.turned);
         }
         for k in 0..C {
@@ -105,7 +175,9 @@ impl<const C: usize> Columns<C> {
 
     /// Who has which bonds, ascending.
     fn enter(&mut self, particles: usize) {
-        let mut starts = vec![0u32; particles + 1];
+        let (mut starts, mut entries) = (std::mem::take(&mut self.starts), std::mem::take(&mut self.entries));
+        starts.clear();
+        starts.resize(particles + 1, 0);
         let living = || (0..self.alive.len()).filter(|&k| self.alive[k] > 0.0);
         for k in living() {
             self.ends.iter().for_each(|e| starts[e[k] as usize + 1] += 1);
@@ -113,15 +185,18 @@ impl<const C: usize> Columns<C> {
         for k in 0..particles {
             starts[k + 1] += starts[k];
         }
-        let mut next = starts.clone();
-        let mut entries = vec![0; starts[particles] as usize];
+        entries.clear();
+        entries.resize(starts[particles] as usize, 0);
         for k in living() {
             for (end, places) in self.ends.iter().enumerate() {
-                let at = &mut next[places[k] as usize];
+                // A particle's beginning goes to its end, which is the beginning of the next.
+                let at = &mut starts[places[k] as usize];
                 entries[*at as usize] = (2 * k + end) as u32;
                 *at += 1;
             }
         }
+        starts.rotate_right(1);
+        starts[0] = 0;
         (self.starts, self.entries) = (starts, entries);
     }
 
@@ -179,7 +254,7 @@ mod tests {
         };
         let mut bonds: Vec<_> = (0..11).map(|k| bond(2, [k + 1, k])).collect();
         bonds.extend([bond(1, [3, 5]), bond(1, [0, 2])]);
-        let c = Columns::new(bonds, 13);
+        let c = Columns::new(&bonds, 13);
         assert_eq!((c.rows(), &c.kinds[..]), (24, &[1, 2, 2][..]));
         assert_eq!(c.living().count(), 13);
         assert_eq!([c.pair(0), c.pair(1)], [[0, 2], [3, 5]]);
@@ -191,5 +266,36 @@ mod tests {
                 assert_eq!(c.ends[e as usize & 1][e as usize / 2], p);
             }
         }
+    }
+
+    #[test]
+    fn columns_filled_anew_are_as_new_ones() {
+        let turn = [0.8, 0.6, 0.0, 0.0];
+        let bond = |k: u32| {
+            let ends = [(7 * k + 3) % 40, (11 * k * k + 5) % 40];
+            let turned = if k % 9 == 4 { turn } else { UNTURNED };
+            Member {
+                kind: (k % 3 + 1) as u16,
+                ends,
+                length: f64::from(k),
+                axis: [1.0, 0.0, 0.0],
+                turned,
+                own: [],
+            }
+        };
+        let bonds: Vec<Member<0>> = (0..150).map(bond).filter(|b| b.ends[0] != b.ends[1]).collect();
+        let new = Columns::new(&bonds, 40);
+        let mut sorted = bonds.clone();
+        sorted.sort_by_key(|b| (b.kind, b.ends[0].min(b.ends[1]), b.ends[0].max(b.ends[1])));
+        let lengths: Vec<f64> = new.living().map(|k| new.length[k]).collect();
+        assert_eq!(lengths, sorted.iter().map(|b| b.length).collect::<Vec<_>>());
+        assert!(
+            new.turned.len() == new.rows()
+                && new.living().all(|k| (new.turned[k] == turn) == (new.length[k] % 9.0 == 4.0))
+        );
+        let mut again = Columns::new(&bonds[..20], 50);
+        let keys: Vec<Key> = bonds.iter().map(|b| Key { kind: b.kind, ends: b.ends }).collect();
+        again.fill(&keys, 40, |k| bonds[k]);
+        assert_eq!(format!("{again:?}"), format!("{new:?}"));
     }
 }

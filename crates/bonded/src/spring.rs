@@ -238,7 +238,7 @@ mod tests {
             own: [0.8, 1.25],
         };
         for (r, rest) in [(1.3, 1.25), (1.45, 1.325), (0.95, 1.075)] {
-            let mut columns = Columns::new(vec![member], 2);
+            let mut columns = Columns::new(&[member], 2);
             let x = [[r, 0.0, 0.0], [0.0; 3]];
             let body = Body { x: &x, v: &[], omega: &[], quat: &[], periods: [0.0; 3] };
             let yielded = give_way(&mut columns, &body, |_| 0.1);
@@ -260,7 +260,7 @@ mod tests {
             turned: UNTURNED,
             own: [1.0, 1.0],
         };
-        let mut columns = Columns::new(vec![member([0, 1]), member([1, 2])], 3);
+        let mut columns = Columns::new(&[member([0, 1]), member([1, 2])], 3);
         let x = [[0.0; 3], [1.5, 0.0, 0.0], [2.5, 0.0, 0.0]];
         let body = Body { x: &x, v: &[], omega: &[], quat: &[], periods: [0.0; 3] };
         swell(&mut columns, &body, 3);

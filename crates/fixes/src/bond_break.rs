@@ -188,9 +188,9 @@ impl Fix for Declared {
         };
         let counts = known(cx.world()).to_vec();
         cx.world().slots.get_mut(slot).vector = counts;
-        let mut reads = X | BOX | TAG | MASK | V;
-        reads = reads | style.as_ref().map_or(X, |s| s.looks_at());
-        let access = Needs::new().read(reads).write(BONDS | LISTS | SLOTS).keep(MEMO);
+        let looks = style.as_ref().map_or(X, |s| s.looks_at());
+        let access =
+            Needs::new().read(X | BOX | TAG | MASK | V | looks).write(BONDS | LISTS | SLOTS).keep(MEMO);
         let act = move |w: &mut World, t: &Tick| {
             let [_, all] = known(w);
             let stand = w.memo.get(key).and_then(|m| m.get(2..)).unwrap_or_default().to_vec();

@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::body::{Quat, UNTURNED, after, back, turned};
 use perigrain_base::math::vec3::{Vec3, dot, length, scale, sub};
 use perigrain_base::par;
-use perigrain_bonded::columns::{Columns, Member};
+use perigrain_bonded::columns::{Columns, Key, Member};
 use perigrain_bonded::law::{BondLaw, Ends, Motion};
 use perigrain_bonded::sweep::{Body, Out, Sweep, add_up, nearest};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
@@ -185,22 +185,25 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
         let list = find(w, |b| self.law.coeffs(b.kind as u16).is_some(), self.span)?;
         first_sight(&self.law, w, &list, self.span)?;
         self.coeffs = (0..=w.bonds.types).map(|k| self.law.coeffs(k as u16)).collect();
-        let member = |(at, found): &(usize, Found)| {
-            let bond = &w.bonds.list[*at];
-            let ends = lower_first(bond.ends, found.ends);
+        let ends = |k: usize| {
+            let (at, found) = &list[k];
+            lower_first(w.bonds.list[*at].ends, found.ends).map(|e| e as u32)
+        };
+        let keys: Vec<Key> = (0..list.len()).map(|k| Key { kind: list[k].1.kind, ends: ends(k) }).collect();
+        let (law, coeffs) = (&self.law, &self.coeffs);
+        self.columns.fill(&keys, w.n(), |k| {
+            let (bond, Key { kind, ends }) = (&w.bonds.list[list[k].0], keys[k]);
             let turned = if w.bonds.turned.is_empty() {
                 UNTURNED
             } else {
                 w.bonds.turned.get(&ascending(bond.ends)).copied().unwrap_or(UNTURNED)
             };
-            let own = match &self.coeffs[usize::from(found.kind)] {
-                Some(k) => self.law.own(w, k, bond, ends),
+            let own = match &coeffs[usize::from(kind)] {
+                Some(k) => law.own(w, k, bond, ends.map(|e| e as usize)),
                 None => [0.0; C],
             };
-            let (kind, length, axis) = (found.kind, bond.length, bond.axis);
-            Member { kind, ends: ends.map(|e| e as u32), length, axis, turned, own }
-        };
-        self.columns = Columns::new(list.iter().map(member).collect(), w.n());
+            Member { kind, ends, length: bond.length, axis: bond.axis, turned, own }
+        });
         self.made = Some(stand(w));
         Ok(())
     }
