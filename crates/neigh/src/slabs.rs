@@ -7,6 +7,8 @@ use std::ops::Range;
 
 /// Layers of cells in a slab at least: fixed, because it decides the order in which forces are added up.
 const LAYERS: usize = 1;
+/// Layers that pairs may reach over: more than there can be.
+const FARTHEST: f64 = 1e9;
 /// Largest radius in units of the smallest up to which one grid of cells serves all.
 const ALIKE: f64 = 4.0;
 /// Cells per particle at most; beyond that cells grow.
@@ -163,7 +165,9 @@ impl Slabs {
             }
             size *= (all / room).cbrt().clamp(1.01, 1e100);
         };
-        let far = if reach > size { LAYERS.max((reach / size).ceil() as usize) } else { LAYERS };
+        // Spheres larger than all that is there reach over all of it.
+        let layers = (reach / size).ceil().min(FARTHEST) as usize;
+        let far = if reach > size { LAYERS.max(layers) } else { LAYERS };
         self.layers = [LAYERS, far];
         // The slow axis: the longest of those that do not repeat, or the longest of all if these are thin.
         let slow = |open_only: bool| (0..3).filter(|&d| !open_only || open(d)).max_by_key(|&d| count[d]);
@@ -358,6 +362,14 @@ mod tests {
         }
         assert_eq!(edges(&[1.0, 4.0], 0.5), [8.5, 8.5]);
         assert_eq!(edges(&[1.0, 3.9, 4.1], 0.5), [8.3, 8.7]);
+    }
+
+    #[test]
+    fn pairs_may_reach_beyond_all_numbers() {
+        let (x, tag) = (points(20, [4.0; 3]), (0..20).collect::<Vec<u32>>());
+        let mut slabs = Slabs::default();
+        slabs.sort(&x, &tag, [1.0, 1e308], &[0.0; 3], &[0.0; 3]);
+        assert_eq!(slabs.far().count(), 1);
     }
 
     #[test]
