@@ -330,7 +330,7 @@ impl Values<'_> {
     fn whole(&mut self, what: &str) -> Result<u64, Usage> {
         let word = self.one(what)?;
         match word.parse::<f64>() {
-            Ok(n) if n >= 1.0 && n < 1e18 && n.fract() == 0.0 => Ok(n as u64),
+            Ok(n) if (1.0..1e18).contains(&n) && n.fract() == 0.0 => Ok(n as u64),
             _ => Err(Usage::new(format!("`{}`: `{word}` is not {what} from 1", self.switch))),
         }
     }

@@ -26,7 +26,7 @@ impl Session {
         let lines = self.turns as f64 + 1.0;
         let mut problem = gate::beyond(lines, |l| l.lines, "lines", "one line more");
         let steers = Script::FLOW.contains(&cmd.name.text.as_str());
-        if problem.is_none() && (!steers || self.turns % PASSED == 0) {
+        if problem.is_none() && (!steers || self.turns.is_multiple_of(PASSED)) {
             problem = gate::too_much_memory();
         }
         problem.map_or(Ok(()), |d| Err(d.at(cmd.span).into()))
