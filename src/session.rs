@@ -300,7 +300,7 @@ impl Session {
                 Ok(None) => break,
                 Ok(Some(line)) => line,
                 Err(e) if self.forgives(script, None, &e) => {
-                    self.read_on(None, &script.raw().to_string(), e, &mut refused);
+                    self.read_on(None, script.raw(), e, &mut refused);
                     continue;
                 }
                 Err(e) if self.checking() => {
