@@ -221,6 +221,8 @@ const OPENERS: &[(&str, &str)] = &[
     ("crates/plan/src/run/verlet.rs", "time of the processor"),
     ("crates/lang/src/expr/pattern.rs", "name of the system"),
     ("src/cli/", "files that the command line names, or whoever types"),
+    ("src/sweep/", "folders of a sweep, which does not go with -safe"),
+    ("src/verify/", "folders and reports of the program's own decks"),
 ];
 
 /// Every file that a deck names is opened at the gate, so that `-safe` keeps it in its folder.
