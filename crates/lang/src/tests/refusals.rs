@@ -78,7 +78,7 @@ fn refusals_of_lines() {
         ("variable x vector 3\nprint $x\n", "a global vector is needed"),
         ("variable x vector [1,2]\nprint $(v_x[3])\n", "has elements 1 to 2"),
         ("variable x vector [1,2]\nprint $(v_x)\n", "yields a global vector; one number is needed"),
-        ("variable x world a b\n", "does not expect `b`"),
+        ("variable x world a b\n", "2 values for the one partition there is"),
         ("variable x uloop 2 5\n", "does not expect `5`"),
         ("variable x uloop 2\nvariable y universe a b c\n", "equally many values"),
         ("variable x internal 1/3\n", "must be a number"),

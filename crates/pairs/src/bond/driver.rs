@@ -274,10 +274,8 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
 impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
     fn about(&self) -> About {
         let mut needs = Needs::new().read(X | BONDS | BOX | LISTS | TAG | self.law.reads()).add(F);
-        let mut writes = TALLY;
-        if self.law.measures() || self.law.breaks() {
-            writes = writes.and(BONDS);
-        }
+        // Lengths at rest, bonds that break, and for a ledger what dashpots take up, if that is nothing.
+        let mut writes = TALLY.and(BONDS);
         if self.law.breaks() {
             writes = writes.and(LISTS);
         }
