@@ -68,6 +68,7 @@ const SPARED: &[(&str, &str, &str)] = &[
         "x f torque omega radius mass type type_mass mask image molecule columns controls memo box regions v id",
         "what formulas read is the deck's",
     ),
+    ("bond_break.rs", "v", "only beside a ledger"),
     ("langevin.rs", "rank", "only where grains stand in the order of space"),
     ("wall/op.rs", "box", "only where grains of a restart file touch regions"),
 ];

@@ -37,8 +37,8 @@ impl Style for BondBreak {
             example: "units lj\natom_style bond\nregion b block 0 6 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
                       create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\n\
                       create_bonds single/bond 1 1 2\nbond_style harmonic\nbond_coeff 1 5.0 1.0\nvelocity all create 1.0 4928\nfix 1 all nve\n\
-                      fix cut all bond/break 10 1 1.05 prob 0.5 85784\ncompute e all energy/ledger\n\
-                      thermo_style custom step bonds f_cut[2] c_e[1]\nrun 100",
+                      fix cut all bond/break 10 1 1.05 prob 0.5 85784\n\
+                      thermo_style custom step bonds f_cut[2]\nrun 100",
         }
     }
 }
