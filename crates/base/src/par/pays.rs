@@ -33,7 +33,9 @@ const SETTLING: (u32, Duration) = (3, Duration::from_millis(1));
 const LONG: Duration = Duration::from_millis(10);
 /// Of two that take nearly the same time the one that is in use stays.
 const CLEARLY: f64 = 0.95;
-/// Windows between the first two trials.
+/// And of two that differ by more than this the trial has been no accident.
+const FAR: f64 = 0.8;
+/// Windows between the first two trials that tell little.
 const FIRST_REST: f64 = 8.0;
 /// A trial may take this part of the time: as many windows lie between trials as one without threads takes times more, over this.
 const COST: f64 = 0.01;
@@ -168,8 +170,9 @@ impl Trial {
         if other < CLEARLY * this {
             self.found = Found { alone: !self.found.alone, rest: FIRST_REST };
         } else {
-            let most = (other / this - 1.0).max(0.1) / COST;
-            self.found.rest = (2.0 * self.found.rest).min(most.max(FIRST_REST));
+            let most = ((other / this - 1.0).max(0.1) / COST).max(FIRST_REST);
+            // What is this clear at once need not be asked again soon.
+            self.found.rest = if this < FAR * other { most } else { (2.0 * self.found.rest).min(most) };
         }
         Phase::Rest(self.found.rest as u32)
     }
