@@ -1,31 +1,16 @@
 //! The bodies of the fuzz targets on stable: a corpus, mutated at random for a while. Nothing may panic.
 //!
-//! `PERIGRAIN_FUZZ_SECONDS=300 cargo test --release --test fuzz_loop` takes that long for each target; by itself one second.
+//! `PERIGRAIN_FUZZ_SECONDS=300 cargo test --release --test suite fuzz_loop::` takes that long for each target; by itself one second.
 //! What panics is left in the system's folder for temporary files, named in the report.
 
 #[path = "../fuzz/src/lib.rs"]
 pub mod bodies;
 
+use crate::random::Random;
 use std::fs;
 use std::panic::catch_unwind;
 use std::path::Path;
 use std::time::{Duration, Instant, SystemTime};
-
-/// A stream of numbers (splitmix64): a run can be had again by its seed.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let a = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let b = (a ^ (a >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        b ^ (b >> 31)
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() % n.max(1) as u64) as usize
-    }
-}
 
 /// Pieces that readers stumble over sooner than over random bytes.
 const PIECES: [&str; 40] = [

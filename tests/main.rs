@@ -29,6 +29,8 @@ mod partitions;
 mod peri;
 mod plans;
 mod prompt;
+#[path = "common/random.rs"]
+mod random;
 #[path = "restart/main.rs"]
 mod restart;
 mod rooms;

@@ -1,5 +1,6 @@
 //! `minimize`: the declarations sealed for a minimization, and what its log says.
 
+use super::running::Pass;
 use super::{Mode, Session};
 use crate::graph::Role;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -79,12 +80,12 @@ impl Session {
         c.begin_minimizing();
         self.settle_resume(span)?;
         if self.planning() {
-            self.plan_of(span, true, false)?;
+            self.plan_of(span, Pass::Minimization)?;
             self.promise_outputs();
             self.unsee(false);
             return Ok(());
         }
-        let (mut plan, energy) = self.sealed(span, true, false)?;
+        let (mut plan, energy) = self.sealed(span, Pass::Minimization)?;
         self.world.slots.invalidate();
         let normalized = self.graph.thermo.normalized(&self.world);
         let read = |w: &perigrain_world::World| {

@@ -1,6 +1,7 @@
 //! `perigrain plan`: the plans of a deck's runs, each once; and what a deck that is only looked at cannot know.
 
 use super::causes::Refused;
+use super::running::Pass;
 use super::{Mode, Session};
 use crate::graph::FixNode;
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, Span};
@@ -128,8 +129,8 @@ impl Session {
     ///
     /// # Errors
     /// What styles miss in a scene of which everything is known.
-    pub(super) fn plan_of(&mut self, span: Span, minimizing: bool, watched: bool) -> Result<()> {
-        match self.sealed(span, minimizing, watched) {
+    pub(super) fn plan_of(&mut self, span: Span, pass: Pass) -> Result<()> {
+        match self.sealed(span, pass) {
             Ok((plan, _)) => self.plans.add(explain::text(&plan, false), span),
             Err(e) if self.unsure() => {
                 let why = e.0.first().map_or("", |d| d.message.as_str());

@@ -1,6 +1,7 @@
 //! `rerun`: forces and output for the snapshots of dumps, without motion.
 
 use super::Session;
+use super::running::Pass;
 use crate::graph::Role;
 use crate::graph::build::Context;
 use perigrain_base::diag::Result;
@@ -36,12 +37,12 @@ impl Session {
         self.world.parts.resume = None;
         self.world.slots.invalidate();
         if self.planning() {
-            self.plan_of(cmd.span, false, false)?;
+            self.plan_of(cmd.span, Pass::Rerun)?;
             self.promise_outputs();
             self.unsee(false);
             return Ok(());
         }
-        let mut plan = self.sealed(cmd.span, false, false)?.0;
+        let mut plan = self.sealed(cmd.span, Pass::Rerun)?.0;
         self.world.clock.running = true;
         self.world.clock.began = Some(Instant::now());
         // What contacts remember belongs to the scene before, not to the snapshot before.

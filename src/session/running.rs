@@ -27,6 +27,17 @@ use std::time::Instant;
 /// How many stretches of a `run … every` a plan follows.
 const PLANNED_STRETCHES: u32 = 1000;
 
+/// What a plan is sealed for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pass {
+    /// Steps in time; somebody watches whether energy grows from nothing.
+    Run,
+    /// A look at snapshots.
+    Rerun,
+    /// A minimization: fixes that do not act in it are left out, and the energy is read.
+    Minimization,
+}
+
 /// What a `run` line asks for.
 struct RunArgs {
     steps: i64,
@@ -170,17 +181,15 @@ impl Session {
     /// # Errors
     /// What styles miss in the scene.
     pub fn seal(&mut self, span: Span) -> Result<StepPlan> {
-        Ok(self.sealed(span, false, true)?.0)
+        Ok(self.sealed(span, Pass::Run)?.0)
     }
 
-    /// As `seal`. A minimization leaves fixes out that do not act in it, and reads the energy. Where steps are made, the run
-    /// is `watched`.
-    pub(super) fn sealed(
-        &mut self,
-        span: Span,
-        minimizing: bool,
-        watched: bool,
-    ) -> Result<(StepPlan, Option<Reading>)> {
+    /// As `seal`, for a pass of any kind over the scene; with the energy that a minimization reads.
+    ///
+    /// # Errors
+    /// As there.
+    pub(super) fn sealed(&mut self, span: Span, pass: Pass) -> Result<(StepPlan, Option<Reading>)> {
+        let minimizing = pass == Pass::Minimization;
         let vars = Arc::new(self.vars.clone());
         let respa = self.respa().filter(|_| !minimizing).cloned();
         self.graph.computes.iter().for_each(|c| c.compute.welcome(&mut self.world));
@@ -267,7 +276,7 @@ impl Session {
         if !minimizing {
             crate::graph::guard::seal(&mut s)?;
         }
-        if watched {
+        if pass == Pass::Run {
             // Behind the guard, whose blocks end where others act.
             let rows = self.graph.thermo.when(&mut s)?;
             crate::graph::runaway::seal(&mut s, &rows);
@@ -287,7 +296,7 @@ impl Session {
         self.settle_resume(span)?;
         let unchanged = self.ran && !self.world.parts.changed && (!self.world.settings.lammps() || !pre);
         if self.planning() {
-            self.plan_of(span, false, true)?;
+            self.plan_of(span, Pass::Run)?;
             self.world.clock.step += steps;
             self.promise_outputs();
             self.unsee(true);
@@ -390,7 +399,6 @@ impl Session {
             units: self.world.settings.units.name(),
             time: o.steps as f64 * self.world.clock.dt,
             sections: if post { &sections } else { &[] },
-            neighbors: None,
             full,
             builds: self.world.rebuild.builds,
             dangerous: self.world.rebuild.dangerous,

@@ -2,6 +2,7 @@
 
 use super::{run, scenes::*};
 use crate::fuzz_loop::bodies::forged::Case;
+use crate::random::Random;
 use perigrain::out::restart::{Saving, read, write};
 use perigrain::world::World;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -237,18 +238,6 @@ fn regions_are_no_deeper_than_a_file_may_say() {
     let mut session = perigrain::session::Session::new(perigrain::session::Options::default()).unwrap();
     let said = session.run_text("in", &deck.replace("DIR", folder.path().to_str().unwrap())).unwrap_err();
     assert!(said.0[0].message.contains("nested more than 100 deep"), "{said}");
-}
-
-/// A stream of numbers (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let a = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let b = (a ^ (a >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        b ^ (b >> 31)
-    }
 }
 
 /// So many forged files in the ordinary tests.

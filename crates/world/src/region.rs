@@ -67,11 +67,6 @@ impl Region {
     /// Regions may be made of regions made of regions so many times: files are read, and shapes looked at, one within the other.
     pub const DEEPEST: usize = 100;
 
-    /// Of how many layers of regions it is made, itself included.
-    pub fn layers(&self) -> usize {
-        self.extent().1
-    }
-
     /// The regions that it is made of.
     fn made_of(&self) -> &[Region] {
         match &self.shape {

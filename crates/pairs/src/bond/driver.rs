@@ -274,7 +274,7 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
 impl<const C: usize, L: Driven<C>> Op for Bonded<C, L> {
     fn about(&self) -> About {
         let mut needs = Needs::new().read(X | BONDS | BOX | LISTS | TAG | self.law.reads()).add(F);
-        // Lengths at rest, bonds that break, and for a ledger what dashpots take up, if that is nothing.
+        // Lengths at rest, bonds that break, and what dashpots take up, which a ledger is told also where there are none.
         let mut writes = TALLY.and(BONDS);
         if self.law.breaks() {
             writes = writes.and(LISTS);
