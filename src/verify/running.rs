@@ -3,6 +3,7 @@
 use super::case::{Case, Check, Expected, Size};
 use crate::session::{Options, Session};
 use perigrain_base::diag::render;
+use perigrain_base::par::STACK;
 use perigrain_out::log::{Buffer, Log};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
@@ -77,9 +78,6 @@ impl Outcome {
     }
 }
 
-/// Room on the stack of each thread: loops compiled without optimisation need some megabytes.
-const STACK: usize = 16 << 20;
-
 /// Runs cases, up to `workers` at a time; `tell` hears of each as it ends. Outcomes come in the order of the cases.
 pub fn run_all(cases: Vec<Case>, workers: usize, tell: impl Fn(&Outcome) + Sync) -> Vec<Outcome> {
     let next = AtomicUsize::new(0);
@@ -128,18 +126,13 @@ fn measured(case: &Case) -> Result<Measured, String> {
     let screen = Buffer::default();
     let log = Log::new(Some(Box::new(screen.clone())));
     let mut session = Session::new(Options { log, ..Options::default() }).map_err(|e| e.to_string())?;
-    let mut say = |name: &str, text: &str| match session.run_text(name, text) {
-        Ok(_) => Ok(()),
-        Err(e) => Err(render::plain(&e, &session.sources)),
-    };
-    say(&format!("{}.in", case.name), &case.deck)?;
+    if let Err(e) = session.run_text(&format!("{}.in", case.name), &case.deck) {
+        return Err(render::plain(&e, &session.sources));
+    }
     let points = curves(case, &screen.text())?;
     let mut number = |formula: &str| -> Result<f64, String> {
-        let before = screen.text().len();
-        say("measure", &format!("print \"value $({formula}:%.17g)\"\n"))?;
-        let said = screen.text();
-        let value = said[before..].lines().rev().find_map(|line| line.strip_prefix("value "));
-        value.and_then(|v| v.trim().parse().ok()).ok_or_else(|| format!("`{formula}` is no number"))
+        let value = session.measure(formula).map_err(|e| render::plain(&e, &session.sources))?;
+        value.trim().parse().map_err(|_| format!("`{formula}` is no number"))
     };
     let mut rows = vec![];
     for check in &case.check {

@@ -12,8 +12,6 @@ use perigrain_world::{Domain, Region, memory};
 /// The command.
 pub struct CreateBox;
 
-/// What a pair style keeps for two types: laws of contacts are the largest of its entries [bytes].
-const BYTES_PER_PAIR: f64 = 256.0;
 const KEYWORDS: [&str; 3] = ["bond/types", "extra/bond/per/atom", "extra/special/per/atom"];
 
 /// Keywords LAMMPS has: room for angles and the like.
@@ -54,9 +52,7 @@ impl CommandStyle for CreateBox {
         if types > i64::from(u16::MAX) {
             return fail(Code::BAD_VALUE, span, format!("at most {} types are possible", u16::MAX));
         }
-        if let Some(d) =
-            memory::lacking(types.pow(2) as f64 * BYTES_PER_PAIR, &format!("tables of {types} types"))
-        {
+        if let Some(d) = memory::lacking_for_types(types as usize) {
             return Err(d.help("forces have a table of all pairs of types").at(span).into());
         }
         let word = a.expect("a region")?;

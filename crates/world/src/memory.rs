@@ -69,6 +69,14 @@ pub fn forecast(w: &World, more: f64) -> Result<Option<String>> {
     Ok((n >= LARGE).then(text))
 }
 
+/// What a pair style keeps for two types: laws of contacts are the largest of its entries [bytes].
+const BYTES_PER_PAIR: f64 = 256.0;
+
+/// The error of tables of all pairs of so many types that do not fit.
+pub fn lacking_for_types(types: usize) -> Option<Diagnostic> {
+    lacking((types as f64).powi(2) * BYTES_PER_PAIR, &format!("tables of {types} types"))
+}
+
 /// The error of what takes more bytes than are free now.
 pub fn lacking(bytes: f64, what: &str) -> Option<Diagnostic> {
     let allowed = perigrain_base::gate::memory_left();

@@ -13,7 +13,7 @@ mod sum;
 
 pub use pays::Trial;
 pub use pool::{
-    both, for_rows, in_turn, inside, most_threads, neighbours, set_threads, slot, threads, two_colours,
+    STACK, both, for_rows, in_turn, inside, most_threads, neighbours, set_threads, slot, threads, two_colours,
 };
 pub use split::{Rows, Shared, Split, each, for_chunks};
 pub use sum::{along_tree, best, max, reduce, reduce_each, sum};

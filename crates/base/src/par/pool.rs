@@ -20,8 +20,8 @@ struct Pool {
     awake: Arc<AtomicUsize>,
 }
 
-/// Room on the stack of each thread: loops compiled without optimisation need some megabytes.
-const STACK: usize = 16 << 20;
+/// Room on the stack of each thread [bytes]: loops compiled without optimisation need some megabytes.
+pub const STACK: usize = 16 << 20;
 
 /// Sets the number of threads for everything that follows; 0 means all cores. Returns what was obtained:
 /// one thread if the system grants no more.

@@ -3,9 +3,6 @@
 use super::{Outcome, must};
 use perigrain_world::{GroupId, RunStyle, World, memory};
 
-/// What tables of all pairs of types take, as `create_box` reckons it [bytes].
-const BYTES_PER_PAIR: f64 = 256.0;
-
 /// Whether a group is one of the 32 there can be.
 pub fn known(group: GroupId) -> bool {
     group.0 < 32
@@ -71,7 +68,5 @@ const FACE: perigrain_world::Face = perigrain_world::Face::Periodic;
 pub fn types(w: &World) -> Outcome {
     must(w.types <= usize::from(u16::MAX), "there are more types than can be")?;
     must(w.type_mass.len() == w.types, "types and their masses differ in number")?;
-    let lacking =
-        memory::lacking((w.types as f64).powi(2) * BYTES_PER_PAIR, &format!("tables of {} types", w.types));
-    lacking.map_or(Ok(()), |d| Err(d.message))
+    memory::lacking_for_types(w.types).map_or(Ok(()), |d| Err(d.message))
 }
