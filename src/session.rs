@@ -2,6 +2,7 @@
 
 mod acts;
 pub mod axes;
+mod belongs;
 mod causes;
 mod checking;
 mod commands;
@@ -386,7 +387,8 @@ impl Session {
         let Some(cmd) = &line.command else { return Ok(None) };
         let outcome = self.within_limits(cmd).and_then(|()| self.command(script, cmd));
         self.say_notes()?;
-        outcome.map_err(|e| checking::with_origins(self.sources.adopt(e).at(cmd.span), cmd))
+        outcome
+            .map_err(|e| checking::with_origins(belongs::told(self.sources.adopt(e), cmd).at(cmd.span), cmd))
     }
 
     /// Warnings go to screen and log as they come.

@@ -380,7 +380,10 @@ pub fn parse_many(words: Vec<String>) -> Result<(Options, Vec<Deck>), Usage> {
             decks.push(Deck::File(word.into()));
             continue;
         }
-        let Some(switch) = SWITCHES.iter().find(|s| s.names.contains(&word.as_str())) else {
+        // Two dashes are as good as one: other programs want them, and completions of shells write them.
+        let one = if word.starts_with("--") { &word[1..] } else { &word };
+        let Some(switch) = SWITCHES.iter().find(|s| s.names.iter().any(|name| [one, &word].contains(name)))
+        else {
             return Err(unknown(&word));
         };
         (switch.set)(&mut options, &mut Values { switch: word, words: &mut words })?;
@@ -427,6 +430,7 @@ mod tests {
 
     #[test]
     fn lammps_switches_are_understood_long_and_short() {
+        assert_eq!(read("a --threads 3 --var v 1"), read("a -threads 3 -var v 1"));
         let long =
             read("-in a -log none -screen s.txt -echo both -nocite -suffix omp -package omp 3").unwrap();
         let short = read("-i a -l none -sc s.txt -e both -nc -sf omp -pk omp 3 neigh yes").unwrap();

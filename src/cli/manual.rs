@@ -95,15 +95,21 @@ pub fn heading(kind: &str) -> &str {
     }
 }
 
-/// The page of a name, as `fix nve`, `nve` or `run`.
+/// The page of a name, as `fix nve`, `nve` or `run`; behind that of a command that takes styles, the list of them. Of a word
+/// that has no page, those that speak of it.
 ///
 /// # Errors
-/// No page of this name; the nearest is offered.
+/// No page has the name or speaks of it; the nearest is offered.
 pub fn page(name: &str) -> Result<String, Usage> {
     let all = pages();
     let found: Vec<&Page> = all.iter().filter(|p| p.title() == name || p.name == name).collect();
     if !found.is_empty() {
-        return Ok(found.iter().map(|p| p.markdown()).collect::<Vec<_>>().join("\n"));
+        let text = found.iter().map(|p| p.markdown()).collect::<Vec<_>>().join("\n");
+        let styles: Vec<&Page> = all.iter().filter(|p| p.kind == name).collect();
+        return Ok(if styles.is_empty() { text } else { text + "\n## Styles\n\n" + &lines(&styles) });
+    }
+    if let Some(text) = speaking_of(name, &all) {
+        return Ok(text);
     }
     let titles: Vec<String> = all.iter().map(Page::title).collect();
     let known = titles.iter().map(String::as_str).chain(all.iter().map(|p| p.name));
@@ -112,4 +118,43 @@ pub fn page(name: &str) -> Result<String, Usage> {
         None => "`perigrain doc` lists all".into(),
     };
     Err(Usage { message: format!("the manual has no page `{name}`"), help: Some(help) })
+}
+
+/// Pages with the words in their names, then those with them in their texts.
+fn speaking_of(words: &str, all: &[Page]) -> Option<String> {
+    let words = words.to_lowercase();
+    let holds = |text: &str| text.to_lowercase().contains(&words);
+    let (named, others): (Vec<&Page>, Vec<&Page>) = all.iter().partition(|p| holds(&p.title()));
+    let telling: Vec<&Page> = others.into_iter().filter(|p| holds(&p.markdown())).collect();
+    let parts = [("Pages named so", named), ("Pages that speak of it", telling)];
+    let text: Vec<String> = parts
+        .iter()
+        .filter(|(_, pages)| !pages.is_empty())
+        .map(|(head, pages)| format!("# {head}: `{words}`\n\n{}", lines(pages)))
+        .collect();
+    (!text.is_empty()).then(|| text.join("\n"))
+}
+
+/// Titles and summaries.
+fn lines(pages: &[&Page]) -> String {
+    pages
+        .iter()
+        .fold(String::new(), |text, page| text + &format!("  {:<28} {}\n", page.title(), page.doc.summary))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_without_a_page_find_those_that_speak_of_them() {
+        let walls = page("wall").unwrap();
+        assert!(
+            walls.starts_with("# Pages named so: `wall`") && walls.contains("\n  fix wall/gran "),
+            "{walls}"
+        );
+        assert!(page("fix").unwrap().contains("\n  fix wall/gran "));
+        assert!(page("Wiggle").unwrap().starts_with("# Pages that speak of it: `wiggle`"));
+        assert!(page("fix nvee").unwrap_err().help.unwrap().contains("`fix nve`"));
+    }
 }

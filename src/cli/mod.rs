@@ -3,13 +3,17 @@
 pub mod args;
 pub mod checking;
 pub mod deck;
+mod examples;
 pub mod grammar;
 pub mod manual;
+mod pager;
 mod pages;
 pub mod partitions;
 pub mod progress;
 pub mod repl;
+mod shells;
 mod signals;
+mod starters;
 mod sweeping;
 pub mod syntax;
 pub mod tasks;
@@ -47,10 +51,13 @@ fn perform(task: Task) -> Result<u8, Usage> {
     match task {
         Task::Text(text) => show(&text),
         Task::Explain(code) => show(&explain(&code)?),
-        Task::Doc(None) => show(&manual::list()),
-        Task::Help(None) => show(&(tasks::help() + "\n" + &manual::list())),
-        Task::Help(Some(name)) => show(&manual::page(&name)?),
-        Task::Doc(Some(name)) => show(&manual::page(&name)?),
+        Task::Examples(wanted) => examples::perform(&wanted)?,
+        Task::New { file, kind } => starters::write(&file, kind)?,
+        Task::Completions(shell) => shells::completions(shell),
+        Task::Man(folder) => shells::man(folder.as_deref())?,
+        Task::Doc(None) => pager::page(&manual::list()),
+        Task::Help(None) => pager::page(&(tasks::help() + "\n" + &manual::list())),
+        Task::Doc(Some(name)) | Task::Help(Some(name)) => pager::page(&manual::page(&name)?),
         Task::Run(o) => {
             return match &o.world {
                 Some(world) => {

@@ -2,8 +2,11 @@
 
 use super::args::{self, Deck, Options, SWITCHES, Usage};
 use super::sweeping::args::Request;
-use super::{checking, verifying};
-use clap::{CommandFactory, Parser};
+use super::{checking, examples, starters, verifying};
+use clap::{CommandFactory, Parser, ValueHint};
+use clap_complete::Shell;
+use perigrain_base::diag::nearest;
+use std::path::{Path, PathBuf};
 
 /// One call of the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,6 +37,19 @@ pub enum Task {
     Worker,
     /// Run the published cases that the program carries.
     Verify(verifying::Wanted),
+    /// List, show or copy the examples that the program carries.
+    Examples(examples::Wanted),
+    /// Write a small deck to begin with.
+    New {
+        /// The file.
+        file: PathBuf,
+        /// What it computes.
+        kind: starters::Kind,
+    },
+    /// Print what a shell needs to complete command lines.
+    Completions(Shell),
+    /// Write the pages for `man` into a folder, or print the program's.
+    Man(Option<PathBuf>),
     /// Explain a diagnostic code.
     Explain(String),
     /// Print the manual page of a command or style, or the list of all.
@@ -50,13 +66,13 @@ enum Sub {
     /// Run a deck, like `perigrain DECK`
     Run {
         /// The deck and LAMMPS' switches
-        #[arg(value_name = "DECK [SWITCH]", trailing_var_arg = true, allow_hyphen_values = true)]
+        #[arg(value_name = "DECK [SWITCH]", value_hint = ValueHint::FilePath, trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
     /// Work off lines as they are typed, after a deck if one is given; `perigrain` on a terminal does the same
     Repl {
         /// A deck to begin with, and LAMMPS' switches
-        #[arg(value_name = "DECK [SWITCH]", trailing_var_arg = true, allow_hyphen_values = true)]
+        #[arg(value_name = "DECK [SWITCH]", value_hint = ValueHint::FilePath, trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
     /// Report every problem of decks at once, without acting
@@ -65,7 +81,7 @@ enum Sub {
         #[arg(long)]
         json: bool,
         /// The decks and LAMMPS' switches
-        #[arg(value_name = "DECK… [SWITCH]", trailing_var_arg = true, allow_hyphen_values = true)]
+        #[arg(value_name = "DECK… [SWITCH]", value_hint = ValueHint::FilePath, trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
     /// Print what each step of a deck's runs will do, in which order, and what was left out and why
@@ -77,7 +93,7 @@ enum Sub {
         #[arg(long, conflicts_with = "measure")]
         dot: bool,
         /// The deck and LAMMPS' switches
-        #[arg(value_name = "DECK [SWITCH]", trailing_var_arg = true, allow_hyphen_values = true)]
+        #[arg(value_name = "DECK [SWITCH]", value_hint = ValueHint::FilePath, trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
     },
     /// Make many runs of a deck side by side, each with other values of variables, and one table of what they give
@@ -92,6 +108,28 @@ enum Sub {
     },
     /// Run published cases and say whether this build on this machine gives their numbers
     Verify(verifying::Wanted),
+    /// List the examples that the program carries, show one, or copy it here
+    Examples(examples::Wanted),
+    /// Write a small deck to begin with
+    New {
+        /// What it computes
+        #[arg(long, value_enum, default_value_t)]
+        kind: starters::Kind,
+        /// The deck's name, as in.mine
+        #[arg(value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+    },
+    /// Print completions for a shell, as `source <(perigrain completions bash)` wants them
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the page for `man`, or write it and those of the subcommands into a folder
+    Man {
+        /// The folder
+        #[arg(value_hint = ValueHint::DirPath)]
+        folder: Option<PathBuf>,
+    },
     /// Explain the code of a message, as PG0102
     Explain {
         /// The code
@@ -117,6 +155,8 @@ pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
         help_on(&words[1..])
     } else if is_sub {
         subcommand(words)?
+    } else if let Some(usage) = mistyped(&words) {
+        return Err(usage);
     } else {
         Task::Run(args::parse(words)?)
     };
@@ -149,6 +189,22 @@ impl Task {
             _ => None,
         }
     }
+}
+
+/// A first word that is no deck and nearly a subcommand.
+fn mistyped(words: &[String]) -> Option<Usage> {
+    let first = words.first().filter(|word| !Path::new(word).exists())?;
+    let command = Sub::command();
+    let names = command.get_subcommands().map(clap::Command::get_name).chain(["help"]);
+    let meant = nearest(first, names)?;
+    let line = words[1..].iter().fold(format!("perigrain {meant}"), |line, word| line + " " + word);
+    let usage = Usage::new(format!("`{first}` is no subcommand, and there is no such deck"));
+    Some(usage.help(format!("did you mean `{line}`?")))
+}
+
+/// The program's subcommands as clap knows them.
+pub fn command() -> clap::Command {
+    Sub::command()
 }
 
 /// `help`, `help fix nve`, `help PG0102`.
@@ -190,6 +246,10 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
         Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
         Sub::Sweep { rest } => Task::Sweep(Box::new(Request::parse(rest)?)),
         Sub::Verify(wanted) => Task::Verify(wanted),
+        Sub::Examples(wanted) => Task::Examples(wanted),
+        Sub::New { file, kind } => Task::New { file, kind },
+        Sub::Completions { shell } => Task::Completions(shell),
+        Sub::Man { folder } => Task::Man(folder),
         Sub::Explain { code } => Task::Explain(code),
         Sub::Doc { name } => Task::Doc((!name.is_empty()).then(|| name.join(" "))),
     })
@@ -286,6 +346,10 @@ mod tests {
         assert_eq!(read("help pg0101").unwrap(), Task::Explain("pg0101".into()));
         assert!(read("check in.plate -logg x").unwrap_err().help.unwrap().contains("`-log`"));
         assert!(read("explain").is_err());
+        let usage = read("chekc in.fall -threads 2").unwrap_err();
+        assert_eq!(usage.help.as_deref(), Some("did you mean `perigrain check in.fall -threads 2`?"));
+        // A file of that name is a deck.
+        assert_eq!(read("tests").unwrap(), Task::Run(deck("tests")));
         let wanted = verifying::Wanted {
             only: Some("chung".into()),
             json: Some("a.json".into()),

@@ -13,6 +13,10 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain sweep DECK -each NAME VALUE … [switch …]\n\
             perigrain repl [DECK] [switch …]\n\
             perigrain verify [-only PATTERN] [-html FILE] …\n\
+            perigrain new FILE [--kind crack|pour|bonded]\n\
+            perigrain examples [list|show NAME|copy NAME [FOLDER]]\n\
+            perigrain completions bash|zsh|fish|elvish|powershell\n\
+            perigrain man [FOLDER]\n\
             perigrain doc [name]\n\
             perigrain explain CODE",
         summary: "The program: how it is called, its switches and exit codes.",
@@ -24,7 +28,10 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain plan --dot in.plate\n\
             perigrain -in in.plate -screen none -threads 2 -compat lammps\n\
             perigrain verify -only pull_off -html pull_off.html\n\
+            perigrain new in.mine --kind pour\n\
+            perigrain examples copy brittle_glass\n\
             perigrain doc fix nve\n\
+            perigrain doc wall\n\
             perigrain explain PG0102",
     },
 );
@@ -36,9 +43,13 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     particles, and lines that hang on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
     prints the command graph for graphviz. `sweep` makes many runs of a deck side by side: see [sweep](sweep.md). `doc` prints a page of this manual, `explain` the story behind the code of a \
     message. `verify` runs published cases that the program carries and says whether this build on this machine gives \
-    their numbers: see [verify](verify.md). `repl`, and `perigrain` alone on a terminal, work lines off as they are typed: see [the \
+    their numbers: see [verify](verify.md). `new` writes a small deck that runs as it stands and says in its lines what to change; \
+    `examples` lists the larger ones that the program carries, shows what they are about, or copies one into a folder of its own; neither \
+    writes over anything. `doc` (or `help`) of a word that has no page lists those that speak of it; on a terminal pages are wrapped at words and \
+    go through `$PAGER` (`less`). `completions` prints what a shell needs to complete these lines (`source <(perigrain completions bash)`), `man` writes pages for `man`. \
+    `repl`, and `perigrain` alone on a terminal, work lines off as they are typed: see [the \
     prompt](prompt.md).\n\n\
-    Switches, before or behind the deck:\n\n\
+    Switches, before or behind the deck, with one dash or two:\n\n\
     - `-in FILE`, `-i`: the deck; without a deck or with `none` it is read from standard input;\n\
     - `-log FILE|none`, `-l`: the log file (`log.lammps`);\n\
     - `-screen FILE|none`, `-sc`: where the screen's text goes;\n\

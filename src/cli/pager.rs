@@ -1,0 +1,79 @@
+//! Long texts for people: wrapped at words and page by page on a terminal, as they are into a pipe.
+
+use super::show;
+use console::Term;
+use std::io::{IsTerminal, Write, stdout};
+use std::process::{Command, Stdio};
+
+/// Lines of text are no longer than this, however wide the terminal is: longer ones are hard to read.
+const WIDEST: usize = 110;
+
+/// Shows a page of the manual.
+pub fn page(text: &str) {
+    let Some((rows, columns)) = Term::stdout().size_checked().filter(|_| stdout().is_terminal()) else {
+        return show(text);
+    };
+    let text = wrapped(text, WIDEST.min(columns.into()));
+    let fits = text.lines().count() < rows.into();
+    if fits || !through_pager(&text) {
+        show(&text);
+    }
+}
+
+/// Hands the text to `$PAGER`, or to `less`; whether one could be started. An empty `PAGER` wants none.
+fn through_pager(text: &str) -> bool {
+    let wanted = std::env::var("PAGER").unwrap_or_else(|_| "less".into());
+    let mut words = wanted.split_whitespace();
+    let Some(program) = words.next() else { return false };
+    let mut pager = Command::new(program);
+    // What `less` is told where the user has told it nothing: keep colours, leave the text on the screen.
+    if std::env::var_os("LESS").is_none() {
+        pager.env("LESS", "FRX");
+    }
+    let Ok(mut child) = pager.args(words).stdin(Stdio::piped()).spawn() else { return false };
+    if let Some(mut input) = child.stdin.take() {
+        // A reader who leaves before the end is no failure.
+        let _ = input.write_all(text.as_bytes());
+    }
+    let _ = child.wait();
+    true
+}
+
+/// The text with lines of at most `width` columns, broken between words; code and tables stay as they are.
+pub fn wrapped(text: &str, width: usize) -> String {
+    let mut code = false;
+    let mut out = String::with_capacity(text.len() + text.len() / 32);
+    for line in text.lines() {
+        code ^= line.trim_start().starts_with("```");
+        if code || line.starts_with('|') || line.starts_with("  ") {
+            out += line;
+        } else {
+            let hang = if line.starts_with("- ") { "  " } else { "" };
+            out += &textwrap::fill(
+                line,
+                textwrap::Options::new(width).subsequent_indent(hang).break_words(false),
+            );
+        }
+        out.push('\n');
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::manual::pages;
+
+    #[test]
+    fn lines_break_between_words_and_code_stays() {
+        let text =
+            "- one two three four\n```text\nfix ID group STYLE word\n```\n| a | table | of | columns |\n";
+        let wanted = "- one two\n  three\n  four\n```text\nfix ID group STYLE word\n```\n| a | table | of | columns |\n";
+        assert_eq!(wrapped(text, 10), wanted);
+        for page in pages() {
+            let (text, words) =
+                (page.markdown(), |t: &str| t.split_whitespace().map(String::from).collect::<Vec<_>>());
+            assert_eq!(words(&wrapped(&text, 80)), words(&text), "{}", page.title());
+        }
+    }
+}

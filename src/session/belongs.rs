@@ -1,0 +1,99 @@
+//! A word that is unknown where it stands, and known elsewhere, is told where it belongs.
+
+use crate::graph::catalogue::styles;
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics};
+use perigrain_contact::{Damping, Friction, normal};
+use perigrain_lang::{Command, Word};
+
+/// Categories of styles, the command that takes them, and what stands before the style's name.
+const LINES: [(&str, &str, &str); 6] = [
+    ("fix", "fix", "fix ID group "),
+    ("compute", "compute", "compute ID group "),
+    ("pair", "pair_style", "pair_style "),
+    ("bond", "bond_style", "bond_style "),
+    ("dump", "dump", "dump ID group "),
+    ("region", "region", "region ID "),
+];
+
+/// Adds to each problem with a word of the line where that word belongs.
+///
+/// Of words that the line does not expect, those behind such a one are its own numbers and no mistakes of theirs.
+pub(super) fn told(problems: Diagnostics, cmd: &Command) -> Diagnostics {
+    let mut explained = false;
+    let mut kept = vec![];
+    for d in problems.0 {
+        if explained && d.code == Code::EXTRA_ARGUMENT {
+            continue;
+        }
+        let home = at_fault(&d, cmd).and_then(|word| home(&word.text, &cmd.name.text));
+        explained |= home.is_some();
+        kept.push(match home {
+            Some(home) => instead(d, home),
+            None => d,
+        });
+    }
+    Diagnostics(kept)
+}
+
+/// The word of the line that a problem is about, if it is about a word that nobody knows.
+fn at_fault<'c>(d: &Diagnostic, cmd: &'c Command) -> Option<&'c Word> {
+    let unknown = [Code::UNKNOWN_COMMAND, Code::UNKNOWN_STYLE, Code::EXTRA_ARGUMENT].contains(&d.code);
+    let span = d.span.filter(|_| unknown)?;
+    std::iter::once(&cmd.name).chain(&cmd.args).find(|word| word.span == span && !word.quoted)
+}
+
+/// The problem with the home of its word in the place of the words that are nearly like it.
+fn instead(mut d: Diagnostic, home: String) -> Diagnostic {
+    d.help.retain(|help| !help.starts_with("known") && !help.starts_with("did you mean"));
+    d.help(home)
+}
+
+/// Where a word belongs that `command` does not know.
+fn home(word: &str, command: &str) -> Option<String> {
+    // Says nothing about what was meant.
+    if word == "none" || word == "zero" {
+        return None;
+    }
+    let model = |what, behind: &str| {
+        Some(format!("`{word}` is a {what}: it stands in pair_coeff, as `pair_coeff * * {behind}{word} …`"))
+    };
+    if normal::STYLES.iter().any(|style| style.name == word) {
+        return model("normal model of granular contacts", "");
+    }
+    if Friction::ALL.into_iter().any(|friction| friction.name() == word) {
+        return model("tangential model of granular contacts", "MODEL … tangential ");
+    }
+    if Damping::ALL.into_iter().any(|damping| damping.name() == word) {
+        return model("damping model of granular contacts", "MODEL … damping ");
+    }
+    let known = |category| styles(category).is_some_and(|names| names.contains(&word));
+    if let Some((_, kind, line)) = LINES.into_iter().find(|(of, kind, _)| *kind != command && known(of)) {
+        return Some(format!("`{word}` is a style of `{kind}`: write `{line}{word} …`"));
+    }
+    let begins = word != command && known("command");
+    begins.then(|| format!("`{word}` is a command, it begins a line of its own"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_know_where_they_belong() {
+        for (word, command, part) in [
+            ("hertz/material", "pair_style", "a normal model of granular contacts: it stands in pair_coeff"),
+            ("mindlin", "fix", "`pair_coeff * * MODEL … tangential mindlin …`"),
+            ("tsuji", "pair_style", "damping tsuji"),
+            ("nve", "compute", "write `fix ID group nve …`"),
+            ("damage/atom", "fix", "write `compute ID group damage/atom …`"),
+            ("peri/pmb", "fix", "write `pair_style peri/pmb …`"),
+            ("bpm/beam", "pair_style", "write `bond_style bpm/beam …`"),
+            ("block", "fix", "write `region ID block …`"),
+            ("run", "thermo", "`run` is a command"),
+        ] {
+            let home = home(word, command).unwrap_or_default();
+            assert!(home.contains(part), "{word}: {home}");
+        }
+        assert_eq!((home("none", "fix"), home("blokc", "fix"), home("run", "run")), (None, None, None));
+    }
+}
