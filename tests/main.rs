@@ -1,6 +1,7 @@
 //! Tests that need the program or the whole library, in one binary.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
+mod bench;
 mod bonded;
 mod bytes;
 #[path = "checks.rs"]

@@ -2,7 +2,7 @@
 
 use super::args::{self, Deck, Options, SWITCHES, Usage};
 use super::sweeping::args::Request;
-use super::{checking, verifying};
+use super::{benching, checking, verifying};
 use clap::{CommandFactory, Parser};
 
 /// One call of the program.
@@ -30,7 +30,11 @@ pub enum Task {
     },
     /// Make many runs of a deck.
     Sweep(Box<Request>),
-    /// Make one of them, as standard input says.
+    /// Run a deck over knobs, and weigh wall time against error.
+    Bench(Box<benching::args::Request>),
+    /// Run the benches that the program carries.
+    Suite(benching::suite::Wanted),
+    /// Make one of the runs of a sweep or bench, as standard input says.
     Worker,
     /// Run the published cases that the program carries.
     Verify(verifying::Wanted),
@@ -90,6 +94,16 @@ enum Sub {
         )]
         rest: Vec<String>,
     },
+    /// Run a deck over knobs such as time step and spacing, and weigh wall time against error
+    Bench {
+        /// The deck, lists of values, what is measured, and LAMMPS' switches
+        #[arg(
+            value_name = "DECK -each NAME VALUE… -measure WORD… [SWITCH]",
+            trailing_var_arg = true,
+            allow_hyphen_values = true
+        )]
+        rest: Vec<String>,
+    },
     /// Run published cases and say whether this build on this machine gives their numbers
     Verify(verifying::Wanted),
     /// Explain the code of a message, as PG0102
@@ -131,7 +145,7 @@ pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
         return Ok(task);
     }
     match &task {
-        Task::Check { .. } | Task::Plan { .. } | Task::Sweep(_) => {
+        Task::Check { .. } | Task::Plan { .. } | Task::Sweep(_) | Task::Bench(_) => {
             Err(Usage { message: "no deck".into(), help: Some("name one: `perigrain check in.deck`".into()) })
         }
         Task::Run(o) if o.partition.is_empty() => swallowed(o).map_or(Ok(Task::Repl(o.clone())), Err),
@@ -146,6 +160,7 @@ impl Task {
             Task::Run(o) | Task::Repl(o) | Task::Plan { options: o, .. } => Some(o),
             Task::Check { decks, .. } => decks.first(),
             Task::Sweep(request) => Some(&request.options),
+            Task::Bench(request) => Some(&request.sweep.options),
             _ => None,
         }
     }
@@ -168,17 +183,13 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
     if words[0] == "verify" {
         verifying::with_two_dashes(&mut words);
     }
+    if words[0] == "bench" && words.iter().any(|w| w.trim_start_matches('-') == "suite") {
+        verifying::with_two_dashes(&mut words);
+        return benching::suite::Wanted::try_parse_from(words).map(Task::Suite).or_else(|e| unread(&e));
+    }
     let sub = match Sub::try_parse_from(std::iter::once("perigrain".to_string()).chain(words)) {
         Ok(sub) => sub,
-        Err(e) if e.use_stderr() => {
-            let text = e.to_string();
-            let mut lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
-            let first = lines.next().unwrap_or("").trim_start_matches("error: ").to_string();
-            let help =
-                lines.find(|l| l.starts_with("tip:")).map(|l| l.trim_start_matches("tip: ").to_string());
-            return Err(Usage { message: first, help });
-        }
-        Err(e) => return Ok(Task::Text(e.to_string())),
+        Err(e) => return unread(&e),
     };
     Ok(match sub {
         Sub::Run { rest } => Task::Run(args::parse(rest)?),
@@ -189,10 +200,23 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
         }
         Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
         Sub::Sweep { rest } => Task::Sweep(Box::new(Request::parse(rest)?)),
+        Sub::Bench { rest } => Task::Bench(Box::new(benching::args::Request::parse(rest)?)),
         Sub::Verify(wanted) => Task::Verify(wanted),
         Sub::Explain { code } => Task::Explain(code),
         Sub::Doc { name } => Task::Doc((!name.is_empty()).then(|| name.join(" "))),
     })
+}
+
+/// A help page that was asked for, or what is wrong.
+fn unread(e: &clap::Error) -> Result<Task, Usage> {
+    let text = e.to_string();
+    if !e.use_stderr() {
+        return Ok(Task::Text(text));
+    }
+    let mut lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
+    let message = lines.next().unwrap_or("").trim_start_matches("error: ").to_string();
+    let help = lines.find(|l| l.starts_with("tip:")).map(|l| l.trim_start_matches("tip: ").to_string());
+    Err(Usage { message, help })
 }
 
 fn is_terminal() -> bool {
