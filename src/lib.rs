@@ -21,9 +21,12 @@
 // Units stand in brackets in doc comments, as [length]; they are no links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+pub mod bench;
 pub mod cli;
 pub mod graph;
+mod heads;
 mod json;
+pub mod plot;
 pub mod session;
 pub mod sweep;
 pub mod verify;

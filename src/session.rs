@@ -146,6 +146,8 @@ pub struct Session {
     blind: bool,
     timer: timer::Timer,
     worked: Worked,
+    /// What step tables are to show beside the deck's own columns.
+    columns: Vec<String>,
     /// What the deck's `sweep` line says.
     swept: Option<Swept>,
     born: std::time::Instant,
@@ -203,6 +205,7 @@ impl Session {
             blind: false,
             timer: Default::default(),
             worked: Worked::default(),
+            columns: vec![],
             swept: None,
             born: std::time::Instant::now(),
             pairless: false,

@@ -52,6 +52,7 @@ const BOOK: [&str; 2] = [
      - [Read results in ParaView, OVITO and pandas](howto/results.md)\n\
      - [Make a long run](howto/long-runs.md)\n\
      - [Make many runs of one deck](howto/sweep.md)\n\
+     - [Weigh time against error](howto/bench.md)\n\
      - [Colours in your editor](editor/README.md)\n\n\
      # Reference\n\n\
      - [The language](language.md)\n\
@@ -59,6 +60,7 @@ const BOOK: [&str; 2] = [
     "- [Error codes](errors.md)\n\
      - [Bonded particles](bonded.md)\n\
      - [Verification](verification.md)\n\
+     - [Benchmarks](benchmarks.md)\n\
      - [Coming from LAMMPS](coming-from-lammps.md)\n\
      - [Decks of others](safe.md)\n\
      - [How fast, and what limits it](speed.md)\n\n\

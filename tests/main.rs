@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
 mod at_hand;
+mod bench;
 mod bonded;
 mod bytes;
 #[path = "checks.rs"]

@@ -39,8 +39,13 @@ const BY_STRING: &[(&str, &str)] = &[
 ];
 
 /// Within the root package: the command graph knows no session, a session no program.
-const UPWARDS: &[(&str, &[&str])] =
-    &[("graph", &["session", "sweep", "cli"]), ("session", &["sweep", "cli"]), ("sweep", &["cli"])];
+const UPWARDS: &[(&str, &[&str])] = &[
+    ("graph", &["session", "sweep", "bench", "cli"]),
+    ("session", &["sweep", "bench", "cli"]),
+    ("sweep", &["bench", "cli"]),
+    ("bench", &["cli"]),
+    ("plot", &["session", "sweep", "bench", "cli"]),
+];
 
 /// Past this many lines a file is two files.
 const LONGEST: usize = 600;
@@ -222,6 +227,7 @@ const OPENERS: &[(&str, &str)] = &[
     ("crates/lang/src/expr/pattern.rs", "name of the system"),
     ("src/cli/", "files that the command line names, or whoever types"),
     ("src/sweep/", "folders of a sweep, which does not go with -safe"),
+    ("src/bench/", "references that the command line names, and logs of its own runs"),
     ("src/verify/", "folders and reports of the program's own decks"),
 ];
 

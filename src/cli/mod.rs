@@ -1,6 +1,7 @@
 //! The command line: what was asked for, done, and turned into an exit code.
 
 pub mod args;
+mod benching;
 pub mod checking;
 pub mod deck;
 mod examples;
@@ -70,6 +71,8 @@ fn perform(task: Task) -> Result<u8, Usage> {
         }
         Task::Repl(o) => return Ok(repl::run(&o)),
         Task::Sweep(request) => return sweeping::perform(&request),
+        Task::Bench(request) => return benching::perform(&request),
+        Task::Suite(wanted) => return benching::suite::perform(&wanted),
         Task::Worker => return Ok(if crate::sweep::worker::main() { OK } else { FAILED }),
         Task::Verify(wanted) => return verifying::verify(&wanted),
         Task::Check { decks, json } => return Ok(checking::check(&decks, json)),

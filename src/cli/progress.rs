@@ -1,6 +1,7 @@
 //! The live line of a run: steps done, time, thermo columns, speed and time left on a terminal, nothing otherwise;
 //! the only user of indicatif.
 
+pub(super) use crate::plot::short;
 use crate::session::Made;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use perigrain_out::log::Log;
@@ -134,12 +135,6 @@ fn words(made: &Made, log: Option<&Log>) -> String {
         text += &format!("  {column} {}", short(value));
     }
     text
-}
-
-/// A number in at most some nine characters.
-pub(super) fn short(a: f64) -> String {
-    let plain = a == 0.0 || (1e-3..1e5).contains(&a.abs());
-    if plain { format!("{}", (a * 1e4).round() / 1e4) } else { format!("{a:.3e}") }
 }
 
 /// Writes with the line out of the way, so that table lines and live line do not run into each other.

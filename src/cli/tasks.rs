@@ -2,7 +2,7 @@
 
 use super::args::{self, Deck, Options, SWITCHES, Usage};
 use super::sweeping::args::Request;
-use super::{checking, examples, starters, verifying};
+use super::{benching, checking, examples, starters, verifying};
 use clap::{CommandFactory, Parser, ValueHint};
 use clap_complete::Shell;
 use perigrain_base::diag::nearest;
@@ -33,7 +33,11 @@ pub enum Task {
     },
     /// Make many runs of a deck.
     Sweep(Box<Request>),
-    /// Make one of them, as standard input says.
+    /// Run a deck over knobs, and weigh wall time against error.
+    Bench(Box<benching::args::Request>),
+    /// Run the benches that the program carries.
+    Suite(benching::suite::Wanted),
+    /// Make one of the runs of a sweep or bench, as standard input says.
     Worker,
     /// Run the published cases that the program carries.
     Verify(verifying::Wanted),
@@ -106,6 +110,16 @@ enum Sub {
         )]
         rest: Vec<String>,
     },
+    /// Run a deck over knobs such as time step and spacing, and weigh wall time against error
+    Bench {
+        /// The deck, lists of values, what is measured, and LAMMPS' switches
+        #[arg(
+            value_name = "DECK -each NAME VALUE… -measure WORD… [SWITCH]",
+            trailing_var_arg = true,
+            allow_hyphen_values = true
+        )]
+        rest: Vec<String>,
+    },
     /// Run published cases and say whether this build on this machine gives their numbers
     Verify(verifying::Wanted),
     /// List the examples that the program carries, show one, or copy it here
@@ -171,7 +185,7 @@ pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
         return Ok(task);
     }
     match &task {
-        Task::Check { .. } | Task::Plan { .. } | Task::Sweep(_) => {
+        Task::Check { .. } | Task::Plan { .. } | Task::Sweep(_) | Task::Bench(_) => {
             Err(Usage { message: "no deck".into(), help: Some("name one: `perigrain check in.deck`".into()) })
         }
         Task::Run(o) if o.partition.is_empty() => swallowed(o).map_or(Ok(Task::Repl(o.clone())), Err),
@@ -186,6 +200,7 @@ impl Task {
             Task::Run(o) | Task::Repl(o) | Task::Plan { options: o, .. } => Some(o),
             Task::Check { decks, .. } => decks.first(),
             Task::Sweep(request) => Some(&request.options),
+            Task::Bench(request) => Some(&request.sweep.options),
             _ => None,
         }
     }
@@ -224,17 +239,13 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
     if words[0] == "verify" {
         verifying::with_two_dashes(&mut words);
     }
+    if words[0] == "bench" && words.iter().any(|w| w.trim_start_matches('-') == "suite") {
+        verifying::with_two_dashes(&mut words);
+        return benching::suite::Wanted::try_parse_from(words).map(Task::Suite).or_else(|e| unread(&e));
+    }
     let sub = match Sub::try_parse_from(std::iter::once("perigrain".to_string()).chain(words)) {
         Ok(sub) => sub,
-        Err(e) if e.use_stderr() => {
-            let text = e.to_string();
-            let mut lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
-            let first = lines.next().unwrap_or("").trim_start_matches("error: ").to_string();
-            let help =
-                lines.find(|l| l.starts_with("tip:")).map(|l| l.trim_start_matches("tip: ").to_string());
-            return Err(Usage { message: first, help });
-        }
-        Err(e) => return Ok(Task::Text(e.to_string())),
+        Err(e) => return unread(&e),
     };
     Ok(match sub {
         Sub::Run { rest } => Task::Run(args::parse(rest)?),
@@ -245,6 +256,7 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
         }
         Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
         Sub::Sweep { rest } => Task::Sweep(Box::new(Request::parse(rest)?)),
+        Sub::Bench { rest } => Task::Bench(Box::new(benching::args::Request::parse(rest)?)),
         Sub::Verify(wanted) => Task::Verify(wanted),
         Sub::Examples(wanted) => Task::Examples(wanted),
         Sub::New { file, kind } => Task::New { file, kind },
@@ -253,6 +265,18 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
         Sub::Explain { code } => Task::Explain(code),
         Sub::Doc { name } => Task::Doc((!name.is_empty()).then(|| name.join(" "))),
     })
+}
+
+/// A help page that was asked for, or what is wrong.
+fn unread(e: &clap::Error) -> Result<Task, Usage> {
+    let text = e.to_string();
+    if !e.use_stderr() {
+        return Ok(Task::Text(text));
+    }
+    let mut lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
+    let message = lines.next().unwrap_or("").trim_start_matches("error: ").to_string();
+    let help = lines.find(|l| l.starts_with("tip:")).map(|l| l.trim_start_matches("tip: ").to_string());
+    Err(Usage { message, help })
 }
 
 fn is_terminal() -> bool {

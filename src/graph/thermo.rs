@@ -144,6 +144,17 @@ impl Thermo {
         Ok(())
     }
 
+    /// One more column, behind the others.
+    ///
+    /// # Errors
+    /// Words that are no column here.
+    pub fn add_column(&mut self, word: &Word, cx: &BuildCx) -> Result<()> {
+        let (layout, sources) = columns(std::slice::from_ref(word), cx)?;
+        self.layout.columns.extend(layout.columns);
+        self.sources.extend(sources);
+        Ok(())
+    }
+
     /// A note on what a new style has forgotten, if nothing has set it again by the time of a run.
     pub fn forgotten(&self) -> Option<Diagnostic> {
         let (span, words) = &self.forgotten;

@@ -40,6 +40,22 @@ impl Axis {
     /// # Errors
     /// Lines that do not fit the first one; their places are in `file`.
     pub fn table(text: &str, file: FileId) -> Result<Self> {
+        let (axis, span) = Self::grid(text, file)?;
+        axis.names.iter().try_for_each(|name| check_name(name)).map_err(|e| e.at(span))?;
+        Ok(axis)
+    }
+
+    /// Whether these are values of a switch of the program, which begins with a dash, and not of variables.
+    pub fn is_switch(&self) -> bool {
+        self.names.first().is_some_and(|name| name.starts_with('-'))
+    }
+
+    /// As [`Axis::table`] with any names, and where their line is.
+    ///
+    /// # Errors
+    /// Lines that do not fit the first one; their places are in `file`.
+    pub fn grid(text: &str, file: FileId) -> Result<(Self, Span)> {
+        let mut head = Span::new(file, 0, 0);
         let mut axis = Self::default();
         let mut commas = false;
         let mut at = 0;
@@ -54,7 +70,7 @@ impl Axis {
             if axis.names.is_empty() {
                 commas = content.contains(',');
                 axis.names = cells(content, commas);
-                axis.names.iter().try_for_each(|name| check_name(name)).map_err(|e| e.at(span))?;
+                head = span;
                 continue;
             }
             let row = cells(content, commas);
@@ -68,7 +84,7 @@ impl Axis {
             let text = "the table needs a line with the variables' names and one line per run";
             return fail(Code::MISSING_ARGUMENT, Span::new(file, 0, 0), text);
         }
-        Ok(axis)
+        Ok((axis, head))
     }
 }
 

@@ -121,6 +121,7 @@ impl Session {
             turns: _,
             made: _,
             checked_step: _,
+            columns: _,
         } = self;
         let shared = earlier.filter(|e| self.same_particles(e)).map(|e| e.world.clone());
         let bytes = if shared.is_some() { 0 } else { self.bytes() };

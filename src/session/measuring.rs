@@ -1,11 +1,14 @@
 //! What a deck that has been worked off can tell in numbers: what its runs took, and values by their words.
 
 use super::Session;
+use crate::graph::build::Context;
 use crate::graph::env::DeckEnv;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, nearest};
-use perigrain_lang::{Expr, Kind, RefKind, ValueRef, substitute};
+use perigrain_lang::{Expr, Kind, RefKind, ValueRef, Word, substitute};
 use perigrain_out::rows::Row;
 use perigrain_plan::run::verlet;
+use perigrain_world::GroupId;
+use std::cell::RefCell;
 
 /// What all runs of a session together have made.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,6 +35,29 @@ impl Session {
     /// The last row of the step table with its columns, if the log keeps rows.
     pub fn last_row(&self) -> Option<(Vec<String>, Row)> {
         self.options.log.tables(|t| t.last().map(|(columns, row)| (columns.to_vec(), row.clone())))
+    }
+
+    /// From now on step tables show these words too, as far as the deck has them when a run begins.
+    pub fn add_columns(&mut self, words: Vec<String>) {
+        self.columns = words;
+    }
+
+    /// Adds to the step table of the run that begins what it lacks of the columns asked for.
+    pub(super) fn complete_table(&mut self) {
+        for word in self.columns.clone() {
+            if self.graph.thermo.layout.columns.iter().any(|c| c.name == word) {
+                continue;
+            }
+            let span = Span::new(self.sources.add("report", word.as_str()), 0, word.len());
+            let (notes, uses) = (RefCell::default(), RefCell::default());
+            let cx = Context { span, checking: false, notes: &notes, uses: &uses };
+            let cx = cx.build(&self.graph, &self.world, "", GroupId::ALL);
+            let mut thermo = self.graph.thermo.clone();
+            // Formulas are no columns, and of names a later run may know more.
+            if thermo.add_column(&Word::new(&word, span), &cx).is_ok() {
+                self.graph.thermo = thermo;
+            }
+        }
     }
 
     /// The value of what is called `word` now, as text: a word of thermo output, `v_name`, `c_ID[2]`, `f_ID`, or a formula of them.

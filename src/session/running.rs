@@ -52,6 +52,7 @@ impl Session {
     pub(super) fn run_command(&mut self, cmd: &Command) -> Result<()> {
         let args = self.read_run(cmd)?;
         self.thermo_computes();
+        self.complete_table();
         self.record(cmd, Role::Run, None, vec![], vec![]);
         self.ready(cmd.span)?;
         self.check_run(cmd.span, args.steps > 0)?;

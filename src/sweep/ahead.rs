@@ -9,6 +9,10 @@ use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Sources, neare
 pub struct Ahead {
     /// Why no run should begin; empty if all is well.
     pub problems: Diagnostics,
+    /// Variables that the deck never uses; each is a problem too.
+    pub unused: Vec<String>,
+    /// What was to be reported and is not there; each is a problem too.
+    pub unknown: Vec<String>,
     /// The texts in which their places are.
     pub sources: Sources,
 }
@@ -25,15 +29,16 @@ pub fn look_ahead(sweep: &Sweep) -> Ahead {
             let other = if sweep.jobs.len() > 1 { checked(sweep, last) } else { Err(Diagnostics::default()) };
             match other {
                 Ok((other, Ok(()))) => other,
-                _ => return Ahead { problems, sources: session.sources },
+                _ => return Ahead { problems, sources: session.sources, ..Ahead::default() },
             }
         }
-        Err(problems) => return Ahead { problems, sources: Sources::default() },
+        Err(problems) => return Ahead { problems, ..Ahead::default() },
     };
     if !session.has_seen_all() {
         return out;
     }
-    for (name, _) in first.vars.iter().filter(|(name, _)| !session.uses_variable(name)) {
+    for (name, _) in first.variables().filter(|(name, _)| !session.uses_variable(name)) {
+        out.unused.push(name.clone());
         let text = format!("the deck never uses the variable `{name}`: all its values would give the same");
         let d = Diagnostic::error(Code::UNUSED, None, text);
         let known = session.known().variables;
@@ -45,6 +50,7 @@ pub fn look_ahead(sweep: &Sweep) -> Ahead {
     }
     for word in &sweep.report {
         if let Err(e) = session.knows_measure(word) {
+            out.unknown.push(word.clone());
             out.problems.append(e);
         }
     }
@@ -56,7 +62,7 @@ pub fn look_ahead(sweep: &Sweep) -> Ahead {
 fn checked(sweep: &Sweep, job: &Job) -> Result<(Session, Result<()>)> {
     let s = &sweep.settings;
     let mut vars = s.vars.clone();
-    vars.extend(job.vars.iter().map(|(n, v)| (n.clone(), vec![v.clone()])));
+    vars.extend(job.variables().map(|(n, v)| (n.clone(), vec![v.clone()])));
     let mut session = Session::new(session::Options {
         mode: Mode::Check,
         compat: s.compat,

@@ -43,12 +43,18 @@ impl Crew {
         self.stillborn.push((job, outcome));
     }
 
-    /// Starts a process for a run, in the run's folder.
+    /// Starts a process for a run, in the run's folder: a worker of this program, or the LAMMPS that the task names.
     pub fn start(&mut self, job: usize, sweep: &Sweep, home: &Path, task: &Task) -> std::io::Result<()> {
         let output = File::create(home.join(OUTPUT))?;
-        let mut command = Command::new(&sweep.program);
-        command.arg(WORD).current_dir(home).stdin(Stdio::piped());
-        command.stdout(output.try_clone()?).stderr(output);
+        let mut command = match &task.settings.lammps {
+            Some(lammps) => super::lammps::command(lammps, &task.deck, &task.settings.vars, task.threads),
+            None => {
+                let mut command = Command::new(&sweep.program);
+                command.arg(WORD).stdin(Stdio::piped());
+                command
+            }
+        };
+        command.current_dir(home).stdout(output.try_clone()?).stderr(output);
         // Ctrl-C is for the sweep, which ends its runs.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);

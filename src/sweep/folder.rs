@@ -2,7 +2,7 @@
 
 use super::outcome::opened;
 use super::worker::{OUTPUT, PROGRESS, RESULT, Task};
-use super::{Deck, Outcome, Sweep};
+use super::{Deck, Outcome, Sweep, lammps};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_out::file::{replace, trouble};
 use std::fs::{File, TryLockError};
@@ -91,7 +91,15 @@ impl Folder {
     /// What a worker has to know of a run.
     pub fn task(&self, sweep: &Sweep, job: usize, threads: usize, print: String) -> Task {
         let mut settings = sweep.settings.clone();
-        settings.vars.extend(sweep.jobs[job].vars.iter().map(|(n, v)| (n.clone(), vec![v.clone()])));
+        let own = &sweep.jobs[job];
+        settings.vars.extend(own.variables().map(|(n, v)| (n.clone(), vec![v.clone()])));
+        let threads = own.switch("-threads").and_then(|n| n.parse().ok()).unwrap_or(threads);
+        if own.switch("-program") != Some(lammps::PROGRAM) {
+            settings.lammps = None;
+        }
+        if let Some(layout) = own.switch("-layout") {
+            settings.force_list = layout == "list";
+        }
         Task {
             print,
             name: sweep.deck.name.clone(),

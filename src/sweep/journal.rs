@@ -92,10 +92,12 @@ fn words(settings: &Settings) -> String {
         (settings.force_list, "-layout list"),
         (settings.no_skipping, "-rest full"),
         (settings.portable, "-portable"),
+        (settings.series, "series"),
     ];
     let vars = settings.vars.iter().map(|(name, values)| format!("-var {name} {}", values.join(" ")));
     let on = switches.into_iter().filter(|(on, _)| *on).map(|(_, word)| word.to_owned());
-    vars.chain(on).collect::<Vec<_>>().join(" ")
+    let lammps = settings.lammps.iter().map(|path| format!("-lammps {}", path.display()));
+    vars.chain(on).chain(lammps).collect::<Vec<_>>().join(" ")
 }
 
 /// The first line in which two decks differ, as `: line 3 was …, is …`.

@@ -6,8 +6,10 @@ mod ahead;
 mod crew;
 mod folder;
 mod journal;
+pub mod lammps;
 mod outcome;
 mod record;
+pub mod series;
 pub mod table;
 pub mod worker;
 
@@ -48,7 +50,18 @@ impl Job {
 
     /// The variables as `v=20 seed=3`.
     pub fn title(&self) -> String {
-        self.vars.iter().map(|(n, v)| format!("{n}={v}")).collect::<Vec<_>>().join(" ")
+        let name = |n: &String| n.trim_start_matches('-').to_owned();
+        self.vars.iter().map(|(n, v)| format!("{}={v}", name(n))).collect::<Vec<_>>().join(" ")
+    }
+
+    /// What the deck sees of it: names that begin with a dash are switches of the program, which no deck can have as variables.
+    pub fn variables(&self) -> impl Iterator<Item = &(String, String)> {
+        self.vars.iter().filter(|(name, _)| !name.starts_with('-'))
+    }
+
+    /// The value of a switch, as `-threads`, that this run has for itself.
+    pub fn switch(&self, name: &str) -> Option<&str> {
+        self.vars.iter().find(|(n, _)| n == name).map(|(_, value)| value.as_str())
     }
 }
 
@@ -76,6 +89,10 @@ pub struct Settings {
     pub no_skipping: bool,
     /// The portable kernels only.
     pub portable: bool,
+    /// What is reported stands in the step table too, and each run leaves its rows in [`series::FILE`].
+    pub series: bool,
+    /// The LAMMPS that makes the runs whose `-program` is [`lammps::PROGRAM`].
+    pub lammps: Option<PathBuf>,
 }
 
 /// Runs of one deck, and how they are to be made.
@@ -177,6 +194,11 @@ pub struct Standing {
     pub running: Option<usize>,
     /// Time left then, from the median of what is done.
     pub left: Option<Duration>,
+}
+
+/// The folder of a run of a sweep.
+pub fn home_of(sweep: &Sweep, job: usize) -> PathBuf {
+    sweep.folder.join(folder::name(sweep.jobs.len(), job, &sweep.jobs[job].title()))
 }
 
 /// Looks at the folder of a sweep.
@@ -365,6 +387,11 @@ impl<'a> Work<'a> {
 
     /// What a run has left that ended by itself; its process may have crashed.
     fn outcome(&mut self, job: usize) -> Outcome {
+        if self.sweep.jobs[job].switch("-program") == Some(lammps::PROGRAM) {
+            let home = self.folder.of(self.sweep, job);
+            let threads = self.folder.task(self.sweep, job, self.crew.threads, String::new()).threads;
+            return lammps::outcome(&home, &self.sweep.report, self.crew.last.1, threads);
+        }
         let left = self.folder.left_by(self.sweep, job, &self.journal.print(job));
         let mut outcome = left.unwrap_or_else(|| self.folder.crashed(self.sweep, job, &self.crew.last));
         if outcome.is_ok() {

@@ -65,7 +65,7 @@ fn number(value: f64) -> String {
 }
 
 /// Cells between commas, in quotes where they hold commas, quotes or line breaks.
-fn line(cells: &[String]) -> String {
+pub fn line(cells: &[String]) -> String {
     let quoted = |c: &String| match c.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", c.replace('"', "\"\"")),
         false => c.clone(),
@@ -113,7 +113,13 @@ pub fn text(
     }
     let problems = rows.iter().any(|r| r.last().is_some_and(|c| !c.is_empty()));
     let shown = head.len() - usize::from(!problems);
-    let lengths: Vec<usize> = (0..shown)
+    aligned(&head[..shown], &rows, width, most)
+}
+
+/// Columns that line up on the right, no row of more than `width` characters and not more than `most` of them; cells beyond the
+/// head are left out.
+pub fn aligned(head: &[String], rows: &[Vec<String>], width: usize, most: usize) -> String {
+    let lengths: Vec<usize> = (0..head.len())
         .map(|c| {
             rows.iter()
                 .take(most)
@@ -124,7 +130,7 @@ pub fn text(
         })
         .collect();
     let mut out = String::new();
-    for row in std::iter::once(&head).chain(rows.iter().take(most)) {
+    for row in std::iter::once(head).chain(rows.iter().take(most).map(Vec::as_slice)) {
         let mut words = String::new();
         for (cell, length) in row.iter().zip(&lengths) {
             let _ = write!(words, "  {cell:>length$}");

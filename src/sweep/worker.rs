@@ -2,7 +2,7 @@
 
 use super::outcome::sealed;
 use super::record::{digest, join, open, seal, split};
-use super::{Outcome, Settings};
+use super::{Outcome, Settings, series};
 use crate::session::{self, Made, Mode, Session, Watch};
 use perigrain_base::diag::{Diagnostic, Diagnostics, Severity, Sources, render};
 use perigrain_out::file::replace;
@@ -63,7 +63,14 @@ impl Task {
             path(&self.deck),
             path(&self.folder),
             join(&vars),
-            join(&[on(s.compat), on(s.force_list), on(s.no_skipping), on(s.portable), on(self.telling)]),
+            join(&[
+                on(s.compat),
+                on(s.force_list),
+                on(s.no_skipping),
+                on(s.portable),
+                on(s.series),
+                on(self.telling),
+            ]),
             join(&self.report),
             self.threads.to_string(),
             self.parent.to_string(),
@@ -81,14 +88,16 @@ impl Task {
             Some((name, if words.is_empty() { vec![String::new()] } else { words }))
         });
         let on: Vec<bool> = split(on).iter().map(|w| w == "1").collect();
-        let [compat, force_list, no_skipping, portable, telling] = on[..] else { return None };
+        let [compat, force_list, no_skipping, portable, series, telling] = on[..] else { return None };
+        // A worker makes no runs of other programs.
+        let lammps = None;
         let vars = vars.collect::<Option<_>>()?;
         Some(Self {
             print: print.clone(),
             name: name.clone(),
             deck: deck.into(),
             folder: folder.into(),
-            settings: Settings { vars, compat, force_list, no_skipping, portable },
+            settings: Settings { vars, compat, force_list, no_skipping, portable, series, lammps },
             report: split(report),
             threads: threads.parse().ok()?,
             parent: parent.parse().ok()?,
@@ -165,7 +174,10 @@ fn run(task: &Task) -> Outcome {
     let begin = Instant::now();
     let threads = session::set_threads(task.threads.max(1));
     let log = Log::silent();
-    log.keep_last_row();
+    match task.settings.series {
+        true => log.keep_rows(),
+        false => log.keep_last_row(),
+    }
     let mut outcome = Outcome { threads, ..Outcome::default() };
     let mut sources = Sources::default();
     if let Err(problems) = attempt(task, &log, &mut outcome, &mut sources) {
@@ -199,6 +211,9 @@ fn attempt(task: &Task, log: &Log, outcome: &mut Outcome, sources: &mut Sources)
         folder: task.folder.clone(),
         partition: None,
     })?;
+    if s.series {
+        session.add_columns(task.report.clone());
+    }
     if task.telling {
         session.set_watch(Box::new(Telling::default()));
     }
@@ -215,7 +230,10 @@ fn attempt(task: &Task, log: &Log, outcome: &mut Outcome, sources: &mut Sources)
             outcome.problem = Some(format!("`quit {}`", ending.status));
             Ok(())
         }
-        Ok(_) => report(&mut session, &task.report, outcome),
+        Ok(_) => report(&mut session, &task.report, outcome).and_then(|()| match s.series {
+            true => log.tables(|tables| series::write(Path::new(series::FILE), tables, &task.report)),
+            false => Ok(()),
+        }),
         Err(_) => Ok(()),
     };
     sources.clone_from(&session.sources);

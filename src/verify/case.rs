@@ -2,6 +2,9 @@
 //!
 //! Lines that begin with `#|` are together a TOML document; for the deck they are comments, so that a case runs by itself, too.
 
+use super::running::Point;
+use crate::heads;
+use crate::plot::{self, BLUE, Chart, GREY, Look};
 use serde::Deserialize;
 
 /// A deck with what must come out.
@@ -115,6 +118,27 @@ pub struct Curve {
     pub marks: bool,
 }
 
+impl Curve {
+    /// Its picture: ours as dots on the line, or beside the marks, of what was expected.
+    pub fn chart(&self, points: &[Point]) -> Chart {
+        let curve = |name: &str, points: Vec<[f64; 2]>, look, colour| plot::Curve {
+            name: name.into(),
+            points,
+            look,
+            colour,
+        };
+        let expected: Vec<[f64; 2]> = points.iter().filter_map(|p| Some([p.0, p.2?])).collect();
+        let look = if self.marks { Look::Crosses } else { Look::Line };
+        let mut curves = vec![];
+        if !expected.is_empty() {
+            curves.push(curve(&self.expected, expected, look, GREY));
+        }
+        curves.push(curve("perigrain", points.iter().map(|p| [p.0, p.1]).collect(), Look::Dots, BLUE));
+        let (title, x, y) = (self.title.clone(), self.x.clone(), self.y.clone());
+        Chart { title, x, y, logarithmic: false, curves }
+    }
+}
+
 fn closed_form() -> String {
     "closed form".into()
 }
@@ -125,8 +149,7 @@ impl Case {
     /// # Errors
     /// What is wrong with them.
     pub fn read(name: &str, deck: &str) -> Result<Self, String> {
-        let head: Vec<&str> = deck.lines().filter_map(|line| line.strip_prefix("#|")).collect();
-        let mut case: Self = toml::from_str(&head.join("\n")).map_err(|e| format!("{name}: {e}"))?;
+        let mut case: Self = heads::read(name, deck)?;
         case.name = name.into();
         case.deck = deck.into();
         match case.check.iter().find_map(|check| case.fault(check)) {
@@ -157,8 +180,7 @@ impl Case {
 
     /// The deck without the lines that are read here.
     pub fn lines(&self) -> String {
-        let rest: Vec<&str> = self.deck.lines().filter(|line| !line.starts_with("#|")).collect();
-        rest.join("\n").trim().to_string() + "\n"
+        heads::without(&self.deck)
     }
 
     /// The folder it stands in.

@@ -1,7 +1,6 @@
 //! Published cases and closed forms that the program carries with it: decks that say what must come out, and why.
 
 pub mod case;
-pub mod plot;
 pub mod report;
 pub mod running;
 

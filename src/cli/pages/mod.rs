@@ -1,5 +1,6 @@
 //! Manual pages of what no table of styles holds: the language, the session, the declarations, the program itself.
 
+mod bench;
 mod declarations;
 mod formulas;
 mod language;
@@ -17,7 +18,7 @@ pub type Entry = (&'static str, Doc);
 
 /// What is no command: how decks are written, what formulas know, how the program is called.
 pub const TOPICS: &[Entry] =
-    &[program::PERIGRAIN, prompt::PROMPT, verify::VERIFY, language::DECKS, formulas::FORMULAS];
+    &[program::PERIGRAIN, prompt::PROMPT, verify::VERIFY, bench::BENCH, language::DECKS, formulas::FORMULAS];
 
 /// Commands that act by themselves, in the order of the manual.
 pub const COMMANDS: &[Entry] = &[

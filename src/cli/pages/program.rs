@@ -11,6 +11,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain plan|run DECK [switch …]\n\
             perigrain check DECK … [--json] [switch …]\n\
             perigrain sweep DECK -each NAME VALUE … [switch …]\n\
+            perigrain bench DECK -each NAME VALUE … -measure WORD … [switch …]\n\
             perigrain repl [DECK] [switch …]\n\
             perigrain verify [-only PATTERN] [-html FILE] …\n\
             perigrain new FILE [--kind crack|pour|bonded]\n\
@@ -41,7 +42,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     the deck's runs will do, in which order, and what was left out and why: each plan once, with the lines whose runs have it and how often. \
     It makes the particles that the first run begins with, so that large scenes take their time, and no step; behind that run nothing is known of \
     particles, and lines that hang on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
-    prints the command graph for graphviz. `sweep` makes many runs of a deck side by side: see [sweep](sweep.md). `doc` prints a page of this manual, `explain` the story behind the code of a \
+    prints the command graph for graphviz. `sweep` makes many runs of a deck side by side: see [sweep](sweep.md). `bench` weighs wall time against error over time steps, spacings and other knobs: see [bench](bench.md). `doc` prints a page of this manual, `explain` the story behind the code of a \
     message. `verify` runs published cases that the program carries and says whether this build on this machine gives \
     their numbers: see [verify](verify.md). `new` writes a small deck that runs as it stands and says in its lines what to change; \
     `examples` lists the larger ones that the program carries, shows what they are about, or copies one into a folder of its own; neither \

@@ -2,8 +2,8 @@
 
 use super::knowing::COLON;
 use super::picture::{self, Ink};
-use super::plotting::{Curve, plot};
 use super::{Repl, colours, saving, slicing};
+use crate::plot::terminal::{Curve, plot};
 use perigrain_base::diag::{nearest, render};
 use std::fmt::Write;
 

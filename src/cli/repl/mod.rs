@@ -6,7 +6,6 @@ pub mod hinting;
 pub mod knowing;
 pub mod painting;
 mod picture;
-mod plotting;
 mod reading;
 mod saving;
 mod slicing;

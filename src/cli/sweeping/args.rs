@@ -130,17 +130,17 @@ impl Request {
         Ok(())
     }
 
-    /// Where the runs are: `-out`, else beside where one is, under the deck's name.
-    pub fn folder(&self) -> PathBuf {
+    /// Where the runs are: `-out`, else beside where one is, under the deck's name with this ending.
+    pub fn folder(&self, ending: &str) -> PathBuf {
         if let Some(out) = &self.out {
             return out.clone();
         }
         match &self.options.deck {
-            Deck::Stdin => "sweep".into(),
+            Deck::Stdin => ending.into(),
             Deck::File(path) if self.status && path.is_dir() => path.clone(),
             Deck::File(path) => {
                 let mut name = path.file_name().unwrap_or_default().to_owned();
-                name.push(".sweep");
+                name.push(format!(".{ending}"));
                 name.into()
             }
         }
@@ -171,9 +171,9 @@ mod tests {
         let [List::Each(v, values), List::Each(..)] = &r.lists[..] else { panic!("{r:?}") };
         assert_eq!((v.as_str(), values.join(" ").as_str()), ("v", "10 -20 1..3"));
         assert_eq!((r.jobs, r.anew, r.options.threads, r.report.len()), (Some(3), true, Some(2), 2));
-        assert_eq!(r.folder(), PathBuf::from("in.x.sweep"));
+        assert_eq!(r.folder("sweep"), PathBuf::from("in.x.sweep"));
         let r = read("-table runs.csv dir/in.y -out here -var w 1 2").unwrap();
-        assert_eq!(r.folder(), PathBuf::from("here"));
+        assert_eq!(r.folder("sweep"), PathBuf::from("here"));
         assert_eq!(
             (r.lists, r.options.deck),
             (vec![List::Table("runs.csv".into())], Deck::File("dir/in.y".into()))

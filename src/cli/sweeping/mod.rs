@@ -1,7 +1,7 @@
 //! `perigrain sweep`: many runs of one deck, each with other values of variables, and one table.
 
 pub mod args;
-mod show;
+pub(super) mod show;
 
 use super::args::{Deck, Target, Usage};
 use super::progress::Tally;
@@ -18,6 +18,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// What the folder of a deck's sweep ends in.
+const ENDING: &str = "sweep";
 /// Rows of the table that are shown at the end.
 const SHOWN: usize = 40;
 /// Characters of its lines.
@@ -29,7 +31,7 @@ const WIDTH: usize = 160;
 /// Lists of values that make no sense.
 pub fn perform(request: &Request) -> std::result::Result<u8, Usage> {
     if request.status {
-        return Ok(said(status(request), &Sources::default()));
+        return Ok(said(status(&request.folder(ENDING)), &Sources::default()));
     }
     let mut sources = Sources::default();
     let axes = match axes(request, &mut sources) {
@@ -65,7 +67,7 @@ pub fn perform(request: &Request) -> std::result::Result<u8, Usage> {
 }
 
 /// The first of some problems, as one of the command line.
-fn usage(problems: Diagnostics) -> Usage {
+pub(super) fn usage(problems: Diagnostics) -> Usage {
     let first = problems.0.into_iter().next();
     first.map_or_else(
         || Usage::new("no runs"),
@@ -74,7 +76,7 @@ fn usage(problems: Diagnostics) -> Usage {
 }
 
 /// The exit code; problems are printed.
-fn said(outcome: Result<u8>, sources: &Sources) -> u8 {
+pub(super) fn said(outcome: Result<u8>, sources: &Sources) -> u8 {
     outcome.unwrap_or_else(|problems| {
         deck::print(&problems, sources);
         FAILED
@@ -82,7 +84,7 @@ fn said(outcome: Result<u8>, sources: &Sources) -> u8 {
 }
 
 /// The lists of values, tied as `-zip` says.
-fn axes(request: &Request, sources: &mut Sources) -> Result<Vec<Axis>> {
+pub(super) fn axes(request: &Request, sources: &mut Sources) -> Result<Vec<Axis>> {
     let mut axes = vec![];
     for list in &request.lists {
         axes.push(match list {
@@ -108,7 +110,7 @@ fn axes(request: &Request, sources: &mut Sources) -> Result<Vec<Axis>> {
 }
 
 /// What the deck's own `sweep` line adds: its lists if the command line has none, and what it reports.
-fn of_deck(request: &Request, given: Swept, text: &str, sources: &mut Sources) -> Result<Swept> {
+pub(super) fn of_deck(request: &Request, given: Swept, text: &str, sources: &mut Sources) -> Result<Swept> {
     let mut swept = given;
     if text.lines().any(|line| line.split_whitespace().next() == Some("sweep")) {
         let mut session = deck::begin(&request.options, Mode::Check, &Log::silent())?;
@@ -126,7 +128,7 @@ fn of_deck(request: &Request, given: Swept, text: &str, sources: &mut Sources) -
 }
 
 /// The runs, with the deck as it is now.
-fn prepared(request: &Request, swept: Swept, text: String) -> Result<Sweep> {
+pub(super) fn prepared(request: &Request, swept: Swept, text: String) -> Result<Sweep> {
     let o = &request.options;
     let name = deck::name(&o.deck);
     let beside = match &o.deck {
@@ -148,8 +150,9 @@ fn prepared(request: &Request, swept: Swept, text: String) -> Result<Sweep> {
             force_list: o.list_layout,
             no_skipping: o.no_skipping,
             portable: o.portable,
+            ..Settings::default()
         },
-        folder: request.folder(),
+        folder: request.folder(ENDING),
         at_once: request.jobs.unwrap_or(0),
         threads: o.threads.unwrap_or(0),
         retry: request.retry,
@@ -177,7 +180,7 @@ fn run(request: &Request, sweep: &Sweep) -> Result<u8> {
 }
 
 /// The first Ctrl-C or request to end stops all runs, the second one the program at once.
-fn listen(stop: &Arc<AtomicBool>) {
+pub(super) fn listen(stop: &Arc<AtomicBool>) {
     let stop = stop.clone();
     let ask = move || {
         if stop.swap(true, Ordering::Relaxed) {
@@ -201,7 +204,7 @@ fn ending(sweep: &Sweep, results: &Results) -> String {
 }
 
 /// `7 runs ok, 1 failed, 2 left`.
-fn counts(results: &Results) -> String {
+pub(super) fn counts(results: &Results) -> String {
     let ended = || results.outcomes.iter().flatten();
     let ok = ended().filter(|o| o.is_ok()).count();
     let (failed, left) = (ended().count() - ok, results.outcomes.len() - ended().count());
@@ -215,9 +218,8 @@ fn counts(results: &Results) -> String {
 }
 
 /// Tells where the sweep in a folder stands.
-fn status(request: &Request) -> Result<u8> {
-    let folder = request.folder();
-    let Standing { deck, jobs, report, results, running, left } = sweep::look(&folder)?;
+pub(super) fn status(folder: &Path) -> Result<u8> {
+    let Standing { deck, jobs, report, results, running, left } = sweep::look(folder)?;
     let mut work = running.map_or("not at work".into(), |n| format!("at work on {n}"));
     if let Some(left) = left {
         work += &format!(", {} to go", show::short(left));

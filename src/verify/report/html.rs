@@ -1,7 +1,7 @@
 //! The report as one web page that needs nothing else, with its curves.
 
 use super::{Report, expected, number, part, source, what};
-use crate::verify::plot::{escaped, svg};
+use crate::plot::escaped;
 use crate::verify::running::{Outcome, Row, Verdict};
 use std::fmt::Write;
 
@@ -92,7 +92,7 @@ fn case(outcome: &Outcome) -> String {
         let _ = writeln!(
             out,
             "<figure>{}<figcaption>{}</figcaption></figure>",
-            svg(curve, points),
+            curve.chart(points).svg(),
             escaped(&curve.title)
         );
     }

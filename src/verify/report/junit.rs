@@ -1,7 +1,7 @@
 //! The report as JUnit XML, which test servers read.
 
 use super::{Report, expected, number, part, source, what};
-use crate::verify::plot::escaped;
+use crate::plot::escaped;
 use crate::verify::running::{Outcome, Row, Verdict};
 use std::fmt::Write;
 

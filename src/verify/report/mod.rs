@@ -52,9 +52,14 @@ impl Report {
 
     /// Program, version and machine in one line.
     pub fn origin(&self) -> String {
-        let kind = if cfg!(debug_assertions) { ", debug build" } else { "" };
-        format!("perigrain {}{kind}, {}", env!("CARGO_PKG_VERSION"), self.machine)
+        origin(&self.machine)
     }
+}
+
+/// Program, version and a machine in one line.
+pub fn origin(machine: &str) -> String {
+    let kind = if cfg!(debug_assertions) { ", debug build" } else { "" };
+    format!("perigrain {}{kind}, {machine}", env!("CARGO_PKG_VERSION"))
 }
 
 /// The machine in a few words.

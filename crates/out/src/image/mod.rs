@@ -2,6 +2,7 @@
 
 mod camera;
 mod colour;
+mod drawing;
 mod glyphs;
 mod overlay;
 mod raster;

@@ -67,7 +67,7 @@ fn curve(stroke: &str) -> Vec<[f32; 2]> {
 }
 
 /// Draws lines with a round pen; where they meet, ink is laid only once.
-fn ink_lines(image: &mut Image, lines: &[Vec<[f32; 2]>], half: f32, ink: Colour) {
+pub(super) fn ink_lines(image: &mut Image, lines: &[Vec<[f32; 2]>], half: f32, ink: Colour) {
     let all = || lines.iter().flatten();
     let reach = |k: usize| {
         let (lo, hi) = all().fold((f32::MAX, f32::MIN), |(lo, hi), p| (lo.min(p[k]), hi.max(p[k])));

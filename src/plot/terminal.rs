@@ -1,6 +1,6 @@
 //! Curves in the terminal: a canvas of braille characters, two dots wide and four high each.
 
-use crate::cli::progress::short;
+use super::short;
 use std::fmt::Write;
 
 /// Characters of a plot.
@@ -26,14 +26,30 @@ pub fn plot(curves: &[Curve], across: &str, colours: bool) -> String {
     let size = |c: &Curve| range(c, 1).map_or(0.0, |[lo, hi]| hi.abs().max(lo.abs()));
     let (least, most) =
         curves.iter().map(size).fold((f64::INFINITY, 0.0f64), |(a, b), s| (a.min(s), b.max(s)));
+    let linear = Marks { logarithmic: false, places: &[] };
     if curves.len() > 1 && least * 50.0 < most {
-        let each = |(k, c)| canvas(std::slice::from_ref(c), k, across, colours);
+        let each = |(k, c)| canvas(std::slice::from_ref(c), k, across, colours, &linear);
         return curves.iter().enumerate().map(each).collect::<Vec<_>>().join("\n");
     }
-    canvas(curves, 0, across, colours)
+    canvas(curves, 0, across, colours, &linear)
 }
 
-fn canvas(curves: &[Curve], first: usize, across: &str, colours: bool) -> String {
+/// Curves over logarithmic axes, with characters that mark places on them. Coordinates are above zero.
+pub fn logarithmic(curves: &[Curve], places: &[([f64; 2], char)], across: &str, colours: bool) -> String {
+    let log = |p: &[f64; 2]| p.map(f64::log10);
+    let curves: Vec<Curve> =
+        curves.iter().map(|c| Curve { name: c.name, points: c.points.iter().map(log).collect() }).collect();
+    let places: Vec<_> = places.iter().map(|(p, c)| (log(p), *c)).collect();
+    canvas(&curves, 0, across, colours, &Marks { logarithmic: true, places: &places })
+}
+
+/// What stands over the curves, and whether coordinates are logarithms.
+struct Marks<'a> {
+    logarithmic: bool,
+    places: &'a [([f64; 2], char)],
+}
+
+fn canvas(curves: &[Curve], first: usize, across: &str, colours: bool, marks: &Marks) -> String {
     let over = |d| {
         curves.iter().filter_map(|c| range(c, d)).reduce(|a: [f64; 2], b| [a[0].min(b[0]), a[1].max(b[1])])
     };
@@ -52,16 +68,23 @@ fn canvas(curves: &[Curve], first: usize, across: &str, colours: bool) -> String
             });
         }
     }
+    let over = |row: usize| {
+        let on = marks.places.iter().filter(|(p, _)| p.iter().all(|a| a.is_finite()));
+        let cell = on.map(|(p, c)| (dot(*p, x, y), *c));
+        cell.filter(|([_, v], _)| v / 4 == row).map(|([u, _], c)| (u / 2, c)).collect::<Vec<_>>()
+    };
+    let number = |a: f64| if marks.logarithmic { short(10f64.powf(a)) } else { label_of(a, y) };
     let mut out = String::new();
     for (k, row) in cells.chunks(WIDTH).enumerate() {
         let label = match k {
-            0 => label_of(y[1], y),
-            _ if k == HEIGHT - 1 => label_of(y[0], y),
+            0 => number(y[1]),
+            _ if k == HEIGHT - 1 => number(y[0]),
             _ => String::new(),
         };
-        let _ = writeln!(out, "{label:>11} ┤{}", characters(row, colours));
+        let _ = writeln!(out, "{label:>11} ┤{}", characters(row, &over(k), colours));
     }
-    let (left, right) = (short(x[0]), short(x[1]));
+    let end = |a: f64| short(if marks.logarithmic { 10f64.powf(a) } else { a });
+    let (left, right) = (end(x[0]), end(x[1]));
     let gap = WIDTH.saturating_sub(left.len() + right.len());
     let _ = writeln!(out, "{:>11} └{}", "", "─".repeat(WIDTH));
     let _ = writeln!(out, "{:>12} {left}{across:^gap$}{right}", "");
@@ -95,8 +118,11 @@ fn colour(k: usize) -> &'static str {
     COLOURS[k % COLOURS.len()]
 }
 
-fn characters(row: &[(u8, usize)], colours: bool) -> String {
-    let one = |&(dots, k): &(u8, usize)| {
+fn characters(row: &[(u8, usize)], over: &[(usize, char)], colours: bool) -> String {
+    let one = |(at, &(dots, k)): (usize, &(u8, usize))| {
+        if let Some((_, mark)) = over.iter().find(|(cell, _)| *cell == at) {
+            return mark.to_string();
+        }
         let c = char::from_u32(0x2800 + u32::from(dots)).unwrap_or(' ');
         match dots {
             0 => " ".to_string(),
@@ -104,7 +130,7 @@ fn characters(row: &[(u8, usize)], colours: bool) -> String {
             _ => c.to_string(),
         }
     };
-    row.iter().map(one).collect::<String>().trim_end().to_string()
+    row.iter().enumerate().map(one).collect::<String>().trim_end().to_string()
 }
 
 /// Smallest and largest finite value in a direction.
@@ -162,6 +188,17 @@ mod tests {
         };
         assert_eq!(plot(&curves(3.0), "step", false).matches('└').count(), 1);
         assert_eq!(plot(&curves(300.0), "step", false).matches('└').count(), 2);
+    }
+
+    #[test]
+    fn a_power_is_a_straight_line_over_logarithms() {
+        let points: Vec<[f64; 2]> = [1.0, 10.0, 100.0].map(|x| [x, 1e-2 / x]).to_vec();
+        let places: Vec<_> = points.iter().zip(['a', 'a', 'A']).map(|(p, c)| (*p, c)).collect();
+        let text = logarithmic(&[Curve { name: "e", points }], &places, "seconds", false);
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(lines[0].starts_with("       0.01 ┤a") && lines[HEIGHT - 1].ends_with('A'), "{text}");
+        let middle = lines.iter().position(|l| l.contains('a') && !l.contains("┤a")).unwrap();
+        assert!((HEIGHT / 2 - 1..=HEIGHT / 2).contains(&middle), "{text}");
     }
 
     #[test]

@@ -1,0 +1,249 @@
+//! Time against error: a deck run over its knobs, each run measured against a reference.
+//!
+//! A [`Bench`] is a sweep with measures; [`Bench::found`] says of each setting what it took, how far off it was and of which order.
+
+pub mod front;
+pub mod norm;
+pub mod order;
+pub mod page;
+pub mod picture;
+pub mod reference;
+pub mod suite;
+pub mod table;
+
+use crate::session::axes::Axis;
+use crate::sweep::{self, Job, Outcome, Sweep, lammps, series};
+use norm::Norm;
+use perigrain_base::diag::{Code, Diagnostics, Result, fail};
+use reference::Against;
+
+/// The knob that makes every run several times.
+pub const REPEAT: &str = "-repeat";
+/// The knob of threads.
+pub const THREADS: &str = "-threads";
+/// The knob of the layout of bodies.
+pub const LAYOUT: &str = "-layout";
+/// The knob of what runs the deck.
+pub const PROGRAM: &str = "-program";
+
+/// One thing that is measured, and against what.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// A word or a formula.
+    pub word: String,
+    /// What it is compared with.
+    pub against: Against,
+    /// How series are compared.
+    pub norm: Norm,
+    /// What it is called in tables and pictures.
+    pub name: String,
+}
+
+/// Runs of a deck over its knobs, and what is measured.
+#[derive(Clone, Debug)]
+pub struct Bench {
+    /// The runs; each setting of the knobs as often as it is repeated.
+    pub sweep: Sweep,
+    /// The knobs, repeats not among them; the last one fastest.
+    pub axes: Vec<Axis>,
+    /// How often each setting is run.
+    pub repeats: usize,
+    /// What is measured.
+    pub measures: Vec<Measure>,
+}
+
+/// How far one measure of one setting is off.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Error {
+    /// Its value at the end.
+    pub value: Option<f64>,
+    /// Its error; none of the reference, and where something is missing.
+    pub error: Option<f64>,
+    /// The observed order to the setting before, along each knob.
+    pub orders: Vec<Option<f64>>,
+    /// No setting is both faster and nearer.
+    pub in_front: bool,
+    /// It is what others are compared with.
+    pub is_reference: bool,
+}
+
+/// One setting of the knobs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Point {
+    /// The knobs.
+    pub vars: Vec<(String, String)>,
+    /// The least wall time of the steps [s].
+    pub seconds: Option<f64>,
+    /// Steps, particles and threads.
+    pub steps: i64,
+    /// Particles at the end.
+    pub atoms: usize,
+    /// Threads it had.
+    pub threads: usize,
+    /// Why there are no numbers.
+    pub problem: Option<String>,
+    /// One for each measure.
+    pub errors: Vec<Error>,
+}
+
+/// What a bench has found.
+#[derive(Clone, Debug, Default)]
+pub struct Found {
+    /// The settings, the last knob fastest.
+    pub points: Vec<Point>,
+    /// What is missing, and why.
+    pub problems: Diagnostics,
+}
+
+impl Bench {
+    /// A bench of these runs: `axes` without repeats.
+    ///
+    /// # Errors
+    /// A knob with two lists, too many runs.
+    pub fn new(sweep: Sweep, axes: Vec<Axis>, repeats: usize, measures: Vec<Measure>) -> Result<Self> {
+        let mut bench = Self { sweep, axes, repeats: repeats.max(1), measures };
+        bench.settle()?;
+        Ok(bench)
+    }
+
+    /// Makes the list of runs anew from knobs and measures.
+    ///
+    /// # Errors
+    /// As [`Bench::new`].
+    pub fn settle(&mut self) -> Result<()> {
+        let mut axes = self.axes.clone();
+        if self.repeats > 1 {
+            // All settings once, then all of them again: what disturbs the machine for a while disturbs them alike.
+            let turns = (1..=self.repeats).map(|k| vec![k.to_string()]).collect();
+            axes.insert(0, Axis { names: vec![REPEAT.into()], rows: turns });
+        }
+        self.sweep.jobs = Job::all(&axes)?;
+        let mut words: Vec<String> = vec![];
+        for m in &self.measures {
+            let form = match &m.against {
+                Against::Form(form) => Some(form),
+                _ => None,
+            };
+            words.extend([&m.word].into_iter().chain(form).cloned());
+        }
+        self.sweep.report.clear();
+        for word in words {
+            if !self.sweep.report.contains(&word) {
+                self.sweep.report.push(word);
+            }
+        }
+        self.sweep.settings.series = true;
+        Ok(())
+    }
+
+    /// The number of settings.
+    pub fn settings(&self) -> usize {
+        self.sweep.jobs.len() / self.repeats
+    }
+
+    /// The place of a setting on each axis.
+    pub fn places(&self, point: usize) -> Vec<usize> {
+        let mut rest = point;
+        let mut places: Vec<usize> = self.axes.iter().rev().map(|axis| remainder(&mut rest, axis)).collect();
+        places.reverse();
+        places
+    }
+
+    /// The setting at these places.
+    pub fn at(&self, places: &[usize]) -> usize {
+        self.axes.iter().zip(places).fold(0, |k, (axis, place)| k * axis.rows.len() + place)
+    }
+
+    /// The numbers on an axis, by its first name; `None` if they are none or not above zero.
+    pub fn numbers(&self, axis: usize) -> Option<Vec<f64>> {
+        let axis = &self.axes[axis];
+        if axis.is_switch() || axis.rows.len() < 2 {
+            return None;
+        }
+        let number = |row: &Vec<String>| row[0].parse::<f64>().ok().filter(|v| *v > 0.0 && v.is_finite());
+        axis.rows.iter().map(number).collect()
+    }
+
+    /// What the runs tell.
+    pub fn found(&self, outcomes: &[Option<Outcome>]) -> Found {
+        let mut found = Found::default();
+        let runs: Vec<Run> = (0..self.settings()).map(|k| self.run(k, outcomes, &mut found)).collect();
+        for (which, measure) in self.measures.iter().enumerate() {
+            let errors = reference::errors(self, measure, &runs, &mut found.problems);
+            let orders = order::all(self, measure, &errors);
+            let costs: Vec<Option<(f64, f64)>> = found
+                .points
+                .iter()
+                .zip(&errors)
+                .map(|(p, e)| Some((p.seconds?, e.error?)).filter(|(s, e)| *s > 0.0 && *e > 0.0))
+                .collect();
+            let front = front::of(&costs);
+            for (k, mut error) in errors.into_iter().enumerate() {
+                error.orders.clone_from(&orders[k]);
+                error.in_front = front[k];
+                found.points[k].errors.push(error);
+            }
+            debug_assert!(found.points.iter().all(|p| p.errors.len() == which + 1));
+        }
+        found
+    }
+
+    /// One setting: the least of its times, and the numbers of the first of its runs that went well.
+    fn run(&self, point: usize, outcomes: &[Option<Outcome>], found: &mut Found) -> Run {
+        let n = self.settings();
+        let job = |turn: usize| turn * n + point;
+        let ended = || (0..self.repeats).filter_map(|t| Some((job(t), outcomes.get(job(t))?.as_ref()?)));
+        let fine: Vec<(usize, &Outcome)> = ended().filter(|(_, o)| o.is_ok()).collect();
+        let own = self.sweep.jobs[point].vars.iter().filter(|(name, _)| name != REPEAT);
+        let mut out = Point { vars: own.cloned().collect(), ..Point::default() };
+        let mut run = Run::default();
+        if let Some((first, o)) = fine.first() {
+            (out.steps, out.atoms, out.threads) = (o.steps, o.atoms, o.threads);
+            out.seconds = fine.iter().map(|(_, o)| o.loop_seconds).reduce(f64::min);
+            if let Some((other, _)) = fine.iter().find(|(_, other)| other.measures != o.measures) {
+                let text = format!("runs {} and {} are alike and gave other numbers", first + 1, other + 1);
+                found.problems.append(fault(text));
+            }
+            let file = sweep::home_of(&self.sweep, *first).join(series::FILE);
+            match series::read(&file, self.sweep.report.len()) {
+                Ok(series) => run = Run { outcome: Some((*o).clone()), series },
+                Err(e) => {
+                    out.problem = e.0.first().map(|d| d.message.clone());
+                    found.problems.append(e);
+                }
+            }
+        } else {
+            out.problem = ended().find_map(|(_, o)| o.problem.clone());
+            if let Some(problem) = &out.problem {
+                let title = Job { vars: out.vars.clone() }.title();
+                found.problems.append(fault(format!("{title}: {problem}")));
+            }
+        }
+        found.points.push(out);
+        run
+    }
+
+    /// The runs of LAMMPS among these, by their settings.
+    pub fn is_lammps(&self, point: usize) -> bool {
+        self.sweep.jobs[point].switch(PROGRAM) == Some(lammps::PROGRAM)
+    }
+}
+
+/// What a setting's run gave.
+#[derive(Clone, Debug, Default)]
+pub struct Run {
+    outcome: Option<Outcome>,
+    /// In the order of what is reported; empty for what is no column.
+    series: Vec<series::Series>,
+}
+
+fn remainder(rest: &mut usize, axis: &Axis) -> usize {
+    let n = axis.rows.len();
+    let place = *rest % n;
+    *rest /= n;
+    place
+}
+
+fn fault(text: String) -> Diagnostics {
+    fail::<()>(Code::BAD_VALUE, None, text).err().unwrap_or_default()
+}

@@ -1,0 +1,169 @@
+//! `perigrain bench`: a deck over its knobs, wall time against error.
+
+pub mod args;
+pub mod suite;
+
+use super::args::{Target, Usage};
+use super::progress::{Tally, colors_wanted};
+use super::sweeping::show::Show;
+use super::sweeping::{axes, counts, listen, of_deck, prepared, said, status, usage};
+use super::{FAILED, INTERRUPTED, OK, deck};
+use crate::bench::norm::Norm;
+use crate::bench::{Bench, Found, Measure, picture, table};
+use crate::session::Swept;
+use crate::sweep;
+use args::Request;
+use perigrain_base::diag::{Code, Diagnostics, Result, Sources, Span};
+use std::io::IsTerminal;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// What the folder of a deck's bench ends in.
+const ENDING: &str = "bench";
+/// Rows of the table that are shown.
+const SHOWN: usize = 60;
+/// Characters of its lines.
+const WIDTH: usize = 160;
+
+/// Makes the runs and shows what they say; the exit code.
+///
+/// # Errors
+/// Lists of values that make no sense.
+pub fn perform(request: &Request) -> std::result::Result<u8, Usage> {
+    if request.sweep.status {
+        return Ok(said(status(&request.sweep.folder(ENDING)), &Sources::default()));
+    }
+    let mut sources = Sources::default();
+    let given = match axes(&request.sweep, &mut sources) {
+        Ok(axes) => Swept { axes, report: vec![] },
+        Err(problems) if problems.0.iter().all(|d| d.span.is_none() && d.code != Code::NO_FILE) => {
+            return Err(usage(problems));
+        }
+        Err(problems) => return Ok(said(Err(problems), &sources)),
+    };
+    let prepared = deck::read(&request.sweep.options.deck)
+        .and_then(|(_, text)| Ok((of_deck(&request.sweep, given, &text, &mut sources)?, text)))
+        .and_then(|(swept, text)| bench(request, swept, text));
+    let mut bench = match prepared {
+        Ok(bench) => bench,
+        Err(problems) => return Ok(said(Err(problems), &sources)),
+    };
+    if bench.axes.is_empty() {
+        let usage = Usage::new("a bench needs a knob to turn");
+        return Err(usage.help("as `-each dt 4e-6 2e-6 1e-6` for a variable of the deck, or `-threads 1 2`"));
+    }
+    let left_out = match leave_out(request, &mut bench) {
+        Ok(left_out) => left_out,
+        Err((problems, sources)) => return Ok(said(Err(problems), &sources)),
+    };
+    if bench.measures.is_empty() || bench.axes.is_empty() {
+        return Ok(FAILED);
+    }
+    Ok(said(run(request, &bench, left_out), &Sources::default()))
+}
+
+/// The bench of the words of the command line.
+fn bench(request: &Request, mut swept: Swept, text: String) -> Result<Bench> {
+    let mut axes = request.own_axes();
+    axes.append(&mut swept.axes);
+    let norm = request.norm.as_deref().and_then(Norm::named);
+    let norm = norm.or(Norm::named("rel")).unwrap_or_default();
+    let measure = |(k, word): (usize, &String)| Measure {
+        word: word.clone(),
+        against: request.against(k),
+        norm,
+        name: word.clone(),
+    };
+    let measures = request.measures.iter().enumerate().map(measure).collect();
+    let swept = Swept { axes: axes.clone(), report: vec![] };
+    let mut sweep = prepared(&request.sweep, swept, text)?;
+    // Runs beside each other would disturb each other's times.
+    sweep.at_once = request.sweep.jobs.unwrap_or(1);
+    sweep.folder = request.sweep.folder(ENDING);
+    Bench::new(sweep, axes, request.repeat, measures)
+}
+
+/// Leaves out knobs that the deck does not read and measures that it does not have, and says so; whether there were any.
+///
+/// # Errors
+/// A deck that is refused.
+fn leave_out(request: &Request, bench: &mut Bench) -> std::result::Result<bool, (Diagnostics, Sources)> {
+    let mut ahead = sweep::look_ahead(&bench.sweep);
+    if !ahead.problems.has_errors() {
+        return Ok(false);
+    }
+    if ahead.unused.is_empty() && ahead.unknown.is_empty() {
+        return Err((ahead.problems, ahead.sources));
+    }
+    let typed = ahead.sources.add("command line", request.typed.as_str());
+    let named = ahead.problems.0.iter_mut().filter(|d| d.span.is_none());
+    for (d, name) in named.zip(&ahead.unused) {
+        let word = format!("{name} ");
+        let place = request.typed.find(&format!(" -each {word}")).map(|at| at + " -each ".len());
+        d.span = place.map(|at| Span::new(typed, at, at + name.len()));
+        d.help.push("this knob is left out, the others go on".into());
+    }
+    deck::print(&ahead.problems, &ahead.sources);
+    for axis in &mut bench.axes {
+        let used: Vec<usize> =
+            (0..axis.names.len()).filter(|k| !ahead.unused.contains(&axis.names[*k])).collect();
+        axis.names = used.iter().map(|k| axis.names[*k].clone()).collect();
+        axis.rows.iter_mut().for_each(|row| *row = used.iter().map(|k| row[*k].clone()).collect());
+    }
+    bench.axes.retain(|axis| !axis.names.is_empty());
+    let has = |m: &Measure| match &m.against {
+        crate::bench::reference::Against::Form(form) if ahead.unknown.contains(form) => false,
+        _ => !ahead.unknown.contains(&m.word),
+    };
+    bench.measures.retain(has);
+    bench.settle().map_err(|e| (e, ahead.sources))?;
+    Ok(true)
+}
+
+/// Has the runs made, one after the other, and shows what they say.
+fn run(request: &Request, bench: &Bench, left_out: bool) -> Result<u8> {
+    let quiet = request.sweep.options.screen == Target::None;
+    let mut show = Show { jobs: &bench.sweep.jobs, quiet, tally: Tally::default() };
+    let stop = Arc::new(AtomicBool::new(false));
+    listen(&stop);
+    let results = sweep::work_off(&bench.sweep, request.sweep.anew, &mut show, &stop);
+    show.tally.clear();
+    let results = results?;
+    if results.interrupted {
+        if !quiet {
+            super::show(&format!("{}\ninterrupted: the same command goes on\n", counts(&results)));
+        }
+        return Ok(INTERRUPTED);
+    }
+    let found = bench.found(&results.outcomes);
+    let pictures = table::write(bench, &found)?;
+    if !quiet {
+        super::show(&told(bench, &found, &pictures));
+    }
+    deck::print(&found.problems, &Sources::default());
+    Ok(if found.problems.is_empty() && results.all_ok() && !left_out { OK } else { FAILED })
+}
+
+/// Table, pictures and where they are.
+fn told(bench: &Bench, found: &Found, pictures: &[String]) -> String {
+    let mut text = table::text(bench, found, WIDTH, SHOWN);
+    let colours = std::io::stdout().is_terminal() && colors_wanted();
+    for k in 0..bench.measures.len() {
+        if let Some(picture) = picture::text(bench, found, k, colours) {
+            text += &format!("\n{picture}");
+        }
+    }
+    let folder = bench.sweep.folder.display();
+    text += &format!("\n{folder}/{}: seconds are the wall time of the steps", table::TABLE);
+    if bench.repeats > 1 {
+        text += &format!(", the least of {}", bench.repeats);
+    }
+    if bench.sweep.at_once > 1 {
+        text += &format!(", {} runs at once, which disturb each other", bench.sweep.at_once);
+    }
+    text.push('\n');
+    for picture in pictures {
+        text += &format!("{folder}/{picture}.svg, .png\n");
+    }
+    text
+}

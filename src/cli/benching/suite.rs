@@ -1,0 +1,167 @@
+//! `perigrain bench -suite`: the benches that the program carries.
+
+use crate::bench::page::{self, Outcome};
+use crate::bench::suite::{Case, DECKS, Manner};
+use crate::bench::{Bench, table};
+use crate::cli::args::Usage;
+use crate::cli::progress::Tally;
+use crate::cli::sweeping::listen;
+use crate::cli::sweeping::show::Show;
+use crate::cli::{FAILED, INTERRUPTED, OK, deck, show};
+use crate::sweep;
+use perigrain_base::diag::{Sources, nearest};
+use perigrain_out::file::replace;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// What is asked of the suite.
+#[derive(Clone, Debug, Default, PartialEq, Eq, clap::Parser)]
+#[command(name = "perigrain bench")]
+pub struct Wanted {
+    /// Run the benches that the program carries
+    #[arg(long)]
+    pub suite: bool,
+    /// Print the cases instead of running them
+    #[arg(long)]
+    pub list: bool,
+    /// Run the cases whose name or title holds PATTERN
+    #[arg(long, value_name = "PATTERN")]
+    pub only: Option<String>,
+    /// Print the deck of each case instead of running it
+    #[arg(long)]
+    pub deck: bool,
+    /// Let this LAMMPS run the decks too, where it can
+    #[arg(long, value_name = "PATH")]
+    pub lammps: Option<PathBuf>,
+    /// Threads of each run (1)
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+    /// Run each setting N times, the least time counts (1)
+    #[arg(long, value_name = "N")]
+    pub repeat: Option<usize>,
+    /// Where the runs are (bench.suite)
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Forget earlier runs there
+    #[arg(long)]
+    pub anew: bool,
+    /// Write the findings as a page, with its pictures in a folder of its name
+    #[arg(long, value_name = "FILE")]
+    pub markdown: Option<PathBuf>,
+}
+
+/// Runs what is wanted; the exit code says whether every run went well.
+///
+/// # Errors
+/// A pattern that no case has, a LAMMPS that is not there, a file that cannot be written.
+pub fn perform(wanted: &Wanted) -> Result<u8, Usage> {
+    let cases = named(wanted.only.as_deref().unwrap_or_default())?;
+    if wanted.list {
+        let wide = cases.iter().map(|c| c.name.len()).max().unwrap_or(0);
+        cases.iter().for_each(|c| show(&format!("{:<wide$}  {}\n", c.name, c.title)));
+        return Ok(OK);
+    }
+    if wanted.deck {
+        cases.iter().for_each(|case| show(&case.deck));
+        return Ok(OK);
+    }
+    let manner = manner(wanted)?;
+    let stop = Arc::new(AtomicBool::new(false));
+    listen(&stop);
+    let (mut outcomes, mut well) = (vec![], true);
+    let n = cases.len();
+    for (k, case) in cases.into_iter().enumerate() {
+        show(&format!("\n{} of {n}  {}: {}\n", k + 1, case.name, case.title));
+        match one(&case, &manner, wanted.anew, &stop) {
+            Ok(None) => {
+                show("interrupted: the same command goes on\n");
+                return Ok(INTERRUPTED);
+            }
+            Ok(Some((bench, found, fine))) => {
+                well &= fine;
+                outcomes.push(Outcome { case, found: Ok((bench, found)) });
+            }
+            Err(problems) => {
+                deck::print(&problems, &Sources::default());
+                well = false;
+                let why = problems.0.first().map_or(String::new(), |d| d.message.clone());
+                outcomes.push(Outcome { case, found: Err(why) });
+            }
+        }
+    }
+    if let Some(file) = &wanted.markdown {
+        write(file, &outcomes, &manner)?;
+    }
+    Ok(if well { OK } else { FAILED })
+}
+
+fn manner(wanted: &Wanted) -> Result<Manner, Usage> {
+    let lammps =
+        wanted.lammps.as_ref().map(|path| std::path::absolute(path).unwrap_or_else(|_| path.clone()));
+    if let Some(path) = lammps.as_ref().filter(|path| !path.is_file()) {
+        return Err(Usage::new(format!("there is no LAMMPS `{}`", path.display()))
+            .help("give the path of its program"));
+    }
+    let program =
+        std::env::current_exe().map_err(|e| Usage::new(format!("the program does not find itself: {e}")))?;
+    Ok(Manner {
+        folder: wanted.out.clone().unwrap_or_else(|| "bench.suite".into()),
+        threads: wanted.threads.unwrap_or(1).max(1),
+        repeat: wanted.repeat.unwrap_or(1).max(1),
+        lammps,
+        program,
+        telling: std::io::stderr().is_terminal(),
+    })
+}
+
+type Ran = Option<(Bench, crate::bench::Found, bool)>;
+
+/// Runs a case and shows its table; nothing if it was interrupted. The last word says whether all went well.
+fn one(case: &Case, manner: &Manner, anew: bool, stop: &AtomicBool) -> perigrain_base::diag::Result<Ran> {
+    let bench = case.bench(manner)?;
+    let mut watch = Show { jobs: &bench.sweep.jobs, quiet: false, tally: Tally::default() };
+    let results = sweep::work_off(&bench.sweep, anew, &mut watch, stop);
+    watch.tally.clear();
+    let results = results?;
+    if results.interrupted {
+        return Ok(None);
+    }
+    let found = bench.found(&results.outcomes);
+    table::write(&bench, &found)?;
+    show(&format!("\n{}", table::text(&bench, &found, 160, 60)));
+    if case.has_lammps(manner) {
+        show(&page::beside(&bench, &found));
+    } else if let (Some(why), true) = (&case.lammps.no, manner.lammps.is_some()) {
+        show(&format!("LAMMPS cannot run this deck: {why}\n"));
+    }
+    deck::print(&found.problems, &Sources::default());
+    let fine = found.problems.is_empty() && results.all_ok();
+    Ok(Some((bench, found, fine)))
+}
+
+fn named(pattern: &str) -> Result<Vec<Case>, Usage> {
+    let cases = Case::chosen(pattern).map_err(Usage::new)?;
+    if !cases.is_empty() {
+        return Ok(cases);
+    }
+    let near = nearest(pattern, DECKS.iter().map(|(name, _)| *name));
+    let near = near.map(|name| format!("did you mean `{name}`? ")).unwrap_or_default();
+    let usage = Usage::new(format!("no case has `{pattern}` in its name or title"));
+    Err(usage.help(format!("{near}`perigrain bench -suite -list` lists all")))
+}
+
+/// Writes the page and its pictures.
+fn write(file: &Path, outcomes: &[Outcome], manner: &Manner) -> Result<(), Usage> {
+    let beside = file.with_extension("");
+    let folder = beside.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let (text, pictures) = page::markdown(outcomes, manner, &folder);
+    let fault = |e: &dyn std::fmt::Display| Usage::new(format!("cannot write `{}`: {e}", file.display()));
+    std::fs::create_dir_all(&beside).map_err(|e| fault(&e))?;
+    for (name, chart) in &pictures {
+        let svg = chart.svg();
+        replace(&beside.join(name), |w| w.write_all(svg.as_bytes())).map_err(|e| fault(&e))?;
+    }
+    replace(file, |w| w.write_all(text.as_bytes())).map_err(|e| fault(&e))
+}
