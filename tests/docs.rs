@@ -52,6 +52,7 @@ const BOOK: [&str; 2] = [
      - [Read results in ParaView, OVITO and pandas](howto/results.md)\n\
      - [Make a long run](howto/long-runs.md)\n\
      - [Make many runs of one deck](howto/sweep.md)\n\
+     - [Drive it from Python](python.md)\n\
      - [Colours in your editor](editor/README.md)\n\n\
      # Reference\n\n\
      - [The language](language.md)\n\
