@@ -6,6 +6,7 @@ mod belongs;
 mod causes;
 mod checking;
 mod commands;
+mod embed;
 mod files;
 mod flow;
 mod inert;
@@ -35,6 +36,7 @@ use crate::graph::env::DeckEnv;
 pub use crate::graph::keywords::KEYWORDS as THERMO;
 use crate::graph::{Graph, Role};
 pub use commands::OWN;
+pub use embed::{Column, Global, Newcomers, Order, Rows, Told};
 pub use interactive::{Heard, Known, Snapshot};
 pub use measuring::Worked;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Sources, Span, fail, nearest};
@@ -165,6 +167,10 @@ pub struct Session {
     turns: u64,
     /// Steps made in all runs.
     made: i64,
+    /// How many scenes there have been.
+    scenes: u64,
+    /// What was asked for from outside, each text once.
+    asked: std::collections::BTreeMap<String, FileId>,
 }
 
 /// No progress shown.
@@ -215,6 +221,8 @@ impl Session {
             told_to,
             turns: 0,
             made: 0,
+            scenes: 0,
+            asked: Default::default(),
         };
         s.vars.set_partition(s.options.partition.clone());
         for (name, values) in s.options.vars.clone() {
@@ -266,6 +274,7 @@ impl Session {
         self.graph.variables = commands::variable_kinds(&self.vars);
         self.plan = None;
         self.ran = false;
+        self.scenes += 1;
     }
 
     /// What is not known of a scene at its beginning.

@@ -53,6 +53,7 @@ const BOOK: [&str; 2] = [
      - [Make a long run](howto/long-runs.md)\n\
      - [Make many runs of one deck](howto/sweep.md)\n\
      - [Weigh time against error](howto/bench.md)\n\
+     - [Drive it from Python](python.md)\n\
      - [Colours in your editor](editor/README.md)\n\n\
      # Reference\n\n\
      - [The language](language.md)\n\

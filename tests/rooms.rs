@@ -20,6 +20,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("pairs", &["base", "bonded", "contact", "lang", "neigh", "peri", "plan", "styles", "world"]),
     ("computes", &["base", "commands", "lang", "neigh", "peri", "plan", "styles", "world"]),
     ("dumps", &["base", "computes", "lang", "out", "plan", "styles", "world"]),
+    // The Python module knows the program, and of what is below only what that shows.
+    ("py", &[]),
     (
         "fixes",
         &[

@@ -1,6 +1,6 @@
 //! A deck given on the command line, worked off by a session.
 
-use super::args::{Deck, Options, Target};
+use super::args::{Deck, Options, Target, Usage};
 use super::progress::{self, Progress};
 use super::{FAILED, INTERRUPTED, OK, partitions, signals};
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
@@ -97,6 +97,40 @@ pub(super) fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
     })
 }
 
+/// A session for a program that hosts it, as the words of a command line want it; the screen is the host's unless they say otherwise.
+///
+/// # Errors
+/// Words that are not understood or concern a program of its own, files that cannot be written.
+pub fn host(words: Vec<String>, screen: Box<dyn Write + Send>) -> std::result::Result<Session, Usage> {
+    let (o, decks) = super::args::parse_many(words)?;
+    if !decks.is_empty() {
+        let usage = Usage::new("a deck on the command line is not worked off here");
+        return Err(usage.help("leave it out, and hand it over with `file(PATH)`"));
+    }
+    let alone = [
+        (o.safe.is_some(), "-safe"),
+        (!o.partition.is_empty(), "-partition"),
+        (o.help, "-help"),
+        (o.version, "-version"),
+        (o.world.is_some(), "-world"),
+    ];
+    if let Some((_, switch)) = alone.iter().find(|(said, _)| *said) {
+        let usage =
+            Usage::new(format!("`{switch}` concerns a whole process, which is not perigrain's own here"));
+        return Err(usage.help("leave it out, or start the program `perigrain`"));
+    }
+    let log = Log::silent();
+    let opened = match &o.screen {
+        Target::Usual => {
+            log.set_screen(Some(screen));
+            Ok(())
+        }
+        _ => open_screen(&log, &o, &Progress::new(None)),
+    };
+    let begun = opened.and_then(|()| open_log(&log, &o, Mode::Run)).and_then(|()| begin(&o, Mode::Run, &log));
+    begun.map_err(|e| Usage::new(e.to_string()))
+}
+
 /// The threads that `OMP_NUM_THREADS` allows: batch systems set it to the cores that were given.
 fn asked_of_openmp() -> Option<usize> {
     let value = std::env::var("OMP_NUM_THREADS").ok()?;
@@ -174,6 +208,10 @@ pub(super) fn name(deck: &Deck) -> String {
 /// Opens screen and log file. Looking at a plan leaves no log unless one is asked for.
 fn open(log: &Log, o: &Options, mode: Mode, progress: &Progress) -> Result<()> {
     open_screen(log, o, progress)?;
+    open_log(log, o, mode)
+}
+
+fn open_log(log: &Log, o: &Options, mode: Mode) -> Result<()> {
     match &o.log {
         Target::Usual if runs(mode) => log.open(Path::new("log.lammps"), false)?,
         Target::File(path) => log.open(path, false)?,

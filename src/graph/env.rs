@@ -191,6 +191,15 @@ impl DeckEnv<'_> {
         Ok(answer)
     }
 
+    /// The slot of a compute or fix, its values fresh.
+    ///
+    /// # Errors
+    /// Values that are not available.
+    pub fn slot(&mut self, r: &ValueRef, vars: &Vars) -> Result<SlotId> {
+        regions::place_all(self.w, self.graph, vars);
+        self.now(r.span, vars, |s| s.reference(r))
+    }
+
     /// Runs an op once, its values fresh, as `write_dump` does.
     ///
     /// # Errors

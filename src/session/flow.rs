@@ -9,7 +9,7 @@ use perigrain_lang::{Command, Flow, Script};
 use perigrain_styles::{Use, UseKind};
 
 /// Commands after which particles and everything that goes with them are as before.
-const LIGHT: [&str; 10] =
+pub(super) const LIGHT: [&str; 10] =
     ["variable", "next", "print", "info", "echo", "log", "label", "thermo", "thermo_style", "thermo_modify"];
 
 impl Session {

@@ -7,6 +7,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Command, Expr, Script, Vars};
 use perigrain_plan::explain;
 use perigrain_world::World;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -60,11 +61,31 @@ impl Session {
     /// The first line that is refused or fails. What it and the lines before it have done stays;
     /// [`Session::restore`] takes it back.
     pub fn eval(&mut self, name: &str, text: &str) -> Result<Heard> {
+        self.hear(name, text, true)
+    }
+
+    /// Works off a deck from a file in between; `jump SELF` works there, and files named in it are looked for beside it.
+    ///
+    /// # Errors
+    /// As [`Session::eval`], and a file that cannot be read.
+    pub fn eval_file(&mut self, path: &Path) -> Result<Heard> {
+        let bytes = perigrain_base::gate::read(path)
+            .map_err(|e| perigrain_out::file::trouble("read the deck", path, &e))?;
+        let folder = super::folder_of(path);
+        let before = std::mem::replace(&mut self.options.folder, folder.clone());
+        self.world.folder = folder;
+        let heard = self.hear(&path.display().to_string(), &String::from_utf8_lossy(&bytes), false);
+        self.world.folder.clone_from(&before);
+        self.options.folder = before;
+        heard
+    }
+
+    fn hear(&mut self, name: &str, text: &str, typed: bool) -> Result<Heard> {
         (self.interrupted, self.quit) = (false, None);
         self.stop_flag().store(false, Ordering::Relaxed);
         let file = self.sources.add(name, text);
         let mut script = self.typed.take().map_or_else(|| Script::new(file), |before| before.then(file));
-        self.prompt = Some(file);
+        self.prompt = typed.then_some(file);
         let outcome = self.work_off(&mut script);
         self.prompt = None;
         self.typed = Some(script);
@@ -120,6 +141,8 @@ impl Session {
             told_to: _,
             turns: _,
             made: _,
+            scenes: _,
+            asked: _,
             checked_step: _,
             columns: _,
         } = self;
@@ -153,6 +176,7 @@ impl Session {
         self.typed.clone_from(&s.typed);
         self.timer = s.timer;
         self.plan = None;
+        self.scenes += 1;
     }
 
     /// Bytes the scene takes.

@@ -170,6 +170,7 @@ impl Session {
             world.parts.unseen = Unseen { space: world.parts.unseen.space, ..Unseen::in_a_check() };
         }
         self.world = world;
+        self.scenes += 1;
         self.replay(&pair, span)?;
         let parts = &mut self.world.parts;
         parts.changed = true;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Lets ovito, pyvista, lammps-logfile and MDAnalysis read what a run leaves. Needs python3 and packages from PyPI;
+# Lets ovito, pyvista, lammps-logfile and MDAnalysis read what a run leaves (pytest and IPython are for python.sh). Needs python3 and packages from PyPI;
 # without them it says so and succeeds. Usage: tests/clients/run.sh [PATH OF perigrain]
 set -euo pipefail
 top=$(cd "$(dirname "$0")/../.." && pwd)
@@ -12,9 +12,10 @@ skip() {
 
 command -v python3 >/dev/null || skip "python3 is not installed"
 mkdir -p "$work"
-if ! "$work/venv/bin/python" -c 'import ovito, pyvista, lammps_logfile, MDAnalysis' 2>/dev/null; then
+if ! "$work/venv/bin/python" -c 'import ovito, pyvista, lammps_logfile, MDAnalysis, pytest, IPython' 2>/dev/null; then
     python3 -m venv "$work/venv" 2>/dev/null || skip "python3 has no venv"
     timeout 300 "$work/venv/bin/pip" install -q --disable-pip-version-check ovito pyvista lammps-logfile MDAnalysis \
+        pytest ipython \
         >"$work/pip.log" 2>&1 || skip "packages cannot be fetched (see $work/pip.log)"
     "$work/venv/bin/python" -c 'import ovito, pyvista, lammps_logfile, MDAnalysis' 2>"$work/import.log" ||
         skip "the packages do not start here ($(tail -n 1 "$work/import.log"))"

@@ -342,6 +342,15 @@ impl Vars {
         true
     }
 
+    /// Sets the text of a string-style variable.
+    pub fn set_text(&mut self, name: &str, text: &str) -> bool {
+        let Some(old) = self.find(name).filter(|v| v.kind == Kind::Text) else { return false };
+        let new =
+            Variable { data: Data::Text(text.to_string()), unknown: false, adrift: false, ..old.clone() };
+        self.put(name, new);
+        true
+    }
+
     /// As [`Vars::put`], for a line of the deck.
     fn put_line(&mut self, name: &str, variable: Variable) {
         self.sets += 1;

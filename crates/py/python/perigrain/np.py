@@ -1,0 +1,83 @@
+"""`lammps.numpy`: the methods that give and take numpy arrays."""
+
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy
+
+from . import constants as C
+from .arrays import array_of
+from .errors import DataError
+from .views import view
+
+
+class numpy_wrapper:
+    """Columns of particles as arrays that look into the scene's memory; all else as copies."""
+
+    def __init__(self, lmp: Any) -> None:
+        self.lmp = lmp
+
+    def extract_atom(
+        self, name: str, dtype: Optional[int] = None, nelem: Optional[int] = None, dim: Optional[int] = None
+    ) -> Any:
+        """A column of particles in the order in which they stand, `(n,)` or `(n, 3)`; `None` if the scene has none.
+
+        It looks into the scene's memory: what is written into it counts from the next command on. `id` cannot be written.
+        When particles come, go or change places it is stale and raises `perigrain.StaleError`.
+        """
+        memory = self.lmp._scene.memory(name)
+        if memory is None:
+            masses = self.lmp._scene.type_masses() if name == "mass" else None
+            return None if masses is None else _reals(masses, 1)
+        looks = view(memory)
+        return looks if nelem is None else looks[:nelem]
+
+    def extract_compute(self, cid: str, cstyle: int, ctype: int) -> Any:
+        """Values of a compute as they are now, as a copy."""
+        return _shaped(self.lmp._compute(cid, cstyle, ctype), ctype)
+
+    def extract_fix(self, fid: str, fstyle: int, ftype: int, nrow: int = 0, ncol: int = 0) -> Any:
+        """Values of a fix: one number of its global ones, else a copy of all."""
+        if fstyle == C.LMP_STYLE_GLOBAL:
+            return self.lmp.extract_fix(fid, fstyle, ftype, nrow, ncol)
+        return _shaped(self.lmp._fix(fid, fstyle, ftype), ftype)
+
+    def extract_variable(self, name: str, group: Optional[str] = None, vartype: Optional[int] = None) -> Any:
+        """What a variable says: a number, a text, or an array."""
+        found = self.lmp.extract_variable(name, group, vartype)
+        return numpy.array(found) if hasattr(found, "_length_") else found
+
+    def gather_bonds(self) -> Any:
+        """Type and two ids of each bond."""
+        _, flat = self.lmp.gather_bonds()
+        return numpy.array(flat, dtype=numpy.int32).reshape(-1, 3)
+
+    def darray(self, raw_ptr: Any, nelem: int, dim: int = 1) -> Any:
+        """A copy of numbers that a pointer of `extract_atom`, `extract_compute` … leads to."""
+        return self._copied(raw_ptr, nelem, dim, numpy.float64)
+
+    def iarray(self, c_int_type: Any, raw_ptr: Any, nelem: int, dim: int = 1) -> Any:
+        """A copy of whole numbers that a pointer leads to."""
+        return self._copied(raw_ptr, nelem, dim, numpy.dtype(c_int_type))
+
+    @staticmethod
+    def _copied(raw_ptr: Any, nelem: int, dim: int, dtype: Any) -> Any:
+        if raw_ptr is None:
+            return None
+        if dim > 1:
+            return numpy.array([list(raw_ptr[i]) for i in range(nelem)], dtype=dtype).reshape(nelem, dim)
+        return numpy.array(raw_ptr[:nelem], dtype=dtype)
+
+
+def _reals(data: bytes, cols: int) -> Any:
+    flat = numpy.frombuffer(bytearray(data), dtype=numpy.float64)
+    return flat if cols == 1 else flat.reshape(-1, cols)
+
+
+def _shaped(found: Any, type_: int) -> Any:
+    if not isinstance(found, tuple):
+        return found
+    data, cols = found
+    flat = _reals(data, 1)
+    return flat.reshape(-1, cols) if type_ == C.LMP_TYPE_ARRAY and cols > 0 else flat

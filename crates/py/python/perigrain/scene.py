@@ -1,0 +1,218 @@
+"""A scene of perigrain's own: a deck that is gone on with from Python, looked at as arrays, values, tables and pictures."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Union
+
+from .errors import DataError
+from .lmp import lammps
+from .reading import Frame, Table, frame_of
+
+Value = Union[str, int, float, Sequence[Union[str, int, float]]]
+
+
+class Picture(bytes):
+    """A PNG that notebooks show; ``save(path)`` writes it."""
+
+    def _repr_png_(self) -> bytes:
+        return bytes(self)
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """Writes it to a file."""
+        with open(path, "wb") as file:
+            file.write(self)
+
+    def __repr__(self) -> str:
+        return f"<Picture of {len(self)} bytes>"
+
+    __str__ = __repr__
+
+
+class Scene:
+    """A deck worked off, and what can be done with it then.
+
+    >>> scene = Scene(text, variables={"v": 30})
+    >>> for step in scene.steps(1000, every=100):
+    ...     print(step, scene["ke"])
+    >>> scene.picture("c_damage")
+
+    ``scene["ke"]`` is the value of a word of thermo output, of ``c_ID``, ``f_ID``, ``v_NAME`` or of a formula; columns
+    of particles (``scene.x``, ``scene.v``, ``scene.id`` …) are arrays that look into its memory and cannot be written.
+    ``scene.lammps`` is the same scene with the methods of LAMMPS' module.
+    """
+
+    def __init__(
+        self,
+        deck: str = "",
+        *,
+        variables: Optional[Dict[str, Value]] = None,
+        log: Optional[str] = None,
+        screen: bool = False,
+        threads: Optional[int] = None,
+    ) -> None:
+        words: List[str] = ["-log", log or "none"]
+        words += [] if screen else ["-screen", "none"]
+        words += [] if threads is None else ["-threads", str(threads)]
+        for name, value in (variables or {}).items():
+            several = value if isinstance(value, (list, tuple)) else [value]
+            words += ["-var", name, *map(str, several)]
+        self.lammps = lammps(cmdargs=words)
+        self._rows: List[Dict[str, Union[int, float]]] = []
+        if deck:
+            self.do(deck)
+
+    def do(self, lines: str) -> "Scene":
+        """Works off lines of a deck."""
+        self.lammps.commands_string(lines)
+        return self
+
+    def file(self, path: Union[str, "os.PathLike[str]"]) -> "Scene":
+        """Works off a deck from a file."""
+        self.lammps.file(path)
+        return self
+
+    def run(self, steps: int) -> "Scene":
+        """Makes steps."""
+        self.lammps.command(f"run {int(steps)}")
+        return self
+
+    def steps(self, steps: int, every: int = 1) -> Iterator[int]:
+        """Makes steps, and gives the step counter before the first, after every so many, and after the last.
+
+        The steps are those of one run, to the bit, if the scene is only looked at in between.
+        """
+        if every < 1 or steps < 0:
+            raise DataError(f"{steps} steps cannot be looked at every {every}")
+        last = self.step + int(steps)
+        self.lammps.command("run 0 post no")
+        while True:
+            self._keep()
+            yield self.step
+            left = last - self.step
+            if left <= 0:
+                return
+            before = self.step
+            self.lammps.command(f"run {min(every, left)} post no")
+            if self.step == before:
+                # a fix or the limit of `timer` has ended it
+                return
+
+    def _keep(self) -> None:
+        row = self.lammps.last_thermo()
+        if row is not None and (not self._rows or self._rows[-1] != row):
+            self._rows.append(row)
+
+    @property
+    def table(self) -> Table:
+        """The rows of thermo output at the steps that `steps` has given."""
+        import numpy
+
+        names = list(dict.fromkeys(name for row in self._rows for name in row))
+        return Table({name: numpy.array([row.get(name, numpy.nan) for row in self._rows]) for name in names})
+
+    @property
+    def step(self) -> int:
+        """The step counter."""
+        return self.lammps.extract_global("ntimestep")
+
+    @property
+    def time(self) -> float:
+        """Elapsed time."""
+        return self.lammps.extract_global("atime")
+
+    @property
+    def box(self) -> Any:
+        """The corners of the box: a row of lower and upper bound per axis."""
+        import numpy
+
+        lo, hi, *_ = self.lammps.extract_box()
+        return numpy.array([lo, hi]).T
+
+    def __len__(self) -> int:
+        return self.lammps.get_natoms()
+
+    def __getitem__(self, formula: str) -> float:
+        return self.lammps.eval(formula)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or "lammps" not in self.__dict__:
+            raise AttributeError(name)
+        found = self.lammps.numpy.extract_atom(name)
+        if found is None:
+            raise AttributeError(f"neither a method nor a column of these particles: `{name}`")
+        found.flags.writeable = False
+        return found
+
+    def frame(self) -> Frame:
+        """A copy of all that particles have now."""
+        return frame_of(self.lammps)
+
+    def compute(self, id_: str) -> Any:
+        """What a compute has: its number, vector, array, or values per particle (a copy), whichever comes first."""
+        scalar, *rest = self.lammps._scene.compute(id_)
+        return _first(scalar, rest)
+
+    def fix(self, id_: str) -> Any:
+        """The same of a fix."""
+        scalar, *rest = self.lammps._scene.fix(id_)
+        return _first(scalar, rest)
+
+    def calibrate(self, words: str) -> Any:
+        """Says `calibrate` with an id of its own; the vector of results, `c_ID[1]` first.
+
+        >>> scene.calibrate("dsm all axis z strain -0.01")[0]
+        """
+        method, _, rest = words.strip().partition(" ")
+        self.lammps.command(f"calibrate {method} python_calibrate {rest}")
+        return self.compute("python_calibrate")
+
+    def picture(self, colour: str = "type", diameter: str = "auto", *, size: Sequence[int] = (800, 600), words: str = "") -> Picture:
+        """A picture of all particles; `words` are those of `dump image` (`view 60 30 map damage …`)."""
+        width, height = (int(n) for n in size)
+        with tempfile.TemporaryDirectory(prefix="perigrain-") as folder:
+            path = os.path.join(folder, "picture.png")
+            self.lammps.command(f'write_dump all image "{path}" {colour} {diameter} size {width} {height} {words}'.rstrip())
+            with open(path, "rb") as file:
+                return Picture(file.read())
+
+    def _repr_png_(self) -> Optional[bytes]:
+        return bytes(self.picture()) if len(self) else None
+
+    def __repr__(self) -> str:
+        if self.lammps._scene.ended is not None:
+            return "<Scene, closed>"
+        return f"<Scene of {len(self)} particles at step {self.step}>"
+
+    def close(self) -> None:
+        """Ends it."""
+        self.lammps.close()
+
+    def __enter__(self) -> "Scene":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
+
+
+def _first(scalar: Optional[float], rest: List[Any]) -> Any:
+    import numpy
+
+    vector, *tables = rest
+    if vector is not None:
+        return numpy.frombuffer(bytearray(vector), dtype=numpy.float64)
+    if scalar is not None:
+        return scalar
+    for table in tables:
+        if table is not None:
+            data, cols = table
+            flat = numpy.frombuffer(bytearray(data), dtype=numpy.float64)
+            return flat if cols <= 1 else flat.reshape(-1, cols)
+    return None
+
+
+def calibrate(deck: str, words: str, **options: Any) -> Any:
+    """Works a deck off, says `calibrate`, and gives the vector of results: ``calibrate(deck, "dsm all axis z strain 1e-3")``."""
+    with Scene(deck, **options) as scene:
+        return scene.calibrate(words)

@@ -1,0 +1,33 @@
+//! perigrain as a Python module: the thin layer below the package `perigrain`, which knows no physics and no language.
+//!
+//! The types that matter most: [`Scene`], a session behind a lock; [`Memory`], a column of particles that Python looks into.
+
+mod errors;
+mod looking;
+mod memory;
+mod scene;
+mod screen;
+mod values;
+mod working;
+
+pub use memory::Memory;
+pub use scene::Scene;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _core {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use super::looking::{check, plan};
+    #[pymodule_export]
+    use super::memory::Memory;
+    #[pymodule_export]
+    use super::scene::{Scene, styles};
+
+    #[pymodule_init]
+    fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {
+        m.add("VERSION", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,368 @@
+//! A session behind a lock, as the package `perigrain` drives it.
+
+use super::errors;
+use super::memory::{Looked, Memory};
+use super::screen::Screen;
+use super::values;
+use super::working::{at_once, beside, words};
+use perigrain::cli::deck::host;
+use perigrain::diag::Result as Deck;
+use perigrain::session::{Heard, Newcomers, Session};
+use perigrain::world::RowValue;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+use std::sync::{Mutex, MutexGuard, TryLockError};
+
+/// Why there is no scene, after `close`.
+const CLOSED: &str = "the scene is closed";
+/// Why there is no scene, after a panic.
+const BROKEN: &str = "the scene is gone: perigrain failed in the middle of a command, which is its own fault";
+
+/// What a lock guards.
+struct Inner {
+    session: Option<Session>,
+    looked: Looked,
+    screen: Screen,
+    why: &'static str,
+}
+
+impl Inner {
+    fn end(&mut self, why: &'static str) {
+        self.looked.end(self.session.as_mut(), why);
+        self.session = None;
+        self.why = why;
+    }
+}
+
+impl Drop for Inner {
+    fn drop(&mut self) {
+        self.end(CLOSED);
+    }
+}
+
+/// A scene: a deck's world, worked on line by line.
+#[pyclass(frozen, module = "perigrain._core")]
+pub struct Scene(Mutex<Inner>);
+
+impl Scene {
+    fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Inner>> {
+        match self.0.try_lock() {
+            Ok(inner) => Ok(inner),
+            Err(TryLockError::Poisoned(e)) => Ok(e.into_inner()),
+            Err(TryLockError::WouldBlock) => Err(errors::busy(py)),
+        }
+    }
+
+    /// Something short, done at once; `lent` says whether columns that are looked at must be kept from moving.
+    fn ask<T>(&self, py: Python<'_>, lent: bool, job: impl FnOnce(&mut Session) -> Deck<T>) -> PyResult<T> {
+        let mut inner = self.lock(py)?;
+        let Inner { session, looked, screen, why } = &mut *inner;
+        let Some(session) = session else { return Err(errors::closed(py, why)) };
+        let outcome = catch_unwind(AssertUnwindSafe(|| {
+            if !lent {
+                return job(session);
+            }
+            let outcome = looked.lend(session, false).and_then(|()| job(session));
+            looked.give_back(session);
+            outcome
+        }));
+        screen.show(py);
+        match outcome {
+            Ok(outcome) => outcome.map_err(|e| {
+                let e = session.sources.adopt(e);
+                errors::deck(py, &e, &session.sources)
+            }),
+            Err(panic) => Err(inner.broken(py, &words(&*panic))),
+        }
+    }
+
+    /// Lines of a deck, which may take long.
+    fn work(
+        &self,
+        py: Python<'_>,
+        light: bool,
+        job: impl FnOnce(&mut Session) -> Deck<Heard> + Send,
+    ) -> PyResult<Option<i32>> {
+        let mut inner = self.lock(py)?;
+        let Inner { session, looked, screen, why } = &mut *inner;
+        let Some(session) = session else { return Err(errors::closed(py, why)) };
+        let lent = looked.lend(session, !light);
+        if let Err(e) = lent {
+            looked.give_back(session);
+            return Err(errors::deck(py, &e, &session.sources));
+        }
+        let stop = session.stop_flag();
+        let ended = match light {
+            true => at_once(|| job(session)),
+            false => beside(py, screen, &stop, || job(session)),
+        };
+        stop.store(false, Ordering::Relaxed);
+        let outcome = match ended.outcome {
+            Ok(outcome) => outcome,
+            Err(words) => return Err(inner.broken(py, &words)),
+        };
+        looked.give_back(session);
+        screen.show(py);
+        if let Some(e) = ended.raised {
+            return Err(e);
+        }
+        outcome.map(|heard| heard.quit).map_err(|e| {
+            let e = session.sources.adopt(e);
+            errors::deck(py, &e, &session.sources)
+        })
+    }
+}
+
+impl Inner {
+    /// After a panic nothing of the session can be trusted.
+    fn broken(&mut self, py: Python<'_>, words: &str) -> PyErr {
+        self.screen.show(py);
+        // What the scene still has of columns that are looked at must outlive it: the session is left behind, not dropped.
+        std::mem::forget(self.session.take());
+        self.looked.end(None, BROKEN);
+        self.why = BROKEN;
+        errors::raised(py, "InternalError", (words,))
+    }
+}
+
+#[pymethods]
+impl Scene {
+    /// A scene before its first line, as the words of a command line want it.
+    #[new]
+    fn new(py: Python<'_>, words: Vec<String>) -> PyResult<Self> {
+        let screen = Screen::default();
+        let session = host(words, Box::new(screen.clone())).map_err(|usage| {
+            let help = usage.help.map_or(String::new(), |help| format!(" ({help})"));
+            PyValueError::new_err(format!("{}{help}", usage.message))
+        })?;
+        screen.show(py);
+        Ok(Self(Mutex::new(Inner { session: Some(session), looked: Looked::default(), screen, why: CLOSED })))
+    }
+
+    /// Works off lines of a deck; the status of `quit`, if that was said.
+    fn command(&self, py: Python<'_>, text: &str, name: &str) -> PyResult<Option<i32>> {
+        self.work(py, Session::is_light(text), |session| session.eval(name, text))
+    }
+
+    /// Works off a deck from a file.
+    fn file(&self, py: Python<'_>, path: PathBuf) -> PyResult<Option<i32>> {
+        self.work(py, false, |session| session.eval_file(&path))
+    }
+
+    /// The value of a formula or of a word of thermo output.
+    fn number(&self, py: Python<'_>, formula: &str) -> PyResult<f64> {
+        self.ask(py, true, |session| session.number(formula))
+    }
+
+    /// A text with its variables replaced.
+    fn expand(&self, py: Python<'_>, text: &str) -> PyResult<String> {
+        self.ask(py, true, |session| session.expand(text))
+    }
+
+    /// A variable's kind and value.
+    fn variable<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+    ) -> PyResult<Option<(&'static str, Bound<'py, PyAny>)>> {
+        let told = self.ask(py, true, |session| session.variable(name))?;
+        told.map(|told| values::told(py, told)).transpose()
+    }
+
+    /// Sets a variable of style internal.
+    fn set_number(&self, py: Python<'_>, name: &str, value: f64) -> PyResult<()> {
+        self.ask(py, false, |session| session.set_number(name, value))
+    }
+
+    /// Sets a variable of style string.
+    fn set_text(&self, py: Python<'_>, name: &str, text: &str) -> PyResult<()> {
+        self.ask(py, false, |session| session.set_text(name, text))
+    }
+
+    /// A column of particles in memory.
+    fn memory(&self, py: Python<'_>, name: &str) -> PyResult<Option<Memory>> {
+        let mut inner = self.lock(py)?;
+        let Inner { session, looked, why, .. } = &mut *inner;
+        let Some(session) = session else { return Err(errors::closed(py, why)) };
+        Ok(looked.at(session, name))
+    }
+
+    /// Masses of the types, from index 1 on.
+    fn type_masses<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
+        let masses = self.ask(py, false, |session| Ok(session.type_masses()))?;
+        Ok(masses.map(|list| values::reals(py, &list)))
+    }
+
+    /// A number of the scene with LAMMPS' code of its type.
+    #[pyo3(name = "global_")]
+    fn global<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<(i32, Bound<'py, PyAny>)>> {
+        let found = self.ask(py, false, |session| Ok(session.global(name)))?;
+        found.map(|found| values::global(py, found)).transpose()
+    }
+
+    /// All values of a compute.
+    fn compute<'py>(&self, py: Python<'py>, id: &str) -> PyResult<Bound<'py, PyTuple>> {
+        let (slot, n) = self.ask(py, true, |session| {
+            let slot = session.compute_values(id)?.clone();
+            Ok((slot, session.world.n()))
+        })?;
+        values::slot(py, &slot, n)
+    }
+
+    /// All values of a fix.
+    fn fix<'py>(&self, py: Python<'py>, id: &str) -> PyResult<Bound<'py, PyTuple>> {
+        let (slot, n) = self.ask(py, true, |session| {
+            let slot = session.fix_values(id)?.clone();
+            Ok((slot, session.world.n()))
+        })?;
+        values::slot(py, &slot, n)
+    }
+
+    /// Numbers of particles as bytes, whether they are whole, how many each has.
+    fn gather<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        apart: bool,
+        order: &Bound<'py, PyAny>,
+    ) -> PyResult<(Bound<'py, PyBytes>, bool, usize)> {
+        let order = values::order(order)?;
+        // What somebody has written into whole numbers counts from the next command on.
+        let (rows, width) = self.ask(py, true, |session| session.gathered(name, apart, &order))?;
+        let (bytes, whole) = values::rows(py, &rows);
+        Ok((bytes, whole, width))
+    }
+
+    /// Puts numbers of particles back.
+    fn scatter(
+        &self,
+        py: Python<'_>,
+        name: &str,
+        order: &Bound<'_, PyAny>,
+        data: &[u8],
+        whole: bool,
+    ) -> PyResult<()> {
+        let (order, rows) = (values::order(order)?, values::taken(data, whole)?);
+        self.ask(py, true, |session| session.scatter(name, &order, &rows))
+    }
+
+    /// Makes particles; how many.
+    #[pyo3(signature = (ids, kinds, x, v, images, open))]
+    fn create(
+        &self,
+        py: Python<'_>,
+        ids: Option<Vec<i64>>,
+        kinds: Vec<i32>,
+        x: Vec<f64>,
+        v: Option<Vec<f64>>,
+        images: Option<Vec<i32>>,
+        open: bool,
+    ) -> PyResult<usize> {
+        let x = values::threes(&x)?;
+        let v = v.map(|list| values::threes(&list)).transpose()?;
+        let new = Newcomers { ids, kinds, x, v, images, open };
+        self.ask(py, true, |session| session.make_particles(&new))
+    }
+
+    /// Gives an empty box other corners.
+    fn reset_box(&self, py: Python<'_>, lo: [f64; 3], hi: [f64; 3]) -> PyResult<()> {
+        self.ask(py, true, |session| session.reset_box(lo, hi))
+    }
+
+    /// The box: corners and which axes repeat.
+    #[allow(clippy::type_complexity)]
+    fn domain(&self, py: Python<'_>) -> PyResult<Option<([f64; 3], [f64; 3], [bool; 3])>> {
+        self.ask(py, false, |session| {
+            let domain = session.world.domain.as_ref();
+            Ok(domain.map(|d| (d.lo, d.hi, [0, 1, 2].map(|k| d.boundary.periodic(k)))))
+        })
+    }
+
+    /// Where the particle with an id stands.
+    fn place(&self, py: Python<'_>, id: i64) -> PyResult<Option<usize>> {
+        self.ask(py, false, |session| {
+            Ok(u32::try_from(id).ok().and_then(|tag| session.world.particles.index_of(tag)))
+        })
+    }
+
+    /// The latest row of the step table.
+    fn last_row(&self, py: Python<'_>) -> PyResult<Option<(i64, Vec<(String, Py<PyAny>)>)>> {
+        let row = self.ask(py, false, |session| Ok(session.table_row().cloned()))?;
+        let Some(row) = row else { return Ok(None) };
+        let mut values = vec![];
+        for (name, value) in row.values {
+            let value = match value {
+                RowValue::Whole(k) => k.into_pyobject(py)?.into_any(),
+                RowValue::Real(a) => a.into_pyobject(py)?.into_any(),
+            };
+            values.push((name, value.unbind()));
+        }
+        Ok(Some((row.step, values)))
+    }
+
+    /// The ids of a category; `None` if there is no such category.
+    fn ids(&self, py: Python<'_>, category: &str) -> PyResult<Option<Vec<String>>> {
+        self.ask(py, false, |session| Ok(session.ids(category)))
+    }
+
+    /// 1 for each particle in a group, 0 for the others.
+    fn members<'py>(&self, py: Python<'py>, group: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let list = self.ask(py, false, |session| session.members(group))?;
+        Ok(values::wholes(py, &list))
+    }
+
+    /// Bonds: type and the two ids of each.
+    fn bonds(&self, py: Python<'_>) -> PyResult<Vec<(i32, u32, u32)>> {
+        self.ask(py, false, |session| {
+            let bond = |b: &perigrain::world::Bond| (b.kind, b.ends[0], b.ends[1]);
+            Ok(session.world.bonds.list.iter().map(bond).collect())
+        })
+    }
+
+    /// How many particles there are.
+    fn count(&self, py: Python<'_>) -> PyResult<usize> {
+        self.ask(py, false, |session| Ok(session.world.n()))
+    }
+
+    /// Whether a command is being worked off.
+    #[getter]
+    fn at_work(&self) -> bool {
+        matches!(self.0.try_lock(), Err(TryLockError::WouldBlock))
+    }
+
+    /// Why there is no scene any more; `None` while there is one.
+    #[getter]
+    fn ended(&self, py: Python<'_>) -> PyResult<Option<&'static str>> {
+        let inner = self.lock(py)?;
+        Ok(if inner.session.is_some() { None } else { Some(inner.why) })
+    }
+
+    /// Hands all output to the system.
+    fn flush(&self, py: Python<'_>) -> PyResult<()> {
+        self.ask(py, false, |session| session.flush())
+    }
+
+    /// Ends the scene; what is looked at belongs to who looks.
+    fn close(&self, py: Python<'_>) -> PyResult<()> {
+        let mut inner = self.lock(py)?;
+        if let Some(session) = &mut inner.session {
+            // A log that cannot be written has been told of before.
+            let _ = session.flush();
+        }
+        inner.screen.show(py);
+        if inner.session.is_some() {
+            inner.end(CLOSED);
+        }
+        Ok(())
+    }
+}
+
+/// The styles of a category; `None` if there is no such category.
+#[pyfunction]
+pub fn styles(category: &str) -> Option<Vec<&'static str>> {
+    Session::styles(category)
+}

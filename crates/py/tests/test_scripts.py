@@ -1,0 +1,31 @@
+"""Scripts that were written for LAMMPS' module run with one import changed, to its numbers."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SCRIPTS = Path(__file__).parent / "scripts"
+
+# What the same scripts print with LAMMPS' own module (22 Jul 2025), to all the digits they print.
+SAID = {
+    "steps": """
+force -14.70886114
+place 0.4699689836 0.03806527246
+step 35 70.0 2
+ke 0.00463114849 TotEng
+""",
+    "walk": """
+taken 76 energy 15.67977681 first 0
+at last 15.67977681
+""",
+}
+
+
+@pytest.mark.parametrize("name", sorted(SAID))
+def test_a_script_for_lammps(name):
+    words = [sys.executable, str(SCRIPTS / f"{name}.py"), "perigrain", "-compat", "lammps"]
+    outcome = subprocess.run(words, capture_output=True, text=True, timeout=60)
+    assert (outcome.returncode, outcome.stderr) == (0, "")
+    assert outcome.stdout == SAID[name].lstrip()
