@@ -19,6 +19,8 @@ const COLUMNS: usize = 4;
 #[derive(Clone)]
 pub struct Progress {
     bar: ProgressBar,
+    /// Whether it is never seen; to ask the line takes as long as to move a few particles.
+    hidden: bool,
     /// Whose thermo columns are shown.
     log: Option<Log>,
     shown: Arc<Mutex<Option<Instant>>>,
@@ -45,12 +47,12 @@ impl Progress {
         {
             bar.set_style(style);
         }
-        Self { bar, log, shown: Arc::default() }
+        Self { hidden: bar.is_hidden(), bar, log, shown: Arc::default() }
     }
 
     /// A step of the present run is made.
     pub fn step(&self, made: &Made) {
-        if self.bar.is_hidden() {
+        if self.hidden {
             return;
         }
         if made.done <= 1 {

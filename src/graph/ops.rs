@@ -3,7 +3,7 @@
 use super::spatial;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
-use perigrain_plan::{About, Act, BlockSums, Level, Needs, Op, Stage, Tick};
+use perigrain_plan::{About, BlockSums, Level, Needs, Op, Room, Stage, Tick};
 use perigrain_world::bonds::LostBond;
 use perigrain_world::columns::HEATFLOW;
 use perigrain_world::field::{COLUMNS, F, FACTS, FAMILIES, Fields, TAG, TALLY, TORQUE, TRAVEL, X, X0};
@@ -54,7 +54,7 @@ impl Op for Reneighbor {
         }
         let s = &w.settings.neighbor;
         let ago = t.step - w.rebuild.step;
-        if ago < s.delay || ago % s.every != 0 || s.once {
+        if ago < s.delay || (s.every > 1 && ago % s.every != 0) || s.once {
             return Ok(());
         }
         if s.check {
@@ -81,6 +81,9 @@ impl Op for Reneighbor {
 /// How far the two corners of the box have moved since the last rebuild, together.
 fn corners_moved(w: &World) -> f64 {
     let (Some(domain), Some([lo, hi])) = (&*w.domain, w.rebuild.corners) else { return 0.0 };
+    if (domain.lo, domain.hi) == (lo, hi) {
+        return 0.0;
+    }
     let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum::<f64>().sqrt();
     apart(domain.lo, lo) + apart(domain.hi, hi)
 }
@@ -280,8 +283,14 @@ impl Op for ClearForces {
         }
         Ok(())
     }
-    fn fusible(&self, _: &World, t: &Tick) -> Option<Act> {
-        t.on.then(Act::clear)
+    fn fuses(&self) -> bool {
+        true
+    }
+    fn fusible(&self, _: &World, t: &Tick, room: &mut Room) -> bool {
+        if t.on {
+            room.clear();
+        }
+        t.on
     }
     fn fused(&mut self, w: &mut World, _: &Tick, _: BlockSums) {
         w.parts.cleared = true;

@@ -353,9 +353,10 @@ impl Session {
     }
 
     fn steps(&mut self, plan: &mut StepPlan, unchanged: bool, pace: &Pace) -> Result<verlet::Outcome> {
+        let timed = self.timer.tables() || self.options.mode == Mode::Measure;
         let (w, watch) = (&mut self.world, self.watch.as_mut());
         pace.setup(plan, w, unchanged)?;
-        plan.reset_meters();
+        plan.reset_meters(timed);
         w.clock.began = Some(Instant::now());
         if gate::limits().is_none() {
             return pace.run(plan, w, watch);

@@ -27,6 +27,11 @@ pub trait Wall: Sync {
         true
     }
 
+    /// Whether any contact may go on with the springs of another one.
+    fn passes_some(&self) -> bool {
+        false
+    }
+
     /// Whether a contact with part `to` may go on with the springs of one with part `from` that ends.
     fn passes(&self, _from: u32, _to: u32) -> bool {
         false
@@ -120,10 +125,20 @@ impl WallSweep {
         memory.carry(&self.keys, width, &mut self.spare);
     }
 
+    /// What [`WallSweep::meet`] does where nobody is listed, whatever the wall.
+    pub fn leave<L: ContactLaw>(&mut self, law: &L, memory: &mut Contacts) {
+        self.touching.clear();
+        self.keys.clear();
+        memory.carry(&self.keys, law.memory(), &mut self.spare);
+    }
+
     /// Evaluates the contacts that were found, the second half.
     pub fn act<L: ContactLaw>(&mut self, grains: &Spheres, law: &L, memory: &mut Contacts, step: Advance) {
         let width = law.memory();
         self.wrenches.clear();
+        if self.touching.is_empty() {
+            return;
+        }
         self.wrenches.resize(self.touching.len(), Wrench::default());
         let history = par::Rows { data: &mut memory.history[..], width };
         par::each(
@@ -179,7 +194,7 @@ impl WallSweep {
 
     /// Gives contacts that begin the springs of contacts of the same particle that end, where the wall lets them pass.
     fn hand_over(&self, wall: &dyn Wall, memory: &mut Contacts) {
-        if memory.keys == self.keys {
+        if !wall.passes_some() || memory.keys == self.keys {
             return;
         }
         for key in &self.keys {
@@ -262,6 +277,19 @@ impl WallSweep {
     /// The contacts that were found, and their keys.
     pub fn touching(&self) -> (&[Touch], &[[u32; 2]]) {
         (&self.touching, &self.keys)
+    }
+
+    /// How far the listed particles may go before one of them touches the wall [length], `most` at most.
+    pub fn room<L: ContactLaw>(&mut self, wall: &dyn Wall, grains: &Spheres, law: &L, most: f64) -> f64 {
+        let (mut room, near) = (most, &mut self.near);
+        for &grain in &self.list {
+            let (x, radius) = (grains.x[grain as usize], grains.radius[grain as usize]);
+            let reach = radius + 2.0 * law.gap(radius);
+            near.clear();
+            wall.near(x, reach + room, near);
+            room = near.iter().fold(room, |room, n| room.min(n.distance - reach));
+        }
+        room
     }
 
     /// How many particles are looked at in each step.

@@ -2,9 +2,8 @@
 
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_base::par;
 use perigrain_lang::Args;
-use perigrain_plan::{Needs, Op, Stage};
+use perigrain_plan::{BlockSums, Needs, Op, ParticleBlock, Room, Stage, Tick};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::field::{F, MASK, OMEGA, TORQUE, V};
@@ -51,26 +50,23 @@ struct Declared {
 impl Fix for Declared {
     fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let (bit, access) = (self.group.bit(), Needs::new().read(MASK).write(V | F | OMEGA | TORQUE));
-        let op = StepOp::new(format!("fix {} enforce2d", self.id), Stage::PostForce, access, move |w, t| {
-            if t.unchanged {
-                return Ok(());
-            }
-            let p = &mut w.particles;
-            par::each((&mut p.v[..], &mut p.f[..], &p.mask[..]), |_, (v, f, mask)| {
-                for ((v, f), _) in v.iter_mut().zip(f).zip(mask).filter(|(_, m)| **m & bit != 0) {
+        let flatten = move |_: &World, t: &Tick, room: &mut Room| {
+            room.act(move |s: &mut ParticleBlock<'_>| {
+                let mask = s.mask();
+                let member = |m: &u32| m & bit != 0;
+                for ((v, f), _) in s.v.iter_mut().zip(s.f.iter_mut()).zip(mask).filter(|(_, m)| member(m)) {
                     (v[2], f[2]) = (0.0, 0.0);
                 }
+                let spins = s.omega.iter_mut().zip(s.torque.iter_mut());
+                for ((a, b), _) in spins.zip(mask).filter(|(_, m)| member(m)) {
+                    (*a, *b) = ([0.0, 0.0, a[2]], [0.0, 0.0, b[2]]);
+                }
+                BlockSums::default()
             });
-            if p.style.sphere {
-                par::each((&mut p.omega[..], &mut p.torque[..], &p.mask[..]), |_, (omega, torque, mask)| {
-                    for ((a, b), _) in omega.iter_mut().zip(torque).zip(mask).filter(|(_, m)| **m & bit != 0)
-                    {
-                        (*a, *b) = ([0.0, 0.0, a[2]], [0.0, 0.0, b[2]]);
-                    }
-                });
-            }
-            Ok(())
-        });
+            !t.unchanged
+        };
+        let name = format!("fix {} enforce2d", self.id);
+        let op = StepOp::new(name, Stage::PostForce, access, |_, _| Ok(())).fusing(flatten, |_, _, _| {});
         Ok(vec![op.in_every_level().boxed()])
     }
 

@@ -4,7 +4,7 @@ use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
-use perigrain_plan::{Act, BlockSums, Needs, Op, ParticleBlock, Stage, Tick};
+use perigrain_plan::{BlockSums, Needs, Op, ParticleBlock, Room, Stage, Tick};
 use perigrain_styles::matter::publish_levels;
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
@@ -85,14 +85,17 @@ impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let (slot, bit) = (cx.slot(&format!("f_{}", self.id)), self.group.bit());
         let access = Needs::new().read(MASK).write(F | TORQUE | SLOTS);
-        let hold = move |_: &World, t: &Tick| -> Option<Act> {
+        let hold = move |_: &World, t: &Tick, room: &mut Room| {
             let act = move |s: &mut ParticleBlock<'_>| {
                 let mut sums = BlockSums::default();
                 let mask = s.mask();
                 hold(&mut s.f, &mut s.torque, mask, bit, &mut sums.sums);
                 sums
             };
-            (!t.unchanged).then(|| Act::hold(bit, act))
+            if !t.unchanged {
+                room.hold(bit, act);
+            }
+            !t.unchanged
         };
         let told = move |w: &mut World, t: &Tick, sums: BlockSums| publish_levels(w, slot, t, &sums.sums);
         let name = format!("fix {} freeze", self.id);

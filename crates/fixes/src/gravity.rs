@@ -7,7 +7,7 @@ use perigrain_base::math::lanes::Lanes;
 use perigrain_base::math::threes::{self, Threes};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::{Args, Param};
-use perigrain_plan::{Act, BlockSums, Needs, Op, Stage, Tick, When};
+use perigrain_plan::{BlockSums, Needs, Op, ParticleBlock, Room, Stage, Tick, When};
 use perigrain_styles::common::{choice_or_refuse, variable_param};
 use perigrain_styles::matter::{check_masses, publish};
 use perigrain_styles::step_op::StepOp;
@@ -91,6 +91,15 @@ enum Pointer {
 }
 
 impl Pointer {
+    /// Whether it never turns.
+    fn is_const(self) -> bool {
+        match self {
+            Pointer::Chute(angle) => angle.is_const(),
+            Pointer::Angles { phi, theta } => phi.is_const() && theta.is_const(),
+            Pointer::Vector(v) => v.iter().all(Reading::is_const),
+        }
+    }
+
     /// The unit vector now.
     fn unit(self, w: &World, flat: bool) -> [f64; 3] {
         match self {
@@ -209,19 +218,24 @@ impl Fix for Declared {
             Direction::Spherical(phi, theta) => Pointer::Angles { phi: read(phi)?, theta: read(theta)? },
             Direction::Vector(x, y, z) => Pointer::Vector([read(x)?, read(y)?, read(z)?]),
         };
+        let acceleration = move |w: &World| -> Vec3 {
+            let (g, unit) = (magnitude.get(w), pointer.unit(w, w.settings.two_dimensional));
+            unit.map(|e| g * e)
+        };
+        let steady = (magnitude.is_const() && pointer.is_const()).then(|| acceleration(cx.world()));
         let (slot, disabled) = (cx.slot(&format!("f_{}", self.id)), self.disabled);
         let access = Needs::new().read(X | MASS | MASK).add(F).write(SLOTS);
-        let pull = move |w: &World, t: &Tick| -> Option<Act> {
+        let pull = move |w: &World, t: &Tick, room: &mut Room| {
             if t.unchanged || disabled {
-                return None;
+                return false;
             }
-            let (g, unit) = (magnitude.get(w), pointer.unit(w, w.settings.two_dimensional));
-            let a = unit.map(|e| g * e);
-            Some(Act::pull(perigrain_plan::Pull { bit, a }, move |s| {
+            let a = steady.unwrap_or_else(|| acceleration(w));
+            room.pull(perigrain_plan::Pull { bit, a }, move |s: &mut ParticleBlock<'_>| {
                 let (mass, mask) = (&s.all.mass[s.start..][..s.x.len()], s.mask());
                 let energy = pulled(&mut s.f, &s.x, mass, mask, bit, a);
                 BlockSums { sums: [energy, 0.0, 0.0], most: 0.0 }
-            }))
+            });
+            true
         };
         let told = move |w: &mut World, t: &Tick, sums: BlockSums| publish(w, slot, t, sums.sums[0], &[]);
         let name = format!("fix {} gravity", self.id);

@@ -5,7 +5,7 @@ mod pass;
 use super::nve::half_step;
 use pass::{Kick, Part, faster};
 use perigrain_base::diag::Result;
-use perigrain_plan::{Act, BlockSums, ParticleBlock, Solids, Tick};
+use perigrain_plan::{BlockSums, ParticleBlock, Room, Solids, Tick};
 use perigrain_styles::matter::Masses;
 use perigrain_styles::step_op::StepOp;
 use perigrain_world::{GroupId, World};
@@ -25,7 +25,7 @@ pub fn first<F>(op: StepOp<F>, group: GroupId, turning: Option<Turning>) -> Step
 where
     F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
 {
-    op.fusing(move |w, t| whole(w, group, turning, t, Part::First), went)
+    op.fusing(move |w, t, room| whole(w, (group, turning), t, Part::First, room), went)
 }
 
 /// The same for the op that ends a step, and can begin the next one.
@@ -33,12 +33,19 @@ pub fn second<F>(op: StepOp<F>, group: GroupId, turning: Option<Turning>) -> Ste
 where
     F: FnMut(&mut World, &Tick) -> Result<()> + Send + 'static,
 {
-    op.fusing(move |w, t| whole(w, group, turning, t, if t.on { Part::Both } else { Part::Second }), went)
+    let part = |t: &Tick| if t.on { Part::Both } else { Part::Second };
+    op.fusing(move |w, t, room| whole(w, (group, turning), t, part(t), room), went)
 }
 
 /// A part of a step, or of a level of steps, of which only the shortest drift; of the two lengths of steps for grains and
-/// solids see [`some`].
-fn whole(w: &World, group: GroupId, turning: Option<Turning>, t: &Tick, part: Part) -> Option<Act> {
+/// solids see [`some`]. Always `true`: something is in the room.
+fn whole(
+    w: &World,
+    (group, turning): (GroupId, Option<Turning>),
+    t: &Tick,
+    part: Part,
+    room: &mut Room,
+) -> bool {
     let (short, solids) = (t.phase.level == 0, t.phase.solids.clone());
     let part = if part == Part::First && !short && solids.is_none() { Part::Second } else { part };
     // Bonds of solids turn nothing, so that short steps have none of it.
@@ -53,18 +60,20 @@ fn whole(w: &World, group: GroupId, turning: Option<Turning>, t: &Tick, part: Pa
     };
     let (spins, own) = (turning.is_some(), w.particles.style.own_mass());
     let Some(solids) = solids else {
-        return Some(match own {
-            true => Act::moving(move |s, beside| k.together(s, spins, part, s.all.mass, beside)),
-            false => Act::new(move |s| {
+        match own {
+            true => room.moving(move |s, beside| k.together(s, spins, part, s.all.mass, beside)),
+            false => room.act(move |s: &mut ParticleBlock<'_>| {
                 let masses = Masses::new(s.all.style, s.all.mass, s.all.kind, s.all.type_mass);
                 moved(k.part_of(s, 0..s.x.len(), spins, part, &masses))
             }),
-        });
+        }
+        return true;
     };
-    Some(Act::new(move |s| {
+    room.act(move |s: &mut ParticleBlock<'_>| {
         let masses = Masses::new(s.all.style, s.all.mass, s.all.kind, s.all.type_mass);
         moved(some(&k, s, spins, part, &masses, (&solids, short)))
-    }))
+    });
+    true
 }
 
 /// What came of a motion: the largest v².

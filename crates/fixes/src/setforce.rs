@@ -4,7 +4,7 @@ use super::components::Components;
 use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_plan::{Act, BlockSums, Needs, Op, ParticleBlock, Stage, Tick};
+use perigrain_plan::{BlockSums, Needs, Op, ParticleBlock, Room, Stage, Tick};
 use perigrain_styles::matter::{change_forces, publish_levels};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
@@ -52,11 +52,12 @@ impl Fix for Declared {
         let slot = cx.slot(&format!("f_{}", self.id));
         let access = Needs::new().read(X | MASK | REGIONS).write(F | SLOTS);
         let numbers = chosen.bit_alone().zip(numbers(&force));
-        let hold = move |_: &World, t: &Tick| {
-            let (bit, values) = numbers.filter(|_| !t.unchanged)?;
+        let hold = move |_: &World, t: &Tick, room: &mut Room| {
+            let Some((bit, values)) = numbers.filter(|_| !t.unchanged) else { return false };
             let here = level.acts(&t.phase);
             let values = values.map(|v: Option<f64>| v.map(|a| if here { a } else { 0.0 }));
-            Some(Act::new(move |s: &mut ParticleBlock<'_>| replace(s, bit, &values)))
+            room.act(move |s: &mut ParticleBlock<'_>| replace(s, bit, &values));
+            true
         };
         let told = move |w: &mut World, t: &Tick, sums: BlockSums| publish_levels(w, slot, t, &sums.sums);
         let op = StepOp::new(format!("fix {} setforce", self.id), Stage::PostForce, access, move |w, t| {

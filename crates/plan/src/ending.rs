@@ -2,6 +2,7 @@
 
 use super::{Placed, Stage, StepPlan, Tick, When};
 use perigrain_world::field::{F, TORQUE};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Forces and what follows them in a step.
@@ -16,6 +17,37 @@ pub struct Ending {
     pub clears: Option<usize>,
 }
 
+/// What acts in every step, stage by stage.
+#[derive(Default)]
+pub struct Usually {
+    ops: Vec<usize>,
+    /// Where each stage ends among them.
+    ends: [usize; Stage::ALL.len()],
+}
+
+impl Usually {
+    fn take(&mut self, ops: &[Placed]) {
+        self.ops.clear();
+        for (stage, end) in Stage::ALL.into_iter().zip(&mut self.ends) {
+            let acts = |p: &Placed| p.about.stage == stage && p.about.when == When::Always;
+            self.ops.extend(ops.iter().enumerate().filter(|(_, p)| acts(p)).map(|(k, _)| k));
+            *end = self.ops.len();
+        }
+    }
+
+    /// Where those of some stages, which are in order, stand among them; others may stand in between.
+    pub fn of(&self, stages: &[Stage]) -> Range<usize> {
+        let [Some(first), Some(last)] = [stages.first(), stages.last()] else { return 0..0 };
+        let begin = (*first as usize).checked_sub(1).map_or(0, |before| self.ends[before]);
+        begin..self.ends[*last as usize]
+    }
+
+    /// The op at a place.
+    pub fn at(&self, place: usize) -> usize {
+        self.ops[place]
+    }
+}
+
 impl StepPlan {
     /// Finds out until when only what acts in every step acts: to ask everybody in every step takes longer than the motion of a
     /// few particles.
@@ -27,6 +59,8 @@ impl StepPlan {
         let all = self.ops.iter().map(|p| &p.about.when).chain(sums).filter(|w| **w != When::Always);
         let next = all.map(|w| w.next(t.step, t.last)).min().unwrap_or(i64::MAX);
         self.quiet = (t.step..next, t.last);
+        self.usually.take(&self.ops);
+        self.asked = self.asked_by(|w| *w == When::Always);
     }
 
     /// Whether what acts at such steps acts at this tick.
@@ -35,14 +69,14 @@ impl StepPlan {
     }
 
     /// Whether only what acts in every step acts at this tick.
-    fn is_quiet(&self, t: &Tick) -> bool {
+    pub(super) fn is_quiet(&self, t: &Tick) -> bool {
         !t.setup && self.quiet.1 == t.last && self.quiet.0.contains(&t.step)
     }
 
     /// Forces and what follows them in this step.
     pub(super) fn ending(&mut self, t: &Tick) -> Arc<Ending> {
-        let next = Tick { step: t.step + 1, ..t.clone() };
-        let usual = t.phase.levels == 1 && self.is_quiet(t) && self.is_quiet(&next);
+        let next = t.step + 1;
+        let usual = t.phase.levels == 1 && self.is_quiet(t) && self.quiet.0.contains(&next);
         match &self.usual {
             Some(ending) if usual => ending.clone(),
             _ => {

@@ -26,7 +26,7 @@ pub fn text(plan: &StepPlan, measured: bool) -> String {
                     let _ = write!(
                         s,
                         " {:>9.2} MB/call",
-                        p.meter.bytes as f64 / 1e6 / p.meter.calls.max(1) as f64
+                        p.meter.bytes as f64 / 1e6 / p.meter.looks.max(1) as f64
                     );
                 }
             } else {

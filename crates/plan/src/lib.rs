@@ -16,8 +16,9 @@ pub mod needs;
 pub mod op;
 pub mod run;
 pub mod schedule;
+mod step;
 
-pub use fuse::{Act, Beside, BlockSums, FusedPass, ParticleBlock, Pull, fuse};
+pub use fuse::{Acts, Beside, BlockSums, FusedPass, ParticleBlock, Pull, Room, fuse};
 pub use guard::{Energy, Guard, Rule};
 pub use level::{Level, Phase, Solids};
 pub use meter::Meter;

@@ -10,42 +10,80 @@ pub struct Meter {
     pub time: Duration,
     /// Calls.
     pub calls: u64,
-    /// Bytes touched, as the op reckons.
+    /// Bytes touched, as the op reckons, in the calls that were looked at.
     pub bytes: u64,
+    /// How many calls were.
+    pub looks: u64,
+}
+
+impl Meter {
+    /// So many bytes were touched in a call.
+    pub fn reckon(&mut self, bytes: u64) {
+        self.bytes += bytes;
+        self.looks += 1;
+    }
 }
 
 /// Steps that are all timed, to see how long they take.
 const TRIAL: u32 = 64;
+/// After so many more steps that is judged anew: scenes grow.
+const ANEW: u32 = 1024;
 /// Steps that take longer are all timed.
 const SHORT: Duration = Duration::from_micros(40);
 /// Of shorter steps one in so many is.
 const ONE_IN: u32 = 16;
+/// And of those that take less than this one in so many: there to look at the clock takes a fourth of a step.
+const TINY: (Duration, u32) = (Duration::from_micros(4), 64);
 
 /// In which steps of a run ops are timed: to look at the clock before and after each op takes a sixth of a step of five grains.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Timing {
     steps: u32,
-    sparse: bool,
+    /// Of so many steps one is timed; 0: all are.
+    one_in: u32,
+    /// What ops had taken when that was judged last.
+    spent: Duration,
+    /// Nobody wants to know.
+    off: bool,
 }
 
 impl Timing {
+    /// For a run whose times nobody wants to know.
+    pub fn off() -> Self {
+        Self { off: true, ..Self::default() }
+    }
+
     /// One more step begins; `spent` is what ops have taken so far.
     pub fn step(&mut self, spent: impl FnOnce() -> Duration) {
-        self.steps = self.steps.saturating_add(1);
-        if self.steps == TRIAL {
-            self.sparse = spent() < SHORT * TRIAL;
+        self.steps += 1;
+        if self.off || (self.steps != TRIAL && self.steps != ANEW) {
+            return;
         }
+        let spent = spent();
+        let steps = if self.steps == TRIAL { TRIAL } else { ANEW - TRIAL };
+        let each = spent.saturating_sub(self.spent) / steps;
+        self.one_in = match () {
+            () if each < TINY.0 => TINY.1,
+            () if each < SHORT => ONE_IN,
+            () => 0,
+        };
+        (self.spent, self.steps) = (spent, TRIAL);
+    }
+
+    /// A clock that runs now, unless nobody wants to know.
+    pub fn now(&self) -> Stopwatch {
+        if self.off { Stopwatch { last: None, counts: 1 } } else { Stopwatch::all() }
     }
 
     /// The clock for this step: it stands in most short ones, and what passes in the others counts for those.
     pub fn clock(&self, t: &Tick) -> Stopwatch {
-        // Fibonacci hashing: no period of what acts now and then falls in with it.
-        let chosen =
-            (t.step as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32 < (1 << 32) / u64::from(ONE_IN);
-        match self.sparse && !t.setup {
-            false => Stopwatch::all(),
-            true => Stopwatch { last: chosen.then(Instant::now), counts: ONE_IN },
+        if self.off || self.one_in == 0 || t.setup {
+            return self.now();
         }
+        // Fibonacci hashing: no period of what acts now and then falls in with it.
+        let place = (t.step as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
+        let chosen = place * u64::from(self.one_in) < 1 << 32;
+        Stopwatch { last: chosen.then(Instant::now), counts: self.one_in }
     }
 }
 
@@ -60,6 +98,11 @@ impl Stopwatch {
     /// One that runs, and counts what passes.
     pub fn all() -> Self {
         Self { last: Some(Instant::now()), counts: 1 }
+    }
+
+    /// Whether it runs.
+    pub fn runs(&self) -> bool {
+        self.last.is_some()
     }
 
     /// What has passed since the start or the last look, times what it counts; nothing if it stands.
@@ -83,17 +126,26 @@ mod tests {
 
     #[test]
     fn one_of_sixteen_short_steps_counts_for_all() {
-        let (mut short, mut long) = (Timing::default(), Timing::default());
+        let [mut tiny, mut short, mut long, mut growing] = [Timing::default(); 4];
         for _ in 0..TRIAL {
-            short.step(|| Duration::from_micros(100));
+            tiny.step(|| Duration::from_micros(100));
+            short.step(|| Duration::from_millis(1));
             long.step(|| Duration::from_millis(100));
+            growing.step(|| Duration::from_micros(100));
         }
+        for _ in TRIAL..ANEW {
+            growing.step(|| Duration::from_millis(100));
+        }
+        assert_eq!((tiny.one_in, short.one_in, long.one_in, growing.one_in), (64, 16, 0, 0));
         let tick = |step| Tick { step, ..Tick::between_runs(&perigrain_world::Clock::default()) };
-        assert!((0..1000).all(|step| long.clock(&tick(step)).last.is_some()));
+        assert!((0..1000).all(|step| long.clock(&tick(step)).runs()));
+        assert!((0..1000).all(|step| !Timing::off().clock(&tick(step)).runs()));
         for every in [1, 2, 5, 16, 100] {
-            let runs = (0..16_000).filter(|k| short.clock(&tick(every * k)).last.is_some()).count();
-            // A thousand, evenly spread: a few more or fewer.
-            assert!(runs.abs_diff(1000) < 60, "every {every}: {runs}");
+            for (timing, one_in) in [(short, 16), (tiny, 64)] {
+                let runs = (0..1000 * one_in).filter(|k| timing.clock(&tick(every * k)).runs()).count();
+                // A thousand, evenly spread: a few more or fewer.
+                assert!(runs.abs_diff(1000) < 60, "every {every}: {runs}");
+            }
         }
     }
 }

@@ -156,30 +156,31 @@ pub fn collected() -> Accounts {
 
 /// What ops have touched that none of them states, in words. With several that acted at once it is enough that one of them
 /// states it.
-pub fn lie<'a>(ops: impl Iterator<Item = (&'a str, Needs)>, touched: Touched) -> Option<String> {
-    let ops: Vec<_> = ops.collect();
-    let all = |of: fn(&Needs) -> Fields| ops.iter().fold(Fields::NONE, |all, (_, n)| all | of(n));
+pub fn lie<'a>(ops: impl Iterator<Item = (&'a str, Needs)> + Clone, touched: Touched) -> Option<String> {
+    let all = |of: fn(&Needs) -> Fields| ops.clone().fold(Fields::NONE, |all, (_, n)| all | of(&n));
     let (reads, changed) = (all(|n| n.reads), all(Needs::changed));
     let read = touched.read.without(reads | changed | CLOCK);
     let written = touched.written.without(changed);
     let true_enough = read.is_empty() && written.is_empty();
     if collecting() {
         let mut accounts = ACCOUNTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        for (name, n) in &ops {
+        for (name, n) in ops {
             let a = accounts.entry((n.at.file(), n.at.line())).or_default();
             for (k, stated) in n.named().into_iter().enumerate() {
                 a.stated[k] |= stated;
                 a.touched[k] |= [touched.read, touched.written][k];
             }
             if !true_enough {
-                let more = a.unstated.entry((*name).to_string()).or_default();
+                let more = a.unstated.entry(name.to_string()).or_default();
                 *more = [more[0] | read, more[1] | written];
             }
         }
         return None;
     }
-    let names: Vec<String> = ops.iter().map(|(name, n)| format!("`{name}` ({})", n.at)).collect();
-    (!true_enough).then(|| format!("op {} {} and does not state it", names.join(", "), how([read, written])))
+    (!true_enough).then(|| {
+        let names: Vec<String> = ops.map(|(name, n)| format!("`{name}` ({})", n.at)).collect();
+        format!("op {} {} and does not state it", names.join(", "), how([read, written]))
+    })
 }
 
 /// What is read and what is written in words.

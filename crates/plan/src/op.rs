@@ -1,6 +1,6 @@
 //! What a step is made of: ops, their stage, what they read and write, and when they act.
 
-use super::fuse::{Act, BlockSums};
+use super::fuse::{BlockSums, Room};
 use super::{Level, Needs, Phase};
 use perigrain_base::diag::Result;
 use perigrain_world::{Fields, World};
@@ -337,10 +337,19 @@ pub trait Op: Send {
     ) -> Result<bool> {
         self.run(w, t).map(|()| false)
     }
-    /// What it does to blocks of particles at this tick, where it acts on each particle by itself: such ops are fused into one
-    /// pass. `None` if it cannot.
-    fn fusible(&self, _w: &World, _t: &Tick) -> Option<Act> {
-        None
+    /// Whether it may act on blocks of particles; who never does is not asked in each step.
+    fn fuses(&self) -> bool {
+        false
+    }
+    /// Puts what it does to blocks of particles at this tick into its room, where it acts on each particle by itself: such ops are
+    /// fused into one pass. `false` if it cannot.
+    fn fusible(&self, _w: &World, _t: &Tick, _room: &mut Room) -> bool {
+        false
+    }
+    /// Whether it would do nothing to the particles at this tick, as it knows without looking at them, and what it tells stands:
+    /// then it is left out.
+    fn rests(&mut self, _w: &mut World, _t: &Tick) -> bool {
+        false
     }
     /// Takes what came of all blocks.
     fn fused(&mut self, _w: &mut World, _t: &Tick, _sums: BlockSums) {}

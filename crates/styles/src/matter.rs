@@ -206,8 +206,8 @@ pub fn publish(w: &mut World, slot: SlotId, t: &Tick, scalar: f64, vector: &[f64
 }
 
 /// Writes what a fix takes away in every one of several levels of steps into its slot: all levels together.
-pub fn publish_levels(w: &mut World, slot: SlotId, t: &Tick, taken: &[f64]) {
-    let mut sum = taken.to_vec();
+pub fn publish_levels<const N: usize>(w: &mut World, slot: SlotId, t: &Tick, taken: &[f64; N]) {
+    let mut sum = *taken;
     if t.phase.level > 0 {
         sum.iter_mut().zip(&w.slots.get(slot).vector).for_each(|(all, inner)| *all += inner);
     }

@@ -104,6 +104,11 @@ impl Reading {
         self.len(w) == 0
     }
 
+    /// Whether it is the same in every step.
+    pub fn is_const(&self) -> bool {
+        matches!(self, Reading::Const(_))
+    }
+
     /// Whether particles differ.
     pub fn per_atom(&self) -> bool {
         matches!(self, Reading::Atom(..))

@@ -2,7 +2,7 @@
 
 use perigrain_base::diag::Result;
 use perigrain_base::par;
-use perigrain_plan::{About, Act, BlockSums, Level, Needs, Op, Stage, Tick, When, fuse};
+use perigrain_plan::{About, Acts, BlockSums, Level, Needs, Op, Room, Stage, Tick, When, fuse};
 use perigrain_world::field::Fields;
 use perigrain_world::field::SLOTS;
 use perigrain_world::{GroupId, Slot, SlotId, World};
@@ -18,9 +18,11 @@ pub struct StepOp<F> {
 struct Fusing {
     offer: Box<Offer>,
     took: Box<Took>,
+    /// Where it acts in a pass of its own: room for the act and for what comes of it.
+    alone: (Room, Vec<BlockSums>),
 }
 
-type Offer = dyn Fn(&World, &Tick) -> Option<Act> + Send;
+type Offer = dyn Fn(&World, &Tick, &mut Room) -> bool + Send;
 type Took = dyn FnMut(&mut World, &Tick, BlockSums) + Send;
 
 impl<F> StepOp<F>
@@ -74,15 +76,16 @@ where
         self
     }
 
-    /// Acts on each particle by itself: where `offer(world, tick)` gives something to do to blocks of particles, that is done
+    /// Acts on each particle by itself: where `offer(world, tick, room)` puts something to do to blocks of particles into the room, that is done
     /// instead of what else it does, and `took` gets what came of it.
     #[must_use]
     pub fn fusing(
         mut self,
-        offer: impl Fn(&World, &Tick) -> Option<Act> + Send + 'static,
+        offer: impl Fn(&World, &Tick, &mut Room) -> bool + Send + 'static,
         took: impl FnMut(&mut World, &Tick, BlockSums) + Send + 'static,
     ) -> Self {
-        self.fusing = Some(Fusing { offer: Box::new(offer), took: Box::new(took) });
+        self.fusing =
+            Some(Fusing { offer: Box::new(offer), took: Box::new(took), alone: Default::default() });
         self
     }
 
@@ -100,16 +103,20 @@ where
         self.about.clone()
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        match self.fusible(w, t) {
-            Some(act) => {
-                fuse(w, &[act]).into_iter().for_each(|sums| self.fused(w, t, sums));
-                Ok(())
-            }
-            None => (self.act)(w, t),
+        if let Some(Fusing { offer, took, alone: (room, came) }) = &mut self.fusing
+            && offer(w, t, room)
+        {
+            fuse(w, Acts::new(std::slice::from_ref(room), &[0]), came);
+            came.iter().for_each(|sums| took(w, t, *sums));
+            return Ok(());
         }
+        (self.act)(w, t)
     }
-    fn fusible(&self, w: &World, t: &Tick) -> Option<Act> {
-        self.fusing.as_ref().and_then(|fusing| (fusing.offer)(w, t))
+    fn fuses(&self) -> bool {
+        self.fusing.is_some()
+    }
+    fn fusible(&self, w: &World, t: &Tick, room: &mut Room) -> bool {
+        self.fusing.as_ref().is_some_and(|fusing| (fusing.offer)(w, t, room))
     }
     fn fused(&mut self, w: &mut World, t: &Tick, sums: BlockSums) {
         if let Some(fusing) = &mut self.fusing {

@@ -255,7 +255,11 @@ impl Surface for Running {
         Ok((self.offset - before).abs())
     }
 
-    fn wall<'a>(&'a self, w: &'a World) -> Box<dyn Wall + 'a> {
+    fn stands(&self) -> bool {
+        self.form.motion.is_none()
+    }
+
+    fn show(&self, w: &World, see: &mut dyn FnMut(&dyn Wall)) {
         let velocity = self.velocity;
         match self.form.place {
             Place::Planes(axis, lo, hi) => {
@@ -263,11 +267,11 @@ impl Surface for Running {
                 let by = if along { self.offset } else { 0.0 };
                 let nearer = w.settings.lammps();
                 let [lo, hi] = [lo, hi].map(|p| p.map(|p| p + by));
-                Box::new(Planes { axis, lo, hi, velocity, nearer })
+                see(&Planes { axis, lo, hi, velocity, nearer });
             }
             Place::Tube(radius) => {
                 let lammps = w.settings.lammps();
-                Box::new(Tube { radius, velocity, spin: self.spin, lammps })
+                see(&Tube { radius, velocity, spin: self.spin, lammps });
             }
         }
     }

@@ -174,8 +174,8 @@ impl Surface for Tracked {
         self.running.place(w, t)
     }
 
-    fn wall<'a>(&'a self, _w: &'a World) -> Box<dyn Wall + 'a> {
-        Box::new(Placed(&self.running))
+    fn show(&self, _w: &World, see: &mut dyn FnMut(&dyn Wall)) {
+        see(&Placed(&self.running));
     }
 
     fn local(&mut self, w: &mut World, contacts: &WallSweep, t: &Tick) -> Vec<f64> {

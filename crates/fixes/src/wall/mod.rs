@@ -24,8 +24,13 @@ trait Surface: Send {
     /// Puts the wall where it is at this step; an upper bound of how far its points have moved since the last call.
     fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64>;
 
-    /// The wall as it is now.
-    fn wall<'a>(&'a self, w: &'a World) -> Box<dyn Wall + 'a>;
+    /// Whether it stands where it is for the whole run.
+    fn stands(&self) -> bool {
+        false
+    }
+
+    /// Shows the wall as it is now.
+    fn show(&self, w: &World, see: &mut dyn FnMut(&dyn Wall));
 
     /// Local values of the contacts that were found, [`Form::LOCAL`] columns.
     fn local(&mut self, _w: &mut World, _contacts: &WallSweep, _t: &Tick) -> Vec<f64> {

@@ -13,10 +13,10 @@ use perigrain_styles::{Reading, SealCx};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::contacts::Contacts;
 use perigrain_world::field::{
-    self, BOX, F, FACTS, LISTS, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, SLOTS, TAG, TORQUE, V,
+    self, BOX, F, FACTS, LISTS, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, SLOTS, TAG, TORQUE, TRAVEL, V,
     WALL_CONTACTS, X,
 };
-use perigrain_world::{Key, Numbers, SlotId, World};
+use perigrain_world::{Key, Numbers, Seen, SlotId, Travel, World};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Columns of `contacts`: in contact or not, force, the wall's nearest point, radius.
@@ -53,6 +53,8 @@ pub struct WallOp {
     kept: Option<Contacts>,
     /// What plastic grains need.
     plastic: Option<Plastic>,
+    /// Until when nobody can touch it.
+    peace: Peace,
 }
 
 /// What a wall that conducts heat needs.
@@ -78,6 +80,49 @@ impl Warmth {
                 .into());
         };
         Ok(Some(Self { wall, temperature, flow }))
+    }
+}
+
+/// While nobody goes farther than there was room at the last look, nobody touches the wall, and it is not looked at.
+#[derive(Default)]
+struct Peace {
+    /// The last look, and how far everybody may go.
+    seen: Option<(Seen, f64)>,
+    /// When it was.
+    since: i64,
+    /// How many steps in which nobody touches go by until the next look, and how many did before the last one.
+    wait: u32,
+    waited: u32,
+}
+
+/// To look takes as long as to find nobody touching: a look that saves fewer steps is not repeated soon.
+const WORTH: i64 = 8;
+/// The longest wait for the next look, in steps.
+const LONGEST_WAIT: u32 = 64;
+
+impl Peace {
+    fn lasts(&self, account: Travel) -> bool {
+        self.seen.is_some_and(|(seen, room)| seen.within(account, room))
+    }
+
+    fn end(&mut self) {
+        self.seen = None;
+    }
+
+    fn begin(&mut self, step: i64, seen: Seen, room: f64) {
+        (self.seen, self.since) = (Some((seen, room)), step);
+    }
+
+    /// Whether to look in this step, in which nobody touches.
+    fn is_worth_a_look(&mut self, step: i64) -> bool {
+        if self.seen.take().is_some() {
+            let short = step - self.since < WORTH;
+            self.waited = if short { (2 * self.waited + 1).min(LONGEST_WAIT) } else { 0 };
+            self.wait = self.waited;
+        }
+        let looks = self.wait == 0;
+        self.wait = self.wait.saturating_sub(1);
+        looks
     }
 }
 
@@ -114,6 +159,7 @@ impl WallOp {
             warmth,
             kept: None,
             plastic: Plastic::of(&common.material.model, &common.id),
+            peace: Peace::default(),
         })
     }
 
@@ -124,18 +170,16 @@ impl WallOp {
 
     /// Finds out anew who may touch the wall, where particles or wall have moved too far since.
     fn list(&mut self, w: &World, grains: &Spheres) {
-        let s = &w.settings.neighbor;
-        // Only then no particle is ever farther than half a skin from where it was at the last rebuild.
-        let followed = s.check && s.every == 1 && s.delay == 0 && !s.once;
+        let (s, followed) = (&w.settings.neighbor, followed(w));
         let fresh = self.generation == Some(w.rebuild.generation) && self.travelled <= 0.5 * s.skin;
         if fresh && (followed || stayed(grains, &self.anchors, s.skin)) {
             return;
         }
-        let wall = self.surface.wall(w);
         // Half a skin for the wall, and one for particles: those that have moved half a skin already may move half a skin back, and
         // those whose anchors are known a whole one.
         let far = 1.5 * s.skin;
-        self.sweep.list(&*wall, grains, &w.particles.mask, self.bit, &self.law, far);
+        let Self { surface, sweep, law, bit, .. } = self;
+        surface.show(w, &mut |wall| sweep.list(wall, grains, &w.particles.mask, *bit, law, far));
         self.generation = Some(w.rebuild.generation);
         self.travelled = 0.0;
         self.anchors.clear();
@@ -144,10 +188,14 @@ impl WallOp {
         }
     }
 
-    /// Puts the wall where it is and finds who touches it.
-    fn meet(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+    /// Puts the wall where it is and takes what its contacts remember.
+    fn place(&mut self, w: &mut World, t: &Tick) -> Result<Contacts> {
         self.travelled += self.surface.place(w, t)?;
-        let mut memory = take(w, self.key);
+        Ok(take(w, self.key))
+    }
+
+    /// Finds who touches it.
+    fn meet(&mut self, w: &World, t: &Tick, memory: &mut Contacts) {
         // In setup forces are only evaluated; LAMMPS yet shortens the springs of contacts that slide.
         self.kept = (t.setup && !w.settings.lammps()).then(|| memory.clone());
         let p = &w.particles;
@@ -155,11 +203,11 @@ impl WallOp {
         let grains =
             Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
         self.list(w, &grains);
-        let wall = self.surface.wall(w);
-        self.sweep.meet(&*wall, &grains, &self.law, &mut memory);
-        drop(wall);
-        give(w, self.key, memory);
-        Ok(())
+        let Self { surface, sweep, law, .. } = self;
+        match sweep.listed() {
+            0 => sweep.leave(law, memory),
+            _ => surface.show(w, &mut |wall| sweep.meet(wall, &grains, law, memory)),
+        }
     }
 
     /// Before any forces: what plastic grains must know of this wall.
@@ -167,7 +215,9 @@ impl WallOp {
         let Some(plastic) = &self.plastic else { return Ok(()) };
         // Grains grow before they meet the wall.
         plastic.begin(w, t);
-        self.meet(w, t)?;
+        let mut memory = self.place(w, t)?;
+        self.meet(w, t, &mut memory);
+        give(w, self.key, memory);
         if let Some(plastic) = &mut self.plastic {
             plastic.gather(w, t, &self.sweep);
         }
@@ -203,6 +253,31 @@ impl WallOp {
         -lost
     }
 
+    /// How far anybody may go before somebody touches the wall [length]: a skin at most.
+    fn room(&mut self, w: &World) -> f64 {
+        let (p, skin) = (&w.particles, w.settings.neighbor.skin);
+        let grains =
+            Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
+        let (Self { surface, sweep, law, .. }, mut room) = (self, skin);
+        if sweep.listed() > 0 {
+            surface.show(w, &mut |wall| room = sweep.room(wall, &grains, law, skin));
+        }
+        room
+    }
+
+    /// Finds out for how long nobody can touch the wall, where it stands still and nobody does.
+    fn look_ahead(&mut self, w: &World, t: &Tick) {
+        let touched = self.sweep.contacts().next().is_some();
+        let still = self.surface.stands() && self.local == 0 && self.plastic.is_none();
+        if touched || !still || t.setup || !followed(w) {
+            return self.peace.end();
+        }
+        if self.peace.is_worth_a_look(t.step) {
+            let room = self.room(w);
+            self.peace.begin(t.step, Seen::now(*w.travel, 0.0), room);
+        }
+    }
+
     fn publish(&mut self, w: &mut World, t: &Tick, felt: [f64; FELT]) {
         let n = w.n();
         let local = self.surface.local(w, &self.sweep, t);
@@ -230,6 +305,12 @@ impl WallOp {
             }
         }
     }
+}
+
+/// Whether no particle is ever farther than half a skin from where it was at the last rebuild.
+fn followed(w: &World) -> bool {
+    let s = &w.settings.neighbor;
+    s.check && s.every == 1 && s.delay == 0 && !s.once
 }
 
 /// Whether no surface of a particle has come farther than `far` from where it was.
@@ -323,7 +404,19 @@ impl Op for WallOp {
             &self.name,
             Stage::PostForce,
             Needs::new()
-                .read(BOX | X | V | OMEGA | RADIUS | MASS | MASK | field::COLUMNS | TAG | REGIONS | LISTS)
+                .read(
+                    BOX | X
+                        | V
+                        | OMEGA
+                        | RADIUS
+                        | MASS
+                        | MASK
+                        | field::COLUMNS
+                        | TAG
+                        | REGIONS
+                        | LISTS
+                        | TRAVEL,
+                )
                 .add(F | TORQUE)
                 .write(WALL_CONTACTS | FACTS | SLOTS)
                 .keep(MEMO | field::COLUMNS),
@@ -334,10 +427,13 @@ impl Op for WallOp {
         if t.unchanged {
             return Ok(());
         }
+        let mut memory = match self.plastic {
+            Some(_) => take(w, self.key),
+            None => self.place(w, t)?,
+        };
         if self.plastic.is_none() {
-            self.meet(w, t)?;
+            self.meet(w, t, &mut memory);
         }
-        let mut memory = take(w, self.key);
         if let Some(plastic) = &mut self.plastic {
             plastic.press(w, t, &self.sweep, &mut memory);
         }
@@ -356,7 +452,21 @@ impl Op for WallOp {
         let heat = self.conduct(w);
         self.find_deep(w, t);
         self.publish(w, t, [fx, fy, fz, tx, ty, tz, heat]);
+        self.look_ahead(w, t);
         Ok(())
+    }
+
+    fn rests(&mut self, w: &mut World, t: &Tick) -> bool {
+        let rests = !t.setup
+            && !t.unchanged
+            && self.peace.lasts(*w.travel)
+            && self.generation == Some(w.rebuild.generation)
+            && w.parts.wall_springs.is_none();
+        if rests {
+            w.slots.get_mut(self.slot).step = Some(t.step);
+            debug_assert!(self.room(w) > 0.0, "{} rests and is touched", self.name);
+        }
+        rests
     }
 
     fn finish(&mut self, w: &mut World) -> Result<()> {

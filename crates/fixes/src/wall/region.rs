@@ -144,12 +144,12 @@ impl Surface for Running {
         Ok(region.travel(before, corners.as_ref().map_or(&[], |c| &c[..])))
     }
 
-    fn wall<'a>(&'a self, w: &'a World) -> Box<dyn Wall + 'a> {
-        Box::new(Faces {
+    fn show(&self, w: &World, see: &mut dyn FnMut(&dyn Wall)) {
+        see(&Faces {
             // Places were found a moment ago, so that the region is there.
             region: w.regions.get(self.name),
             look: Look { before: self.before.as_ref().zip(self.elapsed), lammps: w.settings.lammps() },
-        })
+        });
     }
 }
 

@@ -210,6 +210,10 @@ impl Wall for Placed<'_> {
         }
     }
 
+    fn passes_some(&self) -> bool {
+        true
+    }
+
     fn passes(&self, from: u32, to: u32) -> bool {
         self.0.mesh.passes(from, to)
     }

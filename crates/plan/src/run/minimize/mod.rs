@@ -190,7 +190,7 @@ impl Search<'_> {
         let forces = [Stage::Neighbor, Stage::PreForce, Stage::Force, Stage::PostForce, Stage::EndOfStep];
         self.plan.run(self.w, &t, &forces)?;
         self.energy = (self.read)(self.w);
-        self.plan.reset_meters();
+        self.plan.reset_meters(true);
         self.plan.run(self.w, &t, &[Stage::Output])
     }
 

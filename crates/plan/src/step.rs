@@ -1,0 +1,214 @@
+//! One step of a plan up to its outputs: ops that act on each particle by itself go over the particles together.
+
+use super::ending::Ending;
+use super::fuse::{Room, Waiting};
+use super::schedule::{begin_watch, end_watch};
+use super::{Acts, BlockSums, FusedPass, Stage, StepPlan, Tick, fuse, needs};
+use perigrain_base::diag::Result;
+use perigrain_world::World;
+use std::time::Duration;
+
+/// So many particles are moved without looking at the clock.
+const FEW: usize = 200;
+
+/// Room that steps use again: a quiet one asks for no memory.
+#[derive(Default)]
+pub(super) struct Rooms {
+    /// Each op's.
+    acts: Vec<Room>,
+    /// Whose acts are collected.
+    ops: Vec<usize>,
+    came: Vec<BlockSums>,
+    waiting: Waiting,
+}
+
+impl StepPlan {
+    /// Whether the last step has made the beginning of the next one, which has to be made then.
+    pub fn begun(&self) -> bool {
+        self.begun
+    }
+
+    /// Whether the step before has made the beginning of this one.
+    pub fn goes_on(&mut self) -> bool {
+        std::mem::take(&mut self.begun)
+    }
+
+    /// Makes one step up to its outputs. Ops that act on each particle by itself are fused after the forces. Where `more`
+    /// steps are sure to follow and nobody looks in between, the last kick is made with the first one of the next step.
+    ///
+    /// # Errors
+    /// The first op's that fails.
+    pub fn step(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
+        use Stage::{InitialIntegrate, PostIntegrate};
+        let Self { timing, ops, .. } = self;
+        timing.step(|| ops.iter().map(|p| p.meter.time).sum());
+        if !self.goes_on() {
+            self.run(w, t, &[InitialIntegrate])?;
+        }
+        self.run(w, t, &[PostIntegrate, Stage::Exchange, Stage::Neighbor, Stage::PreForce])?;
+        let ending = self.ending(t);
+        if self.force_and_end(w, t, &ending, &more)? {
+            return Ok(());
+        }
+        self.run(w, t, &[Stage::Force])?;
+        self.end_as(w, t, &ending, more)
+    }
+
+    /// Where one op alone adds forces and all that follows acts on each particle by itself: particles that have all their forces
+    /// are moved while they are in fast memory, if the op tells who has. Every particle sees the same as otherwise. `false` where
+    /// that is not so, and nothing has been done.
+    fn force_and_end(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        ending: &Ending,
+        more: &impl Fn(&World) -> bool,
+    ) -> Result<bool> {
+        let order = &ending.order[..];
+        let Some(force) = ending.force.filter(|_| !needs::collecting()) else { return Ok(false) };
+        let mut alike = |k: &usize| self.ops[*k].op.fuses() || self.ops[*k].op.rests(w, t);
+        if order.is_empty() || !order.iter().all(&mut alike) {
+            return Ok(false);
+        }
+        begin_watch(w);
+        let (all, last) = self.offer(w, t, (ending, order), more);
+        let Rooms { acts, ops, mut came, mut waiting } = std::mem::take(&mut self.rooms);
+        let own = Acts::new(&acts, &ops);
+        let pass = FusedPass::new(own, w.n(), &mut waiting).filter(|_| all == order.len());
+        let Some(mut pass) = pass else {
+            self.rooms = Rooms { acts, ops, came, waiting };
+            return Ok(false);
+        };
+        let (mut clock, mut moving) = (self.timing.clock(t), Duration::ZERO);
+        let looks = clock;
+        let p = &mut self.ops[force];
+        let told = p.timed(w, t, &mut clock, |op, w| {
+            op.run_streaming(w, t, &mut |w, particles| {
+                // To look at the clock takes longer than to move a few particles.
+                match particles.len() > FEW {
+                    true => moving += looks.of(|| pass.ready(w, particles)),
+                    false => pass.ready(w, particles),
+                }
+            })
+        })?;
+        p.meter.time = p.meter.time.saturating_sub(moving);
+        match told {
+            true => pass.finish(&mut came),
+            false => fuse(w, own, &mut came),
+        }
+        self.rooms = Rooms { acts, ops, came, waiting };
+        self.fused(w, t, last, clock.runs().then(|| moving + clock.lap()));
+        end_watch(w, std::iter::once(&force).chain(order).map(|&k| self.ops[k].stated()));
+        Ok(true)
+    }
+
+    /// Tells ops what came of a fused pass, which took so long if somebody has looked.
+    fn fused(&mut self, w: &mut World, t: &Tick, last: Option<usize>, elapsed: Option<Duration>) {
+        let Self { rooms, ops: all, begun, .. } = self;
+        for (&k, sum) in rooms.ops.iter().zip(&rooms.came) {
+            let p = &mut all[k];
+            p.op.fused(w, t, *sum);
+            p.meter.calls += 1;
+            if let Some(elapsed) = elapsed {
+                p.meter.time += elapsed / rooms.came.len() as u32;
+                p.meter.reckon(p.op.bytes(w));
+            }
+            *begun |= last == Some(k);
+        }
+    }
+
+    /// Collects what these ops, from the first on, do to blocks of particles; who rests is passed over. The last kick of the step
+    /// goes on into the next one, and what clears forces then, if there is one. How many ops that are, and the last kick if it goes
+    /// on.
+    fn offer(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        (ending, ops): (&Ending, &[usize]),
+        more: &impl Fn(&World) -> bool,
+    ) -> (usize, Option<usize>) {
+        let (mut last, mut asked, mut on) = (None, false, None);
+        self.rooms.ops.clear();
+        self.rooms.acts.resize_with(self.ops.len(), Room::default);
+        for (at, &k) in ops.iter().enumerate() {
+            let turns = ending.last == Some(k) || ending.clears == Some(k);
+            if turns && !asked {
+                (last, asked) = (ending.last.filter(|_| self.begun || more(w)), true);
+            }
+            let (p, room) = (&mut self.ops[k], &mut self.rooms.acts[k]);
+            let acts = p.op.fuses()
+                && match turns && last.is_some() {
+                    true => {
+                        let on = on.get_or_insert_with(|| Tick { on: true, ..t.clone() });
+                        p.op.fusible(w, on, room)
+                    }
+                    false => p.op.fusible(w, t, room),
+                };
+            if acts {
+                self.rooms.ops.push(k);
+            } else if !turns && !needs::collecting() && p.op.rests(w, t) {
+                p.meter.calls += 1;
+            } else {
+                return (at, last);
+            }
+            if needs::collecting() {
+                return (at + 1, last);
+            }
+        }
+        (ops.len(), last)
+    }
+
+    /// What is left of a step, or of one of a level, after its forces. Ops that act on each particle by itself are fused;
+    /// `more` as for [`StepPlan::step`].
+    ///
+    /// # Errors
+    /// The first op's that fails.
+    pub fn end(&mut self, w: &mut World, t: &Tick, more: impl Fn(&World) -> bool) -> Result<()> {
+        let ending = self.ending(t);
+        self.end_as(w, t, &ending, more)
+    }
+
+    fn end_as(
+        &mut self,
+        w: &mut World,
+        t: &Tick,
+        ending: &Ending,
+        more: impl Fn(&World) -> bool,
+    ) -> Result<()> {
+        let (order, clears) = (&ending.order[..], ending.clears);
+        let (mut at, mut clock) = (0, self.timing.clock(t));
+        while at < order.len() {
+            begin_watch(w);
+            let (passed, last) = self.offer(w, t, (ending, &order[at..]), &more);
+            if !self.rooms.ops.is_empty() {
+                let Rooms { acts, ops, came, .. } = &mut self.rooms;
+                fuse(w, Acts::new(acts, ops), came);
+                self.fused(w, t, last, clock.runs().then(|| clock.lap()));
+                // Who comes next may have been asked too.
+                let asked = &order[at..order.len().min(at + passed + 1)];
+                end_watch(w, asked.iter().map(|&k| self.ops[k].stated()));
+            }
+            at += passed;
+            if passed > 0 {
+                continue;
+            }
+            let (k, p) = (order[at], &mut self.ops[order[at]]);
+            let on = last == Some(k) && t.phase.levels == 1 && p.about.goes_on;
+            if !self.begun && clears != Some(k) {
+                match on {
+                    true => {
+                        let t = Tick { on, ..t.clone() };
+                        p.alone(w, &t, &mut clock, |op, w| op.run(w, &t))?;
+                    }
+                    false => p.alone(w, t, &mut clock, |op, w| op.run(w, t))?,
+                }
+            }
+            self.begun |= on;
+            if !self.begun && last == Some(k) {
+                return Ok(());
+            }
+            at += 1;
+        }
+        Ok(())
+    }
+}
