@@ -55,7 +55,7 @@ fn of_case(outcome: &Outcome, manner: &Manner, pictures: &str, drawn: &mut Vec<P
     let (bench, found) = match &outcome.found {
         Ok(found) => found,
         Err(why) => {
-            let _ = write!(out, "It could not be run: {}\n", plain(why));
+            let _ = writeln!(out, "It could not be run: {}", plain(why));
             return out;
         }
     };
