@@ -65,6 +65,16 @@ pub struct Error {
     pub in_front: bool,
     /// It is what others are compared with.
     pub is_reference: bool,
+    /// It is the reference with other switches of the program: its error says nothing of knobs, and has no part in orders, front and
+    /// pictures.
+    pub is_twin: bool,
+}
+
+impl Error {
+    /// The error, where it says something of the knobs.
+    pub fn counted(&self) -> Option<f64> {
+        self.error.filter(|_| !self.is_twin)
+    }
 }
 
 /// One setting of the knobs.
@@ -93,6 +103,15 @@ pub struct Found {
     pub points: Vec<Point>,
     /// What is missing, and why.
     pub problems: Diagnostics,
+    /// Settings whose runs have failed, and why: places and codes are in the words.
+    pub failures: Vec<String>,
+}
+
+impl Found {
+    /// Whether nothing is missing.
+    pub fn is_whole(&self) -> bool {
+        self.problems.is_empty() && self.failures.is_empty()
+    }
 }
 
 impl Bench {
@@ -168,6 +187,7 @@ impl Bench {
     pub fn found(&self, outcomes: &[Option<Outcome>]) -> Found {
         let mut found = Found::default();
         let runs: Vec<Run> = (0..self.settings()).map(|k| self.run(k, outcomes, &mut found)).collect();
+        found.failures = failures(&found.points);
         for (which, measure) in self.measures.iter().enumerate() {
             let errors = reference::errors(self, measure, &runs, &mut found.problems);
             let orders = order::all(self, measure, &errors);
@@ -175,7 +195,7 @@ impl Bench {
                 .points
                 .iter()
                 .zip(&errors)
-                .map(|(p, e)| Some((p.seconds?, e.error?)).filter(|(s, e)| *s > 0.0 && *e > 0.0))
+                .map(|(p, e)| Some((p.seconds?, e.counted()?)).filter(|(s, e)| *s > 0.0 && *e > 0.0))
                 .collect();
             let front = front::of(&costs);
             for (k, mut error) in errors.into_iter().enumerate() {
@@ -202,22 +222,15 @@ impl Bench {
             out.seconds = fine.iter().map(|(_, o)| o.loop_seconds).reduce(f64::min);
             if let Some((other, _)) = fine.iter().find(|(_, other)| other.measures != o.measures) {
                 let text = format!("runs {} and {} are alike and gave other numbers", first + 1, other + 1);
-                found.problems.append(fault(text));
+                found.problems.append(fault(Code::SUSPICIOUS, text));
             }
             let file = sweep::home_of(&self.sweep, *first).join(series::FILE);
             match series::read(&file, self.sweep.report.len()) {
                 Ok(series) => run = Run { outcome: Some((*o).clone()), series },
-                Err(e) => {
-                    out.problem = e.0.first().map(|d| d.message.clone());
-                    found.problems.append(e);
-                }
+                Err(e) => out.problem = e.0.first().map(|d| d.message.clone()),
             }
         } else {
             out.problem = ended().find_map(|(_, o)| o.problem.clone());
-            if let Some(problem) = &out.problem {
-                let title = Job { vars: out.vars.clone() }.title();
-                found.problems.append(fault(format!("{title}: {problem}")));
-            }
         }
         found.points.push(out);
         run
@@ -237,6 +250,23 @@ pub struct Run {
     series: Vec<series::Series>,
 }
 
+/// What went wrong, once, with the first of the settings in which it did.
+fn failures(points: &[Point]) -> Vec<String> {
+    let mut said: Vec<(&str, String, usize)> = vec![];
+    for point in points {
+        let Some(problem) = point.problem.as_deref() else { continue };
+        match said.iter_mut().find(|(other, ..)| *other == problem) {
+            Some((_, _, more)) => *more += 1,
+            None => said.push((problem, Job { vars: point.vars.clone() }.title(), 0)),
+        }
+    }
+    let sentence = |(problem, title, more): (&str, String, usize)| match more {
+        0 => format!("{title}: {problem}"),
+        n => format!("{title} and {n} more: {problem}"),
+    };
+    said.into_iter().map(sentence).collect()
+}
+
 fn remainder(rest: &mut usize, axis: &Axis) -> usize {
     let n = axis.rows.len();
     let place = *rest % n;
@@ -244,6 +274,6 @@ fn remainder(rest: &mut usize, axis: &Axis) -> usize {
     place
 }
 
-fn fault(text: String) -> Diagnostics {
-    fail::<()>(Code::BAD_VALUE, None, text).err().unwrap_or_default()
+fn fault(code: Code, text: String) -> Diagnostics {
+    fail::<()>(code, None, text).err().unwrap_or_default()
 }

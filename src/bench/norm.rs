@@ -61,7 +61,7 @@ impl Norm {
         let n = values.len().max(1) as f64;
         match self.kind {
             Kind::End => values.last().map_or(f64::NAN, f64::abs),
-            Kind::Max => values.map(f64::abs).fold(0.0, |a, b| if b.is_nan() { b } else { a.max(b) }),
+            Kind::Max => values.map(f64::abs).fold(0.0, |a, b| if a.is_nan() || b <= a { a } else { b }),
             Kind::L1 => values.map(f64::abs).sum::<f64>() / n,
             Kind::L2 => (values.map(|v| v * v).sum::<f64>() / n).sqrt(),
         }

@@ -15,7 +15,7 @@ pub fn all(bench: &Bench, measure: &Measure, errors: &[Error]) -> Vec<Vec<Option
         let here = places[axis];
         places[axis] = here.checked_sub(1)?;
         let before = bench.at(&places);
-        let (coarse, fine) = (errors[before].error?, errors[point].error?);
+        let (coarse, fine) = (errors[before].counted()?, errors[point].counted()?);
         // The reference has an error of its own along the line that it is on; switches of the program change no numbers.
         let on_line = finest(bench, measure, point).is_some_and(|reference| {
             let both = bench.places(reference).into_iter().zip(bench.places(point));

@@ -4,6 +4,7 @@ use super::suite::{Case, Manner};
 use super::{Bench, Found, picture, table};
 use crate::plot::Chart;
 use crate::verify::report::{machine, origin};
+use perigrain_base::math::cformat::general;
 use std::fmt::Write;
 
 /// A case that was run.
@@ -54,7 +55,7 @@ fn of_case(outcome: &Outcome, manner: &Manner, pictures: &str, drawn: &mut Vec<P
     let (bench, found) = match &outcome.found {
         Ok(found) => found,
         Err(why) => {
-            let _ = write!(out, "It could not be run: {}\n", plain(why));
+            let _ = writeln!(out, "It could not be run: {}", plain(why));
             return out;
         }
     };
@@ -84,7 +85,8 @@ fn of_case(outcome: &Outcome, manner: &Manner, pictures: &str, drawn: &mut Vec<P
         (None, true) => beside(bench, found),
         (None, false) => "LAMMPS can run this deck (`-lammps PATH`).\n".into(),
     };
-    let problems: Vec<&str> = found.problems.0.iter().map(|d| d.message.as_str()).collect();
+    let failures = found.failures.iter().map(String::as_str);
+    let problems: Vec<&str> = found.problems.0.iter().map(|d| d.message.as_str()).chain(failures).collect();
     if !problems.is_empty() {
         let _ = write!(out, "\nWhat went wrong:\n\n```text\n{}\n```\n", problems.join("\n"));
     }
@@ -99,7 +101,8 @@ pub fn beside(bench: &Bench, found: &Found) -> String {
     let ends = times.map(|r| (r, r)).reduce(|(a, b), (r, _)| (a.min(r), b.max(r)));
     let mut out = match ends {
         Some((least, most)) => {
-            format!("LAMMPS takes {least:.1} to {most:.1} times as long for the same settings.")
+            let [least, most] = [least, most].map(|r| general(r, 2));
+            format!("LAMMPS takes {least} to {most} times as long for the same settings.")
         }
         None => return "LAMMPS gave no numbers.\n".into(),
     };

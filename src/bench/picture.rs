@@ -45,7 +45,7 @@ fn chart(bench: &Bench, found: &Found, measure: usize) -> Option<Chart> {
 /// Wall time and error, where both can stand on logarithmic axes.
 fn place(found: &Found, measure: usize, point: usize) -> Option<[f64; 2]> {
     let p = &found.points[point];
-    let (seconds, error) = (p.seconds?, p.errors.get(measure)?.error?);
+    let (seconds, error) = (p.seconds?, p.errors.get(measure)?.counted()?);
     (seconds > 0.0 && error > 0.0 && error.is_finite()).then_some([seconds, error])
 }
 

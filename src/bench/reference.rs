@@ -6,7 +6,7 @@ use crate::session::axes::Axis;
 use crate::sweep::Outcome;
 use crate::sweep::lammps;
 use crate::sweep::series::Series;
-use perigrain_base::diag::{Diagnostics, FileId};
+use perigrain_base::diag::{Code, Diagnostics, FileId};
 use std::path::{Path, PathBuf};
 
 /// What is taken for right.
@@ -38,7 +38,7 @@ pub(super) fn errors(bench: &Bench, m: &Measure, runs: &[Run], problems: &mut Di
         Against::File(path) => match read(path, &m.word) {
             Ok(series) => Some(series),
             Err(text) => {
-                problems.append(fault(text));
+                problems.append(fault(Code::BAD_FILE, text));
                 Some(Series::default())
             }
         },
@@ -51,6 +51,10 @@ pub(super) fn errors(bench: &Bench, m: &Measure, runs: &[Run], problems: &mut Di
         let mut error = Error { value: end(bench, run, &m.word), ..Error::default() };
         let reference = finest(bench, m, point);
         error.is_reference = reference == Some(point);
+        error.is_twin = reference.is_some_and(|reference| {
+            let both = bench.places(reference).into_iter().zip(bench.places(point)).zip(&bench.axes);
+            reference != point && both.into_iter().all(|((a, b), axis)| a == b || axis.is_switch())
+        });
         if run.outcome.is_some() && !empty && !error.is_reference {
             match compared(bench, m, run, reference.map(|k| &runs[k]), file.as_ref()) {
                 Ok(found) => error.error = Some(found),
@@ -60,7 +64,7 @@ pub(super) fn errors(bench: &Bench, m: &Measure, runs: &[Run], problems: &mut Di
         out.push(error);
     }
     for why in said {
-        problems.append(fault(format!("`{}` has no error: {why}", m.name)));
+        problems.append(fault(Code::WRONG_KIND, format!("`{}` has no error: {why}", m.name)));
     }
     out
 }

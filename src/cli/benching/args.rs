@@ -65,7 +65,7 @@ impl Request {
             }
             let one = ["-norm", "-repeat"].contains(&word.as_str());
             let mut values: Vec<String> = vec![];
-            while let Some(value) = words.next_if(|w| !is_switch(w) && !(one && values.len() == 1)) {
+            while let Some(value) = words.next_if(|w| !(is_switch(w) || one && values.len() == 1)) {
                 values.push(value);
             }
             let knob = [THREADS, LAYOUT].into_iter().find(|k| *k == word);

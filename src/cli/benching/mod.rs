@@ -140,8 +140,14 @@ fn run(request: &Request, bench: &Bench, left_out: bool) -> Result<u8> {
     if !quiet {
         super::show(&told(bench, &found, &pictures));
     }
+    complain(&found);
+    Ok(if found.is_whole() && results.all_ok() && !left_out { OK } else { FAILED })
+}
+
+/// Says what is missing.
+fn complain(found: &Found) {
     deck::print(&found.problems, &Sources::default());
-    Ok(if found.problems.is_empty() && results.all_ok() && !left_out { OK } else { FAILED })
+    found.failures.iter().for_each(|text| eprintln!("failed: {text}"));
 }
 
 /// Table, pictures and where they are.

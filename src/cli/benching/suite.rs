@@ -136,8 +136,8 @@ fn one(case: &Case, manner: &Manner, anew: bool, stop: &AtomicBool) -> perigrain
     } else if let (Some(why), true) = (&case.lammps.no, manner.lammps.is_some()) {
         show(&format!("LAMMPS cannot run this deck: {why}\n"));
     }
-    deck::print(&found.problems, &Sources::default());
-    let fine = found.problems.is_empty() && results.all_ok();
+    super::complain(&found);
+    let fine = found.is_whole() && results.all_ok();
     Ok(Some((bench, found, fine)))
 }
 
