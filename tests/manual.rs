@@ -26,6 +26,28 @@ const PRINTS: &[(&str, &str)] = &[
     ("clear", "a box of 8"),
 ];
 
+/// A ball on a spring, for benches.
+const BALL: &str = "\
+variable     dt index 0.01
+units        si
+atom_style   sphere
+atom_modify  map array
+boundary     f f f
+region       box block -2 2 -2 2 -2 2
+create_box   1 box
+create_atoms 1 single 0 0 1
+set          group all diameter 0.1
+set          group all density $(6/PI/0.001)
+variable     pull equal -z[1]
+fix          spring all addforce 0 0 v_pull
+fix          move all nve
+timestep     ${dt}
+variable     height equal z[1]
+thermo_style custom step time ke
+thermo       $(round(0.04/v_dt))
+run          $(round(0.4/v_dt))
+";
+
 /// What a session says.
 #[derive(Clone, Default)]
 struct Heard(Arc<Mutex<Vec<u8>>>);
@@ -95,6 +117,7 @@ fn every_example_runs() {
 fn calls_of_the_program_work() {
     let _folder = Folder::new(super::folder());
     std::fs::write("in.plate", SCENE).unwrap();
+    std::fs::write("in.ball", BALL).unwrap();
     for page in pages().iter().filter(|p| is_for_the_shell(p)) {
         for line in page.doc.example.lines() {
             let words = line.split_whitespace().skip(1);

@@ -11,7 +11,7 @@ pub use svg::escaped;
 /// Width of a chart; its height grows with its legend.
 const WIDTH: f64 = 560.0;
 /// Left and right end of the field, and its height.
-const FIELD: [f64; 2] = [72.0, 548.0];
+const FIELD: [f64; 2] = [72.0, 540.0];
 const HEIGHT: f64 = 238.0;
 /// Room above the field for each line of the legend.
 const LINE: f64 = 17.0;
@@ -219,7 +219,7 @@ mod tests {
         assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"), "{svg}");
         assert!(svg.contains("a &amp; b") && svg.contains(">1e-3<") && svg.contains(">100<"), "{svg}");
         // A power is a straight line: the middle point is half way.
-        assert!(svg.contains("M72.0 51.0L310.0 170.0L548.0 289.0"), "{svg}");
+        assert!(svg.contains("M72.0 51.0L306.0 170.0L540.0 289.0"), "{svg}");
         let png = chart().png().unwrap();
         assert_eq!(&png[1..4], b"PNG");
         assert_eq!(Chart::default().svg().matches("<text").count(), 14, "an empty one has axes");

@@ -10,10 +10,10 @@ pub(super) const BENCH: Entry = (
             perigrain bench -suite [-list] [-only PATTERN] [-deck] [-lammps PATH] [-threads N] [-repeat N] [-out DIR] [-anew] [-markdown FILE]",
         summary: "A deck over knobs such as time step and spacing: wall time against error, observed orders, the Pareto front.",
         text: TEXT,
-        example: "perigrain bench in.ball -each dt 4e-6 2e-6 1e-6 5e-7 -measure ke v_height\n\
-            perigrain bench in.bar -each scheme verlet kick -each dt 4e-6 2e-6 1e-6 -measure v_wave -against form 0.25 -repeat 3\n\
-            perigrain bench in.block -threads 1 2 4 -each dx 4e-3 2e-3 -measure pe -norm rel-l2 -against file measured.csv\n\
-            perigrain bench -suite -markdown benchmarks.md",
+        example: "perigrain bench in.ball -each dt 0.04 0.02 0.01 0.005 -measure ke v_height\n\
+            perigrain bench in.ball -each dt 0.04 0.02 0.01 -measure v_height -against form cos(0.4) -norm end -repeat 2 -out closed\n\
+            perigrain bench in.ball -threads 1 2 -each dt 0.04 0.02 0.01 -measure ke -norm rel-l2 -out threads\n\
+            perigrain bench -suite -only hertz_impact -markdown hertz.md",
     },
 );
 
