@@ -59,6 +59,7 @@ const BOOK: [&str; 2] = [
     "- [Error codes](errors.md)\n\
      - [Bonded particles](bonded.md)\n\
      - [Verification](verification.md)\n\
+     - [Stability](stability.md)\n\
      - [Coming from LAMMPS](coming-from-lammps.md)\n\
      - [Decks of others](safe.md)\n\
      - [How fast, and what limits it](speed.md)\n\n\
