@@ -62,6 +62,7 @@ const BOOK: [&str; 2] = [
      - [Bonded particles](bonded.md)\n\
      - [Verification](verification.md)\n\
      - [Benchmarks](benchmarks.md)\n\
+     - [Stability](stability.md)\n\
      - [Coming from LAMMPS](coming-from-lammps.md)\n\
      - [Decks of others](safe.md)\n\
      - [How fast, and what limits it](speed.md)\n\n\

@@ -41,6 +41,8 @@ mod safe;
 #[path = "scripts.rs"]
 mod scripts;
 mod staggered;
+#[path = "stress/main.rs"]
+mod stress;
 mod sweep;
 mod swinging;
 #[path = "common/threads.rs"]

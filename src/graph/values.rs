@@ -7,6 +7,7 @@ use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Value, Vars};
 use perigrain_plan::{About, Needs, Op, OpClass, Stage, Tick};
 use perigrain_styles::FORMULAS;
+use perigrain_styles::act::no_number;
 use perigrain_world::field::{BONDS, BOX, F, LISTS, MASS, MEMO, SLOTS, TALLY, TORQUE};
 use perigrain_world::{Fields, SlotId, World};
 use std::collections::BTreeMap;
@@ -103,6 +104,21 @@ pub(super) fn asks_forces(vars: &Vars, name: &str) -> bool {
     looks(vars, name, &mut vec![])
 }
 
+impl Evaluate {
+    /// Refuses values that would put something other than numbers into the scene.
+    fn must_be_numbers(&self, w: &World, value: &Value) -> Result<()> {
+        let bad = match value {
+            Value::Number(a) if a.is_nan() => (*a, None),
+            Value::Atom(list) => match list.iter().position(|a| !a.is_finite()) {
+                Some(i) => (list[i], w.particles.tag.get(i).copied()),
+                None => return Ok(()),
+            },
+            _ => return Ok(()),
+        };
+        Err(no_number(format_args!("v_{}", self.variable), bad.0, bad.1, self.span).into())
+    }
+}
+
 impl Op for Evaluate {
     fn about(&self) -> About {
         About {
@@ -120,6 +136,10 @@ impl Op for Evaluate {
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let mut env = RunEnv::new(w, &self.declared, &self.from);
         let value = self.vars.value(&self.variable, self.span, &mut env)?;
+        // What is only shown may be anything; what moves particles must be numbers.
+        if !matches!(self.stage, Stage::EndOfStep | Stage::Output) {
+            self.must_be_numbers(w, &value)?;
+        }
         let slot = w.slots.get_mut(self.slot);
         slot.step = Some(t.step);
         match value {

@@ -2,7 +2,7 @@
 
 use crate::BondForce;
 use crate::probe::Probe;
-use perigrain_base::diag::{Diagnostic, Diagnostics, Result, Source, Span};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Source, Span};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::{Command, Param, ValueRef, Word};
 use perigrain_world::{GroupId, World};
@@ -87,6 +87,13 @@ pub struct ActCx<'a> {
     pub notes: &'a RefCell<Diagnostics>,
 }
 
+/// The refusal of a value that would put something other than numbers into a scene: whose, which, of which particle.
+pub fn no_number(of: impl std::fmt::Display, value: f64, tag: Option<u32>, at: Span) -> Diagnostic {
+    let whom = tag.map_or(String::new(), |tag| format!(" for particle {tag}"));
+    Diagnostic::error(Code::NOT_FINITE, at, format!("`{of}` is {value}{whom}"))
+        .help("its formula goes beyond the largest number, or takes the difference of two such values")
+}
+
 impl ActCx<'_> {
     /// Says a line on screen and log.
     pub fn say(&mut self, line: impl Into<String>) {
@@ -101,22 +108,32 @@ impl ActCx<'_> {
     /// The value of a parameter now.
     ///
     /// # Errors
-    /// As `Values::scalar`.
+    /// As `Values::scalar`, and a value that is no number.
     pub fn number(&mut self, p: &Param) -> Result<f64> {
         match p {
             Param::Number(a) => Ok(*a),
-            Param::Ref(r) => self.values.scalar(self.world, r),
+            Param::Ref(r) => {
+                let value = self.values.scalar(self.world, r)?;
+                if value.is_nan() { Err(no_number(r, value, None, r.span).into()) } else { Ok(value) }
+            }
         }
     }
 
     /// The value of a parameter for each particle now.
     ///
     /// # Errors
-    /// As `Values::per_atom`.
+    /// As `Values::per_atom`, and values that are no finite numbers.
     pub fn per_atom(&mut self, p: &Param) -> Result<Vec<f64>> {
         match p {
             Param::Number(a) => Ok(vec![*a; self.world.n()]),
-            Param::Ref(r) => self.values.per_atom(self.world, r),
+            Param::Ref(r) => {
+                let values = self.values.per_atom(self.world, r)?;
+                let tag = |i: usize| self.world.particles.tag.get(i).copied();
+                match values.iter().position(|a| !a.is_finite()) {
+                    Some(i) => Err(no_number(r, values[i], tag(i), r.span).into()),
+                    None => Ok(values),
+                }
+            }
         }
     }
 }

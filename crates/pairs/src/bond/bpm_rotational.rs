@@ -39,7 +39,9 @@ impl Style for BpmRotational {
                    setup of a run. Forces and torques are multiplied with 1 − B⁴ unless `smooth no` is said; `break no` needs that. Dashpots gn along \
                    the bond, gs across it, gr against rolling (times r) and gt against twist. Needs `atom_style bpm/sphere`, `fix nve/bpm/sphere`, and \
                    `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` `special_bonds lj/coul 1 1 1`. The energy is counted as 0: the law \
-                   has none. Restart files hold length and direction at rest. For `compute bond/local`: `b1` is r0, `b2 b3 b4` the direction at rest towards the end \
+                   has none. Forces come from no energy, so that without \
+                   dashpots bodies that swing freely gain some until they fly apart (twelve spheres in steps of a tenth \
+                   of the limit after 6·10⁴ steps, in LAMMPS too): say gn … gt in long runs. Restart files hold length and direction at rest. For `compute bond/local`: `b1` is r0, `b2 b3 b4` the direction at rest towards the end \
                    that is listed first, `b5 b6 b7` the force on it; `force` there is what acts along the bond (LAMMPS, and `compat lammps`, multiply it with r, and the direction with r0). `frame particle` and `damping dem` of newer LAMMPS say what this is; \
                    `frame average` and `damping derivative` are refused.\n\
                    LAMMPS takes the first direction for one of particles that have not turned, and lets a bond whose end with the lower ID stands \

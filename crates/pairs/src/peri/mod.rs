@@ -184,7 +184,8 @@ impl Solid {
             args.next();
             self.unloading = Some(said);
         }
-        if cx.world.families.is_some() && self.law.kind != said {
+        // Of a restart file the style is new and the families are not.
+        if cx.world.families.as_ref().is_some_and(|f| f.law.kind != said) {
             return fail(Code::WRONG_ORDER, at, "the rule of unloading cannot change after the first run");
         }
         self.law.kind = said;
