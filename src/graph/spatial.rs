@@ -67,27 +67,28 @@ const SURE: f64 = 0.999;
 /// until the next rebuild they come closer by one at most. If they do not stay, this also settles how far the next ones reach.
 pub fn stays(w: &mut World) -> bool {
     let skin = w.settings.neighbor.skin;
-    let Some(drift) = drift(w) else {
+    let most = if w.rebuild.kept.ample { SURE } else { CALM };
+    let Some(drift) = drift(w, most * skin) else {
         w.rebuild.kept = Kept::default();
         return false;
     };
-    let held = if w.rebuild.kept.x.is_empty() { w.held().to_vec() } else { vec![] };
-    let kept = &mut w.rebuild.kept;
-    if kept.ample && drift.near.max(drift.far) <= SURE * skin {
-        if kept.x.is_empty() {
-            kept.x = held;
+    if w.rebuild.kept.ample && drift.near.max(drift.far) <= SURE * skin {
+        if w.rebuild.kept.x.is_empty() {
+            w.rebuild.kept.x = w.held().to_vec();
         }
+        let kept = &mut w.rebuild.kept;
         (kept.turns, kept.outlasted) = (drift.turns, kept.outlasted + 1);
         return true;
     }
+    let kept = &mut w.rebuild.kept;
     let calm = drift.near.max(drift.far) <= CALM * skin;
     let ample = if kept.ample { kept.outlasted >= PAYS } else { calm };
     *kept = Kept { ample, ..Kept::default() };
     false
 }
 
-/// None where lists cannot stay, or it is not known.
-fn drift(w: &World) -> Option<Drift> {
+/// None where lists cannot stay, or it is not known; more than `enough` is not told exactly.
+fn drift(w: &World, enough: f64) -> Option<Drift> {
     let (domain, period, s) = (w.domain.as_ref()?, w.periods(), &w.settings.neighbor);
     let [edge, far] = cells(w)?;
     let (x, made, held) = (&w.particles.x, w.made(), w.held());
@@ -104,7 +105,7 @@ fn drift(w: &World) -> Option<Drift> {
     let of_layers = slabs_of.of_layers();
     let before = &w.rebuild.kept.turns;
     let gone = |range: Range<usize>| {
-        let mut gone = Gone { ways: vec![STILL; slabs_of.count()], turned: vec![] };
+        let mut gone = Gone { ways: vec![STILL; slabs_of.count()], turned: vec![], beyond: false };
         for i in range {
             let mut turns = before.get(i).copied().unwrap_or_default();
             // Who is half around the box from where it was at the last rebuild has been moved by a period.
@@ -115,15 +116,25 @@ fn drift(w: &World) -> Option<Drift> {
                     gone.turned.push((i, turns));
                 }
             }
-            let [least, most] = &mut gone.ways[of_layers[slabs.layer_of(&made[i])]];
+            let ways = &mut gone.ways[of_layers[slabs.layer_of(&made[i])]];
+            let so_far = *ways;
+            let [least, most] = ways;
             for d in 0..3 {
                 let way = x[i][d] - f64::from(turns[d]) * period[d] - made[i][d];
                 (least[d], most[d]) = (least[d].min(way), most[d].max(way));
             }
+            // Those that come may go farther still. Where turns are known they have to be counted to the end.
+            if before.is_empty() && *ways != so_far && across(*ways) > enough {
+                gone.beyond = true;
+                break;
+            }
         }
         gone
     };
-    let Gone { ways, turned } = par::reduce(x.len(), gone, Gone::join)?;
+    let Gone { ways, turned, beyond } = par::reduce(x.len(), gone, Gone::join)?;
+    if beyond {
+        return Some(Drift { near: f64::INFINITY, far: 0.0, turns: vec![] });
+    }
     let mut turns = before.clone();
     for (i, now) in turned {
         turns.resize(x.len(), [0; 3]);
@@ -164,12 +175,15 @@ struct Gone {
     ways: Vec<Bounds>,
     /// Who was moved by periods since the last rebuild, and by how many since lists were made.
     turned: Vec<(usize, [i8; 3])>,
+    /// Some have gone farther than is asked for, and not all were looked at.
+    beyond: bool,
 }
 
 impl Gone {
     fn join(mut self, other: Self) -> Self {
         self.ways.iter_mut().zip(other.ways).for_each(|(a, b)| *a = both(*a, b));
         self.turned.extend(other.turned);
+        self.beyond |= other.beyond;
         self
     }
 }

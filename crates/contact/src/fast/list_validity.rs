@@ -34,10 +34,15 @@ pub(super) struct ListValidity {
     before: Vec<Place>,
     /// How far, at the last look, grains of a slab and the next had strayed from each other at most.
     since: Seen,
+    /// How often all grains were looked at.
+    pub looks: usize,
+    /// Room for a look: ways of slabs, and how much closer grains of each can have come.
+    ways: Vec<[Ways; 2]>,
+    nearer: Vec<f64>,
 }
 
 /// Bounds of ways [length], and of what radii have grown.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Ways {
     least: [f64; 3],
     most: [f64; 3],
@@ -171,6 +176,10 @@ impl ListValidity {
     /// The slabs whose grains may have come closer than their short lists reach, or `all`, and some that are near that; their
     /// lists are taken to be made from the present positions.
     pub fn strayed(&mut self, grains: &Grains, thin: f64, all: bool) -> Vec<usize> {
+        if thin == f64::INFINITY {
+            // Nobody gets out of lists that are the long ones.
+            return if all { (0..self.members.len()).collect() } else { vec![] };
+        }
         // Whatever way two grains have gone since, they came closer by twice that at most.
         if !all && self.since.within(grains.travel, 0.5 * thin) {
             // The box around all ways may be longer than the two longest of them.
@@ -181,12 +190,18 @@ impl ListValidity {
             );
             return vec![];
         }
-        let closer = if all { vec![f64::INFINITY; self.members.len()] } else { self.closer(grains) };
-        let worn: Vec<usize> = (0..closer.len()).filter(|&k| closer[k] >= WORN * thin).collect();
+        let worn: Vec<usize> = if all {
+            self.nearer.clear();
+            (0..self.members.len()).collect()
+        } else {
+            self.looks += 1;
+            let nearer = self.closer(grains);
+            (0..nearer.len()).filter(|&k| nearer[k] >= WORN * thin).collect()
+        };
         for &k in &worn {
             self.see(grains, k);
         }
-        let left = closer.into_iter().filter(|c| *c < WORN * thin).fold(0.0, f64::max);
+        let left = self.nearer.iter().copied().filter(|c| *c < WORN * thin).fold(0.0, f64::max);
         self.since = Seen::now(grains.travel, 0.5 * left);
         worn
     }
@@ -197,11 +212,13 @@ impl ListValidity {
     }
 
     /// How much closer two grains of a list can have come, for each slab [length].
-    fn closer(&self, grains: &Grains) -> Vec<f64> {
-        let mut ways = vec![[Ways::NONE; 2]; self.members.len()];
-        let shared = par::Shared::new(&mut ways);
-        par::for_rows(self.members.len(), |k| {
-            let ways = self.ways(grains, k);
+    fn closer(&mut self, grains: &Grains) -> &[f64] {
+        let mut ways = std::mem::take(&mut self.ways);
+        ways.clear();
+        ways.resize(self.members.len(), [Ways::NONE; 2]);
+        let (this, shared) = (&*self, par::Shared::new(&mut ways));
+        par::for_rows(this.members.len(), |k| {
+            let ways = this.ways(grains, k);
             // SAFETY: each part writes its own slab.
             unsafe { shared.get(k..k + 1)[0] = ways };
         });
@@ -209,7 +226,10 @@ impl ListValidity {
             Some(next) => own[0].join(ways[*next][1]).closer(),
             None => own[0].closer(),
         };
-        ways.iter().zip(&self.next).map(both).collect()
+        self.nearer.clear();
+        self.nearer.extend(ways.iter().zip(&self.next).map(both));
+        self.ways = ways;
+        &self.nearer
     }
 
     /// The ways of a slab's grains since its own list was made, and since that of the slab before.

@@ -50,7 +50,7 @@ pub struct Short {
 
 impl Short {
     /// Forgets the pairs. What stands in `history` stays there until it is written over.
-    fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.i.clear();
         self.w.clear();
         self.t.clear();
@@ -70,6 +70,13 @@ pub struct Slab {
     pub deep: bool,
     /// How many contacts there were in the last evaluation.
     pub touching: usize,
+}
+
+impl Slab {
+    /// What an evaluation has found so far.
+    pub(super) fn found(&mut self, virial: [f64; 6], deep: bool, touching: usize) {
+        (self.virial, self.deep, self.touching) = (virial, deep, touching);
+    }
 }
 
 /// How long it takes to evaluate a contact, in units of what it takes to find out that a listed pair does not touch.

@@ -16,6 +16,7 @@ mod memory;
 mod near;
 mod per_list;
 mod sweep;
+mod upkeep;
 
 use super::driver::Grains;
 use super::{Advance, ContactLaw, MOST_MEMORY};
@@ -30,7 +31,10 @@ use perigrain_base::par;
 use perigrain_neigh::list::small;
 use perigrain_neigh::slabs::{Slabs, edges, shift_of};
 use perigrain_world::contacts::Contacts;
+use upkeep::Upkeep;
 
+/// Lists of so many grains keep their room when they are made anew.
+const SMALL: usize = 1 << 15;
 /// How many grains at most: a place and an image share 32 bits.
 pub const MOST_GRAINS: usize = (1 << PLACE_BITS) - 1;
 /// The second skin in units of the first.
@@ -155,8 +159,10 @@ pub struct Fast<L> {
     lists: Vec<Slab>,
     /// How far a grain is shifted in each image, and 0; very far for what fills lists up.
     shifts: [[f64; 4]; 32],
-    /// The second skin [length].
+    /// The second skin [length]; infinite where short lists are the long ones.
     thin: f64,
+    /// What the second skin costs.
+    upkeep: Upkeep,
     /// How far apart surfaces of grains that stick together can be [length].
     span: f64,
     /// Whether long lists are younger than short ones.
@@ -173,6 +179,8 @@ pub struct Fast<L> {
     pub deep: Option<([u32; 2], f64)>,
     /// Room for new short lists.
     spare: Vec<Short>,
+    /// Room for the next evaluation list by list.
+    spare_per_list: (Vec<usize>, Vec<u8>),
 }
 
 impl<L: ContactLaw> Fast<L> {
@@ -192,6 +200,7 @@ impl<L: ContactLaw> Fast<L> {
             lists: vec![],
             shifts: [[0.0; 4]; 32],
             thin: 0.0,
+            upkeep: Upkeep::default(),
             span: 0.0,
             stale: true,
             now: 0.0,
@@ -200,6 +209,7 @@ impl<L: ContactLaw> Fast<L> {
             book: None,
             deep: None,
             spare: vec![],
+            spare_per_list: Default::default(),
         }
     }
 
@@ -247,9 +257,15 @@ impl<L: ContactLaw> Fast<L> {
         let large =
             || if edge == far { vec![] } else { self.find_large(grains, (frame.period, reach), keep) };
         let ((slabs, book), large) = par::both(|| par::both(sort, remember), large);
+        // Where several laws stick, who is listed decides which contacts are evaluated together.
+        let whole = self.laws.distinct.len() == 1 && self.upkeep.takes_whole(self.pairs());
         // The book has what they knew: room for what is made now.
-        self.lists.iter_mut().for_each(|l| l.short = Short::default());
-        self.spare = vec![];
+        if grains.x.len() > SMALL {
+            self.lists.iter_mut().for_each(|l| l.short = Short::default());
+            self.spare = vec![];
+        } else {
+            self.lists.iter_mut().for_each(|l| l.short.clear());
+        }
         self.validity.forget();
         self.validity_of_large.forget();
         self.turns = vec![];
@@ -260,7 +276,7 @@ impl<L: ContactLaw> Fast<L> {
             (0..3).for_each(|d| shift[d] = s[d] * frame.period[d]);
         }
         self.shifts[NOWHERE as usize][0] = FAR;
-        self.thin = THIN * frame.skin;
+        self.thin = if whole { f64::INFINITY } else { THIN * frame.skin };
         if edge == far {
             self.make_long(grains, &slabs, reach, keep);
         } else {
@@ -304,7 +320,11 @@ impl<L: ContactLaw> Fast<L> {
     /// `heat` is given.
     pub fn run(&mut self, grains: &Grains, sums: Sums, step: Advance, store: bool, virial: bool) -> [f64; 6] {
         self.begin(grains);
-        self.sweep(grains, sums, step, (store, virial), None);
+        if self.lists.iter().any(|l| !l.short.i.is_empty()) {
+            self.sweep(grains, sums, step, (store, virial), None);
+        } else {
+            self.lists.iter_mut().for_each(|l| l.found([0.0; 6], false, 0));
+        }
         if self.deep.is_none() && self.lists.iter().any(|l| l.deep) {
             self.deep = self.find_deep(grains, &self.lists);
         }
@@ -319,6 +339,7 @@ impl<L: ContactLaw> Fast<L> {
     /// Makes short lists where they are due.
     pub(super) fn begin(&mut self, grains: &Grains) {
         let stale = std::mem::take(&mut self.stale);
+        let looks = self.validity.looks + self.validity_of_large.looks;
         let mut strayed = self.validity.strayed(grains, self.thin, stale);
         let mut due = std::mem::take(&mut self.due);
         due.retain(|k| !strayed.contains(k));
@@ -326,14 +347,20 @@ impl<L: ContactLaw> Fast<L> {
         strayed.extend(due);
         let of_large = self.validity_of_large.strayed(grains, self.thin, stale);
         strayed.extend(of_large.into_iter().map(|k| self.validity.lists() + k));
+        let looks = self.validity.looks + self.validity_of_large.looks - looks;
+        let made = if stale { 0 } else { strayed.iter().map(|k| self.lists[*k].long.i.len()).sum() };
+        self.upkeep.step(made, looks * grains.x.len());
         self.make_short(grains, &strayed);
     }
 
-    /// Calls `f` for lists of these weights in two rounds, for those of slabs and then for those of large grains: a list may write to
-    /// its slab and the next one.
+    /// Calls `f` for lists of these weights (none where there is one thread) in two rounds, for those of slabs and then for those of
+    /// large grains: a list may write to its slab and the next one.
     fn each_list(&self, weights: &[usize], f: impl Fn(usize) + Sync) {
         let first = self.validity.lists();
-        par::neighbours(&weights[..first], &f);
+        match weights.get(..first) {
+            Some(weights) => par::neighbours(weights, &f),
+            None => par::two_colours(first, &f),
+        }
         par::two_colours(self.validity_of_large.lists(), |k| f(first + k));
     }
 

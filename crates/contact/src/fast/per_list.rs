@@ -33,9 +33,13 @@ impl<L: ContactLaw> Fast<L> {
     pub fn begin_per_list(&mut self, grains: &Grains, step: Advance, store: bool) -> PerList {
         self.begin(grains);
         let lists = self.validity.lists();
-        let mut to_come = vec![1; lists];
+        let (mut order, mut to_come) = std::mem::take(&mut self.spare_per_list);
+        order.clear();
+        order.extend(par::in_turn(lists));
+        to_come.clear();
+        to_come.resize(lists, 1);
         (0..lists).filter_map(|k| self.validity.next(k)).for_each(|next| to_come[next] += 1);
-        PerList { order: par::in_turn(lists).collect(), to_come, done: 0, step, store, deep: None }
+        PerList { order, to_come, done: 0, step, store, deep: None }
     }
 
     /// Adds forces and torques of one list more to `f` and `torque`; which grains have all of theirs now. `None` when all have.
@@ -48,6 +52,7 @@ impl<L: ContactLaw> Fast<L> {
         let Some(&k) = p.order.get(p.done) else {
             self.now += if p.store { 1.0 } else { 0.0 };
             self.deep = self.deep.or(p.deep);
+            self.spare_per_list = (std::mem::take(&mut p.order), std::mem::take(&mut p.to_come));
             return None;
         };
         p.done += 1;

@@ -93,7 +93,9 @@ impl<L: ContactLaw> Fast<L> {
     ) {
         let (width, form) = (self.width, self.form);
         let mut lists = std::mem::take(&mut self.lists);
-        let weights = if only.is_none() { weights(&lists) } else { vec![] };
+        // One thread takes lists as they come.
+        let shared = only.is_none() && par::threads() > 1;
+        let weights = if shared { weights(&lists) } else { vec![] };
         let slabs = par::Shared::new(&mut lists);
         let cx = Cx {
             laws: &self.laws,
@@ -116,10 +118,14 @@ impl<L: ContactLaw> Fast<L> {
             span: self.span,
         };
         let contacts = |k: usize| {
+            // SAFETY: each part writes its own slab.
+            let slab = unsafe { &mut slabs.get(k..k + 1)[0] };
+            if slab.short.i.is_empty() {
+                return slab.found([0.0; 6], false, 0);
+            }
             // SAFETY: each part writes its own slab, and forces of grains in it and the next one, which each_list keeps
             // apart; list entries are grains; AVX only where there is AVX.
             unsafe {
-                let slab = &mut slabs.get(k..k + 1)[0];
                 match width {
                     4 => form.run(Contacts::<L, 4> { cx: &cx, slab }),
                     8 => form.run(Contacts::<L, 8> { cx: &cx, slab }),
@@ -147,7 +153,7 @@ impl<L: ContactLaw, const W: usize> InLanes for Contacts<'_, '_, L, W> {
     #[inline(always)]
     unsafe fn run<const N: usize, V: Lanes<N>>(self) {
         let Self { cx, slab } = self;
-        (slab.virial, slab.deep, slab.touching) = ([0.0; 6], false, 0);
+        slab.found([0.0; 6], false, 0);
         let at = cx.places();
         let mut hits = [0; ROOM];
         let (mut count, mut k, end) = (0, 0, slab.short.i.len());

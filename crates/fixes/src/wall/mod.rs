@@ -3,6 +3,7 @@
 pub mod gran;
 pub mod mesh;
 mod op;
+mod peace;
 mod plastic;
 pub mod region;
 mod words;

@@ -1,5 +1,6 @@
 //! The op of a wall: who may touch it, contacts, forces, and what it feels.
 
+use super::peace::Peace;
 use super::plastic::Plastic;
 use super::{Common, Surface};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -16,7 +17,7 @@ use perigrain_world::field::{
     self, BOX, F, FACTS, LISTS, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, SLOTS, TAG, TORQUE, TRAVEL, V,
     WALL_CONTACTS, X,
 };
-use perigrain_world::{Key, Numbers, Seen, SlotId, Travel, World};
+use perigrain_world::{Key, Numbers, Seen, SlotId, World};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Columns of `contacts`: in contact or not, force, the wall's nearest point, radius.
@@ -80,49 +81,6 @@ impl Warmth {
                 .into());
         };
         Ok(Some(Self { wall, temperature, flow }))
-    }
-}
-
-/// While nobody goes farther than there was room at the last look, nobody touches the wall, and it is not looked at.
-#[derive(Default)]
-struct Peace {
-    /// The last look, and how far everybody may go.
-    seen: Option<(Seen, f64)>,
-    /// When it was.
-    since: i64,
-    /// How many steps in which nobody touches go by until the next look, and how many did before the last one.
-    wait: u32,
-    waited: u32,
-}
-
-/// To look takes as long as to find nobody touching: a look that saves fewer steps is not repeated soon.
-const WORTH: i64 = 8;
-/// The longest wait for the next look, in steps.
-const LONGEST_WAIT: u32 = 64;
-
-impl Peace {
-    fn lasts(&self, account: Travel) -> bool {
-        self.seen.is_some_and(|(seen, room)| seen.within(account, room))
-    }
-
-    fn end(&mut self) {
-        self.seen = None;
-    }
-
-    fn begin(&mut self, step: i64, seen: Seen, room: f64) {
-        (self.seen, self.since) = (Some((seen, room)), step);
-    }
-
-    /// Whether to look in this step, in which nobody touches.
-    fn is_worth_a_look(&mut self, step: i64) -> bool {
-        if self.seen.take().is_some() {
-            let short = step - self.since < WORTH;
-            self.waited = if short { (2 * self.waited + 1).min(LONGEST_WAIT) } else { 0 };
-            self.wait = self.waited;
-        }
-        let looks = self.wait == 0;
-        self.wait = self.wait.saturating_sub(1);
-        looks
     }
 }
 
