@@ -18,6 +18,15 @@ fn bound(f: &Figure) -> String {
     }
 }
 
+/// Numbers near one with digits, others with powers.
+fn number(v: f64) -> String {
+    match v.abs() {
+        0.0 => "0".to_string(),
+        0.01..1000.0 => format!("{v:.4}"),
+        _ => format!("{v:.1e}"),
+    }
+}
+
 fn cell(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
 }
@@ -67,7 +76,7 @@ pub fn markdown(sections: &[Section], rows: &[Vec<Row>], form: Form) -> String {
         for r in rows {
             let case = s.case.iter().find(|c| c.name == r.case).unwrap();
             let (figure, measured, limit) = match &r.figure {
-                Some(f) => (f.name.as_str(), r.value.map_or("none".into(), |v| format!("{v:.2e}")), bound(f)),
+                Some(f) => (f.name.as_str(), r.value.map_or("none".into(), |v| number(v)), bound(f)),
                 None => (REFUSED, r.said.clone(), format!("`{}`", case.says.join("`, `"))),
             };
             let flag = if r.met { "" } else { "**not met**" };

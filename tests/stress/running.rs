@@ -146,9 +146,10 @@ impl Task<'_> {
     }
 }
 
-/// The first error of a log, or all of it.
+/// The first error of a log without its numbers in brackets, or all that was said.
 fn message(said: &str) -> String {
-    said.lines().find_map(|l| Some(&l[l.find("error[")?..])).map_or(said.to_string(), str::to_string)
+    let first = said.lines().find_map(|l| Some(&l[l.find("error[")?..]));
+    first.map_or(said, |l| l.split(" (the first").next().unwrap_or(l)).to_string()
 }
 
 /// The numbers of the lines `measure NAME VALUE`.
