@@ -65,7 +65,8 @@ const BOOK: [&str; 2] = [
      - [Stability](stability.md)\n\
      - [Coming from LAMMPS](coming-from-lammps.md)\n\
      - [Decks of others](safe.md)\n\
-     - [How fast, and what limits it](speed.md)\n\n\
+     - [How fast, and what limits it](speed.md)\n\
+     - [What a step does without](skipping.md)\n\n\
      # The program inside\n\n\
      - [The house](architecture.md)\n\
      - [Decisions: crates](decisions/crates.md)\n\
