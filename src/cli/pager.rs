@@ -48,11 +48,11 @@ pub fn wrapped(text: &str, width: usize) -> String {
         if code || line.starts_with('|') || line.starts_with("  ") {
             out += line;
         } else {
-            let hang = if line.starts_with("- ") { "  " } else { "" };
-            out += &textwrap::fill(
-                line,
-                textwrap::Options::new(width).subsequent_indent(hang).break_words(false),
-            );
+            let options = textwrap::Options::new(width)
+                .subsequent_indent(if line.starts_with("- ") { "  " } else { "" })
+                .word_splitter(textwrap::WordSplitter::NoHyphenation)
+                .break_words(false);
+            out += &textwrap::fill(line, options);
         }
         out.push('\n');
     }

@@ -208,7 +208,7 @@ impl Task {
 
 /// A first word that is no deck and nearly a subcommand.
 fn mistyped(words: &[String]) -> Option<Usage> {
-    let first = words.first().filter(|word| !Path::new(word).exists())?;
+    let first = words.first().filter(|word| !args::is_switch(word) && !Path::new(word).exists())?;
     let command = Sub::command();
     let names = command.get_subcommands().map(clap::Command::get_name).chain(["help"]);
     let meant = nearest(first, names)?;

@@ -3,7 +3,7 @@
 use super::spatial;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
-use perigrain_plan::{About, BlockSums, Level, Needs, Op, Room, Stage, Tick};
+use perigrain_plan::{About, BlockSums, Level, Needs, Op, Room, Stage, Tick, Way};
 use perigrain_world::bonds::LostBond;
 use perigrain_world::columns::HEATFLOW;
 use perigrain_world::field::{COLUMNS, F, FACTS, FAMILIES, Fields, TAG, TALLY, TORQUE, TRAVEL, X, X0};
@@ -259,6 +259,7 @@ impl Op for ClearForces {
     fn about(&self) -> About {
         About {
             level: Level::Every,
+            fuses: true,
             ..About::new(
                 "clear forces",
                 Stage::PreForce,
@@ -283,14 +284,12 @@ impl Op for ClearForces {
         }
         Ok(())
     }
-    fn fuses(&self) -> bool {
-        true
-    }
-    fn fusible(&self, _: &World, t: &Tick, room: &mut Room) -> bool {
+    fn way(&mut self, _: &mut World, t: &Tick, room: &mut Room) -> Way {
         if t.on {
             room.clear();
+            return Way::Blocks;
         }
-        t.on
+        Way::Alone
     }
     fn fused(&mut self, w: &mut World, _: &Tick, _: BlockSums) {
         w.parts.cleared = true;

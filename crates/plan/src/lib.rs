@@ -23,5 +23,5 @@ pub use guard::{Energy, Guard, Rule};
 pub use level::{Level, Phase, Solids};
 pub use meter::Meter;
 pub use needs::Needs;
-pub use op::{About, Op, OpClass, Stage, Tick, When};
+pub use op::{About, Op, OpClass, Stage, Tick, Way, When};
 pub use schedule::{LeftOut, Placed, StepPlan};

@@ -278,6 +278,8 @@ pub struct About {
     pub level: Level,
     /// Whether it tells the world's account ([`Travel`](perigrain_world::Travel)) how far it moves particles in whole steps.
     pub reports_travel: bool,
+    /// Whether it may act on blocks of particles ([`Way::Blocks`]); it never rests then.
+    pub fuses: bool,
     /// Whether `run` can begin the next step as well, where [`Tick::on`] asks for it.
     pub goes_on: bool,
     /// Whether it acts too where a run is ended from outside before its last step: what saves the run.
@@ -297,7 +299,7 @@ impl About {
             _ => OpClass::Modify,
         };
         let (when, in_setup, level) = (When::Always, stage.in_setup(), Level::Outermost);
-        let (reports_travel, goes_on, at_parting) = (false, false, false);
+        let (reports_travel, fuses, goes_on, at_parting) = (false, false, false, false);
         Self {
             name: name.into(),
             stage,
@@ -306,11 +308,23 @@ impl About {
             in_setup,
             level,
             reports_travel,
+            fuses,
             goes_on,
             at_parting,
             class,
         }
     }
+}
+
+/// How an op acts at one tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// By itself, through [`Op::run`].
+    Alone,
+    /// On each particle by itself: such ops are fused into one pass over blocks of particles.
+    Blocks,
+    /// Not at all, as it knows without looking at particles; what it tells stands. It is left out.
+    Rests,
 }
 
 /// One thing a step does. Ops own scratch only; whatever outlives a step lives in `World`.
@@ -337,19 +351,9 @@ pub trait Op: Send {
     ) -> Result<bool> {
         self.run(w, t).map(|()| false)
     }
-    /// Whether it may act on blocks of particles; who never does is not asked in each step.
-    fn fuses(&self) -> bool {
-        false
-    }
-    /// Puts what it does to blocks of particles at this tick into its room, where it acts on each particle by itself: such ops are
-    /// fused into one pass. `false` if it cannot.
-    fn fusible(&self, _w: &World, _t: &Tick, _room: &mut Room) -> bool {
-        false
-    }
-    /// Whether it would do nothing to the particles at this tick, as it knows without looking at them, and what it tells stands:
-    /// then it is left out.
-    fn rests(&mut self, _w: &mut World, _t: &Tick) -> bool {
-        false
+    /// How it acts at this tick. What it does to blocks of particles goes into the room, where it says [`Way::Blocks`].
+    fn way(&mut self, _w: &mut World, _t: &Tick, _room: &mut Room) -> Way {
+        Way::Alone
     }
     /// Takes what came of all blocks.
     fn fused(&mut self, _w: &mut World, _t: &Tick, _sums: BlockSums) {}

@@ -3,7 +3,7 @@
 use super::ending::Ending;
 use super::fuse::{Room, Waiting};
 use super::schedule::{begin_watch, end_watch};
-use super::{Acts, BlockSums, FusedPass, Stage, StepPlan, Tick, fuse, needs};
+use super::{Acts, BlockSums, FusedPass, Stage, StepPlan, Tick, Way, fuse, needs};
 use perigrain_base::diag::Result;
 use perigrain_world::World;
 use std::time::Duration;
@@ -66,8 +66,7 @@ impl StepPlan {
     ) -> Result<bool> {
         let order = &ending.order[..];
         let Some(force) = ending.force.filter(|_| !needs::collecting()) else { return Ok(false) };
-        let mut alike = |k: &usize| self.ops[*k].op.fuses() || self.ops[*k].op.rests(w, t);
-        if order.is_empty() || !order.iter().all(&mut alike) {
+        if order.is_empty() || !order.iter().all(|k| self.ops[*k].about.fuses || self.rests(w, t, *k)) {
             return Ok(false);
         }
         begin_watch(w);
@@ -117,6 +116,11 @@ impl StepPlan {
         }
     }
 
+    /// Whether an op that acts on no blocks is left out at this tick.
+    fn rests(&mut self, w: &mut World, t: &Tick, k: usize) -> bool {
+        self.ops[k].op.way(w, t, &mut Room::default()) == Way::Rests
+    }
+
     /// Collects what these ops, from the first on, do to blocks of particles; who rests is passed over. The last kick of the step
     /// goes on into the next one, and what clears forces then, if there is one. How many ops that are, and the last kick if it goes
     /// on.
@@ -136,20 +140,19 @@ impl StepPlan {
                 (last, asked) = (ending.last.filter(|_| self.begun || more(w)), true);
             }
             let (p, room) = (&mut self.ops[k], &mut self.rooms.acts[k]);
-            let acts = p.op.fuses()
-                && match turns && last.is_some() {
-                    true => {
-                        let on = on.get_or_insert_with(|| Tick { on: true, ..t.clone() });
-                        p.op.fusible(w, on, room)
-                    }
-                    false => p.op.fusible(w, t, room),
-                };
-            if acts {
-                self.rooms.ops.push(k);
-            } else if !turns && !needs::collecting() && p.op.rests(w, t) {
-                p.meter.calls += 1;
-            } else {
-                return (at, last);
+            let way = match turns && last.is_some() {
+                true => {
+                    let on = on.get_or_insert_with(|| Tick { on: true, ..t.clone() });
+                    p.op.way(w, on, room)
+                }
+                // Who says what it does is asked for all of it.
+                false if needs::collecting() && !p.about.fuses => Way::Alone,
+                false => p.op.way(w, t, room),
+            };
+            match way {
+                Way::Blocks => self.rooms.ops.push(k),
+                Way::Rests => p.meter.calls += 1,
+                Way::Alone => return (at, last),
             }
             if needs::collecting() {
                 return (at + 1, last);

@@ -2,7 +2,7 @@
 
 use perigrain_base::diag::Result;
 use perigrain_base::par;
-use perigrain_plan::{About, Acts, BlockSums, Level, Needs, Op, Room, Stage, Tick, When, fuse};
+use perigrain_plan::{About, Acts, BlockSums, Level, Needs, Op, Room, Stage, Tick, Way, When, fuse};
 use perigrain_world::field::Fields;
 use perigrain_world::field::SLOTS;
 use perigrain_world::{GroupId, Slot, SlotId, World};
@@ -100,7 +100,7 @@ where
     F: FnMut(&mut World, &Tick) -> Result<()> + Send,
 {
     fn about(&self) -> About {
-        self.about.clone()
+        About { fuses: self.fusing.is_some(), ..self.about.clone() }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if let Some(Fusing { offer, took, alone: (room, came) }) = &mut self.fusing
@@ -112,11 +112,11 @@ where
         }
         (self.act)(w, t)
     }
-    fn fuses(&self) -> bool {
-        self.fusing.is_some()
-    }
-    fn fusible(&self, w: &World, t: &Tick, room: &mut Room) -> bool {
-        self.fusing.as_ref().is_some_and(|fusing| (fusing.offer)(w, t, room))
+    fn way(&mut self, w: &mut World, t: &Tick, room: &mut Room) -> Way {
+        match &self.fusing {
+            Some(fusing) if (fusing.offer)(w, t, room) => Way::Blocks,
+            _ => Way::Alone,
+        }
     }
     fn fused(&mut self, w: &mut World, t: &Tick, sums: BlockSums) {
         if let Some(fusing) = &mut self.fusing {

@@ -9,7 +9,7 @@ use perigrain_base::par;
 use perigrain_contact::driver::DEEP;
 use perigrain_contact::walls::{Spheres, WallSweep};
 use perigrain_contact::{Advance, Granular};
-use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
+use perigrain_plan::{About, Needs, Op, Room, Stage, Tick, Way, When};
 use perigrain_styles::{Reading, SealCx};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::contacts::Contacts;
@@ -414,7 +414,7 @@ impl Op for WallOp {
         Ok(())
     }
 
-    fn rests(&mut self, w: &mut World, t: &Tick) -> bool {
+    fn way(&mut self, w: &mut World, t: &Tick, _room: &mut Room) -> Way {
         let rests = !t.setup
             && !t.unchanged
             && self.peace.lasts(*w.travel)
@@ -424,7 +424,7 @@ impl Op for WallOp {
             w.slots.get_mut(self.slot).step = Some(t.step);
             debug_assert!(self.room(w) > 0.0, "{} rests and is touched", self.name);
         }
-        rests
+        if rests { Way::Rests } else { Way::Alone }
     }
 
     fn finish(&mut self, w: &mut World) -> Result<()> {
