@@ -12,7 +12,7 @@ fn bound(f: &Figure) -> String {
     match (f.least, f.most) {
         (Some(a), Some(b)) => format!("{a} … {b}"),
         (Some(a), None) => format!("≥ {a}"),
-        (None, Some(b)) if b == 0.0 => "0".to_string(),
+        (None, Some(0.0)) => "0".to_string(),
         (None, Some(b)) => format!("≤ {b:.1e}"),
         (None, None) => "is a number".to_string(),
     }
@@ -76,7 +76,7 @@ pub fn markdown(sections: &[Section], rows: &[Vec<Row>], form: Form) -> String {
         for r in rows {
             let case = s.case.iter().find(|c| c.name == r.case).unwrap();
             let (figure, measured, limit) = match &r.figure {
-                Some(f) => (f.name.as_str(), r.value.map_or("none".into(), |v| number(v)), bound(f)),
+                Some(f) => (f.name.as_str(), r.value.map_or("none".into(), number), bound(f)),
                 None => (REFUSED, r.said.clone(), format!("`{}`", case.says.join("`, `"))),
             };
             let flag = if r.met { "" } else { "**not met**" };

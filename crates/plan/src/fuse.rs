@@ -439,7 +439,8 @@ mod tests {
         let pull: &dyn Fn(&mut Room) = &|room| room.pull(Pull { bit: 1, a: [0.0; 3] }, none);
         let hold: &dyn Fn(&mut Room) = &|room| room.hold(2, none);
         let moving: &dyn Fn(&mut Room) = &|room| room.moving(|_, _| [BlockSums::default(); 3]);
-        let (other, clear): (&dyn Fn(&mut Room), &dyn Fn(&mut Room)) = (&|room| room.act(none), &Room::clear);
+        let other: &dyn Fn(&mut Room) = &|room| room.act(none);
+        let clear: &dyn Fn(&mut Room) = &Room::clear;
         assert_eq!(told(&[pull, hold, moving, clear]), ["0+1+2+c"]);
         assert_eq!(told(&[hold, pull, moving, clear]), ["0", "1+2+c"]);
         assert_eq!(told(&[pull, pull, hold, moving]), ["0", "1+2+3+"]);
