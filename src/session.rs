@@ -39,7 +39,7 @@ pub use commands::OWN;
 pub use embed::{Column, Global, Newcomers, Order, Rows, Told};
 pub use interactive::{Heard, Known, Snapshot};
 pub use measuring::Worked;
-use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Sources, Span, fail, nearest};
+use perigrain_base::diag::{Code, Diagnostics, FileId, Result, Sources, Span, fail};
 pub use perigrain_base::par::{set_threads, threads};
 use perigrain_commands::COMMANDS;
 use perigrain_lang::{Command, Flow, Line, Partition, Script, Vars};
@@ -458,7 +458,7 @@ impl Session {
         } else if let Some(style) = COMMANDS.iter().find(|c| c.name() == name) {
             self.act(cmd, *style)?;
         } else if !self.own_command(cmd)? {
-            return Err(unknown_command(cmd));
+            return Err(belongs::unknown_command(cmd));
         }
         Ok(None)
     }
@@ -483,25 +483,6 @@ impl Session {
         self.record(cmd, Role::Declare, declared.provides, uses.into_inner(), vec![]);
         Ok(())
     }
-}
-
-fn unknown_command(cmd: &Command) -> Diagnostics {
-    let name = cmd.name.text.as_str();
-    if commands::LAMMPS_ONLY.contains(&name) {
-        return Diagnostic::error(
-            Code::NOT_SUPPORTED,
-            cmd.name.span,
-            format!("`{name}` is a LAMMPS command that perigrain does not have yet"),
-        )
-        .into();
-    }
-    let known = COMMANDS.iter().map(|c| c.name()).chain(DECLARATIONS).chain(commands::OWN.iter().copied());
-    let d = Diagnostic::error(Code::UNKNOWN_COMMAND, cmd.name.span, format!("unknown command `{name}`"));
-    match nearest(name, known) {
-        Some(n) => d.help(format!("did you mean `{n}`?")),
-        None => d,
-    }
-    .into()
 }
 
 /// The folder a deck's relative names refer to: its own.

@@ -22,7 +22,7 @@ fn new_decks_run_as_they_stand() {
     // Grains take 100,000 steps to come to rest: ten of them are enough here.
     for (kind, fewer) in [("crack", &[][..]), ("pour", &["-var", "n", "10"]), ("bonded", &[])] {
         let deck = format!("in.{kind}");
-        let o = perigrain(folder.path(), &["new", &deck, "--kind", kind]);
+        let o = perigrain(folder.path(), &["new", &deck, "-kind", kind]);
         assert_eq!(out(&o), format!("run it: perigrain {deck}\n"), "{}", err(&o));
         let o = perigrain(folder.path(), &[&[&deck, "-log", "none"], fewer].concat());
         assert_eq!((o.status.code(), err(&o).as_str()), (Some(0), ""), "{kind}: {}", out(&o));

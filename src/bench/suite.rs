@@ -5,7 +5,7 @@
 use super::norm::Norm;
 use super::reference::Against;
 use super::{Bench, Measure, PROGRAM};
-use crate::heads;
+use crate::heads::{self, Headed};
 use crate::session::axes::Axis;
 use crate::sweep::{Deck, Settings, Sweep, lammps};
 use perigrain_base::diag::Result;
@@ -96,12 +96,8 @@ pub struct Manner {
     pub telling: bool,
 }
 
-impl Case {
-    /// Reads a deck's first lines.
-    ///
-    /// # Errors
-    /// What is wrong with them.
-    pub fn read(name: &str, deck: &str) -> std::result::Result<Self, String> {
+impl Headed for Case {
+    fn read(name: &str, deck: &str) -> std::result::Result<Self, String> {
         let mut case: Self = heads::read(name, deck)?;
         (case.name, case.deck) = (name.into(), deck.into());
         let unknown = |m: &Wanted| m.norm.as_deref().is_some_and(|n| Norm::named(n).is_none());
@@ -114,19 +110,16 @@ impl Case {
         }
     }
 
-    /// The cases whose name or title holds a text, whatever its case; all for an empty one.
-    ///
-    /// # Errors
-    /// A case whose first lines cannot be read.
-    pub fn chosen(text: &str) -> std::result::Result<Vec<Self>, String> {
-        let wanted = text.to_lowercase();
-        let all = DECKS.iter().map(|(name, deck)| Self::read(name, deck));
-        let holds = |case: &Self| {
-            case.name.to_lowercase().contains(&wanted) || case.title.to_lowercase().contains(&wanted)
-        };
-        Ok(all.collect::<std::result::Result<Vec<Self>, String>>()?.into_iter().filter(holds).collect())
+    fn name(&self) -> &str {
+        &self.name
     }
 
+    fn title(&self) -> &str {
+        &self.title
+    }
+}
+
+impl Case {
     /// Whether a LAMMPS that is there runs this case too.
     pub fn has_lammps(&self, manner: &Manner) -> bool {
         manner.lammps.is_some() && self.lammps.no.is_none()
@@ -178,7 +171,7 @@ mod tests {
 
     #[test]
     fn every_case_can_be_read_and_has_words_for_its_knobs() {
-        let cases = Case::chosen("").unwrap();
+        let cases = heads::chosen::<Case>(DECKS, "").unwrap();
         assert_eq!(cases.len(), DECKS.len());
         for case in &cases {
             for knob in &case.knob {
@@ -187,7 +180,7 @@ mod tests {
                 assert!(case.deck.lines().any(defines), "{}: {words:?}", case.name);
             }
         }
-        assert_eq!(Case::chosen("OBLIQUE").unwrap().len(), 1);
+        assert_eq!(heads::chosen::<Case>(DECKS, "OBLIQUE").unwrap().len(), 1);
         assert!(Case::read("x", "#| title = \"t\"\n").is_err());
     }
 }

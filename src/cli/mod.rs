@@ -2,6 +2,7 @@
 
 pub mod args;
 mod benching;
+mod cases;
 pub mod checking;
 pub mod deck;
 mod examples;

@@ -156,6 +156,9 @@ enum Sub {
     },
 }
 
+/// Subcommands that take a deck and LAMMPS' switches, which are not clap's to read.
+const WITH_DECKS: [&str; 6] = ["run", "repl", "check", "plan", "sweep", "bench"];
+
 /// Reads the command line without the program's name.
 ///
 /// # Errors
@@ -206,6 +209,15 @@ impl Task {
     }
 }
 
+/// The words of the command line with two dashes where LAMMPS' switches have one.
+fn with_two_dashes(words: &mut [String]) {
+    for word in words {
+        if word.strip_prefix('-').is_some_and(|name| name.starts_with(|c: char| c.is_ascii_alphabetic())) {
+            word.insert(0, '-');
+        }
+    }
+}
+
 /// A first word that is no deck and nearly a subcommand.
 fn mistyped(words: &[String]) -> Option<Usage> {
     let first = words.first().filter(|word| !args::is_switch(word) && !Path::new(word).exists())?;
@@ -236,11 +248,11 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
     if ["plan", "check"].contains(&words[0].as_str()) {
         words[1..].sort_by_key(|w| !matches!(w.as_str(), "--measure" | "--dot" | "--json"));
     }
-    if words[0] == "verify" {
-        verifying::with_two_dashes(&mut words);
+    let suite = words[0] == "bench" && words.iter().any(|w| w.trim_start_matches('-') == "suite");
+    if suite || !WITH_DECKS.contains(&words[0].as_str()) {
+        with_two_dashes(&mut words);
     }
-    if words[0] == "bench" && words.iter().any(|w| w.trim_start_matches('-') == "suite") {
-        verifying::with_two_dashes(&mut words);
+    if suite {
         return benching::suite::Wanted::try_parse_from(words).map(Task::Suite).or_else(|e| unread(&e));
     }
     let sub = match Sub::try_parse_from(std::iter::once("perigrain".to_string()).chain(words)) {

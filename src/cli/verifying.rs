@@ -1,13 +1,12 @@
 //! The subcommand `verify`: published cases, run here, with a verdict.
 
 use super::args::Usage;
-use super::{FAILED, OK, show};
+use super::{FAILED, OK, cases, show};
 use crate::session;
+use crate::verify::DECKS;
 use crate::verify::case::Case;
 use crate::verify::report::{self, Report};
 use crate::verify::running::run_all;
-use crate::verify::{DECKS, chosen};
-use perigrain_base::diag::nearest;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -40,21 +39,13 @@ pub struct Wanted {
     pub markdown: Option<PathBuf>,
 }
 
-/// The words of the command line with two dashes where LAMMPS' switches have one.
-pub fn with_two_dashes(words: &mut [String]) {
-    for word in words {
-        if word.strip_prefix('-').is_some_and(|name| name.starts_with(|c: char| c.is_ascii_alphabetic())) {
-            word.insert(0, '-');
-        }
-    }
-}
-
 /// Runs what is wanted; the exit code says whether every number is the field's.
 ///
 /// # Errors
 /// A pattern that no case has, a file that cannot be written.
 pub fn verify(wanted: &Wanted) -> Result<u8, Usage> {
-    let cases = named(wanted.only.as_deref().unwrap_or_default())?;
+    let pattern = wanted.only.as_deref().unwrap_or_default();
+    let cases = cases::named(DECKS, pattern, "perigrain verify -list")?;
     if wanted.list {
         show(&report::list(&cases));
         return Ok(OK);
@@ -80,18 +71,6 @@ fn judged(cases: Vec<Case>, wanted: &Wanted) -> Result<u8, Usage> {
     Ok(if report.is_well() { OK } else { FAILED })
 }
 
-fn named(pattern: &str) -> Result<Vec<Case>, Usage> {
-    let cases = chosen(pattern).map_err(|message| Usage { message, help: None })?;
-    if !cases.is_empty() {
-        return Ok(cases);
-    }
-    let last = |name: &'static str| name.rsplit('/').next().unwrap_or(name);
-    let near = nearest(pattern, DECKS.iter().flat_map(|(name, _)| [*name, last(name)]));
-    let near = near.map(|name| format!("did you mean `{name}`? "));
-    let help = format!("{}`perigrain verify -list` lists all", near.unwrap_or_default());
-    Err(Usage { message: format!("no case has `{pattern}` in its name or title"), help: Some(help) })
-}
-
 /// Writes the reports that are asked for.
 fn write(wanted: &Wanted, report: &Report) -> Result<(), Usage> {
     type Make = fn(&Report) -> String;
@@ -112,6 +91,7 @@ fn write(wanted: &Wanted, report: &Report) -> Result<(), Usage> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::heads::Headed;
 
     #[test]
     fn a_wrong_expectation_is_the_exit_code() {

@@ -42,6 +42,8 @@ pub struct Sealer<'a> {
     pub tallies: Option<Span>,
     /// The level of steps that the present fix has been given.
     chosen: Option<usize>,
+    /// The bit of the group that the present fix acts on; 0 where no fix is present.
+    group: u32,
 }
 
 impl<'a> Sealer<'a> {
@@ -61,6 +63,7 @@ impl<'a> Sealer<'a> {
             asking: Span::default(),
             tallies: None,
             chosen: None,
+            group: 0,
         }
     }
 
@@ -86,10 +89,12 @@ impl<'a> Sealer<'a> {
         }
     }
 
-    /// What follows belongs to the fix declared at `span`, which has been given a level of steps or not.
-    pub fn at_fix(&mut self, span: Span, level: Option<usize>) {
-        self.span = span;
+    /// What follows belongs to the fix declared at `span`, which has been given a level of steps or not and acts on the group with
+    /// this bit.
+    pub fn at_fix(&mut self, span: Span, level: Option<usize>, group: u32) {
+        self.at(span);
         self.chosen = level.filter(|_| self.plan.levels.is_some());
+        self.group = group;
     }
 
     /// Notes the parts of a full step that this scene does without.
@@ -154,7 +159,7 @@ impl<'a> Sealer<'a> {
 
     /// What follows belongs to the line at `span`.
     pub fn at(&mut self, span: Span) {
-        self.at_fix(span, None);
+        (self.span, self.chosen, self.group) = (span, None, 0);
     }
 
     /// What follows is planned for the word at `span`, unless it is for a compute or variable that is being planned itself.
@@ -295,8 +300,10 @@ impl<'a> Sealer<'a> {
         let declared = self.declared();
         let (name, variable, span) = (format!("variable {}", r.name), r.name.clone(), r.span);
         let asks_forces = asks_forces(&vars, &variable);
+        // What a compute reads of particles is that of all.
+        let group = if self.trail.iter().any(|name| name.starts_with("c_")) { 0 } else { self.group };
         let slot = self.evaluate(&format!("v_{}", r.name), stage, when, |slot| {
-            Box::new(Evaluate { declared, name, variable, span, vars, from, slot, stage, asks_forces })
+            Box::new(Evaluate { declared, name, variable, span, vars, from, slot, stage, asks_forces, group })
         });
         self.world.slots.get_mut(slot).offers = shape.offers();
         Ok(match r.index.as_slice() {

@@ -85,6 +85,8 @@ pub(super) struct Evaluate {
     pub(super) stage: Stage,
     /// Whether its formula names forces or torques.
     pub(super) asks_forces: bool,
+    /// The bit of the group that the reading fix acts on; 0 where no fix reads it.
+    pub(super) group: u32,
 }
 
 /// Whether a variable's formula, or that of one it names, has a word for forces or torques in it.
@@ -105,14 +107,18 @@ pub(super) fn asks_forces(vars: &Vars, name: &str) -> bool {
 }
 
 impl Evaluate {
-    /// Refuses values that would put something other than numbers into the scene.
+    /// Refuses values that would put something other than numbers into the scene: formulas need not hold for particles that the
+    /// reading fix does not act on.
     fn must_be_numbers(&self, w: &World, value: &Value) -> Result<()> {
         let bad = match value {
             Value::Number(a) if a.is_nan() => (*a, None),
-            Value::Atom(list) => match list.iter().position(|a| !a.is_finite()) {
-                Some(i) => (list[i], w.particles.tag.get(i).copied()),
-                None => return Ok(()),
-            },
+            Value::Atom(list) => {
+                let acted_on = w.particles.mask.iter().map(|mask| mask & self.group != 0);
+                match list.iter().zip(acted_on).position(|(a, acted_on)| acted_on && !a.is_finite()) {
+                    Some(i) => (list[i], w.particles.tag.get(i).copied()),
+                    None => return Ok(()),
+                }
+            }
             _ => return Ok(()),
         };
         Err(no_number(format_args!("v_{}", self.variable), bad.0, bad.1, self.span).into())

@@ -1,7 +1,8 @@
-//! A word that is unknown where it stands, and known elsewhere, is told where it belongs.
+//! Words that nobody knows where they stand: what is like them, and where they belong if they are known elsewhere.
 
+use super::commands;
 use crate::graph::catalogue::styles;
-use perigrain_base::diag::{Code, Diagnostic, Diagnostics};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, nearest};
 use perigrain_contact::{Damping, Friction, normal};
 use perigrain_lang::{Command, Word};
 
@@ -46,6 +47,26 @@ fn at_fault<'c>(d: &Diagnostic, cmd: &'c Command) -> Option<&'c Word> {
 fn instead(mut d: Diagnostic, home: String) -> Diagnostic {
     d.help.retain(|help| !help.starts_with("known") && !help.starts_with("did you mean"));
     d.help(home)
+}
+
+/// The refusal of a line whose first word is no command.
+pub(super) fn unknown_command(cmd: &Command) -> Diagnostics {
+    let name = cmd.name.text.as_str();
+    if commands::LAMMPS_ONLY.contains(&name) {
+        return Diagnostic::error(
+            Code::NOT_SUPPORTED,
+            cmd.name.span,
+            format!("`{name}` is a LAMMPS command that perigrain does not have yet"),
+        )
+        .into();
+    }
+    let known = styles("command").unwrap_or_default();
+    let d = Diagnostic::error(Code::UNKNOWN_COMMAND, cmd.name.span, format!("unknown command `{name}`"));
+    match nearest(name, known) {
+        Some(n) => d.help(format!("did you mean `{n}`?")),
+        None => d,
+    }
+    .into()
 }
 
 /// Where a word belongs that `command` does not know.

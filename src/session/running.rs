@@ -232,7 +232,7 @@ impl Session {
         crate::graph::dynamic::seal(&mut s)?;
         let all = s.facts().filter(|(_, facts)| !minimizing || facts.minimizing == Minimizing::Acts);
         for (f, _) in all.collect::<Vec<_>>() {
-            s.at_fix(f.span, f.level);
+            s.at_fix(f.span, f.level, f.group.bit());
             let ops = f.fix.ops(&mut s)?;
             let stages = ledger::stages(&ops);
             s.add(ops, f.span);

@@ -3,7 +3,7 @@
 //! Lines that begin with `#|` are together a TOML document; for the deck they are comments, so that a case runs by itself, too.
 
 use super::running::Point;
-use crate::heads;
+use crate::heads::{self, Headed};
 use crate::plot::{self, BLUE, Chart, GREY, Look};
 use serde::Deserialize;
 
@@ -143,12 +143,8 @@ fn closed_form() -> String {
     "closed form".into()
 }
 
-impl Case {
-    /// Reads a deck's first lines.
-    ///
-    /// # Errors
-    /// What is wrong with them.
-    pub fn read(name: &str, deck: &str) -> Result<Self, String> {
+impl Headed for Case {
+    fn read(name: &str, deck: &str) -> Result<Self, String> {
         let mut case: Self = heads::read(name, deck)?;
         case.name = name.into();
         case.deck = deck.into();
@@ -159,6 +155,16 @@ impl Case {
         }
     }
 
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn title(&self) -> &str {
+        &self.title
+    }
+}
+
+impl Case {
     /// What is wrong with a check.
     fn fault(&self, check: &Check) -> Option<String> {
         let what = &check.what;

@@ -4,8 +4,6 @@ pub mod case;
 pub mod report;
 pub mod running;
 
-use case::Case;
-
 macro_rules! decks {
     ($($name:literal,)*) => {
         &[$(($name, include_str!(concat!("cases/", $name, ".in")))),*]
@@ -51,16 +49,3 @@ pub const DECKS: &[(&str, &str)] = decks![
     "bonded/stiffness",
     "bonded/pressed_pair",
 ];
-
-/// The cases whose name or title holds a text, whatever its case; all for an empty one.
-///
-/// # Errors
-/// A case whose first lines cannot be read.
-pub fn chosen(text: &str) -> Result<Vec<Case>, String> {
-    let wanted = text.to_lowercase();
-    let all = DECKS.iter().map(|(name, deck)| Case::read(name, deck));
-    let holds = |case: &Case| {
-        case.name.to_lowercase().contains(&wanted) || case.title.to_lowercase().contains(&wanted)
-    };
-    Ok(all.collect::<Result<Vec<Case>, String>>()?.into_iter().filter(holds).collect())
-}

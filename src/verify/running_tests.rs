@@ -1,6 +1,7 @@
 //! Verdicts on small decks: what passes, what fails, what is known, and decks that do not come to their end.
 
 use super::*;
+use crate::heads::{self, Headed};
 
 /// A case of these lines, with a deck that knows seven.
 fn case(head: &str, deck: &str) -> Case {
@@ -87,7 +88,8 @@ fn heads_that_make_no_sense_are_refused() {
 
 #[test]
 fn every_case_of_the_program_can_be_read() {
-    let cases = crate::verify::chosen("").unwrap();
+    let chosen = |text: &str| heads::chosen::<Case>(crate::verify::DECKS, text).unwrap();
+    let cases = chosen("");
     assert_eq!(cases.len(), crate::verify::DECKS.len());
     for case in &cases {
         assert!(
@@ -96,5 +98,5 @@ fn every_case_of_the_program_can_be_read() {
             case.name
         );
     }
-    assert!(crate::verify::chosen("CHUNG").unwrap().len() < cases.len() + 1);
+    assert!((1..cases.len()).contains(&chosen("CHUNG").len()));
 }

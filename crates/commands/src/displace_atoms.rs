@@ -125,7 +125,7 @@ fn displace(cx: &mut ActCx, group: GroupId, motion: &Motion, spacing: [f64; 3]) 
             // One direction after the other: a variable for y sees the shift in x already, as in LAMMPS.
             let before = cx.world.particles.x.clone();
             for (d, param) in params.iter().enumerate() {
-                match cx.per_atom(param) {
+                match cx.per_atom_of(param, &members) {
                     Ok(by) => members.iter().for_each(|&i| cx.world.particles.x[i][d] += spacing[d] * by[i]),
                     Err(e) => {
                         cx.world.particles.x = before;

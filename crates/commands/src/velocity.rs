@@ -136,7 +136,7 @@ fn apply(cx: &mut ActCx, group: GroupId, action: &Action, o: &Options) -> Result
             for (d, value) in values.iter().enumerate() {
                 let Some(value) = value else { continue };
                 let factor = if matches!(value, Param::Number(_)) { scale[d] } else { 1.0 };
-                let v = cx.per_atom(value)?;
+                let v = cx.per_atom_of(value, &members.list)?;
                 for &i in &members.list {
                     let old = if o.sum { cx.world.particles.v[i][d] } else { 0.0 };
                     cx.world.particles.v[i][d] = old + factor * v[i];

@@ -6,6 +6,7 @@
 // Units stand in brackets in doc comments, as [length]; they are no links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+pub mod acts;
 mod ending;
 pub mod explain;
 pub mod fuse;
@@ -18,7 +19,8 @@ pub mod run;
 pub mod schedule;
 mod step;
 
-pub use fuse::{Acts, Beside, BlockSums, FusedPass, ParticleBlock, Pull, Room, fuse};
+pub use acts::{Acts, Beside, BlockSums, ParticleBlock, Pull, Room};
+pub use fuse::{FusedPass, fuse};
 pub use guard::{Energy, Guard, Rule};
 pub use level::{Level, Phase, Solids};
 pub use meter::Meter;

@@ -1,6 +1,6 @@
 //! What a step is made of: ops, their stage, what they read and write, and when they act.
 
-use super::fuse::{BlockSums, Room};
+use super::acts::{BlockSums, Room};
 use super::{Level, Needs, Phase};
 use perigrain_base::diag::Result;
 use perigrain_world::{Fields, World};

@@ -1,7 +1,8 @@
 //! One step of a plan up to its outputs: ops that act on each particle by itself go over the particles together.
 
+use super::acts::Room;
 use super::ending::Ending;
-use super::fuse::{Room, Waiting};
+use super::fuse::Waiting;
 use super::schedule::{begin_watch, end_watch};
 use super::{Acts, BlockSums, FusedPass, Stage, StepPlan, Tick, Way, fuse, needs};
 use perigrain_base::diag::Result;

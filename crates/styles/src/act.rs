@@ -122,18 +122,24 @@ impl ActCx<'_> {
     /// The value of a parameter for each particle now.
     ///
     /// # Errors
-    /// As `Values::per_atom`, and values that are no finite numbers.
+    /// As `Values::per_atom`.
     pub fn per_atom(&mut self, p: &Param) -> Result<Vec<f64>> {
         match p {
             Param::Number(a) => Ok(vec![*a; self.world.n()]),
-            Param::Ref(r) => {
-                let values = self.values.per_atom(self.world, r)?;
-                let tag = |i: usize| self.world.particles.tag.get(i).copied();
-                match values.iter().position(|a| !a.is_finite()) {
-                    Some(i) => Err(no_number(r, values[i], tag(i), r.span).into()),
-                    None => Ok(values),
-                }
-            }
+            Param::Ref(r) => self.values.per_atom(self.world, r),
+        }
+    }
+
+    /// As [`ActCx::per_atom`], of which the values of these particles (places) go into the scene; formulas need not hold for others.
+    ///
+    /// # Errors
+    /// As `Values::per_atom`, and a value of one of them that is no finite number.
+    pub fn per_atom_of(&mut self, p: &Param, chosen: &[usize]) -> Result<Vec<f64>> {
+        let values = self.per_atom(p)?;
+        let tag = |i: usize| self.world.particles.tag.get(i).copied();
+        match (p, chosen.iter().find(|&&i| !values[i].is_finite())) {
+            (Param::Ref(r), Some(&i)) => Err(no_number(r, values[i], tag(i), r.span).into()),
+            _ => Ok(values),
         }
     }
 }

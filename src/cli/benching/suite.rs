@@ -7,9 +7,9 @@ use crate::cli::args::Usage;
 use crate::cli::progress::Tally;
 use crate::cli::sweeping::listen;
 use crate::cli::sweeping::show::Show;
-use crate::cli::{FAILED, INTERRUPTED, OK, deck, show};
+use crate::cli::{FAILED, INTERRUPTED, OK, cases, deck, show};
 use crate::sweep;
-use perigrain_base::diag::{Sources, nearest};
+use perigrain_base::diag::Sources;
 use perigrain_out::file::replace;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -57,7 +57,8 @@ pub struct Wanted {
 /// # Errors
 /// A pattern that no case has, a LAMMPS that is not there, a file that cannot be written.
 pub fn perform(wanted: &Wanted) -> Result<u8, Usage> {
-    let cases = named(wanted.only.as_deref().unwrap_or_default())?;
+    let pattern = wanted.only.as_deref().unwrap_or_default();
+    let cases: Vec<Case> = cases::named(DECKS, pattern, "perigrain bench -suite -list")?;
     if wanted.list {
         let wide = cases.iter().map(|c| c.name.len()).max().unwrap_or(0);
         cases.iter().for_each(|c| show(&format!("{:<wide$}  {}\n", c.name, c.title)));
@@ -139,17 +140,6 @@ fn one(case: &Case, manner: &Manner, anew: bool, stop: &AtomicBool) -> perigrain
     super::complain(&found);
     let fine = found.is_whole() && results.all_ok();
     Ok(Some((bench, found, fine)))
-}
-
-fn named(pattern: &str) -> Result<Vec<Case>, Usage> {
-    let cases = Case::chosen(pattern).map_err(Usage::new)?;
-    if !cases.is_empty() {
-        return Ok(cases);
-    }
-    let near = nearest(pattern, DECKS.iter().map(|(name, _)| *name));
-    let near = near.map(|name| format!("did you mean `{name}`? ")).unwrap_or_default();
-    let usage = Usage::new(format!("no case has `{pattern}` in its name or title"));
-    Err(usage.help(format!("{near}`perigrain bench -suite -list` lists all")))
 }
 
 /// Writes the page and its pictures.

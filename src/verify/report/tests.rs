@@ -1,6 +1,7 @@
 //! Every form of the report says the same, with all signs escaped.
 
 use super::*;
+use crate::heads::Headed;
 use crate::verify::case::Case;
 use crate::verify::running::run;
 

@@ -191,7 +191,7 @@ fn chosen(choice: &Choice, w: &World) -> Vec<usize> {
 fn change_particles(cx: &mut ActCx, item: &Item, chosen: &[usize]) -> Result<usize> {
     let types = cx.world.types;
     let mut checked = |p: &Param, what: &str, limit: Option<Limit>| -> Result<Vec<f64>> {
-        let values = cx.per_atom(p)?;
+        let values = cx.per_atom_of(p, chosen)?;
         if let Some(limit) = limit {
             chosen.iter().try_for_each(|&i| limit.check(values[i], types, what, item.span))?;
         }
