@@ -169,7 +169,9 @@ fn apart(a: &str, b: &str, signs: [f64; 9]) -> f64 {
         return f64::NAN;
     }
     let numbers = a.iter().flatten().zip(b.iter().flatten()).zip(signs.iter().cycle());
-    numbers.map(|((a, b), sign)| (a - sign * b).abs()).fold(0.0, f64::max)
+    let differences = numbers.map(|((a, b), sign)| (a - sign * b).abs());
+    // What is no number is no small difference.
+    differences.fold(0.0, |most, d| if d.is_nan() || d > most { d } else { most })
 }
 
 /// Runs all cases, as many at a time as there are cores; the rows by section.
