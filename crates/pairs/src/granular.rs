@@ -91,6 +91,9 @@ const TEXT: &str = "Spheres with overlap δ = R_i + R_j − r > 0 push each othe
     most mu times the normal force, acts only as a torque with arm R̄. `twisting`: the same for the spin \
     about the normal; `marshall` takes k_t a²/2, x_gamma η a²/2 and 2/3 a mu of the tangential model \
     (k_t before any factor a).\n\n\
+    Without dashpot and slider, laws whose stiffness follows the area of contact make energy, here as in LAMMPS: `mindlin`, \
+    `mindlin_classic` and `mindlin/force` where contacts unload with a spring across them, `twisting marshall` where they change \
+    while the spring is wound up. `mindlin_rescale` and `twisting sds` do not ([Stability](../stability.md) has figures).\n\n\
     `heat`: between particles of temperatures T flows h π a² (T_j − T_i) (`area`) or 2 k a (T_j − T_i) \
     (`radius`), see fix heat/flow.\n\n\
     Type pairs without a line of their own mix those of the like pairs, of which the words must be the \
