@@ -171,7 +171,8 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> 
         lose(w);
         warn_of_bonds(w, t);
     }
-    let same = how.sort && !anew && w.n() == n;
+    let fitted = spatial::fit_skin(w);
+    let same = how.sort && !anew && w.n() == n && !fitted;
     if !same {
         w.rebuild.kept = Kept::default();
     }

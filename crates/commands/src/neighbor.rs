@@ -20,7 +20,10 @@ impl Style for Neighbor {
             summary: "Sets the extra reach of neighbour lists [length].",
             text: "Lists are rebuilt when a particle has moved half the skin (see `neigh_modify`). How they are built is \
                    perigrain's business: all words give the same lists, which search each size of particle by \
-                   itself where sizes differ; `multi/old` is refused.",
+                   itself where sizes differ; `multi/old` is refused. Without this line the skin is LAMMPS' for the units (0.3 in \
+                   `lj`, 0.001 in `si`, 0.1 in `cgs` …), but among grains of which the largest is less than twice as wide a quarter of its diameter: \
+                   LAMMPS' lists then hold many times the pairs that can touch. Numbers are the same to rounding; `compat lammps` \
+                   and `neigh_modify` with `check no`, `once yes` or a `delay` or `every` above 1 leave LAMMPS' skin.",
             example: "neighbor 0.5 bin",
         }
     }
@@ -31,7 +34,8 @@ impl CommandStyle for Neighbor {
         let skin = a.non_negative("the skin")?;
         choice_or_refuse(a, "way of building lists", &["bin", "nsq", "multi"], &["multi/old"])?;
         Ok(setting(move |cx| {
-            cx.world.settings.neighbor.skin = skin;
+            let near = &mut cx.world.settings.neighbor;
+            (near.skin, near.said) = (skin, true);
             Ok(())
         }))
     }

@@ -35,6 +35,8 @@ impl Default for Newton {
 pub struct NeighborSettings {
     /// Extra reach of the lists [length].
     pub skin: f64,
+    /// The deck has said how far that is.
+    pub said: bool,
     /// Earliest rebuild after the last one [steps].
     pub delay: i64,
     /// Consider a rebuild every so many steps.
@@ -55,6 +57,7 @@ impl Default for NeighborSettings {
     fn default() -> Self {
         Self {
             skin: 0.3,
+            said: false,
             delay: 0,
             every: 1,
             check: true,
