@@ -4,6 +4,7 @@ mod columns;
 mod gather;
 mod globals;
 mod making;
+mod outside;
 
 use super::Session;
 use super::flow::LIGHT;

@@ -26,6 +26,7 @@ mod dt_reset;
 mod elapsed;
 mod enforce2d;
 mod evaporate;
+pub mod external;
 mod extremes;
 mod faces;
 mod freeze;
@@ -59,6 +60,7 @@ mod store_state;
 mod time_step;
 mod vector;
 mod viscous;
+mod viscous_nonlinear;
 mod viscous_sphere;
 mod wall;
 mod wall_harmonic;
@@ -93,6 +95,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &dt_reset::DtReset,
     &enforce2d::Enforce2d,
     &evaporate::Evaporate,
+    &external::External,
     &extremes::ExtremesStyle,
     &freeze::Freeze,
     &gravity::Gravity,
@@ -124,6 +127,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &store_state::StoreState,
     &vector::VectorFix,
     &viscous::Viscous,
+    &viscous_nonlinear::ViscousNonlinear,
     &viscous_sphere::ViscousSphere,
     &wall::gran::WallGran,
     &wall::region::WallGranRegion,

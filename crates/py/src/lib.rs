@@ -5,6 +5,7 @@
 mod errors;
 mod looking;
 mod memory;
+mod outside;
 mod scene;
 mod screen;
 mod values;
@@ -23,6 +24,8 @@ mod _core {
     use super::looking::{check, plan};
     #[pymodule_export]
     use super::memory::Memory;
+    #[pymodule_export]
+    use super::outside::Handle;
     #[pymodule_export]
     use super::scene::{Scene, styles};
 

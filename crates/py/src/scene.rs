@@ -2,20 +2,23 @@
 
 use super::errors;
 use super::memory::{Looked, Memory};
+use super::outside::{Handle, Hook};
 use super::screen::Screen;
 use super::values;
 use super::working::{at_once, beside, words};
 use perigrain::cli::deck::host;
 use perigrain::diag::Result as Deck;
 use perigrain::session::{Heard, Newcomers, Session};
-use perigrain::world::RowValue;
+use perigrain::world::{Outside, RowValue};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
+use pyo3::{PyTraverseError, PyVisit};
+use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
-use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 /// Why there is no scene, after `close`.
 const CLOSED: &str = "the scene is closed";
@@ -27,12 +30,15 @@ struct Inner {
     session: Option<Session>,
     looked: Looked,
     screen: Screen,
+    /// What fixes external talk to, by their ids.
+    hooks: BTreeMap<String, Arc<Hook>>,
     why: &'static str,
 }
 
 impl Inner {
     fn end(&mut self, why: &'static str) {
         self.looked.end(self.session.as_mut(), why);
+        std::mem::take(&mut self.hooks).values().for_each(|hook| hook.forget());
         self.session = None;
         self.why = why;
     }
@@ -60,7 +66,7 @@ impl Scene {
     /// Something short, done at once; `lent` says whether columns that are looked at must be kept from moving.
     fn ask<T>(&self, py: Python<'_>, lent: bool, job: impl FnOnce(&mut Session) -> Deck<T>) -> PyResult<T> {
         let mut inner = self.lock(py)?;
-        let Inner { session, looked, screen, why } = &mut *inner;
+        let Inner { session, looked, screen, why, .. } = &mut *inner;
         let Some(session) = session else { return Err(errors::closed(py, why)) };
         let outcome = catch_unwind(AssertUnwindSafe(|| {
             if !lent {
@@ -88,7 +94,7 @@ impl Scene {
         job: impl FnOnce(&mut Session) -> Deck<Heard> + Send,
     ) -> PyResult<Option<i32>> {
         let mut inner = self.lock(py)?;
-        let Inner { session, looked, screen, why } = &mut *inner;
+        let Inner { session, looked, screen, hooks, why } = &mut *inner;
         let Some(session) = session else { return Err(errors::closed(py, why)) };
         let lent = looked.lend(session, !light);
         if let Err(e) = lent {
@@ -107,7 +113,8 @@ impl Scene {
         };
         looked.give_back(session);
         screen.show(py);
-        if let Some(e) = ended.raised {
+        // What a function of Python raised is raised on, as Python does.
+        if let Some(e) = ended.raised.or_else(|| hooks.values().find_map(|hook| hook.raised())) {
             return Err(e);
         }
         outcome.map(|heard| heard.quit).map_err(|e| {
@@ -140,7 +147,13 @@ impl Scene {
             PyValueError::new_err(format!("{}{help}", usage.message))
         })?;
         screen.show(py);
-        Ok(Self(Mutex::new(Inner { session: Some(session), looked: Looked::default(), screen, why: CLOSED })))
+        Ok(Self(Mutex::new(Inner {
+            session: Some(session),
+            looked: Looked::default(),
+            screen,
+            hooks: BTreeMap::new(),
+            why: CLOSED,
+        })))
     }
 
     /// Works off lines of a deck; the status of `quit`, if that was said.
@@ -326,6 +339,40 @@ impl Scene {
     /// How many particles there are.
     fn count(&self, py: Python<'_>) -> PyResult<usize> {
         self.ask(py, false, |session| Ok(session.world.n()))
+    }
+
+    /// What a fix external talks to from now on: functions and what they say.
+    fn outside(&self, py: Python<'_>, id: &str) -> PyResult<Handle> {
+        let known = self.lock(py)?.hooks.get(id).cloned();
+        let hook = self.ask(py, false, |session| {
+            let program = |hook: &Arc<Hook>| -> Arc<dyn Outside> { hook.clone() };
+            if let Some(hook) = known.filter(|hook| session.talks(id, &program(hook))) {
+                return Ok(hook);
+            }
+            let hook = Arc::new(Hook::default());
+            session.talk(id, program(&hook))?;
+            Ok(hook)
+        })?;
+        self.lock(py)?.hooks.insert(id.to_string(), hook.clone());
+        Ok(Handle(hook))
+    }
+
+    /// Refuses an index behind the values that a fix offers.
+    fn has_value(&self, py: Python<'_>, id: &str, index: usize) -> PyResult<()> {
+        self.ask(py, false, |session| session.has_value(id, index))
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        match self.0.try_lock() {
+            Ok(inner) => inner.hooks.values().try_for_each(|hook| hook.traverse(&visit)),
+            Err(_) => Ok(()),
+        }
+    }
+
+    fn __clear__(&self) {
+        if let Ok(inner) = self.0.try_lock() {
+            inner.hooks.values().for_each(|hook| hook.forget());
+        }
     }
 
     /// Whether a command is being worked off.

@@ -46,6 +46,8 @@ pub struct Facts {
     pub needs_whole_steps: Option<&'static str>,
     /// Its scalar is an energy that `fix_modify energy yes` may add to the potential energy.
     pub has_energy: bool,
+    /// It is added unless `fix_modify energy no` says otherwise.
+    pub adds_energy: bool,
     /// It makes particles during a run.
     pub makes_particles: bool,
     /// The molecule template of which new copies become rigid bodies of this fix.

@@ -84,6 +84,11 @@ impl Columns {
         self.vectors.get(key).map(Vec::as_slice)
     }
 
+    /// The handle of a vector column that is there; for lines of a deck and programs, not for steps.
+    pub fn vector_named(&self, name: &str) -> Option<Vectors> {
+        self.vectors.find(name)
+    }
+
     /// The scalar column of this name, if there is one.
     pub fn get_scalar(&self, key: Numbers) -> Option<&[f64]> {
         self.scalars.get(key).map(Vec::as_slice)

@@ -25,6 +25,7 @@ pub mod memory;
 pub mod minimizer;
 pub mod named;
 pub mod order;
+pub mod outside;
 pub mod particles;
 pub mod potentials;
 pub mod promises;
@@ -62,6 +63,7 @@ pub use images::Images;
 pub use lattice::Lattice;
 pub use minimizer::Minimizer;
 pub use named::{Constant, Key, Named, Numbers, Vectors};
+pub use outside::Outside;
 pub use particles::{AtomStyle, Own, Particles};
 pub use promises::{Promise, Promises};
 pub use properties::Properties;
@@ -180,6 +182,8 @@ pub struct Parts {
     pub row: Option<Arc<TableRow>>,
     /// What a restart file said about the scene, until the first run after it.
     pub resume: Option<Arc<Resume>>,
+    /// The program that hosts the session, as each fix external sees it, by the fix's ID.
+    pub outside: Named<Arc<dyn Outside>>,
 }
 
 /// A row of the step table.

@@ -3,6 +3,7 @@
 use crate::session::Session;
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::body::Quat;
+use perigrain_fixes::external;
 use perigrain_world::World;
 
 /// Numbers of particles as they lie in memory.
@@ -14,6 +15,9 @@ pub enum Column<'a> {
     /// Four per particle.
     Fours(&'a mut Vec<Quat>),
 }
+
+/// How the column of forces that a fix external adds is called: with the fix's ID behind it.
+const EXTERNAL: &str = "external:";
 
 /// Bits of an image count in LAMMPS' packed form.
 const BITS: i32 = 10;
@@ -145,6 +149,9 @@ pub(super) fn column<'a>(w: &'a mut World, name: &str) -> Option<Column<'a>> {
             let key = w.columns.custom(name)?;
             Column::Ones(w.columns.scalar(key, n))
         }
-        _ => return None,
+        _ => {
+            let key = w.columns.vector_named(&external::name(name.strip_prefix(EXTERNAL)?))?;
+            Column::Threes(w.columns.vector(key, n))
+        }
     })
 }

@@ -191,6 +191,9 @@ codes! {
     NOT_ALLOWED = 207, "not allowed by -safe",
         "The program was started with `-safe`, which keeps a deck in its own folder: no `shell`, no environment, no file outside, and so much memory, so many steps, lines, files and pixels. `Decks of others` in the manual says what exactly, and how to allow more.",
         "", "";
+    OUTSIDE = 208, "the hosting program failed",
+        "A `fix external pf/callback` asks the program that hosts the run for forces: that program has set no function, or the function ended in an exception. In a terminal nobody hosts the run; in Python `lmp.set_fix_external_callback` sets the function.",
+        "fix 2 all external pf/callback 1 1\nrun 1", "fix 2 all external pf/array 1\nrun 1";
     HALTED = 205, "halted",
         "A `fix halt … error hard` found its condition met: the deck ends here, as it asked for. With `error soft` the run ends and the deck goes on.",
         "variable late equal step\nfix 2 all halt 1 v_late > 5 error hard\nrun 10", "variable late equal step\nfix 2 all halt 1 v_late > 5 error soft\nrun 10";

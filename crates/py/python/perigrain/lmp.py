@@ -11,6 +11,7 @@ from . import _core
 from . import constants as C
 from .arrays import array_of, as_bytes, pointer_to
 from .errors import DataError
+from .external import External
 from .views import pointer
 
 # The LAMMPS whose language decks are in.
@@ -43,7 +44,7 @@ class _Commands:
         return say
 
 
-class lammps:
+class lammps(External):
     """A scene, with the methods of LAMMPS' Python class.
 
     ``cmdargs`` are the words of a command line (`-log`, `-screen`, `-var`, `-echo`, `-threads` …); what the scene says
@@ -60,6 +61,7 @@ class lammps:
             raise DataError("perigrain is one process with threads: start it with one MPI process, without `comm`")
         self._scene = _core.Scene([str(word) for word in cmdargs or []])
         self._numpy: Any = None
+        self._outsides = {}
         self.opened = 1
         self.lmp = True
 

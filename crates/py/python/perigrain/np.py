@@ -48,6 +48,10 @@ class numpy_wrapper:
         found = self.lmp.extract_variable(name, group, vartype)
         return numpy.array(found) if hasattr(found, "_length_") else found
 
+    def fix_external_get_force(self, fix_id: str) -> Any:
+        """The forces that a fix external adds, `(n, 3)`: looks into the scene's memory as `extract_atom` does."""
+        return view(self.lmp._external_forces(fix_id))
+
     def gather_bonds(self) -> Any:
         """Type and two ids of each bond."""
         _, flat = self.lmp.gather_bonds()

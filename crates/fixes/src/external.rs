@@ -1,0 +1,172 @@
+//! fix external: forces from the program that hosts the session.
+
+use super::{Facts, Fix, FixStyle, Minimizing};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_lang::Args;
+use perigrain_plan::{Needs, Op, Stage, Tick};
+use perigrain_styles::matter::{Chosen, change_forces, publish};
+use perigrain_styles::step_op::StepOp;
+use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::field::{COLUMNS, F, FACTS, MASK, SLOTS, TAG, TALLY, X};
+use perigrain_world::outside::{Asked, Told};
+use perigrain_world::{GroupId, Key, Outside, Vectors, World};
+
+/// The style.
+pub struct External;
+
+/// Under which name the world keeps a fix's forces and the program it talks to.
+pub fn name(id: &str) -> String {
+    format!("external/{id}")
+}
+
+impl Style for External {
+    fn name(&self) -> &'static str {
+        "external"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group external (pf/callback Ncall Napply | pf/array Napply)",
+            summary: "Adds forces that a program which hosts the run gives, such as a script in Python.",
+            text: "`pf/callback`: at every step that Ncall divides, in the setup of a run too, the function that the program has \
+                   set (`lmp.set_fix_external_callback(ID, function, caller)`) is called with the step, how many particles there \
+                   are, their ids, places and forces; the forces it leaves are added to the particles of the group at every step that Napply \
+                   divides. `pf/array`: the program writes the forces between commands \
+                   (`lmp.numpy.fix_external_get_force(ID)`). Forces stay with their particles until they are written anew; \
+                   those of new particles are 0. In minimizations the function is called at every evaluation and must say the energy of its forces. \
+                   Scalar (extensive): the energy the program says (`fix_external_set_energy_global`), part of the potential \
+                   energy unless `fix_modify ID energy no`. The virial it says (`fix_external_set_virial_global`) counts in \
+                   pressures, unless `fix_modify ID virial no`. `fix_modify ID vector N`: the fix offers N values of the program (intensive), which \
+                   `fix_external_set_vector` sets. No restart file holds forces or functions. In a terminal nobody hosts the run: \
+                   `pf/array` adds nothing there, and `pf/callback` is refused when the run begins.",
+            example: "fix probe grains external pf/array 1",
+        }
+    }
+}
+
+impl FixStyle for External {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        let mode = args.choice("mode", &["pf/callback", "pf/array"])?;
+        let call = match mode {
+            "pf/callback" => {
+                Some(args.integer_from(1, "how many steps lie between two calls of the function")?)
+            }
+            _ => None,
+        };
+        let apply = args.integer_from(1, "how many steps lie between two additions of the forces")?;
+        let key = Key::new(&name(cx.id));
+        let id = cx.id.to_string();
+        Ok(Box::new(Declared { id, group: cx.group, key, call, apply, virial: true, length: 0 }))
+    }
+}
+
+#[derive(Clone)]
+struct Declared {
+    id: String,
+    group: GroupId,
+    key: Vectors,
+    /// Steps between calls, if there are calls.
+    call: Option<i64>,
+    /// Steps between additions.
+    apply: i64,
+    /// `fix_modify virial`.
+    virial: bool,
+    /// `fix_modify vector`.
+    length: usize,
+}
+
+impl Fix for Declared {
+    fn declare(&self, w: &mut World) -> Result<()> {
+        self.remove(w);
+        let n = w.n();
+        w.columns.vector(self.key, n);
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        w.columns.remove(self.key);
+        w.parts.outside.remove(self.key.of());
+    }
+
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let (span, own) = (cx.span(), self.clone());
+        let chosen = Chosen::new(cx.world(), self.group, None, span)?;
+        let slot = cx.slot(&format!("f_{}", self.id));
+        let access = Needs::new().read(X | TAG | MASK | FACTS).add(F | TALLY).write(COLUMNS | SLOTS);
+        let op = StepOp::new(format!("fix {} external", self.id), Stage::PostForce, access, move |w, t| {
+            let outside = w.parts.outside.get(own.key.of()).cloned();
+            let due = |every: i64| t.step % every == 0;
+            if own.call.is_some_and(due) && !t.unchanged {
+                own.ask(w, t, outside.as_deref()).map_err(|e| e.at(span))?;
+            }
+            if due(own.apply) && !t.unchanged {
+                change_forces::<0>(w, &chosen, |w, i, f| {
+                    if let Some(added) = w.columns.get_vector(own.key).and_then(|all| all.get(i)) {
+                        (0..3).for_each(|d| f[d] += added[d]);
+                    }
+                    []
+                });
+            }
+            let mut told = outside.map_or_else(Told::default, |program| program.told());
+            if own.virial && t.virial {
+                (0..6).for_each(|k| w.tally.fixes[k] += told.virial[k]);
+            }
+            told.vector.resize(own.length, 0.0);
+            publish(w, slot, t, told.energy, &told.vector);
+            Ok(())
+        });
+        Ok(vec![op.boxed()])
+    }
+
+    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+        if args.eat("virial") {
+            self.virial = args.flag("virial")?;
+        } else if args.eat("vector") {
+            self.length = args.integer_from(0, "how many values the program sets")? as usize;
+        } else {
+            return super::no_option(args);
+        }
+        Ok(())
+    }
+
+    fn shape(&self) -> Shape {
+        Shape { scalar: true, vector: self.length, scalar_extensive: true, ..Shape::default() }
+    }
+
+    fn facts(&self, _: &World) -> Facts {
+        Facts {
+            minimizing: Minimizing::Acts,
+            has_level: true,
+            has_energy: true,
+            adds_energy: true,
+            ..Facts::default()
+        }
+    }
+}
+
+impl Declared {
+    /// Has the program write forces.
+    fn ask(&self, w: &mut World, t: &Tick, outside: Option<&dyn Outside>) -> Result<()> {
+        let n = w.n();
+        let mut f = std::mem::take(w.columns.vector(self.key, n));
+        let p = &w.particles;
+        let asked = Asked { step: t.step, ids: &p.tag, x: &p.x, f: &mut f };
+        let answer = outside.and_then(|program| program.call(asked));
+        *w.columns.vector(self.key, n) = f;
+        match answer {
+            Some(Ok(())) => Ok(()),
+            Some(Err(words)) => {
+                let text =
+                    format!("the function of fix external `{}` failed in step {}: {words}", self.id, t.step);
+                Err(Diagnostic::error(Code::OUTSIDE, None, text).into())
+            }
+            None => {
+                let text = format!("fix external `{}` has no function to call", self.id);
+                let help = format!(
+                    "a Python program gives one before the run: `lmp.set_fix_external_callback(\"{}\", function)`",
+                    self.id
+                );
+                Err(Diagnostic::error(Code::OUTSIDE, None, text).help(help).into())
+            }
+        }
+    }
+}

@@ -1,0 +1,83 @@
+"""`fix external`: forces that a function in Python gives."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Dict, Optional, Sequence
+
+from .errors import DataError
+from .views import pointer
+
+
+class External:
+    """The methods of a scene that concern its fixes external."""
+
+    _scene: Any
+    _outsides: Dict[str, Any]
+
+    def set_fix_external_callback(self, fix_id: str, callback: Callable[..., Any], caller: Any = None) -> None:
+        """Has a function give the forces of a `fix external pf/callback`.
+
+        It is called as `callback(caller, step, n, ids, x, f)`, with numpy arrays `(n,)`, `(n, 3)`, `(n, 3)`, and writes into `f`.
+        All three are copies for this call: `x` cannot be written, and the scene is at work, so that of its methods only those
+        that begin with `fix_external_set_` may be used. An exception ends the run in that step and is raised by the command that ran.
+        """
+        if not callable(callback):
+            raise DataError(f"a function is needed, not {type(callback).__name__}")
+        import numpy
+
+        def called(step: int, ids: bytes, x: bytes, f: bytearray) -> None:
+            tags = numpy.frombuffer(ids, dtype=numpy.int32)
+            places = numpy.frombuffer(x, dtype=numpy.float64).reshape(-1, 3)
+            forces = numpy.frombuffer(f, dtype=numpy.float64).reshape(-1, 3)
+            callback(caller, step, len(tags), tags, places, forces)
+
+        self._outside(fix_id).call(called)
+
+    def fix_external_get_force(self, fix_id: str) -> Any:
+        """A pointer `p[i][j]` into the forces that a fix external adds, in the order in which particles stand."""
+        return pointer(self._external_forces(fix_id))
+
+    def fix_external_set_energy_global(self, fix_id: str, eng: float) -> None:
+        """Says the potential energy of the forces, the scalar of the fix."""
+        self._outside(fix_id).energy(float(eng))
+
+    def fix_external_set_virial_global(self, fix_id: str, virial: Sequence[float]) -> None:
+        """Says the virial of the forces: xx, yy, zz, xy, xz, yz."""
+        six = [float(a) for a in virial]
+        if len(six) != 6:
+            raise DataError(f"a virial is six numbers, not {len(six)}")
+        self._outside(fix_id).virial(six)
+
+    def fix_external_set_vector_length(self, fix_id: str, length: int) -> None:
+        """Says how many values the fix has in its vector; not within a run."""
+        self._outside(fix_id)
+        self.command(f"fix_modify {fix_id} vector {int(length)}")  # type: ignore[attr-defined]
+
+    def fix_external_set_vector(self, fix_id: str, idx: int, val: float) -> None:
+        """Sets one of these values, counted from 1; the fix offers it from its next step on."""
+        if not self._scene.at_work:
+            self._scene.has_value(fix_id, max(int(idx), 0))
+        self._outside(fix_id).value(max(int(idx), 0), float(val))
+
+    def fix_external_set_energy_peratom(self, fix_id: str, eng: Any) -> None:
+        """No fix here has energies per particle."""
+        raise DataError("a fix external has no energies per particle here: say their sum by fix_external_set_energy_global")
+
+    def fix_external_set_virial_peratom(self, fix_id: str, virial: Any) -> None:
+        """A fix external has no virials per particle here."""
+        raise DataError("a fix external has no virials per particle here: say their sum by fix_external_set_virial_global")
+
+    def _external_forces(self, fix_id: str) -> Any:
+        self._outside(fix_id)
+        memory = self._scene.memory(f"external:{fix_id}")
+        if memory is None:
+            raise DataError(f"there are no forces of fix `{fix_id}` yet: no box has been made")
+        return memory
+
+    def _outside(self, fix_id: str) -> Any:
+        # Within a callback the scene cannot be asked; whom the fix talks to is known then.
+        known: Optional[Any] = self._outsides.get(fix_id)
+        if known is not None and self._scene.at_work:
+            return known
+        self._outsides[fix_id] = self._scene.outside(fix_id)
+        return self._outsides[fix_id]

@@ -1,0 +1,119 @@
+//! Fixes external: functions in Python that give forces, and what they say besides.
+
+use super::values;
+use perigrain::session::Rows;
+use perigrain::world::Outside;
+use perigrain::world::outside::{Asked, Told};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyByteArray;
+use pyo3::{PyTraverseError, PyVisit};
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// What one fix external talks to. Its lock is held for moments only, and never while Python works.
+#[derive(Default)]
+pub struct Hook(Mutex<State>);
+
+#[derive(Default)]
+struct State {
+    function: Option<Py<PyAny>>,
+    told: Told,
+    /// What the function has ended with.
+    raised: Option<PyErr>,
+}
+
+impl fmt::Debug for Hook {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Hook")
+    }
+}
+
+impl Hook {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The exception in which the function has ended since this was asked last.
+    pub fn raised(&self) -> Option<PyErr> {
+        self.state().raised.take()
+    }
+
+    /// Calls nobody any more. What goes is dropped without the lock: that may run code in Python.
+    pub fn forget(&self) {
+        let gone = self.state().function.take();
+        drop(gone);
+    }
+
+    /// Shows Python's garbage collector what is held.
+    pub fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        match self.0.try_lock() {
+            Ok(state) => state.function.as_ref().map_or(Ok(()), |function| visit.call(function)),
+            Err(_) => Ok(()),
+        }
+    }
+}
+
+impl Outside for Hook {
+    fn call(&self, asked: Asked<'_>) -> Option<Result<(), String>> {
+        Python::attach(|py| {
+            let function = self.state().function.as_ref().map(|function| function.clone_ref(py))?;
+            Some(called(py, &function, asked).map_err(|e| {
+                let words = e.to_string();
+                self.state().raised = Some(e);
+                words
+            }))
+        })
+    }
+
+    fn told(&self) -> Told {
+        self.state().told.clone()
+    }
+}
+
+/// Hands Python copies, and takes the forces over if it ends well.
+fn called(py: Python<'_>, function: &Py<PyAny>, asked: Asked<'_>) -> PyResult<()> {
+    let ids: Vec<i32> = asked.ids.iter().map(|&id| id as i32).collect();
+    let reals = |list: &[[f64; 3]]| values::reals(py, list.as_flattened());
+    let f = PyByteArray::from(reals(asked.f).as_any())?;
+    function.call1(py, (asked.step, values::wholes(py, &ids), reals(asked.x), f.clone()))?;
+    match values::taken(&f.to_vec(), false)? {
+        Rows::Reals(list) if list.len() == 3 * asked.f.len() => {
+            asked.f.as_flattened_mut().copy_from_slice(&list);
+            Ok(())
+        }
+        _ => Err(PyValueError::new_err("there are more or fewer forces than particles")),
+    }
+}
+
+/// What a fix external talks to, as the package has it in hand.
+#[pyclass(frozen, name = "Outside", module = "perigrain._core")]
+pub struct Handle(pub Arc<Hook>);
+
+#[pymethods]
+impl Handle {
+    /// Sets the function: it gets the step, ids, places and forces, the last as a bytearray to be written into.
+    fn call(&self, function: Py<PyAny>) {
+        let before = self.0.state().function.replace(function);
+        drop(before);
+    }
+
+    /// Says the energy of the forces.
+    fn energy(&self, energy: f64) {
+        self.0.state().told.energy = energy;
+    }
+
+    /// Says their virial.
+    fn virial(&self, virial: [f64; 6]) {
+        self.0.state().told.virial = virial;
+    }
+
+    /// Sets one of the values, from 1.
+    fn value(&self, index: usize, value: f64) {
+        let list = &mut self.0.state().told.vector;
+        list.resize(list.len().max(index), 0.0);
+        if let Some(own) = index.checked_sub(1).and_then(|k| list.get_mut(k)) {
+            *own = value;
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! What a program that hosts the session does and says while steps are made (`fix external`).
+
+use perigrain_base::math::vec3::Vec3;
+use std::fmt::Debug;
+
+/// What the program is shown when it is called, and the forces it may change.
+pub struct Asked<'a> {
+    /// The present step.
+    pub step: i64,
+    /// Identities of all particles, in the order in which they stand.
+    pub ids: &'a [u32],
+    /// Their places [length].
+    pub x: &'a [Vec3],
+    /// Their forces as the program left them last [force]; what stands here afterwards is added.
+    pub f: &'a mut [Vec3],
+}
+
+/// What the program says besides forces; it holds until it says otherwise.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Told {
+    /// The potential energy of its forces [energy].
+    pub energy: f64,
+    /// Their virial [energy]: xx yy zz xy xz yz.
+    pub virial: [f64; 6],
+    /// Values of its own.
+    pub vector: Vec<f64>,
+}
+
+/// A program that hosts the session, as one fix sees it.
+///
+/// It is no state of the scene: copies of a scene talk to the same program, and no file holds it.
+pub trait Outside: Debug + Send + Sync {
+    /// Asks for forces; `None` where the program has given no function that could be called.
+    ///
+    /// # Errors
+    /// The program's own words on why it failed.
+    fn call(&self, asked: Asked<'_>) -> Option<Result<(), String>>;
+
+    /// What it says at the moment.
+    fn told(&self) -> Told;
+}

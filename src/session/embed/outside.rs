@@ -1,0 +1,51 @@
+//! Fixes external and the program they talk to.
+
+use super::{Session, unknown};
+use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_fixes::external;
+use perigrain_world::{Key, Outside};
+use std::sync::Arc;
+
+impl Session {
+    /// Has a fix external talk to a program from now on, until the fix is gone.
+    ///
+    /// # Errors
+    /// No such fix, or one of another style.
+    pub fn talk(&mut self, id: &str, program: Arc<dyn Outside>) -> Result<()> {
+        match self.graph.find_fix(id) {
+            None => return Err(unknown("fix", id, self.graph.fixes.iter().map(|f| f.id.as_str()))),
+            Some(node) if node.style != "external" => {
+                let text = format!("fix `{id}` is a fix {}, not a fix external", node.style);
+                return fail(Code::WRONG_KIND, None, text);
+            }
+            Some(_) => {}
+        }
+        self.world.parts.outside.insert(Key::new(&external::name(id)), program);
+        Ok(())
+    }
+
+    /// Whether a fix external talks to this program.
+    pub fn talks(&self, id: &str, program: &Arc<dyn Outside>) -> bool {
+        self.world.parts.outside.look_up(&external::name(id)).is_some_and(|now| Arc::ptr_eq(now, program))
+    }
+
+    /// Refuses an index behind the values that a fix offers.
+    ///
+    /// # Errors
+    /// No such fix, or fewer values.
+    pub fn has_value(&self, id: &str, index: usize) -> Result<()> {
+        let Some(node) = self.graph.find_fix(id) else {
+            return Err(unknown("fix", id, self.graph.fixes.iter().map(|f| f.id.as_str())));
+        };
+        let length = node.fix.shape().vector;
+        if (1..=length).contains(&index) {
+            return Ok(());
+        }
+        let d = Diagnostic::error(
+            Code::BAD_VALUE,
+            None,
+            format!("fix `{id}` has {length} values, and no value {index}"),
+        );
+        Err(d.help("`fix_external_set_vector_length` says how many there are").into())
+    }
+}
