@@ -171,6 +171,21 @@ fn filled_bodies_have_volume_centre_and_inertia() {
 }
 
 #[test]
+fn cells_that_end_at_the_faces_are_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    written(folder.path(), "cube", &cube(1.5));
+    for region in ["mesh cube.ply", "block -1.5 1.5 -1.5 1.5 -1.5 1.5"] {
+        let deck = scene(0.25, "0.5 0.5 0.5", region);
+        let w = world(folder.path(), &format!("{deck}create_atoms 1 region body volumes cut\n"));
+        let whole = 0.25f64.powi(3);
+        assert!(
+            w.n() == 1728 && w.particles.volume.iter().all(|v| (v / whole - 1.0).abs() < 1e-12),
+            "{region}"
+        );
+    }
+}
+
+#[test]
 fn volumes_of_other_regions_add_up_too() {
     let folder = tempfile::tempdir().unwrap();
     written(folder.path(), "ball", &round(0.0, 1.0));
@@ -228,11 +243,10 @@ fn sites_of_a_mesh_are_those_of_the_shape() {
     // Turned and shifted by variables, and outside: as the block.
     let of = |region: &str| {
         let deck = scene(0.23, "0.5 0.5 0.5", "block 0 1 0 1 0 1");
+        let turned = "move v_d NULL v_a rotate v_a 0.1 0 0 1 2 3";
         let deck = format!(
-            "{deck}variable a equal 0.4\nvariable d equal 0.7\nregion it {region} units box move v_d NULL v_a rotate v_a 0.1 0 0 1 2 3\n\
-             group all empty\n"
+            "{deck}variable a equal 0.4\nvariable d equal 0.7\nregion it {region} units box {turned}\ncreate_atoms 1 region it\n"
         );
-        let deck = deck.replace("group all empty\n", "create_atoms 1 region it\n");
         let w = world(folder.path(), &deck);
         w.particles.x.to_vec()
     };

@@ -69,7 +69,7 @@ impl Style for CreateAtoms {
                    whatever its shape. The cell of a site is the unit cell around it or, on a lattice of several basis points, \
                    what is nearer to it than to other sites. Cells that the surface passes are cut exactly where the \
                    region is a mesh at rest and the lattice has one basis point, and by 1021 places in each \
-                   of them otherwise: 0.2 % of a cell (root mean square), and for bodies of 20 cells across a few 10⁻⁵ of the sum. \
+                   of them otherwise: 0.2 % of a cell (root mean square), and of the sum 2·10⁻⁴ at worst for twenty bodies of 10 to 20 cells across. \
                    What lies in the cell of a site outside goes to the nearest particle, in equal parts where several are as \
                    near, so that volumes may be larger than a cell; how much that is stands in the log, and where more than a thousandth goes \
                    farther than 1.8 spacings (a body thinner than the lattice) a warning. Masses are densities for these particles and \

@@ -49,8 +49,12 @@ fn below(t: &Triangle, lo: Vec3, hi: Vec3) -> f64 {
         p = p.cut(d, lo[d], false).cut(d, hi[d], true);
     }
     p = p.cut(2, lo[2], false);
-    let (within, above) = (p.cut(2, hi[2], true), p.cut(2, hi[2], false));
-    within.integral(lo[2]).0 + (hi[2] - lo[2]) * above.integral(lo[2]).1
+    let within = p.cut(2, hi[2], true).integral(lo[2]).0;
+    // What lies in the upper face is within the box, and must count once.
+    if p.corners[..p.count].iter().all(|c| c[2] <= hi[2]) {
+        return within;
+    }
+    within + (hi[2] - lo[2]) * p.cut(2, hi[2], false).integral(lo[2]).1
 }
 
 impl Polygon {

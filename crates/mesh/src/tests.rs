@@ -61,7 +61,7 @@ fn a_lattice_through_corners_and_edges_is_never_misjudged() {
             assert!(solid.contains(p.map(|x| x * 0.999)) && !solid.contains(p.map(|x| x * 1.001)), "{p:?}");
             assert!(solid.contains(*p));
             let z = p[2] * (next() - 0.5);
-            assert_eq!(solid.contains([p[0], p[1], z]), true, "{p:?} {z}");
+            assert!(solid.contains([p[0], p[1], z]), "{p:?} {z}");
         }
     }
 }
@@ -134,7 +134,6 @@ fn what_is_no_body_is_named() {
     assert!(matches!(fault(vec![t, [t[0], t[2], t[1]]]), Fault::Crossing(1, [0, 1])));
 }
 
-/// A torus with a twist: its tube comes back inside out, so that it has one side only.
 #[test]
 fn surfaces_of_one_side_are_refused() {
     // The six-cornered projective plane has one side; it cannot be in space without crossing itself, which is not looked at here.
@@ -187,6 +186,15 @@ fn parts_in_boxes_add_up_to_the_whole() {
     near(plain.volume([0.5; 3], [1.5; 3]), 1.0);
     near(plain.volume([1.5, 0.5, 1.5], [2.5, 1.5, 2.5]), 0.8 * 0.5);
     near(plain.volume([5.0; 3], [6.0; 3]), 0.0);
+    // Faces in common: the whole, and nothing above, below and beside it.
+    let (lo, hi) = cube.bounds().unwrap();
+    near(plain.volume(lo, hi), cube.volume());
+    for d in 0..3 {
+        let (mut below, mut above) = (hi, lo);
+        (below[d], above[d]) = (lo[d], hi[d]);
+        near(plain.volume(lo.map(|x| x - 1.0), below), 0.0);
+        near(plain.volume(above, hi.map(|x| x + 1.0)), 0.0);
+    }
     near(cube.columns(|[x, y, z]| [y + 0.5 * x, x, z]).volume([-9.0; 3], [9.0; 3]), cube.volume());
     let ring = Solid::new(torus(3.0, 1.0, 40, 20)).unwrap();
     let columns = ring.columns(|x| x);
