@@ -173,6 +173,17 @@ fn read_dump() {
 }
 
 #[test]
+fn read_surface() {
+    let mut corpus = vec![];
+    for file in fs::read_dir(here("tests/meshes")).unwrap().map(|e| e.unwrap().path()) {
+        let obj = u8::from(file.extension().is_some_and(|e| e == "obj"));
+        corpus.push([&[obj][..], &fs::read(file).unwrap()].concat());
+    }
+    corpus.sort();
+    hunt("read_surface", &corpus, bodies::read_surface);
+}
+
+#[test]
 fn read_restart() {
     let folder = tempfile::tempdir().unwrap();
     let mut corpus = vec![];

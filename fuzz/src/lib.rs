@@ -16,8 +16,13 @@ pub fn work_off(deck: &str, mode: Mode, folder: &Path) {
 
 /// Works a deck off that reads the bytes as a file; `FILE` in it stands for the file's path.
 pub fn with_file(bytes: &[u8], deck: &str) {
+    with_file_named("input", bytes, deck);
+}
+
+/// The same where the file's name matters.
+pub fn with_file_named(name: &str, bytes: &[u8], deck: &str) {
     let Ok(folder) = tempfile::tempdir() else { return };
-    let path = folder.path().join("input");
+    let path = folder.path().join(name);
     if std::fs::write(&path, bytes).is_ok() {
         work_off(&deck.replace("FILE", &path.display().to_string()), Mode::Run, folder.path());
     }
@@ -62,6 +67,14 @@ pub fn read_dump(bytes: &[u8]) {
         _ => "rerun FILE dump x y z vx ix trim yes add keep",
     };
     with_file(rest, &format!("{SCENE}{line}\n"));
+}
+
+/// Any bytes as a surface of triangles: a body that is filled, or a cut. The first byte chooses the name's end.
+pub fn read_surface(bytes: &[u8]) {
+    const SCENE: &str = "units si\natom_style peri\nlattice sc 0.5 origin 0.5 0.5 0.5\nregion b block -2 2 -2 2 -2 2 units box\n\
+        create_box 1 b\nperi_crack mesh FILE units box\nregion m mesh FILE units box\ncreate_atoms 1 region m volumes cut\n";
+    let Some((first, rest)) = bytes.split_first() else { return };
+    with_file_named(if first % 2 == 0 { "input" } else { "input.obj" }, rest, SCENE);
 }
 
 /// Any bytes as a restart file.

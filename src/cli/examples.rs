@@ -39,6 +39,7 @@ const EXAMPLES: &[Example] = examples![
     "inverse_opal": "in.inverse_opal";
     "kalthoff_winkler": "in.kalthoff_winkler";
     "laminate_erosion": "in.laminate_erosion";
+    "meshed_gear": "in.meshed_gear", "gear.obj";
     "mode_one": "in.mode_one";
     "multi_impact": "in.multi_impact";
     "multiscale_bed": "in.multiscale_bed";
@@ -152,8 +153,10 @@ mod tests {
         };
         assert_eq!(names(&root), EXAMPLES.iter().map(|e| e.name.to_string()).collect());
         for example in EXAMPLES {
-            let decks: BTreeSet<String> =
-                names(&root.join(example.name)).into_iter().filter(|n| n.starts_with("in.")).collect();
+            let decks: BTreeSet<String> = names(&root.join(example.name))
+                .into_iter()
+                .filter(|n| n.starts_with("in.") || n.ends_with(".obj"))
+                .collect();
             assert_eq!(
                 decks,
                 example.files[2..].iter().map(|f| f.0.to_string()).collect(),

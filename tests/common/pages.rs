@@ -102,6 +102,11 @@ const FILES: &[(&str, &str)] = &[
         "solid blade\nfacet normal 0 0 1\nouter loop\nvertex -3 -3 0\nvertex 3 -3 0\nvertex 0 3 0\nendloop\nendfacet\n\
          endsolid blade\n",
     ),
+    (
+        "gear.obj",
+        "v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n\
+         f 2 1 6\nf 3 2 6\nf 4 3 6\nf 1 4 6\n",
+    ),
 ];
 
 /// A folder of its own as the working folder, with the files that examples read.

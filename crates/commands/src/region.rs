@@ -1,5 +1,6 @@
 //! `region`: a named volume.
 
+mod mesh;
 mod shapes;
 
 use super::{Act, CommandStyle};
@@ -7,6 +8,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::vec3::length;
 use perigrain_lang::{Args, Param, Word};
 use perigrain_styles::common::{self, free_id, scales, setting, units_lattice, unknown_style};
+use perigrain_styles::triangles::Placing;
 use perigrain_styles::{BuildCx, Doc, Style, Use, UseKind};
 use perigrain_world::region::{Motion, Shape, Turn, Variable};
 use perigrain_world::{Key, Region, memory};
@@ -16,14 +18,15 @@ use shapes::Reader;
 pub struct RegionCommand;
 
 /// Styles LAMMPS has besides.
-const ELSEWHERE: [&str; 3] = ["grid", "mesh", "tri"];
+const ELSEWHERE: [&str; 2] = ["grid", "tri"];
 
 /// The shapes and what combines them, with the faces that `open` can name.
-pub const SHAPES: [(&str, u8); 9] = [
+pub const SHAPES: [(&str, u8); 10] = [
     ("block", 6),
     ("cone", 3),
     ("cylinder", 3),
     ("ellipsoid", 0),
+    ("mesh", 0),
     ("plane", 0),
     ("prism", 6),
     ("sphere", 0),
@@ -39,7 +42,7 @@ impl Style for RegionCommand {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "region ID block XLO XHI YLO YHI ZLO ZHI | cone x|y|z C1 C2 RLO RHI LO HI | \
-                     cylinder x|y|z C1 C2 R LO HI | ellipsoid X Y Z A B C | plane PX PY PZ NX NY NZ | \
+                     cylinder x|y|z C1 C2 R LO HI | ellipsoid X Y Z A B C | mesh FILE [scale S] [shift X Y Z] | plane PX PY PZ NX NY NZ | \
                      prism XLO XHI YLO YHI ZLO ZHI XY XZ YZ | sphere X Y Z R | union N ID ID … | \
                      intersect N ID ID … | delete  [side in|out] [units lattice|box] [open FACE] … \
                      [move v_X|NULL v_Y|NULL v_Z|NULL] [rotate v_THETA PX PY PZ RX RY RZ]",
@@ -53,6 +56,17 @@ impl Style for RegionCommand {
                    through P along R, first turned, then shifted. Such a region is where its variables say at each \
                    moment it is used: by a command, a formula, and in every step of a run by fixes, groups and dumps. \
                    The displacement is in box units.\n\n\
+                   `mesh` is the body within a surface of triangles from a file: STL (text or binary), OBJ (its name ends so), \
+                   PLY (text or binary) or VTP (VTK's XML of surfaces; text, base64 or appended, zlib or plain). Polygons are cut \
+                   into fans around their first corner and should be convex. The file's numbers are multiplied by `scale`, \
+                   `shift`ed, and then in lattice spacings or box units as all distances are; `move` and `rotate` follow \
+                   variables as for other shapes. The surface must be closed: each edge borders two triangles (corners are \
+                   shared where their numbers are the same), and no two triangles cross or touch elsewhere; what is wrong is told with \
+                   the number of edges and the place of the first one. Triangles in the wrong order of corners are turned, and the \
+                   log says how many. A surface within another one is a hole. What is inside is exact for the \
+                   numbers of the file, wherever edges and corners lie; binary STL has seven digits, so that sites meant to lie on a \
+                   face may be on either side of it: shift the lattice by half a spacing (`origin`). `fix wall/mesh` and `peri_crack` read the \
+                   same files, open or closed.\n\n\
                    `union` and `intersect` combine regions as they are declared now, their motions included, at most 10,000 of them in all and nested at \
                    most 100 deep; they cannot \
                    move by themselves. `open` names faces that walls made of the region leave open: for a block or prism 1 \
@@ -60,7 +74,8 @@ impl Style for RegionCommand {
                    which particles are in a region takes it as if it were closed, as LAMMPS' manual says; LAMMPS 22Jul2025 takes \
                    all particles there are, and so does `compat lammps`.",
             example: "variable lift equal 0.001*step\n\
-                      region disc cylinder z 0.0 0.0 0.037 EDGE EDGE units box move NULL NULL v_lift",
+                      region disc cylinder z 0.0 0.0 0.037 EDGE EDGE units box move NULL NULL v_lift\n\
+                      region gear mesh gear.obj scale 0.001 shift 0.0 0.0 0.002 units box",
         }
     }
 }
@@ -71,6 +86,7 @@ struct Options {
     lattice: bool,
     open: u8,
     motion: Option<Motion>,
+    placing: Placing,
 }
 
 impl CommandStyle for RegionCommand {
@@ -93,16 +109,22 @@ impl CommandStyle for RegionCommand {
         let Some((_, faces)) = SHAPES.iter().find(|(s, _)| *s == style.text) else {
             return Err(unknown_style(style, "region style", &SHAPES.map(|(s, _)| s)));
         };
-        let combined = matches!(style.text.as_str(), "union" | "intersect");
-        let options = options(a.clone(), cx, *faces, combined)?;
-        let mut reader = Reader::new(a, cx, scales(cx.world, options.lattice));
+        let options = options(a.clone(), cx, *faces, style)?;
+        let unit = scales(cx.world, options.lattice);
+        let mut reader = Reader::new(a, cx, unit);
+        let mut said = vec![];
         let shape = match style.text.as_str() {
             "union" => Shape::Union(parts(reader.a, cx)?),
             "intersect" => Shape::Intersect(parts(reader.a, cx)?),
+            "mesh" => {
+                let (solid, lines) = mesh::read(reader.a, cx, options.placing, unit)?;
+                said = lines;
+                Shape::Mesh(solid)
+            }
             name => reader.shape(name)?,
         };
         let given = reader.given;
-        no_more(a)?;
+        no_more(a, keywords(style))?;
         a.rest();
         if let Some(fault) = shape.fault() {
             return fail(Code::BAD_VALUE, style.span, format!("this is no {}: {fault}", style.text));
@@ -111,6 +133,7 @@ impl CommandStyle for RegionCommand {
         let mut region = Region { outside, open, given, motion, ..Region::inside(shape) };
         region.open_holds_all(cx.world.settings.lammps());
         Ok(setting(move |cx| {
+            said.iter().for_each(|line| cx.say(line));
             cx.world.parts.restored.remove(&format!("region/{name}"));
             cx.world.regions.insert(Key::new(&name), region);
             Ok(())
@@ -141,9 +164,11 @@ fn delete(cx: &BuildCx, name: String, word: &Word) -> Result<Box<dyn Act>> {
 }
 
 /// Reads the keywords, which stand behind the shape's own words; every word after the first keyword must fit.
-fn options(mut a: Args, cx: &BuildCx, faces: u8, combined: bool) -> Result<Options> {
-    let mut options = Options { outside: false, lattice: true, open: 0, motion: None };
-    while !a.is_empty() && !KEYWORDS.contains(&a.peek_text()) {
+fn options(mut a: Args, cx: &BuildCx, faces: u8, style: &Word) -> Result<Options> {
+    let (combined, known) = (matches!(style.text.as_str(), "union" | "intersect"), keywords(style));
+    let placing = Placing::default();
+    let mut options = Options { outside: false, lattice: true, open: 0, motion: None, placing };
+    while !a.is_empty() && !known.contains(&a.peek_text()) {
         a.next();
     }
     let lattice = units_of(a.clone())?;
@@ -162,13 +187,20 @@ fn options(mut a: Args, cx: &BuildCx, faces: u8, combined: bool) -> Result<Optio
                 let turn = turn(&mut a, cx, scales(cx.world, lattice))?;
                 options.motion.get_or_insert_default().turn = Some(turn);
             }
-            _ => return Err(a.unknown(word, &KEYWORDS)),
+            _ if known == MESH_KEYWORDS && options.placing.keyword(word, &mut a)? => {}
+            _ => return Err(a.unknown(word, known)),
         }
     }
     Ok(options)
 }
 
 const KEYWORDS: [&str; 5] = ["side", "units", "open", "move", "rotate"];
+const MESH_KEYWORDS: [&str; 7] =
+    ["side", "units", "open", "move", "rotate", Placing::KEYWORDS[0], Placing::KEYWORDS[1]];
+
+fn keywords(style: &Word) -> &'static [&'static str] {
+    if style.text == "mesh" { &MESH_KEYWORDS } else { &KEYWORDS }
+}
 
 /// What `units` says further on: it counts for a `rotate` before it too.
 fn units_of(mut a: Args) -> Result<bool> {
@@ -259,9 +291,9 @@ fn parts(a: &mut Args, cx: &BuildCx) -> Result<Vec<Region>> {
 }
 
 /// The shape's words must end here: a keyword or the end of the line.
-fn no_more(a: &mut Args) -> Result<()> {
+fn no_more(a: &mut Args, known: &'static [&'static str]) -> Result<()> {
     match a.peek() {
-        Some(w) if !KEYWORDS.contains(&w.text.as_str()) => Err(a.unknown(w, &KEYWORDS)),
+        Some(w) if !known.contains(&w.text.as_str()) => Err(a.unknown(w, known)),
         _ => Ok(()),
     }
 }

@@ -13,7 +13,6 @@ pub mod fast;
 pub mod heat;
 pub mod law;
 pub mod mdr;
-pub mod mesh;
 pub mod normal;
 pub mod slider;
 pub mod tangential;

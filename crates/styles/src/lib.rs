@@ -34,6 +34,7 @@ pub mod surface;
 pub mod swing;
 #[cfg(feature = "testing")]
 pub mod testing;
+pub mod triangles;
 
 pub use act::{ActCx, Flow, Motion, Values};
 pub use bond::{BondForce, BondStyle};

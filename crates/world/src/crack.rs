@@ -2,6 +2,7 @@
 
 use crate::Region;
 use perigrain_base::diag::{Code, Diagnostic};
+use perigrain_mesh::Sheet;
 
 /// Where bonds are cut.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
@@ -10,6 +11,8 @@ pub struct Crack {
     pub plane: Option<([f64; 3], [f64; 3])>,
     /// Without a plane: bonds that pass through the region are cut.
     pub region: Option<Region>,
+    /// A surface of triangles: bonds that cross it are cut.
+    pub sheet: Option<Sheet>,
     /// The line that made it.
     pub line: String,
 }
@@ -22,11 +25,14 @@ impl Crack {
     pub fn missed(&self) -> Diagnostic {
         let text = format!("`{}` meets no living bond", self.line);
         Diagnostic::error(Code::BAD_VALUE, None, text)
-            .help("compare the plane or region with where the particles are: `units box` takes the numbers as they stand")
+            .help("compare the plane, region or surface with where the particles are: `units box` takes the numbers as they stand")
     }
 
     /// Whether a bond between two places is cut.
     pub fn cuts(&self, a: [f64; 3], b: [f64; 3]) -> bool {
+        if let Some(sheet) = &self.sheet {
+            return sheet.cuts(a, b);
+        }
         let between = |t: f64| [0, 1, 2].map(|k| a[k] + t * (b[k] - a[k]));
         let holds = |x: [f64; 3]| self.region.as_ref().is_none_or(|r| r.contains(x));
         let Some((point, normal)) = self.plane else {
@@ -46,15 +52,15 @@ mod tests {
     #[test]
     fn planes_and_regions() {
         let plane = Some(([0.5, 0.0, 0.0], [1.0, 0.0, 0.0]));
-        let whole = Crack { plane, region: None, line: String::new() };
+        let whole = Crack { plane, region: None, sheet: None, line: String::new() };
         let (a, b) = ([0.0, 0.0, 0.0], [1.0, 1.0, 0.0]);
         assert!(whole.cuts(a, b) && whole.cuts(b, a) && !whole.cuts(a, [0.4, 5.0, 0.0]));
         let (lo, hi) = ([-9.0, 0.6, -9.0], [9.0, 9.0, 9.0]);
         let above = Some(Region::inside(Shape::Block { lo, hi }));
-        let part = Crack { plane, region: above.clone(), line: String::new() };
+        let part = Crack { plane, region: above.clone(), sheet: None, line: String::new() };
         // The bond crosses at y = 0.5.
         assert!(!part.cuts(a, b) && part.cuts([0.0, 0.5, 0.0], b));
-        let through = Crack { plane: None, region: above, line: String::new() };
+        let through = Crack { plane: None, region: above, sheet: None, line: String::new() };
         assert!(through.cuts(a, b) && !through.cuts(a, [1.0, 0.5, 0.0]));
     }
 }

@@ -197,7 +197,7 @@ impl Lattice {
     }
 
     /// First and last cell along each edge that the box `lo … hi` can touch.
-    fn cells(&self, lo: [f64; 3], hi: [f64; 3]) -> ([i64; 3], [i64; 3]) {
+    pub fn cells(&self, lo: [f64; 3], hi: [f64; 3]) -> ([i64; 3], [i64; 3]) {
         let (first, last) = self.span(lo, hi);
         (first.map(|x| x as i64), last.map(|x| x as i64))
     }

@@ -1,13 +1,11 @@
-//! Particles on a surface of triangles from an STL file, ASCII or binary.
+//! Particles on a surface of triangles from a file.
 
 use super::places::{Maker, New};
-use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{add, cross, length, scale, sub};
 use perigrain_lang::Args;
-use perigrain_styles::BuildCx;
-
-/// Three corners.
-pub type Triangle = [[f64; 3]; 3];
+use perigrain_mesh::{Format, Triangle};
+use perigrain_styles::{BuildCx, triangles};
 
 /// A surface to be filled.
 pub struct Mesh {
@@ -128,130 +126,23 @@ pub fn mode(a: &mut Args) -> Result<Mode> {
     })
 }
 
-/// Takes the name of an STL file and reads it; the surface, and what is said about it.
+/// Takes the name of a file and reads it; the surface, and what is said about it.
 pub fn parse(a: &mut Args, cx: &BuildCx) -> Result<(Mesh, Vec<String>)> {
-    let word = a.expect("the name of an STL file")?;
+    let word = a.expect("the name of a file of triangles")?;
     let mesh = |triangles| Mesh { triangles, mode: Mode::Bisect(1.0), radius_scale: 1.0 };
-    let bad = |text: String| fail(Code::NO_FILE, word.span, text);
-    match perigrain_base::gate::read(cx.world.to_read(&word.text)) {
-        Err(_) if cx.world.parts.promised.may_come(&word.text) => Ok((mesh(vec![]), vec![])),
-        Err(e) => fail(
-            perigrain_base::gate::code(&e),
-            word.span,
-            format!("the file `{}` cannot be read: {e}", word.text),
-        ),
-        Ok(bytes) => match read(&bytes) {
-            Err(what) => bad(format!("`{}` is no STL file: {what}", word.text)),
-            Ok((name, binary, triangles)) => {
-                let kind = if binary { "binary" } else { "text" };
-                Ok((
-                    mesh(triangles),
-                    vec![format!("Reading STL object {name} from {kind} file {}", word.text)],
-                ))
-            }
-        },
-    }
-}
-
-/// Reads an STL file of either kind; the object's name, whether it is binary, and its triangles.
-pub fn read(bytes: &[u8]) -> std::result::Result<(String, bool, Vec<Triangle>), String> {
-    if let Some(triangles) = binary(bytes) {
-        let header = String::from_utf8_lossy(&bytes[..80]);
-        return Ok((
-            header.trim_matches(|c: char| c == '\0' || c.is_whitespace()).to_string(),
-            true,
-            triangles,
-        ));
-    }
-    let text = std::str::from_utf8(bytes)
-        .map_err(|_| "it is neither a text nor a whole binary STL file".to_string())?;
-    let name = text.lines().next().unwrap_or("").trim();
-    let Some(name) = name.strip_prefix("solid") else {
-        return Err("its first line does not begin with `solid`, and it is no whole binary STL file".into());
+    let Some(read) = triangles::read(word, cx)? else { return Ok((mesh(vec![]), vec![])) };
+    let kind = match read.format {
+        Format::Stl(true) => "binary ",
+        Format::Stl(false) => "text ",
+        _ => "",
     };
-    ascii(text).map(|triangles| (name.trim().to_string(), false, triangles))
-}
-
-/// The triangles of a binary file, if its length fits the number it announces.
-fn binary(bytes: &[u8]) -> Option<Vec<Triangle>> {
-    let count = u32::from_le_bytes(bytes.get(80..84)?.try_into().ok()?) as usize;
-    let records = &bytes[84..];
-    if count == 0 || records.len() != count.checked_mul(50)? {
-        return None;
-    }
-    let number = |b: &[u8], k: usize| {
-        let at = 4 * k;
-        f64::from(f32::from_le_bytes([b[at], b[at + 1], b[at + 2], b[at + 3]]))
-    };
-    // Twelve numbers: the normal, then the corners.
-    let corner = |r: &[u8], p: usize| [0, 1, 2].map(|d| number(r, 3 + 3 * p + d));
-    Some(records.chunks_exact(50).map(|r| [0, 1, 2].map(|p| corner(r, p))).collect())
-}
-
-fn ascii(text: &str) -> std::result::Result<Vec<Triangle>, String> {
-    let mut triangles = vec![];
-    let mut corners: Vec<[f64; 3]> = vec![];
-    for (n, line) in text.lines().enumerate().skip(1) {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        let wrong = |what: &str| Err(format!("line {}: {what}", n + 1));
-        match words.as_slice() {
-            [] | ["outer", "loop"] | ["facet", ..] => {}
-            ["endsolid", ..] => return Ok(triangles),
-            ["vertex", x, y, z] => {
-                let numbers = [x, y, z].map(|w| w.parse::<f64>().ok().filter(|x| x.is_finite()));
-                let [Some(x), Some(y), Some(z)] = numbers else {
-                    return wrong("a corner needs three numbers");
-                };
-                corners.push([x, y, z]);
-            }
-            ["endloop"] => match corners.as_slice() {
-                [a, b, c] => {
-                    triangles.push([*a, *b, *c]);
-                    corners.clear();
-                }
-                _ => return wrong("a facet needs three corners"),
-            },
-            ["endfacet"] => {}
-            _ => return wrong("this is no line of an STL file"),
-        }
-    }
-    Err("it ends without `endsolid`".into())
+    let line = format!("Reading {} object {} from {kind}file {}", read.format.name(), read.name, word.text);
+    Ok((mesh(read.triangles), vec![line]))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const TEXT: &str = "solid one\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\n\
-                        endloop\nendfacet\nendsolid one\n";
-
-    fn packed() -> Vec<u8> {
-        let mut bytes = b"solid in binary".to_vec();
-        bytes.resize(80, 0);
-        bytes.extend(1u32.to_le_bytes());
-        for x in [0.0f32, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
-            bytes.extend(x.to_le_bytes());
-        }
-        bytes.extend([0, 0]);
-        bytes
-    }
-
-    #[test]
-    fn both_kinds_of_files_are_read() {
-        let corners = vec![[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]];
-        assert_eq!(read(TEXT.as_bytes()), Ok(("one".into(), false, corners.clone())));
-        assert_eq!(read(&packed()), Ok(("solid in binary".into(), true, corners)));
-    }
-
-    #[test]
-    fn broken_files_are_refused_with_their_line() {
-        let said = |text: &str| read(text.as_bytes()).unwrap_err();
-        assert!(said("").contains("solid") && said("solid a\nvertex 1 2\n").contains("line 2"));
-        assert!(said("solid a\nouter loop\nvertex 1 2 3\nendloop\n").contains("line 4"));
-        assert!(said("solid a\nvertex 1 2 nan\n").contains("three numbers"));
-        assert!(said(&TEXT.replace("endsolid one\n", "")).contains("endsolid"));
-        assert!(read(&packed()[..130]).is_err());
-    }
 
     #[test]
     fn large_triangles_are_halved() {

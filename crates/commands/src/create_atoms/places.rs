@@ -173,7 +173,7 @@ fn single(m: &Maker, mut x: [f64; 3], remap: bool) -> Vec<New> {
 }
 
 /// The part of the box that a region leaves.
-fn bounds(domain: &Domain, region: Option<&Region>) -> ([f64; 3], [f64; 3]) {
+pub fn bounds(domain: &Domain, region: Option<&Region>) -> ([f64; 3], [f64; 3]) {
     match region.and_then(Region::bounds) {
         Some((a, b)) => {
             ([0, 1, 2].map(|d| domain.lo[d].max(a[d])), [0, 1, 2].map(|d| domain.hi[d].min(b[d])))

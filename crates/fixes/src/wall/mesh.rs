@@ -1,4 +1,4 @@
-//! fix wall/mesh: a surface of triangles from an STL file as a wall, at rest or moving.
+//! fix wall/mesh: a surface of triangles from a file as a wall, at rest or moving.
 
 mod moving;
 
@@ -9,11 +9,11 @@ use crate::{Fix, FixStyle};
 use moving::{Motion, Placed, Running};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::vec3::{cross, dot, length, scale, sub};
-use perigrain_commands::create_atoms::mesh::read;
-use perigrain_contact::mesh::Mesh;
 use perigrain_contact::walls::{Wall, WallSweep};
 use perigrain_lang::{Args, Word};
+use perigrain_mesh::Facets;
 use perigrain_plan::Tick;
+use perigrain_styles::triangles::{self, Placing};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{Numbers, World};
 use std::sync::Arc;
@@ -28,18 +28,18 @@ impl Style for WallMesh {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group wall/mesh granular MODELS … | hooke … | hooke/history … | hertz/history …  mesh FILE.stl \
+            syntax: "fix ID group wall/mesh granular MODELS … | hooke … | hooke/history … | hertz/history …  mesh FILE \
                      [scale S] [shift X Y Z] [move linear Vx Vy Vz | move wiggle Ax Ay Az period | \
                      move rotate Px Py Pz Rx Ry Rz period | move variable v_dx|NULL v_dy|NULL v_dz|NULL] [contacts] \
                      [material E nu] [about x y z]",
-            summary: "A surface of triangles from an STL file as a wall on which grains lean, at rest or moving.",
+            summary: "A surface of triangles from a file as a wall on which grains lean, at rest or moving.",
             text: "Not in LAMMPS. Forces as those of `fix wall/gran` on a plane, with the nearest point of the surface: from \
                 both sides, whatever the order of corners. A face counts where it is the nearest of its surroundings, an \
                 edge or corner that several triangles share once, and only where no neighbour is nearer. Neighbours whose \
                 normals differ by less than 30° make one smooth patch: of places on one patch that look alike (normals \
                 within 45°) the nearest one counts, and the springs of friction pass from triangle to triangle. So a plane \
                 cut into triangles is a plane: a ball that rolls across feels no kick.\n\n\
-                The file's numbers are multiplied by `scale`, then shifted, into box units; corners are shared where their \
+                FILE is STL (text or binary), OBJ, PLY or VTP, as for `region mesh`. Its numbers are multiplied by `scale`, then shifted, into box units; corners are shared where their \
                 numbers are the same. A triangle without area is refused; edges that border one triangle only (holes, or \
                 the rim of a plate) are told of.\n\n\
                 `move`: with t the time since the fix was declared, `linear` is a shift V t, `wiggle` A sin ω t with \
@@ -56,7 +56,7 @@ impl Style for WallMesh {
 }
 
 /// Words that only meshes know.
-const OWN: [&str; 3] = ["scale", "shift", "move"];
+const OWN: [&str; 3] = [Placing::KEYWORDS[0], Placing::KEYWORDS[1], "move"];
 
 impl FixStyle for WallMesh {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
@@ -67,13 +67,11 @@ impl FixStyle for WallMesh {
         if word.text != "mesh" {
             return Err(args.unknown(word, &["mesh"]));
         }
-        let file = args.expect("the name of an STL file")?;
-        let (mut factor, mut shift, mut motion) = (1.0, [0.0; 3], Motion::Rest);
+        let file = args.expect("the name of a file of triangles")?;
+        let (mut placing, mut motion) = (Placing::default(), Motion::Rest);
         let (mut about, own_center) = (None, common.center);
         while let Some(word) = args.next() {
             match word.text.as_str() {
-                "scale" => factor = args.positive("the scale")?,
-                "shift" => shift = [args.number("x")?, args.number("y")?, args.number("z")?],
                 "move" if !matches!(motion, Motion::Rest) => {
                     return fail(Code::CONFLICT, word.span, "a wall has one motion");
                 }
@@ -81,6 +79,7 @@ impl FixStyle for WallMesh {
                     motion = Motion::read(args, cx)?;
                     about = motion.point();
                 }
+                _ if placing.keyword(word, args)? => {}
                 _ if words::keyword(word, args, cx, &mut common)? => {}
                 _ => return Err(args.unknown(word, &[&OWN[..], &KEYWORDS[..]].concat())),
             }
@@ -89,34 +88,16 @@ impl FixStyle for WallMesh {
             common.center = point;
         }
         words::check_heat(&common)?;
-        let mesh = surface(file, factor, shift, cx)?;
+        let mesh = surface(file, placing, cx)?;
         Ok(Box::new(Declared { common, form: Triangles { mesh: Arc::new(mesh), motion } }))
     }
 }
 
 /// Reads the file's triangles into their place.
-fn surface(file: &Word, factor: f64, shift: [f64; 3], cx: &BuildCx) -> Result<Mesh> {
-    let bytes = match perigrain_base::gate::read(cx.world.to_read(&file.text)) {
-        Ok(bytes) => bytes,
-        Err(_) if cx.world.parts.promised.may_come(&file.text) => return Ok(Mesh::default()),
-        Err(e) => {
-            let text = format!("the file `{}` cannot be read: {e}", file.text);
-            return fail(perigrain_base::gate::code(&e), file.span, text);
-        }
-    };
-    let (_, _, mut triangles) = match read(&bytes) {
-        Ok(found) => found,
-        Err(what) => {
-            return fail(Code::NO_FILE, file.span, format!("`{}` is no STL file: {what}", file.text));
-        }
-    };
-    if triangles.is_empty() {
-        return fail(Code::BAD_VALUE, file.span, format!("`{}` holds no triangles", file.text));
-    }
-    for p in triangles.iter_mut().flatten() {
-        (0..3).for_each(|d| p[d] = factor * p[d] + shift[d]);
-    }
-    let mesh = Mesh::new(triangles).map_err(|bad| {
+fn surface(file: &Word, placing: Placing, cx: &BuildCx) -> Result<Facets> {
+    let Some(mut read) = triangles::read(file, cx)? else { return Ok(Facets::default()) };
+    placing.apply(&mut read.triangles, [1.0; 3]);
+    let mesh = Facets::new(read.triangles).map_err(|bad| {
         let text = format!("triangle {} of `{}` has no area", bad + 1, file.text);
         Diagnostic::error(Code::BAD_VALUE, file.span, text)
             .help("let the program that made the mesh repair it: merge corners and drop degenerate facets")
@@ -134,7 +115,7 @@ fn surface(file: &Word, factor: f64, shift: [f64; 3], cx: &BuildCx) -> Result<Me
 
 #[derive(Clone)]
 struct Triangles {
-    mesh: Arc<Mesh>,
+    mesh: Arc<Facets>,
     motion: Motion,
 }
 
@@ -157,7 +138,7 @@ impl Form for Triangles {
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
         let key = fix.key(Self::STYLE);
         let running = Running::new(self.mesh.clone(), &self.motion, key, cx)?;
-        let areas = self.mesh.triangles().iter().map(perigrain_contact::mesh::area).collect();
+        let areas = self.mesh.triangles().iter().map(perigrain_mesh::area).collect();
         Ok(Box::new(Tracked { running, work: work_key(key), areas }))
     }
 }

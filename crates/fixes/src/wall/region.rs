@@ -8,7 +8,7 @@ use perigrain_contact::walls::{Near, Wall};
 use perigrain_lang::Args;
 use perigrain_plan::Tick;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::region::Look;
+use perigrain_world::region::{Look, Shape};
 use perigrain_world::{Key, Numbers, Region, World};
 
 /// The style.
@@ -168,6 +168,14 @@ impl Wall for Faces<'_> {
         if let Some(region) = self.region {
             region.near(x, reach, &self.look, out);
         }
+    }
+
+    fn passes_some(&self) -> bool {
+        self.region.is_some_and(|r| matches!(r.shape, Shape::Mesh(_)))
+    }
+
+    fn passes(&self, from: u32, to: u32) -> bool {
+        self.region.is_some_and(|r| r.passes(from, to))
     }
 
     fn holds(&self, _near: &Near) -> bool {

@@ -76,6 +76,13 @@ impl Shape {
                 }
             }
             Shape::Prism { lo, hi, tilt } => prism(x, lo, hi, tilt, side, open, &mut f),
+            Shape::Mesh(solid) => {
+                if side == Side::Both || (side == Side::Inner) == solid.contains(x) {
+                    let mut near = vec![];
+                    solid.near(x, reach, &mut near);
+                    near.iter().for_each(|n| f.add(n.part, n.normal, n.distance, 0.0));
+                }
+            }
             // Their parts are asked one by one.
             Shape::Union(_) | Shape::Intersect(_) => {}
         }

@@ -2,6 +2,7 @@
 
 use super::Region;
 use perigrain_base::math::vec3::{dot, sub};
+use perigrain_mesh::Solid;
 use serde::de::{Deserialize, Deserializer, Error};
 use std::cell::Cell;
 
@@ -75,6 +76,8 @@ pub enum Shape {
     Union(#[serde(deserialize_with = "nested")] Vec<Region>),
     /// Points in all.
     Intersect(#[serde(deserialize_with = "nested")] Vec<Region>),
+    /// The body within a closed surface of triangles.
+    Mesh(Solid),
 }
 
 /// The two coordinates across an axis, in LAMMPS' order.
@@ -109,7 +112,7 @@ impl Shape {
             Shape::Cone { axis, .. } => (*axis < 3, 6),
             Shape::Sphere { .. } => (true, 4),
             Shape::Prism { .. } => (true, 9),
-            Shape::Union(_) | Shape::Intersect(_) => (true, 0),
+            Shape::Union(_) | Shape::Intersect(_) | Shape::Mesh(_) => (true, 0),
         }
     }
 
@@ -139,6 +142,7 @@ impl Shape {
             }
             Shape::Union(parts) => parts.iter().any(|r| r.contains(x)),
             Shape::Intersect(parts) => parts.iter().all(|r| r.contains(x)),
+            Shape::Mesh(solid) => solid.contains(x),
         }
     }
 
@@ -171,6 +175,7 @@ impl Shape {
             Shape::Intersect(parts) => {
                 parts.iter().filter_map(Region::bounds).reduce(|a, b| combine(a, b, f64::max, f64::min))
             }
+            Shape::Mesh(solid) => solid.bounds().or(Some(([0.0; 3], [0.0; 3]))),
         }
     }
 
@@ -203,7 +208,7 @@ impl Shape {
                 0..3 => first[k] = value,
                 _ => second[k - 3] = value,
             },
-            Shape::Union(_) | Shape::Intersect(_) => {}
+            Shape::Union(_) | Shape::Intersect(_) | Shape::Mesh(_) => {}
         }
     }
 
@@ -222,7 +227,7 @@ impl Shape {
             | Shape::Plane { point: first, normal: second } => {
                 row(&[first[0], first[1], first[2], second[0], second[1], second[2]])
             }
-            Shape::Union(_) | Shape::Intersect(_) => 0.0,
+            Shape::Union(_) | Shape::Intersect(_) | Shape::Mesh(_) => 0.0,
         }
     }
 
@@ -246,7 +251,7 @@ impl Shape {
             Shape::Prism { lo, hi, .. } => {
                 wrong((0..3).any(|d| lo[d] >= hi[d]), "a lower bound lies not below the upper one")
             }
-            Shape::Union(_) | Shape::Intersect(_) => None,
+            Shape::Union(_) | Shape::Intersect(_) | Shape::Mesh(_) => None,
         }
     }
 }

@@ -67,12 +67,18 @@ impl Region {
         !spare.is_empty()
     }
 
+    /// Whether a contact with part `to` of the surface may go on as one with part `from` did: neighbours on a mesh.
+    pub fn passes(&self, from: u32, to: u32) -> bool {
+        matches!(&self.shape, Shape::Mesh(solid) if solid.passes(from, to))
+    }
+
     /// How many parts its surface has.
     fn parts(&self) -> u32 {
         match &self.shape {
             Shape::Block { .. } | Shape::Prism { .. } => 7,
             Shape::Cylinder { .. } | Shape::Cone { .. } => 4,
             Shape::Sphere { .. } | Shape::Ellipsoid { .. } | Shape::Plane { .. } => 1,
+            Shape::Mesh(solid) => solid.triangles().len() as u32,
             Shape::Union(parts) | Shape::Intersect(parts) => parts.iter().map(Region::parts).sum(),
         }
     }
@@ -86,6 +92,19 @@ impl Region {
                 combined(parts, s, outside, base, before, hidden);
             }
             Shape::Intersect(parts) => combined(parts, s, outside, base, before, false),
+            // Which place it is does not matter.
+            Shape::Mesh(solid) if s.anyone => {
+                let at = self.motion.as_ref().map_or(s.x, |m| m.undo(s.x));
+                if solid.close(at, s.reach) {
+                    s.out.push(Near {
+                        part: base,
+                        normal: [0.0; 3],
+                        distance: 0.0,
+                        radius: 0.0,
+                        velocity: [0.0; 3],
+                    });
+                }
+            }
             shape => {
                 let side = match (self.open != 0 || s.anyone, outside) {
                     (true, _) => Side::Both,

@@ -4,9 +4,9 @@ use crate::elapsed::Elapsed;
 use crate::lineforce::direction;
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::vec3::{Vec3, add, cross, length, scale, sub};
-use perigrain_contact::mesh::Mesh;
 use perigrain_contact::walls::{Near, Wall};
 use perigrain_lang::{Args, Param, ValueRef};
+use perigrain_mesh::Facets;
 use perigrain_plan::{Stage, Tick, When};
 use perigrain_styles::common::param_or_null;
 use perigrain_styles::{BuildCx, Reading, SealCx};
@@ -89,7 +89,7 @@ pub fn place_key(key: Numbers) -> Numbers {
 
 /// A mesh during a run.
 pub struct Running {
-    mesh: Arc<Mesh>,
+    mesh: Arc<Facets>,
     motion: Motion,
     readings: [Option<Reading>; 3],
     key: Numbers,
@@ -106,7 +106,7 @@ impl Running {
     ///
     /// # Errors
     /// Variables that are gone.
-    pub fn new(mesh: Arc<Mesh>, motion: &Motion, key: Numbers, cx: &mut dyn SealCx) -> Result<Self> {
+    pub fn new(mesh: Arc<Facets>, motion: &Motion, key: Numbers, cx: &mut dyn SealCx) -> Result<Self> {
         let mut readings = [None; 3];
         if let Motion::Variable(names) = motion {
             for (reading, name) in readings.iter_mut().zip(names) {
@@ -197,16 +197,17 @@ impl Wall for Placed<'_> {
     }
 
     fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
-        let (me, from) = (self.0, out.len());
-        me.mesh.near(me.undo(x), reach, out);
-        for near in &mut out[from..] {
-            near.velocity = me.velocity;
+        let (me, mut found) = (self.0, vec![]);
+        me.mesh.near(me.undo(x), reach, &mut found);
+        for perigrain_mesh::Near { part, normal, distance } in found {
+            let mut near = Near { part, normal, distance, radius: 0.0, velocity: me.velocity };
             if let Motion::Rotate(point, axis, omega) = &me.motion {
                 near.normal = turned(near.normal, [0.0; 3], *axis, me.angle.into());
                 let place = sub(x, scale(near.distance, near.normal));
                 let arm = sub(place, add(*point, me.shift));
                 near.velocity = add(near.velocity, scale(*omega, cross(*axis, arm)));
             }
+            out.push(near);
         }
     }
 

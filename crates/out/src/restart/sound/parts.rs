@@ -51,7 +51,9 @@ pub fn regions(w: &World) -> Outcome {
     must(
         w.regions.past().values().chain(cracks).all(|r| r.is_sound()),
         "a region has a direction or a number that cannot be",
-    )
+    )?;
+    let sound = w.cracks.iter().filter_map(|c| c.sheet.as_ref()).all(|s| s.is_sound());
+    must(sound, "a surface that cuts bonds has a corner that is nowhere")
 }
 
 /// Whether energies and places of the last rebuild are those of the particles that are there: not where some have come or gone

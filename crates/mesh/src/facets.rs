@@ -1,13 +1,21 @@
 //! Walls of triangles: which places a sphere touches, edges and corners counted once.
 
-use super::walls::Near;
+use super::check::{edges, flat};
+use super::{Triangle, bounds, weld};
 use perigrain_base::math::forest::{find, join};
 use perigrain_base::math::triangle::{Feature, nearest};
 use perigrain_base::math::vec3::{Vec3, cross, dot, length, scale, sub};
-use std::collections::BTreeMap;
 
-/// Three corners.
-pub type Triangle = [Vec3; 3];
+/// A place of a surface near a sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Near {
+    /// The number of the triangle.
+    pub part: u32,
+    /// Unit vector from the nearest point to the sphere's centre.
+    pub normal: Vec3,
+    /// How far the centre is from that point [length].
+    pub distance: f64,
+}
 
 /// Neighbours whose normals differ by less than this (30°) belong to one smooth patch.
 const SMOOTH: f64 = 0.866_025_403_784_438_6;
@@ -15,14 +23,12 @@ const SMOOTH: f64 = 0.866_025_403_784_438_6;
 const ALIKE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Distances that differ by less, relative to themselves, belong to one shared edge or corner.
 const SAME: f64 = 1e-10;
-/// Below this area over the square of the longest side a triangle has none.
-const FLAT: f64 = 1e-12;
 /// Cells along an axis at most.
 const CELLS: f64 = 64.0;
 
 /// A surface of triangles at rest.
 #[derive(Clone, Debug, Default)]
-pub struct Mesh {
+pub struct Facets {
     triangles: Vec<Triangle>,
     /// Corners by number: those at the same place are one.
     corners: Vec<[u32; 3]>,
@@ -43,37 +49,31 @@ struct Grid {
     members: Vec<u32>,
 }
 
-impl Mesh {
+impl Facets {
     /// The surface of these triangles.
     ///
     /// # Errors
     /// The number (from 0) of a triangle without area.
     pub fn new(triangles: Vec<Triangle>) -> Result<Self, usize> {
-        // Corners that are not finite have no area either.
-        let flat = |t: &Triangle| area(t).is_nan() || area(t) <= FLAT * longest(t).powi(2);
-        if let Some(bad) = triangles.iter().position(flat) {
+        if let Some(bad) = flat(&triangles) {
             return Err(bad);
         }
         let corners = weld(&triangles);
-        let mut sides: BTreeMap<[u32; 2], Vec<u32>> = BTreeMap::new();
-        for (k, c) in corners.iter().enumerate() {
-            for e in 0..3 {
-                let (a, b) = (c[e], c[(e + 1) % 3]);
-                sides.entry([a.min(b), a.max(b)]).or_default().push(k as u32);
-            }
-        }
+        let edges = edges(&corners);
         let mut patch: Vec<u32> = (0..triangles.len() as u32).collect();
         let normals: Vec<Vec3> = triangles.iter().map(normal).collect();
-        for side in sides.values() {
-            for pair in side.windows(2) {
+        let mut open_edges = 0;
+        for edge in edges.chunk_by(|a, b| a.0 == b.0) {
+            open_edges += usize::from(edge.len() == 1);
+            for pair in edge.windows(2) {
+                let [a, b] = [pair[0].1 / 3, pair[1].1 / 3];
                 // The order of corners, and so the sign of normals, need not be the same everywhere.
-                if dot(normals[pair[0] as usize], normals[pair[1] as usize]).abs() > SMOOTH {
-                    join(&mut patch, pair[0], pair[1]);
+                if dot(normals[a], normals[b]).abs() > SMOOTH {
+                    join(&mut patch, a as u32, b as u32);
                 }
             }
         }
         let patch = (0..patch.len() as u32).map(|k| find(&mut patch, k)).collect();
-        let open_edges = sides.values().filter(|s| s.len() == 1).count();
         let grid = Grid::new(&triangles);
         Ok(Self { triangles, corners, patch, grid, open_edges })
     }
@@ -148,7 +148,7 @@ impl Mesh {
                 true => scale(1.0 / distance, *apart),
                 false => normal(&self.triangles[*k as usize]),
             };
-            let near = Near { part: *k, normal, distance: *distance, radius: 0.0, velocity: [0.0; 3] };
+            let near = Near { part: *k, normal, distance: *distance };
             self.merge(near, from, out);
         }
     }
@@ -166,12 +166,7 @@ impl Mesh {
 
 impl Grid {
     fn new(triangles: &[Triangle]) -> Self {
-        let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for p in triangles.iter().flatten() {
-            for d in 0..3 {
-                (lo[d], hi[d]) = (lo[d].min(p[d]), hi[d].max(p[d]));
-            }
-        }
+        let (lo, hi) = bounds(triangles.as_flattened());
         if triangles.is_empty() {
             return Self::default();
         }
@@ -182,8 +177,7 @@ impl Grid {
         let mut grid = Self { lo, size, count, start: vec![], members: vec![] };
         let mut lists: Vec<Vec<u32>> = vec![vec![]; count.iter().product()];
         for (k, t) in triangles.iter().enumerate() {
-            let low = [0, 1, 2].map(|d| t.iter().map(|p| p[d]).fold(f64::INFINITY, f64::min));
-            let high = [0, 1, 2].map(|d| t.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, f64::max));
+            let (low, high) = bounds(t);
             if let Some((a, b)) = grid.range(low, high) {
                 grid.each(a, b).for_each(|c| lists[c].push(k as u32));
             }
@@ -243,29 +237,18 @@ fn longest(t: &Triangle) -> f64 {
     (0..3).map(|k| length(sub(t[k], t[(k + 1) % 3]))).fold(0.0, f64::max)
 }
 
-/// Numbers for corners: the same for the same place.
-fn weld(triangles: &[Triangle]) -> Vec<[u32; 3]> {
-    let mut known: BTreeMap<[u64; 3], u32> = BTreeMap::new();
-    let mut number = |p: &Vec3| {
-        let next = known.len() as u32;
-        // Adding zero makes one of both zeros.
-        *known.entry(p.map(|a| (a + 0.0).to_bits())).or_insert(next)
-    };
-    triangles.iter().map(|t| [number(&t[0]), number(&t[1]), number(&t[2])]).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     /// The floor from (0, 0) to (4, 4), cut along a diagonal, and a wall at x = 4 of height 4.
-    fn corner() -> Mesh {
+    fn corner() -> Facets {
         let [a, b, c, d] = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 4.0, 0.0], [0.0, 4.0, 0.0]];
         let [e, f] = [[4.0, 0.0, 4.0], [4.0, 4.0, 4.0]];
-        Mesh::new(vec![[a, b, c], [a, c, d], [b, f, c], [b, e, f]]).unwrap()
+        Facets::new(vec![[a, b, c], [a, c, d], [b, f, c], [b, e, f]]).unwrap()
     }
 
-    fn seen(m: &Mesh, x: Vec3) -> Vec<(Vec3, f64)> {
+    fn seen(m: &Facets, x: Vec3) -> Vec<(Vec3, f64)> {
         let mut out = vec![];
         m.near(x, 1.0, &mut out);
         out.iter().map(|n| (n.normal, n.distance)).collect()
@@ -298,7 +281,7 @@ mod tests {
     fn a_ridge_is_one_edge() {
         // A roof with slopes of 45°: along its ridge at z = 0 both sides are equally near.
         let [a, b] = [[0.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
-        let m = Mesh::new(vec![[a, b, [4.0, 2.0, -4.0]], [a, b, [-4.0, 2.0, -4.0]]]).unwrap();
+        let m = Facets::new(vec![[a, b, [4.0, 2.0, -4.0]], [a, b, [-4.0, 2.0, -4.0]]]).unwrap();
         let ridge = seen(&m, [0.1, 2.0, 0.4]);
         assert!(ridge.len() == 1 && (ridge[0].1 - 0.17f64.sqrt()).abs() < 1e-15, "{ridge:?}");
     }
@@ -307,16 +290,16 @@ mod tests {
     fn a_valley_of_small_angle_is_felt_once() {
         // Two slopes of 0.1: a sphere in the middle touches both, and both look alike.
         let [a, b] = [[0.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
-        let m = Mesh::new(vec![[a, b, [4.0, 2.0, 0.4]], [a, b, [-4.0, 2.0, 0.4]]]).unwrap();
+        let m = Facets::new(vec![[a, b, [4.0, 2.0, 0.4]], [a, b, [-4.0, 2.0, 0.4]]]).unwrap();
         assert_eq!(seen(&m, [0.01, 2.0, 0.9]).len(), 1);
     }
 
     #[test]
     fn triangles_without_area_are_named() {
         let flat = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
-        assert_eq!(Mesh::new(vec![corner().triangles()[0], flat]).err(), Some(1));
+        assert_eq!(Facets::new(vec![corner().triangles()[0], flat]).err(), Some(1));
         let nan = [[f64::NAN; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 1.0]];
-        assert_eq!(Mesh::new(vec![nan]).err(), Some(0));
-        assert!(Mesh::new(vec![]).unwrap().triangles().is_empty());
+        assert_eq!(Facets::new(vec![nan]).err(), Some(0));
+        assert!(Facets::new(vec![]).unwrap().triangles().is_empty());
     }
 }

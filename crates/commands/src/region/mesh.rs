@@ -1,0 +1,32 @@
+//! `region … mesh`: the body within a closed surface of triangles from a file.
+
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::math::cformat::general;
+use perigrain_lang::Args;
+use perigrain_mesh::Solid;
+use perigrain_styles::BuildCx;
+use perigrain_styles::triangles::{self, Placing};
+
+/// Takes the name of a file and reads the body in it; what is said about it.
+pub fn read(a: &mut Args, cx: &BuildCx, placing: Placing, unit: [f64; 3]) -> Result<(Solid, Vec<String>)> {
+    let file = a.expect("the name of a file of triangles")?;
+    let Some(surface) = triangles::read(file, cx)? else { return Ok((Solid::default(), vec![])) };
+    let mut placed = surface.triangles.clone();
+    placing.apply(&mut placed, unit);
+    let solid = Solid::new(placed).map_err(|fault| {
+        let text = format!("`{}` is no surface of a body: {}", file.text, fault.text(&surface.triangles));
+        Diagnostic::error(Code::BAD_VALUE, file.span, text).help(fault.help())
+    })?;
+    let place = |x: [f64; 3]| x.map(|x| general(x, 6)).join(" ");
+    let (lo, hi) = solid.bounds().unwrap_or_default();
+    let (count, kind, volume) = (solid.triangles().len(), surface.format.name(), general(solid.volume(), 8));
+    let mut lines = vec![
+        format!("Reading a body of {count} triangles from {kind} file {}", file.text),
+        format!("  volume {volume}, from ({}) to ({})", place(lo), place(hi)),
+    ];
+    if solid.turned() > 0 {
+        let turned = solid.turned();
+        lines.push(format!("  turned {turned} of them, whose corners ran the wrong way round"));
+    }
+    Ok((solid, lines))
+}

@@ -1,0 +1,59 @@
+//! Surfaces of triangles: read from files, checked, and asked what is inside, what is near and what they cut.
+//!
+//! Knows no deck, no world and no units.
+
+// Units stand in brackets in doc comments, as [length]; they are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
+
+mod check;
+mod columns;
+mod exact;
+mod facets;
+mod obj;
+mod ply;
+mod read;
+#[cfg(test)]
+mod shapes;
+mod sheet;
+mod solid;
+mod stl;
+#[cfg(test)]
+mod tests;
+mod tree;
+mod vtp;
+
+pub use check::Fault;
+pub use columns::Columns;
+pub use facets::{Facets, Near, area};
+pub use read::{Format, Surface, Unreadable, read};
+pub use sheet::Sheet;
+pub use solid::Solid;
+
+/// Three corners.
+pub type Triangle = [[f64; 3]; 3];
+
+/// Numbers for corners: the same for the same place.
+fn weld(triangles: &[Triangle]) -> Vec<[u32; 3]> {
+    // Adding zero makes one of both zeros.
+    let key = |p: &[f64; 3]| p.map(|a| (a + 0.0).to_bits());
+    let mut all: Vec<([u64; 3], u32)> =
+        triangles.as_flattened().iter().zip(0..).map(|(p, k)| (key(p), k)).collect();
+    all.sort_unstable();
+    let mut corners = vec![[0; 3]; triangles.len()];
+    let mut number = 0;
+    for (k, (place, at)) in all.iter().enumerate() {
+        if k > 0 && all[k - 1].0 != *place {
+            number += 1;
+        }
+        corners.as_flattened_mut()[*at as usize] = number;
+    }
+    corners
+}
+
+/// Corners of a box around points.
+fn bounds<'p>(points: impl IntoIterator<Item = &'p [f64; 3]>) -> ([f64; 3], [f64; 3]) {
+    let start = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    points
+        .into_iter()
+        .fold(start, |(lo, hi), p| ([0, 1, 2].map(|d| lo[d].min(p[d])), [0, 1, 2].map(|d| hi[d].max(p[d]))))
+}

@@ -1,0 +1,99 @@
+//! Wavefront OBJ files: their corners and faces.
+
+use super::Triangle;
+use super::read::fan;
+
+/// Lines about looks, groups, and what is no surface: points and lines.
+const PASSED: [&str; 14] = [
+    "vt",
+    "vn",
+    "g",
+    "s",
+    "usemtl",
+    "mtllib",
+    "l",
+    "p",
+    "mg",
+    "maplib",
+    "usemap",
+    "shadow_obj",
+    "trace_obj",
+    "lod",
+];
+
+/// Reads an OBJ file; the first object's name and the triangles.
+pub fn read(bytes: &[u8]) -> Result<(String, Vec<Triangle>), String> {
+    let text = std::str::from_utf8(bytes).map_err(|_| "it is no text".to_string())?;
+    let (mut points, mut triangles, mut name) = (vec![], vec![], None);
+    let mut polygon = vec![];
+    for (n, line) in text.lines().enumerate() {
+        let line = line.split('#').next().unwrap_or("");
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let wrong = |what: String| Err(format!("line {}: {what}", n + 1));
+        match words.as_slice() {
+            [] => {}
+            // A fourth number is a weight, six are a corner with a colour.
+            ["v", x, y, z, ..] => {
+                let numbers = [x, y, z].map(|w| w.parse::<f64>().ok().filter(|x| x.is_finite()));
+                let [Some(x), Some(y), Some(z)] = numbers else {
+                    return wrong("a corner needs three numbers".into());
+                };
+                points.push([x, y, z]);
+            }
+            ["v", ..] => return wrong("a corner needs three numbers".into()),
+            ["f", corners @ ..] => {
+                if corners.len() < 3 {
+                    return wrong("a face needs three corners".into());
+                }
+                polygon.clear();
+                for corner in corners {
+                    match place(corner, points.len()) {
+                        Some(k) => polygon.push(k),
+                        None => return wrong(format!("there is no corner `{corner}` above")),
+                    }
+                }
+                if let Err(k) = fan(&polygon, &points, &mut triangles) {
+                    return wrong(format!("there is no corner {}", k + 1));
+                }
+            }
+            ["o", rest @ ..] => {
+                name.get_or_insert_with(|| rest.join(" "));
+            }
+            [word, ..] if PASSED.contains(word) => {}
+            [word, ..] => return wrong(format!("`{word}` is no line of a surface of polygons")),
+        }
+    }
+    Ok((name.unwrap_or_default(), triangles))
+}
+
+/// The corner that `7`, `7/1/2` or, counted from the last one back, `-1` names, from 0.
+fn place(word: &str, count: usize) -> Option<usize> {
+    let k: i64 = word.split('/').next()?.parse().ok()?;
+    match usize::try_from(k) {
+        Ok(k) => k.checked_sub(1).filter(|k| *k < count),
+        Err(_) => count.checked_sub(usize::try_from(k.unsigned_abs()).ok()?),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faces_by_number_and_counted_back() {
+        let text = "# made by hand\no plate\nv 0 0 0\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2/7/1 3 4\nf -4 -3 -2\n";
+        let (name, t) = read(text.as_bytes()).unwrap();
+        let [a, b, c, d] = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        assert_eq!((name.as_str(), t), ("plate", vec![[a, b, c], [a, c, d], [a, b, c]]));
+    }
+
+    #[test]
+    fn broken_files_are_refused_with_their_line() {
+        let said = |text: &str| read(text.as_bytes()).unwrap_err();
+        assert!(said("v 0 0\n").contains("line 1") && said("v 0 0 inf\n").contains("three numbers"));
+        assert!(said("v 0 0 0\nf 1 2 3\n").contains("line 2: there is no corner `2`"));
+        assert!(said("v 0 0 0\nf 1 1 -2\n").contains("`-2`") && said("f 0 0 0\n").contains("`0`"));
+        assert!(said("v 0 0 0\nf 1 1\n").contains("three corners"));
+        assert!(said("curv 0 1 2\n").contains("`curv`"));
+    }
+}

@@ -1,0 +1,308 @@
+//! PLY files: text, and binary of either byte order.
+
+use super::Triangle;
+use super::read::fan;
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Encoding {
+    Text,
+    Little,
+    Big,
+}
+
+/// A kind of number: its bytes, and whether it is a fraction or has a sign.
+#[derive(Clone, Copy)]
+struct Kind {
+    bytes: usize,
+    float: bool,
+    signed: bool,
+}
+
+struct Property {
+    name: String,
+    /// Kind of the count that a list begins with.
+    list: Option<Kind>,
+    kind: Kind,
+}
+
+struct Element {
+    name: String,
+    count: u64,
+    properties: Vec<Property>,
+}
+
+/// The numbers behind the header, one by one.
+enum Numbers<'b> {
+    Text(std::str::SplitAsciiWhitespace<'b>),
+    Bytes(&'b [u8], bool),
+}
+
+impl Numbers<'_> {
+    fn next(&mut self, kind: Kind) -> Option<f64> {
+        match self {
+            Numbers::Text(words) => words.next()?.parse().ok(),
+            Numbers::Bytes(rest, big) => {
+                let (number, after) = rest.split_at_checked(kind.bytes)?;
+                *rest = after;
+                Some(decode(number, kind, *big))
+            }
+        }
+    }
+}
+
+/// A number of up to eight bytes.
+fn decode(bytes: &[u8], kind: Kind, big: bool) -> f64 {
+    let fold = |whole: u64, b: &u8| whole << 8 | u64::from(*b);
+    let raw = if big { bytes.iter().fold(0, fold) } else { bytes.iter().rev().fold(0, fold) };
+    let unused = 64 - 8 * kind.bytes as u32;
+    match kind {
+        Kind { float: true, bytes: 4, .. } => f64::from(f32::from_bits(raw as u32)),
+        Kind { float: true, .. } => f64::from_bits(raw),
+        Kind { signed: true, .. } => ((raw << unused) as i64 >> unused) as f64,
+        _ => raw as f64,
+    }
+}
+
+fn kind(word: &str) -> Option<Kind> {
+    let (bytes, float, signed) = match word {
+        "char" | "int8" => (1, false, true),
+        "uchar" | "uint8" => (1, false, false),
+        "short" | "int16" => (2, false, true),
+        "ushort" | "uint16" => (2, false, false),
+        "int" | "int32" => (4, false, true),
+        "uint" | "uint32" => (4, false, false),
+        "float" | "float32" => (4, true, true),
+        "double" | "float64" => (8, true, true),
+        _ => return None,
+    };
+    Some(Kind { bytes, float, signed })
+}
+
+/// Reads a PLY file.
+pub fn read(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
+    let (encoding, elements, body) = header(bytes)?;
+    let mut numbers = match encoding {
+        Encoding::Text => {
+            let text = std::str::from_utf8(body).map_err(|_| "it is no text, but says so".to_string())?;
+            Numbers::Text(text.split_ascii_whitespace())
+        }
+        _ => Numbers::Bytes(body, encoding == Encoding::Big),
+    };
+    let (mut points, mut triangles) = (vec![], vec![]);
+    for element in &elements {
+        match element.name.as_str() {
+            "vertex" => corners(element, &mut numbers, &mut points)?,
+            "face" => faces(element, &mut numbers, &points, &mut triangles)?,
+            "tristrips" => return Err("its triangles are strips (`tristrips`): write them as faces".into()),
+            // Edges, materials and the like: read past.
+            _ => rows(element, &mut numbers, |_, _| {}, |_, _| Ok(()))?,
+        }
+    }
+    Ok(triangles)
+}
+
+type Header<'b> = (Encoding, Vec<Element>, &'b [u8]);
+
+fn header(bytes: &[u8]) -> Result<Header<'_>, String> {
+    let (mut rest, mut encoding) = (bytes, None);
+    let mut elements: Vec<Element> = vec![];
+    for n in 1.. {
+        let Some(end) = rest.iter().position(|b| *b == b'\n') else {
+            return Err("its header ends without `end_header`".into());
+        };
+        let line = std::str::from_utf8(&rest[..end]).map_err(|_| format!("line {n} is no text"))?;
+        rest = &rest[end + 1..];
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let wrong = |what: &str| Err(format!("line {n}: {what}"));
+        match words.as_slice() {
+            ["ply"] if n == 1 => {}
+            _ if n == 1 => return wrong("it does not begin with `ply`"),
+            ["comment" | "obj_info", ..] | [] => {}
+            ["format", word, "1.0"] => {
+                encoding = Some(match *word {
+                    "ascii" => Encoding::Text,
+                    "binary_little_endian" => Encoding::Little,
+                    "binary_big_endian" => Encoding::Big,
+                    _ => return wrong("a format is ascii, binary_little_endian or binary_big_endian"),
+                });
+            }
+            ["element", name, count] => {
+                let Ok(count) = count.parse() else { return wrong("an element needs a number of rows") };
+                elements.push(Element { name: (*name).into(), count, properties: vec![] });
+            }
+            ["property", words @ ..] => {
+                let property = match words {
+                    ["list", count, of, name] => match (kind(count), kind(of)) {
+                        (Some(count), Some(of)) if !count.float => {
+                            Property { name: (*name).into(), list: Some(count), kind: of }
+                        }
+                        _ => return wrong("this is no kind of number"),
+                    },
+                    [of, name] => match kind(of) {
+                        Some(of) => Property { name: (*name).into(), list: None, kind: of },
+                        None => return wrong("this is no kind of number"),
+                    },
+                    _ => return wrong("a property needs a kind and a name"),
+                };
+                match elements.last_mut() {
+                    Some(element) => element.properties.push(property),
+                    None => return wrong("a property belongs to an element"),
+                }
+            }
+            ["end_header"] => break,
+            _ => return wrong("this is no line of a PLY header"),
+        }
+    }
+    match encoding {
+        Some(encoding) => Ok((encoding, elements, rest)),
+        None => Err("its header has no line `format`".into()),
+    }
+}
+
+/// Reads the rows of an element: each property's single number, and each list.
+fn rows(
+    element: &Element,
+    numbers: &mut Numbers,
+    mut single: impl FnMut(usize, f64),
+    mut listed: impl FnMut(usize, &[f64]) -> Result<(), String>,
+) -> Result<(), String> {
+    let mut list = vec![];
+    if element.properties.is_empty() {
+        return Ok(());
+    }
+    for row in 0..element.count {
+        let cut =
+            || format!("it ends, or has a word that is no number, in row {} of `{}`", row + 1, element.name);
+        for (k, property) in element.properties.iter().enumerate() {
+            let Some(count) = property.list else {
+                single(k, numbers.next(property.kind).ok_or_else(cut)?);
+                continue;
+            };
+            let count = numbers.next(count).ok_or_else(cut)?;
+            list.clear();
+            for _ in 0..count as u64 {
+                list.push(numbers.next(property.kind).ok_or_else(cut)?);
+            }
+            listed(k, &list).map_err(|what| format!("row {} of `{}`: {what}", row + 1, element.name))?;
+        }
+    }
+    Ok(())
+}
+
+fn corners(element: &Element, numbers: &mut Numbers, points: &mut Vec<[f64; 3]>) -> Result<(), String> {
+    let at = |name: &str| {
+        let found = element.properties.iter().position(|p| p.name == name && p.list.is_none());
+        found.ok_or_else(|| format!("its corners have no `{name}`"))
+    };
+    let (columns, last) = ([at("x")?, at("y")?, at("z")?], element.properties.len() - 1);
+    let mut place = [0.0; 3];
+    let ends_in_list = element.properties[last].list.is_some();
+    let single = |k: usize, x: f64| {
+        if let Some(d) = columns.iter().position(|c| *c == k) {
+            place[d] = x;
+        }
+        if k == last {
+            points.push(place);
+        }
+    };
+    if ends_in_list {
+        return Err("its corners end in a list".into());
+    }
+    rows(element, numbers, single, |_, _| Ok(()))
+}
+
+fn faces(
+    element: &Element,
+    numbers: &mut Numbers,
+    points: &[[f64; 3]],
+    triangles: &mut Vec<Triangle>,
+) -> Result<(), String> {
+    let named =
+        |p: &Property| matches!(p.name.as_str(), "vertex_indices" | "vertex_index") && p.list.is_some();
+    let Some(column) = element.properties.iter().position(named) else {
+        return Err("its faces have no list `vertex_indices`".into());
+    };
+    let mut polygon = vec![];
+    rows(
+        element,
+        numbers,
+        |_, _| {},
+        |k, list| {
+            if k != column {
+                return Ok(());
+            }
+            if list.len() < 3 {
+                return Err("a face needs three corners".into());
+            }
+            polygon.clear();
+            for x in list {
+                // Only whole numbers from 0 on name corners.
+                let whole = *x >= 0.0 && x.fract() == 0.0 && *x < points.len() as f64;
+                polygon.push(if whole {
+                    *x as usize
+                } else {
+                    return Err(format!("there is no corner {x}"));
+                });
+            }
+            fan(&polygon, points, triangles).map_err(|k| format!("there is no corner {k}"))
+        },
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEAD: &str = "comment by hand\nelement vertex 3\nproperty float x\nproperty double y\nproperty short z\n\
+                        property uchar red\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+
+    fn wanted() -> Vec<Triangle> {
+        vec![[[0.5, 0.0, -2.0], [1.0, 0.0, 0.0], [0.0, 1.0, 300.0]]]
+    }
+
+    fn binary(big: bool) -> Vec<u8> {
+        let name = if big { "big" } else { "little" };
+        let mut bytes = format!("ply\nformat binary_{name}_endian 1.0\n{HEAD}").into_bytes();
+        let mut push = |mut number: Vec<u8>| {
+            if !big {
+                number.reverse();
+            }
+            bytes.extend(number);
+        };
+        for [x, y, z] in wanted()[0] {
+            push((x as f32).to_be_bytes().to_vec());
+            push(y.to_be_bytes().to_vec());
+            push((z as i16).to_be_bytes().to_vec());
+            push(vec![255]);
+        }
+        push(vec![3]);
+        (0..3i32).for_each(|k| push(k.to_be_bytes().to_vec()));
+        bytes
+    }
+
+    #[test]
+    fn the_three_encodings_are_read() {
+        let text = format!("ply\nformat ascii 1.0\n{HEAD}0.5 0 -2 9\n1 0 0 9\n0 1e0 300 9\n3 0 1 2\n");
+        assert_eq!(read(text.as_bytes()), Ok(wanted()));
+        assert_eq!(read(&text.replace('\n', "\r\n").into_bytes()), Ok(wanted()));
+        assert_eq!(read(&binary(true)), Ok(wanted()));
+        assert_eq!(read(&binary(false)), Ok(wanted()));
+    }
+
+    #[test]
+    fn broken_files_are_refused() {
+        let said = |text: &str| read(text.as_bytes()).unwrap_err();
+        assert!(said("ply\nformat ascii 1.0\n").contains("end_header"));
+        assert!(said("ply\nformat ascii 2.0\n").contains("line 2"));
+        assert!(said("ply\nproperty float x\n").contains("line 2"));
+        assert!(said("ply\nelement vertex 3\nproperty float x\nend_header\n").contains("format"));
+        let text = format!("ply\nformat ascii 1.0\n{HEAD}0 0 0 0\n1 0 0 0\n0 1 0 0\n");
+        assert!(said(&text).contains("row 1 of `face`"));
+        assert!(said(&format!("{text}3 0 1 3\n")).contains("no corner 3"));
+        assert!(said(&format!("{text}2 0 1\n")).contains("three corners"));
+        let whole = binary(true);
+        assert!(read(&whole[..whole.len() - 1]).unwrap_err().contains("row 1 of `face`"));
+        // A number of rows that no file has.
+        assert!(said(&text.replace("vertex 3", "vertex 99999999999")).contains("row 4"));
+    }
+}

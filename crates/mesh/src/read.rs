@@ -1,0 +1,89 @@
+//! Which kind of file a surface stands in, and its triangles.
+
+use super::{Triangle, obj, ply, stl, vtp};
+
+/// A kind of file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// STL as text or, if true, binary.
+    Stl(bool),
+    /// Wavefront OBJ.
+    Obj,
+    /// Polygon file format, of any of its three encodings.
+    Ply,
+    /// VTK XML `PolyData`.
+    Vtp,
+}
+
+impl Format {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Stl(_) => "STL",
+            Format::Obj => "OBJ",
+            Format::Ply => "PLY",
+            Format::Vtp => "VTP",
+        }
+    }
+}
+
+/// What a file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    /// The object's name, where the file gives one.
+    pub name: String,
+    /// What kind of file it was.
+    pub format: Format,
+    /// The triangles in the order of the file; polygons are cut into fans.
+    pub triangles: Vec<Triangle>,
+}
+
+/// Why a file cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unreadable {
+    /// What it was taken for.
+    pub format: Format,
+    /// What is wrong with it.
+    pub what: String,
+}
+
+impl Unreadable {
+    /// The sentence about a file of this name.
+    pub fn of(&self, file: &str) -> String {
+        format!("`{file}` is no {} file: {}", self.format.name(), self.what)
+    }
+}
+
+/// Reads the triangles of a file: PLY and VTP are known by their first bytes, OBJ by the name's end, all else is STL.
+///
+/// # Errors
+/// What is wrong with the file, with line or place.
+pub fn read(file: &str, bytes: &[u8]) -> Result<Surface, Unreadable> {
+    let start = bytes.trim_ascii_start();
+    let ends = |end: &str| file.len() >= end.len() && file.to_ascii_lowercase().ends_with(end);
+    let (format, found) = if bytes.starts_with(b"ply") || ends(".ply") {
+        (Format::Ply, ply::read(bytes).map(|t| (String::new(), t)))
+    } else if start.starts_with(b"<") || ends(".vtp") {
+        (Format::Vtp, vtp::read(bytes).map(|t| (String::new(), t)))
+    } else if ends(".obj") {
+        (Format::Obj, obj::read(bytes))
+    } else {
+        let binary = stl::is_binary(bytes);
+        (Format::Stl(binary), stl::read(bytes))
+    };
+    let (name, triangles) = found.map_err(|what| Unreadable { format, what })?;
+    if let Some(bad) = triangles.iter().position(|t| !t.as_flattened().iter().all(|x| x.is_finite())) {
+        let what = format!("triangle {} has a coordinate that is no finite number", bad + 1);
+        return Err(Unreadable { format, what });
+    }
+    Ok(Surface { name, format, triangles })
+}
+
+/// Cuts a polygon into triangles around its first corner; nothing comes of less than three corners.
+pub fn fan(polygon: &[usize], points: &[[f64; 3]], triangles: &mut Vec<Triangle>) -> Result<(), usize> {
+    let place = |k: usize| points.get(k).copied().ok_or(k);
+    for pair in polygon.get(1..).unwrap_or_default().windows(2) {
+        triangles.push([place(polygon[0])?, place(pair[0])?, place(pair[1])?]);
+    }
+    Ok(())
+}

@@ -1,0 +1,197 @@
+//! What lies inside a closed surface.
+
+use super::check::{self, Fault};
+use super::exact::{side2, side3};
+use super::facets::{Facets, Near};
+use super::tree::Tree;
+use super::{Triangle, area};
+use perigrain_base::math::vec3::{Vec3, cross, dot, sub};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A body within a closed surface of triangles; copies share it.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(try_from = "Vec<Triangle>", into = "Vec<Triangle>")]
+pub struct Solid(Arc<Inner>);
+
+#[derive(Debug, Default)]
+struct Inner {
+    facets: Facets,
+    tree: Tree,
+    turned: usize,
+}
+
+impl PartialEq for Solid {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0) || self.triangles() == other.triangles()
+    }
+}
+
+impl From<Solid> for Vec<Triangle> {
+    fn from(solid: Solid) -> Self {
+        solid.triangles().to_vec()
+    }
+}
+
+/// What a file holds was checked when it was written; here it must only do no harm.
+impl TryFrom<Vec<Triangle>> for Solid {
+    type Error = &'static str;
+
+    fn try_from(triangles: Vec<Triangle>) -> Result<Self, Self::Error> {
+        let facets = Facets::new(triangles).map_err(|_| "a triangle of a region has no area")?;
+        let tree = Tree::new(facets.triangles());
+        Ok(Self(Arc::new(Inner { facets, tree, turned: 0 })))
+    }
+}
+
+impl Solid {
+    /// The body within these triangles, which are turned so that all see the outside counterclockwise.
+    ///
+    /// # Errors
+    /// What keeps the surface from being closed.
+    pub fn new(mut triangles: Vec<Triangle>) -> Result<Self, Fault> {
+        check::areas(&triangles)?;
+        let tree = Tree::new(&triangles);
+        let sides = check::closed(&triangles)?;
+        check::crossings(&triangles, &tree)?;
+        let turned = sides.orient(&mut triangles, &tree)?;
+        let facets = Facets::new(triangles).map_err(Fault::Flat)?;
+        Ok(Self(Arc::new(Inner { facets, tree, turned })))
+    }
+
+    /// The triangles.
+    pub fn triangles(&self) -> &[Triangle] {
+        self.0.facets.triangles()
+    }
+
+    /// How many triangles were turned.
+    pub fn turned(&self) -> usize {
+        self.0.turned
+    }
+
+    /// The box around the body.
+    pub fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
+        self.0.tree.bounds()
+    }
+
+    /// Its volume [length³].
+    pub fn volume(&self) -> f64 {
+        let Some((lo, _)) = self.bounds() else { return 0.0 };
+        let wedge = |t: &Triangle| dot(sub(t[0], lo), cross(sub(t[1], lo), sub(t[2], lo))) / 6.0;
+        self.triangles().iter().map(wedge).sum()
+    }
+
+    /// The area of its surface [length²].
+    pub fn area(&self) -> f64 {
+        self.triangles().iter().map(area).sum()
+    }
+
+    /// Whether the point is inside or on the surface; exact, whatever the ray meets.
+    pub fn contains(&self, x: Vec3) -> bool {
+        let Some((lo, hi)) = self.bounds() else { return false };
+        if !(0..3).all(|d| x[d] >= lo[d] && x[d] <= hi[d]) {
+            return false;
+        }
+        inside(self.triangles(), &self.0.tree, x, |_| true)
+    }
+
+    /// Whether the surface is nearer than `reach`.
+    pub fn close(&self, x: Vec3, reach: f64) -> bool {
+        self.0.facets.close(x, reach)
+    }
+
+    /// The places of the surface nearer than `reach`, those that look alike once.
+    pub fn near(&self, x: Vec3, reach: f64, out: &mut Vec<Near>) {
+        self.0.facets.near(x, reach, out);
+    }
+
+    /// Whether a contact may follow another: their triangles lie in one smooth patch.
+    pub fn passes(&self, from: u32, to: u32) -> bool {
+        self.0.facets.passes(from, to)
+    }
+}
+
+/// Whether a point lies on one of the triangles that count, or a ray from there crosses an odd number of them.
+///
+/// The ray goes along an axis, the shortest way out, and passes beside edges and corners as if the point were shifted by an
+/// infinitely small step across it, the same for all triangles.
+pub fn inside(triangles: &[Triangle], tree: &Tree, x: Vec3, counts: impl Fn(u32) -> bool) -> bool {
+    let Some((low, high)) = tree.bounds() else { return false };
+    let ways = (0..3).flat_map(|d| [(x[d] - low[d], d, false), (high[d] - x[d], d, true)]);
+    let Some((_, axis, up)) = ways.min_by(|a, b| a.0.total_cmp(&b.0)) else { return false };
+    let (mut lo, mut hi) = (x, x);
+    if up {
+        hi[axis] = f64::INFINITY;
+    } else {
+        lo[axis] = f64::NEG_INFINITY;
+    }
+    let (mut odd, mut on) = (false, false);
+    tree.meet(lo, hi, |k| {
+        if counts(k) {
+            match meets(&triangles[k as usize], &x, axis, up) {
+                Meets::Not => {}
+                Meets::On => on = true,
+                Meets::Crosses => odd = !odd,
+            }
+        }
+        !on
+    });
+    on || odd
+}
+
+enum Meets {
+    Not,
+    On,
+    Crosses,
+}
+
+/// Corners and point as seen along an axis.
+fn flat(p: &Vec3, axis: usize) -> [f64; 2] {
+    [p[(axis + 1) % 3], p[(axis + 2) % 3]]
+}
+
+/// The sides of a point at the three edges, as seen along an axis; nothing if they differ, so that it is not in the triangle.
+fn sides(t: &Triangle, x: &Vec3, axis: usize) -> Option<[i8; 3]> {
+    let (p, [a, b, c]) = (flat(x, axis), [0, 1, 2].map(|k| flat(&t[k], axis)));
+    let sides = [side2(a, b, p), side2(b, c, p), side2(c, a, p)];
+    (!(sides.contains(&1) && sides.contains(&-1))).then_some(sides)
+}
+
+fn meets(t: &Triangle, x: &Vec3, axis: usize, up: bool) -> Meets {
+    let within = |d: usize| {
+        let p = [t[0][d], t[1][d], t[2][d]];
+        x[d] >= p[0].min(p[1]).min(p[2]) && x[d] <= p[0].max(p[1]).max(p[2])
+    };
+    if !within((axis + 1) % 3) || !within((axis + 2) % 3) {
+        return Meets::Not;
+    }
+    let Some(sides2) = sides(t, x, axis) else { return Meets::Not };
+    let below = side3(&t[0], &t[1], &t[2], x);
+    if below == 0 {
+        // On its plane; all edges in line as seen from here: looked at from where it is widest.
+        let n = cross(sub(t[1], t[0]), sub(t[2], t[0]));
+        let widest = (0..3).max_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs())).unwrap_or(0);
+        let on = within(axis) && (widest == axis || sides(t, x, widest).is_some());
+        return if on { Meets::On } else { Meets::Not };
+    }
+    // A point on an edge belongs to the side to which it is shifted: along the first coordinate, then the second.
+    let shifted = |k: usize| match sides2[k] {
+        0 => {
+            let (a, b) = (flat(&t[k], axis), flat(&t[(k + 1) % 3], axis));
+            if a[1] != b[1] {
+                if b[1] > a[1] { -1 } else { 1 }
+            } else if b[0] > a[0] {
+                1
+            } else {
+                -1
+            }
+        }
+        side => side,
+    };
+    let turn = shifted(0);
+    if shifted(1) != turn || shifted(2) != turn {
+        return Meets::Not;
+    }
+    // Counterclockwise as seen from above and the point below: a ray up crosses it.
+    if (turn * below > 0) == up { Meets::Crosses } else { Meets::Not }
+}

@@ -1,0 +1,126 @@
+//! STL files, text and binary.
+
+use super::Triangle;
+
+type Found = Result<(String, Vec<Triangle>), String>;
+
+/// Reads an STL file of either kind; the object's name and its triangles.
+pub fn read(bytes: &[u8]) -> Found {
+    if is_binary(bytes) {
+        let header = String::from_utf8_lossy(&bytes[..80]);
+        let name = header.trim_matches(|c: char| c == '\0' || c.is_whitespace()).to_string();
+        return Ok((name, binary(&bytes[84..])));
+    }
+    let announced = announced(bytes).map_or(String::new(), |count| {
+        let wanted = 84 + 50 * u64::from(count);
+        format!(" (as one it announces {count} triangles in {wanted} bytes, and has {})", bytes.len())
+    });
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return Err(format!("it is neither a text nor a whole binary STL file{announced}"));
+    };
+    if !text.lines().next().unwrap_or("").trim().starts_with("solid") {
+        let text = "its first line does not begin with `solid`, and it is no whole binary STL file";
+        return Err(format!("{text}{announced}"));
+    }
+    ascii(text)
+}
+
+/// The number of triangles that a binary file announces.
+fn announced(bytes: &[u8]) -> Option<u32> {
+    Some(u32::from_le_bytes(bytes.get(80..84)?.try_into().ok()?))
+}
+
+/// Whether its length fits the number of triangles it announces.
+pub fn is_binary(bytes: &[u8]) -> bool {
+    announced(bytes).is_some_and(|count| count > 0 && bytes.len() as u64 == 84 + 50 * u64::from(count))
+}
+
+fn binary(records: &[u8]) -> Vec<Triangle> {
+    let number = |b: &[u8], k: usize| {
+        let at = 4 * k;
+        f64::from(f32::from_le_bytes([b[at], b[at + 1], b[at + 2], b[at + 3]]))
+    };
+    // Twelve numbers: the normal, then the corners.
+    let corner = |r: &[u8], p: usize| [0, 1, 2].map(|d| number(r, 3 + 3 * p + d));
+    records.chunks_exact(50).map(|r| [0, 1, 2].map(|p| corner(r, p))).collect()
+}
+
+/// All the solids of a text; the name of the first one.
+fn ascii(text: &str) -> Found {
+    let (mut triangles, mut corners, mut name, mut open) = (vec![], vec![], None, false);
+    for (n, line) in text.lines().enumerate() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let wrong = |what: &str| Err(format!("line {}: {what}", n + 1));
+        match words.as_slice() {
+            [] => {}
+            ["solid", rest @ ..] if !open => {
+                name.get_or_insert_with(|| rest.join(" "));
+                open = true;
+            }
+            ["endsolid", ..] if open => open = false,
+            _ if !open => return wrong("a solid begins with `solid`"),
+            ["outer", "loop"] | ["facet", ..] | ["endfacet"] => {}
+            ["vertex", x, y, z] => {
+                let numbers = [x, y, z].map(|w| w.parse::<f64>().ok().filter(|x| x.is_finite()));
+                let [Some(x), Some(y), Some(z)] = numbers else {
+                    return wrong("a corner needs three numbers");
+                };
+                corners.push([x, y, z]);
+            }
+            ["endloop"] => match corners.as_slice() {
+                [a, b, c] => {
+                    triangles.push([*a, *b, *c]);
+                    corners.clear();
+                }
+                _ => return wrong("a facet needs three corners"),
+            },
+            _ => return wrong("this is no line of an STL file"),
+        }
+    }
+    if open {
+        return Err("it ends without `endsolid`".into());
+    }
+    Ok((name.unwrap_or_default(), triangles))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "solid one\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\n\
+                        endloop\nendfacet\nendsolid one\n";
+
+    fn packed() -> Vec<u8> {
+        let mut bytes = b"solid in binary".to_vec();
+        bytes.resize(80, 0);
+        bytes.extend(1u32.to_le_bytes());
+        for x in [0.0f32, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+            bytes.extend(x.to_le_bytes());
+        }
+        bytes.extend([0, 0]);
+        bytes
+    }
+
+    #[test]
+    fn both_kinds_of_files_are_read() {
+        let corners = vec![[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]];
+        assert_eq!(read(TEXT.as_bytes()), Ok(("one".into(), corners.clone())));
+        assert_eq!(read(&packed()), Ok(("solid in binary".into(), corners.clone())));
+        // A file of two solids is both of them.
+        let both = read(format!("{TEXT}\n{}", TEXT.replace("one", "two")).as_bytes()).unwrap();
+        assert_eq!(both, ("one".into(), [corners.clone(), corners].concat()));
+    }
+
+    #[test]
+    fn broken_files_are_refused_with_their_line() {
+        let said = |text: &str| read(text.as_bytes()).unwrap_err();
+        assert!(said("").contains("solid") && said("solid a\nvertex 1 2\n").contains("line 2"));
+        assert!(said("solid a\nouter loop\nvertex 1 2 3\nendloop\n").contains("line 4"));
+        assert!(said("solid a\nvertex 1 2 nan\n").contains("three numbers"));
+        assert!(said(&TEXT.replace("endsolid one\n", "")).contains("endsolid"));
+        assert!(said(&format!("{TEXT}vertex 1 2 3\n")).contains("line 10"));
+        assert!(
+            read(&packed()[..130]).unwrap_err().contains("announces 1 triangles in 134 bytes, and has 130")
+        );
+    }
+}

@@ -1,0 +1,69 @@
+//! Surfaces of triangles that a deck names: the file, and the words that put it in its place.
+
+use crate::BuildCx;
+use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::gate;
+use perigrain_lang::{Args, Word};
+use perigrain_mesh::{Surface, Triangle};
+
+/// How a file's numbers become places.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placing {
+    /// Factor of all numbers.
+    pub scale: f64,
+    /// Added then.
+    pub shift: [f64; 3],
+}
+
+impl Default for Placing {
+    fn default() -> Self {
+        Self { scale: 1.0, shift: [0.0; 3] }
+    }
+}
+
+impl Placing {
+    /// The words that it knows.
+    pub const KEYWORDS: [&str; 2] = ["scale", "shift"];
+
+    /// Takes what stands behind `scale` or `shift`; `false` if the word is another one.
+    ///
+    /// # Errors
+    /// Numbers that are missing or make no sense.
+    pub fn keyword(&mut self, word: &Word, a: &mut Args) -> Result<bool> {
+        match word.text.as_str() {
+            "scale" => self.scale = a.positive("the scale")?,
+            "shift" => self.shift = [a.number("x")?, a.number("y")?, a.number("z")?],
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// Puts triangles in their place, in these units of length along the axes.
+    pub fn apply(&self, triangles: &mut [Triangle], unit: [f64; 3]) {
+        for p in triangles.as_flattened_mut() {
+            (0..3).for_each(|d| p[d] = unit[d] * (self.scale * p[d] + self.shift[d]));
+        }
+    }
+}
+
+/// Reads the surface in a file; nothing where a line above may write it, and it is not there yet (`perigrain check`).
+///
+/// # Errors
+/// Files that cannot be read, are broken, or hold no triangles.
+pub fn read(file: &Word, cx: &BuildCx) -> Result<Option<Surface>> {
+    let bytes = match gate::read(cx.world.to_read(&file.text)) {
+        Ok(bytes) => bytes,
+        Err(_) if cx.world.parts.promised.may_come(&file.text) => return Ok(None),
+        Err(e) => {
+            let text = format!("the file `{}` cannot be read: {e}", file.text);
+            return fail(gate::code(&e), file.span, text);
+        }
+    };
+    match perigrain_mesh::read(&file.text, &bytes) {
+        Err(bad) => fail(Code::NO_FILE, file.span, bad.of(&file.text)),
+        Ok(surface) if surface.triangles.is_empty() => {
+            fail(Code::BAD_VALUE, file.span, format!("`{}` holds no triangles", file.text))
+        }
+        Ok(surface) => Ok(Some(surface)),
+    }
+}
