@@ -8,7 +8,9 @@ use perigrain::diag::{Diagnostics, FileId, render};
 use perigrain::session::{Mode, Options, Session};
 use perigrain::world::World;
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Where the files are.
 pub fn files() -> PathBuf {
@@ -402,4 +404,24 @@ fn a_plan_makes_the_particles_and_a_check_none() {
         outcome.unwrap_or_else(|e| panic!("{}", render::plain(&e, &session.sources)));
         assert_eq!(session.world.n(), n, "{mode:?}");
     }
+}
+
+/// A million voxels would be 300 MB: the refusal comes before the particles.
+#[test]
+fn more_particles_than_memory_are_refused_beforehand() {
+    let folder = tempfile::tempdir().unwrap();
+    let head =
+        "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 100 100 100\nencoding: gzip\nspacings: 0.1 0.1 0.1\n\n";
+    let mut packed = flate2::write::GzEncoder::new(head.as_bytes().to_vec(), flate2::Compression::fast());
+    packed.write_all(&vec![9; 1_000_000]).unwrap();
+    fs::write(folder.path().join("full.nrrd"), packed.finish().unwrap()).unwrap();
+    let deck = format!("atom_style peri\n{BOX}read_voxels full.nrrd types 9 1\n");
+    fs::write(folder.path().join("in.deck"), deck).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_perigrain"))
+        .args(["-safe", "-limit", "memory", "150", "-log", "none", "-in", "in.deck"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("about 1.000e6 particles would need 0.3 GB of memory"), "{said}");
 }

@@ -62,6 +62,9 @@ enum Property {
     Custom(Numbers, bool),
 }
 
+/// Columns to be read with what they say, and the names of others.
+type Found = (Vec<(usize, Property)>, Vec<String>);
+
 /// What a line asks for.
 struct Reading {
     file: Word,
@@ -158,12 +161,7 @@ impl Reading {
     }
 
     /// The columns to be read with what they say, and the names of others.
-    fn wanted(
-        &self,
-        cx: &ActCx,
-        names: &[String],
-        head: Span,
-    ) -> Result<(Vec<(usize, Property)>, Vec<String>)> {
+    fn wanted(&self, cx: &ActCx, names: &[String], head: Span) -> Result<Found> {
         let (mut wanted, mut others): (Vec<(usize, Property)>, Vec<String>) = (vec![], vec![]);
         for (name, column, p) in &self.columns {
             let Some(k) = names.iter().position(|n| *n == column.text) else {

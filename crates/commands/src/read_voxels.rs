@@ -44,7 +44,7 @@ impl Style for ReadVoxels {
                    of the whole image each material keeps its volume to within about ten blocks, and the log compares. More than 1 % draws a warning, as in images of a few hundred blocks.\n\n\
                    Other keywords, masses and diameters are those of `read_mesh`. The particles lie on a lattice: `lattice sc` with the edge of voxels or blocks, for peridynamics, makes \
                    partial volumes and horizons of materials right.",
-            example: "read_voxels stack.nrrd types 100:199 1 200:255 2 resample 0.001 density 2235.0 shift -0.004 -0.004 0.005",
+            example: "read_voxels stack.nrrd types 100:199 1 200:255 2 resample 0.001 density 2235.0 scale 0.001 shift -0.004 -0.004 0.0045",
         }
     }
 }

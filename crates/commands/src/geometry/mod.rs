@@ -6,5 +6,6 @@ pub mod mesh;
 pub mod numbers;
 pub mod points;
 pub mod voxels;
+mod vtk_tags;
 pub mod vtk_xml;
 pub mod words;

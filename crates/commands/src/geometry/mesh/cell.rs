@@ -78,14 +78,14 @@ const FLAT: f64 = 1e-13;
 pub fn measure(shape: Shape, p: &[[f64; 3]]) -> Result<(f64, [f64; 3]), Fault> {
     let edge = p.iter().map(|x| length(sub(*x, p[0]))).fold(0.0, f64::max);
     let solid = |(v, x): (f64, [f64; 3])| match v {
-        v if !(v.abs() > FLAT * edge.powi(3)) => Err(Fault::Flat),
+        v if v.is_nan() || v.abs() <= FLAT * edge.powi(3) => Err(Fault::Flat),
         v if v < 0.0 => Err(Fault::Negative(v)),
         _ => Ok((v, x)),
     };
     match shape {
         Shape::Triangle => {
             let area = 0.5 * length(cross(sub(p[1], p[0]), sub(p[2], p[0])));
-            if !(area > FLAT * edge.powi(2)) {
+            if area.is_nan() || area <= FLAT * edge.powi(2) {
                 return Err(Fault::Flat);
             }
             Ok((area, scale(1.0 / 3.0, add(add(p[0], p[1]), p[2]))))
@@ -116,7 +116,7 @@ fn quad(p: [[f64; 3]; 4], least: f64) -> Result<(f64, [f64; 3]), Fault> {
     let others = [signed(1, 2, 3), signed(1, 3, 0)];
     let crosses = |h: [f64; 2]| h[0] * h[1] < 0.0;
     match area {
-        area if !(area > least) => Err(Fault::Flat),
+        area if area.is_nan() || area <= least => Err(Fault::Flat),
         _ if crosses(halves) && crosses(others) => Err(Fault::Crossed),
         _ => {
             let third = |a: usize, b: usize, c: usize, s: f64| {

@@ -4,6 +4,9 @@ use super::super::file::{broken, place};
 use super::super::numbers::Kind;
 use perigrain_base::diag::{Code, Result, Span, fail};
 
+/// Numbers, and where each stands where the file is a text.
+pub type Block = (Vec<f64>, Vec<(u32, u32)>);
+
 /// A cursor over the bytes.
 pub struct Words<'a> {
     bytes: &'a [u8],
@@ -97,7 +100,7 @@ impl<'a> Words<'a> {
     }
 
     /// A block of so many numbers, and where each stands in a text.
-    pub fn block(&mut self, kind: Kind, count: usize, what: &str) -> Result<(Vec<f64>, Vec<(u32, u32)>)> {
+    pub fn block(&mut self, kind: Kind, count: usize, what: &str) -> Result<Block> {
         if self.binary {
             self.skip_line_end();
             let size = count.saturating_mul(kind.size());

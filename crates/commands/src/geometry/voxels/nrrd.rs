@@ -209,7 +209,7 @@ fn directions(line: &Line, value: &str) -> Result<Option<Vec<f64>>> {
     let n = if list.len() == 4 { 2 } else { 3 };
     let along = |k: usize| list[k * n + k];
     let askew = list.len() != n * n || (0..n * n).any(|k| k / n != k % n && list[k] != 0.0);
-    if askew || (0..n).any(|k| !(along(k) > 0.0)) {
+    if askew || (0..n).any(|k| along(k).is_nan() || along(k) <= 0.0) {
         let d = not_read(line.span(), "an image whose axes do not lie along x, y and z");
         return Err(d.help("`rotate` turns an image in the deck").into());
     }
