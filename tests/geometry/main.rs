@@ -265,7 +265,7 @@ fn mistakes_in_tables_are_shown_in_the_file() {
         ("x,y", "x,y", "columns volume Volume", (1, 1), "there is no column `Volume` for volume"),
         ("x,y", "x,y", "", (1, 1), "there is no column `volume`"),
         ("x,y", "1,2", "columns volume Vol", (1, 1), "names of columns must stand in the first line"),
-        ("x,y", "x,y", "columns volume", (0, 0), "the name of a column is missing"),
+        ("x,y", "x,y", "columns volume", (0, 0), "`columns` needs a property and the name of its column"),
     ];
     for (from, to, line, at, said) in cases {
         assert!(TABLE.contains(from), "{from}");
