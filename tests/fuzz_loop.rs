@@ -184,6 +184,36 @@ fn read_surface() {
 }
 
 #[test]
+fn read_body() {
+    let image = "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 2 0 2 0 1\" Origin=\"0 0 0\" Spacing=\"1 1 1\">\
+                 <Piece Extent=\"0 2 0 2 0 1\"><CellData><DataArray type=\"UInt8\" Name=\"g\" format=\"ascii\">5 6 7 8</DataArray>\
+                 </CellData></Piece></ImageData></VTKFile>";
+    let mut corpus = vec![
+        [&[4][..], b"x,y,z,Vol,type,diameter\n0,0,0,1,1,1\n1,0,0.5,2,2,0.5\n"].concat(),
+        [&[6][..], image.as_bytes()].concat(),
+    ];
+    for (kind, name) in [
+        (0_u8, "tets.vtk"),
+        (0, "hexes.vtk"),
+        (0, "hexes_text.vtk"),
+        (1, "hexes.vtu"),
+        (1, "hexes_text.vtu"),
+        (2, "hexes_22.msh"),
+        (2, "gmsh_41.msh"),
+        (3, "hexes.inp"),
+        (5, "raw8.nrrd"),
+        (5, "big16.nrrd"),
+        (7, "ct_5.png"),
+        (7, "bits.png"),
+        (8, "big.tiff"),
+    ] {
+        let bytes = fs::read(here("tests/geometry/files").join(name)).unwrap();
+        corpus.push([&[kind][..], &bytes].concat());
+    }
+    hunt("read_body", &corpus, bodies::read_body);
+}
+
+#[test]
 fn read_restart() {
     let folder = tempfile::tempdir().unwrap();
     let mut corpus = vec![];

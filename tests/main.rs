@@ -19,6 +19,8 @@ mod disk;
 mod dumps;
 mod examples;
 mod fuzz_loop;
+#[path = "geometry/main.rs"]
+mod geometry;
 #[path = "grains/main.rs"]
 mod grains;
 mod impact;

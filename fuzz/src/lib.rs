@@ -77,6 +77,30 @@ pub fn read_surface(bytes: &[u8]) {
     with_file_named(if first % 2 == 0 { "input" } else { "input.obj" }, rest, SCENE);
 }
 
+/// Any bytes as a mesh, a table of points or an image. The first byte chooses the format.
+pub fn read_body(bytes: &[u8]) {
+    const LINES: [&str; 9] = [
+        "read_mesh input.vtk types cell Material",
+        "read_mesh input.vtu type 1",
+        "read_mesh input.msh type 1 types physical rock 1",
+        "read_mesh input.inp type 1 types set rock 1",
+        "read_points input.csv columns volume Vol",
+        "read_voxels input.nrrd types 0:255 1 resample 0.7 spacing 0.5",
+        "read_voxels input.vti types 0:255 1",
+        "read_voxels input.png types 0:255 1 spacing 0.1",
+        "read_voxels input.tif types 0:255 1 spacing 0.1",
+    ];
+    const SCENE: &str =
+        "atom_style hybrid sphere peri\nregion b block -10 10 -10 10 -10 10\ncreate_box 3 b\n";
+    let Some((first, rest)) = bytes.split_first() else { return };
+    let line = LINES[usize::from(*first) % LINES.len()];
+    let Ok(folder) = tempfile::tempdir() else { return };
+    let name = line.split(' ').nth(1).unwrap_or("input");
+    if std::fs::write(folder.path().join(name), rest).is_ok() {
+        work_off(&format!("{SCENE}{line}\n"), Mode::Run, folder.path());
+    }
+}
+
 /// Any bytes as a restart file.
 pub fn read_restart(bytes: &[u8]) {
     with_file(bytes, "read_restart FILE\nrun 0\n");

@@ -10,10 +10,12 @@ use std::path::{Path, PathBuf};
 struct Example {
     name: &'static str,
     files: &'static [(&'static str, &'static str)],
+    /// What decks read, and what made it.
+    data: &'static [(&'static str, &'static [u8])],
 }
 
 macro_rules! examples {
-    ($($name:literal: $($deck:literal),+;)*) => {
+    ($($name:literal: $($deck:literal),+ $(=> $($data:literal),+)?;)*) => {
         &[$(Example {
             name: $name,
             files: &[
@@ -21,6 +23,7 @@ macro_rules! examples {
                 ("expected.csv", include_str!(concat!("../../examples/", $name, "/expected.csv"))),
                 $(($deck, include_str!(concat!("../../examples/", $name, "/", $deck)))),+
             ],
+            data: &[$($(($data, include_bytes!(concat!("../../examples/", $name, "/", $data)))),+)?],
         }),*]
     };
 }
@@ -33,6 +36,7 @@ const EXAMPLES: &[Example] = examples![
     "brittle_glass": "in.brittle_glass";
     "chute": "in.chute";
     "crack_branching": "in.crack_branching";
+    "ct_fracture": "in.ct_fracture" => "rock.nrrd", "make_stack.py";
     "fragmenting_cylinder": "in.fragmenting_cylinder";
     "hertz_half_space": "in.hertz_half_space";
     "hopper": "in.hopper";
@@ -132,7 +136,8 @@ fn copy(example: &Example, folder: &Path) -> Result<(), Usage> {
         return Err(usage.help(format!("name another folder: {other}")));
     }
     std::fs::create_dir_all(folder).map_err(trouble(format!("cannot make `{}`", folder.display())))?;
-    for (name, text) in example.files {
+    let texts = example.files.iter().map(|(name, text)| (name, text.as_bytes()));
+    for (name, text) in texts.chain(example.data.iter().map(|(name, bytes)| (name, *bytes))) {
         let path = folder.join(name);
         std::fs::write(&path, text).map_err(trouble(format!("cannot write `{}`", path.display())))?;
     }

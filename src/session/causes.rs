@@ -21,7 +21,7 @@ const HARMLESS: [&str; 9] =
     ["thermo", "thermo_style", "thermo_modify", "timestep", "velocity", "print", "run", "if", "dump_modify"];
 
 /// Commands that may be said only before or behind others.
-const SETTING: [&str; 17] = [
+const SETTING: [&str; 20] = [
     "units",
     "atom_style",
     "boundary",
@@ -31,6 +31,9 @@ const SETTING: [&str; 17] = [
     "create_box",
     "create_atoms",
     "read_data",
+    "read_mesh",
+    "read_points",
+    "read_voxels",
     "read_restart",
     "replicate",
     "clear",

@@ -107,7 +107,16 @@ const FILES: &[(&str, &str)] = &[
         "v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n\
          f 2 1 6\nf 3 2 6\nf 4 3 6\nf 1 4 6\n",
     ),
+    (
+        "body.msh",
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 \"rock\"\n3 2 \"binder\"\n$EndPhysicalNames\n$Nodes\n5\n\
+         1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n$EndNodes\n$Elements\n2\n1 4 2 1 1 1 2 3 4\n2 4 2 2 2 2 3 4 5\n\
+         $EndElements\n",
+    ),
 ];
+
+/// Files of bytes that examples read.
+const BYTES: &[(&str, &[u8])] = &[("stack.nrrd", include_bytes!("../geometry/files/raw8.nrrd"))];
 
 /// A folder of its own as the working folder, with the files that examples read.
 pub struct Folder {
@@ -122,6 +131,9 @@ impl Folder {
         std::env::set_current_dir(&path).unwrap();
         for (name, text) in FILES {
             std::fs::write(name, text).unwrap();
+        }
+        for (name, bytes) in BYTES {
+            std::fs::write(name, bytes).unwrap();
         }
         Self { path, _alone: alone }
     }

@@ -1,7 +1,7 @@
 //! `create_atoms`: particles on lattice sites, single ones, at random places, on a surface, or packed.
 
 mod mesh;
-mod molecules;
+pub(crate) mod molecules;
 mod pack;
 mod packing;
 mod places;

@@ -19,6 +19,7 @@ mod delete_atoms;
 mod delete_bonds;
 mod dimension;
 mod displace_atoms;
+mod geometry;
 mod group;
 mod lattice;
 mod mass;
@@ -34,6 +35,9 @@ pub mod peri_crack;
 mod processors;
 mod read_data;
 pub mod read_dump;
+mod read_mesh;
+mod read_points;
+mod read_voxels;
 mod region;
 mod replicate;
 mod reset_atoms;
@@ -70,6 +74,9 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &create_box::CreateBox,
     &read_data::ReadData,
     &read_dump::ReadDump,
+    &read_mesh::ReadMesh,
+    &read_points::ReadPoints,
+    &read_voxels::ReadVoxels,
     &create_atoms::CreateAtoms,
     &group::Group,
     &set::Set,

@@ -9,11 +9,11 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Reads a file, unpacked when its name ends in `.gz`; binary dumps as text.
+/// All bytes of a file, unpacked when its name ends in `.gz`.
 ///
 /// # Errors
-/// Files that cannot be read, are no text, or are too large for places in them to be counted.
-pub fn load(path: &Path) -> std::io::Result<Arc<Source>> {
+/// Files that cannot be read, or are too large for places in them to be counted.
+pub fn load_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     let file = gate::open(path)?;
     let mut bytes = vec![];
     if path.extension().is_some_and(|e| e == "gz") {
@@ -24,10 +24,22 @@ pub fn load(path: &Path) -> std::io::Result<Arc<Source>> {
         bytes.reserve_exact(file.metadata().map_or(0, |m| m.len() as usize).saturating_add(1));
         std::io::BufReader::new(file).read_to_end(&mut bytes)?;
     }
-    let odd = |text: &str| std::io::Error::new(std::io::ErrorKind::InvalidData, text);
     if bytes.len() > u32::MAX as usize - 1 {
         return Err(odd("it is larger than 4 GB"));
     }
+    Ok(bytes)
+}
+
+fn odd(text: &str) -> std::io::Error {
+    std::io::Error::new(std::io::ErrorKind::InvalidData, text)
+}
+
+/// Reads a file, unpacked when its name ends in `.gz`; binary dumps as text.
+///
+/// # Errors
+/// Files that cannot be read, are no text, or are too large for places in them to be counted.
+pub fn load(path: &Path) -> std::io::Result<Arc<Source>> {
+    let bytes = load_bytes(path)?;
     if binary::ENDINGS.iter().any(|e| path.to_string_lossy().ends_with(e)) {
         let text = binary::as_text(&bytes)?;
         return Ok(Arc::new(Source { name: format!("{}, as text", path.display()), text }));
@@ -42,18 +54,39 @@ pub fn load(path: &Path) -> std::io::Result<Arc<Source>> {
 /// # Errors
 /// Files that cannot be read, or that only a run would write.
 pub fn find(w: &World, word: &Word, what: &str) -> Result<Arc<Source>> {
+    let printed = |text: &str| Arc::new(Source { name: word.text.clone(), text: text.to_string() });
+    seek(w, word, what, printed, load)
+}
+
+/// As [`find`], for a file that need not be text: its path and bytes.
+///
+/// # Errors
+/// As `find`.
+pub fn find_bytes(w: &World, word: &Word, what: &str) -> Result<(String, Vec<u8>)> {
+    let printed = |text: &str| (word.text.clone(), text.as_bytes().to_vec());
+    let load = |path: &Path| load_bytes(path).map(|bytes| (path.display().to_string(), bytes));
+    seek(w, word, what, printed, load)
+}
+
+fn seek<T>(
+    w: &World,
+    word: &Word,
+    what: &str,
+    printed: impl Fn(&str) -> T,
+    load: impl Fn(&Path) -> std::io::Result<T>,
+) -> Result<T> {
     let (name, promised) = (&word.text, &w.parts.promised);
     match promised.get(name) {
-        Some(Promise::Text(text)) => return Ok(Arc::new(Source { name: name.clone(), text: text.clone() })),
+        Some(Promise::Text(text)) => return Ok(printed(text)),
         Some(_) => return Err(unseen(word.span, name)),
         None => {}
     }
     let mut trouble = None;
     for path in [PathBuf::from(name), w.folder.join(name)] {
         match load(&path) {
-            Ok(text) => {
+            Ok(content) => {
                 w.read_files.note(&path);
-                return Ok(text);
+                return Ok(content);
             }
             Err(e) => drop(trouble.get_or_insert(e)),
         }
@@ -84,7 +117,7 @@ pub fn comes(w: &World, word: &Word, what: &str) -> Result<()> {
     Err(absent(word, &format!("the {what} `{name}` cannot be read: it is not there")))
 }
 
-fn absent(word: &Word, text: &str) -> Diagnostics {
+pub(crate) fn absent(word: &Word, text: &str) -> Diagnostics {
     let d = Diagnostic::error(Code::NO_FILE, word.span, text);
     d.help("it is looked for in the working folder and beside the deck").into()
 }

@@ -1,0 +1,81 @@
+//! Numbers as files hold them in binary: kinds, byte orders.
+
+/// A kind of number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Eight bits with a sign.
+    I8,
+    /// Eight bits.
+    U8,
+    /// Sixteen bits with a sign.
+    I16,
+    /// Sixteen bits.
+    U16,
+    /// 32 bits with a sign.
+    I32,
+    /// 32 bits.
+    U32,
+    /// 64 bits with a sign.
+    I64,
+    /// 64 bits.
+    U64,
+    /// 32 bits, a fraction.
+    F32,
+    /// 64 bits, a fraction.
+    F64,
+}
+
+impl Kind {
+    /// Its bytes.
+    pub fn size(self) -> usize {
+        match self {
+            Kind::I8 | Kind::U8 => 1,
+            Kind::I16 | Kind::U16 => 2,
+            Kind::I32 | Kind::U32 | Kind::F32 => 4,
+            Kind::I64 | Kind::U64 | Kind::F64 => 8,
+        }
+    }
+
+    /// The number in these bytes, of which there are as many as it has.
+    pub fn read(self, bytes: &[u8], big_endian: bool) -> f64 {
+        let mut b = [0u8; 8];
+        let size = self.size();
+        for (k, byte) in bytes.iter().take(size).enumerate() {
+            b[if big_endian { size - 1 - k } else { k }] = *byte;
+        }
+        let low = u64::from_le_bytes(b);
+        match self {
+            Kind::I8 => f64::from(low as u8 as i8),
+            Kind::U8 => f64::from(low as u8),
+            Kind::I16 => f64::from(low as u16 as i16),
+            Kind::U16 => f64::from(low as u16),
+            Kind::I32 => f64::from(low as u32 as i32),
+            Kind::U32 => f64::from(low as u32),
+            Kind::I64 => low as i64 as f64,
+            Kind::U64 => low as f64,
+            Kind::F32 => f64::from(f32::from_bits(low as u32)),
+            Kind::F64 => f64::from_bits(low),
+        }
+    }
+
+    /// All numbers in these bytes.
+    pub fn read_all(self, bytes: &[u8], big_endian: bool) -> Vec<f64> {
+        bytes.chunks_exact(self.size()).map(|b| self.read(b, big_endian)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_byte_orders() {
+        assert_eq!(Kind::I16.read(&[0xff, 0xfe], true), -2.0);
+        assert_eq!(Kind::I16.read(&[0xfe, 0xff], false), -2.0);
+        assert_eq!(Kind::F64.read(&1.5f64.to_be_bytes(), true), 1.5);
+        assert_eq!(Kind::F32.read(&(-0.25f32).to_le_bytes(), false), -0.25);
+        assert_eq!(Kind::U64.read(&7u64.to_be_bytes(), true), 7.0);
+        assert_eq!(Kind::U8.read_all(&[1, 200], true), [1.0, 200.0]);
+        assert_eq!(Kind::I8.read_all(&[200], true), [-56.0]);
+    }
+}

@@ -1,0 +1,290 @@
+//! `read_voxels`: particles from an image of grey values, by material.
+
+use super::geometry::enter::{Newcomers, off_plane};
+use super::geometry::voxels::blocks::{Blocks, Counter};
+use super::geometry::voxels::ranges::Ranges;
+use super::geometry::voxels::{self, Image};
+use super::geometry::words::Making;
+use super::{Act, CommandStyle};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::math::cformat::general;
+use perigrain_lang::{Args, Word};
+use perigrain_styles::common::{self, bad_keyword};
+use perigrain_styles::{ActCx, BuildCx, Doc, Style};
+
+/// The command.
+pub struct ReadVoxels;
+
+const KEYWORDS: [&str; 11] =
+    ["types", "spacing", "resample", "array", "type", "density", "group", "scale", "rotate", "shift", "move"];
+
+/// How far the volume of a material may be from that in the image without a warning.
+const NEAR: f64 = 0.01;
+
+impl Style for ReadVoxels {
+    fn name(&self) -> &'static str {
+        "read_voxels"
+    }
+
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "read_voxels FILE types LO:HI T … [spacing S|SX SY SZ] [resample H] [array NAME] [density ρ] [group ID] \
+                     [scale S] [rotate THETA RX RY RZ] [shift X Y Z]",
+            summary: "Makes particles of the voxels of an image, as a tomograph gives it: ranges of grey values become types.",
+            text: "`types` gives ranges of grey values, both ends in them (`7` alone is a range, too), the types of their particles; other values are empty. The ending tells the format:\n\n\
+                   - `.nrrd`, `.nhdr`: NRRD of two or three axes along x, y, z, raw or packed by gzip, of either byte order, whole numbers of 8 to 64 bits and fractions;\n\
+                   - `.png`: grey values of 1 to 16 bits; a `*` in the name stands for the numbers of slices (`ct_*.png`), in whose order they lie along z;\n\
+                   - `.tif`, `.tiff`: grey values of 8 to 32 bits and fractions, in strips and not packed, one page a file with a `*` or several in one;\n\
+                   - `.vti`: VTK's XML images in one piece; of several arrays `array` says which, of cells or of points.\n\n\
+                   Packed TIFF is refused by name. NRRD, PNG and TIFF are read slice by slice, twice: memory is needed for the particles and one slice; a `.vti` is read whole.\n\n\
+                   Edges of voxels are the file's, or `spacing`'s, which a file without them needs (PNG, TIFF). The image begins where the file says, else with its lower corner at the \
+                   origin; columns lie along x, rows along y with the first one lowest. Images in flat scenes have one slice, which lies at z = 0; its depth counts in the volume.\n\n\
+                   Each voxel with a type is a particle, in its middle with its volume. `resample` H makes blocks of about H instead (a whole number of them along each edge of the image; the log \
+                   has their edges), each of the material that fills most of it. What materials gain and lose by that is kept account of and decides where two fill about the same: \
+                   of the whole image each material keeps its volume to within about ten blocks, and the log compares. More than 1 % draws a warning, as in images of a few hundred blocks.\n\n\
+                   Other keywords, masses and diameters are those of `read_mesh`. The particles lie on a lattice: `lattice sc` with the edge of voxels or blocks, for peridynamics, makes \
+                   partial volumes and horizons of materials right.",
+            example: "read_voxels stack.nrrd types 100:199 1 200:255 2 resample 0.001 density 2235.0 scale 0.001 shift -0.004 -0.004 0.0045",
+        }
+    }
+}
+
+/// What a line asks for.
+struct Reading {
+    file: Word,
+    making: Making,
+    ranges: Ranges,
+    spacing: Option<[f64; 3]>,
+    resample: Option<f64>,
+    array: Option<Word>,
+    checking: bool,
+}
+
+impl CommandStyle for ReadVoxels {
+    fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
+        common::domain(cx)?;
+        let file = a.expect("the name of an image")?.clone();
+        let mut ranges = None;
+        let (making, checking) = (Making::default(), cx.checking);
+        let mut r = Reading {
+            file,
+            making,
+            ranges: Ranges::default(),
+            spacing: None,
+            resample: None,
+            array: None,
+            checking,
+        };
+        while let Some(word) = a.next() {
+            match word.text.as_str() {
+                "types" => ranges = Some(Ranges::read(word, a, cx, &KEYWORDS)?),
+                "spacing" => r.spacing = Some(spacing(a)?),
+                "resample" => r.resample = Some(a.positive("the edge of blocks")?),
+                "array" => r.array = Some(a.expect("the name of an array")?.clone()),
+                "type" => {
+                    let d = Diagnostic::error(
+                        Code::CONFLICT,
+                        word.span,
+                        "voxels get their types by grey values: `types`",
+                    );
+                    return Err(d.help("`types 1:255 1` makes all from 1 to 255 type 1").into());
+                }
+                _ if r.making.keyword(word, a, cx)? => {}
+                _ => return Err(bad_keyword(a, word, &KEYWORDS, &[])),
+            }
+        }
+        let Some(ranges) = ranges else {
+            let d = Diagnostic::error(
+                Code::INCOMPLETE,
+                a.name_span(),
+                "which grey values are which types is missing",
+            );
+            return Err(d.help("write for example `types 40:120 1 121:255 2`").into());
+        };
+        r.ranges = ranges;
+        Ok(Box::new(r))
+    }
+}
+
+/// One edge of voxels for all axes, or three.
+fn spacing(a: &mut Args) -> Result<[f64; 3]> {
+    let x = a.positive("the edge of voxels")?;
+    if a.peek().is_none_or(|w| w.text.parse::<f64>().is_err() && !w.unknown) {
+        return Ok([x; 3]);
+    }
+    Ok([x, a.positive("the edge of voxels along y")?, a.positive("the edge of voxels along z")?])
+}
+
+impl Act for Reading {
+    fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
+        let mut image = voxels::open(cx.world, &self.file, self.array.as_ref())?;
+        cx.say("Reading image ...");
+        self.make(cx, &mut *image)
+    }
+
+    /// `perigrain check` looks at the file, too, but keeps no particles.
+    fn needs_particles(&self) -> bool {
+        false
+    }
+
+    fn makes_group(&self) -> Option<&str> {
+        self.making.group.as_ref().map(|w| w.text.as_str())
+    }
+
+    fn settles(&self) -> Vec<&'static str> {
+        self.making.settles()
+    }
+}
+
+/// An image with the edges of its voxels and the grid of blocks over it.
+struct Grid {
+    corner: [f64; 3],
+    /// Edges of a block.
+    edges: [f64; 3],
+    blocks: Blocks,
+    /// Types of the materials, from material 1 on.
+    types: Vec<u16>,
+}
+
+impl Grid {
+    /// The middle of block `k` of a slab.
+    fn place(&self, k: usize, slab: usize) -> [f64; 3] {
+        let at = [k % self.blocks.count[0], k / self.blocks.count[0], slab];
+        [0, 1, 2].map(|d| self.corner[d] + (at[d] as f64 + 0.5) * self.edges[d])
+    }
+}
+
+impl Reading {
+    fn make(&self, cx: &mut ActCx, image: &mut dyn Image) -> Result<()> {
+        let info = image.info().clone();
+        let Some(spacing) = self.spacing.or(info.spacing) else {
+            let text = format!("the image `{}` does not say how large its voxels are", self.file.text);
+            let d = Diagnostic::error(Code::INCOMPLETE, self.file.span, text);
+            return Err(d.help("add `spacing S`, the edge of a voxel").into());
+        };
+        let mut corner = info.corner(spacing);
+        if cx.world.settings.two_dimensional {
+            if info.size[2] != 1 {
+                let text = format!("a flat scene takes one slice; the image has {}", info.size[2]);
+                return Err(Diagnostic::error(Code::CONFLICT, self.file.span, text).into());
+            }
+            corner[2] = -0.5 * spacing[2];
+        }
+        // What is resampled is the image at its size in the box.
+        let wanted = self.resample.map(|h| h / self.making.placement.scale);
+        let blocks = Blocks::new(info.size, spacing, wanted);
+        let edges = [0, 1, 2].map(|d| spacing[d] * info.size[d] as f64 / blocks.count[d] as f64);
+        let grid = Grid { corner, edges, blocks, types: self.ranges.types() };
+        self.tell(cx, info.size, spacing, &grid);
+        let mut voxels = vec![0u64; grid.types.len() + 1];
+        let mut counts = vec![0usize; grid.types.len() + 1];
+        self.each_block(image, &grid, Some(&mut voxels), |_, m| {
+            counts[m] += 1;
+            Ok(())
+        })?;
+        let count = counts[1..].iter().sum();
+        if count == 0 {
+            let text = format!("no voxel of `{}` has a grey value in these ranges", self.file.text);
+            return Err(Diagnostic::error(Code::BAD_VALUE, self.file.span, text).into());
+        }
+        let scale = self.making.placement.scale.powi(3);
+        let volume = scale * edges.iter().product::<f64>();
+        let mut new = Newcomers::new(cx, &self.making, count)?;
+        image.rewind()?;
+        self.each_block(image, &grid, None, |x, m| match m {
+            0 => Ok(()),
+            _ => match new.push(x, grid.types[m - 1], volume) {
+                Ok(_) => Ok(()),
+                Err(z) => Err(off_plane("the image", z, Some(self.file.span)).into()),
+            },
+        })?;
+        new.enter(cx, "voxels", self.checking)?;
+        if !grid.blocks.single() {
+            let voxel = scale * spacing.iter().product::<f64>();
+            self.compare(
+                cx,
+                &grid,
+                [
+                    &voxels.iter().map(|n| *n as f64 * voxel).collect::<Vec<_>>(),
+                    &counts.iter().map(|n| *n as f64 * volume).collect::<Vec<_>>(),
+                ],
+            );
+        }
+        Ok(())
+    }
+
+    /// Hands over the middle and material of each block, slab by slab, and counts the voxels of each material.
+    fn each_block(
+        &self,
+        image: &mut dyn Image,
+        grid: &Grid,
+        mut voxels: Option<&mut Vec<u64>>,
+        mut block: impl FnMut([f64; 3], usize) -> Result<()>,
+    ) -> Result<()> {
+        let slices = image.info().size[2];
+        let mut counter = Counter::new(&grid.blocks, grid.types.len());
+        let mut values = vec![];
+        let mut materials: Vec<usize> = vec![];
+        let mut outcome = Ok(());
+        for z in 0..slices {
+            image.slice(&mut values)?;
+            materials.clear();
+            materials.extend(values.iter().map(|v| {
+                let kind = self.ranges.of(*v);
+                if kind == 0 { 0 } else { grid.types.binary_search(&kind).map_or(0, |k| k + 1) }
+            }));
+            if let Some(voxels) = &mut voxels {
+                materials.iter().for_each(|m| voxels[*m] += 1);
+            }
+            counter.add(materials.iter().copied());
+            let slab = grid.blocks.slab(z);
+            if z + 1 == slices || grid.blocks.slab(z + 1) != slab {
+                counter.settle(|k, m| {
+                    if outcome.is_ok() {
+                        outcome = block(grid.place(k, slab), m);
+                    }
+                });
+                std::mem::replace(&mut outcome, Ok(()))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn tell(&self, cx: &mut ActCx, size: [usize; 3], spacing: [f64; 3], grid: &Grid) {
+        let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" x ");
+        let whole = |n: [usize; 3]| n.map(|n| n.to_string()).join(" x ");
+        cx.say(format!("  {} voxels of {}", whole(size), text(spacing)));
+        if !grid.blocks.single() {
+            let scale = self.making.placement.scale;
+            cx.say(format!(
+                "  {} blocks of {}",
+                whole(grid.blocks.count),
+                text(grid.edges.map(|e| e * scale))
+            ));
+        }
+    }
+
+    /// Says how the volume of each material has come through.
+    fn compare(&self, cx: &mut ActCx, grid: &Grid, [image, made]: [&[f64]; 2]) {
+        for (k, kind) in grid.types.iter().enumerate() {
+            let (before, after) = (image[k + 1], made[k + 1]);
+            if before == 0.0 {
+                continue;
+            }
+            let off = after / before - 1.0;
+            cx.say(format!(
+                "  type {kind}: {} in the image, {:+.2} % in blocks",
+                general(before, 10),
+                100.0 * off
+            ));
+            if off.abs() > NEAR {
+                let text =
+                    format!("blocks of this size change the volume of type {kind} by {:+.1} %", 100.0 * off);
+                cx.note(
+                    Diagnostic::warning(Code::SUSPICIOUS, None, text)
+                        .help("smaller blocks keep it better: `resample`"),
+                );
+            }
+        }
+    }
+}
