@@ -6,6 +6,7 @@ mod cases;
 pub mod checking;
 pub mod deck;
 mod examples;
+mod formatting;
 pub mod grammar;
 pub mod manual;
 mod pager;
@@ -76,6 +77,7 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Suite(wanted) => return benching::suite::perform(&wanted),
         Task::Worker => return Ok(if crate::sweep::worker::main() { OK } else { FAILED }),
         Task::Verify(wanted) => return verifying::verify(&wanted),
+        Task::Format(wanted) => return formatting::perform(&wanted),
         Task::Check { decks, json } => return Ok(checking::check(&decks, json)),
         Task::Plan { options, dot: true, .. } => return Ok(deck::draw(&options)),
         Task::Plan { options, measure: true, .. } => return Ok(deck::work_off(&options, Mode::Measure)),
