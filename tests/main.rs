@@ -26,6 +26,7 @@ mod impact;
 mod installed_decks;
 #[path = "lammps.rs"]
 mod lammps;
+mod lsp;
 mod partitions;
 #[path = "peri/main.rs"]
 mod peri;

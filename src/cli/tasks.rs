@@ -24,6 +24,8 @@ pub enum Task {
     },
     /// Lay decks out anew.
     Format(formatting::Wanted),
+    /// Answer an editor.
+    Lsp,
     /// Print a deck's step plan.
     Plan {
         /// The deck and its switches.
@@ -92,6 +94,12 @@ enum Sub {
     },
     /// Lay decks out anew: blanks, columns, comments and empty lines, never words
     Fmt(formatting::Wanted),
+    /// Answer an editor about decks, as a language server over standard input and output
+    Lsp {
+        /// The streams, as some editors say; there are no others
+        #[arg(long, hide = true)]
+        stdio: bool,
+    },
     /// Print what each step of a deck's runs will do, in which order, and what was left out and why
     Plan {
         /// Run it too, and print time, calls and bytes of each part
@@ -271,6 +279,7 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
             Task::Check { decks: checking::each(&options, decks), json }
         }
         Sub::Fmt(wanted) => Task::Format(wanted),
+        Sub::Lsp { stdio: _ } => Task::Lsp,
         Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
         Sub::Sweep { rest } => Task::Sweep(Box::new(Request::parse(rest)?)),
         Sub::Bench { rest } => Task::Bench(Box::new(benching::args::Request::parse(rest)?)),

@@ -11,6 +11,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain plan|run DECK [switch …]\n\
             perigrain check DECK … [--json] [switch …]\n\
             perigrain fmt [--check|--diff] FILE|- …\n\
+            perigrain lsp\n\
             perigrain sweep DECK -each NAME VALUE … [switch …]\n\
             perigrain bench DECK -each NAME VALUE … -measure WORD … [switch …]\n\
             perigrain repl [DECK] [switch …]\n\
@@ -43,7 +44,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     nothing, and reports every problem of one or more decks at once, with `--json` as JSON. `fmt` lays decks out anew: one blank between words, columns and comments below each other where \
     they were, continuations four blanks in, no blanks at the ends of lines and one empty line at most; words, quoted texts, `$(…)` and line endings \
     stay as they are, and a deck that cannot be read is refused. `--check` writes nothing and fails where a deck would change, `--diff` shows \
-    the lines; `fmt -` reads standard input and writes to standard output. `plan` prints what each step of \
+    the lines; `fmt -` reads standard input and writes to standard output. `lsp` answers an editor while decks are \
+    written: see [In your editor](../editor/README.md). `plan` prints what each step of \
     the deck's runs will do, in which order, and what was left out and why: each plan once, with the lines whose runs have it and how often. \
     It makes the particles that the first run begins with, so that large scenes take their time, and no step; behind that run nothing is known of \
     particles, and lines that hang on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
