@@ -26,6 +26,8 @@ pub mod cli;
 pub mod graph;
 mod heads;
 mod json;
+pub mod lsp;
+pub mod manual;
 pub mod plot;
 pub mod session;
 pub mod sweep;

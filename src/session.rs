@@ -18,6 +18,7 @@ mod limits;
 mod measuring;
 mod minimizing;
 mod overlaps;
+mod overlay;
 mod planning;
 mod rerunning;
 mod resolution;
@@ -30,6 +31,7 @@ mod staggering;
 mod sweeping;
 mod timer;
 mod unused;
+pub mod whole;
 
 use crate::graph::build::{Context, DECLARATIONS, declare};
 use crate::graph::env::DeckEnv;
@@ -39,6 +41,7 @@ pub use commands::OWN;
 pub use embed::{Column, Global, Newcomers, Order, Rows, Told};
 pub use interactive::{Heard, Known, Snapshot};
 pub use measuring::Worked;
+pub use overlay::{Overlay, absolute};
 use perigrain_base::diag::{Code, Diagnostics, FileId, Result, Sources, Span, fail};
 pub use perigrain_base::par::{set_threads, threads};
 use perigrain_commands::COMMANDS;
@@ -88,6 +91,8 @@ pub struct Options {
     pub folder: PathBuf,
     /// Which of several partitions this is.
     pub partition: Option<Partition>,
+    /// Texts that count in place of files, where lines are read.
+    pub overlay: Overlay,
 }
 
 impl Default for Options {
@@ -102,6 +107,7 @@ impl Default for Options {
             vars: vec![],
             folder: PathBuf::new(),
             partition: None,
+            overlay: Overlay::default(),
         }
     }
 }

@@ -118,3 +118,48 @@ mod terminal {
         assert!(out(&perigrain(folder.path(), &["man"])).contains(".TH perigrain 1"));
     }
 }
+
+#[test]
+fn decks_are_laid_out_anew_and_written_only_where_they_change() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let (wide, tidy) = ("units   lj  \nprint  \"a   b\"# c\n", "units lj\nprint \"a   b\" # c\n");
+    fs::write(path("in.wide"), wide).unwrap();
+    fs::write(path("in.tidy"), tidy).unwrap();
+    fs::write(path("in.open"), "print  \"a\nprint  'b\n").unwrap();
+    fs::write(path("in.bytes"), b"print  \xff\n").unwrap();
+    let before = fs::metadata(path("in.tidy")).unwrap().modified().unwrap();
+
+    let o = perigrain(folder.path(), &["fmt", "--check", "in.wide", "in.tidy"]);
+    assert_eq!((o.status.code(), out(&o).as_str(), err(&o).as_str()), (Some(1), "in.wide\n", ""));
+    let o = perigrain(folder.path(), &["fmt", "in.wide", "-diff"]);
+    assert!(o.status.success() && out(&o).contains("\n-units   lj  \n+units lj\n"), "{}", out(&o));
+    assert_eq!(fs::read_to_string(path("in.wide")).unwrap(), wide);
+
+    let o = perigrain(folder.path(), &["fmt", "in.wide", "in.tidy"]);
+    assert_eq!((o.status.code(), out(&o).as_str()), (Some(0), "in.wide: laid out anew\n"), "{}", err(&o));
+    assert_eq!(fs::read_to_string(path("in.wide")).unwrap(), tidy);
+    assert_eq!(fs::metadata(path("in.tidy")).unwrap().modified().unwrap(), before);
+
+    let o = perigrain(folder.path(), &["fmt", "in.open", "in.bytes", "in.none", "in.tidy"]);
+    let said = err(&o);
+    assert_eq!((o.status.code(), out(&o).as_str()), (Some(1), ""));
+    for part in
+        ["in.open:1:8", "in.open:2:8", "PG0136", "`in.bytes` is no text", "cannot read the deck `in.none`"]
+    {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert_eq!(fs::read_to_string(path("in.open")).unwrap(), "print  \"a\nprint  'b\n");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 4);
+    assert_eq!(perigrain(folder.path(), &["fmt"]).status.code(), Some(2));
+}
+
+#[test]
+fn standard_input_is_laid_out_to_standard_output() {
+    use std::io::Write;
+    use std::process::Stdio;
+    let mut command = Command::new(env!("CARGO_BIN_EXE_perigrain"));
+    let mut child = command.args(["fmt", "-"]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(b"run   1\r\n").unwrap();
+    assert_eq!(out(&child.wait_with_output().unwrap()), "run 1\r\n");
+}

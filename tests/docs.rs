@@ -33,7 +33,7 @@ fn generated() -> Vec<(PathBuf, String)> {
     files.push((docs().join("commands.md"), index));
     files.push((docs().join("errors.md"), errors_page()));
     files.push((docs().join("SUMMARY.md"), summary()));
-    files.push((docs().join("editor/perigrain.tmLanguage.json"), textmate()));
+    files.push((docs().join("editor/vscode/perigrain.tmLanguage.json"), textmate()));
     let house = docs().join("architecture.md");
     files.push((house.clone(), with_code(&fs::read_to_string(house).unwrap())));
     files
@@ -54,7 +54,7 @@ const BOOK: [&str; 2] = [
      - [Make many runs of one deck](howto/sweep.md)\n\
      - [Weigh time against error](howto/bench.md)\n\
      - [Drive it from Python](python.md)\n\
-     - [Colours in your editor](editor/README.md)\n\n\
+     - [In your editor](editor/README.md)\n\n\
      # Reference\n\n\
      - [The language](language.md)\n\
      - [Commands and styles](commands.md)\n",
@@ -215,7 +215,7 @@ fn every_code_is_drawn_by_its_wrong_lines_and_not_by_the_right_ones() {
 
 #[test]
 fn the_editor_grammar_is_json() {
-    let text = fs::read_to_string(docs().join("editor/perigrain.tmLanguage.json")).unwrap();
+    let text = fs::read_to_string(docs().join("editor/vscode/perigrain.tmLanguage.json")).unwrap();
     // TOML's inline tables and strings are near enough to JSON's to find a missing brace or a bad escape.
     let value = text.split_once("\"patterns\": ").unwrap().1.split_once("],\n  \"repository\"").unwrap().0;
     let value = format!("patterns = {}]", value.replace("\": ", "\" = "));

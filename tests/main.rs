@@ -28,6 +28,7 @@ mod impact;
 mod installed_decks;
 #[path = "lammps.rs"]
 mod lammps;
+mod lsp;
 mod meshes;
 mod partitions;
 #[path = "peri/main.rs"]

@@ -43,8 +43,10 @@ const BY_STRING: &[(&str, &str)] = &[
 
 /// Within the root package: the command graph knows no session, a session no program.
 const UPWARDS: &[(&str, &[&str])] = &[
-    ("graph", &["session", "sweep", "bench", "cli"]),
-    ("session", &["sweep", "bench", "cli"]),
+    ("graph", &["session", "manual", "lsp", "sweep", "bench", "cli"]),
+    ("session", &["manual", "lsp", "sweep", "bench", "cli"]),
+    ("manual", &["lsp", "sweep", "bench", "cli"]),
+    ("lsp", &["sweep", "bench", "cli"]),
     ("sweep", &["bench", "cli"]),
     ("bench", &["cli"]),
     ("plot", &["session", "sweep", "bench", "cli"]),

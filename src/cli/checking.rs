@@ -3,13 +3,9 @@
 use super::args::{Deck, Options};
 use super::{FAILED, OK, deck, show};
 use crate::json::quoted;
-use crate::session::axes::{Axis, combined};
-use crate::session::{Mode, Session};
+use crate::session::{Mode, whole};
 use perigrain_base::diag::{Diagnostic, Diagnostics, Severity, Sources, Span};
 use perigrain_out::log::Log;
-
-/// So many combinations of a `sweep` line are checked each, of more only the first and the last.
-const MOST_CHECKED: usize = 64;
 
 /// Checks each deck by itself; the exit code is that of the worst.
 pub fn check(decks: &[Options], json: bool) -> u8 {
@@ -40,39 +36,13 @@ fn problems(o: &Options, sources: &mut Sources) -> (String, Diagnostics) {
         Ok(read) => read,
         Err(problems) => return (deck::name(&o.deck), problems),
     };
-    let mut session: Session = match deck::begin(o, Mode::Check, &Log::silent()) {
-        Ok(session) => session,
-        Err(problems) => return (name, problems),
-    };
-    let outcome = session.run_text(&name, &text);
-    sources.clone_from(&session.sources);
-    let mut all = session.notes.clone();
-    if let Err(problems) = outcome {
-        all.append(problems);
-    }
-    if let Some(swept) = session.swept() {
-        combinations(o, &swept.axes, &name, &text, &mut all);
-    }
-    all.0.sort_by_key(|d| d.span.map(|s| (s.file, s.start)));
-    (name, all)
-}
-
-/// Adds what is wrong with the other runs of a deck's `sweep` line; of very many only with the last.
-fn combinations(o: &Options, axes: &[Axis], name: &str, text: &str, all: &mut Diagnostics) {
-    let rows = combined(axes).unwrap_or_default();
-    let skipped = if rows.len() > MOST_CHECKED { rows.len() - 1 } else { 1 };
-    for row in rows.iter().skip(skipped) {
-        let mut with = o.clone();
-        let given = |n: &str| o.vars.iter().any(|(given, _)| given == n);
-        with.vars.extend(row.iter().filter(|(n, _)| !given(n)).map(|(n, v)| (n.clone(), vec![v.clone()])));
-        let Ok(mut session) = deck::begin(&with, Mode::Check, &Log::silent()) else { continue };
-        let refused = session.run_text(name, text).err().unwrap_or_default();
-        let title = row.iter().map(|(n, v)| format!("{n}={v}")).collect::<Vec<_>>().join(" ");
-        for d in refused.0 {
-            if !all.0.iter().any(|known| known.code == d.code && known.span == d.span) {
-                all.push(d.help(format!("this is so with {title}, as the deck's `sweep` line gives it")));
-            }
+    match deck::settled(o, Mode::Check, &Log::silent()) {
+        Ok(options) => {
+            let checked = whole::check(&options, &name, &text, &Default::default());
+            *sources = checked.sources;
+            (name, checked.problems)
         }
+        Err(problems) => (name, problems),
     }
 }
 

@@ -75,6 +75,14 @@ pub fn draw(o: &Options) -> u8 {
 /// # Errors
 /// Variables of the command line that cannot be set.
 pub(super) fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
+    Session::new(settled(o, mode, log)?)
+}
+
+/// What a session is told by the switches; threads and the gate are settled.
+///
+/// # Errors
+/// A folder that is not there.
+pub(super) fn settled(o: &Options, mode: Mode, log: &Log) -> Result<session::Options> {
     session::set_threads(o.threads.or_else(asked_of_openmp).unwrap_or(0));
     let folder = match &o.deck {
         Deck::Stdin => Default::default(),
@@ -84,7 +92,7 @@ pub(super) fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
         // What the command line itself names has been opened before.
         gate::close(&folder, limits).map_err(|e| trouble("find the deck's folder", &folder, &e))?;
     }
-    Session::new(session::Options {
+    Ok(session::Options {
         mode,
         log: log.clone(),
         compat: o.compat,
@@ -94,6 +102,7 @@ pub(super) fn begin(o: &Options, mode: Mode, log: &Log) -> Result<Session> {
         vars: o.vars.clone(),
         folder,
         partition: partitions::of(o),
+        overlay: Default::default(),
     })
 }
 

@@ -1,76 +1,9 @@
-//! The manual: one page per command and style, made from the tables they are registered in.
+//! Pages of the manual as they are asked for: the list, one by its name, those that speak of a word.
 
 use super::args::Usage;
-use super::pages;
+pub use crate::manual::{Page, heading, pages};
 use perigrain_base::diag::nearest;
-use perigrain_commands::COMMANDS;
-use perigrain_computes::COMPUTES;
-use perigrain_dumps::DUMPS;
-use perigrain_fixes::FIXES;
-use perigrain_pairs::PAIRS;
-use perigrain_pairs::bond::BONDS;
-use perigrain_styles::{Doc, Style};
 use std::fmt::Write;
-
-/// One page: what it is about and where it belongs.
-#[derive(Clone, Copy)]
-pub struct Page {
-    /// `topic`, `command`, or the command that takes the style: `pair_style`, `fix`, `compute`, `dump`.
-    pub kind: &'static str,
-    /// The word in the deck.
-    pub name: &'static str,
-    /// What is said about it.
-    pub doc: Doc,
-}
-
-impl Page {
-    /// As it is asked for and headed: `fix nve`, `run`.
-    pub fn title(&self) -> String {
-        match self.kind {
-            "topic" | "command" => self.name.to_string(),
-            kind => format!("{kind} {}", self.name),
-        }
-    }
-
-    /// The page's file below `docs/styles`.
-    pub fn file(&self) -> String {
-        format!("{}.md", self.title().replace([' ', '/'], "_"))
-    }
-
-    /// The page as Markdown.
-    pub fn markdown(&self) -> String {
-        let Doc { syntax, summary, text, example } = self.doc;
-        let mut page = format!("# {}\n\n{summary}\n\n```text\n{syntax}\n```\n", self.title());
-        if !text.is_empty() {
-            let _ = write!(page, "\n{}\n", text.trim());
-        }
-        if !example.is_empty() {
-            let _ = write!(page, "\n## Example\n\n```text\n{}\n```\n", example.trim());
-        }
-        page
-    }
-}
-
-/// Every page, by kind and then in the order of the tables.
-pub fn pages() -> Vec<Page> {
-    fn of<S: Style + ?Sized>(kind: &'static str, table: &[&S]) -> Vec<Page> {
-        table.iter().map(|s| Page { kind, name: s.name(), doc: s.doc() }).collect()
-    }
-    fn own(kind: &'static str, table: &[pages::Entry]) -> Vec<Page> {
-        table.iter().map(|&(name, doc)| Page { kind, name, doc }).collect()
-    }
-    [
-        own("topic", pages::TOPICS),
-        of("command", COMMANDS),
-        own("command", pages::COMMANDS),
-        of("pair_style", PAIRS),
-        of("bond_style", BONDS),
-        of("fix", FIXES),
-        of("compute", COMPUTES),
-        of("dump", DUMPS),
-    ]
-    .concat()
-}
 
 /// All pages with their summaries, as `perigrain doc` prints them.
 pub fn list() -> String {
@@ -84,15 +17,6 @@ pub fn list() -> String {
         let _ = writeln!(text, "  {:<24} {}", page.name, page.doc.summary);
     }
     text
-}
-
-/// What a kind of page is called in a list.
-pub fn heading(kind: &str) -> &str {
-    match kind {
-        "topic" => "topics",
-        "command" => "commands",
-        _ => kind,
-    }
 }
 
 /// The page of a name, as `fix nve`, `nve` or `run`; behind that of a command that takes styles, the list of them. Of a word

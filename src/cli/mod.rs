@@ -6,10 +6,10 @@ mod cases;
 pub mod checking;
 pub mod deck;
 mod examples;
+mod formatting;
 pub mod grammar;
 pub mod manual;
 mod pager;
-mod pages;
 pub mod partitions;
 pub mod progress;
 pub mod repl;
@@ -17,7 +17,6 @@ mod shells;
 mod signals;
 mod starters;
 mod sweeping;
-pub mod syntax;
 pub mod tasks;
 pub mod verifying;
 
@@ -76,12 +75,21 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Suite(wanted) => return benching::suite::perform(&wanted),
         Task::Worker => return Ok(if crate::sweep::worker::main() { OK } else { FAILED }),
         Task::Verify(wanted) => return verifying::verify(&wanted),
+        Task::Lsp => return Ok(serve()),
+        Task::Format(wanted) => return formatting::perform(&wanted),
         Task::Check { decks, json } => return Ok(checking::check(&decks, json)),
         Task::Plan { options, dot: true, .. } => return Ok(deck::draw(&options)),
         Task::Plan { options, measure: true, .. } => return Ok(deck::work_off(&options, Mode::Measure)),
         Task::Plan { options, .. } => return Ok(deck::work_off(&options, Mode::Plan)),
     }
     Ok(OK)
+}
+
+/// Answers an editor over the standard streams.
+fn serve() -> u8 {
+    // Decks are only read here: a thread of its own for each core would be idle.
+    crate::session::set_threads(1);
+    if crate::lsp::serve(std::io::stdin(), std::io::stdout()) { OK } else { FAILED }
 }
 
 /// Prints to standard output; a reader that closes early, as `| head`, is no failure.

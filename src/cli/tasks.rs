@@ -2,7 +2,7 @@
 
 use super::args::{self, Deck, Options, SWITCHES, Usage};
 use super::sweeping::args::Request;
-use super::{benching, checking, examples, starters, verifying};
+use super::{benching, checking, examples, formatting, starters, verifying};
 use clap::{CommandFactory, Parser, ValueHint};
 use clap_complete::Shell;
 use perigrain_base::diag::nearest;
@@ -22,6 +22,10 @@ pub enum Task {
         /// For editors.
         json: bool,
     },
+    /// Lay decks out anew.
+    Format(formatting::Wanted),
+    /// Answer an editor.
+    Lsp,
     /// Print a deck's step plan.
     Plan {
         /// The deck and its switches.
@@ -87,6 +91,14 @@ enum Sub {
         /// The decks and LAMMPS' switches
         #[arg(value_name = "DECK… [SWITCH]", value_hint = ValueHint::FilePath, trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<String>,
+    },
+    /// Lay decks out anew: blanks, columns, comments and empty lines, never words
+    Fmt(formatting::Wanted),
+    /// Answer an editor about decks, as a language server over standard input and output
+    Lsp {
+        /// The streams, as some editors say; there are no others
+        #[arg(long, hide = true)]
+        stdio: bool,
     },
     /// Print what each step of a deck's runs will do, in which order, and what was left out and why
     Plan {
@@ -266,6 +278,8 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
             let (options, decks) = args::parse_many(rest)?;
             Task::Check { decks: checking::each(&options, decks), json }
         }
+        Sub::Fmt(wanted) => Task::Format(wanted),
+        Sub::Lsp { stdio: _ } => Task::Lsp,
         Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
         Sub::Sweep { rest } => Task::Sweep(Box::new(Request::parse(rest)?)),
         Sub::Bench { rest } => Task::Bench(Box::new(benching::args::Request::parse(rest)?)),

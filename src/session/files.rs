@@ -1,5 +1,6 @@
 //! The files a deck reads, and what is known of those it would have written where it is only looked at.
 
+use super::overlay::Overlay;
 use perigrain_base::diag::{Code, Diagnostic};
 use perigrain_lang::Files;
 use perigrain_world::reading::{ReadFiles, place};
@@ -12,6 +13,8 @@ pub(super) struct RealFiles<'a> {
     pub promised: Promises,
     /// The deck's folder.
     pub folder: &'a Path,
+    /// Texts that are open in an editor.
+    pub overlay: &'a Overlay,
     /// Takes note of what is read.
     pub read: ReadFiles,
     /// Whether the deck is only looked at.
@@ -26,7 +29,10 @@ impl Files for RealFiles<'_> {
             Some(_) => return Err(std::io::ErrorKind::NotFound.into()),
             None => {}
         }
-        let path = place(path, self.folder);
+        let (named, path) = (self.folder.join(path), place(path, self.folder));
+        if let Some(text) = self.overlay.get(&path).or_else(|| self.overlay.get(&named)) {
+            return Ok(text.to_string());
+        }
         let bytes = perigrain_base::gate::read(&path)?;
         self.read.note(&path);
         Ok(String::from_utf8_lossy(&bytes).into_owned())

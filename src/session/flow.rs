@@ -18,7 +18,8 @@ impl Session {
         // a copy: the world is borrowed for the formulas in the line
         let promised = self.world.parts.promised.clone();
         let (folder, read) = (&self.options.folder, self.world.read_files.clone());
-        let files = RealFiles { promised, folder, read, looking: self.looking() };
+        let overlay = &self.options.overlay;
+        let files = RealFiles { promised, folder, overlay, read, looking: self.looking() };
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         let flow = script.flow(cmd, &mut self.sources, &mut self.vars, &mut env, &files)?;
         if flow == Flow::NotMine {

@@ -37,6 +37,8 @@ pub struct Known {
     pub variables: Vec<String>,
     /// Materials.
     pub materials: Vec<String>,
+    /// Labels.
+    pub labels: Vec<String>,
     /// The pair style.
     pub pair: Option<String>,
 }
@@ -194,6 +196,8 @@ impl Session {
             dumps: self.graph.dumps.iter().map(|d| d.id.clone()).collect(),
             variables: self.vars.names().map(String::from).collect(),
             materials: self.world.materials.keys().cloned().collect(),
+            // A prompt has no file to jump in.
+            labels: vec![],
             pair: self.graph.pair.as_ref().map(|p| p.pair.facts().name.to_string()),
         }
     }

@@ -209,7 +209,7 @@ fn attempt(task: &Task, log: &Log, outcome: &mut Outcome, sources: &mut Sources)
         portable: s.portable,
         vars: s.vars.clone(),
         folder: task.folder.clone(),
-        partition: None,
+        ..session::Options::default()
     })?;
     if s.series {
         session.add_columns(task.report.clone());

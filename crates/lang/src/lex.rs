@@ -176,7 +176,8 @@ fn word(input: &str) -> IResult<&str, (&str, usize)> {
     alt((triple.map(|w| (w, 3)), double.map(|w| (w, 1)), single.map(|w| (w, 1)))).parse(input)
 }
 
-fn blank(c: char) -> bool {
+/// What stands between words.
+pub(super) fn blank(c: char) -> bool {
     c.is_ascii_whitespace() || c == '\x0b'
 }
 

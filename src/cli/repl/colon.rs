@@ -1,8 +1,8 @@
 //! Commands of the prompt: `:plan :graph :plot :slice :show :undo :save :help`.
 
-use super::knowing::COLON;
 use super::picture::{self, Ink};
 use super::{Repl, colours, saving, slicing};
+use crate::manual::knowing::COLON;
 use crate::plot::terminal::{Curve, plot};
 use perigrain_base::diag::{nearest, render};
 use std::fmt::Write;

@@ -1,7 +1,7 @@
 //! Hints behind the cursor: the rest of a word that can only be one, else the syntax of what comes next.
 
-use super::completing::complete;
-use super::knowing::{self, COLON};
+use crate::manual::completing::complete;
+use crate::manual::knowing::{self, COLON};
 use crate::session::Known;
 use std::path::Path;
 

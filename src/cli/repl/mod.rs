@@ -1,9 +1,7 @@
 //! The interactive session: lines are read, worked off, looked at and taken back.
 
 mod colon;
-pub mod completing;
 pub mod hinting;
-pub mod knowing;
 pub mod painting;
 mod picture;
 mod reading;

@@ -1,6 +1,6 @@
 //! Colours for a line that is being typed: command, style, numbers, values, texts, comments.
 
-use super::knowing;
+use crate::manual::knowing;
 use perigrain_lang::number::parse;
 use std::ops::Range;
 

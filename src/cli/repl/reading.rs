@@ -1,9 +1,9 @@
 //! Where typed lines come from: a terminal with completion, hints and colours, or a pipe.
 
-use super::completing::complete;
 use super::hinting::{self, hint};
 use super::painting::paint;
 use crate::cli::progress::colors_wanted;
+use crate::manual::completing::complete;
 use crate::session::Known;
 use perigrain_lang::is_unfinished;
 use rustyline::completion::Completer;

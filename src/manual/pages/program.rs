@@ -10,6 +10,8 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain [switch …] < DECK\n\
             perigrain plan|run DECK [switch …]\n\
             perigrain check DECK … [--json] [switch …]\n\
+            perigrain fmt [--check|--diff] FILE|- …\n\
+            perigrain lsp\n\
             perigrain sweep DECK -each NAME VALUE … [switch …]\n\
             perigrain bench DECK -each NAME VALUE … -measure WORD … [switch …]\n\
             perigrain repl [DECK] [switch …]\n\
@@ -25,6 +27,7 @@ pub(super) const PERIGRAIN: Entry = (
         example: "perigrain in.plate -var v 70 -log plate.log\n\
             perigrain check in.plate\n\
             perigrain check --json in.plate\n\
+            perigrain fmt --diff in.plate\n\
             perigrain plan in.plate --measure\n\
             perigrain plan --dot in.plate\n\
             perigrain -in in.plate -screen none -threads 2 -compat lammps\n\
@@ -38,7 +41,11 @@ pub(super) const PERIGRAIN: Entry = (
 );
 
 const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off. `check` reads it, changes and writes \
-    nothing, and reports every problem of one or more decks at once, with `--json` as JSON. `plan` prints what each step of \
+    nothing, and reports every problem of one or more decks at once, with `--json` as JSON. `fmt` lays decks out anew: one blank between words, columns and comments below each other where \
+    they were, continuations four blanks in, no blanks at the ends of lines and one empty line at most; words, quoted texts, `$(…)` and line endings \
+    stay as they are, and a deck that cannot be read is refused. `--check` writes nothing and fails where a deck would change, `--diff` shows \
+    the lines; `fmt -` reads standard input and writes to standard output. `lsp` answers an editor while decks are \
+    written: see [In your editor](../editor/README.md). `plan` prints what each step of \
     the deck's runs will do, in which order, and what was left out and why: each plan once, with the lines whose runs have it and how often. \
     It makes the particles that the first run begins with, so that large scenes take their time, and no step; behind that run nothing is known of \
     particles, and lines that hang on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \

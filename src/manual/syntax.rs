@@ -45,7 +45,7 @@ impl Form {
         if choices.len() > 1 {
             let first = &mut choices[0];
             let named = first.iter().position(|p| *p == Part::Word(name.into())).unwrap_or(0);
-            let begin = (named + 1..first.len()).find(|&k| is_literal(&first[k])).unwrap_or(named + 1);
+            let begin = (named + 1..first.len()).find(|&k| begins_choice(&first[k])).unwrap_or(named + 1);
             head = first.drain(..begin.min(first.len())).collect();
         }
         Self { head, choices, tail: tokens(tail).iter().filter_map(|t| part(t)).collect() }
@@ -61,6 +61,34 @@ impl Form {
             }
         };
         Some(self.head.iter().chain(chosen).chain(&self.tail).collect())
+    }
+
+    /// Its words as they are shown, and which of them the word after those typed is.
+    pub fn shown(&self, typed: &[&str]) -> (Vec<String>, Option<usize>) {
+        let n = typed.len();
+        let text = |parts: &[Part]| parts.iter().map(Part::text).collect::<Vec<_>>();
+        let Some(parts) = self.along(typed) else {
+            let choices: Vec<String> = self.choices.iter().map(|c| text(c).join(" ")).collect();
+            let all = [text(&self.head), vec![choices.join(" | ")], text(&self.tail)].concat();
+            return (all, (n <= self.head.len()).then_some(n));
+        };
+        let words: Vec<String> = parts.iter().map(|p| p.text()).collect();
+        let fixed = parts.iter().map_while(|p| p.word()).count();
+        if n < fixed {
+            return (words, Some(n));
+        }
+        let begun = typed.iter().enumerate().skip(fixed).rev().find_map(|(k, word)| {
+            let at = parts[fixed..].iter().position(|p| p.takes(word))?;
+            (n - k < parts[fixed + at].words().len()).then_some(fixed + at)
+        });
+        let again = || parts[..fixed].last().is_some_and(|p| p.text().ends_with('…')).then(|| fixed - 1);
+        let next = begun.or_else(again).or_else(|| (fixed < words.len()).then_some(fixed));
+        (words, next)
+    }
+
+    /// The word that it begins with.
+    pub fn first(&self) -> Option<&str> {
+        self.head.iter().chain(self.choices.iter().flatten()).next()?.word()
     }
 
     /// Where a word called `name` stands in it.
@@ -209,6 +237,11 @@ fn is_literal(part: &Part) -> bool {
     part.word().is_some_and(|w| w.trim_end_matches('…').split('|').all(is_word))
 }
 
+/// Whether alternatives may begin with it: with a word as it is written, or with several of which one is (`type|id|molecule`).
+fn begins_choice(part: &Part) -> bool {
+    is_literal(part) || part.word().is_some_and(|w| w.contains('|') && w.split('|').any(is_word))
+}
+
 /// Words at blanks; what stands in brackets is one.
 fn tokens(text: &str) -> Vec<String> {
     let mut out: Vec<String> = vec![];
@@ -271,6 +304,13 @@ mod tests {
         assert_eq!(p.here, ["in|out"]);
         let p = place(REGION, "region", "region a sphere 0 0 0 1 side in");
         assert_eq!(p.here, ["units"]);
+    }
+
+    #[test]
+    fn alternatives_may_begin_with_several_words() {
+        let line = "group ID type|id|molecule A … | type|id|molecule <> A B | region ID | union ID …";
+        assert_eq!(place(line, "group", "group g region").here, ["ID"]);
+        assert_eq!(place(line, "group", "group g type").here, ["A…"]);
     }
 
     #[test]

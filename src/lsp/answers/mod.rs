@@ -1,0 +1,22 @@
+//! The answers: each from a file, a place in it and what the server knows.
+
+pub mod completion;
+pub mod finding;
+pub mod fixes;
+pub mod outline;
+pub mod telling;
+
+use crate::manual::Page;
+
+/// A page as editors show it beside the cursor: syntax first.
+pub fn page_markdown(page: &Page) -> String {
+    let doc = page.doc;
+    let mut text = format!("```perigrain\n{}\n```\n\n{}\n", doc.syntax, doc.summary);
+    if !doc.text.is_empty() {
+        text += &format!("\n{}\n", doc.text.trim());
+    }
+    if !doc.example.is_empty() {
+        text += &format!("\n```perigrain\n{}\n```\n", doc.example.trim());
+    }
+    text
+}

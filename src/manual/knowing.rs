@@ -1,0 +1,327 @@
+//! What completion, hints, highlighting and editors know: the manual's syntax lines, and what their placeholders mean.
+
+use super::syntax::{Form, Place, is_word};
+use super::{Page, all};
+use crate::session::{Known, THERMO};
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+/// A form of a command with the page it stands on.
+struct Entry {
+    page: Page,
+    form: Form,
+}
+
+/// All forms by their commands, those of commands before those of their styles.
+static FORMS: LazyLock<BTreeMap<String, Vec<Entry>>> = LazyLock::new(|| {
+    let mut forms: BTreeMap<String, Vec<Entry>> = BTreeMap::new();
+    for page in all().iter().filter(|p| p.kind != "topic") {
+        for line in page.doc.syntax.lines().filter(|l| !l.starts_with('#')) {
+            let form = Form::read(line, page.name);
+            let Some(command) = form.first().map(String::from) else { continue };
+            forms.entry(command).or_default().push(Entry { page: *page, form });
+        }
+    }
+    forms
+});
+
+/// Commands that exist only at the prompt.
+pub const COLON: [(&str, &str); 9] = [
+    (":plan", "prints what each step of a run now would do"),
+    (":graph", "[FILE.dot]  lists the lines so far and what uses what, or writes the graph for graphviz"),
+    (":plot", "COLUMN …  draws thermo columns over the step"),
+    (":slice", "FORMULA x|y|z AT [WIDTH]  draws a cut through the particles, coloured by a formula"),
+    (":show", "FILE.png  shows a picture"),
+    (":undo", "[N]  goes back to before the last line, or the last N"),
+    (":save", "FILE  writes the lines that count as a deck"),
+    (":help", "lists these commands"),
+    (":quit", "leaves"),
+];
+
+/// What a name is the name of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Named {
+    /// A group.
+    Group,
+    /// A region.
+    Region,
+    /// A fix.
+    Fix,
+    /// A compute.
+    Compute,
+    /// A dump.
+    Dump,
+    /// A variable.
+    Variable,
+    /// A material.
+    Material,
+    /// A molecule.
+    Molecule,
+    /// A label.
+    Label,
+    /// A file.
+    File,
+}
+
+impl Named {
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Group => "group",
+            Self::Region => "region",
+            Self::Fix => "fix",
+            Self::Compute => "compute",
+            Self::Dump => "dump",
+            Self::Variable => "variable",
+            Self::Material => "material",
+            Self::Molecule => "molecule",
+            Self::Label => "label",
+            Self::File => "file",
+        }
+    }
+
+    /// The names that exist; files are not among them.
+    pub fn list(self, known: &mut Known) -> Option<&mut Vec<String>> {
+        Some(match self {
+            Self::Group => &mut known.groups,
+            Self::Region => &mut known.regions,
+            Self::Fix => &mut known.fixes,
+            Self::Compute => &mut known.computes,
+            Self::Dump => &mut known.dumps,
+            Self::Variable => &mut known.variables,
+            Self::Material => &mut known.materials,
+            Self::Label => &mut known.labels,
+            Self::Molecule | Self::File => return None,
+        })
+    }
+
+    /// What a placeholder of a syntax line names: `before` is the word of the line before it, `last` the word typed there.
+    pub fn of(placeholder: &str, before: &str, last: &str, command: &str) -> Option<Self> {
+        Some(match placeholder {
+            "group" | "GROUP" | "group-ID" | "PARENT" => Self::Group,
+            "REGION" | "region-ID" => Self::Region,
+            "temp-ID" | "COMPUTE" => Self::Compute,
+            "FIX" => Self::Fix,
+            "LABEL" => Self::Label,
+            "NAME" if ["variable", "next"].contains(&command) => Self::Variable,
+            "NAME" if ["variable", "var", "x|y|z"].contains(&before) => Self::Variable,
+            "NAME" if command == "label" => Self::Label,
+            "FILE" | "NAME" => Self::File,
+            p if p.starts_with("file") => Self::File,
+            "ID" => Self::of_id(last, command)
+                .or_else(|| Self::of_id(before, command))
+                .or_else(|| Self::of_id(command, command))?,
+            _ => return None,
+        })
+    }
+
+    /// Which IDs an `ID` behind a word means.
+    fn of_id(word: &str, command: &str) -> Option<Self> {
+        Some(match word {
+            "region" | "union" | "intersect" if command == "region" => Self::Region,
+            "region" => Self::Region,
+            "group" | "union" | "intersect" | "subtract" => Self::Group,
+            "material" => Self::Material,
+            "molecule" => Self::Molecule,
+            "fix" | "unfix" | "fix_modify" => Self::Fix,
+            "compute" | "uncompute" | "compute_modify" => Self::Compute,
+            "dump" | "undump" | "dump_modify" => Self::Dump,
+            // Behind numbers, as in `create_atoms 1 random 10 4711 ID` and `delete_atoms overlap 1 ID ID`.
+            "create_atoms" => Self::Region,
+            "delete_atoms" | "delete_bonds" => Self::Group,
+            _ => return None,
+        })
+    }
+}
+
+/// All commands a deck knows, sorted.
+pub fn commands() -> &'static [&'static str] {
+    static COMMANDS: LazyLock<Vec<&str>> = LazyLock::new(|| styles("command"));
+    &COMMANDS
+}
+
+/// All styles that a command takes, sorted.
+pub fn styles(command: &str) -> Vec<&'static str> {
+    let mut all: Vec<&str> = all().iter().filter(|p| p.kind == command).map(|p| p.name).collect();
+    all.sort_unstable();
+    all
+}
+
+/// The page with a title, as `fix nve` or `run`.
+pub fn page(title: &str) -> Option<Page> {
+    static TITLES: LazyLock<BTreeMap<String, Page>> =
+        LazyLock::new(|| all().iter().filter(|p| p.kind != "topic").map(|p| (p.title(), *p)).collect());
+    TITLES.get(title).copied()
+}
+
+/// The form that fits the words typed best.
+fn best(typed: &[&str], known: &Known) -> Option<&'static Entry> {
+    let mut best: Option<(i32, &Entry)> = None;
+    for entry in FORMS.get(*typed.first()?)? {
+        let name = entry.page.name;
+        let mut fit = entry.form.fit(typed);
+        // A style's own page counts once the style is typed, and then more than that of its command.
+        if let Some(k) = entry.form.index_of(name).filter(|_| entry.page.kind == typed[0]) {
+            if typed.get(k) != Some(&name) {
+                continue;
+            }
+            fit += typed.len() as i32;
+        }
+        let pair = entry.page.kind == "pair_style" && typed[0] != "pair_style";
+        if pair && typed.get(3).or(known.pair.as_deref().as_ref()).is_some_and(|s| *s == entry.page.name) {
+            fit += 3;
+        }
+        if best.is_none_or(|(most, _)| fit > most) {
+            best = Some((fit, entry));
+        }
+    }
+    best.map(|(_, entry)| entry)
+}
+
+/// What stands behind the words typed, from the form that fits them best, and that form's page.
+pub fn place(typed: &[&str], known: &Known) -> Option<(Place, Page)> {
+    let entry = best(typed, known)?;
+    Some((entry.form.place(typed), entry.page))
+}
+
+/// The words of the form that fits the words typed best, which of them is the next one to type, and the form's page.
+pub fn synopsis(typed: &[&str], known: &Known) -> Option<(Vec<String>, Option<usize>, Page)> {
+    let entry = best(typed, known)?;
+    let (words, next) = entry.form.shown(typed);
+    Some((words, next, entry.page))
+}
+
+/// What the word number `k` of a line names, as the form says that fits the line best.
+pub fn named(words: &[&str], k: usize) -> Option<Named> {
+    let command = *words.first()?;
+    let (word, last) = (*words.get(k)?, *words.get(k.checked_sub(1)?)?);
+    let place = best(words, &Known::default())?.form.place(&words[..k]);
+    let each = || place.here.iter().flat_map(|here| here.trim_end_matches('…').split('|'));
+    if each().any(|one| one == word && is_word(one)) {
+        return None;
+    }
+    each().find_map(|one| Named::of(one, &place.before, last, command))
+}
+
+/// Keywords that a page's text names behind "Keywords:" and the like, each the first word of something in backticks.
+pub fn keywords_in(text: &str) -> Vec<&str> {
+    let listed = text.split_once("eywords").and_then(|(_, rest)| {
+        let (head, list) = rest.split_once(':')?;
+        (head.len() < 60 && !head.contains('.')).then_some(list)
+    });
+    let Some(listed) = listed else { return vec![] };
+    // A list of items is a paragraph; within a sentence it ends with that.
+    let (listed, end) = match listed.trim_start_matches('\n') {
+        items if items.starts_with(['*', '-']) => (items, items.find("\n\n")),
+        _ => (listed, listed.find(". ")),
+    };
+    let (mut depth, mut words) = (0_i32, vec![]);
+    for (k, part) in listed[..end.unwrap_or(listed.len())].split('`').enumerate() {
+        if k % 2 == 0 {
+            depth += part.matches('(').count() as i32 - part.matches(')').count() as i32;
+        } else if depth == 0 && part.starts_with(|c: char| c.is_ascii_lowercase()) {
+            words.extend(part.split_whitespace().next());
+        }
+    }
+    words
+}
+
+/// What a page's text says of a word: from where the word stands in backticks to the end of that sentence or item.
+pub fn told_of(text: &str, word: &str) -> Option<String> {
+    const LONGEST: usize = 500;
+    let opening = format!("`{word}");
+    let begins = |(k, _): &(usize, &str)| text[k + opening.len()..].starts_with(['`', ' ']);
+    // What stands in parentheses speaks of something else.
+    let outside = |(k, _): &(usize, &str)| text[..*k].matches('(').count() == text[..*k].matches(')').count();
+    let all = || text.match_indices(&opening).filter(begins);
+    let (start, _) = all().find(outside).or_else(|| all().next())?;
+    let rest = &text[start..];
+    let ends = [". ", ".\n", ";\n", "; `", "), `", "\n\n", "\n*", "\n-"];
+    let mut end = ends.iter().filter_map(|end| rest.find(end)).min().unwrap_or(rest.len()).min(LONGEST);
+    while !rest.is_char_boundary(end) {
+        end -= 1;
+    }
+    let closed = if rest[end..].starts_with(')') { ")" } else { "" };
+    Some(rest[..end].to_string() + closed)
+}
+
+/// The columns a step table can show by keyword.
+pub fn thermo() -> Vec<&'static str> {
+    THERMO.iter().map(|k| k.0).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rest(line: &str, pair: Option<&str>) -> String {
+        let known = Known { pair: pair.map(String::from), ..Known::default() };
+        place(&line.split_whitespace().collect::<Vec<_>>(), &known).map_or(String::new(), |(p, _)| p.rest)
+    }
+
+    #[test]
+    fn the_style_typed_chooses_the_page() {
+        assert_eq!(rest("fix 1 all", None), "STYLE word…");
+        assert_eq!(rest("fix 1 all viscous", None), "gamma [scale type ratio]");
+        assert!(rest("region a sphere 0 0", None).starts_with("Z R"));
+        assert!(rest("pair_coeff 1 1", Some("peri/pmb")).starts_with("c horizon"));
+        assert!(rest("pair_coeff 1 1 material glass", Some("peri/pmb")).starts_with("horizon H"));
+        assert!(rest("no_such", None).is_empty());
+    }
+
+    #[test]
+    fn every_form_begins_with_its_command() {
+        for e in FORMS.values().flatten() {
+            let command = if e.page.kind == "command" { e.page.name } else { e.page.kind };
+            let own = e.form.index_of(command) == Some(0);
+            assert!(
+                own || ["pair_style", "bond_style", "command"].contains(&e.page.kind),
+                "{}: {:?}",
+                e.page.title(),
+                e.form
+            );
+        }
+    }
+
+    #[test]
+    fn placeholders_tell_what_a_word_names() {
+        let of = |line: &str, k: usize| named(&line.split_whitespace().collect::<Vec<_>>(), k);
+        assert_eq!(of("create_atoms 1 region r", 3), Some(Named::Region));
+        assert_eq!(of("velocity ball set 0 0 0", 1), Some(Named::Group));
+        assert_eq!(of("group g union a b", 3), Some(Named::Group));
+        assert_eq!(of("unfix 1", 1), Some(Named::Fix));
+        assert_eq!((of("run 100", 1), of("create_atoms 1 region r", 2), of("run", 4)), (None, None, None));
+    }
+
+    #[test]
+    fn a_synopsis_knows_its_next_word() {
+        let of = |line: &str| {
+            let (words, next, _) =
+                synopsis(&line.split_whitespace().collect::<Vec<_>>(), &Known::default()).unwrap();
+            next.map(|k| words[k].clone())
+        };
+        assert_eq!(of("fix 1 all viscous").as_deref(), Some("gamma"));
+        assert_eq!(of("fix 1 all viscous 1.0 scale").as_deref(), Some("[scale type ratio]"));
+        assert_eq!(of("region a sphere 0").as_deref(), Some("Y"));
+        assert_eq!(of("region").as_deref(), Some("ID"));
+    }
+
+    #[test]
+    fn keywords_are_listed_in_a_sentence_or_as_items() {
+        assert_eq!(keywords_in("Keywords: `a N` (0, `no`), `b`. Then `c`."), ["a", "b"]);
+        assert_eq!(
+            keywords_in("Keywords, here:\n\n* `size W` pixels, `up x`;\n* `map NAME`.\n\n`c`"),
+            ["size", "up", "map"]
+        );
+        assert!(keywords_in("No such list: `a`").is_empty());
+    }
+
+    #[test]
+    fn pages_tell_of_their_keywords() {
+        let text =
+            "Keywords:\n\n* `size W H` pixels (1280 960), `up x`; `legend yes|no` what.\n* `map NAME` all.";
+        assert_eq!(told_of(text, "size").as_deref(), Some("`size W H` pixels (1280 960)"));
+        assert_eq!(told_of(text, "map").as_deref(), Some("`map NAME` all."));
+        assert_eq!(told_of(text, "nothing"), None);
+    }
+}
