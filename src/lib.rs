@@ -27,6 +27,7 @@ pub mod graph;
 mod heads;
 mod json;
 pub mod plot;
+pub mod report;
 pub mod session;
 pub mod sweep;
 pub mod verify;

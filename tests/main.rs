@@ -33,6 +33,7 @@ mod plans;
 mod prompt;
 #[path = "common/random.rs"]
 mod random;
+mod report;
 #[path = "restart/main.rs"]
 mod restart;
 mod rooms;

@@ -46,6 +46,7 @@ const UPWARDS: &[(&str, &[&str])] = &[
     ("session", &["sweep", "bench", "cli"]),
     ("sweep", &["bench", "cli"]),
     ("bench", &["cli"]),
+    ("report", &["bench", "cli"]),
     ("plot", &["session", "sweep", "bench", "cli"]),
 ];
 

@@ -40,6 +40,8 @@ pub struct Options {
     pub echo: Option<String>,
     /// `-var name value …`: index variables, in the order given.
     pub vars: Vec<(String, Vec<String>)>,
+    /// `-report FILE`: the run as a web page.
+    pub report: Option<PathBuf>,
     /// `-threads N`, `-pk omp N`.
     pub threads: Option<usize>,
     /// `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong.
@@ -152,6 +154,10 @@ pub const SWITCHES: &[Switch] = &[
             Ok(())
         },
     ),
+    switch(&["-report"], "FILE", "write what the run was as one web page", |o, v| {
+        o.report = Some(v.one("a file")?.into());
+        Ok(())
+    }),
     switch(&["-compat"], "lammps", "LAMMPS' numbers also where LAMMPS is wrong", |o, v| {
         let word = v.one("lammps")?;
         if word != "lammps" {

@@ -2,6 +2,7 @@
 
 use super::args::{Deck, Options, Target, Usage};
 use super::progress::{self, Progress};
+use super::reporting::{Sheet, Told};
 use super::{FAILED, INTERRUPTED, OK, partitions, signals};
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail, render};
@@ -36,6 +37,11 @@ pub fn work_off(o: &Options, mode: Mode) -> u8 {
 fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mut Sources) -> Result<u8> {
     let (name, text) = read(&o.deck)?;
     open(log, o, mode, progress)?;
+    // Found out before the run whether it can be written.
+    let mut sheet = Sheet::of(o)?;
+    if sheet.is_some() {
+        log.keep_rows();
+    }
     let mut session = begin(o, mode, log)?;
     session.set_watch(Box::new(Bar(progress.clone())));
     catch_interrupt(&session);
@@ -47,7 +53,15 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
     }
     let outcome = session.run_text(&name, &text);
     sources.clone_from(&session.sources);
+    let mut written = Ok(());
+    if let Some(sheet) = &mut sheet {
+        written = sheet.write(&Told { options: o, text, session: &session, outcome: &outcome, log });
+        if written.is_ok() {
+            log.to_screen(&sheet.said());
+        }
+    }
     let ending = outcome?;
+    written?;
     Ok(if ending.interrupted { INTERRUPTED } else { ending.status.clamp(0, 255) as u8 })
 }
 
@@ -108,6 +122,7 @@ pub fn host(words: Vec<String>, screen: Box<dyn Write + Send>) -> std::result::R
         return Err(usage.help("leave it out, and hand it over with `file(PATH)`"));
     }
     let alone = [
+        (o.report.is_some(), "-report"),
         (o.safe.is_some(), "-safe"),
         (!o.partition.is_empty(), "-partition"),
         (o.help, "-help"),

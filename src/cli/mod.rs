@@ -13,6 +13,7 @@ mod pages;
 pub mod partitions;
 pub mod progress;
 pub mod repl;
+mod reporting;
 mod shells;
 mod signals;
 mod starters;

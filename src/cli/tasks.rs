@@ -184,7 +184,18 @@ pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
     if o.version {
         return Ok(Task::Text(version()));
     }
-    if o.deck != Deck::Stdin || !is_terminal() {
+    let task = at_terminal(task)?;
+    let reported = task.options().is_some_and(|o| o.report.is_some());
+    if let Some(what) = task.shows_no_run().filter(|_| reported) {
+        let usage = Usage::new(format!("`-report` shows a run, and {what}"));
+        return Err(usage.help("write `perigrain -in DECK -report FILE`"));
+    }
+    Ok(task)
+}
+
+/// What becomes of a task without a deck where somebody sits at a terminal.
+fn at_terminal(task: Task) -> Result<Task, Usage> {
+    if task.options().is_none_or(|o| o.deck != Deck::Stdin) || !is_terminal() {
         return Ok(task);
     }
     match &task {
@@ -197,6 +208,17 @@ pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
 }
 
 impl Task {
+    /// Why a page about a run cannot be had of this.
+    fn shows_no_run(&self) -> Option<&'static str> {
+        match self {
+            Task::Check { .. } => Some("`check` makes none"),
+            Task::Plan { measure: false, .. } => Some("`plan` makes none; `plan --measure` does"),
+            Task::Repl(_) => Some("what is typed has no end"),
+            Task::Run(o) if !o.partition.is_empty() => Some("there is one for each partition"),
+            _ => None,
+        }
+    }
+
     /// The switches, those of the first deck if there are several.
     fn options(&self) -> Option<&Options> {
         match self {
@@ -382,6 +404,15 @@ mod tests {
         assert_eq!(read("help pg0101").unwrap(), Task::Explain("pg0101".into()));
         assert!(read("check in.plate -logg x").unwrap_err().help.unwrap().contains("`-log`"));
         assert!(read("explain").is_err());
+        for line in
+            ["check a -report r.html", "plan a -report r.html", "repl a -report r", "a -p 2 -report r"]
+        {
+            assert!(read(line).unwrap_err().message.starts_with("`-report` shows a run"), "{line}");
+        }
+        assert_eq!(
+            read("a -report r").unwrap(),
+            Task::Run(Options { report: Some("r".into()), ..deck("a") })
+        );
         let usage = read("chekc in.fall -threads 2").unwrap_err();
         assert_eq!(usage.help.as_deref(), Some("did you mean `perigrain check in.fall -threads 2`?"));
         // A file of that name is a deck.
