@@ -24,6 +24,7 @@ thermo 10
 timestep 1e-4
 print \"</script><script>alert(1)</script>\"
 dump p all image 50 p.*.png type type size 40 30
+dump d all custom 20 d.dump id type x y z vx vy vz radius element
 run 100
 ";
 
@@ -56,9 +57,14 @@ fn a_run_leaves_a_page_of_all_that_it_was() {
         "p.50.png",
         "pair granular",
         "units si",
+        "id=\"view\"",
+        "{\"name\":\"speed\",",
     ] {
         assert!(page.contains(part), "{part}");
     }
+    // The beginning, and sixty intervals of two steps are one too many for a hundred.
+    assert_eq!(page.matches("id=\"frame-").count(), 51);
+    assert_eq!(page.matches("\"follows\":true").count(), 50);
     assert!(!page.contains("<script>alert"), "the deck's text is escaped");
     // The screen and the log are those of a run without a page.
     let log = fs::read_to_string(home.join("log.lammps")).unwrap();
@@ -88,4 +94,127 @@ fn a_page_that_cannot_be_written_is_found_before_the_run() {
     let o = perigrain(folder.path(), &["check", "in.fall", "-report", "run.html"]);
     assert_eq!(o.status.code(), Some(2), "{}", err(&o));
     assert!(err(&o).contains("`-report` shows a run, and `check` makes none"), "{}", err(&o));
+}
+
+/// Rows of the step table and of dumps: all that a run computes.
+fn numbers(folder: &Path) -> String {
+    let log = fs::read_to_string(folder.join("log.lammps")).unwrap();
+    let rows =
+        log.lines().filter(|l| l.trim_start().starts_with(|c: char| c.is_ascii_digit()) && !l.contains('%'));
+    rows.collect::<Vec<_>>().join("\n") + &fs::read_to_string(folder.join("d.dump")).unwrap()
+}
+
+#[test]
+fn a_run_that_is_looked_at_gives_the_same_bits() {
+    // Steps of solids are made with the next one's beginning where nobody looks.
+    let solid = "\
+units si
+atom_style peri
+boundary s s s
+lattice sc 0.001
+region box block -0.02 0.02 -0.02 0.02 -0.005 0.005 units box
+region plate block -0.006 0.006 -0.006 0.006 -0.001 0.001 units box
+create_box 1 box
+create_atoms 1 region plate
+material glass file soda-lime-glass.toml
+set group all volume 1e-9
+pair_style peri/pmb
+pair_coeff 1 1 material glass horizon 3.015
+velocity all ramp vx -9 9 x -0.006 0.006 units box
+fix motion all nve
+thermo_style custom step pe ke
+thermo_modify format float %.17g
+thermo 83
+timestep 1e-7
+dump d all custom 250 d.dump id x y z vx vy vz
+dump_modify d format float %.17g
+run 400
+run 100
+";
+    for deck in [DECK, solid] {
+        let both = [&["in.deck"][..], &["in.deck", "-report", "run.html"]].map(|args| {
+            let folder = tempfile::tempdir().unwrap();
+            fs::write(folder.path().join("in.deck"), deck.replace("radius element", "radius")).unwrap();
+            let o = perigrain(folder.path(), args);
+            assert_eq!(o.status.code(), Some(0), "{}", err(&o));
+            numbers(folder.path())
+        });
+        assert!(both[0].lines().count() > 20);
+        assert_eq!(both[0], both[1]);
+    }
+}
+
+/// A folder with a log and a dump.
+fn after_a_run() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("in.fall"), DECK).unwrap();
+    let o = perigrain(folder.path(), &["in.fall"]);
+    assert_eq!(o.status.code(), Some(0), "{}", err(&o));
+    folder
+}
+
+#[test]
+fn a_page_is_made_from_a_log_and_a_dump() {
+    let folder = after_a_run();
+    let home = folder.path();
+    let o = perigrain(home, &["report", "log.lammps", "d.dump", "-o", "run.html"]);
+    assert_eq!(o.status.code(), Some(0), "{}", err(&o));
+    let page = fs::read_to_string(home.join("run.html")).unwrap();
+    for part in [
+        "<title>log.lammps</title>",
+        "worked off to its end",
+        "<dt>particles</dt><dd>2</dd>",
+        "\"steps\":[0,10,20,30,40,50,60,70,80,90,100]",
+        "{\"name\":\"speed\",",
+        "{\"name\":\"vx\",",
+        "\"step\":40,\"time\":4e-3,\"n\":2,",
+        ">Log</h2>",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert_eq!(page.matches("id=\"frame-").count(), 6);
+    assert!(!page.contains("<script>alert") && !page.contains("{\"name\":\"element\""));
+}
+
+#[test]
+fn what_is_odd_about_logs_and_dumps_is_said_on_the_page_or_refused() {
+    let folder = after_a_run();
+    let home = folder.path();
+    let read = |name: &str| fs::read_to_string(home.join(name)).unwrap();
+    let (log, dump) = (read("log.lammps"), read("d.dump"));
+    let write = |name: &str, text: &str| fs::write(home.join(name), text).unwrap();
+    write("cut.log", &log[..log.find("Loop time").unwrap()]);
+    write("cut.dump", &dump[..dump.len() - 30]);
+    write("bare.log", "no table\n");
+    write("other.dump", &dump.replace("TIMESTEP\n", "TIMESTEP\n77777"));
+    write("words.dump", &dump.replace("0.", "zero."));
+    write("head.dump", "ITEM: TIMESTEP\n");
+    write("empty", "");
+    for (args, said) in [
+        (&["cut.log", "d.dump"][..], "it has no end"),
+        (&["log.lammps", "cut.dump"], "can be read up to some snapshot only"),
+        (&["log.lammps", "other.dump"], "the dump seems to be of another run"),
+        (&["bare.log"], "no step table that could be read"),
+        (&["empty"], "no step table that could be read"),
+        (&["log.lammps"], "No dump was given"),
+        (&["d.dump"], "No log was given"),
+    ] {
+        let all: Vec<&str> = ["report"].iter().chain(args).chain(&["-o", "run.html"]).copied().collect();
+        let o = perigrain(home, &all);
+        assert_eq!(o.status.code(), Some(0), "{args:?}: {}", err(&o));
+        assert!(read("run.html").contains(said), "{args:?}: {said}");
+    }
+    for (args, code, said) in [
+        (&["report", "no.log"][..], 1, "cannot read `no.log`"),
+        (&["report", "head.dump"], 1, "the file ends where the step should be"),
+        (&["report", "words.dump"], 1, "zero"),
+        (&["report", "log.lammps", "-o", "./log.lammps"], 2, "would be written over `log.lammps`"),
+        (&["report", "log.lammps", "-o", "no/run.html"], 1, "cannot write the report"),
+        (&["report"], 2, "no log and no dump"),
+    ] {
+        let o = perigrain(home, args);
+        assert_eq!(o.status.code(), Some(code), "{args:?}: {}", err(&o));
+        assert!(err(&o).contains(said), "{args:?}: {}", err(&o));
+    }
+    assert_eq!(read("log.lammps"), log);
 }

@@ -2,7 +2,7 @@
 
 use super::args::{Deck, Options, Target, Usage};
 use super::progress::{self, Progress};
-use super::reporting::{Sheet, Told};
+use super::reporting::{Recorder, Sheet, Told};
 use super::{FAILED, INTERRUPTED, OK, partitions, signals};
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail, render};
@@ -12,6 +12,7 @@ use perigrain_out::log::{Echo, Log};
 use perigrain_out::thermo::wall_time;
 use std::io::{IsTerminal, LineWriter, Read, Write, stderr, stdin, stdout};
 use std::path::Path;
+use std::sync::PoisonError;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -43,7 +44,12 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
         log.keep_rows();
     }
     let mut session = begin(o, mode, log)?;
-    session.set_watch(Box::new(Bar(progress.clone())));
+    let recorder = Recorder::new(progress.clone());
+    let film = recorder.film();
+    match sheet {
+        Some(_) => session.set_watch(Box::new(recorder)),
+        None => session.set_watch(Box::new(Bar(progress.clone()))),
+    }
     catch_interrupt(&session);
     if runs(mode) {
         let with = if o.compat { ", compat lammps" } else { "" };
@@ -55,7 +61,8 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
     sources.clone_from(&session.sources);
     let mut written = Ok(());
     if let Some(sheet) = &mut sheet {
-        written = sheet.write(&Told { options: o, text, session: &session, outcome: &outcome, log });
+        let film = std::mem::take(&mut *film.lock().unwrap_or_else(PoisonError::into_inner));
+        written = sheet.write(Told { options: o, text, session: &session, outcome: &outcome, film, log });
         if written.is_ok() {
             log.to_screen(&sheet.said());
         }

@@ -76,6 +76,7 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Bench(request) => return benching::perform(&request),
         Task::Suite(wanted) => return benching::suite::perform(&wanted),
         Task::Worker => return Ok(if crate::sweep::worker::main() { OK } else { FAILED }),
+        Task::Report(wanted) => return reporting::reading::report(&wanted),
         Task::Verify(wanted) => return verifying::verify(&wanted),
         Task::Check { decks, json } => return Ok(checking::check(&decks, json)),
         Task::Plan { options, dot: true, .. } => return Ok(deck::draw(&options)),

@@ -2,7 +2,7 @@
 
 use super::args::{self, Deck, Options, SWITCHES, Usage};
 use super::sweeping::args::Request;
-use super::{benching, checking, examples, starters, verifying};
+use super::{benching, checking, examples, reporting, starters, verifying};
 use clap::{CommandFactory, Parser, ValueHint};
 use clap_complete::Shell;
 use perigrain_base::diag::nearest;
@@ -50,6 +50,8 @@ pub enum Task {
         /// What it computes.
         kind: starters::Kind,
     },
+    /// Write a page about a run that is over.
+    Report(reporting::reading::Wanted),
     /// Print what a shell needs to complete command lines.
     Completions(Shell),
     /// Write the pages for `man` into a folder, or print the program's.
@@ -122,6 +124,8 @@ enum Sub {
     },
     /// Run published cases and say whether this build on this machine gives their numbers
     Verify(verifying::Wanted),
+    /// Write a web page about a run that is over, from its log and dumps; `-report FILE` does so while a run is made
+    Report(reporting::reading::Wanted),
     /// List the examples that the program carries, show one, or copy it here
     Examples(examples::Wanted),
     /// Write a small deck to begin with
@@ -291,6 +295,7 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
         Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
         Sub::Sweep { rest } => Task::Sweep(Box::new(Request::parse(rest)?)),
         Sub::Bench { rest } => Task::Bench(Box::new(benching::args::Request::parse(rest)?)),
+        Sub::Report(wanted) => Task::Report(wanted),
         Sub::Verify(wanted) => Task::Verify(wanted),
         Sub::Examples(wanted) => Task::Examples(wanted),
         Sub::New { file, kind } => Task::New { file, kind },

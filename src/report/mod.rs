@@ -2,6 +2,8 @@
 
 mod base64;
 mod curves;
+pub mod film;
+pub mod log;
 mod page;
 mod pictures;
 
@@ -36,6 +38,8 @@ pub enum Weight {
 /// A file of text that the page shows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text {
+    /// What it is.
+    pub what: &'static str,
     /// Its name.
     pub name: String,
     /// What stands in it.
@@ -69,6 +73,8 @@ pub struct Report {
     pub plan: Option<String>,
     /// Pictures that the run drew.
     pub gallery: Gallery,
+    /// Snapshots of the particles.
+    pub film: Vec<film::Frame>,
     /// What the page itself has to say: what was left out, what could not be read.
     pub remarks: Vec<String>,
 }
@@ -89,6 +95,7 @@ impl Report {
             parts: vec![],
             plan: None,
             gallery: Gallery::default(),
+            film: vec![],
             remarks: vec![],
         }
     }

@@ -1,6 +1,7 @@
 //! The page itself: every text from a deck escaped, nothing fetched from anywhere.
 
 use super::curves::{Column, Curves};
+use super::film::{Packed, packed};
 use super::{Ended, Report, Weight, short};
 use crate::json::quoted;
 use crate::plot::{escaped, page};
@@ -12,6 +13,9 @@ const STYLE: &str = concat!(include_str!("web/uplot/uPlot.min.css"), include_str
 /// Charts: uPlot 1.6.32, MIT; its licence lies beside it.
 const UPLOT: &str = include_str!("web/uplot/uPlot.iife.min.js");
 const CURVES: &str = include_str!("web/curves.js");
+const VIEW: &str = include_str!("web/view.js");
+/// What the view of particles is made of.
+const STAGE: &str = include_str!("web/stage.html");
 
 /// No script but those of the page itself, no style, nothing from elsewhere.
 const HEAD: &str = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; \
@@ -23,12 +27,14 @@ const WARNINGS: usize = 200;
 /// The page.
 pub fn html(report: &Report) -> String {
     let curves = Curves::of(&report.tables);
+    let film = packed(&report.film);
     let sections: Vec<(&str, &str, String)> = [
+        ("scene", "Particles", scene(&film)),
         ("curves", "Step table", curves_section(report, &curves)),
         ("pictures", "Pictures", pictures(report)),
         ("time", "Where the time went", time(report)),
         ("said", "Warnings and notes", said(report)),
-        ("deck", "Deck", deck(report)),
+        ("deck", report.deck.as_ref().map_or("", |deck| deck.what), deck(report)),
     ]
     .into_iter()
     .filter(|(.., text)| !text.is_empty())
@@ -42,23 +48,28 @@ pub fn html(report: &Report) -> String {
         );
     }
     body += "</main>\n";
-    let remarks = report.remarks.iter().cloned().chain(curves.thinned());
+    let remarks = report.remarks.iter().cloned().chain(curves.thinned()).chain(film.thinned());
     let remarks: Vec<String> = remarks.map(|r| format!("<li>{}</li>\n", escaped(&r))).collect();
     if !remarks.is_empty() {
         let _ =
             write!(body, "<footer>\n<h2>About this page</h2>\n<ul>\n{}</ul>\n</footer>\n", remarks.concat());
     }
-    let _ = write!(body, "<script type=\"application/json\" id=\"data\">{}</script>\n", data(&curves));
-    for script in [UPLOT, CURVES] {
+    let _ = write!(body, "<script type=\"application/json\" id=\"data\">{}</script>\n", data(&curves, &film));
+    for (k, frame) in film.frames.iter().enumerate() {
+        let _ = writeln!(body, "<script type=\"application/octet-stream\" id=\"frame-{k}\">{frame}</script>");
+    }
+    for script in [UPLOT, CURVES, VIEW] {
         let _ = write!(body, "<script>{script}</script>\n");
     }
     page(&report.title, STYLE, HEAD, &body)
 }
 
 /// What scripts read; a `<` that could end it is none.
-fn data(curves: &Curves) -> String {
+fn data(curves: &Curves, film: &Packed) -> String {
     let kinds: Vec<String> = KEYWORDS.iter().filter(|k| k.extensive).map(|k| quoted(k.name)).collect();
-    format!("{{\"curves\":{},\"energies\":[{}]}}", curves.json(), kinds.join(",")).replace('<', "\\u003c")
+    let film = if film.frames.is_empty() { "null" } else { &film.json };
+    format!("{{\"curves\":{},\"energies\":[{}],\"film\":{film}}}", curves.json(), kinds.join(","))
+        .replace('<', "\\u003c")
 }
 
 fn head(report: &Report, sections: &[(&str, &str, String)]) -> String {
@@ -91,6 +102,10 @@ fn head(report: &Report, sections: &[(&str, &str, String)]) -> String {
         sections.iter().map(|(id, title, _)| format!("<a href=\"#{id}\">{title}</a>")).collect();
     let _ = write!(out, "<nav aria-label=\"Parts of this page\">{}</nav>\n</header>\n", links.join("\n"));
     out
+}
+
+fn scene(film: &Packed) -> String {
+    if film.frames.is_empty() { String::new() } else { STAGE.into() }
 }
 
 fn curves_section(report: &Report, curves: &Curves) -> String {

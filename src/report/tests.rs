@@ -13,7 +13,7 @@ fn hostile() -> (String, Report) {
     r.origin = evil.into();
     r.figures = vec![(evil.into(), evil.into())];
     r.facts = r.figures.clone();
-    r.deck = Some(Text { name: evil.into(), text: evil.into() });
+    r.deck = Some(Text { what: "Deck", name: evil.into(), text: evil.into() });
     r.columns = vec![(evil.into(), evil.into())];
     r.said = vec![(Weight::Warning, evil.into())];
     r.plan = Some(evil.into());

@@ -357,6 +357,7 @@ impl Session {
         let (w, watch) = (&mut self.world, self.watch.as_mut());
         pace.setup(plan, w, unchanged)?;
         plan.reset_meters(timed);
+        watch.begins(w);
         w.clock.began = Some(Instant::now());
         if gate::limits().is_none() {
             return pace.run(plan, w, watch);

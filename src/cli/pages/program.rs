@@ -14,6 +14,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain bench DECK -each NAME VALUE … -measure WORD … [switch …]\n\
             perigrain repl [DECK] [switch …]\n\
             perigrain verify [-only PATTERN] [-html FILE] …\n\
+            perigrain report LOG DUMP … -o FILE\n\
             perigrain new FILE [--kind crack|pour|bonded]\n\
             perigrain examples [list|show NAME|copy NAME [FOLDER]]\n\
             perigrain completions bash|zsh|fish|elvish|powershell\n\
@@ -29,6 +30,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain plan --dot in.plate\n\
             perigrain -in in.plate -screen none -threads 2 -compat lammps\n\
             perigrain verify -only pull_off -html pull_off.html\n\
+            perigrain report log.lammps dump.grains -o grains.html\n\
             perigrain new in.mine --kind pour\n\
             perigrain examples copy brittle_glass\n\
             perigrain doc fix nve\n\
@@ -44,7 +46,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     particles, and lines that hang on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
     prints the command graph for graphviz. `sweep` makes many runs of a deck side by side: see [sweep](sweep.md). `bench` weighs wall time against error over time steps, spacings and other knobs: see [bench](bench.md). `doc` prints a page of this manual, `explain` the story behind the code of a \
     message. `verify` runs published cases that the program carries and says whether this build on this machine gives \
-    their numbers: see [verify](verify.md). `new` writes a small deck that runs as it stands and says in its lines what to change; \
+    their numbers: see [verify](verify.md). `report` writes a web page about a run that is over, from its log and dumps: see [Look at a run](../howto/report.md). `new` writes a small deck that runs as it stands and says in its lines what to change; \
     `examples` lists the larger ones that the program carries, shows what they are about, or copies one into a folder of its own; neither \
     writes over anything. `doc` (or `help`) of a word that has no page lists those that speak of it; on a terminal pages are wrapped at words and \
     go through `$PAGER` (`less`). `completions` prints what a shell needs to complete these lines (`source <(perigrain completions bash)`), `man` writes pages for `man`. \

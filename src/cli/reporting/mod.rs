@@ -1,7 +1,13 @@
-//! `-report FILE`: what a run was, as one web page.
+//! `-report FILE`, `report`: what a run was, as one web page.
+
+pub mod reading;
+mod recording;
+
+pub use recording::Recorder;
 
 use super::args::{Deck, Options};
 use super::deck;
+use crate::report::film::{Film, taken};
 use crate::report::{self, Ended, Report, Text, Weight};
 use crate::session::{Ending, Session, threads};
 use crate::verify::report::{machine, origin};
@@ -31,6 +37,8 @@ pub struct Told<'a> {
     pub session: &'a Session,
     /// How that ended.
     pub outcome: &'a Result<Ending>,
+    /// What was seen of the particles.
+    pub film: Film,
     /// The rows of step tables.
     pub log: &'a perigrain_out::log::Log,
 }
@@ -61,7 +69,7 @@ impl Sheet {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn write(&mut self, told: &Told) -> Result<()> {
+    pub fn write(&mut self, told: Told) -> Result<()> {
         let page = report::html(&of_run(told, self.begin.elapsed(), self.since));
         self.put(&page)
     }
@@ -83,7 +91,7 @@ impl Sheet {
 }
 
 /// What there is to say about a run.
-fn of_run(told: &Told, wall: Duration, since: SystemTime) -> Report {
+fn of_run(told: Told, wall: Duration, since: SystemTime) -> Report {
     let (o, s) = (told.options, told.session);
     let name = deck::name(&o.deck);
     let title = match &o.deck {
@@ -99,7 +107,7 @@ fn of_run(told: &Told, wall: Duration, since: SystemTime) -> Report {
     r.origin = format!("{}; {}", origin(&machine()), day(SystemTime::now()));
     r.figures = figures(s, wall);
     r.facts = facts(o, s);
-    r.deck = Some(Text { name, text: told.text.clone() });
+    r.deck = Some(Text { what: "Deck", name, text: told.text.clone() });
     r.tables = told.log.tables(|t| t.clone());
     let mut names: Vec<&String> = r.tables.0.iter().flat_map(|t| &t.columns).collect();
     names.dedup();
@@ -108,6 +116,9 @@ fn of_run(told: &Told, wall: Duration, since: SystemTime) -> Report {
     r.parts = s.spent().parts.clone();
     r.plan = s.plan.as_ref().map(|plan| explain::text(plan, true));
     r.gallery = report::gathered(s.spent().pictures.iter().map(String::as_str), since);
+    let last = taken(&s.world, told.film.grid());
+    r.film = told.film.finish(last);
+    r.film.retain(|frame| !frame.is_empty());
     r
 }
 
@@ -142,7 +153,10 @@ fn facts(o: &Options, s: &Session) -> Vec<(String, String)> {
     if let Some(d) = &*w.domain {
         let sides = d.lengths().map(|l| perigrain_base::math::cformat::general(l, 4));
         out.push(("box at the end".into(), sides.join(" × ")));
-        out.push(("boundary".into(), d.boundary.letters()));
+        // Both faces of a side are mostly alike.
+        let faces = d.boundary.letters();
+        let faces = faces.split(' ').map(|f| if ["pp", "ff", "ss", "mm"].contains(&f) { &f[..1] } else { f });
+        out.push(("boundary".into(), faces.collect::<Vec<_>>().join(" ")));
     }
     out.push(("time simulated".into(), perigrain_base::math::cformat::general(w.clock.time(), 6)));
     if o.compat {
