@@ -1,8 +1,11 @@
 //! Pages about runs, made by the program as a user would call it.
 
 use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{TcpListener, TcpStream};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
 /// Grains that fall, with a picture and a table; a text that is a script in a careless page.
 const DECK: &str = "\
@@ -217,4 +220,98 @@ fn what_is_odd_about_logs_and_dumps_is_said_on_the_page_or_refused() {
         assert!(err(&o).contains(said), "{args:?}: {}", err(&o));
     }
     assert_eq!(read("log.lammps"), log);
+}
+
+/// What a server answers to these lines.
+fn asked(address: &str, lines: &str) -> String {
+    let mut stream = TcpStream::connect(address).unwrap();
+    write!(stream, "{lines}\r\n\r\n").unwrap();
+    let mut bytes = vec![];
+    stream.read_to_end(&mut bytes).unwrap();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+#[test]
+fn a_run_is_looked_at_paused_and_stopped_while_it_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let home = folder.path();
+    fs::write(home.join("in.fall"), DECK.replace("run 100", "run 2000000000").replace("dump ", "#")).unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_perigrain"))
+        .args(["in.fall", "-view", "-screen", "none", "-report", "run.html"])
+        .current_dir(home)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    BufReader::new(child.stderr.take().unwrap()).read_line(&mut line).unwrap();
+    let (address, token) =
+        line.trim().strip_prefix("Look at it at http://").unwrap().split_once("/?").unwrap();
+    let host = format!("HTTP/1.1\r\nHost: {address}");
+    let get = |path: &str| asked(address, &format!("GET /{path}?{token}&since=0 {host}"));
+    let post =
+        |path: &str| asked(address, &format!("POST /{path}?{token} {host}\r\nOrigin: http://{address}"));
+    // A connection that asks for nothing keeps nobody waiting.
+    let _idle = TcpStream::connect(address).unwrap();
+    let page = get("");
+    assert!(
+        page.starts_with("HTTP/1.1 200")
+            && page.contains("connect-src 'self'")
+            && page.contains("id=\"live\"")
+    );
+    for lines in [
+        format!("GET / {host}"),
+        format!("GET /?token=0 {host}"),
+        format!("GET /?{token} HTTP/1.1\r\nHost: evil.example"),
+        format!("POST /stop?{token} {host}\r\nOrigin: http://evil.example"),
+    ] {
+        assert!(asked(address, &lines).starts_with("HTTP/1.1 403"), "{lines}");
+    }
+    let until = |status: &str| {
+        let begin = Instant::now();
+        loop {
+            let state = get("state");
+            if state.contains(status) {
+                return state;
+            }
+            assert!(begin.elapsed() < Duration::from_secs(20), "{state}");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    };
+    assert!(until("\"running\"").contains("\"columns\":[\"step\",\"time\",\"ke\",\"c_v\"]"));
+    post("pause");
+    std::thread::sleep(Duration::from_millis(200));
+    let done = |state: &str| -> i64 {
+        state.split("\"done\":").nth(1).unwrap().split(',').next().unwrap().parse().unwrap()
+    };
+    let before = done(&until("\"paused\""));
+    assert_eq!(done(&get("state")), before, "it waits");
+    assert!(
+        get("frame").contains(&format!("\"step\":{before},")),
+        "what is shown is the step it waits after"
+    );
+    post("step");
+    std::thread::sleep(Duration::from_millis(200));
+    assert_eq!(done(&get("state")), before + 1);
+    post("stop");
+    // The end waits for a reader until that has seen all.
+    while child.try_wait().unwrap().is_none() {
+        if let Ok(mut stream) = TcpStream::connect(address) {
+            let _ = write!(stream, "GET /frame?{token}&since=99999 {host}\r\n\r\n");
+            let _ = stream.read_to_end(&mut vec![]);
+        }
+    }
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(fs::read_to_string(home.join("run.html")).unwrap().contains("interrupted at a whole step"));
+}
+
+#[test]
+fn a_port_that_is_taken_is_named_before_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("in.fall"), DECK).unwrap();
+    let taken = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port().to_string();
+    let o = perigrain(folder.path(), &["in.fall", "-view", &port]);
+    assert_eq!(o.status.code(), Some(1));
+    assert!(err(&o).contains(&format!("`-view {port}`: the port cannot be had")), "{}", err(&o));
+    assert!(err(&o).contains("another program has it"), "{}", err(&o));
 }

@@ -3,7 +3,7 @@
 use super::args::{Deck, Options, Target, Usage};
 use super::progress::{self, Progress};
 use super::reporting::{Recorder, Sheet, Told};
-use super::{FAILED, INTERRUPTED, OK, partitions, signals};
+use super::{FAILED, INTERRUPTED, OK, partitions, signals, viewing};
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail, render};
 use perigrain_base::gate;
@@ -44,11 +44,12 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
         log.keep_rows();
     }
     let mut session = begin(o, mode, log)?;
-    let recorder = Recorder::new(progress.clone());
+    let live = viewing::open(o, &text, log)?;
+    let recorder = Recorder::new(progress.clone(), sheet.is_some(), live.clone(), session.stop_flag());
     let film = recorder.film();
-    match sheet {
-        Some(_) => session.set_watch(Box::new(recorder)),
-        None => session.set_watch(Box::new(Bar(progress.clone()))),
+    match sheet.is_some() || live.is_some() {
+        true => session.set_watch(Box::new(recorder)),
+        false => session.set_watch(Box::new(Bar(progress.clone()))),
     }
     catch_interrupt(&session);
     if runs(mode) {
@@ -62,10 +63,20 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
     let mut written = Ok(());
     if let Some(sheet) = &mut sheet {
         let film = std::mem::take(&mut *film.lock().unwrap_or_else(PoisonError::into_inner));
-        written = sheet.write(Told { options: o, text, session: &session, outcome: &outcome, film, log });
+        written = sheet.write(Told {
+            options: o,
+            text: text.clone(),
+            session: &session,
+            outcome: &outcome,
+            film,
+            log,
+        });
         if written.is_ok() {
             log.to_screen(&sheet.said());
         }
+    }
+    if let Some(live) = live {
+        viewing::farewell(&live, &session);
     }
     let ending = outcome?;
     written?;
@@ -130,6 +141,7 @@ pub fn host(words: Vec<String>, screen: Box<dyn Write + Send>) -> std::result::R
     }
     let alone = [
         (o.report.is_some(), "-report"),
+        (o.view.is_some(), "-view"),
         (o.safe.is_some(), "-safe"),
         (!o.partition.is_empty(), "-partition"),
         (o.help, "-help"),

@@ -21,6 +21,7 @@ mod sweeping;
 pub mod syntax;
 pub mod tasks;
 pub mod verifying;
+mod viewing;
 
 use crate::session::Mode;
 use args::Usage;

@@ -189,10 +189,14 @@ pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
         return Ok(Task::Text(version()));
     }
     let task = at_terminal(task)?;
-    let reported = task.options().is_some_and(|o| o.report.is_some());
-    if let Some(what) = task.shows_no_run().filter(|_| reported) {
-        let usage = Usage::new(format!("`-report` shows a run, and {what}"));
-        return Err(usage.help("write `perigrain -in DECK -report FILE`"));
+    let said = |o: &Options| match (&o.report, o.view) {
+        (Some(_), _) => Some(("-report", " FILE")),
+        (None, Some(_)) => Some(("-view", "")),
+        (None, None) => None,
+    };
+    if let (Some((switch, file)), Some(what)) = (task.options().and_then(said), task.shows_no_run()) {
+        let usage = Usage::new(format!("`{switch}` shows a run, and {what}"));
+        return Err(usage.help(format!("write `perigrain -in DECK {switch}{file}`")));
     }
     Ok(task)
 }
@@ -217,6 +221,7 @@ impl Task {
         match self {
             Task::Check { .. } => Some("`check` makes none"),
             Task::Plan { measure: false, .. } => Some("`plan` makes none; `plan --measure` does"),
+            Task::Sweep(_) | Task::Bench(_) => Some("a sweep makes many"),
             Task::Repl(_) => Some("what is typed has no end"),
             Task::Run(o) if !o.partition.is_empty() => Some("there is one for each partition"),
             _ => None,
@@ -409,6 +414,10 @@ mod tests {
         assert_eq!(read("help pg0101").unwrap(), Task::Explain("pg0101".into()));
         assert!(read("check in.plate -logg x").unwrap_err().help.unwrap().contains("`-log`"));
         assert!(read("explain").is_err());
+        assert!(read("check a -view").unwrap_err().message.starts_with("`-view` shows a run"));
+        assert_eq!(read("-view 8080 a").unwrap(), Task::Run(Options { view: Some(8080), ..deck("a") }));
+        assert_eq!(read("-view a").unwrap(), Task::Run(Options { view: Some(0), ..deck("a") }));
+        assert!(read("a -view 99999").unwrap_err().message.contains("ports are 1 to 65535"));
         for line in
             ["check a -report r.html", "plan a -report r.html", "repl a -report r", "a -p 2 -report r"]
         {

@@ -1,7 +1,7 @@
 //! The step tables as the page's curves have them: one list of rows, thinned evenly where there are too many.
 
 use crate::json::{number, quoted};
-use perigrain_out::rows::Tables;
+use perigrain_out::rows::{Row, Tables};
 
 /// So many numbers a page has at most; more rows than that allows are thinned.
 const CELLS: usize = 400_000;
@@ -92,6 +92,19 @@ impl Curves {
     }
 }
 
+/// One row with its columns, for a page that is open.
+pub fn row_json(columns: &[String], row: &Row) -> String {
+    let names: Vec<String> = columns.iter().map(|c| quoted(c)).collect();
+    let values: Vec<String> = row.values.iter().map(|v| number(*v)).collect();
+    format!(
+        "{{\"step\":{},\"time\":{},\"columns\":[{}],\"values\":[{}]}}",
+        row.step,
+        number(row.time),
+        names.join(","),
+        values.join(",")
+    )
+}
+
 impl Column {
     fn new(name: &str) -> Self {
         Self { name: name.into(), ends: [f64::NAN; 4], values: vec![] }
@@ -116,7 +129,6 @@ impl Column {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use perigrain_out::rows::Row;
 
     #[test]
     fn tables_of_other_columns_follow_each_other_and_long_ones_are_thinned() {

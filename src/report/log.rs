@@ -65,8 +65,15 @@ fn message(lines: &[&str]) -> String {
     if !first.contains("[PG") {
         return first.to_string();
     }
-    let belongs = |line: &&&str| !line.trim().is_empty();
-    lines.iter().take(LINES).take_while(belongs).copied().collect::<Vec<_>>().join("\n")
+    // The lines of the deck have numbers, all others are indented.
+    let numbered =
+        |line: &str| line.trim_start().split_once(" |").is_some_and(|(n, _)| n.parse::<u64>().is_ok());
+    let belongs = |line: &&&str| !line.trim().is_empty() && (line.starts_with(' ') || numbered(line));
+    std::iter::once(&first)
+        .chain(lines[1..].iter().take(LINES).take_while(belongs))
+        .copied()
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 #[cfg(test)]

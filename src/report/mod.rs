@@ -7,6 +7,7 @@ pub mod log;
 mod page;
 mod pictures;
 
+pub use curves::row_json;
 pub use page::html;
 pub use pictures::{Gallery, Picture, gathered};
 
@@ -75,6 +76,8 @@ pub struct Report {
     pub gallery: Gallery,
     /// Snapshots of the particles.
     pub film: Vec<film::Frame>,
+    /// It is shown while the run goes on.
+    pub live: bool,
     /// What the page itself has to say: what was left out, what could not be read.
     pub remarks: Vec<String>,
 }
@@ -96,6 +99,7 @@ impl Report {
             plan: None,
             gallery: Gallery::default(),
             film: vec![],
+            live: false,
             remarks: vec![],
         }
     }

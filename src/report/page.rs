@@ -7,6 +7,7 @@ use crate::json::quoted;
 use crate::plot::{escaped, page};
 use crate::session::Part;
 use perigrain_out::thermo::KEYWORDS;
+use std::borrow::Cow;
 use std::fmt::Write;
 
 const STYLE: &str = concat!(include_str!("web/uplot/uPlot.min.css"), include_str!("web/page.css"));
@@ -16,20 +17,31 @@ const CURVES: &str = include_str!("web/curves.js");
 const VIEW: &str = include_str!("web/view.js");
 /// What the view of particles is made of.
 const STAGE: &str = include_str!("web/stage.html");
+/// What a page has besides while its run goes on.
+const LIVE: [&str; 2] = [include_str!("web/live.html"), include_str!("web/live.js")];
+/// Over what curves are drawn.
+const CHARTS: &str = "<div class=\"bar\"><label>over <select id=\"axis\"></select></label>\
+     <span class=\"small\">Drag across a chart to look closer, click twice to go back.</span></div>\n<div id=\"charts\"></div>\n";
 
 /// No script but those of the page itself, no style, nothing from elsewhere.
-const HEAD: &str = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; \
-                    style-src 'unsafe-inline'; img-src data: blob:\">\n";
+const POLICY: &str = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; \
+                    style-src 'unsafe-inline'; img-src data: blob:";
+/// The page of a run that goes on asks the program that it comes from.
+const ASKS: &str = "; connect-src 'self'";
 
-/// Tables show so many columns and parts at first.
+/// So many messages a page shows.
 const WARNINGS: usize = 200;
+/// A longer text is folded.
+const OPEN: usize = 12_000;
+/// And of a very long one so much of either end is shown.
+const HALF: usize = 200_000;
 
 /// The page.
 pub fn html(report: &Report) -> String {
     let curves = Curves::of(&report.tables);
     let film = packed(&report.film);
     let sections: Vec<(&str, &str, String)> = [
-        ("scene", "Particles", scene(&film)),
+        ("scene", "Particles", scene(&film, report.live)),
         ("curves", "Step table", curves_section(report, &curves)),
         ("pictures", "Pictures", pictures(report)),
         ("time", "Where the time went", time(report)),
@@ -54,22 +66,31 @@ pub fn html(report: &Report) -> String {
         let _ =
             write!(body, "<footer>\n<h2>About this page</h2>\n<ul>\n{}</ul>\n</footer>\n", remarks.concat());
     }
-    let _ = write!(body, "<script type=\"application/json\" id=\"data\">{}</script>\n", data(&curves, &film));
+    let _ = write!(
+        body,
+        "<script type=\"application/json\" id=\"data\">{}</script>\n",
+        data(&curves, &film, report.live)
+    );
     for (k, frame) in film.frames.iter().enumerate() {
         let _ = writeln!(body, "<script type=\"application/octet-stream\" id=\"frame-{k}\">{frame}</script>");
     }
-    for script in [UPLOT, CURVES, VIEW] {
+    for script in [UPLOT, CURVES, VIEW].into_iter().chain(report.live.then_some(LIVE[1])) {
         let _ = write!(body, "<script>{script}</script>\n");
     }
-    page(&report.title, STYLE, HEAD, &body)
+    let head = format!("{POLICY}{}\">\n", if report.live { ASKS } else { "" });
+    page(&report.title, STYLE, &head, &body)
 }
 
 /// What scripts read; a `<` that could end it is none.
-fn data(curves: &Curves, film: &Packed) -> String {
+fn data(curves: &Curves, film: &Packed, live: bool) -> String {
     let kinds: Vec<String> = KEYWORDS.iter().filter(|k| k.extensive).map(|k| quoted(k.name)).collect();
     let film = if film.frames.is_empty() { "null" } else { &film.json };
-    format!("{{\"curves\":{},\"energies\":[{}],\"film\":{film}}}", curves.json(), kinds.join(","))
-        .replace('<', "\\u003c")
+    format!(
+        "{{\"curves\":{},\"energies\":[{}],\"film\":{film},\"live\":{live}}}",
+        curves.json(),
+        kinds.join(",")
+    )
+    .replace('<', "\\u003c")
 }
 
 fn head(report: &Report, sections: &[(&str, &str, String)]) -> String {
@@ -104,22 +125,24 @@ fn head(report: &Report, sections: &[(&str, &str, String)]) -> String {
     out
 }
 
-fn scene(film: &Packed) -> String {
-    if film.frames.is_empty() { String::new() } else { STAGE.into() }
+fn scene(film: &Packed, live: bool) -> String {
+    match film.frames.is_empty() && !live {
+        true => String::new(),
+        false => [if live { LIVE[0] } else { "" }, STAGE].concat(),
+    }
 }
 
 fn curves_section(report: &Report, curves: &Curves) -> String {
+    if report.live {
+        return CHARTS.into();
+    }
     if curves.columns.is_empty() {
         return String::from("<p>There is no step table: nothing was run, or the log has none.</p>\n");
     }
-    let mut out = String::from(
-        "<div class=\"bar\"><label>over <select id=\"axis\"></select></label>\
-         <span class=\"small\">Drag across a chart to look closer, click twice to go back.</span></div>\n\
-         <div id=\"charts\"></div>\n\
-         <h3>Figures</h3>\n<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Figures of the step table\">\n\
+    let mut out = String::from(CHARTS)
+        + "<h3>Figures</h3>\n<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Figures of the step table\">\n\
          <table>\n<thead><tr><th scope=\"col\">column</th><th scope=\"col\">first</th><th scope=\"col\">last</th>\
-         <th scope=\"col\">least</th><th scope=\"col\">greatest</th><th scope=\"col\">what it is</th></tr></thead>\n<tbody>\n",
-    );
+         <th scope=\"col\">least</th><th scope=\"col\">greatest</th><th scope=\"col\">what it is</th></tr></thead>\n<tbody>\n";
     curves.columns.iter().for_each(|c| out += &row(report, c));
     out + "</tbody>\n</table>\n</div>\n"
 }
@@ -201,12 +224,22 @@ fn said(report: &Report) -> String {
     out
 }
 
+/// A text whose middle is left out where it is very long.
+fn shortened(text: &str) -> Cow<'_, str> {
+    if text.len() <= 2 * HALF {
+        return text.into();
+    }
+    let (head, tail) = (text.floor_char_boundary(HALF), text.ceil_char_boundary(text.len() - HALF));
+    format!("{}\n\n… {} bytes are left out here …\n\n{}", &text[..head], tail - head, &text[tail..]).into()
+}
+
 fn deck(report: &Report) -> String {
     report.deck.as_ref().map_or(String::new(), |deck| {
         format!(
-            "<details open><summary>{}</summary><pre tabindex=\"0\">{}</pre></details>\n",
+            "<details{}><summary>{}</summary><pre tabindex=\"0\">{}</pre></details>\n",
+            if deck.text.len() < OPEN { " open" } else { "" },
             escaped(&deck.name),
-            escaped(&deck.text)
+            escaped(&shortened(&deck.text))
         )
     })
 }

@@ -6,7 +6,7 @@ mod packed;
 mod taken;
 
 pub use grid::Grid;
-pub use packed::{Packed, packed};
+pub use packed::{Packed, packed, packed_one};
 pub use taken::taken;
 
 /// About so many snapshots a page shows.

@@ -58,6 +58,15 @@ fn within(frames: &[Frame], room: usize) -> Packed {
     }
 }
 
+/// One snapshot by itself with its number, for a page that is open: the length of what is known of it, that, and its numbers.
+pub fn packed_one(id: usize, frame: &Frame) -> Vec<u8> {
+    let head = format!("{{\"id\":{id},\"frame\":{}}}", head(&[frame], 0));
+    let mut out = (head.len() as u32).to_le_bytes().to_vec();
+    out.extend(head.as_bytes());
+    out.extend(deflated(&planes(frame, None)));
+    out
+}
+
 /// Each snapshot as text, made on all threads.
 fn texts(frames: &[&Frame]) -> Vec<String> {
     let slots: Vec<OnceLock<String>> = frames.iter().map(|_| OnceLock::new()).collect();

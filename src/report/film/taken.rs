@@ -3,6 +3,7 @@
 use super::{Column, Frame, Grid};
 use perigrain_world::World;
 use perigrain_world::index::Index;
+use std::f64::consts::PI;
 
 /// The scene now, in the order of ids. It keeps to the grid of the snapshot before if that serves.
 pub fn taken(w: &World, before: Option<Grid>) -> Frame {
@@ -32,8 +33,8 @@ fn columns(w: &World, list: impl Fn(&dyn Fn(usize) -> f64) -> Vec<f64>) -> Vec<C
     if p.radius.len() == p.len() {
         out.push(Column::of("radius", &list(&|i| p.radius[i])));
     } else if volumes.len() == p.len() {
-        // Half a lattice spacing.
-        out.push(Column::of("radius", &list(&|i| 0.5 * volumes[i].abs().cbrt())));
+        // Of the sphere that has this volume.
+        out.push(Column::of("radius", &list(&|i| (0.75 / PI * volumes[i].abs()).cbrt())));
     }
     out.push(Column::of("speed", &list(&|i| p.v[i].iter().map(|v| v * v).sum::<f64>().sqrt())));
     if let Some(families) = w.families.as_ref().filter(|_| volumes.len() == p.len()) {

@@ -397,7 +397,7 @@
       zoom(gap(was) / Math.max(1, gap(e)));
       pan(dx / 2, dy / 2);
     } else if (e.shiftKey || e.buttons & 6) pan(dx, dy);
-    else rotate(dx * 0.008, dy * 0.008);
+    else rotate(dx * 0.008, -dy * 0.008);
     fingers.set(e.pointerId, e);
   });
   const lift = e => {
@@ -445,7 +445,7 @@
     frame();
   };
   const KEYS = {
-    ArrowLeft: () => rotate(-0.1, 0), ArrowRight: () => rotate(0.1, 0), ArrowUp: () => rotate(0, -0.1), ArrowDown: () => rotate(0, 0.1),
+    ArrowLeft: () => rotate(-0.1, 0), ArrowRight: () => rotate(0.1, 0), ArrowUp: () => rotate(0, 0.1), ArrowDown: () => rotate(0, -0.1),
     "+": () => zoom(0.9), "=": () => zoom(0.9), "-": () => zoom(1 / 0.9), " ": toggle, ",": () => step(-1), ".": () => step(1), Home: home,
     x: () => look(-Math.PI / 2, Math.PI / 2), y: () => look(0, Math.PI / 2), z: () => look(0, 0),
   };
