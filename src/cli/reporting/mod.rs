@@ -90,15 +90,21 @@ impl Sheet {
     }
 }
 
+/// What a page about a deck's run is called.
+pub(super) fn title(deck: &Deck) -> String {
+    match deck {
+        Deck::File(path) => {
+            path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned())
+        }
+        Deck::Stdin => "a deck from standard input".into(),
+    }
+}
+
 /// What there is to say about a run.
 fn of_run(told: Told, wall: Duration, since: SystemTime) -> Report {
     let (o, s) = (told.options, told.session);
     let name = deck::name(&o.deck);
-    let title = match &o.deck {
-        Deck::File(path) => path.file_name().map_or(name.clone(), |n| n.to_string_lossy().into_owned()),
-        Deck::Stdin => "a deck from standard input".into(),
-    };
-    let mut r = Report::new(title);
+    let mut r = Report::new(title(&o.deck));
     r.ended = match told.outcome {
         Ok(ending) if ending.interrupted => Ended::Interrupted,
         Ok(_) => Ended::Well,

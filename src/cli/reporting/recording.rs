@@ -7,6 +7,7 @@ use crate::session::{Made, Watch};
 use perigrain_world::World;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 /// Shows each step in the live line, and takes snapshots for a page that is written at the end or is open already.
 pub struct Recorder {
@@ -17,6 +18,7 @@ pub struct Recorder {
     live: Option<Arc<Live>>,
     /// Ends the run.
     stop: Arc<AtomicBool>,
+    born: Instant,
     /// The live page wants the step that is being made.
     shown: bool,
     /// Steps of earlier runs, and of this one.
@@ -28,7 +30,18 @@ pub struct Recorder {
 impl Recorder {
     /// One that takes nothing yet.
     pub fn new(bar: Progress, films: bool, live: Option<Arc<Live>>, stop: Arc<AtomicBool>) -> Self {
-        Self { bar, film: Arc::default(), films, live, stop, shown: false, before: 0, made: 0, every: 1 }
+        Self {
+            bar,
+            film: Arc::default(),
+            films,
+            live,
+            stop,
+            born: Instant::now(),
+            shown: false,
+            before: 0,
+            made: 0,
+            every: 1,
+        }
     }
 
     /// Whether the film has a place for the step that comes now.
@@ -83,8 +96,10 @@ impl Watch for Recorder {
             return;
         }
         let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
+        let begin = Instant::now();
         let frame = taken(w, film.grid());
         film.take(self.before + self.made, frame);
+        film.spend(begin.elapsed(), self.born.elapsed());
         self.every = film.every();
     }
 }

@@ -7,6 +7,7 @@ pub use live::Live;
 
 use super::args::Options;
 use super::deck::name;
+use super::reporting::title;
 use crate::report::film::{packed_one, taken};
 use crate::report::{self, Report, Text};
 use crate::session::Session;
@@ -30,7 +31,7 @@ pub fn open(o: &Options, text: &str, log: &Log) -> Result<Option<Arc<Live>>> {
     let Some(port) = o.view else { return Ok(None) };
     let server = Server::on(port, token()).map_err(|e| refused(port, &e))?;
     let live = Arc::new(Live::default());
-    let mut report = Report::new(name(&o.deck));
+    let mut report = Report::new(title(&o.deck));
     report.deck = Some(Text { what: "Deck", name: name(&o.deck), text: text.to_string() });
     report.live = true;
     let page = report::html(&report);

@@ -9,12 +9,18 @@ pub use grid::Grid;
 pub use packed::{Packed, packed, packed_one};
 pub use taken::taken;
 
+use std::time::Duration;
+
 /// About so many snapshots a page shows.
 pub const WANTED: usize = 60;
 /// And so many at most, before every other one is left out.
 const MOST: usize = 64;
 /// Bytes that snapshots may take in memory together.
 const MEMORY: usize = 192 << 20;
+
+/// So much time snapshots may take whatever the run takes, and this part of it besides.
+const FREE: Duration = Duration::from_millis(100);
+const SHARE: f64 = 0.015;
 
 /// What is known of particles at one moment, in few bits.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,13 +137,15 @@ pub struct Film {
     frames: Vec<(u64, Frame)>,
     every: u64,
     bytes: usize,
+    /// Time that it has taken.
+    spent: Duration,
     /// Moments at which one was taken.
     pub seen: usize,
 }
 
 impl Default for Film {
     fn default() -> Self {
-        Self { frames: vec![], every: 1, bytes: 0, seen: 0 }
+        Self { frames: vec![], every: 1, bytes: 0, spent: Duration::ZERO, seen: 0 }
     }
 }
 
@@ -165,11 +173,24 @@ impl Film {
         self.bytes += frame.bytes();
         self.frames.push((at, frame));
         while self.frames.len() > MOST || (self.bytes > MEMORY && self.frames.len() > 2) {
-            self.every *= 2;
-            let every = self.every;
-            self.frames.retain(|(at, _)| at % every == 0);
-            self.bytes = self.frames.iter().map(|(_, frame)| frame.bytes()).sum();
+            self.thin();
         }
+    }
+
+    /// Snapshots have taken so much time more, in a run that goes on for so long already: the interval doubles where that is too much.
+    pub fn spend(&mut self, more: Duration, elapsed: Duration) {
+        self.spent += more;
+        if self.spent > FREE + elapsed.mul_f64(SHARE) && self.frames.len() > 1 {
+            self.thin();
+        }
+    }
+
+    /// Every other one goes, and the interval doubles.
+    fn thin(&mut self) {
+        self.every *= 2;
+        let every = self.every;
+        self.frames.retain(|(at, _)| at % every == 0);
+        self.bytes = self.frames.iter().map(|(_, frame)| frame.bytes()).sum();
     }
 
     /// All snapshots, with how it ended as the last one.

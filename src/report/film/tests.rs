@@ -44,6 +44,23 @@ fn snapshots_are_even_and_few_however_long_it_goes_on() {
 }
 
 #[test]
+fn the_interval_doubles_where_snapshots_take_too_long() {
+    let mut film = Film::default();
+    let ms = Duration::from_millis;
+    for at in 0..4 {
+        film.take(at, frame(at as i64, 1));
+        film.spend(ms(25), ms(0));
+    }
+    assert_eq!(film.every(), 1, "so much is free");
+    film.take(4, frame(4, 1));
+    film.spend(ms(25), ms(1600));
+    assert_eq!(film.every(), 2);
+    film.spend(ms(0), ms(2000));
+    assert_eq!(film.every(), 2, "they are a small part by now");
+    assert_eq!(film.into_frames().iter().map(|f| f.step).collect::<Vec<_>>(), [0, 2, 4]);
+}
+
+#[test]
 fn memory_is_bounded() {
     // Two such frames and a third are too much.
     let steps = filmed(&[100], MEMORY / 6 / 2 - 1);
