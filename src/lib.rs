@@ -29,6 +29,7 @@ mod json;
 pub mod lsp;
 pub mod manual;
 pub mod plot;
+pub mod report;
 pub mod session;
 pub mod sweep;
 pub mod verify;

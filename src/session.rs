@@ -26,6 +26,7 @@ mod restarting;
 mod running;
 mod shell;
 mod solids;
+mod spent;
 mod stability;
 mod staggering;
 mod sweeping;
@@ -50,6 +51,7 @@ use perigrain_out::log::Log;
 use perigrain_plan::StepPlan;
 pub use perigrain_plan::run::{Made, Watch};
 use perigrain_world::{Compat, Unseen, World};
+pub use spent::{Part, Spent};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -154,6 +156,7 @@ pub struct Session {
     blind: bool,
     timer: timer::Timer,
     worked: Worked,
+    spent: Spent,
     /// What step tables are to show beside the deck's own columns.
     columns: Vec<String>,
     /// What the deck's `sweep` line says.
@@ -217,6 +220,7 @@ impl Session {
             blind: false,
             timer: Default::default(),
             worked: Worked::default(),
+            spent: Spent::default(),
             columns: vec![],
             swept: None,
             born: std::time::Instant::now(),

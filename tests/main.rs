@@ -37,6 +37,7 @@ mod plans;
 mod prompt;
 #[path = "common/random.rs"]
 mod random;
+mod report;
 #[path = "restart/main.rs"]
 mod restart;
 mod rooms;

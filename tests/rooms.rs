@@ -49,6 +49,7 @@ const UPWARDS: &[(&str, &[&str])] = &[
     ("lsp", &["sweep", "bench", "cli"]),
     ("sweep", &["bench", "cli"]),
     ("bench", &["cli"]),
+    ("report", &["bench", "cli"]),
     ("plot", &["session", "sweep", "bench", "cli"]),
 ];
 

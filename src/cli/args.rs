@@ -40,6 +40,10 @@ pub struct Options {
     pub echo: Option<String>,
     /// `-var name value …`: index variables, in the order given.
     pub vars: Vec<(String, Vec<String>)>,
+    /// `-report FILE`: the run as a web page.
+    pub report: Option<PathBuf>,
+    /// `-view [PORT]`: the page while the run goes on; 0 for any port.
+    pub view: Option<u16>,
     /// `-threads N`, `-pk omp N`.
     pub threads: Option<usize>,
     /// `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong.
@@ -152,6 +156,14 @@ pub const SWITCHES: &[Switch] = &[
             Ok(())
         },
     ),
+    switch(&["-report"], "FILE", "write what the run was as one web page", |o, v| {
+        o.report = Some(v.one("a file")?.into());
+        Ok(())
+    }),
+    switch(&["-view"], "[PORT]", "show the run in a browser on this machine while it goes on", |o, v| {
+        o.view = Some(v.port()?);
+        Ok(())
+    }),
     switch(&["-compat"], "lammps", "LAMMPS' numbers also where LAMMPS is wrong", |o, v| {
         let word = v.one("lammps")?;
         if word != "lammps" {
@@ -324,6 +336,13 @@ impl Values<'_> {
     fn number(&mut self, what: &str) -> Result<usize, Usage> {
         let word = self.one(what)?;
         word.parse().map_err(|_| Usage::new(format!("`{} {word}`: `{word}` is not {what}", self.switch)))
+    }
+
+    /// A number that follows if one does; else 0.
+    fn port(&mut self) -> Result<u16, Usage> {
+        let all_digits = |w: &String| !w.is_empty() && w.chars().all(|c| c.is_ascii_digit());
+        let Some(word) = self.words.next_if(all_digits) else { return Ok(0) };
+        word.parse().map_err(|_| Usage::new(format!("`{} {word}`: ports are 1 to 65535", self.switch)))
     }
 
     /// A whole number from 1, as `5000` or `5e3`.

@@ -2,7 +2,8 @@
 
 use super::args::{Deck, Options, Target, Usage};
 use super::progress::{self, Progress};
-use super::{FAILED, INTERRUPTED, OK, partitions, signals};
+use super::reporting::{Recorder, Sheet, Told};
+use super::{FAILED, INTERRUPTED, OK, partitions, signals, viewing};
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail, render};
 use perigrain_base::gate;
@@ -11,6 +12,7 @@ use perigrain_out::log::{Echo, Log};
 use perigrain_out::thermo::wall_time;
 use std::io::{IsTerminal, LineWriter, Read, Write, stderr, stdin, stdout};
 use std::path::Path;
+use std::sync::PoisonError;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -36,8 +38,19 @@ pub fn work_off(o: &Options, mode: Mode) -> u8 {
 fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mut Sources) -> Result<u8> {
     let (name, text) = read(&o.deck)?;
     open(log, o, mode, progress)?;
+    // Found out before the run whether it can be written.
+    let mut sheet = Sheet::of(o)?;
+    if sheet.is_some() {
+        log.keep_rows();
+    }
     let mut session = begin(o, mode, log)?;
-    session.set_watch(Box::new(Bar(progress.clone())));
+    let live = viewing::open(o, &text, log)?;
+    let recorder = Recorder::new(progress.clone(), sheet.is_some(), live.clone(), session.stop_flag());
+    let film = recorder.film();
+    match sheet.is_some() || live.is_some() {
+        true => session.set_watch(Box::new(recorder)),
+        false => session.set_watch(Box::new(Bar(progress.clone()))),
+    }
     catch_interrupt(&session);
     if runs(mode) {
         let with = if o.compat { ", compat lammps" } else { "" };
@@ -47,7 +60,26 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
     }
     let outcome = session.run_text(&name, &text);
     sources.clone_from(&session.sources);
+    let mut written = Ok(());
+    if let Some(sheet) = &mut sheet {
+        let film = std::mem::take(&mut *film.lock().unwrap_or_else(PoisonError::into_inner));
+        written = sheet.write(Told {
+            options: o,
+            text: text.clone(),
+            session: &session,
+            outcome: &outcome,
+            film,
+            log,
+        });
+        if written.is_ok() {
+            log.to_screen(&sheet.said());
+        }
+    }
+    if let Some(live) = live {
+        viewing::farewell(&live, &session);
+    }
     let ending = outcome?;
+    written?;
     Ok(if ending.interrupted { INTERRUPTED } else { ending.status.clamp(0, 255) as u8 })
 }
 
@@ -117,6 +149,8 @@ pub fn host(words: Vec<String>, screen: Box<dyn Write + Send>) -> std::result::R
         return Err(usage.help("leave it out, and hand it over with `file(PATH)`"));
     }
     let alone = [
+        (o.report.is_some(), "-report"),
+        (o.view.is_some(), "-view"),
         (o.safe.is_some(), "-safe"),
         (!o.partition.is_empty(), "-partition"),
         (o.help, "-help"),

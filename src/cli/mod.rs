@@ -13,12 +13,14 @@ mod pager;
 pub mod partitions;
 pub mod progress;
 pub mod repl;
+mod reporting;
 mod shells;
 mod signals;
 mod starters;
 mod sweeping;
 pub mod tasks;
 pub mod verifying;
+mod viewing;
 
 use crate::session::Mode;
 use args::Usage;
@@ -74,6 +76,7 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Bench(request) => return benching::perform(&request),
         Task::Suite(wanted) => return benching::suite::perform(&wanted),
         Task::Worker => return Ok(if crate::sweep::worker::main() { OK } else { FAILED }),
+        Task::Report(wanted) => return reporting::reading::report(&wanted),
         Task::Verify(wanted) => return verifying::verify(&wanted),
         Task::Lsp => return Ok(serve()),
         Task::Format(wanted) => return formatting::perform(&wanted),

@@ -2,7 +2,7 @@
 
 use super::args::{self, Deck, Options, SWITCHES, Usage};
 use super::sweeping::args::Request;
-use super::{benching, checking, examples, formatting, starters, verifying};
+use super::{benching, checking, examples, formatting, reporting, starters, verifying};
 use clap::{CommandFactory, Parser, ValueHint};
 use clap_complete::Shell;
 use perigrain_base::diag::nearest;
@@ -54,6 +54,8 @@ pub enum Task {
         /// What it computes.
         kind: starters::Kind,
     },
+    /// Write a page about a run that is over.
+    Report(reporting::reading::Wanted),
     /// Print what a shell needs to complete command lines.
     Completions(Shell),
     /// Write the pages for `man` into a folder, or print the program's.
@@ -134,6 +136,8 @@ enum Sub {
     },
     /// Run published cases and say whether this build on this machine gives their numbers
     Verify(verifying::Wanted),
+    /// Write a web page about a run that is over, from its log and dumps; `-report FILE` does so while a run is made
+    Report(reporting::reading::Wanted),
     /// List the examples that the program carries, show one, or copy it here
     Examples(examples::Wanted),
     /// Write a small deck to begin with
@@ -196,7 +200,22 @@ pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
     if o.version {
         return Ok(Task::Text(version()));
     }
-    if o.deck != Deck::Stdin || !is_terminal() {
+    let task = at_terminal(task)?;
+    let said = |o: &Options| match (&o.report, o.view) {
+        (Some(_), _) => Some(("-report", " FILE")),
+        (None, Some(_)) => Some(("-view", "")),
+        (None, None) => None,
+    };
+    if let (Some((switch, file)), Some(what)) = (task.options().and_then(said), task.shows_no_run()) {
+        let usage = Usage::new(format!("`{switch}` shows a run, and {what}"));
+        return Err(usage.help(format!("write `perigrain -in DECK {switch}{file}`")));
+    }
+    Ok(task)
+}
+
+/// What becomes of a task without a deck where somebody sits at a terminal.
+fn at_terminal(task: Task) -> Result<Task, Usage> {
+    if task.options().is_none_or(|o| o.deck != Deck::Stdin) || !is_terminal() {
         return Ok(task);
     }
     match &task {
@@ -209,6 +228,18 @@ pub fn parse(words: Vec<String>) -> Result<Task, Usage> {
 }
 
 impl Task {
+    /// Why a page about a run cannot be had of this.
+    fn shows_no_run(&self) -> Option<&'static str> {
+        match self {
+            Task::Check { .. } => Some("`check` makes none"),
+            Task::Plan { measure: false, .. } => Some("`plan` makes none; `plan --measure` does"),
+            Task::Sweep(_) | Task::Bench(_) => Some("a sweep makes many"),
+            Task::Repl(_) => Some("what is typed has no end"),
+            Task::Run(o) if !o.partition.is_empty() => Some("there is one for each partition"),
+            _ => None,
+        }
+    }
+
     /// The switches, those of the first deck if there are several.
     fn options(&self) -> Option<&Options> {
         match self {
@@ -283,6 +314,7 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
         Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
         Sub::Sweep { rest } => Task::Sweep(Box::new(Request::parse(rest)?)),
         Sub::Bench { rest } => Task::Bench(Box::new(benching::args::Request::parse(rest)?)),
+        Sub::Report(wanted) => Task::Report(wanted),
         Sub::Verify(wanted) => Task::Verify(wanted),
         Sub::Examples(wanted) => Task::Examples(wanted),
         Sub::New { file, kind } => Task::New { file, kind },
@@ -396,6 +428,19 @@ mod tests {
         assert_eq!(read("help pg0101").unwrap(), Task::Explain("pg0101".into()));
         assert!(read("check in.plate -logg x").unwrap_err().help.unwrap().contains("`-log`"));
         assert!(read("explain").is_err());
+        assert!(read("check a -view").unwrap_err().message.starts_with("`-view` shows a run"));
+        assert_eq!(read("-view 8080 a").unwrap(), Task::Run(Options { view: Some(8080), ..deck("a") }));
+        assert_eq!(read("-view a").unwrap(), Task::Run(Options { view: Some(0), ..deck("a") }));
+        assert!(read("a -view 99999").unwrap_err().message.contains("ports are 1 to 65535"));
+        for line in
+            ["check a -report r.html", "plan a -report r.html", "repl a -report r", "a -p 2 -report r"]
+        {
+            assert!(read(line).unwrap_err().message.starts_with("`-report` shows a run"), "{line}");
+        }
+        assert_eq!(
+            read("a -report r").unwrap(),
+            Task::Run(Options { report: Some("r".into()), ..deck("a") })
+        );
         let usage = read("chekc in.fall -threads 2").unwrap_err();
         assert_eq!(usage.help.as_deref(), Some("did you mean `perigrain check in.fall -threads 2`?"));
         // A file of that name is a deck.

@@ -1,12 +1,14 @@
-//! Charts: curves over two axes, laid out once, drawn as SVG, as PNG and in the terminal.
+//! Charts: curves over two axes, laid out once, drawn as SVG, as PNG and in the terminal; the frame of web pages.
 
 mod axis;
 mod png;
 mod svg;
 pub mod terminal;
+mod web;
 
 use axis::Axis;
 pub use svg::escaped;
+pub use web::page;
 
 /// Width of a chart; its height grows with its legend.
 const WIDTH: f64 = 560.0;

@@ -129,6 +129,7 @@ impl Session {
             plan: _,
             watch: _,
             worked: _,
+            spent: _,
             swept: _,
             interrupted: _,
             quit: _,

@@ -5,6 +5,7 @@ use perigrain_base::diag::{Diagnostic, Result, Span};
 use perigrain_base::gate;
 use perigrain_lang::{Command, Script};
 use perigrain_plan::run::{Made, Watch};
+use perigrain_world::World;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -54,6 +55,18 @@ pub(super) struct Warden<'a> {
 }
 
 impl Watch for Warden<'_> {
+    fn begins(&mut self, w: &World) {
+        self.watch.begins(w);
+    }
+
+    fn looks(&mut self, w: &World) -> bool {
+        self.watch.looks(w)
+    }
+
+    fn scene(&mut self, w: &World) {
+        self.watch.scene(w);
+    }
+
     fn step(&mut self, made: &Made) {
         self.watch.step(made);
         if made.done % STEPS == 0 && self.problem.is_none() {

@@ -357,6 +357,7 @@ impl Session {
         let (w, watch) = (&mut self.world, self.watch.as_mut());
         pace.setup(plan, w, unchanged)?;
         plan.reset_meters(timed);
+        watch.begins(w);
         w.clock.began = Some(Instant::now());
         if gate::limits().is_none() {
             return pace.run(plan, w, watch);
@@ -378,6 +379,7 @@ impl Session {
         post: bool,
     ) -> Result<()> {
         self.worked.add(o);
+        self.spend(plan);
         let log = &self.options.log;
         let times = plan.time_by_class();
         let section = |name, class| Section {
@@ -435,6 +437,7 @@ impl Session {
             self.world.parts.promised.keep(file, Promise::Unseen);
             return Ok(());
         }
+        self.drew(cmd);
         self.world.spread_type_masses();
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         env.once(cmd.span, &self.vars, |s| dump.op(s, 0))

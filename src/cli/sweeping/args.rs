@@ -110,6 +110,10 @@ impl Request {
             let usage = Usage::new("`-log`, `-echo` and `-screen FILE` have no meaning for a sweep");
             return Err(usage.help("each run has a log.lammps in its own folder; `-screen none` keeps quiet"));
         }
+        if o.report.is_some() {
+            let usage = Usage::new("`--report FILE` shows one run, and a sweep makes many");
+            return Err(usage.help("with one dash, `-report WORD…` names what the table is to have"));
+        }
         if o.safe.is_some() {
             return Err(Usage::new("`-safe` and `-limit` keep one deck in one folder, and each run of a sweep has a folder of its own")
                 .help("make the runs one by one: `perigrain in.deck -safe -var NAME VALUE`"));

@@ -16,6 +16,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain bench DECK -each NAME VALUE … -measure WORD … [switch …]\n\
             perigrain repl [DECK] [switch …]\n\
             perigrain verify [-only PATTERN] [-html FILE] …\n\
+            perigrain report LOG DUMP … -o FILE\n\
             perigrain new FILE [--kind crack|pour|bonded]\n\
             perigrain examples [list|show NAME|copy NAME [FOLDER]]\n\
             perigrain completions bash|zsh|fish|elvish|powershell\n\
@@ -32,6 +33,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain plan --dot in.plate\n\
             perigrain -in in.plate -screen none -threads 2 -compat lammps\n\
             perigrain verify -only pull_off -html pull_off.html\n\
+            perigrain report log.lammps dump.grains -o grains.html\n\
             perigrain new in.mine --kind pour\n\
             perigrain examples copy brittle_glass\n\
             perigrain doc fix nve\n\
@@ -51,7 +53,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     particles, and lines that hang on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--dot` it \
     prints the command graph for graphviz. `sweep` makes many runs of a deck side by side: see [sweep](sweep.md). `bench` weighs wall time against error over time steps, spacings and other knobs: see [bench](bench.md). `doc` prints a page of this manual, `explain` the story behind the code of a \
     message. `verify` runs published cases that the program carries and says whether this build on this machine gives \
-    their numbers: see [verify](verify.md). `new` writes a small deck that runs as it stands and says in its lines what to change; \
+    their numbers: see [verify](verify.md). `report` writes a web page about a run that is over, from its log and dumps: see [Look at a run](../howto/report.md). `new` writes a small deck that runs as it stands and says in its lines what to change; \
     `examples` lists the larger ones that the program carries, shows what they are about, or copies one into a folder of its own; neither \
     writes over anything. `doc` (or `help`) of a word that has no page lists those that speak of it; on a terminal pages are wrapped at words and \
     go through `$PAGER` (`less`). `completions` prints what a shell needs to complete these lines (`source <(perigrain completions bash)`), `man` writes pages for `man`. \
@@ -65,6 +67,8 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     - `-var NAME value …`, `-v`: defines an index variable; the deck's own `variable NAME index …` then does nothing. It \
     takes all words up to the next switch, so put the deck first or write `-in`;\n\
     - `-threads N`: uses at most N threads (without it as many as `OMP_NUM_THREADS` says, else one per core); runs find out by themselves whether one is faster; results are the same bits for any N;\n\
+    - `-report FILE`: writes what the run was as one web page, see [Look at a run](../howto/report.md); the file is opened before the run begins;\n\
+    - `-view [PORT]`: shows the run in a browser on this machine while it goes on, at the address that it prints; with pause, step and stop;\n\
     - `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md);\n\
     - `-partition MxN …`, `-p`: works the deck off M times beside each other, each time with N threads, as LAMMPS' partitions (`4x1 2x8` are six); `-plog FILE|none`, \
     `-pl`, and `-pscreen FILE|none`, `-ps`: their logs and screens (`log.lammps.0` …, `screen.0` …);\n\

@@ -1,27 +1,21 @@
 //! The report as one web page that needs nothing else, with its curves.
 
 use super::{Report, expected, number, part, source, what};
-use crate::plot::escaped;
+use crate::plot::{escaped, page};
 use crate::verify::running::{Outcome, Row, Verdict};
 use std::fmt::Write;
 
 const STYLE: &str = "\
-body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#fff;max-width:72rem;margin:2rem auto;padding:0 1rem}\
-h1{margin-bottom:.2rem}h2{margin-top:3rem;border-bottom:1px solid #ccc;text-transform:capitalize}h3{margin:2.2rem 0 .3rem}\
-table{border-collapse:collapse;width:100%;font-size:.9rem}th,td{text-align:left;vertical-align:top;padding:.35rem .6rem;border-bottom:1px solid #e6e6e6}\
-th{font-weight:600;color:#555}section td:first-child{width:32%}section td:nth-child(5){min-width:16rem}td.n{font-variant-numeric:tabular-nums;white-space:nowrap}\
-.passed{color:#17692f}.known{color:#8a5a00}.failed{color:#b00020;font-weight:700}\
-.verdict{font-size:1.2rem;font-weight:600}.source,.small{color:#666;font-size:.9rem}\
-figure{display:inline-block;width:48%;min-width:20rem;margin:1rem .5rem 0 0;vertical-align:top}figcaption{font-size:.9rem;color:#444}\
-svg{width:100%;height:auto;border:1px solid #eee}pre{background:#f6f6f6;padding:.8rem;overflow:auto;font-size:.8rem}\
-details summary{cursor:pointer;color:#1f6fb4;font-size:.9rem;margin-top:.6rem}nav a{text-decoration:none}a{color:#1f6fb4}";
+h2{margin-top:3rem;border-bottom:1px solid var(--line);text-transform:capitalize}h3{margin:2.2rem 0 .3rem}\
+section td:first-child{width:32%}section td:nth-child(5){min-width:16rem}\
+.verdict{font-size:1.2rem;font-weight:600}.source{color:var(--soft);font-size:.9rem}\
+figure{display:inline-block;width:48%;min-width:20rem;margin:1rem .5rem 0 0;vertical-align:top}\
+svg{width:100%;height:auto;border:1px solid var(--line)}details summary{font-size:.9rem}nav a{text-decoration:none}";
 
 /// The page.
 pub fn html(report: &Report) -> String {
     let mut out = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
-         <title>perigrain verify</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>perigrain verify</h1>\n\
-         <p class=\"verdict {}\">{}</p>\n<p class=\"small\">{}; {:.1} s, {} at a time</p>\n",
+        "<h1>perigrain verify</h1>\n<p class=\"verdict {}\">{}</p>\n<p class=\"small\">{}; {:.1} s, {} at a time</p>\n",
         if report.is_well() { "passed" } else { "failed" },
         escaped(&report.verdict()),
         escaped(&report.origin()),
@@ -39,7 +33,7 @@ pub fn html(report: &Report) -> String {
         }
         out += &case(outcome);
     }
-    out + "</body>\n</html>\n"
+    page("perigrain verify", STYLE, "", &out)
 }
 
 /// Name of the style of a verdict.

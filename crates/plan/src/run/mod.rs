@@ -44,8 +44,10 @@ impl Pace {
     pub fn run(&self, plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Result<Outcome> {
         match self {
             Pace::Even => verlet(plan, w, watch),
-            Pace::Staggered(s) => verlet::steps(plan, w, watch, |plan, w, t| staggered::step(plan, w, t, s)),
-            Pace::Levels(l) => verlet::steps(plan, w, watch, |plan, w, t| levels::step(plan, w, t, l)),
+            Pace::Staggered(s) => {
+                verlet::steps(plan, w, watch, |plan, w, t, _| staggered::step(plan, w, t, s))
+            }
+            Pace::Levels(l) => verlet::steps(plan, w, watch, |plan, w, t, _| levels::step(plan, w, t, l)),
         }
     }
 }

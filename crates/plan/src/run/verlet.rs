@@ -38,10 +38,18 @@ pub struct Made {
     pub dt: f64,
 }
 
-/// Told after every step, for a progress bar.
+/// Told after every step, for a progress bar or a film.
 pub trait Watch: Send {
+    /// A run begins: its setup is made.
+    fn begins(&mut self, _w: &World) {}
     /// A step is made.
     fn step(&mut self, made: &Made);
+    /// Whether the scene is to be shown after the step that comes now, which the clock tells.
+    fn looks(&mut self, _w: &World) -> bool {
+        false
+    }
+    /// The scene after a step, told what has been asked for.
+    fn scene(&mut self, _w: &World) {}
 }
 
 /// Computes forces at the start of a run and makes its first outputs.
@@ -97,7 +105,8 @@ pub fn verlet(plan: &mut StepPlan, w: &mut World, watch: &mut dyn Watch) -> Resu
     w.travel.begin(plan.guard.is_none() && plan.reports_travel());
     // A guard may take steps back.
     let sure = plan.guard.is_none();
-    let outcome = steps(plan, w, watch, |plan, w, t| plan.step(w, t, |w| sure && !over(w)));
+    let outcome =
+        steps(plan, w, watch, |plan, w, t, looked| plan.step(w, t, |w| sure && !looked && !over(w)));
     w.travel.begin(false);
     outcome
 }
@@ -137,7 +146,7 @@ enum Ended {
     Shares,
 }
 
-/// Makes the steps of a run, each by `step` and then its outputs.
+/// Makes the steps of a run, each by `step`, which is told whether somebody looks at the scene after it, and then its outputs.
 ///
 /// # Errors
 /// As [`verlet`].
@@ -145,7 +154,7 @@ pub(super) fn steps(
     plan: &mut StepPlan,
     w: &mut World,
     watch: &mut dyn Watch,
-    step: impl Fn(&mut StepPlan, &mut World, &Tick) -> Result<()> + Sync,
+    step: impl Fn(&mut StepPlan, &mut World, &Tick, bool) -> Result<()> + Sync,
 ) -> Result<Outcome> {
     let (begin, cpu) = (Instant::now(), cpu_seconds());
     let first = w.clock.step;
@@ -171,13 +180,14 @@ pub(super) fn steps(
             w.clock.step += 1;
             let mut t = tick(w, false);
             plan.ask(&mut t);
+            let looked = watch.looks(w);
             match &mut guard {
                 None => {
-                    step(plan, w, &t)?;
+                    step(plan, w, &t, looked)?;
                     plan.run(w, &t, &OUTPUTS)?;
                 }
                 Some(guard) => {
-                    let made = step(plan, w, &t);
+                    let made = step(plan, w, &t, looked);
                     if guard.judge(plan, w, &t, made)? == Verdict::Back {
                         continue;
                     }
@@ -188,6 +198,9 @@ pub(super) fn steps(
             let c = &w.clock;
             let (done, total) = (c.step - first, c.last - first);
             watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });
+            if looked {
+                watch.scene(w);
+            }
             if let Some(trial) = &mut trial {
                 if !in_pool && par::shared() {
                     return Ok(Ended::Shares);

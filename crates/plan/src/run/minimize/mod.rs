@@ -241,6 +241,9 @@ impl Search<'_> {
         let c = &self.w.clock;
         let (done, total) = (c.step - self.first, c.last - self.first);
         self.watch.step(&Made { done, total, step: c.step, time: c.time(), dt: c.dt });
+        if self.watch.looks(self.w) {
+            self.watch.scene(self.w);
+        }
         Ok(())
     }
 
