@@ -9,5 +9,6 @@
 pub mod diag;
 pub mod gate;
 pub mod math;
+pub mod memory;
 pub mod par;
 pub mod units;

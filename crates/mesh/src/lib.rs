@@ -20,6 +20,7 @@ mod stl;
 #[cfg(test)]
 mod tests;
 mod tree;
+pub mod vtk;
 mod vtp;
 
 pub use check::Fault;

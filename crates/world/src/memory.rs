@@ -1,7 +1,8 @@
 //! How much memory a scene takes.
 
 use super::World;
-use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::diag::{Diagnostic, Result};
+pub use perigrain_base::memory::lacking;
 
 /// Bytes of all columns and of the state that belongs to forces.
 pub fn bytes(w: &World) -> u64 {
@@ -75,23 +76,6 @@ const BYTES_PER_PAIR: f64 = 256.0;
 /// The error of tables of all pairs of so many types that do not fit.
 pub fn lacking_for_types(types: usize) -> Option<Diagnostic> {
     lacking((types as f64).powi(2) * BYTES_PER_PAIR, &format!("tables of {types} types"))
-}
-
-/// The error of what takes more bytes than are free now.
-pub fn lacking(bytes: f64, what: &str) -> Option<Diagnostic> {
-    let allowed = perigrain_base::gate::memory_left();
-    let free = available().into_iter().chain(allowed).reduce(f64::min).filter(|free| bytes > *free)?;
-    let (needed, free) = (bytes / 1e9, free / 1e9);
-    let text = format!("{what} would need {needed:.1} GB of memory; {free:.1} GB are free");
-    Some(Diagnostic::error(Code::TOO_LARGE, None, text))
-}
-
-/// Bytes of memory that are free, where the system tells.
-fn available() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find(|l| l.starts_with("MemAvailable:"))?;
-    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kilobytes * 1024.0)
 }
 
 /// Entries of full neighbour lists (peridynamic families) if there are any. Nobody counts the lists of grains.

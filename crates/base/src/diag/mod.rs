@@ -1,5 +1,6 @@
 //! What went wrong, where, and what to write instead: one diagnostic type for the whole program.
 
+pub mod brought;
 mod code;
 mod nearest;
 pub mod render;

@@ -1,7 +1,8 @@
 //! A file with its bytes, and messages about places in it.
 
 use crate::data::text::find_bytes;
-use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Source, Span};
+pub use perigrain_base::diag::brought::{broken, not_read, place};
+use perigrain_base::diag::{Diagnostic, Diagnostics, FileId, Result, Source, Span};
 use perigrain_lang::Word;
 use perigrain_world::World;
 use std::sync::Arc;
@@ -58,19 +59,4 @@ impl File {
             _ => d.at(self.at),
         }
     }
-}
-
-/// The error of a file that is not what it should be at a byte.
-pub fn broken(at: usize, text: impl Into<String>) -> Diagnostics {
-    Diagnostic::error(Code::BAD_FILE, Span::new(FileId::BROUGHT, at, at + 1), text).into()
-}
-
-/// The refusal of something in a file that perigrain does not know, by name.
-pub fn not_read(at: Span, what: impl std::fmt::Display) -> Diagnostic {
-    Diagnostic::error(Code::NOT_SUPPORTED, at, format!("{what} is not in perigrain yet"))
-}
-
-/// The place of some bytes of a file.
-pub fn place(start: usize, end: usize) -> Span {
-    Span::new(FileId::BROUGHT, start, end)
 }

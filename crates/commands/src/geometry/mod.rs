@@ -3,9 +3,6 @@
 pub mod enter;
 pub mod file;
 pub mod mesh;
-pub mod numbers;
 pub mod points;
 pub mod voxels;
-mod vtk_tags;
-pub mod vtk_xml;
 pub mod words;

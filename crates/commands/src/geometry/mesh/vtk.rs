@@ -1,11 +1,11 @@
 //! Legacy VTK files (`.vtk`) with an unstructured grid, as text and as binary.
 
 use super::super::file::{broken, not_read, place};
-use super::super::numbers::Kind;
 use super::cell::Shape;
 use super::vtk_words::Words;
 use super::{Element, Mesh, no_element};
 use perigrain_base::diag::{Code, Result, Span, fail};
+use perigrain_mesh::vtk::numbers::Kind;
 
 /// Reads a file.
 pub fn read(bytes: &[u8]) -> Result<Mesh> {

@@ -1,8 +1,8 @@
 //! The bytes of a legacy VTK file as words, numbers and blocks of numbers, of the text and of the binary kind.
 
 use super::super::file::{broken, place};
-use super::super::numbers::Kind;
 use perigrain_base::diag::{Code, Result, Span, fail};
+use perigrain_mesh::vtk::numbers::Kind;
 
 /// Numbers, and where each stands where the file is a text.
 pub type Block = (Vec<f64>, Vec<(u32, u32)>);

@@ -1,10 +1,10 @@
 //! VTK's XML files with an unstructured grid (`.vtu`).
 
 use super::super::file::place;
-use super::super::vtk_xml::{Array, Document};
 use super::Mesh;
 use super::vtk::{Grid, cells, on_cells};
 use perigrain_base::diag::{Code, Result, Span, fail};
+use perigrain_mesh::vtk::xml::{Array, Document};
 
 /// Reads a file.
 pub fn read(bytes: &[u8]) -> Result<Mesh> {

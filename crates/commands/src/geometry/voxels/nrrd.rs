@@ -1,12 +1,12 @@
 //! NRRD images (`.nrrd`, `.nhdr`), raw or packed by gzip, read as they are needed.
 
 use super::super::file::{File, not_read};
-use super::super::numbers::Kind;
 use super::{Image, Info, locate, passable, unreadable};
 use crate::data::text::{Line, Lines, whole};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::gate;
 use perigrain_lang::Word;
+use perigrain_mesh::vtk::numbers::Kind;
 use perigrain_world::World;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};

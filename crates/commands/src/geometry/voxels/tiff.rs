@@ -1,7 +1,7 @@
 //! Pages of TIFF files as tomographs and ImageJ write them: grey values in strips that are not packed.
 
-use super::super::numbers::Kind;
 use perigrain_base::gate;
+use perigrain_mesh::vtk::numbers::Kind;
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};

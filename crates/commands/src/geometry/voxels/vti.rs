@@ -1,10 +1,10 @@
 //! VTK's XML images (`.vti`).
 
 use super::super::file::{File, not_read};
-use super::super::vtk_xml::{Array, Document, Piece};
 use super::{Image, Info};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Word;
+use perigrain_mesh::vtk::xml::{Array, Document, Piece};
 use perigrain_world::World;
 
 struct Whole {

@@ -1,10 +1,10 @@
 //! VTK's XML files: tags, and arrays as text, base64 or raw bytes, packed by zlib or not.
 
-use super::file::{broken, not_read, place};
 use super::numbers::Kind;
-use super::vtk_tags::{Tag, base64, next};
+use super::tags::{Tag, base64, next};
+use perigrain_base::diag::brought::{broken, not_read, place};
 use perigrain_base::diag::{Code, Result, Span, fail};
-use perigrain_world::memory;
+use perigrain_base::memory;
 use std::io::Read;
 
 /// An array of the file, not read yet.

@@ -1,6 +1,6 @@
 //! Tags of VTK's XML files, and bytes as base64.
 
-use super::file::{broken, place};
+use perigrain_base::diag::brought::{broken, place};
 use perigrain_base::diag::{Result, Span};
 
 /// A tag with its attributes.

@@ -1,0 +1,5 @@
+//! VTK's XML files, whatever data set they hold: surfaces here, meshes and images where particles are made of them.
+
+pub mod numbers;
+mod tags;
+pub mod xml;

@@ -1,0 +1,96 @@
+//! VTP files: VTK's XML of surfaces.
+
+use super::Triangle;
+use super::read::fan;
+use super::vtk::xml::{self, Document};
+use perigrain_base::diag::{Diagnostics, FileId};
+
+/// Rows of faces: the corners of all of them, and where each ends.
+#[derive(Default)]
+struct Cells {
+    connectivity: Vec<f64>,
+    offsets: Vec<f64>,
+}
+
+/// One part of the surface.
+struct Piece {
+    points: Vec<f64>,
+    polys: Cells,
+    strips: Cells,
+}
+
+/// Reads a VTP file.
+pub fn read(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
+    let said = |e: Diagnostics| sentence(&e, bytes);
+    let document = Document::read(bytes, "PolyData").map_err(said)?;
+    let mut triangles = vec![];
+    for piece in &document.pieces {
+        Piece::read(&document, piece).map_err(said)?.add_to(&mut triangles)?;
+    }
+    Ok(triangles)
+}
+
+/// What is wrong, and in which line or behind how many bytes.
+fn sentence(e: &Diagnostics, bytes: &[u8]) -> String {
+    let at = e.0.first().and_then(|d| d.span).filter(|s| s.file == FileId::BROUGHT).map(|s| s.start as usize);
+    match at.map(|at| (at, std::str::from_utf8(&bytes[..at.min(bytes.len())]))) {
+        None => e.to_string(),
+        Some((_, Ok(text))) => format!("{e} (line {})", 1 + text.matches('\n').count()),
+        Some((at, Err(_))) => format!("{e} (byte {at})"),
+    }
+}
+
+impl Piece {
+    fn read(document: &Document, piece: &xml::Piece) -> Result<Self, Diagnostics> {
+        let numbers = |of: &str, name: &str| {
+            let array = document.array(piece, of, name);
+            array.map_or(Ok(vec![]), |array| document.numbers(array))
+        };
+        let cells = |of: &str| -> Result<Cells, Diagnostics> {
+            Ok(Cells { connectivity: numbers(of, "connectivity")?, offsets: numbers(of, "offsets")? })
+        };
+        Ok(Self { points: numbers("Points", "")?, polys: cells("Polys")?, strips: cells("Strips")? })
+    }
+
+    fn add_to(self, triangles: &mut Vec<Triangle>) -> Result<(), String> {
+        let (points, rest) = self.points.as_chunks::<3>();
+        if !rest.is_empty() {
+            return Err("the number of its coordinates is no multiple of three".into());
+        }
+        self.polys.each(points.len(), |face| fan(face, points, triangles))?;
+        self.strips.each(points.len(), |strip| {
+            for (k, three) in strip.windows(3).enumerate() {
+                // Every second triangle of a strip runs the other way round.
+                let turned = if k % 2 == 0 { [three[0], three[1]] } else { [three[1], three[0]] };
+                fan(&[turned[0], turned[1], three[2]], points, triangles)?;
+            }
+            Ok(())
+        })
+    }
+}
+
+impl Cells {
+    /// Calls `with` for the corners of each row.
+    fn each(&self, points: usize, mut with: impl FnMut(&[usize]) -> Result<(), usize>) -> Result<(), String> {
+        let mut corners = vec![];
+        for x in &self.connectivity {
+            let whole = *x >= 0.0 && *x < points as f64;
+            corners.push(if whole { *x as usize } else { return Err(format!("there is no point {x}")) });
+        }
+        let mut from = 0;
+        for end in &self.offsets {
+            let to = *end as usize;
+            let row = corners.get(from..to).ok_or_else(|| format!("no row of faces can end at {end}"))?;
+            with(row).map_err(|k| format!("there is no point {k}"))?;
+            from = to;
+        }
+        if from == corners.len() {
+            Ok(())
+        } else {
+            Err("its rows of faces end before their corners do".into())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
