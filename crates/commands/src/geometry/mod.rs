@@ -5,6 +5,7 @@ pub mod file;
 pub mod mesh;
 pub mod numbers;
 pub mod points;
+pub mod rows;
 pub mod voxels;
 mod vtk_tags;
 pub mod vtk_xml;
