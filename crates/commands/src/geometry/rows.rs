@@ -5,6 +5,7 @@ use super::points::Table;
 use super::words::Making;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_styles::ActCx;
+use perigrain_world::columns::TEMPERATURE;
 use perigrain_world::{AtomStyle, Columns, Numbers};
 use std::f64::consts::PI;
 
@@ -180,6 +181,9 @@ impl Rows<'_> {
                 }
                 Property::Custom(_, true) if value.fract() != 0.0 => {
                     return self.bad(k, c, format!("this property holds whole numbers, not {value}"));
+                }
+                Property::Custom(key, _) if key.plays(*TEMPERATURE) && value < 0.0 => {
+                    return self.bad(k, c, format!("the temperature must not be negative: {value}"));
                 }
                 Property::Custom(..) => {}
             }
