@@ -2,6 +2,7 @@
 //!
 //! The files in `files` are made by `meshes.py` (meshio and Gmsh) and `images.py` (NumPy, pynrrd, Pillow).
 
+mod appended;
 mod stiffness;
 
 use perigrain::diag::{Diagnostics, FileId, render};

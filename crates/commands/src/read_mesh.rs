@@ -45,7 +45,7 @@ impl Style for ReadMesh {
                    The file's numbers are multiplied by `scale`, then turned by THETA degrees about the axis R through the origin, then shifted, \
                    in whichever order the line says it (`move` is another word for `shift`). Only particles inside of the box are made; a warning counts the others. Peridynamic \
                    particles get the volume, spheres the diameter of a ball of the same volume, both the `density`, as `set` would give it; \
-                   without one it is as create_atoms leaves it. Ids go on behind the largest one.\n\n\
+                   without one spheres have density 1, as those of create_atoms, and the others none yet. Ids go on behind the largest one.\n\n\
                    For peridynamics one horizon serves the whole body: about three times the mean spacing V^⅓ of its cells, so that cells \
                    should be alike in size, and `lattice sc` that spacing, which is what the partial volumes at the horizon and \
                    `horizon` of a material go by. Young's modulus inside comes out within 2 % of the \

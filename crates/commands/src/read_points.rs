@@ -1,16 +1,14 @@
 //! `read_points`: particles from a table of points, its columns by name.
 
-use super::geometry::enter::{Newcomers, off_plane};
 use super::geometry::file::File;
 use super::geometry::points::{Table, no_column};
+use super::geometry::rows::{Property, Rows, is_elsewhere, property};
 use super::geometry::words::Making;
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, bad_keyword};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
-use perigrain_world::{AtomStyle, Numbers};
-use std::f64::consts::PI;
 
 /// The command.
 pub struct ReadPoints;
@@ -46,22 +44,6 @@ impl Style for ReadPoints {
     }
 }
 
-/// What a column says of a particle.
-#[derive(Clone, Debug, PartialEq)]
-enum Property {
-    X(usize),
-    Id,
-    Type,
-    Volume,
-    Density,
-    Diameter,
-    Radius,
-    Velocity(usize),
-    Spin(usize),
-    Molecule,
-    Custom(Numbers, bool),
-}
-
 /// Columns to be read with what they say, and the names of others.
 type Found = (Vec<(usize, Property)>, Vec<String>);
 
@@ -74,33 +56,6 @@ struct Reading {
     volume: Option<f64>,
     diameter: Option<f64>,
     checking: bool,
-}
-
-/// The property of a name, if particles have it.
-fn property(name: &str, style: AtomStyle, cx_columns: &perigrain_world::Columns) -> Option<Property> {
-    use Property::{Custom, Density, Diameter, Id, Molecule, Radius, Spin, Type, Velocity, Volume, X};
-    Some(match name {
-        "x" => X(0),
-        "y" => X(1),
-        "z" => X(2),
-        "id" => Id,
-        "type" => Type,
-        "volume" => Volume,
-        "density" if style.own_mass() => Density,
-        "diameter" if style.sphere => Diameter,
-        "radius" if style.sphere => Radius,
-        "vx" => Velocity(0),
-        "vy" => Velocity(1),
-        "vz" => Velocity(2),
-        "wx" if style.sphere => Spin(0),
-        "wy" if style.sphere => Spin(1),
-        "wz" if style.sphere => Spin(2),
-        "mol" if style.molecules => Molecule,
-        custom if custom.starts_with("i_") || custom.starts_with("d_") || custom == "temperature" => {
-            Custom(cx_columns.custom(custom)?, custom.starts_with('i'))
-        }
-        _ => return None,
-    })
 }
 
 impl CommandStyle for ReadPoints {
@@ -136,7 +91,7 @@ impl Reading {
                 if KEYWORDS.contains(&w.text.as_str()) {
                     known && !number
                 } else {
-                    known || self_named(&w.text)
+                    known || is_elsewhere(&w.text)
                 }
             })
         };
@@ -212,17 +167,13 @@ impl Reading {
             cx.say(format!("  columns left out: {}", others.join(", ")));
         }
         let properties: Vec<Property> = wanted.into_iter().map(|(_, p)| p).collect();
-        let source = Rows { table: &table, text, properties: &properties, line: self };
+        let (volume, diameter, checking) = (self.volume, self.diameter, self.checking);
+        let making = &self.making;
+        let source =
+            Rows { table: &table, text, properties: &properties, making, volume, diameter, checking };
         source.twice()?;
         source.enter(cx)
     }
-}
-
-/// Whether a word looks like the name of a property that the scene does not have.
-fn self_named(word: &str) -> bool {
-    word.starts_with("i_")
-        || word.starts_with("d_")
-        || ["radius", "mol", "temperature", "wx", "wy", "wz"].contains(&word)
 }
 
 impl Act for Reading {
@@ -246,180 +197,5 @@ impl Act for Reading {
         // A column may hold it: who reads the file knows.
         settles.extend(["density", "mass"]);
         settles
-    }
-}
-
-/// The rows of a table with what their numbers mean.
-struct Rows<'a> {
-    table: &'a Table,
-    text: &'a str,
-    properties: &'a [Property],
-    line: &'a Reading,
-}
-
-/// What a row says.
-struct Point {
-    x: [f64; 3],
-    v: [f64; 3],
-    spin: [f64; 3],
-    tag: Option<u32>,
-    kind: u16,
-    volume: Option<f64>,
-    diameter: Option<f64>,
-    density: Option<f64>,
-    molecule: u32,
-}
-
-impl Rows<'_> {
-    fn bad<T>(&self, k: usize, c: usize, message: String) -> Result<T> {
-        fail(Code::BAD_VALUE, self.table.place(self.text, k, Some(c)), message)
-    }
-
-    /// Refuses two points at one place.
-    fn twice(&self) -> Result<()> {
-        let at = |k: usize| {
-            let mut x = [0.0; 3];
-            for (value, p) in self.table.row(k).iter().zip(self.properties) {
-                if let Property::X(d) = p {
-                    // Both zeros are the same place.
-                    x[*d] = value + 0.0;
-                }
-            }
-            x.map(f64::to_bits)
-        };
-        let mut order: Vec<usize> = (0..self.table.len()).collect();
-        order.sort_unstable_by_key(|&k| (at(k), k));
-        let pairs = order.windows(2).filter(|w| at(w[0]) == at(w[1]));
-        let Some((second, first)) = pairs.map(|w| (w[1], w[0])).min() else { return Ok(()) };
-        let place = |k| self.table.place(self.text, k, None);
-        let d = Diagnostic::error(Code::DUPLICATE_NAME, place(second), "a second point at the same place");
-        Err(match place(first) {
-            Some(at) => d.label(at, "the first one"),
-            None => d,
-        }
-        .into())
-    }
-
-    fn point(&self, k: usize, types: usize) -> Result<Point> {
-        let line = self.line;
-        let scale = line.making.placement.scale;
-        let mut p = Point {
-            x: [0.0; 3],
-            v: [0.0; 3],
-            spin: [0.0; 3],
-            tag: None,
-            kind: line.making.kind.unwrap_or(1),
-            volume: line.volume,
-            diameter: line.diameter,
-            density: line.making.density,
-            molecule: 0,
-        };
-        for (c, (&value, property)) in self.table.row(k).iter().zip(self.properties).enumerate() {
-            let above = |what: &str| match value > 0.0 {
-                true => Ok(value),
-                false => self.bad(k, c, format!("{what} must be greater than zero, not {value}")),
-            };
-            match property {
-                Property::X(d) => p.x[*d] = value,
-                Property::Velocity(d) => p.v[*d] = value,
-                Property::Spin(d) => p.spin[*d] = value,
-                Property::Id if value >= 1.0 && value < f64::from(u32::MAX) && value.fract() == 0.0 => {
-                    p.tag = Some(value as u32);
-                }
-                Property::Id => {
-                    return self.bad(k, c, format!("an id is a whole number from 1, not {value}"));
-                }
-                Property::Type if value >= 1.0 && value <= types as f64 && value.fract() == 0.0 => {
-                    p.kind = value as u16
-                }
-                Property::Type => {
-                    return self.bad(k, c, format!("there are types 1 to {types}, not {value}"));
-                }
-                Property::Volume => p.volume = Some(above("the volume")? * scale.powi(3)),
-                Property::Density => p.density = Some(above("the density")?),
-                Property::Diameter => p.diameter = Some(above("the diameter")? * scale),
-                Property::Radius => p.diameter = Some(2.0 * above("the radius")? * scale),
-                Property::Molecule if value >= 0.0 && value < f64::from(u32::MAX) && value.fract() == 0.0 => {
-                    p.molecule = value as u32;
-                }
-                Property::Molecule => {
-                    return self.bad(k, c, format!("a molecule is a whole number from 0, not {value}"));
-                }
-                Property::Custom(_, true) if value.fract() != 0.0 => {
-                    return self.bad(k, c, format!("this property holds whole numbers, not {value}"));
-                }
-                Property::Custom(..) => {}
-            }
-        }
-        Ok(p)
-    }
-
-    fn enter(&self, cx: &mut ActCx) -> Result<()> {
-        let types = cx.world.types;
-        let style = cx.world.particles.style;
-        let placement = self.line.making.placement;
-        let mut new = Newcomers::new(cx, &self.line.making, self.table.len())?;
-        let mut kept = vec![];
-        for k in 0..self.table.len() {
-            let p = self.point(k, types)?;
-            let ball = p.diameter.map(|d| PI / 6.0 * d * d * d);
-            let volume = p.volume.or(ball).unwrap_or(1.0);
-            let at = || self.table.place(self.text, k, None);
-            if !new.push(p.x, p.kind, volume).map_err(|z| off_plane("the point", z, at()))? {
-                continue;
-            }
-            kept.push(k);
-            let last = new.particles.len() - 1;
-            let columns = &mut new.particles;
-            columns.v[last] = placement.direction(p.v);
-            if style.sphere {
-                columns.omega[last] = placement.direction(p.spin);
-                new.radii.push(p.diameter.map_or((0.75 / PI * volume).cbrt(), |d| 0.5 * d));
-            }
-            if let Some(molecule) = columns.molecule.get_mut(last) {
-                *molecule = p.molecule;
-            }
-            new.densities.extend(p.density);
-            if let Some(tag) = p.tag {
-                new.particles.tag[last] = tag;
-            }
-        }
-        self.check_ids(cx, &new, &kept)?;
-        let first = new.enter(cx, "points", self.line.checking)?;
-        if !self.line.checking {
-            self.fill(cx, first, &kept);
-        }
-        Ok(())
-    }
-
-    /// Refuses ids that are taken.
-    fn check_ids(&self, cx: &ActCx, new: &Newcomers, kept: &[usize]) -> Result<()> {
-        let Some(c) = self.properties.iter().position(|p| *p == Property::Id) else { return Ok(()) };
-        let tags = &new.particles.tag;
-        let mut all: Vec<(u32, usize)> = tags.iter().copied().zip(kept.iter().copied()).collect();
-        all.sort_unstable();
-        let twice = all.windows(2).find(|w| w[0].0 == w[1].0).map(|w| w[1]);
-        let index = perigrain_world::index::Index::new(&cx.world.particles.tag);
-        let taken = all.iter().find(|(tag, _)| index.find(*tag, &cx.world.particles.tag).is_some()).copied();
-        match twice.or(taken) {
-            None => Ok(()),
-            Some((tag, k)) => {
-                let at = self.table.place(self.text, k, Some(c));
-                fail(Code::DUPLICATE_NAME, at, format!("there is a particle {tag} already"))
-            }
-        }
-    }
-
-    /// Gives the new particles what the file says of their properties.
-    fn fill(&self, cx: &mut ActCx, first: usize, kept: &[usize]) {
-        let n = cx.world.n();
-        for (c, p) in self.properties.iter().enumerate() {
-            let Property::Custom(key, _) = p else { continue };
-            let column = cx.world.columns.scalar(*key, n);
-            column.resize(n, 0.0);
-            for (slot, &k) in column[first..].iter_mut().zip(kept) {
-                *slot = self.table.row(k)[c];
-            }
-        }
     }
 }

@@ -4,5 +4,6 @@ pub mod enter;
 pub mod file;
 pub mod mesh;
 pub mod points;
+pub mod rows;
 pub mod voxels;
 pub mod words;

@@ -8,7 +8,7 @@ use crate::data::text::{Line, Lines, number};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 
 /// Keywords that make or move nodes and elements in other ways.
-const MAKERS: [&str; 14] = [
+const MAKERS: [&str; 13] = [
     "INCLUDE",
     "INSTANCE",
     "SYSTEM",
@@ -22,7 +22,6 @@ const MAKERS: [&str; 14] = [
     "USER ELEMENT",
     "IMPORT",
     "IMPORT ELSET",
-    "TRANSFORM",
 ];
 
 /// Reads a file.
