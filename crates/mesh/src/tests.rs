@@ -104,7 +104,8 @@ fn wrong_orders_are_turned_and_holes_are_holes() {
     assert!((mended.volume() / right.volume() - 1.0).abs() < 1e-13);
     let inward = block([0.0; 3], [1.0; 3]).into_iter().map(|[a, b, c]| [a, c, b]).collect();
     let cube = Solid::new(inward).unwrap();
-    assert_eq!((cube.volume(), cube.turned()), (1.0, 12));
+    // Twelve parts, each rounded.
+    assert!((cube.volume() - 1.0).abs() < 12.0 * f64::EPSILON && cube.turned() == 12);
 }
 
 #[test]

@@ -119,7 +119,7 @@ fn text_polygons_and_strips_are_read() {
     assert!(said(">4<", ">5<").contains("end at 5"));
     assert!(said(">4<", ">3<").contains("end before"));
     assert!(said("0.25", "").contains("multiple of three"));
-    assert!(said("0.25", "x").contains("a number must stand here (line 2)"));
+    assert!(said("0.25", "x").contains("a number must stand here (line 1)"));
     assert!(said("Float32", "Strange").contains("`Strange`"));
     assert!(said("type='PolyData'", "type='PolyData' compressor='vtkLZ4DataCompressor'").contains("LZ4"));
     assert!(
