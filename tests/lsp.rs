@@ -625,6 +625,10 @@ fn random_edits_do_no_harm() {
         let params = json!({"textDocument": {"uri": uri}, "position": start, "range": {"start": start, "end": end}, "newName": "n"});
         let answer = client.answer(method, params.clone());
         assert_ne!(answer["error"]["code"], -32603, "{method} {params}");
+        if edit % 30 == 29 {
+            // Long enough without an edit that this text is checked.
+            client.problems(uri, edit);
+        }
         let failed = client.told.values().flat_map(|told| told["diagnostics"].as_array().unwrap());
         let failed: Vec<&Value> =
             failed.filter(|p| p["message"].as_str().unwrap().contains("please report")).collect();

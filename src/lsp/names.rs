@@ -193,6 +193,15 @@ fn named_by_place(words: &[Word], out: &mut Vec<Mention>) {
         "region" => add(1, Kind::Region, unless_deleted),
         "variable" => add(1, Kind::Variable, unless_deleted),
         "next" => (1..words.len()).for_each(|k| add(k, Kind::Variable, Role::Uses)),
+        "sweep" => {
+            for k in 2..words.len() {
+                match text(k - 1) {
+                    "each" => add(k, Kind::Variable, Role::Defines),
+                    "zip" => add(k, Kind::Variable, Role::Uses),
+                    _ => {}
+                }
+            }
+        }
         "material" => add(1, Kind::Material, Role::Defines),
         "molecule" => add(1, Kind::Molecule, Role::Defines),
         "label" => add(1, Kind::Label, Role::Defines),
@@ -351,6 +360,8 @@ mod tests {
             found("if \"$i > 1\" then \"unfix a\" 'jump SELF x'"),
             ["variable i", "-fix a", "label x"]
         );
+        assert_eq!(found("sweep each v 1 2 zip w"), ["=variable v", "variable w"]);
+        assert_eq!(found("fix p all print 1 \"v_x ${y}\""), ["=fix p", "group all", "variable y"]);
         assert_eq!(found("fix f$i all nve # v_x"), ["variable i", "group all"]);
         assert_eq!(found("jump in.b x\ninclude c"), ["file in.b", "label x", "file c"]);
     }
