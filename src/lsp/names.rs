@@ -41,7 +41,7 @@ pub struct Index {
 }
 
 /// Functions of formulas whose first argument is a group, and which argument may be a region.
-const OF_GROUPS: [(&str, usize); 16] = [
+const OF_GROUPS: [(&str, usize); 15] = [
     ("count", 1),
     ("mass", 1),
     ("charge", 1),
@@ -57,7 +57,6 @@ const OF_GROUPS: [(&str, usize); 16] = [
     ("omega", 2),
     ("gmask", 9),
     ("grmask", 1),
-    ("gyration", 1),
 ];
 
 /// Commands whose quoted words are texts to be shown: `v_x` means nothing there outside of `$(…)`.
@@ -238,8 +237,8 @@ fn references(text: &str, base: usize, (formula, depth): (bool, usize), out: &mu
                     add(Kind::Variable, k + 2..k + 2 + name.len());
                 }
                 k += 3 + name.len();
-            } else if rest.starts_with('(') {
-                let end = k + 2 + closing(&rest[1..]);
+            } else if let Some(formula) = rest.strip_prefix('(') {
+                let end = k + 2 + closing(formula);
                 inner.push(k + 2..end);
                 k = end;
             } else {
