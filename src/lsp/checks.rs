@@ -4,6 +4,7 @@ use super::places::{Text, path_of, uri_of};
 use crate::session::whole::{Checked, check};
 use crate::session::{Options, Overlay, absolute, folder_of};
 use perigrain_base::diag::{CODES, Diagnostic, FileId, Severity, Sources, Span};
+use perigrain_base::par::STACK;
 use perigrain_world::reading::place;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -13,9 +14,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
-
-/// Formulas and files nest: as much as a main thread has.
-const STACK: usize = 16 << 20;
 
 /// A text is checked when nothing has been typed for so long.
 const PAUSE: Duration = Duration::from_millis(80);

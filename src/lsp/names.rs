@@ -41,7 +41,7 @@ pub struct Index {
 }
 
 /// Functions of formulas whose first argument is a group, and which argument may be a region.
-const OF_GROUPS: [(&str, usize); 16] = [
+const OF_GROUPS: [(&str, usize); 15] = [
     ("count", 1),
     ("mass", 1),
     ("charge", 1),
@@ -57,7 +57,6 @@ const OF_GROUPS: [(&str, usize); 16] = [
     ("omega", 2),
     ("gmask", 9),
     ("grmask", 1),
-    ("gyration", 1),
 ];
 
 /// Commands whose quoted words are texts to be shown: `v_x` means nothing there outside of `$(…)`.
@@ -193,6 +192,15 @@ fn named_by_place(words: &[Word], out: &mut Vec<Mention>) {
         "region" => add(1, Kind::Region, unless_deleted),
         "variable" => add(1, Kind::Variable, unless_deleted),
         "next" => (1..words.len()).for_each(|k| add(k, Kind::Variable, Role::Uses)),
+        "sweep" => {
+            for k in 2..words.len() {
+                match text(k - 1) {
+                    "each" => add(k, Kind::Variable, Role::Defines),
+                    "zip" => add(k, Kind::Variable, Role::Uses),
+                    _ => {}
+                }
+            }
+        }
         "material" => add(1, Kind::Material, Role::Defines),
         "molecule" => add(1, Kind::Molecule, Role::Defines),
         "label" => add(1, Kind::Label, Role::Defines),
@@ -229,8 +237,8 @@ fn references(text: &str, base: usize, (formula, depth): (bool, usize), out: &mu
                     add(Kind::Variable, k + 2..k + 2 + name.len());
                 }
                 k += 3 + name.len();
-            } else if rest.starts_with('(') {
-                let end = k + 2 + closing(&rest[1..]);
+            } else if let Some(formula) = rest.strip_prefix('(') {
+                let end = k + 2 + closing(formula);
                 inner.push(k + 2..end);
                 k = end;
             } else {
@@ -351,6 +359,8 @@ mod tests {
             found("if \"$i > 1\" then \"unfix a\" 'jump SELF x'"),
             ["variable i", "-fix a", "label x"]
         );
+        assert_eq!(found("sweep each v 1 2 zip w"), ["=variable v", "variable w"]);
+        assert_eq!(found("fix p all print 1 \"v_x ${y}\""), ["=fix p", "group all", "variable y"]);
         assert_eq!(found("fix f$i all nve # v_x"), ["variable i", "group all"]);
         assert_eq!(found("jump in.b x\ninclude c"), ["file in.b", "label x", "file c"]);
     }

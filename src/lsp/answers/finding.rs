@@ -9,8 +9,11 @@ fn location(file: &File, mention: &Mention) -> Value {
     json!({"uri": file.uri, "range": file.text.range(mention.bytes.clone())})
 }
 
+/// Places with their files.
+type Places = Vec<(Arc<File>, Mention)>;
+
 /// All places of a name in the files of its deck. A label belongs to its file.
-fn places(server: &mut Server, file: &Arc<File>, of: &Mention) -> Vec<(Arc<File>, Mention)> {
+fn places(server: &mut Server, file: &Arc<File>, of: &Mention) -> Places {
     let files = match of.kind {
         Kind::Label => vec![file.clone()],
         _ => server.family(file),
@@ -58,11 +61,7 @@ pub fn highlights(file: &Arc<File>, byte: usize) -> Value {
 }
 
 /// The name at a byte if it can be changed.
-fn to_rename(
-    server: &mut Server,
-    file: &Arc<File>,
-    byte: usize,
-) -> Result<(Mention, Vec<(Arc<File>, Mention)>), String> {
+fn to_rename(server: &mut Server, file: &Arc<File>, byte: usize) -> Result<(Mention, Places), String> {
     let mention = file.index.at(byte).ok_or("there is no name here")?;
     if mention.kind == Kind::File {
         return Err("files are renamed where they lie".into());

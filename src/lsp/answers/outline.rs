@@ -24,11 +24,8 @@ pub fn symbols(file: &File) -> Value {
     let mut section: Option<(Symbol, Vec<Value>)> = None;
     for line in &file.index.lines {
         let start = line.span.start as usize;
-        if let Some(title) = line
-            .comment
-            .filter(|_| line.words.is_empty())
-            .and_then(|c| title(&text[c.start as usize..c.end as usize]))
-        {
+        let alone = line.comment.filter(|_| line.words.is_empty());
+        if let Some(title) = alone.and_then(|c| heading(text, c.start as usize..c.end as usize)) {
             close(&mut section, start, &mut roots, file);
             let comment = line.comment.unwrap_or_default();
             let bytes = comment.start as usize..comment.end as usize;
@@ -54,7 +51,23 @@ pub fn symbols(file: &File) -> Value {
     Value::Array(roots)
 }
 
-/// The title of a comment that heads a section, as `# --- walls`, `# ===== run =====`.
+/// A heading is longer only by mistake.
+const LONGEST_HEADING: usize = 60;
+
+/// The title of a section that a comment of one line begins: one with rules, or one that stands behind an empty line.
+fn heading(text: &str, comment: std::ops::Range<usize>) -> Option<String> {
+    let line = &text[comment.clone()];
+    if let Some(title) = title(line) {
+        return Some(title);
+    }
+    let before = text[..comment.start].rsplit('\n').nth(1).unwrap_or("").trim();
+    let after = text[comment.end..].split('\n').nth(1).unwrap_or("").trim();
+    let bare = line.trim_start_matches('#').trim();
+    let heads = before.is_empty() && !after.starts_with('#') && !bare.is_empty();
+    (heads && bare.chars().count() <= LONGEST_HEADING).then(|| bare.to_string())
+}
+
+/// The title within the rules of a comment, as `# --- walls`, `# ===== run =====`.
 fn title(comment: &str) -> Option<String> {
     let body = comment.trim_start_matches('#').trim();
     let ruled = |c: char| "-=*#~_".contains(c);
@@ -143,12 +156,16 @@ fn kind(kind: Kind) -> u8 {
 
 #[cfg(test)]
 mod tests {
-    use super::title;
+    use super::{heading, title};
 
     #[test]
     fn comments_with_rules_are_sections() {
         assert_eq!(title("# --- walls").as_deref(), Some("walls"));
         assert_eq!(title("## == run it ==").as_deref(), Some("run it"));
         assert_eq!((title("# a remark"), title("# -----"), title("#")), (None, None, None));
+        let text = "run 1\n# a remark\nrun 2\n\n# more of it\nrun 3\n\n# one\n# two\n";
+        let of = |line: &str| heading(text, text.find(line).map(|k| k..k + line.len()).unwrap());
+        assert_eq!(of("# more of it").as_deref(), Some("more of it"));
+        assert_eq!((of("# a remark"), of("# one"), of("# two")), (None, None, None));
     }
 }

@@ -16,7 +16,8 @@ const FAR: usize = 90;
 pub(super) fn written(rows: &[Row<'_>], ending: &str) -> String {
     let columns = words_of(rows);
     let ends: Vec<usize> = rows.iter().zip(&columns).map(|(row, columns)| end(row, columns)).collect();
-    let comments = comments_of(rows, &ends);
+    let starts: Vec<usize> = columns.iter().map(|columns| columns[0]).collect();
+    let comments = comments_of(rows, &starts, &ends);
     let mut out = String::new();
     for (k, row) in rows.iter().enumerate() {
         if let Some(whole) = row.whole {
@@ -31,7 +32,7 @@ pub(super) fn written(rows: &[Row<'_>], ending: &str) -> String {
             line.put(word.text, *column);
         }
         if row.joined {
-            let column = if row.words.is_empty() { start(row) } else { line.column + 1 };
+            let column = if row.words.is_empty() { starts[k] } else { line.column + 1 };
             line.put("&", column);
         }
         if let Some(comment) = row.comment {
@@ -57,37 +58,65 @@ impl Line<'_> {
     }
 }
 
-/// The column in which a row begins.
-fn start(row: &Row<'_>) -> usize {
-    if row.first { row.indent } else { row.indent + CONTINUED }
-}
-
 /// The column behind a row's last word and its `&`.
 fn end(row: &Row<'_>, columns: &[usize]) -> usize {
     let words = row.words.last().zip(columns.last()).map_or(0, |(word, column)| column + word.width());
     words + if row.joined { 2 } else { 0 }
 }
 
-/// The columns of all words.
+/// The columns of all words. Each row has a first one, even if it has no word.
 fn words_of(rows: &[Row<'_>]) -> Vec<Vec<usize>> {
-    let mut columns: Vec<Vec<usize>> =
-        rows.iter().map(|row| row.words.first().map(|_| start(row)).into_iter().collect()).collect();
+    let mut columns: Vec<Vec<usize>> = rows.iter().map(|row| vec![row.indent]).collect();
     let most = rows.iter().map(|row| row.words.len()).max().unwrap_or(0);
     // Rows that have a word of this number: with each one more there are fewer.
-    let mut left: Vec<usize> = (0..rows.len()).collect();
-    for n in 1..most {
-        left.retain(|&k| rows[k].words.len() > n);
-        for group in groups(rows, &left, n) {
-            let least = |k: usize| columns[k][n - 1] + rows[k].words[n - 1].width() + 1;
-            let needed = group.iter().map(|&k| least(k)).max().unwrap_or(0);
-            let given = rows[group[0]].words[n].column;
-            let agreed = group.iter().all(|&k| rows[k].words[n].column == given);
-            let alone = group.len() == 1;
-            let column = if agreed && !alone { needed.max(given) } else { needed };
-            group.iter().for_each(|&k| columns[k].push(column));
+    let (mut first, mut continued): (Vec<usize>, Vec<usize>) = (0..rows.len()).partition(|&k| rows[k].first);
+    first.retain(|&k| rows[k].words.len() > 1);
+    place(rows, &first, 1, &mut columns);
+    let mut head = 0;
+    for k in 0..rows.len() {
+        if rows[k].first {
+            head = k;
+        } else {
+            columns[k][0] = continuation(&rows[head], &columns[head], &rows[k]);
         }
     }
+    continued.retain(|&k| rows[k].words.len() > 1);
+    place(rows, &continued, 1, &mut columns);
+    let mut left = [first, continued].concat();
+    left.sort_unstable();
+    for n in 2..most {
+        left.retain(|&k| rows[k].words.len() > n);
+        place(rows, &left, n, &mut columns);
+    }
     columns
+}
+
+/// Where a continuation begins: below the first argument if it stood there, else a little further in than its line.
+fn continuation(head: &Row<'_>, columns: &[usize], row: &Row<'_>) -> usize {
+    let argument = head.words.get(1).zip(columns.get(1));
+    let begins = row.words.first().or(row.comment.as_ref()).map(|piece| piece.column);
+    match argument {
+        Some((word, column)) if begins == Some(word.column) && !torn(head, 1) => *column,
+        _ => head.indent + CONTINUED,
+    }
+}
+
+/// Whether nothing tells the column of word number `n`: one before it has a line break or a tab in it.
+fn torn(row: &Row<'_>, n: usize) -> bool {
+    row.broken && row.words[..n].iter().any(|word| word.text.contains(['\n', '\t']))
+}
+
+/// Gives the words number `n` of some rows their columns.
+fn place(rows: &[Row<'_>], some: &[usize], n: usize, columns: &mut [Vec<usize>]) {
+    for group in groups(rows, some, n) {
+        let least = |k: usize| columns[k][n - 1] + rows[k].words[n - 1].width() + 1;
+        let needed = group.iter().map(|&k| least(k)).max().unwrap_or(0);
+        let given = rows[group[0]].words[n].column;
+        let agreed = group.iter().all(|&k| rows[k].words[n].column == given);
+        let alone = group.len() == 1;
+        let column = if agreed && !alone { needed.max(given) } else { needed };
+        group.iter().for_each(|&k| columns[k].push(column));
+    }
 }
 
 /// Rows whose words number `n` stand in one column.
@@ -96,7 +125,7 @@ fn groups(rows: &[Row<'_>], left: &[usize], n: usize) -> Vec<Vec<usize>> {
     let mut last: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
     for &k in left {
         let row = &rows[k];
-        if row.broken {
+        if torn(row, n) {
             groups.push(vec![k]);
             continue;
         }
@@ -131,13 +160,13 @@ fn aligned(a: &Piece<'_>, b: &Piece<'_>, alike: bool) -> bool {
 }
 
 /// The columns of all comments; 0 where there is none.
-fn comments_of(rows: &[Row<'_>], ends: &[usize]) -> Vec<usize> {
+fn comments_of(rows: &[Row<'_>], starts: &[usize], ends: &[usize]) -> Vec<usize> {
     let mut columns = vec![0; rows.len()];
     let mut k = 0;
     while k < rows.len() {
         let run = run_of(rows, k);
         if run == 0 {
-            columns[k] = start(&rows[k]);
+            columns[k] = starts[k];
             k += 1;
             continue;
         }

@@ -54,6 +54,9 @@ fn continuations_stand_four_columns_in() {
     check("  fix 1&\n  all nve\n", "  fix 1 &\n      all nve\n");
     check("print ab&\ncd  &\n   e  # f\n", "print ab&\ncd &\n    e # f\n");
     check("print a&\n&\nb  c\n", "print a&\n&\nb c\n");
+    check("fix  1 all &\n     nve &\n     x\n", "fix 1 all &\n    nve &\n    x\n");
+    check("run     1 &\n        post no\nunits   lj\n", "run     1 &\n        post no\nunits   lj\n");
+    check("if      \"a &\n  b\"   c\nunits   lj\n", "if      \"a &\n  b\" c\nunits   lj\n");
     check("run 1 &\n\n\n\nrun 2\n", "run 1 &\n\n\nrun 2\n");
     check("run 1 &", "run 1 &\n");
 }
