@@ -150,6 +150,11 @@ impl Default for Film {
 }
 
 impl Film {
+    /// Time that snapshots have taken.
+    pub fn took(&self) -> Duration {
+        self.spent
+    }
+
     /// The interval at present.
     pub fn every(&self) -> u64 {
         self.every

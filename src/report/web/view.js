@@ -115,7 +115,9 @@
 
   const cloud = gl.createVertexArray();
   const buffers = Object.fromEntries(["px", "py", "pz", "size", "value"].map(n => [n, gl.createBuffer()]));
+  const fed = {};
   const feed = (name, list) => {
+    delete fed[name];
     const at = spheres.attribute(name);
     if (at < 0) return;
     gl.bindBuffer(gl.ARRAY_BUFFER, buffers[name]);
@@ -126,10 +128,14 @@
     }
     gl.bufferData(gl.ARRAY_BUFFER, list, gl.DYNAMIC_DRAW);
     gl.enableVertexAttribArray(at);
-    const kind = list instanceof Uint8Array ? gl.UNSIGNED_BYTE : gl.UNSIGNED_SHORT;
-    gl.vertexAttribPointer(at, 1, kind, name.length > 2, 0, 0);
     gl.vertexAttribDivisor(at, 1);
+    fed[name] = { at, kind: list instanceof Uint8Array ? gl.UNSIGNED_BYTE : gl.UNSIGNED_SHORT, bytes: list.BYTES_PER_ELEMENT };
   };
+  // One particle in so many is drawn.
+  const sparse = every => Object.entries(fed).forEach(([name, { at, kind, bytes }]) => {
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffers[name]);
+    gl.vertexAttribPointer(at, 1, kind, name.length > 2, every > 1 ? every * bytes : 0, 0);
+  });
   const edges = gl.createVertexArray(), corners = gl.createBuffer();
   gl.bindVertexArray(edges);
   gl.bindBuffer(gl.ARRAY_BUFFER, corners);
@@ -191,6 +197,7 @@
     // Rows: to the right, up, towards the eye.
     return [[c, -s, 0], [s * a, c * a, b], [-s * b, -c * b, a]];
   };
+  const FEW = 40000;
   const TAN = Math.tan(Math.PI / 12);
   const home = () => {
     const thin = view.half && view.half[2] < 0.2 * Math.min(view.half[0], view.half[1]);
@@ -341,7 +348,10 @@
     gl.uniform2f(spheres.at.sizes, size.lo * view.scale, (size.hi - size.lo) * view.scale);
     gl.uniform2f(spheres.at.values, c ? c.lo : 0, c ? c.hi - c.lo : 0);
     gl.uniform2f(spheres.at.range, lo, hi);
-    gl.uniform1f(spheres.at.grow, grow.valueAsNumber);
+    // A slow card turns fewer and larger particles.
+    const every = rough ? Math.ceil(f.meta.n / FEW) : 1;
+    sparse(every);
+    gl.uniform1f(spheres.at.grow, grow.valueAsNumber * Math.cbrt(every));
     gl.uniform1f(spheres.at.only, only.checked && c ? 1 : 0);
     gl.uniform1f(spheres.at.kinds, isKind() ? 1 : 0);
     gl.uniform3fv(spheres.at.plain, c ? [-1, 0, 0] : [0.6, 0.62, 0.65]);
@@ -352,7 +362,7 @@
     }
     gl.uniform4fv(spheres.at.cut, plane);
     gl.bindTexture(gl.TEXTURE_2D, texture);
-    if (f.meta.n > 0) gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, f.meta.n);
+    if (f.meta.n > 0) gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, Math.ceil(f.meta.n / every));
     rows[0].forEach((right, d) => {
       const [dx, dy] = [26 * right, -26 * rows[1][d]], line = $(`axis-${d}`), text = $(`name-${d}`);
       line.setAttribute("x2", dx);
@@ -387,7 +397,7 @@
   canvas.addEventListener("pointermove", e => {
     const was = fingers.get(e.pointerId);
     if (!was) return;
-    // A slow card turns a coarser picture.
+    // Moves that come so late have waited for the card.
     if (last && e.timeStamp - last > 70) rough = true;
     last = e.timeStamp;
     const [dx, dy] = [e.clientX - was.clientX, e.clientY - was.clientY];
