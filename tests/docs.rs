@@ -48,6 +48,7 @@ const BOOK: [&str; 2] = [
      - [Explore at the prompt](howto/prompt.md)\n\
      - [Calibrate to a material](howto/material.md)\n\
      - [Calibrate an agglomerate in five minutes](howto/agglomerate.md)\n\
+     - [A body from a mesh, a scan or a table](howto/bodies.md)\n\
      - [Look at a run](howto/report.md)\n\
      - [Make a movie of a crack](howto/movie.md)\n\
      - [Read results in ParaView, OVITO and pandas](howto/results.md)\n\

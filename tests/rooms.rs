@@ -228,7 +228,7 @@ const OPENERS: &[(&str, &str)] = &[
     ("crates/out/src/sheet.rs", "what the gate has let pass"),
     ("crates/fixes/src/halt.rs", "what the gate has let pass"),
     ("src/session/shell.rs", "refused as a whole under -safe"),
-    ("crates/world/src/memory.rs", "memory of the machine"),
+    ("crates/base/src/memory.rs", "memory of the machine"),
     ("crates/plan/src/run/verlet.rs", "time of the processor"),
     ("crates/lang/src/expr/pattern.rs", "name of the system"),
     ("src/cli/", "files that the command line names, or whoever types"),

@@ -171,8 +171,7 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> 
         lose(w);
         warn_of_bonds(w, t);
     }
-    let fitted = spatial::fit_skin(w);
-    let same = how.sort && !anew && w.n() == n && !fitted;
+    let same = how.sort && !anew && w.n() == n;
     if !same {
         w.rebuild.kept = Kept::default();
     }

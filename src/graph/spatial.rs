@@ -43,25 +43,6 @@ fn order(w: &World, x: &[[f64; 3]]) -> Option<Vec<usize>> {
     Some(slabs.order.iter().map(|&i| i as usize).collect())
 }
 
-/// A skin of so many diameters of the largest grain is longer than any that pays.
-const LONG: f64 = 0.5;
-/// The skin that is taken then, in the same diameters.
-const FITS: f64 = 0.25;
-
-/// At a rebuild of a scene of grains: where no line of the deck says how long the skin is and that of the units would have lists hold
-/// many times the pairs that can touch, it becomes shorter. Whether it has changed. The largest grain is the same in any order.
-pub fn fit_skin(w: &mut World) -> bool {
-    let (s, p) = (&w.settings.neighbor, &w.particles);
-    let by_chance = !s.check || s.once || s.delay > 1 || s.every > 1;
-    if s.said || by_chance || w.settings.lammps() || !p.style.sphere || p.style.peri || w.families.is_some() {
-        return false;
-    }
-    let usual = w.settings.units.constants().skin;
-    let widest = 2.0 * p.radius.iter().copied().fold(0.0, f64::max);
-    let skin = if widest > 0.0 && usual > LONG * widest { FITS * widest } else { usual };
-    std::mem::replace(&mut w.settings.neighbor.skin, skin) != skin
-}
-
 /// How far grains have gone relative to each other since lists were made for them.
 struct Drift {
     /// At most among those of a slab and the next [length].

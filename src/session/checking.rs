@@ -36,6 +36,7 @@ impl Session {
             self.check_step(span, &mut found);
             self.checked_step = Some(self.world.clock.dt);
             self.check_overlaps(span, &mut found);
+            self.check_skin(span, &mut found);
         }
         self.check_levels(span, &mut found);
         self.check_surfaces(&mut found);

@@ -7,6 +7,9 @@ use perigrain_styles::pair::{Deck, Scales};
 use perigrain_styles::swing::swinging;
 use perigrain_world::RunStyle;
 
+/// So many grains from which it matters how long lists are.
+const MANY: usize = 100;
+
 impl Session {
     /// A warning where the time step is beyond what the pair style can vouch for, or what bonds stand.
     pub(super) fn check_step(&self, span: Span, found: &mut Diagnostics) {
@@ -126,6 +129,29 @@ impl Session {
             Diagnostic::warning(Code::UNSTABLE, place, text)
                 .help(format!("say `timestep {:.1e}` or less, or take softer grains", 0.05 * contact)),
         );
+    }
+
+    /// A note where no line says how long the skin is, and that of the units has lists of grains hold many times the pairs that can touch.
+    pub(super) fn check_skin(&self, span: Span, found: &mut Diagnostics) {
+        let (near, p) = (&self.world.settings.neighbor, &self.world.particles);
+        if near.said || !p.style.sphere || p.style.peri || p.len() < MANY {
+            return;
+        }
+        let widest = 2.0 * p.radius.iter().copied().fold(0.0, f64::max);
+        if widest == 0.0 || near.skin <= widest {
+            return;
+        }
+        let text = format!(
+            "neighbour lists reach {:e} farther than touching, {:.1} times the largest grain: no line says how far, and that is the default of units {}",
+            near.skin,
+            near.skin / widest,
+            self.world.settings.units.name()
+        );
+        let remedy = format!(
+            "say `neighbor {:.1e} bin`: lists hold the pairs that may touch soon, and steps are many times as fast",
+            0.25 * widest
+        );
+        found.push(Diagnostic::note(Code::SUSPICIOUS, span, text).help(remedy));
     }
 
     /// The largest density and the smallest diameter that the deck has set, for a check that has no particles: no other

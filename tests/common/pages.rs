@@ -96,6 +96,11 @@ const CHANGED: &[(&str, &str, &str)] = &[
 
 /// Files that examples read: name, text.
 const FILES: &[(&str, &str)] = &[
+    (
+        "dump.grains",
+        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n\
+         ITEM: ATOMS id type x y z diameter\n1 1 0.2 0.5 0.5 0.3\n2 1 0.7 0.5 0.5 0.3\n",
+    ),
     ("plate.inc", "print \"from the other file\"\n"),
     (
         "blade.stl",

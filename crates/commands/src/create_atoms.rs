@@ -154,7 +154,8 @@ impl CommandStyle for CreateAtoms {
             return Err(d.help("add `units box` to this line").into());
         }
         let packed = matches!(c.place, Place::Pack(_));
-        let settles = if packed { vec!["particles", "diameter"] } else { vec!["particles"] };
+        let mut settles = if packed { vec!["particles", "diameter"] } else { vec!["particles"] };
+        settles.extend(c.cut.map(|_| "volume"));
         c.lattice_units &= !packed;
         Ok(in_group(settles, c.group.clone(), move |cx| create(cx, &c)))
     }

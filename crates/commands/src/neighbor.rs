@@ -21,9 +21,8 @@ impl Style for Neighbor {
             text: "Lists are rebuilt when a particle has moved half the skin (see `neigh_modify`). How they are built is \
                    perigrain's business: all words give the same lists, which search each size of particle by \
                    itself where sizes differ; `multi/old` is refused. Without this line the skin is LAMMPS' for the units (0.3 in \
-                   `lj`, 0.001 in `si`, 0.1 in `cgs` …), but among grains of which the largest is less than twice as wide a quarter of its diameter: \
-                   LAMMPS' lists then hold many times the pairs that can touch. Numbers are the same to rounding; `compat lammps` \
-                   and `neigh_modify` with `check no`, `once yes` or a `delay` or `every` above 1 leave LAMMPS' skin.",
+                   `lj`, 0.001 in `si`, 0.1 in `cgs` …); where that is more than the largest of many grains a note says what to write, since lists \
+                   hold many times the pairs that can touch then.",
             example: "neighbor 0.5 bin",
         }
     }

@@ -91,7 +91,11 @@ impl Fix for Declared {
         let (span, own) = (cx.span(), self.clone());
         let chosen = Chosen::new(cx.world(), self.group, None, span)?;
         let slot = cx.slot(&format!("f_{}", self.id));
-        let access = Needs::new().read(X | TAG | MASK | FACTS).add(F | TALLY).write(COLUMNS | SLOTS);
+        let access = Needs::new().read(X | MASK | FACTS).add(F | TALLY).write(SLOTS);
+        let access = match self.call {
+            Some(_) => access.read(TAG).write(COLUMNS),
+            None => access.read(COLUMNS),
+        };
         let op = StepOp::new(format!("fix {} external", self.id), Stage::PostForce, access, move |w, t| {
             let outside = w.parts.outside.get(own.key.of()).cloned();
             let due = |every: i64| t.step % every == 0;
