@@ -11,7 +11,7 @@ mod pool;
 mod split;
 mod sum;
 
-pub use pays::{Trial, shared};
+pub use pays::Trial;
 pub use pool::{
     STACK, both, for_rows, in_turn, inside, most_threads, neighbours, set_threads, slot, threads, two_colours,
 };

@@ -25,12 +25,6 @@ pub(super) fn shares() {
     }
 }
 
-/// Whether a loop has had parts to share since a trial began or asked.
-#[inline]
-pub fn shared() -> bool {
-    SHARED.load(Ordering::Relaxed)
-}
-
 /// How long a window lasts, at least.
 const SPAN: Duration = Duration::from_millis(5);
 /// What is not counted after a change: threads fall asleep or wake up, memory moves from core to core.
@@ -123,7 +117,7 @@ impl Trial {
     #[inline]
     pub fn step(&mut self, anew: bool) {
         // Where no loop has parts to share there is nothing to try, and to look at the clock takes longer than small loops.
-        if shared() {
+        if SHARED.load(Ordering::Relaxed) {
             self.timed(anew, Instant::now());
         }
     }

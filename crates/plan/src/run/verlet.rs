@@ -135,17 +135,6 @@ pub(super) const MOTION: [Stage; 8] = [
 /// And those that put out.
 const OUTPUTS: [Stage; 2] = [Stage::EndOfStep, Stage::Output];
 
-/// Why a stretch of steps has come to its end.
-#[derive(PartialEq)]
-enum Ended {
-    /// All steps are made, or somebody has said that these are enough.
-    Whole,
-    /// The user wants no more.
-    Interrupted,
-    /// A loop has had parts that threads can share. Where none has the calling thread does all, which is quicker.
-    Shares,
-}
-
 /// Makes the steps of a run, each by `step`, which is told whether somebody looks at the scene after it, and then its outputs.
 ///
 /// # Errors
@@ -162,14 +151,15 @@ pub(super) fn steps(
         Some(guard) => Some(Guarded::new(guard, plan, w)?),
         None => None,
     };
+    // All of it on one thread of the pool: to hand over at every step would take longer than many a step.
     let mut trial = par::Trial::begin();
-    let mut go_on = |in_pool: bool| -> Result<Ended> {
+    let interrupted = par::inside(|| -> Result<bool> {
         while w.clock.step < w.clock.last && w.clock.halt == Halt::No {
             if plan.begun() {
                 // Half of this step is made.
             } else if w.settings.stop.load(Ordering::Relaxed) {
                 plan.part(w, &tick(w, false))?;
-                return Ok(Ended::Interrupted);
+                return Ok(true);
             } else if w.settings.ends_at(w.clock.step) {
                 w.clock.halt = Halt::All;
                 plan.part(w, &tick(w, false))?;
@@ -202,20 +192,11 @@ pub(super) fn steps(
                 watch.scene(w);
             }
             if let Some(trial) = &mut trial {
-                if !in_pool && par::shared() {
-                    return Ok(Ended::Shares);
-                }
                 trial.step(w.rebuild.builds != builds);
             }
         }
-        Ok(Ended::Whole)
-    };
-    let ended = match go_on(false)? {
-        // The rest on one thread of the pool: to hand over at every step would take longer than many a step.
-        Ended::Shares => par::inside(|| go_on(true))?,
-        ended => ended,
-    };
-    let interrupted = ended == Ended::Interrupted;
+        Ok(false)
+    })?;
     drop(trial);
     plan.guard = guard.map(Guarded::into_guard);
     let steps = w.clock.step - first;
