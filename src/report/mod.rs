@@ -1,6 +1,5 @@
 //! A run as one web page that needs nothing else: what it was, its step table as curves, its pictures, where the time went.
 
-mod base64;
 mod curves;
 pub mod film;
 pub mod log;

@@ -66,16 +66,16 @@ pub fn html(report: &Report) -> String {
         let _ =
             write!(body, "<footer>\n<h2>About this page</h2>\n<ul>\n{}</ul>\n</footer>\n", remarks.concat());
     }
-    let _ = write!(
+    let _ = writeln!(
         body,
-        "<script type=\"application/json\" id=\"data\">{}</script>\n",
+        "<script type=\"application/json\" id=\"data\">{}</script>",
         data(&curves, &film, report.live)
     );
     for (k, frame) in film.frames.iter().enumerate() {
         let _ = writeln!(body, "<script type=\"application/octet-stream\" id=\"frame-{k}\">{frame}</script>");
     }
     for script in [UPLOT, CURVES, VIEW].into_iter().chain(report.live.then_some(LIVE[1])) {
-        let _ = write!(body, "<script>{script}</script>\n");
+        let _ = writeln!(body, "<script>{script}</script>");
     }
     let head = format!("{POLICY}{}\">\n", if report.live { ASKS } else { "" });
     page(&report.title, STYLE, &head, &body)

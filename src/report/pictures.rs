@@ -1,7 +1,7 @@
 //! Pictures that a run has drawn, as far as a page has room for them.
 
-use super::base64;
 use crate::plot::escaped;
+use perigrain_base::base64;
 use perigrain_base::gate;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;

@@ -3,7 +3,7 @@
 use super::exact::{side2, side3};
 use super::solid::inside;
 use super::tree::Tree;
-use super::{Triangle, area, bounds, weld};
+use super::{Triangle, area, bounds, seen_along, weld, widest};
 use perigrain_base::math::cformat::general;
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, scale, sub};
 use perigrain_base::par;
@@ -258,21 +258,11 @@ fn cross_each_other(a: &Triangle, ca: &[u32; 3], b: &Triangle, cb: &[u32; 3]) ->
             let (Some((k, p)), Some((_, q))) = (apex(a, la), apex(b, lb)) else { return true };
             let (u, v) = (a[(k + 1) % 3], a[(k + 2) % 3]);
             let axis = widest(a);
-            let at = |x: &Vec3| flat_on(x, axis);
+            let at = |x: &Vec3| seen_along(x, axis);
             side3(&u, &v, &p, &q) == 0 && side2(at(&u), at(&v), at(&p)) == side2(at(&u), at(&v), at(&q))
         }
         _ => true,
     }
-}
-
-/// The axis along which a triangle looks widest.
-fn widest(t: &Triangle) -> usize {
-    let n = cross(sub(t[1], t[0]), sub(t[2], t[0]));
-    (0..3).max_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs())).unwrap_or(0)
-}
-
-fn flat_on(p: &Vec3, axis: usize) -> [f64; 2] {
-    [p[(axis + 1) % 3], p[(axis + 2) % 3]]
 }
 
 /// Whether the line between two places meets a triangle, ends and rims included.
@@ -283,7 +273,7 @@ fn line_meets(p: &Vec3, q: &Vec3, t: &Triangle) -> bool {
     }
     if sp == 0 && sq == 0 {
         let axis = widest(t);
-        let (p, q, [a, b, c]) = (flat_on(p, axis), flat_on(q, axis), t.map(|x| flat_on(&x, axis)));
+        let (p, q, [a, b, c]) = (seen_along(p, axis), seen_along(q, axis), t.map(|x| seen_along(&x, axis)));
         let sides = [side2(a, b, p), side2(b, c, p), side2(c, a, p)];
         let starts_within = !(sides.contains(&1) && sides.contains(&-1));
         return starts_within || [(a, b), (b, c), (c, a)].into_iter().any(|(a, b)| lines_meet(p, q, a, b));

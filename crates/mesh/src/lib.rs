@@ -30,6 +30,8 @@ pub use read::{Format, Surface, Unreadable, read};
 pub use sheet::Sheet;
 pub use solid::Solid;
 
+use perigrain_base::math::vec3::{cross, sub};
+
 /// Three corners.
 pub type Triangle = [[f64; 3]; 3];
 
@@ -49,6 +51,17 @@ fn weld(triangles: &[Triangle]) -> Vec<[u32; 3]> {
         corners.as_flattened_mut()[*at as usize] = number;
     }
     corners
+}
+
+/// The axis along which a triangle looks widest.
+fn widest(t: &Triangle) -> usize {
+    let n = cross(sub(t[1], t[0]), sub(t[2], t[0]));
+    (0..3).max_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs())).unwrap_or(0)
+}
+
+/// A place as seen along an axis.
+fn seen_along(p: &[f64; 3], axis: usize) -> [f64; 2] {
+    [p[(axis + 1) % 3], p[(axis + 2) % 3]]
 }
 
 /// Corners of a box around points.

@@ -4,7 +4,7 @@ use super::check::{self, Fault};
 use super::exact::{side2, side3};
 use super::facets::{Facets, Near};
 use super::tree::Tree;
-use super::{Triangle, area};
+use super::{Triangle, area, seen_along, widest};
 use perigrain_base::math::vec3::{Vec3, cross, dot, sub};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -145,14 +145,9 @@ enum Meets {
     Crosses,
 }
 
-/// Corners and point as seen along an axis.
-fn flat(p: &Vec3, axis: usize) -> [f64; 2] {
-    [p[(axis + 1) % 3], p[(axis + 2) % 3]]
-}
-
 /// The sides of a point at the three edges, as seen along an axis; nothing if they differ, so that it is not in the triangle.
 fn sides(t: &Triangle, x: &Vec3, axis: usize) -> Option<[i8; 3]> {
-    let (p, [a, b, c]) = (flat(x, axis), [0, 1, 2].map(|k| flat(&t[k], axis)));
+    let (p, [a, b, c]) = (seen_along(x, axis), [0, 1, 2].map(|k| seen_along(&t[k], axis)));
     let sides = [side2(a, b, p), side2(b, c, p), side2(c, a, p)];
     (!(sides.contains(&1) && sides.contains(&-1))).then_some(sides)
 }
@@ -169,15 +164,14 @@ fn meets(t: &Triangle, x: &Vec3, axis: usize, up: bool) -> Meets {
     let below = side3(&t[0], &t[1], &t[2], x);
     if below == 0 {
         // On its plane; all edges in line as seen from here: looked at from where it is widest.
-        let n = cross(sub(t[1], t[0]), sub(t[2], t[0]));
-        let widest = (0..3).max_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs())).unwrap_or(0);
+        let widest = widest(t);
         let on = within(axis) && (widest == axis || sides(t, x, widest).is_some());
         return if on { Meets::On } else { Meets::Not };
     }
     // A point on an edge belongs to the side to which it is shifted: along the first coordinate, then the second.
     let shifted = |k: usize| match sides2[k] {
         0 => {
-            let (a, b) = (flat(&t[k], axis), flat(&t[(k + 1) % 3], axis));
+            let (a, b) = (seen_along(&t[k], axis), seen_along(&t[(k + 1) % 3], axis));
             if a[1] != b[1] {
                 if b[1] > a[1] { -1 } else { 1 }
             } else if b[0] > a[0] {

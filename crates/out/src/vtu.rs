@@ -247,23 +247,10 @@ mod tests {
     use vtkio::model::{Attribute, DataSet, IOBuffer, Piece};
 
     use super::*;
+    use perigrain_base::base64::encode;
 
     fn points(n: usize) -> Vec<[f64; 3]> {
         (0..n).map(|i| [i as f64 * 0.1, (i * 7 % 13) as f64, -1e-9 * i as f64]).collect()
-    }
-
-    /// The standard base64 alphabet with padding.
-    fn base64(bytes: &[u8]) -> String {
-        let letters = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-        let mut text = String::new();
-        for three in bytes.chunks(3) {
-            let word = (0..3).fold(0, |w, k| w << 8 | u32::from(*three.get(k).unwrap_or(&0)));
-            for k in 0..4 {
-                let letter = letters[(word >> (18 - 6 * k) & 63) as usize] as char;
-                text.push(if k > three.len() { '=' } else { letter });
-            }
-        }
-        text
     }
 
     /// The same file with its appended data in base64, the only form `vtkio` 0.7 reads; bytes stay what they are.
@@ -280,7 +267,7 @@ mod tests {
             let blocks = u64::from_le_bytes(segment[..8].try_into().unwrap()) as usize;
             let header = if compressed { 8 * (3 + blocks) } else { 0 };
             text += &format!("offset=\"{}\"{}", coded.len(), pieces[k].split_once('"').unwrap().1);
-            coded += &(base64(&segment[..header]) + &base64(&segment[header..]));
+            coded += &(encode(&segment[..header]) + &encode(&segment[header..]));
         }
         text + &coded + "\n  </AppendedData>\n</VTKFile>\n"
     }

@@ -23,7 +23,7 @@ pub fn add(path: &Path, film: &mut Film) -> Result<Option<(Arc<Source>, Diagnost
             Ok(None) => break,
             Ok(Some(snapshot)) => {
                 let at = film.seen as u64;
-                if at % film.every() != 0 {
+                if !at.is_multiple_of(film.every()) {
                     film.seen += 1;
                     continue;
                 }

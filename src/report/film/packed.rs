@@ -2,7 +2,6 @@
 
 use super::{Column, Frame, Values};
 use crate::json::{number, quoted};
-use crate::report::base64;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use perigrain_base::par;
@@ -73,7 +72,7 @@ fn texts(frames: &[&Frame]) -> Vec<String> {
     par::for_rows(frames.len(), |k| {
         slots[k].get_or_init(|| {
             let before = k.checked_sub(1).map(|b| frames[b]).filter(|b| follows(frames[k], b));
-            base64::encode(&deflated(&planes(frames[k], before)))
+            perigrain_base::base64::encode(&deflated(&planes(frames[k], before)))
         });
     });
     slots.into_iter().filter_map(OnceLock::into_inner).collect()
@@ -225,7 +224,8 @@ mod tests {
         assert_eq!(packed.json.matches("\"follows\":true").count(), 2);
         let mut before: Option<Frame> = None;
         for (text, like) in packed.frames.iter().zip(&frames) {
-            let back = unpacked(&base64::decode(text), like, before.as_ref()).unwrap();
+            let back =
+                unpacked(&perigrain_base::base64::decode(text.as_bytes()), like, before.as_ref()).unwrap();
             assert_eq!(back, *like);
             before = Some(back);
         }

@@ -1,4 +1,4 @@
-//! Tags of VTK's XML files, and bytes as base64.
+//! Tags of VTK's XML files.
 
 use perigrain_base::diag::brought::{broken, place};
 use perigrain_base::diag::{Result, Span};
@@ -82,49 +82,9 @@ fn tag(inner: &str, at: Span, end: usize) -> Tag<'_> {
     Tag { name, attributes, closes, empty, at, end }
 }
 
-/// What base64 says, up to the first byte that belongs to none; padding within ends a group, and the next one follows.
-pub fn base64(text: &[u8]) -> Vec<u8> {
-    let value = |b: u8| match b {
-        b'A'..=b'Z' => Some(b - b'A'),
-        b'a'..=b'z' => Some(b - b'a' + 26),
-        b'0'..=b'9' => Some(b - b'0' + 52),
-        b'+' => Some(62),
-        b'/' => Some(63),
-        _ => None,
-    };
-    let mut out = Vec::with_capacity(text.len() / 4 * 3);
-    let (mut group, mut have, mut pad) = (0u32, 0, 0);
-    for &b in text.iter().filter(|b| !b.is_ascii_whitespace()) {
-        let bits = match (value(b), b) {
-            (Some(v), _) => u32::from(v),
-            (None, b'=') => {
-                pad += 1;
-                0
-            }
-            _ => break,
-        };
-        group = group << 6 | bits;
-        have += 1;
-        if have == 4 {
-            let three = [(group >> 16) as u8, (group >> 8) as u8, group as u8];
-            out.extend(&three[..3 - pad.min(2)]);
-            (group, have, pad) = (0, 0, 0);
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn base64_groups_may_be_padded_within() {
-        // RFC 4648, section 10, and two of them behind each other.
-        assert_eq!(base64(b"Zm9vYmFy"), b"foobar");
-        assert_eq!(base64(b" Zm9v\nYg==Zm8="), b"foobfo");
-        assert_eq!(base64(b"Zm9v</Data"), b"foo");
-    }
 
     #[test]
     fn tags_keep_their_attributes() {

@@ -1,7 +1,8 @@
 //! VTK's XML files: tags, and arrays as text, base64 or raw bytes, packed by zlib or not.
 
 use super::numbers::Kind;
-use super::tags::{Tag, base64, next};
+use super::tags::{Tag, next};
+use perigrain_base::base64;
 use perigrain_base::diag::brought::{broken, not_read, place};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_base::memory;
@@ -224,7 +225,7 @@ impl<'a> Document<'a> {
     pub fn numbers(&self, a: &Array) -> Result<Vec<f64>> {
         let bytes = match a.format {
             Format::Text(from, to) => return self.text(from, to),
-            Format::Base64(from, to) => self.unpacked(a, &base64(&self.bytes[from..to]))?,
+            Format::Base64(from, to) => self.unpacked(a, &base64::decode(&self.bytes[from..to]))?,
             Format::Appended(offset) => {
                 let Some((start, raw)) = self.appended else {
                     return fail(Code::INCOMPLETE, a.at, "the file has no <AppendedData>");
@@ -232,7 +233,7 @@ impl<'a> Document<'a> {
                 let Some(rest) = start.checked_add(offset).and_then(|s| self.bytes.get(s..)) else {
                     return fail(Code::INCOMPLETE, a.at, "the file ends before this array's offset");
                 };
-                if raw { self.unpacked(a, rest)? } else { self.unpacked(a, &base64(rest))? }
+                if raw { self.unpacked(a, rest)? } else { self.unpacked(a, &base64::decode(rest))? }
             }
         };
         if bytes.len() % a.kind.size() != 0 {

@@ -1,6 +1,7 @@
 //! VTP files as text, in base64, appended and compressed.
 
 use super::*;
+use perigrain_base::base64::encode as base64;
 use std::io::Write;
 
 const POINTS: [f64; 12] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.25];
@@ -8,19 +9,6 @@ const POINTS: [f64; 12] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0
 fn wanted() -> Vec<Triangle> {
     let [a, b, c, d] = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.25]];
     vec![[a, b, c], [a, c, d]]
-}
-
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::new();
-    for three in bytes.chunks(3) {
-        let whole = three.iter().fold(0u32, |w, b| w << 8 | u32::from(*b)) << (8 * (3 - three.len()));
-        for k in 0..4 {
-            let letter = LETTERS[(whole >> (18 - 6 * k)) as usize & 63] as char;
-            text.push(if k <= three.len() { letter } else { '=' });
-        }
-    }
-    text
 }
 
 fn packed(bytes: &[u8]) -> Vec<u8> {
