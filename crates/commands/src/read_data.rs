@@ -340,13 +340,7 @@ impl Reading {
             let mut new = std::mem::take(&mut data.particles);
             let first = w.n();
             finish(&mut new, bit);
-            if w.particles.is_empty() {
-                w.particles = new;
-            } else {
-                w.particles.append(new);
-            }
-            let n = w.n();
-            w.columns.resize(n);
+            common::join(w, new);
             fill(w, &self.sections, &data.filled, first);
             data.bonds.drain(..).for_each(|(bond, _)| w.bonds.push(bond));
             w.bonds.find_special();

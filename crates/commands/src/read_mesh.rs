@@ -1,5 +1,6 @@
 //! `read_mesh`: a particle for each cell of a volume mesh, at its centroid, with its volume.
 
+use super::geometry::body::{Body, FromFile};
 use super::geometry::enter::{Newcomers, off_plane};
 use super::geometry::file::File;
 use super::geometry::mesh::cell::{Fault, Shape, measure};
@@ -88,33 +89,24 @@ impl CommandStyle for ReadMesh {
             );
             return Err(d.help("add `thickness 1` for volumes that are areas").into());
         }
-        Ok(Box::new(r))
+        Ok(Box::new(FromFile(r)))
     }
 }
 
-impl Act for Reading {
-    fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
+impl Body for Reading {
+    fn making(&self) -> &Making {
+        &self.making
+    }
+
+    fn make(&self, cx: &mut ActCx) -> Result<()> {
         let file = File::find(cx.world, &self.file, "mesh")?;
         cx.say("Reading mesh file ...");
-        self.make(cx, &file).map_err(|e| file.blame(e))
-    }
-
-    /// `perigrain check` reads the file, too, but keeps no particles.
-    fn needs_particles(&self) -> bool {
-        false
-    }
-
-    fn makes_group(&self) -> Option<&str> {
-        self.making.group.as_ref().map(|w| w.text.as_str())
-    }
-
-    fn settles(&self) -> Vec<&'static str> {
-        self.making.settles()
+        self.enter(cx, &file).map_err(|e| file.blame(e))
     }
 }
 
 impl Reading {
-    fn make(&self, cx: &mut ActCx, file: &File) -> Result<()> {
+    fn enter(&self, cx: &mut ActCx, file: &File) -> Result<()> {
         let mesh = mesh::read(file, &self.file.text)?;
         let used = self.used(cx, &mesh)?;
         if let Some((k, first)) = mesh.twice() {

@@ -1,5 +1,6 @@
 //! `read_points`: particles from a table of points, its columns by name.
 
+use super::geometry::body::{Body, FromFile};
 use super::geometry::file::File;
 use super::geometry::points::{Table, no_column};
 use super::geometry::rows::{Property, Rows, is_elsewhere, property};
@@ -74,7 +75,7 @@ impl CommandStyle for ReadPoints {
                 _ => return Err(bad_keyword(a, word, &KEYWORDS, &[])),
             }
         }
-        Ok(Box::new(r))
+        Ok(Box::new(FromFile(r)))
     }
 }
 
@@ -157,7 +158,7 @@ impl Reading {
         Ok((wanted, others))
     }
 
-    fn make(&self, cx: &mut ActCx, file: &File) -> Result<()> {
+    fn enter(&self, cx: &mut ActCx, file: &File) -> Result<()> {
         let text = file.text()?;
         let (names, head) = Table::head(text)?;
         let (wanted, others) = self.wanted(cx, &names, head)?;
@@ -176,20 +177,15 @@ impl Reading {
     }
 }
 
-impl Act for Reading {
-    fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
+impl Body for Reading {
+    fn making(&self) -> &Making {
+        &self.making
+    }
+
+    fn make(&self, cx: &mut ActCx) -> Result<()> {
         let file = File::find(cx.world, &self.file, "table")?;
         cx.say("Reading points file ...");
-        self.make(cx, &file).map_err(|e| file.blame(e))
-    }
-
-    /// `perigrain check` reads the file, too, but keeps no particles.
-    fn needs_particles(&self) -> bool {
-        false
-    }
-
-    fn makes_group(&self) -> Option<&str> {
-        self.making.group.as_ref().map(|w| w.text.as_str())
+        self.enter(cx, &file).map_err(|e| file.blame(e))
     }
 
     fn settles(&self) -> Vec<&'static str> {

@@ -1,5 +1,6 @@
 //! `read_voxels`: particles from an image of grey values, by material.
 
+use super::geometry::body::{Body, FromFile};
 use super::geometry::enter::{Newcomers, off_plane};
 use super::geometry::voxels::blocks::{Blocks, Counter};
 use super::geometry::voxels::ranges::Ranges;
@@ -102,7 +103,7 @@ impl CommandStyle for ReadVoxels {
             return Err(d.help("write for example `types 40:120 1 121:255 2`").into());
         };
         r.ranges = ranges;
-        Ok(Box::new(r))
+        Ok(Box::new(FromFile(r)))
     }
 }
 
@@ -115,24 +116,15 @@ fn spacing(a: &mut Args) -> Result<[f64; 3]> {
     Ok([x, a.positive("the edge of voxels along y")?, a.positive("the edge of voxels along z")?])
 }
 
-impl Act for Reading {
-    fn apply(self: Box<Self>, cx: &mut ActCx) -> Result<()> {
+impl Body for Reading {
+    fn making(&self) -> &Making {
+        &self.making
+    }
+
+    fn make(&self, cx: &mut ActCx) -> Result<()> {
         let mut image = voxels::open(cx.world, &self.file, self.array.as_ref())?;
         cx.say("Reading image ...");
-        self.make(cx, &mut *image)
-    }
-
-    /// `perigrain check` looks at the file, too, but keeps no particles.
-    fn needs_particles(&self) -> bool {
-        false
-    }
-
-    fn makes_group(&self) -> Option<&str> {
-        self.making.group.as_ref().map(|w| w.text.as_str())
-    }
-
-    fn settles(&self) -> Vec<&'static str> {
-        self.making.settles()
+        self.enter(cx, &mut *image)
     }
 }
 
@@ -155,7 +147,7 @@ impl Grid {
 }
 
 impl Reading {
-    fn make(&self, cx: &mut ActCx, image: &mut dyn Image) -> Result<()> {
+    fn enter(&self, cx: &mut ActCx, image: &mut dyn Image) -> Result<()> {
         let info = image.info().clone();
         let Some(spacing) = self.spacing.or(info.spacing) else {
             let text = format!("the image `{}` does not say how large its voxels are", self.file.text);

@@ -252,6 +252,17 @@ pub fn settle(world: &mut World) {
     }
 }
 
+/// Puts new particles behind those that are there; columns of fixes and computes get zeros for them.
+pub fn join(world: &mut World, new: Particles) {
+    if world.particles.is_empty() {
+        world.particles = new;
+    } else {
+        world.particles.append(new);
+    }
+    let n = world.n();
+    world.columns.resize(n);
+}
+
 /// Gives particles the mass that belongs to a density: 4/3 π r³ ρ for one with a radius, else ρ itself.
 pub fn masses_from_density(p: &mut Particles, chosen: &[usize], density: &[f64]) {
     for &i in chosen {

@@ -4,7 +4,7 @@ use super::words::Making;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_styles::{ActCx, common};
-use perigrain_world::{Domain, Particles, World, memory};
+use perigrain_world::{Domain, Particles, memory};
 use std::f64::consts::PI;
 
 /// Particles that are being made: those inside the box, and how many were not.
@@ -102,7 +102,9 @@ impl<'a> Newcomers<'a> {
         }
         self.tell(cx, count, all);
         let w = &mut *cx.world;
-        put(w, std::mem::take(&mut self.particles));
+        common::join(w, std::mem::take(&mut self.particles));
+        w.spread_type_masses();
+        w.touch();
         Ok(first)
     }
 
@@ -178,19 +180,6 @@ impl<'a> Newcomers<'a> {
             cx.say(format!("  type {}: {n} atoms, volume {}", k + 1, general(*sum, 10)));
         }
     }
-}
-
-/// Puts particles behind the present ones.
-fn put(w: &mut World, new: Particles) {
-    if w.particles.is_empty() {
-        w.particles = new;
-    } else {
-        w.particles.append(new);
-    }
-    let n = w.n();
-    w.columns.resize(n);
-    w.spread_type_masses();
-    w.touch();
 }
 
 /// The message about a place beside the plane of a flat scene.

@@ -1,5 +1,6 @@
 //! Bodies from files: what `read_mesh`, `read_points` and `read_voxels` share, and their readers.
 
+pub mod body;
 pub mod enter;
 pub mod file;
 pub mod mesh;
