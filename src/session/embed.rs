@@ -10,6 +10,7 @@ use super::Session;
 use super::flow::LIGHT;
 use crate::graph::catalogue;
 use crate::graph::env::DeckEnv;
+use crate::graph::node::FixNode;
 pub use columns::Column;
 pub use gather::{Order, Rows};
 pub use globals::Global;
@@ -143,10 +144,13 @@ impl Session {
     /// # Errors
     /// No such fix.
     pub fn fix_values(&mut self, id: &str) -> Result<&Slot> {
-        if self.graph.find_fix(id).is_none() {
-            return Err(unknown("fix", id, self.graph.fixes.iter().map(|f| f.id.as_str())));
-        }
+        self.known_fix(id)?;
         self.slot(RefKind::Fix, id)
+    }
+
+    fn known_fix(&self, id: &str) -> Result<&FixNode> {
+        let ids = || self.graph.fixes.iter().map(|f| f.id.as_str());
+        self.graph.find_fix(id).ok_or_else(|| unknown("fix", id, ids()))
     }
 
     fn slot(&mut self, kind: RefKind, id: &str) -> Result<&Slot> {

@@ -36,8 +36,8 @@ impl Style for External {
                    Scalar (extensive): the energy the program says (`fix_external_set_energy_global`), part of the potential \
                    energy unless `fix_modify ID energy no`. The virial it says (`fix_external_set_virial_global`) counts in \
                    pressures, unless `fix_modify ID virial no`. `fix_modify ID vector N`: the fix offers N values of the program (intensive), which \
-                   `fix_external_set_vector` sets. No restart file holds forces or functions. In a terminal nobody hosts the run: \
-                   `pf/array` adds nothing there, and `pf/callback` is refused when the run begins.",
+                   `fix_external_set_vector` sets. Forces and functions do not come back from a restart file. In a terminal nobody hosts the run: \
+                   `pf/array` adds nothing there, and `pf/callback` is refused where it would be called.",
             example: "fix probe grains external pf/array 1",
         }
     }
@@ -171,6 +171,81 @@ impl Declared {
                 );
                 Err(Diagnostic::error(Code::OUTSIDE, None, text).help(help).into())
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_styles::testing::Bench;
+    use perigrain_world::AtomStyle;
+    use std::sync::Arc;
+
+    /// Gives the particle with id k the force (step, k, 0) on top of what it had, and fails in step 3.
+    #[derive(Debug)]
+    struct Program;
+
+    impl Outside for Program {
+        fn call(&self, asked: Asked<'_>) -> Option<std::result::Result<(), String>> {
+            for (f, id) in asked.f.iter_mut().zip(asked.ids) {
+                *f = [asked.step as f64 + f[0], f64::from(*id), 0.0];
+            }
+            Some(if asked.step == 3 { Err("three".into()) } else { Ok(()) })
+        }
+
+        fn told(&self) -> Told {
+            Told { energy: 2.5, virial: [1.0; 6], vector: vec![7.0] }
+        }
+    }
+
+    fn at_step(b: &mut Bench, ops: &mut [Box<dyn Op>], step: i64) -> Result<()> {
+        b.world.particles.f = vec![[1.0, 0.0, 0.0]; 2].into();
+        b.world.clock.step = step;
+        b.stage(ops, Stage::PostForce)
+    }
+
+    #[test]
+    fn forces_are_asked_for_and_added_at_their_intervals() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0; 3]]);
+        let mut fix = b.fix(&External, "pf/callback 2 1").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        let alone = at_step(&mut b, &mut ops, 2).unwrap_err();
+        assert!(alone.to_string().contains("no function to call"), "{alone}");
+        b.world.parts.outside.insert(Key::new(&name("f")), Arc::new(Program));
+        at_step(&mut b, &mut ops, 2).unwrap();
+        assert_eq!(b.world.particles.f, [[3.0, 1.0, 0.0], [3.0, 2.0, 0.0]]);
+        // Not called in step 3, in which it would fail: the forces of step 2 are added again.
+        at_step(&mut b, &mut ops, 3).unwrap();
+        assert_eq!(b.world.particles.f, [[3.0, 1.0, 0.0], [3.0, 2.0, 0.0]]);
+        at_step(&mut b, &mut ops, 4).unwrap();
+        assert_eq!(b.world.particles.f[1], [7.0, 2.0, 0.0]);
+        assert_eq!(b.slot_of("f_f").scalar, 2.5);
+        fix.remove(&mut b.world);
+        assert!(b.world.columns.names().is_empty() && b.world.parts.outside.is_empty());
+        fix = b.fix(&External, "pf/callback 1 1").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        b.world.parts.outside.insert(Key::new(&name("f")), Arc::new(Program));
+        let mut ops = b.seal(&*fix).unwrap();
+        let failed = at_step(&mut b, &mut ops, 3).unwrap_err();
+        assert!(failed.to_string().contains("failed in step 3: three"), "{failed}");
+    }
+
+    #[test]
+    fn arrays_wait_for_their_steps_and_mistakes_are_named() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3], [1.0; 3]]);
+        let fix = b.fix(&External, "pf/array 2").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        b.world.columns.vector(Key::new(&name("f")), 2)[1] = [0.0, 0.0, 5.0];
+        let mut ops = b.seal(&*fix).unwrap();
+        at_step(&mut b, &mut ops, 1).unwrap();
+        assert_eq!(b.world.particles.f, [[1.0, 0.0, 0.0]; 2]);
+        at_step(&mut b, &mut ops, 2).unwrap();
+        assert_eq!(b.world.particles.f, [[1.0, 0.0, 0.0], [1.0, 0.0, 5.0]]);
+        assert!(fix.facts(&b.world).adds_energy);
+        for words in ["", "pf/array", "pf/array 0", "pf/callback 1", "pf/callback 0 1", "pf/file 1"] {
+            assert!(b.fix(&External, words).is_err(), "{words}");
         }
     }
 }

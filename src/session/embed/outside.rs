@@ -1,6 +1,6 @@
 //! Fixes external and the program they talk to.
 
-use super::{Session, unknown};
+use super::Session;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_fixes::external;
 use perigrain_world::{Key, Outside};
@@ -12,13 +12,10 @@ impl Session {
     /// # Errors
     /// No such fix, or one of another style.
     pub fn talk(&mut self, id: &str, program: Arc<dyn Outside>) -> Result<()> {
-        match self.graph.find_fix(id) {
-            None => return Err(unknown("fix", id, self.graph.fixes.iter().map(|f| f.id.as_str()))),
-            Some(node) if node.style != "external" => {
-                let text = format!("fix `{id}` is a fix {}, not a fix external", node.style);
-                return fail(Code::WRONG_KIND, None, text);
-            }
-            Some(_) => {}
+        let style = self.known_fix(id)?.style;
+        if style != "external" {
+            let text = format!("fix `{id}` is a fix {style}, not a fix external");
+            return fail(Code::WRONG_KIND, None, text);
         }
         self.world.parts.outside.insert(Key::new(&external::name(id)), program);
         Ok(())
@@ -34,10 +31,7 @@ impl Session {
     /// # Errors
     /// No such fix, or fewer values.
     pub fn has_value(&self, id: &str, index: usize) -> Result<()> {
-        let Some(node) = self.graph.find_fix(id) else {
-            return Err(unknown("fix", id, self.graph.fixes.iter().map(|f| f.id.as_str())));
-        };
-        let length = node.fix.shape().vector;
+        let length = self.known_fix(id)?.fix.shape().vector;
         if (1..=length).contains(&index) {
             return Ok(());
         }
