@@ -5,7 +5,7 @@ use super::pages;
 use super::syntax::is_word;
 use crate::session::Known;
 use perigrain_base::gate;
-use perigrain_out::image::MAPS;
+use perigrain_out::image::{MAPS, colour_names};
 use std::path::Path;
 
 /// What a candidate is.
@@ -100,7 +100,7 @@ fn possible(typed: &[&str], word: &str, known: &Known, folder: &Path) -> (usize,
         }
         ("dump" | "dump_modify" | "write_dump", k) if k > 2 => match typed[k - 2..] {
             [_, "backcolor" | "backcolor2" | "boxcolor"] | ["acolor", _] => {
-                return (0, of(What::Colour, COLOURS));
+                return (0, of(What::Colour, colour_names()));
             }
             [_, "map"] => return (0, of(What::Colour, MAPS.iter().map(|map| map.name))),
             _ => {}
@@ -125,12 +125,6 @@ fn possible(typed: &[&str], word: &str, known: &Known, folder: &Path) -> (usize,
 const ATTRIBUTES: [&str; 16] = [
     "id", "type", "mass", "radius", "x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz", "omegax", "omegay",
     "omegaz",
-];
-
-/// Colours of pictures by name.
-const COLOURS: [&str; 18] = [
-    "white", "black", "grey", "gray", "silver", "steel", "glass", "red", "green", "blue", "orange", "yellow",
-    "purple", "brown", "pink", "cyan", "gold", "navy",
 ];
 
 /// Where a word stands and what it may draw on.
@@ -310,11 +304,6 @@ mod tests {
         check("run 100 pos", &["run 100 post"]);
         check("run 100 &\n  upt", &["run 100 &\n  upto"]);
         check("thermo_style custom st", &["thermo_style custom step"]);
-    }
-
-    #[test]
-    fn colours_are_those_of_pictures() {
-        assert!(COLOURS.iter().all(|name| perigrain_out::image::colour_by_name(name).is_some()));
     }
 
     #[test]

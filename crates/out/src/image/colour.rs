@@ -126,28 +126,35 @@ pub fn by_kind(kind: usize) -> Colour {
     Colour::hex(COLOURS[kind.saturating_sub(1) % COLOURS.len()])
 }
 
+/// Colours that have names: `0xrrggbb`.
+const NAMES: &[(&str, u32)] = &[
+    ("white", 0xffffff),
+    ("black", 0x000000),
+    ("grey", 0x808080),
+    ("gray", 0x808080),
+    ("silver", 0xc0c0c0),
+    ("steel", 0x8795a1),
+    ("glass", 0xa9c4d6),
+    ("red", 0xd62728),
+    ("green", 0x2ca02c),
+    ("blue", 0x1f77b4),
+    ("orange", 0xff7f0e),
+    ("yellow", 0xf2d024),
+    ("purple", 0x9467bd),
+    ("brown", 0x8c564b),
+    ("pink", 0xe377c2),
+    ("cyan", 0x17becf),
+    ("gold", 0xd4a017),
+    ("navy", 0x1b2a49),
+];
+
+/// The names of colours.
+pub fn colour_names() -> impl Iterator<Item = &'static str> {
+    NAMES.iter().map(|(name, _)| *name)
+}
+
 /// A colour by a plain English name or as `#rrggbb` or `0xrrggbb`.
 pub fn colour_by_name(name: &str) -> Option<Colour> {
-    const NAMES: &[(&str, u32)] = &[
-        ("white", 0xffffff),
-        ("black", 0x000000),
-        ("grey", 0x808080),
-        ("gray", 0x808080),
-        ("silver", 0xc0c0c0),
-        ("steel", 0x8795a1),
-        ("glass", 0xa9c4d6),
-        ("red", 0xd62728),
-        ("green", 0x2ca02c),
-        ("blue", 0x1f77b4),
-        ("orange", 0xff7f0e),
-        ("yellow", 0xf2d024),
-        ("purple", 0x9467bd),
-        ("brown", 0x8c564b),
-        ("pink", 0xe377c2),
-        ("cyan", 0x17becf),
-        ("gold", 0xd4a017),
-        ("navy", 0x1b2a49),
-    ];
     let hex = name.strip_prefix('#').or_else(|| name.strip_prefix("0x"));
     if let Some(digits) = hex.filter(|d| d.len() == 6) {
         return u32::from_str_radix(digits, 16).ok().map(Colour::hex);

@@ -10,7 +10,7 @@ mod shade;
 mod text;
 
 pub use camera::{Camera, View};
-pub use colour::{Colour, MAPS, Map, by_kind, colour_by_name};
+pub use colour::{Colour, MAPS, Map, by_kind, colour_by_name, colour_names};
 pub use overlay::{Legend, ticks};
 
 use raster::Raster;
