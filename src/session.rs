@@ -34,12 +34,13 @@ mod timer;
 mod unused;
 pub mod whole;
 
-use crate::graph::build::{Context, DECLARATIONS, declare};
+use crate::graph::Graph;
+use crate::graph::build::DECLARATIONS;
 use crate::graph::env::DeckEnv;
 pub use crate::graph::keywords::KEYWORDS as THERMO;
-use crate::graph::{Graph, Role};
 pub use commands::OWN;
 pub use embed::{Column, Global, Newcomers, Order, Rows, Told};
+pub use files::folder_of;
 pub use interactive::{Heard, Known, Snapshot};
 pub use measuring::Worked;
 pub use overlay::{Overlay, absolute};
@@ -52,8 +53,7 @@ use perigrain_plan::StepPlan;
 pub use perigrain_plan::run::{Made, Watch};
 use perigrain_world::{Compat, Unseen, World};
 pub use spent::{Part, Spent};
-use std::cell::RefCell;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 pub use sweeping::Swept;
@@ -472,32 +472,6 @@ impl Session {
         }
         Ok(None)
     }
-
-    fn declare(&mut self, cmd: &Command) -> Result<()> {
-        self.thermo_computes();
-        let (notes, uses) = (RefCell::default(), RefCell::default());
-        let cx = Context { span: cmd.span, checking: self.unsure(), notes: &notes, uses: &uses };
-        if cmd.name.text == "fix" {
-            self.graph.later = later::defined(&self.sources, &mut self.later);
-        }
-        let outcome = declare(&mut self.graph, &mut self.world, cmd, &cx);
-        self.graph.later = Default::default();
-        self.notes.append(notes.into_inner());
-        if cmd.name.text == "pair_style" {
-            self.pairless = outcome.is_err();
-        }
-        let declared = outcome?;
-        if let Some(name) = &declared.deletes {
-            self.graph.lines.delete(name);
-        }
-        self.record(cmd, Role::Declare, declared.provides, uses.into_inner(), vec![]);
-        Ok(())
-    }
-}
-
-/// The folder a deck's relative names refer to: its own.
-pub fn folder_of(deck: &Path) -> PathBuf {
-    deck.parent().map(Path::to_path_buf).unwrap_or_default()
 }
 
 fn refuse<T>(code: Code, span: Span, text: impl Into<String>) -> Result<T> {

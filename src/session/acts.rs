@@ -1,9 +1,9 @@
-//! Lines that change the scene, done at once; where a deck is only looked at, only as far as the scene is known.
+//! Declarations, and lines that change the scene, done at once; where a deck is only looked at, only as far as the scene is known.
 
 use super::planning::hangs_on_a_run;
-use super::{Mode, Session, commands};
+use super::{Mode, Session, commands, later};
 use crate::graph::Role;
-use crate::graph::build::Context;
+use crate::graph::build::{Context, declare};
 use crate::graph::env::DeckValues;
 use crate::graph::regions::place_now;
 use perigrain_base::diag::Result;
@@ -14,6 +14,31 @@ use std::cell::RefCell;
 use std::sync::Arc;
 
 impl Session {
+    /// Puts a declaration into the graph.
+    ///
+    /// # Errors
+    /// Every mistake in the line.
+    pub(super) fn declare(&mut self, cmd: &Command) -> Result<()> {
+        self.thermo_computes();
+        let (notes, uses) = (RefCell::default(), RefCell::default());
+        let cx = Context { span: cmd.span, checking: self.unsure(), notes: &notes, uses: &uses };
+        if cmd.name.text == "fix" {
+            self.graph.later = later::defined(&self.sources, &mut self.later);
+        }
+        let outcome = declare(&mut self.graph, &mut self.world, cmd, &cx);
+        self.graph.later = Default::default();
+        self.notes.append(notes.into_inner());
+        if cmd.name.text == "pair_style" {
+            self.pairless = outcome.is_err();
+        }
+        let declared = outcome?;
+        if let Some(name) = &declared.deletes {
+            self.graph.lines.delete(name);
+        }
+        self.record(cmd, Role::Declare, declared.provides, uses.into_inner(), vec![]);
+        Ok(())
+    }
+
     /// Carries out a line that changes the scene.
     ///
     /// # Errors

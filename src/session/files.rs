@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic};
 use perigrain_lang::Files;
 use perigrain_world::reading::{ReadFiles, place};
 use perigrain_world::{Promise, Promises};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Files as the system has them.
 pub(super) struct RealFiles<'a> {
@@ -55,4 +55,9 @@ pub(super) fn shared(path: &Path) -> Diagnostic {
     );
     Diagnostic::warning(Code::SUSPICIOUS, None, text)
         .help("start each run in a folder of its own, or with `-log FILE`")
+}
+
+/// The folder a deck's relative names refer to: its own.
+pub fn folder_of(deck: &Path) -> PathBuf {
+    deck.parent().map(Path::to_path_buf).unwrap_or_default()
 }

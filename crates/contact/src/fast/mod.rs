@@ -4,7 +4,7 @@
 //! pairs within the skin, and of those a shorter list of pairs within a thin second skin, which holds what contacts remember.
 //! Where sizes differ much, slabs are as thick as small grains reach, and pairs with large ones have lists of their own.
 //! A step tests the distances of the short list and evaluates the law for four or eight pairs at a time ([`form`]), stage by
-//! stage ([`batch`]); slabs in two colours keep the order of additions for any number of threads.
+//! stage (`batch`); slabs in two colours keep the order of additions for any number of threads.
 
 mod batch;
 mod bidisperse;

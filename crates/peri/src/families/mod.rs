@@ -285,7 +285,7 @@ impl PeriView<'_> {
     }
 }
 
-/// All families of a scene: state only; [`crate::build`] makes them, [`crate::lattice`] and [`crate::list`] sweep them.
+/// All families of a scene: state only; [`crate::build`] makes them, `lattice` and `list` sweep them.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Families {
     /// Coefficients in force.
