@@ -6,7 +6,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::pays;
+use super::{CHUNK, pays};
 use rayon::{ThreadPool, Yield};
 
 static POOL: RwLock<Option<Arc<Pool>>> = RwLock::new(None);
@@ -165,9 +165,14 @@ pub(super) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnc
     rayon::join(first, second)
 }
 
-/// Does two things at the same time, if there are threads.
-pub fn both<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
-    enter(2, |threaded| if threaded { join(a, b) } else { (a(), b()) })
+/// Does two things at the same time, if there are threads and more rows to work on than one chunk: another thread takes longer to
+/// see work than a few grains take.
+pub fn both<A: Send, B: Send>(
+    rows: usize,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    enter(rows.div_ceil(CHUNK), |threaded| if threaded { join(a, b) } else { (a(), b()) })
 }
 
 /// Calls `f` once for each of `n` parts, in any order; parts must not write what others touch.

@@ -254,9 +254,10 @@ impl<L: ContactLaw> Fast<L> {
         };
         let remember = || self.remember(grains.tag, known);
         // Work of one thread each.
+        let n = grains.x.len();
         let large =
             || if edge == far { vec![] } else { self.find_large(grains, (frame.period, reach), keep) };
-        let ((slabs, book), large) = par::both(|| par::both(sort, remember), large);
+        let ((slabs, book), large) = par::both(n, || par::both(n, sort, remember), large);
         // Where several laws stick, who is listed decides which contacts are evaluated together.
         let whole = self.laws.distinct.len() == 1 && self.upkeep.takes_whole(self.pairs());
         // The book has what they knew: room for what is made now.
