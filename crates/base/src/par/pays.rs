@@ -31,6 +31,9 @@ const SPAN: Duration = Duration::from_millis(5);
 const SETTLING: (u32, Duration) = (3, Duration::from_millis(1));
 /// Steps that take longer are many threads' work on any machine, and a trial would be dear.
 const LONG: Duration = Duration::from_millis(10);
+/// To look at the clock takes some 30 ns: of shorter steps than this several are timed together, [`MOST_TOGETHER`] at most.
+const WORTH_A_LOOK: Duration = Duration::from_micros(4);
+const MOST_TOGETHER: u32 = 16;
 /// Of two that take nearly the same time the one that is in use stays.
 const CLEARLY: f64 = 0.95;
 /// And of two that differ by more than this the trial has been no accident.
@@ -48,8 +51,8 @@ struct Sum {
 }
 
 impl Sum {
-    fn add(&mut self, time: Duration) {
-        self.steps += 1;
+    fn add(&mut self, steps: u32, time: Duration) {
+        self.steps += steps;
         self.time += time;
     }
 
@@ -87,6 +90,10 @@ pub struct Trial {
     phase: Phase,
     /// End of the last step, where the clock was looked at.
     last: Option<Instant>,
+    /// Steps since then, of how many, and whether lists were made in one.
+    together: u32,
+    look_after: u32,
+    anew: bool,
     /// When the present window began, and its steps so far.
     since: Instant,
     seen: u32,
@@ -110,7 +117,17 @@ impl Trial {
         ALONE.store(found.alone, Ordering::Relaxed);
         SHARED.store(false, Ordering::Relaxed);
         let now = Instant::now();
-        Self { found, phase: Phase::Before, last: None, since: now, seen: 0, sums: Default::default() }
+        Self {
+            found,
+            phase: Phase::Before,
+            last: None,
+            together: 0,
+            look_after: 1,
+            anew: false,
+            since: now,
+            seen: 0,
+            sums: Default::default(),
+        }
     }
 
     /// A step is made; `anew`: lists were made in it, which is another kind of work.
@@ -118,11 +135,17 @@ impl Trial {
     pub fn step(&mut self, anew: bool) {
         // Where no loop has parts to share there is nothing to try, and to look at the clock takes longer than small loops.
         if SHARED.load(Ordering::Relaxed) {
-            self.timed(anew, Instant::now());
+            self.together += 1;
+            self.anew |= anew;
+            if self.together >= self.look_after {
+                self.timed(Instant::now());
+            }
         }
     }
 
-    fn timed(&mut self, anew: bool, now: Instant) {
+    /// The steps since the last look end now.
+    fn timed(&mut self, now: Instant) {
+        let (steps, anew) = (std::mem::take(&mut self.together), std::mem::take(&mut self.anew));
         let Some(last) = self.last.replace(now) else {
             self.open(now);
             return;
@@ -130,7 +153,7 @@ impl Trial {
         self.seen += 1;
         let waits = self.seen <= SETTLING.0 && now - self.since < SETTLING.1;
         if !waits {
-            self.sums[usize::from(!anew)].add(now - last);
+            self.sums[usize::from(!anew)].add(steps, now - last);
         }
         if now - self.since >= SPAN {
             self.close();
@@ -150,6 +173,10 @@ impl Trial {
     fn close(&mut self) {
         let [anew, quiet] = self.sums;
         let quiet = quiet.mean();
+        if let Some(mean) = quiet {
+            let together = WORTH_A_LOOK.as_secs_f64() / mean;
+            self.look_after = together.clamp(1.0, f64::from(MOST_TOGETHER)) as u32;
+        }
         self.phase = match (self.phase, quiet) {
             (Phase::Rest(left), _) if left > 0 => Phase::Rest(left - 1),
             (Phase::Rest(_), _) => Phase::Before,
@@ -201,7 +228,8 @@ mod tests {
             let takes = if is_alone { alone } else { together };
             now += Duration::from_secs_f64(takes * 1e-3);
             made[usize::from(is_alone)] += takes;
-            trial.timed(false, now);
+            trial.together += 1;
+            trial.timed(now);
         }
         made[1] / (made[0] + made[1])
     }
