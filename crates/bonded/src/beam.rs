@@ -82,6 +82,18 @@ impl Potential {
         [borne.tension, borne.shear, borne.bend, borne.twist, load(self, k, own, c.area, &borne)]
     }
 
+    /// How much of its strength a bond of this radius and factor uses up that bears a tension, a shear force, moments of bending and
+    /// twist.
+    pub fn share(
+        &self,
+        k: &Coeffs,
+        [radius, factor]: [f64; 2],
+        [tension, shear, bend, twist]: [f64; 4],
+    ) -> f64 {
+        let borne = Borne { tension, shear, bend, twist };
+        load(self, k, &[radius, factor, 0.0, 0.0], PI * radius * radius, &borne)
+    }
+
     /// [`Beam::stiffness`] for lanes.
     #[inline(always)]
     fn section<R: Real>(&self, k: &Coeffs, radius: R, rest: R) -> Section<R> {

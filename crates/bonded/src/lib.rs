@@ -24,6 +24,7 @@ pub mod six;
 pub mod spring;
 pub mod ste;
 pub mod stiffness;
+pub mod strength;
 pub mod sweep;
 pub mod tensor;
 pub mod weibull;
@@ -34,5 +35,7 @@ mod lattices;
 mod tests_contacts;
 #[cfg(test)]
 mod tests_statics;
+#[cfg(test)]
+mod tests_strength;
 #[cfg(test)]
 mod tests_tensors;

@@ -3,7 +3,7 @@
 //! K. Jarolin, M. Dosta, Comput. Part. Mech. 8 (2021), Eq. 5–10, with rotations: the tangent at rest of beams between spheres.
 
 use super::pairs::Pairs;
-use super::six::{Matrix6, Six};
+use super::six::{Matrix6, Packed, Six, packed};
 use super::stiffness::Stiffness;
 use perigrain_base::math::forest;
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale, sub};
@@ -186,27 +186,46 @@ impl Network {
         par::reduce(self.bonds(), chunk, plus).unwrap_or_default()
     }
 
+    /// What a bond bears in a field: tension (below 0 where it is pressed) and shear force [force], moments of bending and of twist at its
+    /// middle [force length], these three without a sign.
+    #[inline(always)]
+    pub fn borne(&self, bond: usize, u: &[Six]) -> Modes {
+        let n = self.n[bond];
+        let r = self.resist(bond, &self.moved(bond, u, None));
+        let (tension, twist) = (dot(n, r.force), dot(n, r.moment));
+        let across = |a: Vec3, along: f64| length(sub(a, scale(along, n)));
+        [tension, across(r.force, tension), across(r.moment, twist), twist.abs()]
+    }
+
     /// The 6 × 6 blocks of K on its diagonal: [[K_t, −K_t X], [−Xᵀ K_t, Xᵀ K_t X + K_r]] at the lower end of a bond with X = ½ [d]×, the
     /// other sign beside the diagonal at the upper one.
-    pub fn blocks(&self) -> Vec<[f64; 21]> {
+    pub fn blocks(&self) -> Vec<Packed> {
         let mut out = vec![[0.0; 21]; self.particles];
-        self.pairs.gather(&mut out, |k, _| {
-            let columns = |lower: bool| -> Matrix6 {
-                std::array::from_fn(|c| {
-                    let mut unit = [0.0; 6];
-                    unit[c] = 1.0;
-                    let still = [0.0; 6];
-                    if lower {
-                        let r = self.resist(k, &Moved::new(&unit, &still));
-                        return row(r.force.map(|a| -a), add(r.moment, r.couple).map(|a| -a));
-                    }
-                    let r = self.resist(k, &Moved::new(&still, &unit));
-                    row(r.force, sub(r.moment, r.couple))
-                })
-            };
-            [super::six::packed(&columns(true)), super::six::packed(&columns(false))]
-        });
+        self.pairs.gather(&mut out, |k, _| [self.end(k, true), self.end(k, false)]);
         out
+    }
+
+    /// That of one particle, whose bonds these are.
+    pub fn block(&self, place: u32, bonds: &[u32]) -> Packed {
+        bonds.iter().map(|k| *k as usize).fold([0.0; 21], |sum, k| {
+            let more = self.end(k, self.pairs.ends[k][0] == place);
+            std::array::from_fn(|c| sum[c] + more[c])
+        })
+    }
+
+    /// What the lower end of a bond, or the upper one, adds to the block of its particle.
+    fn end(&self, bond: usize, lower: bool) -> Packed {
+        let columns: Matrix6 = std::array::from_fn(|c| {
+            let (mut unit, still) = ([0.0; 6], [0.0; 6]);
+            unit[c] = 1.0;
+            if lower {
+                let r = self.resist(bond, &Moved::new(&unit, &still));
+                return row(r.force.map(|a| -a), add(r.moment, r.couple).map(|a| -a));
+            }
+            let r = self.resist(bond, &Moved::new(&still, &unit));
+            row(r.force, sub(r.moment, r.couple))
+        });
+        packed(&columns)
     }
 
     /// For each particle the smallest place in the piece that bonds tie it to.

@@ -34,6 +34,12 @@ impl Blocks {
         Self { inverse, held, loose: loose.unwrap_or(0) }
     }
 
+    /// Takes another block for a particle of which the mask holds these components.
+    pub fn renew(&mut self, particle: usize, block: &Packed, mask: u8) {
+        let found = invert(&full(block), mask);
+        (self.inverse[particle], self.held[particle]) = (found.inverse, mask | found.without);
+    }
+
     /// M⁻¹ r of a particle.
     #[inline(always)]
     pub fn apply(&self, particle: usize, r: &Six) -> Six {

@@ -32,6 +32,21 @@ pub struct Standing {
     pub masses: [f64; 2],
 }
 
+/// A bond that bears something, of which is asked how near it is to its strength.
+#[derive(Clone, Copy, Debug)]
+pub struct Loaded {
+    /// Type.
+    pub kind: u16,
+    /// Length at rest [length].
+    pub length: f64,
+    /// Radii of the ends [length].
+    pub radii: [f64; 2],
+    /// Their IDs.
+    pub ids: [u32; 2],
+    /// Tension, below 0 where it is pressed, and shear force [force]; moments of bending and twist at its middle [force length].
+    pub bears: [f64; 4],
+}
+
 /// What stands against the motion of a bond's ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Swing {
@@ -104,6 +119,11 @@ pub trait BondForce: DynClone + Send + Sync {
     /// Whether bonds of a type may break, after which the pair style acts between their ends.
     fn may_break(&self, _kind: u16) -> bool {
         false
+    }
+
+    /// How much of its strength a bond has used up, proportional to what it bears while that is little; `None` where nothing breaks it.
+    fn used(&self, _bond: &Loaded) -> Option<f64> {
+        None
     }
 
     /// The coefficients that `calibrate fit` may vary, by name.

@@ -18,6 +18,8 @@ use perigrain_styles::{ActCx, BondForce};
 use std::sync::Arc;
 use std::time::Instant;
 
+/// The coefficient of bonds that break which multiplies all their strengths.
+const STRENGTH: &str = "strength";
 /// More solutions than this mean that the targets cannot be reached together.
 const MOST: usize = 30;
 /// No step changes a coefficient by more than this factor's logarithm.
@@ -51,7 +53,7 @@ pub fn run(
     loop {
         let now = tuned(style, words, &params)?;
         scene.restyle(now.as_ref());
-        model.solve(&scene, words, cx.span)?;
+        model.solve(&scene, words, now.as_ref(), cx.span)?;
         solves += 1;
         let wrong = misses(words, &model);
         let worst = wrong.iter().fold(0.0f64, |most, a| most.max(a.abs()));
@@ -224,6 +226,11 @@ fn slopes(
     for (row, target) in words.targets.iter().enumerate() {
         for (column, change) in changes.iter().enumerate() {
             let poisson = target.quantity == Quantity::Poisson;
+            if target.quantity == Quantity::Strength {
+                // Proportional to all strengths; what else changes it is made up for in the next solve.
+                out[(row, column)] = if words.vary[column].name == STRENGTH { 1.0 } else { 0.0 };
+                continue;
+            }
             out[(row, column)] =
                 match (uniform(change, scene).filter(|_| model.linear()), model.value(target.quantity)) {
                     (Some(_), _) if poisson => 0.0,
@@ -268,6 +275,7 @@ fn name(quantity: Quantity) -> &'static str {
         Quantity::Stiffness => "K",
         Quantity::Young => "E",
         Quantity::Poisson => "nu",
+        Quantity::Strength => "strength",
     }
 }
 

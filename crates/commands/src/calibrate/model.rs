@@ -7,6 +7,7 @@ use super::found::NUMBERS;
 use super::scene::Scene;
 use super::setup::{Response, Setup};
 use super::ste::{Estimated, Estimator};
+use super::strength::{self, Tested, broken};
 use super::touch::Hertz;
 use super::words::{Quantity, Solver, Words};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -17,6 +18,7 @@ use perigrain_bonded::pcg::solve;
 use perigrain_bonded::periodic::Cell;
 use perigrain_bonded::shares::change;
 use perigrain_bonded::six::{Matrix6, Six};
+use perigrain_styles::BondForce;
 use perigrain_world::World;
 
 /// A body with its latest solution.
@@ -33,7 +35,7 @@ pub struct Model {
 }
 
 enum Kind {
-    Dsm { setup: Box<Setup>, solved: Option<Box<Response>>, adjoint: Option<Vec<Six>> },
+    Dsm { setup: Box<Setup>, solved: Option<Box<Response>>, adjoint: Option<Vec<Six>>, strength: f64 },
     Periodic { volume: f64, cell: Option<Cell> },
     Ste { body: Box<Estimator>, found: Option<Box<Estimated>> },
 }
@@ -53,12 +55,19 @@ impl Model {
         let kind = match words.solver {
             Solver::Dsm => {
                 let setup = Box::new(Setup::new(w, scene, group, words, hertz, span)?);
-                if words.aims(Quantity::Poisson) && !setup.linear() {
-                    let text = "`target nu` is for bonds alone, and contacts act here";
-                    let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
-                    return Err(d.help("say `contacts no`, or give K or E as the target").into());
+                if words.aims(Quantity::Strength) {
+                    strength::refuse_walls(words)?;
+                    refuse_contacts(&setup, "strength", span)?;
                 }
-                Kind::Dsm { setup, solved: None, adjoint: None }
+                if words.aims(Quantity::Poisson) {
+                    refuse_contacts(&setup, "nu", span)?;
+                }
+                Kind::Dsm { setup, solved: None, adjoint: None, strength: f64::NAN }
+            }
+            _ if words.aims(Quantity::Strength) => {
+                let text = "`target strength` needs a body between ends";
+                let d = Diagnostic::error(Code::CONFLICT, span, text);
+                return Err(d.help("take `method dsm`, which is what a fit does if nothing is said").into());
             }
             Solver::Periodic => Kind::Periodic { volume: cell(w, scene, span)?, cell: None },
             Solver::Ste => {
@@ -78,18 +87,24 @@ impl Model {
         }
     }
 
-    /// Solves at the present stiffnesses of the bonds, from the latest field.
+    /// Solves at the present stiffnesses and strengths of the bonds, from the latest field.
     ///
     /// # Errors
     /// What the solvers refuse.
-    pub fn solve(&mut self, scene: &Scene, words: &Words, span: Span) -> Result<()> {
+    pub fn solve(&mut self, scene: &Scene, words: &Words, style: &dyn BondForce, span: Span) -> Result<()> {
         let tol = tolerance(words);
         match &mut self.kind {
-            Kind::Dsm { setup, solved, adjoint } => {
+            Kind::Dsm { setup, solved, adjoint, strength } => {
                 let from = solved.take().map(|s| s.field);
                 let found = setup.solve(scene, words, tol, from);
                 self.iterations += found.iterations;
                 self.done &= found.done;
+                if words.aims(Quantity::Strength) {
+                    let path = broken(setup, scene, words, style, found.field.clone(), span)?;
+                    self.iterations += path.iterations;
+                    self.done &= path.done;
+                    *strength = Tested::new(setup, &path).stress();
+                }
                 (*solved, *adjoint) = (Some(Box::new(found)), None);
             }
             Kind::Periodic { volume, cell } => {
@@ -124,6 +139,10 @@ impl Model {
             Quantity::Stiffness => k,
             Quantity::Young => young,
             Quantity::Poisson => poisson,
+            Quantity::Strength => match &self.kind {
+                Kind::Dsm { strength, .. } => *strength,
+                _ => f64::NAN,
+            },
         }
     }
 
@@ -169,7 +188,7 @@ impl Model {
     ) -> Result<f64> {
         let network = &scene.network;
         match &mut self.kind {
-            Kind::Dsm { setup, solved: Some(s), adjoint } => {
+            Kind::Dsm { setup, solved: Some(s), adjoint, .. } => {
                 let u = &s.field;
                 if quantity != Quantity::Poisson {
                     let moved = |k: usize| [network.moved(k, u, None); 2];
@@ -214,10 +233,20 @@ impl Model {
     }
 }
 
+/// What contacts do is not proportional to the load.
+fn refuse_contacts(setup: &Setup, target: &str, span: Span) -> Result<()> {
+    if setup.linear() {
+        return Ok(());
+    }
+    let text = format!("`target {target}` is for bonds alone, and contacts act here");
+    let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
+    Err(d.help("say `contacts no`, or give K or E as the target").into())
+}
+
 /// To which part of the energy a solution is to be known: an error of the field is the root of that of the energy, and Poisson's ratio is of
 /// the field.
 fn tolerance(words: &Words) -> f64 {
-    let field = words.aims(Quantity::Poisson);
+    let field = words.aims(Quantity::Poisson) || words.aims(Quantity::Strength);
     (PART * if field { words.tol.powi(2) } else { words.tol }).max(1e-14)
 }
 
@@ -233,6 +262,7 @@ fn pick(quantity: Quantity, values: &[f64]) -> f64 {
         Quantity::Stiffness => values[0].ln(),
         Quantity::Young => values[1].ln(),
         Quantity::Poisson => values[2],
+        Quantity::Strength => f64::NAN,
     }
 }
 

@@ -20,7 +20,7 @@ pub struct Scene {
     pub radius: Vec<f64>,
     /// Its bonds.
     pub network: Network,
-    /// What of each bond its stiffness depends on, in the order of the network; only where bonds are to be varied.
+    /// What a bond style is asked about each bond, in the order of the network; only where bonds are to be varied or to break.
     pub bonds: Vec<Said>,
     /// Edges of the box, zero where it does not repeat.
     pub period: Vec3,
@@ -35,10 +35,12 @@ pub struct Said {
     pub length: f64,
     /// Radii of the ends [length].
     pub radii: [f64; 2],
+    /// Their IDs.
+    pub ids: [u32; 2],
 }
 
 impl Scene {
-    /// Of the particles of a group and the bonds that act between them, which may be going to be `varied`.
+    /// Of the particles of a group and the bonds that act between them, which may be going to be `varied` or to break.
     ///
     /// # Errors
     /// No bonds, bonds without a stiffness, lost ends.
@@ -68,6 +70,7 @@ impl Scene {
                 kind: bond.kind,
                 length,
                 radii: bond.ends.map(|i| p.radius.get(i).copied().unwrap_or(0.0)),
+                ids: w.bonds.list[*at].ends,
             }
         };
         for k in 0..bonds.len() {

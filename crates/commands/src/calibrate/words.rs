@@ -2,8 +2,12 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_bonded::ends::Hold;
+use perigrain_bonded::strength::Avalanche;
 use perigrain_lang::Args;
 use perigrain_styles::common::axis;
+
+/// The part of what a break changes to which it is found, if nothing is said.
+pub const BREAKING: f64 = 1e-4;
 
 /// How the cross-section of a sample is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +58,8 @@ pub enum Quantity {
     Young,
     /// ν.
     Poisson,
+    /// The largest force over the section.
+    Strength,
 }
 
 /// A number to reach.
@@ -119,6 +125,14 @@ pub struct Words {
     pub vary: Vec<Vary>,
     /// What solves for a fit.
     pub solver: Solver,
+    /// Breaking ends once the force is below this part of the largest one.
+    pub until: f64,
+    /// Or after so many breaks.
+    pub most: usize,
+    /// What breaks together.
+    pub avalanche: Avalanche,
+    /// A file for the breaks, and its word.
+    pub curve: Option<(String, Span)>,
 }
 
 const DSM: &[&str] = &[
@@ -139,6 +153,22 @@ const DSM: &[&str] = &[
 ];
 const STE: &[&str] =
     &["axis", "strain", "low", "high", "thick", "contacts", "order", "slabs", "map", "shape", "length"];
+const STRENGTH: &[&str] = &[
+    "axis",
+    "strain",
+    "low",
+    "high",
+    "thick",
+    "rotations",
+    "tol",
+    "shape",
+    "length",
+    "fields",
+    "until",
+    "most",
+    "avalanche",
+    "curve",
+];
 const PERIODIC: &[&str] = &["rotations", "tol"];
 const FIT: &[&str] = &[
     "target",
@@ -156,6 +186,9 @@ const FIT: &[&str] = &[
     "shape",
     "length",
     "order",
+    "until",
+    "most",
+    "avalanche",
 ];
 
 /// What of [`Words`] a kind of calibration has.
@@ -164,6 +197,7 @@ pub fn keywords(kind: &str) -> &'static [&'static str] {
         "dsm" => DSM,
         "ste" => STE,
         "periodic" => PERIODIC,
+        "strength" => STRENGTH,
         _ => FIT,
     }
 }
@@ -183,7 +217,11 @@ impl Words {
             rotations: true,
             contacts: None,
             relaxed: true,
-            tol: if kind == "fit" { 0.005 } else { 0.01 },
+            tol: match kind {
+                "fit" => 0.005,
+                "strength" => BREAKING,
+                _ => 0.01,
+            },
             bound: None,
             method: Method::Pcg,
             shape: Shape::Block,
@@ -195,6 +233,10 @@ impl Words {
             targets: vec![],
             vary: vec![],
             solver: Solver::Dsm,
+            until: 0.5,
+            most: usize::MAX,
+            avalanche: Avalanche::default(),
+            curve: None,
         };
         let known = keywords(kind);
         while let Some(word) = a.next() {
@@ -222,8 +264,9 @@ impl Words {
         word: &perigrain_lang::Word,
         kind: &str,
     ) -> perigrain_base::diag::Diagnostics {
-        let elsewhere =
-            ["dsm", "ste", "periodic", "fit"].into_iter().find(|k| keywords(k).contains(&word.text.as_str()));
+        let elsewhere = ["dsm", "ste", "periodic", "strength", "fit"]
+            .into_iter()
+            .find(|k| keywords(k).contains(&word.text.as_str()));
         match elsewhere {
             Some(other) => {
                 let text = format!("`{}` does not concern `calibrate {kind}`", word.text);
@@ -256,6 +299,7 @@ impl Words {
                 }
             }
             "method" => self.method = method(a)?,
+            "until" | "most" | "avalanche" | "curve" => self.breaking(a, name)?,
             "shape" | "length" | "fields" | "order" | "slabs" | "map" => self.measure(a, name)?,
             "target" => self.targets.push(target(a)?),
             _ => self.vary(a, types)?,
@@ -283,6 +327,28 @@ impl Words {
             _ => {
                 self.slabs =
                     Some(if a.eat("auto") { None } else { Some(a.positive("the height of a slab")?) })
+            }
+        }
+        Ok(())
+    }
+
+    fn breaking(&mut self, a: &mut Args, name: &str) -> Result<()> {
+        let span = a.here();
+        match name {
+            "until" => {
+                self.until = a.non_negative("the part of the largest force")?;
+                if self.until >= 1.0 {
+                    return fail(Code::BAD_VALUE, span, "the part of the largest force is to be below 1");
+                }
+            }
+            "avalanche" => {
+                let one = a.choice("what breaks in an avalanche", &["one", "all"])? == "one";
+                self.avalanche = if one { Avalanche::One } else { Avalanche::All };
+            }
+            "most" => self.most = a.integer_from(1, "the number of breaks")? as usize,
+            _ => {
+                let word = a.expect("a file for the breaks")?;
+                self.curve = Some((word.text.clone(), word.span));
             }
         }
         Ok(())
@@ -353,10 +419,11 @@ fn method(a: &mut Args) -> Result<Method> {
 }
 
 fn target(a: &mut Args) -> Result<Target> {
-    let quantity = match a.choice("quantity", &["K", "E", "nu"])? {
+    let quantity = match a.choice("quantity", &["K", "E", "nu", "strength"])? {
         "K" => Quantity::Stiffness,
         "E" => Quantity::Young,
-        _ => Quantity::Poisson,
+        "nu" => Quantity::Poisson,
+        _ => Quantity::Strength,
     };
     Ok(Target { quantity, value: a.positive("the value to reach")? })
 }

@@ -12,7 +12,7 @@ use perigrain_bonded::stiffness::Stiffness;
 use perigrain_bonded::weibull;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::bond::{Standing, Swing};
+use perigrain_styles::bond::{Loaded, Standing, Swing};
 use perigrain_styles::matter::Masses;
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::field::{Fields, KIND, MASS, OMEGA, QUAT, RADIUS, TYPE_MASS};
@@ -193,6 +193,13 @@ impl BondForce for Declared {
         self.coeffs(kind).is_some_and(|k| k.strength != [f64::INFINITY; 2])
     }
 
+    fn used(&self, bond: &Loaded) -> Option<f64> {
+        let k = self.coeffs(bond.kind).filter(|k| k.strength != [f64::INFINITY; 2])?;
+        let line = self.types.get(&bond.kind)?;
+        let factor = line.weibull.map_or(1.0, |(m, seed)| weibull::strength(m, seed, bond.ids));
+        Some(self.law.share(&k, [line.radius.of(bond.radii), factor], bond.bears))
+    }
+
     fn swing(&self, bond: &Standing) -> Option<Swing> {
         let line = self.types.get(&bond.kind)?;
         let stiffness = self.stiffness(bond.kind, bond.length, bond.radii)?;
@@ -212,7 +219,7 @@ impl BondForce for Declared {
     }
 
     fn tunable(&self) -> &'static [&'static str] {
-        &["E", "nu", "radius"]
+        &["E", "nu", "radius", "strength"]
     }
 
     fn tuned(&self, name: &str, kind: u16, factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
@@ -222,6 +229,11 @@ impl BondForce for Declared {
             "E" => &mut line.coeffs.elastic[0],
             "nu" => &mut line.coeffs.elastic[1],
             "radius" => line.radius.number(),
+            "strength" => {
+                // Both, so that they stay in proportion; what does not break has none to vary.
+                line.coeffs.strength[1] *= factor;
+                Some(&mut line.coeffs.strength[0]).filter(|s| s.is_finite())?
+            }
             _ => return None,
         };
         *value *= factor;

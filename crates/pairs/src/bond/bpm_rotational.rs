@@ -12,7 +12,7 @@ use perigrain_bonded::rotational::{Coeffs, Rotational};
 use perigrain_bonded::stiffness::Stiffness;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::bond::{Standing, Swing};
+use perigrain_styles::bond::{Loaded, Standing, Swing};
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::field::{Fields, OMEGA, QUAT};
 use perigrain_world::{Bond, World};
@@ -211,6 +211,12 @@ impl BondForce for Declared {
         self.options.breaks && self.types.contains_key(&kind)
     }
 
+    fn used(&self, bond: &Loaded) -> Option<f64> {
+        let k = self.types.get(&bond.kind).filter(|_| self.options.breaks)?.strength;
+        let [tension, shear, bend, twist] = bond.bears;
+        Some((tension / k.normal + shear / k.shear + bend / k.bend + twist / k.twist).max(0.0))
+    }
+
     fn swing(&self, bond: &Standing) -> Option<Swing> {
         let stiffness = self.stiffness(bond.kind, bond.length, bond.radii)?;
         let d = self.types.get(&bond.kind)?.damping;
@@ -219,7 +225,7 @@ impl BondForce for Declared {
     }
 
     fn tunable(&self) -> &'static [&'static str] {
-        &["kr", "ks", "kt", "kb"]
+        &["kr", "ks", "kt", "kb", "strength"]
     }
 
     fn tuned(&self, name: &str, kind: u16, factor: f64) -> Option<(Box<dyn BondForce>, f64)> {
@@ -230,6 +236,12 @@ impl BondForce for Declared {
             "ks" => &mut k.stiffness.shear,
             "kt" => &mut k.stiffness.twist,
             "kb" => &mut k.stiffness.bend,
+            "strength" => {
+                // All four, so that they stay in proportion.
+                k.strength = k.strength.times(factor);
+                let value = k.strength.normal;
+                return Some((Box::new(tuned), value));
+            }
             _ => return None,
         };
         *value *= factor;

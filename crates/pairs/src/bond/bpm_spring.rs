@@ -11,7 +11,7 @@ use perigrain_bonded::spring::{self, Breaking};
 use perigrain_bonded::sweep::Body;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::bond::{Standing, Stiffness, Swing};
+use perigrain_styles::bond::{Loaded, Standing, Stiffness, Swing};
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::{Bond, World};
 use std::collections::BTreeMap;
@@ -125,6 +125,12 @@ impl BondForce for Declared {
 
     fn may_break(&self, kind: u16) -> bool {
         self.options.breaks && self.springs.contains_key(&kind)
+    }
+
+    fn used(&self, bond: &Loaded) -> Option<f64> {
+        let ([_, limit, _], _) = *self.springs.get(&bond.kind).filter(|_| self.options.breaks)?;
+        let stiffness = self.stiffness(bond.kind, bond.length, bond.radii)?.normal;
+        Some(bond.bears[0].abs() / (stiffness * bond.length * limit))
     }
 
     fn swing(&self, bond: &Standing) -> Option<Swing> {

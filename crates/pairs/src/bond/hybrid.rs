@@ -4,7 +4,7 @@ use super::{BONDS, BondForce, BondStyle, Pull, Stretched};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::bond::{Standing, Stiffness, Swing};
+use perigrain_styles::bond::{Loaded, Standing, Stiffness, Swing};
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::field::Fields;
@@ -121,6 +121,10 @@ impl BondForce for Declared {
 
     fn may_break(&self, kind: u16) -> bool {
         self.user(kind).is_some_and(|sub| sub.may_break(kind))
+    }
+
+    fn used(&self, bond: &Loaded) -> Option<f64> {
+        self.user(bond.kind)?.used(bond)
     }
 
     fn swing(&self, bond: &Standing) -> Option<Swing> {
