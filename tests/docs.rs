@@ -48,6 +48,13 @@ const BOOK: [&str; 2] = [
      - [Find what is wrong with a deck](howto/wrong-deck.md)\n\
      - [Explore at the prompt](howto/prompt.md)\n\
      - [Calibrate to a material](howto/material.md)\n\
+     - [A crack from a notch](howto/notch.md)\n\
+     - [A ball strikes a plate](howto/impact.md)\n\
+     - [Erosion by a stream of grains](howto/erosion.md)\n\
+     - [A laminate of unlike plies](howto/laminate.md)\n\
+     - [Grains run out of a hopper](howto/hopper.md)\n\
+     - [Angle of repose](howto/repose.md)\n\
+     - [A rotating drum](howto/drum.md)\n\
      - [Calibrate an agglomerate in five minutes](howto/agglomerate.md)\n\
      - [A body from a mesh, a scan or a table](howto/bodies.md)\n\
      - [Look at a run](howto/report.md)\n\
@@ -56,7 +63,8 @@ const BOOK: [&str; 2] = [
      - [Make a long run](howto/long-runs.md)\n\
      - [Make many runs of one deck](howto/sweep.md)\n\
      - [Weigh time against error](howto/bench.md)\n\
-     - [Drive it from Python](python.md)\n\
+     - [Drive a run from Python](howto/from-python.md)\n\
+     - [The Python module](python.md)\n\
      - [In your editor](editor/README.md)\n\n\
      # Theory\n\n\
      - [What is computed](theory/README.md)\n\
