@@ -207,6 +207,19 @@ fn formulas_name_their_source_and_the_code_that_computes_them() {
 }
 
 #[test]
+fn blocks_fit_the_page() {
+    let mut wrong = String::new();
+    for (page, text) in pages_in("howto").into_iter().chain(pages_in("theory")) {
+        let blocks = text.split("\n```text\n").skip(1).map(|block| block.split("```").next().unwrap());
+        // As wide as `docs/book.css` lets a page be.
+        for line in blocks.flat_map(str::lines).filter(|line| line.chars().count() > 110) {
+            let _ = writeln!(wrong, "{}: {line}", page.display());
+        }
+    }
+    assert!(wrong.is_empty(), "lines of more than 110 columns:\n{wrong}");
+}
+
+#[test]
 fn pages_say_which_question_they_answer() {
     for (page, text) in pages_in("howto").into_iter().chain(pages_in("theory")) {
         let first = text.lines().nth(2).unwrap();
