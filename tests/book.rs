@@ -207,6 +207,21 @@ fn formulas_name_their_source_and_the_code_that_computes_them() {
 }
 
 #[test]
+fn verified_cases_that_the_book_names_are_there() {
+    let mut wrong = String::new();
+    for (page, text) in pages_in("theory") {
+        let Some((_, cases)) = text.split_once("Held to by `perigrain verify`") else { continue };
+        for name in spans(cases) {
+            let groups = fs::read_dir(docs().join("../src/verify/cases")).unwrap().map(|e| e.unwrap().path());
+            if !groups.into_iter().any(|group| group.join(format!("{name}.in")).exists()) {
+                let _ = writeln!(wrong, "{}: {name}", page.display());
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "cases that are not there:\n{wrong}");
+}
+
+#[test]
 fn blocks_fit_the_page() {
     let mut wrong = String::new();
     for (page, text) in pages_in("howto").into_iter().chain(pages_in("theory")) {
