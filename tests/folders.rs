@@ -1,6 +1,7 @@
 //! Tests that change the working folder, which belongs to the whole process.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
+mod book;
 mod docs;
 #[path = "fixes/main.rs"]
 mod fixes;
