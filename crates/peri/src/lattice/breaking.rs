@@ -300,7 +300,7 @@ impl Bonds for LatticeBody {
                     row = start / LANES..(start + len) / LANES;
                     body.owners(slot, &mut scratch.behind);
                 }
-                let measured = body.extremes::<K>((chunk, row.start), options.compat_lammps, &mut scratch);
+                let measured = body.extremes::<K>((chunk, row.start), options.one_stretch(), &mut scratch);
                 for (value, measured) in values.iter_mut().zip(&measured) {
                     *value = measured.0;
                 }

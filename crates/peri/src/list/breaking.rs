@@ -37,7 +37,7 @@ pub struct Judge {
 impl Judge {
     /// For the bonds of a body.
     pub fn new(body: &ListBody, mode: Mode, options: &FamilyOptions) -> Self {
-        let critical = options.compat_lammps && body.pairs.len() > 1;
+        let critical = options.one_stretch() && body.pairs.len() > 1;
         let measured = critical || body.pairs.iter().any(|p| p.alpha != 0.0);
         let known = body.limits.least.len() == body.record.len();
         let breaking_enabled = mode.breaking_enabled && mode.advance;
