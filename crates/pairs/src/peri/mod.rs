@@ -11,6 +11,7 @@ mod options;
 mod plastic;
 mod pmb;
 mod reunion;
+mod scatter;
 mod softening;
 mod ves;
 
@@ -33,6 +34,7 @@ use perigrain_styles::{BuildCx, SealCx};
 use perigrain_world::{Region, World};
 pub use plastic::PeriPmbPlastic;
 pub use pmb::PeriPmb;
+use scatter::Scatter;
 pub use softening::PeriPmbSoftening;
 pub use ves::PeriVes;
 
@@ -328,17 +330,19 @@ impl Pair for Solid {
                 .into());
         }
         let before = w.families.as_ref().map(|f| f.law.kind);
+        let scatter = Scatter::of(self, &options, w).map_err(|e| e.at(span))?;
         cx.leave_out(
             &format!("neighbour list of {}", self.name),
             "bonds never change partners; close pairs are found by their stretch",
         );
         let mut style = self.clone();
         style.table = self.calibrated(a, span)?;
-        if self.law.kind == LawKind::Pmb && (self.law.surface || self.law.influence != Influence::One) {
+        let unlike = self.law.surface || self.law.influence != Influence::One || scatter.stiffness;
+        if self.law.kind == LawKind::Pmb && unlike {
             style.law.kind = LawKind::Shaped;
         }
         style.law.shared_or_apart(before).map_err(|e| e.at(span))?;
-        Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options)))])
+        Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options, scatter)))])
     }
 
     fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
@@ -372,8 +376,9 @@ impl Pair for Solid {
         let ftm2v = w.settings.units.constants().ftm2v;
         let step = |i: u16| {
             let own = self.materials.density(i);
+            let stiffer = scatter::stiffest(w, i);
             let rho = own.or_else(|| if w.n() > 0 { self.lightest(w, i) } else { deck.density })?;
-            Some((rho / (ftm2v * stiffest(i)?)).sqrt())
+            Some((rho / (ftm2v * stiffer * stiffest(i)?)).sqrt())
         };
         let cutoff = self.table.iter().map(|c| c.horizon).reduce(f64::max);
         let stable_step = (1..=types).filter_map(step).reduce(f64::min);

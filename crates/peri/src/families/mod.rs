@@ -12,12 +12,14 @@ pub mod lattice;
 pub mod law;
 pub mod list;
 mod measures;
+mod scatter;
 mod sound;
 
 pub use cells::Cells;
 pub use excluded::Excluded;
 pub use law::{Influence, Law, LawKind, Moduli};
 pub use measures::Measures;
+pub use scatter::Scatter;
 
 /// Coefficients of the prototype microelastic brittle model for one pair of types.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
