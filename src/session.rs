@@ -80,7 +80,7 @@ pub struct Options {
     /// Where the session speaks.
     pub log: Log,
     /// LAMMPS' artefacts too.
-    pub compat: bool,
+    pub compat: Compat,
     /// The list layout for every peridynamic body.
     pub force_list: bool,
     /// Work also where everything is at rest.
@@ -102,7 +102,7 @@ impl Default for Options {
         Self {
             mode: Mode::Run,
             log: Log::silent(),
-            compat: false,
+            compat: Compat::Perigrain,
             force_list: false,
             no_skipping: false,
             portable: false,
@@ -261,10 +261,7 @@ impl Session {
     fn reset_world(&mut self) {
         let old = &self.world.settings;
         let (stop, deadline, limit_every) = (old.stop.clone(), old.deadline, old.limit_every);
-        let compat = match self.options.compat {
-            true => Compat::Lammps,
-            false => Compat::Perigrain,
-        };
+        let compat = self.options.compat;
         let promised = std::mem::take(&mut self.world.parts.promised);
         let read_files = std::mem::take(&mut self.world.read_files);
         self.world = World::default();

@@ -14,7 +14,7 @@ use perigrain::cli::manual::pages;
 use perigrain::diag::render;
 use perigrain::session::{Options, Session};
 use perigrain_plan::needs::{collect, collected, how};
-use perigrain_world::field;
+use perigrain_world::{Compat, field};
 use scene::{Folder, deck, is_for_the_shell};
 use std::fmt::Write as _;
 use std::fs;
@@ -150,6 +150,7 @@ fn run(path: &Path, text: &str, vars: &Vars, compat: bool) -> String {
     let (name, folder) = (&name(path), path.parent().unwrap().to_path_buf());
     let here = std::env::current_dir().unwrap().to_string_lossy().into_owned();
     let vars = vars.iter().cloned().chain([("dir".to_string(), vec![here])]).collect();
+    let compat = if compat { Compat::Lammps } else { Compat::Perigrain };
     let mut session = Session::new(Options { vars, folder, compat, ..Options::default() }).unwrap();
     match session.run_text(name, text) {
         Ok(_) => String::new(),

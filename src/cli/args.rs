@@ -3,6 +3,7 @@
 use super::partitions::{self, World};
 use perigrain_base::diag::nearest;
 use perigrain_base::gate::Limits;
+use perigrain_world::Compat;
 use std::path::PathBuf;
 
 /// Where the deck comes from.
@@ -46,8 +47,8 @@ pub struct Options {
     pub view: Option<u16>,
     /// `-threads N`, `-pk omp N`.
     pub threads: Option<usize>,
-    /// `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong.
-    pub compat: bool,
+    /// `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong, and of which version.
+    pub compat: Compat,
     /// `-partition 4x1 2x8`: the threads of each partition; empty where there is one.
     pub partition: Vec<usize>,
     /// `-plog file|none`.
@@ -164,13 +165,14 @@ pub const SWITCHES: &[Switch] = &[
         o.view = Some(v.port()?);
         Ok(())
     }),
-    switch(&["-compat"], "lammps", "LAMMPS' numbers also where LAMMPS is wrong", |o, v| {
+    switch(&["-compat"], "lammps[/2025|/2026]", "LAMMPS' numbers also where LAMMPS is wrong", |o, v| {
         let word = v.one("lammps")?;
-        if word != "lammps" {
+        let Some(compat) = Compat::from_name(&word).filter(|compat| compat.lammps()) else {
             let message = format!("perigrain cannot imitate `{word}`");
-            return Err(Usage::new(message).help("write `-compat lammps`"));
-        }
-        o.compat = true;
+            let help = "write `-compat lammps` for LAMMPS 22Jul2025, or `-compat lammps/2026` with what has been mended since";
+            return Err(Usage::new(message).help(help));
+        };
+        o.compat = compat;
         Ok(())
     }),
     switch(&["-suffix", "-sf"], "omp", "for LAMMPS' command lines: every style has threads here", |_, v| {

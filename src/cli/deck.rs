@@ -53,7 +53,7 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
     }
     catch_interrupt(&session);
     if runs(mode) {
-        let with = if o.compat { ", compat lammps" } else { "" };
+        let with = o.compat.told();
         let threads = session::threads();
         let version = env!("CARGO_PKG_VERSION");
         let _ = log.line(&format!("perigrain {version} ({threads} thread(s){with})"));

@@ -381,6 +381,7 @@ pub fn help() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use perigrain_world::Compat;
 
     fn read(line: &str) -> Result<Task, Usage> {
         parse(line.split_whitespace().map(String::from).collect())
@@ -403,7 +404,7 @@ mod tests {
 
     #[test]
     fn several_decks_are_checked_with_the_same_switches() {
-        let with = |name: &str| Options { compat: true, ..deck(name) };
+        let with = |name: &str| Options { compat: Compat::Lammps, ..deck(name) };
         let task = Task::Check { decks: vec![with("a"), with("b")], json: true };
         assert_eq!(read("check a b --json -compat lammps").unwrap(), task);
         assert!(read("run a b").is_err());

@@ -9,7 +9,7 @@ use perigrain_out::restart::{Saving, write};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
 use perigrain_styles::{BuildCx, SealCx, Use, UseKind};
 use perigrain_world::adapted;
-use perigrain_world::columns::{LEVEL, PLASTIC_BEGUN, PLASTIC_COLUMNS};
+use perigrain_world::columns::{BOND_FACTORS, LEVEL, PLASTIC_BEGUN, PLASTIC_COLUMNS};
 use perigrain_world::field::{Fields, MEMO};
 use perigrain_world::{Constant, Said, World};
 use std::collections::BTreeSet;
@@ -195,13 +195,14 @@ pub fn save(
 
 /// Whether a name belongs to state that a fix or compute of the restarted deck may claim.
 pub fn claimable(name: &str) -> bool {
-    // The pair style comes with the file, and what its plastic grains and fixes have made of it; the forces of each level of
+    // The pair style comes with the file, and what its plastic grains and fixes have made of it; factors belong to particles; the forces of each level of
     // steps belong to the run style, which is a setting.
     name != NEXT.text()
         && !adapted::is(name)
         && name != PLASTIC_BEGUN.text()
         && !name.starts_with(PLASTIC_COLUMNS)
         && !name.starts_with(LEVEL)
+        && BOND_FACTORS.iter().all(|factors| name != factors.text())
 }
 
 impl Graph {

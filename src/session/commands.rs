@@ -150,10 +150,10 @@ impl Session {
                 self.reset_world();
             }
             "compat" => {
-                let mode = args.choice("mode", &["lammps", "none"])?;
+                let mode = args.choice("mode", &Compat::NAMES.map(|n| n.0))?;
                 args.finish()?;
-                let compat = if mode == "lammps" { Compat::Lammps } else { Compat::Perigrain };
-                self.options.compat = compat == Compat::Lammps;
+                let compat = Compat::from_name(mode).unwrap_or_default();
+                self.options.compat = compat;
                 self.world.settings.compat = compat;
                 let lammps = self.world.settings.lammps();
                 self.world.regions.values_mut().for_each(|region| region.open_holds_all(lammps));

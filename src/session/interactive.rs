@@ -6,7 +6,7 @@ use crate::graph::{Graph, NodeId, Role};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Command, Expr, Script, Vars};
 use perigrain_plan::explain;
-use perigrain_world::World;
+use perigrain_world::{Compat, World};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -48,7 +48,7 @@ pub struct Snapshot {
     vars: Vars,
     graph: Graph,
     world: Arc<World>,
-    compat: bool,
+    compat: Compat,
     ran: bool,
     typed: Option<Script>,
     timer: super::timer::Timer,

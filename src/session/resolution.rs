@@ -3,7 +3,6 @@
 use super::{Session, refuse};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::length;
-use perigrain_world::Compat;
 
 /// Lengths of the box between it and the origin from which a deck is told: of 16 digits, ten are left.
 const FAR: f64 = 1e6;
@@ -32,7 +31,7 @@ impl Session {
         let help = "move the scene to the origin";
         let moves = |v: &[f64; 3], x: &[f64; 3]| (0..3).any(|d| x[d] + v[d] * self.world.clock.dt != x[d]);
         let stuck = step > 0.0 && !p.v.iter().zip(p.x.iter()).any(|(v, x)| moves(v, x));
-        if stuck && self.world.settings.compat != Compat::Lammps {
+        if stuck && !self.world.settings.lammps() {
             return refuse(Code::CONFLICT, span, format!("{text}: nothing would move"));
         }
         self.note_once(Diagnostic::warning(Code::SUSPICIOUS, span, text).help(help));

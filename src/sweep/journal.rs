@@ -88,16 +88,16 @@ impl Head {
 /// Settings as the switches that make them.
 fn words(settings: &Settings) -> String {
     let switches = [
-        (settings.compat, "-compat lammps"),
         (settings.force_list, "-layout list"),
         (settings.no_skipping, "-rest full"),
         (settings.portable, "-portable"),
         (settings.series, "series"),
     ];
     let vars = settings.vars.iter().map(|(name, values)| format!("-var {name} {}", values.join(" ")));
+    let compat = settings.compat.lammps().then(|| format!("-compat {}", settings.compat.name()));
     let on = switches.into_iter().filter(|(on, _)| *on).map(|(_, word)| word.to_owned());
     let lammps = settings.lammps.iter().map(|path| format!("-lammps {}", path.display()));
-    vars.chain(on).chain(lammps).collect::<Vec<_>>().join(" ")
+    vars.chain(compat).chain(on).chain(lammps).collect::<Vec<_>>().join(" ")
 }
 
 /// The first line in which two decks differ, as `: line 3 was …, is …`.

@@ -14,6 +14,7 @@ pub mod table;
 pub mod worker;
 
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
+use perigrain_world::Compat;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -82,7 +83,7 @@ pub struct Settings {
     /// Index variables that all runs share.
     pub vars: Vec<(String, Vec<String>)>,
     /// LAMMPS' artefacts too.
-    pub compat: bool,
+    pub compat: Compat,
     /// The list layout for every peridynamic body.
     pub force_list: bool,
     /// Work also where everything is at rest.

@@ -8,6 +8,7 @@ use perigrain_base::diag::{Diagnostic, Diagnostics, Severity, Sources, render};
 use perigrain_out::file::replace;
 use perigrain_out::log::Log;
 use perigrain_out::thermo::wall_time;
+use perigrain_world::Compat;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -63,8 +64,8 @@ impl Task {
             path(&self.deck),
             path(&self.folder),
             join(&vars),
+            s.compat.name().into(),
             join(&[
-                on(s.compat),
                 on(s.force_list),
                 on(s.no_skipping),
                 on(s.portable),
@@ -79,7 +80,7 @@ impl Task {
     }
 
     fn read(text: &str) -> Option<Self> {
-        let [print, name, deck, folder, vars, on, report, threads, parent, lock] = &open(text)?[..] else {
+        let [print, name, deck, folder, vars, compat, on, report, threads, parent, lock] = &open(text)?[..] else {
             return None;
         };
         let vars = split(vars).into_iter().map(|v| {
@@ -88,7 +89,8 @@ impl Task {
             Some((name, if words.is_empty() { vec![String::new()] } else { words }))
         });
         let on: Vec<bool> = split(on).iter().map(|w| w == "1").collect();
-        let [compat, force_list, no_skipping, portable, series, telling] = on[..] else { return None };
+        let [force_list, no_skipping, portable, series, telling] = on[..] else { return None };
+        let compat = Compat::from_name(compat)?;
         // A worker makes no runs of other programs.
         let lammps = None;
         let vars = vars.collect::<Option<_>>()?;
@@ -197,7 +199,7 @@ fn attempt(task: &Task, log: &Log, outcome: &mut Outcome, sources: &mut Sources)
     let text = std::fs::read_to_string(&task.deck)
         .map_err(|e| perigrain_out::file::trouble("read the deck", &task.deck, &e))?;
     let s = &task.settings;
-    let with = if s.compat { ", compat lammps" } else { "" };
+    let with = s.compat.told();
     let version = env!("CARGO_PKG_VERSION");
     log.line(&format!("perigrain {version} ({} thread(s){with})", outcome.threads))?;
     let mut session = Session::new(session::Options {
@@ -301,7 +303,7 @@ mod tests {
             name: "in.x".into(),
             deck: "/d/deck".into(),
             folder: "/e".into(),
-            settings: Settings { vars, compat: true, portable: true, ..Settings::default() },
+            settings: Settings { vars, compat: Compat::Lammps2026, portable: true, ..Settings::default() },
             report: vec!["c_1".into()],
             threads: 3,
             parent: 7,

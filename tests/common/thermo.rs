@@ -2,6 +2,7 @@
 
 use perigrain::out::log::Log;
 use perigrain::session::{Options, Session};
+use perigrain::world::Compat;
 use std::fs;
 use std::path::Path;
 
@@ -15,6 +16,7 @@ pub fn run_in(folder: &Path, name: &str, deck: &str, compat: bool) -> (Session, 
     log.open(&path, false).unwrap();
     let dir = folder.to_str().unwrap().to_string();
     let vars = vec![("dir".into(), vec![dir])];
+    let compat = if compat { Compat::Lammps } else { Compat::Perigrain };
     let options = Options { compat, log: log.clone(), vars, ..Options::default() };
     let mut session = Session::new(options).unwrap();
     if let Err(e) = session.run_text(name, deck) {

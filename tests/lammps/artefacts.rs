@@ -59,6 +59,15 @@ fn a_weak_interface_between_strong_plies_breaks() {
     // critical stretch per particle, the largest of its bonds', and nothing ever breaks: it prints 0.
     assert!(last("interface", "c_dsum", &[]) > 10.0);
     assert_eq!(last("interface", "c_dsum", &lammps(&[])), 0.0);
+    // The LAMMPS of 2026 has one for each bond.
+    assert!(last("interface", "c_dsum", &["-compat", "lammps/2026"]) > 10.0);
+}
+
+/// Where all bonds have one limit both versions are the same; rounding of the one number that they compare aside.
+#[test]
+fn one_limit_for_all_bonds_is_the_same_in_both_versions() {
+    let damage = |switches: &[&str]| last("breaking", "c_dsum", &[&["-var", "cut", "0"], switches].concat());
+    assert!(near(damage(&["-compat", "lammps/2026"]), damage(&["-compat", "lammps/2025"]), SAME));
 }
 
 #[test]

@@ -7,6 +7,7 @@ mod layouts;
 mod limits;
 mod patch;
 mod released;
+mod scatter;
 mod scene;
 mod softening;
 mod states;

@@ -17,6 +17,12 @@ pub const BLOCK_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.0030
     fix 1 all nve\ntimestep 5.0e-8\ncompute dmg all damage/atom\ncompute dsum all reduce sum c_dmg\n\
     thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
 
+/// The same of bonds that are not alike.
+pub const SCATTERED: &str = "units si\natom_style peri\nboundary s s s\nlattice sc 0.001\nregion blk block 0 7 0 5 0 5\n\
+    create_box 1 blk\ncreate_atoms 1 region blk\nset group all density 2400\nset group all volume 1e-9\n\
+    set group all peri/strength weibull 5 4711 correlated 0.002\nset atom 10*90 peri/stiffness normal 0.1 9\n\
+    variable u atom 6000.0*(x-0.0035)\nvelocity all set v_u 0 0 units box\n";
+
 /// Grains that fall on each other, spin and slide.
 pub const PILE: &str = "units lj\natom_style sphere\nboundary p p s\nlattice sc 1.0\nregion world block 0 4 0 4 0 9 units box\n\
     create_box 1 world\nregion fill block 0.3 3.9 0.3 3.9 0.6 3.5 units box\nlattice sc 1.2\ncreate_atoms 1 region fill\n\
@@ -179,9 +185,11 @@ pub const ROTATIONAL_AGAIN: &str = "pair_style gran/hooke/history 1e5 NULL 50.0 
     compute nb all nbond/atom\ncompute tb all reduce sum c_nb\n\
     thermo_style custom step time ke ebond bonds c_tb\nthermo_modify format float %24.17g norm no\nthermo 5\n";
 
-pub const SCENES: [Scene; 20] = [
+pub const SCENES: [Scene; 22] = [
     Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
     Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
+    Scene { name: "scattered", make: SCATTERED, again: BLOCK_AGAIN, steps: 60, list: false },
+    Scene { name: "scattered, list", make: SCATTERED, again: BLOCK_AGAIN, steps: 40, list: true },
     Scene { name: "lps", make: BLOCK, again: LPS_AGAIN, steps: 60, list: false },
     Scene { name: "ves", make: BLOCK, again: VES_AGAIN, steps: 60, list: false },
     Scene { name: "eps", make: BLOCK, again: EPS_AGAIN, steps: 60, list: false },

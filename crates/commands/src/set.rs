@@ -2,6 +2,7 @@
 
 mod change;
 mod orientation;
+mod scatter;
 
 use super::create_atoms::subset::Amount;
 use super::{Act, CommandStyle};
@@ -16,7 +17,7 @@ use perigrain_world::{AtomStyle, GroupId, Region};
 /// The command.
 pub struct Set;
 
-const KEYWORDS: [&str; 22] = [
+const KEYWORDS: [&str; 24] = [
     "mol",
     "bond",
     "type",
@@ -29,6 +30,8 @@ const KEYWORDS: [&str; 22] = [
     "density",
     "diameter",
     "peri/radius",
+    "peri/strength",
+    "peri/stiffness",
     "volume",
     "omega",
     "quat",
@@ -72,7 +75,7 @@ impl Style for Set {
             summary: "Sets properties of the particles chosen: type, mass, density, diameter, volume, spin, place, velocity.",
             text: "Keywords: `type T`, `type/fraction T P SEED`, `type/ratio T P SEED`, `type/subset T N SEED`, `mass M`, \
                    `density ρ`, `density/disc ρ`, `diameter D`, `volume V`, `omega WX WY WZ`, `quat A B C THETA` (the orientation: turned by THETA degrees about an axis of any length; LAMMPS, and `-compat lammps`, turn farther about an axis that is not of unit length), `quat/random SEED`, `image NX NY NZ` (`NULL` \
-                   leaves one alone), `mol M`, `bond T` (the type of all bonds with both ends among the chosen), `x y z`, `vx vy vz`, `temperature T` (where `fix property/atom temperature` is). A value is a number or an atom-style variable `v_name`. \
+                   leaves one alone), `mol M`, `bond T` (the type of all bonds with both ends among the chosen), `x y z`, `vx vy vz`, `temperature T` (where `fix property/atom temperature` is), `peri/radius`, `peri/strength`, `peri/stiffness`. A value is a number or an atom-style variable `v_name`. \
                    Who is chosen is decided once for the whole line. \
                    `density` of a sphere sets its mass to 4/3 π r³ ρ with the radius it has now; of a peridynamic particle \
                    without radius it sets the mass to ρ itself (LAMMPS' convention). `diameter` leaves the mass alone: \
@@ -80,7 +83,17 @@ impl Style for Set {
                    to its place, `type/ratio` and `type/subset` change exactly the part or number of them that LAMMPS \
                    changes. `peri/radius` gives peridynamic particles the sphere that meets others: `quasi` that of their \
                    volume, (3V/4π)^⅓ = 0.62 spacings of a lattice (Hartmann et al. 2022), `half` V^⅓/2, or R; it leaves mass \
-                   and volume alone and comes after `volume`. `density/disc` is the mass per area of a disc, in flat scenes.",
+                   and volume alone and comes after `volume`. `density/disc` is the mass per area of a disc, in flat scenes.\n\n\
+                   `peri/strength F` and `peri/stiffness F` give peridynamic particles factors: a bond breaks at its critical stretch (s00) times the \
+                   smaller strength of its ends, as a chain does at its weakest link, and has its micro-modulus times the mean of \
+                   their stiffnesses (`pair_style peri/pmb` alone). In the place of F may stand `weibull M SEED`, a number of a Weibull \
+                   distribution of modulus M, or `normal DEVIATION SEED` (below 1/3; what is farther off than three deviations is moved to there), \
+                   both of mean 1; each belongs to the ID of its particle and the seed. With `correlated L` behind it the numbers form a field over the \
+                   places that particles have now, with the correlation exp(−r²/2L²) of its underlying normal numbers: two keywords with one \
+                   seed and L have the same field, and it repeats with the box. Neither depends on threads or on the order of particles. The scatter is that of a particle, whatever its size: with finer \
+                   lattices a body has more weak places unless L holds them together. Particles not chosen keep theirs, 1 at first. \
+                   Restart files keep factors, data files do not; `compute property/atom peri/strength` shows them. \
+                   `peri/stiffness` comes before the first run; strengths may change between runs.",
             example: "set group plate density 2235.0 volume 1.25e-10",
         }
     }
@@ -182,6 +195,10 @@ fn change(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
             }
             let radius = value(a, cx, "the radius (quasi, half or a number)", Some(Limit::Positive))?;
             Ok(Change::Radius(radius))
+        }
+        "peri/strength" | "peri/stiffness" => {
+            needs(peri)?;
+            scatter::read(keyword, a, cx)
         }
         "volume" => {
             needs(peri)?;

@@ -10,7 +10,7 @@ use perigrain_styles::matter::{Masses, unwrapped};
 use perigrain_styles::peri_view::view;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
+use perigrain_world::columns::{BOND_FACTORS, HEATFLOW, TEMPERATURE};
 use perigrain_world::field::{
     BOX, COLUMNS, F, FAMILIES, Fields, IMAGE, KIND, MASK, MASS, MOLECULE, OMEGA, QUAT, RADIUS, TAG, TORQUE,
     TYPE_MASS, V, VOLUME, X, X0,
@@ -33,7 +33,7 @@ impl Style for PropertyAtom {
             text: "Per-atom vector for one attribute, array for several; 0 outside the group. Attributes: `id type proc \
                    mass x y z`; `xs ys zs` as fractions of the box; `xu yu zu` unwrapped across periodic faces; `ix iy iz` \
                    image counts; `vx vy vz fx fy fz`; with atom_style sphere `radius diameter omegax omegay omegaz tqx \
-                   tqy tqz`; with atom_style bpm/sphere `quatw quati quatj quatk`, the orientation; with atom_style peri `vfrac`, the volume, and `s0`; with molecules `mol` and `nbonds`, how many bonds are listed \
+                   tqy tqz`; with atom_style bpm/sphere `quatw quati quatj quatk`, the orientation; with atom_style peri `vfrac`, the volume, `peri/strength` and `peri/stiffness`, the factors of `set`, and `s0`; with molecules `mol` and `nbonds`, how many bonds are listed \
                    with the particle (with its first end only, under `newton off` with both); with `bond_style bpm/peri` `s0`, the least critical stretch s00 − α smin of a particle's bonds, `smin`, their smallest stretch, and `lambda`, its plastic multiplier (0 without bonds). All in the deck's units. LAMMPS' other attributes \
                    belong to atom styles that perigrain does not have and are refused. `i_NAME d_NAME i2_NAME[k] d2_NAME[k]`, `temperature`, `heatflow`: those of `fix property/atom`.\n\n\
                    `s0` of pair styles peri/… is LAMMPS' critical stretch: the largest s00 − α s of the bonds that a particle had before the \
@@ -161,6 +161,8 @@ const ATTRIBUTES: &[(&str, Needs, Getter)] = &[
     ("quatj", Needs::Oriented, Getter::Own(|w, i| w.particles.quat[i][2])),
     ("quatk", Needs::Oriented, Getter::Own(|w, i| w.particles.quat[i][3])),
     ("vfrac", Needs::Peri, Getter::Own(|w, i| w.particles.volume[i])),
+    ("peri/strength", Needs::Peri, Getter::Whole(|w| bond_factors(w, 0))),
+    ("peri/stiffness", Needs::Peri, Getter::Whole(|w| bond_factors(w, 1))),
     ("s0", Needs::Breaking, Getter::Whole(critical)),
     ("nbonds", Needs::Molecules, Getter::Whole(bonds_of)),
     ("smin", Needs::Linked, Getter::Own(|w, i| strain(w, i).map_or(0.0, |s| s.smallest))),
@@ -197,6 +199,13 @@ fn critical(w: &World) -> Vec<f64> {
         return families.critical_stretches(&view);
     }
     (0..w.n()).map(|i| families.strain(&view, i).map_or(0.0, |s| s.critical)).collect()
+}
+
+/// The factors of each particle that `set … peri/strength` (0) or `peri/stiffness` (1) has given.
+fn bond_factors(w: &World, which: usize) -> Vec<f64> {
+    let said = w.columns.get_scalar(*BOND_FACTORS[which]).unwrap_or_default();
+    let of = |i: usize| said.get(i).copied().filter(|f| *f > 0.0).unwrap_or(1.0);
+    (0..w.n()).map(of).collect()
 }
 
 /// How many bonds are listed with each particle.

@@ -69,7 +69,7 @@ impl Damping {
             | Damping::Viscoelastic
             | Damping::Mdr
             | Damping::MdrConstant => eta,
-            Damping::Tsuji if compat == Compat::Lammps => tsuji(eta),
+            Damping::Tsuji if compat.lammps() => tsuji(eta),
             // Tsuji's curve is that of forces ∝ δ^(3/2), where √5 β makes e.
             Damping::Tsuji if exponent == 1.0 => 2.0 * (2.0_f64 / 5.0).sqrt() * tsuji(eta),
             Damping::Tsuji => std::f64::consts::SQRT_2 * (0.4 * (exponent + 1.0)).sqrt() * tsuji(eta),

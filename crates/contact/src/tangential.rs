@@ -146,7 +146,7 @@ impl Tangential {
     ) -> Spring {
         let stiffness = match (self.stiffness, other.stiffness) {
             (Some(k1), Some(k2)) => geometric(k1, k2),
-            _ => 8.0 * shear(normals, mixed && compat == Compat::Lammps),
+            _ => 8.0 * shear(normals, mixed && compat.lammps()),
         };
         let damping = match (self.drag, other.drag) {
             (Drag::Times(x), Drag::Times(y)) => geometric(x, y) * eta,
@@ -154,14 +154,14 @@ impl Tangential {
             (Drag::Own(a), Drag::Times(_)) | (Drag::Times(_), Drag::Own(a)) => a,
         };
         let classic = matches!(self.kind, Friction::LinearHistoryClassic | Friction::MindlinClassic);
-        let loose = compat == Compat::Lammps && classic && matches!(self.drag, Drag::Times(_));
+        let loose = compat.lammps() && classic && matches!(self.drag, Drag::Times(_));
         Spring {
             kind: self.kind,
             stiffness,
             damping,
             mu: geometric(self.mu, other.mu),
             loose,
-            capped: compat != Compat::Lammps && damping > 0.0 && self.kind.stiffens() && !form.by_radius(),
+            capped: !compat.lammps() && damping > 0.0 && self.kind.stiffens() && !form.by_radius(),
             look: Look::First,
         }
     }

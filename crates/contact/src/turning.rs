@@ -166,7 +166,7 @@ impl Twisting {
         }
         let trial = -(stiffness * *angle) - damping * omega;
         let slides = trial.abs().above(limit);
-        let ask = if compat == Compat::Lammps { -omega } else { trial };
+        let ask = if compat.lammps() { -omega } else { trial };
         let sign = R::choose(ask.above(zero), one, R::choose(zero.above(ask), -one, zero));
         let sliding = limit * sign;
         let carried = -(sliding + damping * omega) / stiffness;

@@ -48,7 +48,7 @@ pub fn break_bonds<K: Isa, B: Bonds>(
     body.prepare();
     body.candidates::<K>(found);
     found.retain(|c| !c.ends.iter().any(|site| spared(body.particle(*site))));
-    if !found.is_empty() && (options.compat_lammps || found.iter().any(|c| c.alpha != 0.0)) {
+    if !found.is_empty() && (options.one_stretch() || found.iter().any(|c| c.alpha != 0.0)) {
         judge::<K, B>(body, options, found);
     } else {
         found.retain(|c| c.stretch > c.s00);
@@ -69,7 +69,7 @@ fn judge<K: Isa, B: Bonds>(body: &mut B, options: &FamilyOptions, found: &mut Ve
     body.revive(false);
     found.retain(|c| {
         let [a, b] = c.ends.map(|site| measures.of(site, B::GROUP));
-        let limit = if options.compat_lammps { a.min(b) } else { c.s00 - c.alpha * a.max(b) };
+        let limit = if options.one_stretch() { a.min(b) } else { c.s00 - c.alpha * a.max(b) };
         c.stretch > limit
     });
     *body.measures() = measures;
@@ -82,7 +82,7 @@ pub fn measure<B: Bonds>(body: &B, site: u32, options: &FamilyOptions) -> f64 {
         least = least.min(stretch);
         most = most.max(s00 - alpha * stretch);
     });
-    if options.compat_lammps { most } else { least }
+    if options.one_stretch() { most } else { least }
 }
 
 /// A stretch, or 0 inside the dead band.

@@ -24,12 +24,13 @@ impl Families {
     pub fn silling_step(&self, view: &PeriView, density: &[f64], ftm2v: f64) -> Option<f64> {
         let periods = periods(&view.bounds);
         let step = |i: usize| {
-            let mut stiffness = 0.0;
+            let (mut stiffness, own) = (0.0, self.stiffness_of(i));
             self.each_apart(i, periods, |b, length| {
                 let j = b.partner as usize;
                 let Some(p) = self.table.get(view.kind[i], view.kind[j]).filter(|_| b.alive) else { return };
                 let weight = self.options.volume.weight(length, p.horizon, self.options.lattice_spacing);
-                stiffness += p.c * weight * view.volume[j] / length;
+                let factor = 0.5 * (own + self.stiffness_of(j));
+                stiffness += factor * p.c * weight * view.volume[j] / length;
             });
             (stiffness > 0.0).then(|| (2.0 * density[i] / (ftm2v * stiffness)).sqrt())
         };

@@ -46,7 +46,8 @@ impl Families {
         let mut count = |i: usize, b: usize| {
             let (j, pair) = (list.partner[b] as usize, list.constants(b));
             let (z, length) = list.z(true, i, j, period);
-            let critical = pair.s00 - pair.alpha * banded(z, length, &self.options);
+            let s00 = pair.s00 * list.scatter.strength([i, j]);
+            let critical = s00 - pair.alpha * banded(z, length, &self.options);
             for site in [i, j] {
                 most[site] = most[site].max(critical);
             }

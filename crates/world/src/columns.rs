@@ -10,6 +10,9 @@ pub static HEATFLOW: Constant<Vec<f64>> = Constant::new("heatflow");
 /// The property that holds the volumes of particles joined by `bond_style bpm/peri`.
 pub static VOLUME_PROPERTY: Constant<Vec<f64>> = Constant::new("d_vfrac");
 
+/// The columns that hold factors of particles on what their peridynamic bonds bear and on how stiff these are; 0 stands for 1.
+pub static BOND_FACTORS: [Constant<Vec<f64>>; 2] = [Constant::new("peri/strength"), Constant::new("peri/stiffness")];
+
 /// How the names of columns of plastic grains begin (normal model `mdr`): decks read them as those of fix property/atom.
 pub const PLASTIC_COLUMNS: &str = "property/atom/mdr/";
 /// Under this name the last step that plastic grains have begun is kept.

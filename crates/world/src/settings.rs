@@ -5,14 +5,47 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Whose numbers are wanted where LAMMPS 22Jul2025 is wrong.
+/// Whose numbers are wanted where LAMMPS is wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Compat {
     /// The right ones.
     #[default]
     Perigrain,
-    /// LAMMPS' own, for comparison.
+    /// Those of LAMMPS 22Jul2025, for comparison.
     Lammps,
+    /// The same with what the LAMMPS of 2026 has mended, as far as it is known well enough.
+    Lammps2026,
+}
+
+impl Compat {
+    /// The words of decks and command lines with their meaning; the first one of each is what is told. `lammps` is the newest
+    /// version whose numbers have been compared.
+    pub const NAMES: [(&'static str, Compat); 4] = [
+        ("none", Compat::Perigrain),
+        ("lammps", Compat::Lammps),
+        ("lammps/2025", Compat::Lammps),
+        ("lammps/2026", Compat::Lammps2026),
+    ];
+
+    /// What a word means.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::NAMES.iter().find(|n| n.0 == name).map(|n| n.1)
+    }
+
+    /// Its word.
+    pub fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|n| n.1 == self).map_or("", |n| n.0)
+    }
+
+    /// Whether LAMMPS' artefacts are wanted, of whichever version.
+    pub fn lammps(self) -> bool {
+        self != Self::Perigrain
+    }
+
+    /// What the first line of a log says of it behind the number of threads.
+    pub fn told(self) -> String {
+        if self.lammps() { format!(", compat {}", self.name()) } else { String::new() }
+    }
 }
 
 /// What `newton` has said; it changes nothing but the answers to formulas.
@@ -192,6 +225,11 @@ impl Settings {
 
     /// Whether LAMMPS' artefacts are wanted.
     pub fn lammps(&self) -> bool {
-        self.compat == Compat::Lammps
+        self.compat.lammps()
+    }
+
+    /// Whether they are those of the LAMMPS of 2026.
+    pub fn lammps_of_2026(&self) -> bool {
+        self.compat == Compat::Lammps2026
     }
 }

@@ -45,6 +45,14 @@ fn what_is_not_understood_is_named_with_the_nearest() {
     {
         assert!(read(line).is_err(), "{line}");
     }
+    let help = read("a -compat lammps/2024").unwrap_err().help.unwrap();
+    assert!(help.contains("lammps/2026"), "{help}");
+    for (word, compat) in
+        [("lammps", Compat::Lammps), ("lammps/2025", Compat::Lammps), ("lammps/2026", Compat::Lammps2026)]
+    {
+        assert_eq!(read(&format!("a -compat {word}")).unwrap().compat, compat);
+    }
+    assert!(read("a -compat none").is_err());
     assert_eq!(read("a -p 2x1 3 -ps none").unwrap().partition, [1, 1, 3]);
     assert!(read("-reorder nth 2").unwrap_err().message.contains("LAMMPS"));
     for switch in ["-r", "-restart2data", "-r2dump"] {

@@ -167,8 +167,8 @@ fn facts(o: &Options, s: &Session) -> Vec<(String, String)> {
         out.push(("boundary".into(), faces.collect::<Vec<_>>().join(" ")));
     }
     out.push(("time simulated".into(), perigrain_base::math::cformat::general(w.clock.time(), 6)));
-    if o.compat {
-        out.push(("compat".into(), "lammps".into()));
+    if o.compat.lammps() {
+        out.push(("compat".into(), o.compat.name().into()));
     }
     let vars = o.vars.iter().map(|(name, values)| (format!("variable {name}"), values.join(" ")));
     out.extend(vars);

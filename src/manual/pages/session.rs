@@ -106,11 +106,13 @@ pub(super) const CLEAR: Entry = (
 pub(super) const COMPAT: Entry = (
     "compat",
     Doc {
-        syntax: "compat lammps|none",
+        syntax: "compat lammps[/2025|/2026]|none",
         summary: "Gives LAMMPS' numbers also where LAMMPS is wrong.",
         text: "The same as `-compat lammps` on the command line. [Coming from LAMMPS](../coming-from-lammps.md) lists what \
             it changes and by how much; the log tells which of it a deck touches. `none` goes back. LAMMPS has no such \
-            command.",
+            command.\n\n\
+            `lammps/2025`, which `lammps` alone stands for, is LAMMPS 22Jul2025, whose numbers have been compared. `lammps/2026` is the same but \
+            for what that page tells of LAMMPS since; what is known to be mended there and could not be compared is refused.",
         example: "compat lammps",
     },
 );

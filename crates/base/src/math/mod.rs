@@ -14,6 +14,7 @@ pub mod lanes;
 pub mod pair;
 pub mod real;
 pub mod rng;
+pub mod scatter;
 pub mod threes;
 pub mod triangle;
 pub mod vec3;

@@ -1,5 +1,6 @@
 //! What `set` changes, and how it is done.
 
+use super::scatter::{self, Factors};
 use super::{Choice, orientation};
 use crate::create_atoms::subset::{Amount, Subset};
 use perigrain_base::diag::{Code, Result, Span, fail};
@@ -47,6 +48,13 @@ pub enum Change {
     Radius(Param),
     /// The radius of a peridynamic particle as the cube root of this part of its volume.
     OfVolume(f64),
+    /// A factor on what the bonds of a peridynamic particle bear or on how stiff they are.
+    Factors {
+        /// Its column.
+        column: Numbers,
+        /// The factors.
+        factors: Factors,
+    },
     /// The volume of a peridynamic particle.
     Volume(Param),
     /// The angular velocity.
@@ -97,7 +105,8 @@ impl Item {
             | Change::Some { .. }
             | Change::Bond(_)
             | Change::OfVolume(_)
-            | Change::AnyQuat(_) => false,
+            | Change::AnyQuat(_)
+            | Change::Factors { factors: Factors::Drawn(_), .. } => false,
             Change::Image(p) => p.iter().flatten().any(is),
             Change::Omega(p) => p.iter().any(is),
             Change::Quat { axis, angle } => axis.iter().chain([angle]).any(is),
@@ -111,6 +120,7 @@ impl Item {
             | Change::Molecule(p)
             | Change::Place(_, p)
             | Change::Velocity(_, p)
+            | Change::Factors { factors: Factors::Given(p), .. }
             | Change::Custom { value: p, .. } => is(p),
         }
     }
@@ -258,6 +268,14 @@ fn change_particles(cx: &mut ActCx, item: &Item, chosen: &[usize]) -> Result<usi
             perigrain_styles::surface::check_volumes(cx.world, chosen, item.span)?;
             let p = &mut cx.world.particles;
             chosen.iter().for_each(|&i| p.radius[i] = (part * p.volume[i]).cbrt());
+        }
+        Change::Factors { column, factors: Factors::Given(p) } => {
+            let v = checked(p, "the factor", Some(Limit::Positive))?;
+            scatter::set(cx.world, chosen, *column, |k| v[chosen[k]]);
+        }
+        Change::Factors { column, factors: Factors::Drawn(drawn) } => {
+            let v = drawn.of(cx.world, chosen);
+            scatter::set(cx.world, chosen, *column, |k| v[k]);
         }
         Change::Volume(p) => {
             let v = checked(p, "the volume", Some(Limit::Positive))?;

@@ -1,5 +1,6 @@
 //! The op behind all peridynamic styles: families at the first run, forces at every step.
 
+use super::scatter::Scatter;
 use super::{Pair, Solid, reunion};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_peri::families::{Families, FamilyOptions, ForceUnit, PeriTally, PmbCoeff, PmbTable};
@@ -7,7 +8,7 @@ use perigrain_plan::{About, Level, Needs, Op, Stage, Tick};
 use perigrain_styles::peri_view::view;
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
-    BOX, DENSITY, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, RADIUS, TAG, TALLY, VOLUME, X,
+    BOX, COLUMNS, DENSITY, F, FACTS, FAMILIES, Fields, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, RADIUS, TAG, TALLY, VOLUME, X,
     X0,
 };
 use perigrain_world::{Crack, Key, Numbers, World};
@@ -17,6 +18,8 @@ pub struct Force {
     style: Solid,
     options: FamilyOptions,
     name: String,
+    /// Bonds that differ from particle to particle.
+    scatter: Scatter,
     /// The coefficients as the deck's lines said them, before micro-moduli were calibrated.
     said: PmbTable,
     /// Which changes by fixes have been seen.
@@ -29,7 +32,7 @@ pub struct Force {
 
 impl Force {
     /// The op of a style.
-    pub fn new(style: Solid, said: PmbTable, options: FamilyOptions) -> Self {
+    pub fn new(style: Solid, said: PmbTable, options: FamilyOptions, scatter: Scatter) -> Self {
         let name = format!("pair {}", style.name);
         let key = |types, name: &str| {
             let (style, name) = (style.name.to_string(), name.to_string());
@@ -39,19 +42,20 @@ impl Force {
         let pairs = (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j)));
         let keys = pairs.map(|p| (p, ["c", "s00", "alpha"].map(|name| key(p, name)))).collect();
         let tally = Key::new(style.name);
-        Self { style, options, name, said, adapted: 0.0, keys, tally }
+        Self { style, options, name, scatter, said, adapted: 0.0, keys, tally }
     }
 }
 
 impl Op for Force {
     fn about(&self) -> About {
+        let factors = if self.scatter.any() { COLUMNS } else { Fields::NONE };
         About {
             level: Level::At(0),
             ..About::new(
                 &self.name,
                 Stage::Force,
                 Needs::new()
-                    .read(TAG | MASK | MOLECULE | X | X0 | KIND | VOLUME | BOX | MEMO | DENSITY | RADIUS)
+                    .read(TAG | MASK | MOLECULE | X | X0 | KIND | VOLUME | BOX | MEMO | DENSITY | RADIUS | factors)
                     .add(F)
                     .write(LISTS | FAMILIES | TALLY | FACTS)
                     .keep(MASS),
@@ -112,6 +116,14 @@ impl Force {
         Ok(())
     }
 
+    /// Gives bonds their factors, which refreshed families may have of an earlier run.
+    fn scatter(&self, w: &World, families: &mut Families) {
+        match self.scatter.any() {
+            true => self.scatter.give(w, families),
+            false => families.scatter(&[], &[]),
+        }
+    }
+
     /// The coefficients in force.
     fn table(&self, w: &World) -> Result<PmbTable> {
         let mut table = self.style.table.clone();
@@ -141,7 +153,7 @@ impl Force {
         if self.options.unit == ForceUnit::Newton {
             self.true_masses(w)?;
         }
-        let families = match w.families.take() {
+        let mut families = match w.families.take() {
             Some(mut families) => {
                 families.takes(self.style.law.kind, None)?;
                 families.options = self.options;
@@ -155,9 +167,11 @@ impl Force {
                 self.tell_lone(w, &families);
                 self.tell_doubles(w, &families);
                 tell_almost(w, &families);
+                self.scatter.tell(w);
                 families
             }
         };
+        self.scatter(w, &mut families);
         w.families = Some(families).into();
         self.mark(w)?;
         reunion::check_spheres(&self.style, w)

@@ -11,6 +11,7 @@ mod options;
 mod plastic;
 mod pmb;
 mod reunion;
+mod scatter;
 mod softening;
 mod ves;
 
@@ -33,6 +34,7 @@ use perigrain_styles::{BuildCx, SealCx};
 use perigrain_world::{Region, World};
 pub use plastic::PeriPmbPlastic;
 pub use pmb::PeriPmb;
+use scatter::Scatter;
 pub use softening::PeriPmbSoftening;
 pub use ves::PeriVes;
 
@@ -199,6 +201,7 @@ impl Solid {
             unit: self.unit(),
             lattice_spacing: w.lattice.spacing[0],
             compat_lammps: s.lammps(),
+            own_stretches: s.lammps_of_2026(),
             compress: self.compress,
             layout: if s.force_list { Layout::List } else { Layout::Auto },
             skip_rest: !s.no_skipping,
@@ -320,18 +323,26 @@ impl Pair for Solid {
             self.cannot(span, "needs a lattice that is the same in x, y and z")?;
         }
         let options = self.options(w);
+        if w.settings.lammps_of_2026() && self.law.kind == LawKind::ElasticPlastic {
+            let text = "under `compat lammps/2026`: its yielding has been mended in 2026 by rules that have not been compared";
+            return Err(Diagnostic::error(Code::NOT_SUPPORTED, span, format!("no pair_style {} {text}", self.name))
+                .help("`compat lammps/2025` has the yielding of LAMMPS 22Jul2025, `compat none` the right one")
+                .into());
+        }
         let before = w.families.as_ref().map(|f| f.law.kind);
+        let scatter = Scatter::of(self, &options, w).map_err(|e| e.at(span))?;
         cx.leave_out(
             &format!("neighbour list of {}", self.name),
             "bonds never change partners; close pairs are found by their stretch",
         );
         let mut style = self.clone();
         style.table = self.calibrated(a, span)?;
-        if self.law.kind == LawKind::Pmb && (self.law.surface || self.law.influence != Influence::One) {
+        let unlike = self.law.surface || self.law.influence != Influence::One || scatter.stiffness;
+        if self.law.kind == LawKind::Pmb && unlike {
             style.law.kind = LawKind::Shaped;
         }
         style.law.shared_or_apart(before).map_err(|e| e.at(span))?;
-        Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options)))])
+        Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options, scatter)))])
     }
 
     fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
@@ -365,8 +376,9 @@ impl Pair for Solid {
         let ftm2v = w.settings.units.constants().ftm2v;
         let step = |i: u16| {
             let own = self.materials.density(i);
+            let stiffer = scatter::stiffest(w, i);
             let rho = own.or_else(|| if w.n() > 0 { self.lightest(w, i) } else { deck.density })?;
-            Some((rho / (ftm2v * stiffest(i)?)).sqrt())
+            Some((rho / (ftm2v * stiffer * stiffest(i)?)).sqrt())
         };
         let cutoff = self.table.iter().map(|c| c.horizon).reduce(f64::max);
         let stable_step = (1..=types).filter_map(step).reduce(f64::min);
@@ -376,7 +388,7 @@ impl Pair for Solid {
     fn check(&self, cx: &BuildCx) {
         let w = cx.world;
         reunion::check(self, cx);
-        if w.families.is_some() || !w.settings.lammps() {
+        if w.families.is_some() || !w.settings.lammps() || w.settings.lammps_of_2026() {
             return;
         }
         let alphas = self.table.iter().any(|c| c.alpha != 0.0);

@@ -1,6 +1,6 @@
 //! A peridynamic body on a lattice: cells in rows, rows in planes, one bit per bond.
 
-use crate::families::Measures;
+use crate::families::{Measures, Scatter};
 use crate::families::law::SiteState;
 use perigrain_base::math::cell::{Basis, point};
 
@@ -148,6 +148,9 @@ pub struct LatticeBody {
     /// Bonds that were the least stretched ones of their cells' families.
     #[serde(skip)]
     pub slackest: Slackest,
+    /// Factors of cells.
+    #[serde(default)]
+    pub scatter: Scatter,
     /// Under a state-based law: columns with [`PAD`] entries around those of the cells. Memory of bonds: number `k` of
     /// bond `e` of a chunk's eight cells from `((chunk * stencil.len() + e) * numbers + k) * LANES` on.
     pub state: SiteState,

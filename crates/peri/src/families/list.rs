@@ -1,5 +1,6 @@
 //! Bonds of all bodies that sit on no lattice: records in slab order, each with its bonds to later ones.
 
+use crate::families::Scatter;
 use crate::families::law::SiteState;
 
 /// What a bond needs to know of one end; one cache line.
@@ -96,6 +97,9 @@ pub struct ListBody {
     /// What is known of bonds near their limits.
     #[serde(skip)]
     pub limits: Limits,
+    /// Factors of records.
+    #[serde(default)]
+    pub scatter: Scatter,
     /// Under a state-based law: columns by records. Memory of bonds: number `k` of the bond at place `b` is
     /// `(b / GROUP * numbers + k) * GROUP + b % GROUP`; only records that are `touched` have any but zeros.
     pub state: SiteState,

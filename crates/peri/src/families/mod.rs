@@ -12,12 +12,14 @@ pub mod lattice;
 pub mod law;
 pub mod list;
 mod measures;
+mod scatter;
 mod sound;
 
 pub use cells::Cells;
 pub use excluded::Excluded;
 pub use law::{Influence, Law, LawKind, Moduli};
 pub use measures::Measures;
+pub use scatter::Scatter;
 
 /// Coefficients of the prototype microelastic brittle model for one pair of types.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -148,6 +150,9 @@ pub struct FamilyOptions {
     pub lattice_spacing: f64,
     /// One critical stretch per particle, and LAMMPS' absolute threshold for stretch.
     pub compat_lammps: bool,
+    /// Under that each bond has the critical stretch of its own pair nevertheless, as in the LAMMPS of 2026.
+    #[serde(default)]
+    pub own_stretches: bool,
     /// Broken bonds still push when they are shorter than at the start (`peri_modify broken compress`).
     pub compress: bool,
     /// Lattice or list.
@@ -177,6 +182,11 @@ impl FamilyOptions {
         if self.compat_lammps { 2.0 * NEAR_ZERO / length } else { 2.0 * DEAD_BAND }
     }
 
+    /// Whether particles have one critical stretch each, the largest of their bonds, as in LAMMPS 22Jul2025.
+    pub fn one_stretch(&self) -> bool {
+        self.compat_lammps && !self.own_stretches
+    }
+
     /// The distance below which two particles repel each other, bonded or not:
     /// min(0.9 of their distance at creation, 1.35 lattice spacings) (LAMMPS' peri styles).
     #[inline]
@@ -193,6 +203,7 @@ impl FamilyOptions {
             unit: ForceUnit::Density,
             lattice_spacing,
             compat_lammps: false,
+            own_stretches: false,
             compress: false,
             layout: Layout::Auto,
             skip_rest: true,

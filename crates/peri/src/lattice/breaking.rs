@@ -1,5 +1,7 @@
 //! Breaking on the lattice: chunks with a bond near its limit, eight cells at a time.
 
+use std::borrow::Cow;
+
 use crate::breaking::{Bonds, banded, measure};
 use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, Lead, PAD, Slack, Slackest};
 use crate::families::{Candidate, FamilyOptions, Measures};
@@ -40,7 +42,7 @@ struct Scratch {
 const CHUNKS_PER_PART: usize = 32;
 
 impl LatticeBody {
-    /// Micromodulus, s00 and alpha of the bond between two cells.
+    /// Micromodulus, s00 and alpha of the bond between two cells, of which s00 is its own.
     pub(crate) fn pair(&self, i: usize, j: usize) -> [f64; 3] {
         let kind = |cell: usize| {
             let row = &self.rows[self.slot_of(cell)];
@@ -50,7 +52,17 @@ impl LatticeBody {
                 usize::from(self.cell_kind[PAD + cell])
             }
         };
-        self.pairs[kind(i) * self.kinds.len() + kind(j)]
+        let [c, s00, alpha] = self.pairs[kind(i) * self.kinds.len() + kind(j)];
+        [c, s00 * self.scatter.strength([i, j]), alpha]
+    }
+
+    /// Micromodulus, s00 and alpha of pairs of local types, with the least s00 that a bond has.
+    pub(crate) fn weakest_pairs(&self) -> Cow<'_, [[f64; 3]]> {
+        if !self.scatter.uneven() {
+            return Cow::Borrowed(&self.pairs);
+        }
+        let weakest = self.scatter.weakest();
+        Cow::Owned(self.pairs.iter().map(|&[c, s00, alpha]| [c, s00 * weakest, alpha]).collect())
     }
 
     /// Displacements of this step (1) or of the one before (0), at a cell.
@@ -157,7 +169,12 @@ impl LatticeBody {
     }
 
     /// Bonds of a row's flagged chunks that may break: stretched beyond what is sure to allow it.
-    fn strained_in_row<K: Isa>(&self, slot: usize, strained: &mut Vec<Strained>, found: &mut Vec<Candidate>) {
+    fn strained_in_row<K: Isa>(
+        &self,
+        (slot, pairs): (usize, &[[f64; 3]]),
+        strained: &mut Vec<Strained>,
+        found: &mut Vec<Candidate>,
+    ) {
         let (row, entries) = (&self.rows[slot], self.stencil.len());
         let chunks = row.start as usize / LANES..(row.start + row.len) as usize / LANES;
         for chunk in chunks.filter(|&chunk| self.flagged[chunk] & MAY_BREAK != 0) {
@@ -175,7 +192,7 @@ impl LatticeBody {
                 alive: &self.alive[chunk * entries..][..entries],
                 tables: &self.tables,
                 table: entries * CONSTANTS,
-                pairs: &self.pairs,
+                pairs,
                 floor: f64::from(self.floor[chunk]),
             };
             strained.clear();
@@ -189,10 +206,24 @@ impl LatticeBody {
                     bits &= bits - 1;
                     let ends =
                         [(cell + lane) as u32, (cell + lane).wrapping_add_signed(s.lead.to as isize) as u32];
-                    found.push(Candidate { ends, bond: s.lead.e, stretch: s.stretch[lane], s00, alpha });
+                    let one = Candidate { ends, bond: s.lead.e, stretch: s.stretch[lane], s00, alpha };
+                    found.extend(self.scattered(one));
                 }
             }
         }
+    }
+
+    /// A bond that may break for all that is known of the weakest one, with its own critical stretch; nothing where it bears that.
+    fn scattered(&self, c: Candidate) -> Option<Candidate> {
+        if !self.scatter.uneven() {
+            return Some(c);
+        }
+        let [i, j] = c.ends.map(|cell| cell as usize);
+        let s00 = c.s00 * self.scatter.strength([i, j]);
+        let before = if c.alpha == 0.0 { 0.0 } else { stretch(self.z(0, i, j, c.bond as usize)).max(0.0) };
+        // Rounding takes far less.
+        let limit = s00 - c.alpha * before;
+        (c.stretch > limit - 1e-12 * limit.abs()).then_some(Candidate { s00, ..c })
     }
 
     /// The same for a chunk of a body with several types in a row, bond by bond.
@@ -258,13 +289,13 @@ impl Bonds for LatticeBody {
             return;
         }
         let mut lists = vec![vec![]; self.planes];
-        let shared = Shared::new(&mut lists);
+        let (shared, pairs) = (Shared::new(&mut lists), self.weakest_pairs());
         par::for_rows(self.planes, |plane| {
             // SAFETY: each plane has its own list.
             let list = unsafe { &mut shared.get(plane..plane + 1)[0] };
             let mut strained = vec![];
             for slot in self.slot(plane, 0)..self.slot(plane + 1, 0) {
-                self.strained_in_row::<K>(slot, &mut strained, list);
+                self.strained_in_row::<K>((slot, &pairs), &mut strained, list);
             }
         });
         found.reserve(lists.iter().map(Vec::len).sum());
@@ -300,7 +331,7 @@ impl Bonds for LatticeBody {
                     row = start / LANES..(start + len) / LANES;
                     body.owners(slot, &mut scratch.behind);
                 }
-                let measured = body.extremes::<K>((chunk, row.start), options.compat_lammps, &mut scratch);
+                let measured = body.extremes::<K>((chunk, row.start), options.one_stretch(), &mut scratch);
                 for (value, measured) in values.iter_mut().zip(&measured) {
                     *value = measured.0;
                 }

@@ -138,7 +138,10 @@ fn lattice_body<K: Isa>(
     let spread = States { spread: spreads, ..states };
     let count = particle.len();
     let only = if let [only] = body.kinds[..] { Some(only) } else { None };
-    let sites = Sites { count, pad: PAD, stride: body.stride, particle: &particle, kind: view.kind, only };
+    let stiffness = std::mem::take(&mut body.scatter.stiffness);
+    let (stride, kinds) = (body.stride, view.kind);
+    let sites =
+        Sites { count, pad: PAD, stride, particle: &particle, kind: kinds, only, stiffness: &stiffness };
     let mut add_up = |body: &mut LatticeBody, sum, states| {
         let mut sums = std::mem::take(&mut body.state.sums);
         sums.clear();
@@ -161,7 +164,7 @@ fn lattice_body<K: Isa>(
         add_up(body, if settling.compat { Sum::NormLammps } else { Sum::Norm }, spread);
         settling.flow(&mut body.state, &sites);
     }
-    body.particle = particle;
+    (body.particle, body.scatter.stiffness) = (particle, stiffness);
     let sweep = Sweep::new(body, &mut columns, mode, newton, spread);
     par::two_colours(body.slabs(), |slab| sweep.slab::<K>(slab, &mut window(windows), f));
     columns.give(body);

@@ -55,6 +55,8 @@ pub struct Sites<'a> {
     pub kind: &'a [u16],
     /// The type of all of them, if they have but one.
     pub only: Option<u16>,
+    /// Factors on how stiff they are; empty where all are 1.
+    pub stiffness: &'a [f64],
 }
 
 impl Settling<'_> {
@@ -143,7 +145,8 @@ impl Settling<'_> {
         });
     }
 
-    /// How stiff each site's half of its microelastic bonds is: ½, or with surfaces corrected ½ πδ⁴/Σ c w |xi| V/c.
+    /// How stiff each site's half of its microelastic bonds is: ½, or with surfaces corrected ½ πδ⁴/Σ c w |xi| V/c; times its
+    /// factor.
     pub fn stiffen(&self, state: &mut SiteState, sites: &Sites) {
         let SiteState { weighted, columns, .. } = state;
         let columns = Shared::new(columns);
@@ -158,6 +161,7 @@ impl Settling<'_> {
                     let horizon = self.table.get(kind, kind).map_or(0.0, |c| c.horizon);
                     share *= std::f64::consts::PI * horizon.powi(4) / weighted[at];
                 }
+                share *= sites.stiffness.get(site).copied().unwrap_or(1.0);
                 put(&columns, sites, at, &[0.0, share, 0.0, 0.0, 0.0, 0.0], 2);
             }
         });

@@ -37,7 +37,7 @@ pub struct Judge {
 impl Judge {
     /// For the bonds of a body.
     pub fn new(body: &ListBody, mode: Mode, options: &FamilyOptions) -> Self {
-        let critical = options.compat_lammps && body.pairs.len() > 1;
+        let critical = options.one_stretch() && body.pairs.len() > 1;
         let measured = critical || body.pairs.iter().any(|p| p.alpha != 0.0);
         let known = body.limits.least.len() == body.record.len();
         let breaking_enabled = mode.breaking_enabled && mode.advance;
@@ -60,12 +60,13 @@ impl Judge {
 
     /// The stretch at which the bond between two records breaks.
     fn limit(&self, body: &ListBody, pair: &PairConstants, ends: [usize; 2]) -> f64 {
+        let s00 = pair.s00 * body.scatter.strength(ends);
         let measure = |i: usize| body.limits.least.get(i).copied().unwrap_or(f64::INFINITY);
         let most = f64::max(measure(ends[0]), measure(ends[1]));
         match self.critical {
             true => -most,
-            false if pair.alpha == 0.0 => pair.s00,
-            false => pair.s00 - pair.alpha * stretch(most),
+            false if pair.alpha == 0.0 => s00,
+            false => s00 - pair.alpha * stretch(most),
         }
     }
 
@@ -112,17 +113,19 @@ impl Judge {
         let least = &body.limits.least;
         let alone = pair.alpha == 0.0 && !self.critical;
         let most = if alone { 0.0 } else { f64::max(least[ends[0]], least[ends[1]]) };
-        let limit = if self.critical { -most } else { pair.s00 - 0.5 * pair.alpha * most };
+        let s00 = pair.s00 * body.scatter.strength(ends);
+        let limit = if self.critical { -most } else { s00 - 0.5 * pair.alpha * most };
         0.5 * z < limit - 1e-12 * limit.abs()
     }
 }
 
 /// The z below which no bond breaks where no family's least z is larger than `most`: limits are the lower the larger that is.
 fn floor(body: &ListBody, most: f64) -> f64 {
+    let weakest = body.scatter.weakest();
     let limit = |p: &PairConstants| match p.alpha {
-        0.0 => p.s00,
+        0.0 => p.s00 * weakest,
         _ if most == f64::INFINITY => f64::NEG_INFINITY,
-        alpha => p.s00 - alpha * stretch(most.max(-1.0)),
+        alpha => p.s00 * weakest - alpha * stretch(most.max(-1.0)),
     };
     lowered(body.pairs.iter().map(limit).fold(f64::INFINITY, f64::min))
 }
@@ -170,7 +173,8 @@ pub fn candidates<K: Isa>(
         let (b, pair) = (bond as usize, *body.constants(bond as usize));
         let ends = [body.owner[b / GROUP], body.partner[b]];
         if stretch(z) > judge.limit(body, &pair, ends.map(|r| r as usize)) {
-            let PairConstants { s00, alpha, .. } = pair;
+            let alpha = pair.alpha;
+            let s00 = pair.s00 * body.scatter.strength(ends.map(|r| r as usize));
             found.push(Candidate { ends, bond, stretch: stretch(z), s00, alpha });
         }
     }
@@ -229,6 +233,7 @@ pub fn hand_back(records: impl Iterator<Item = usize>, window: &Window, least: &
 pub fn roll(body: &mut ListBody) {
     let (s00, alpha) =
         body.pairs.iter().fold((f64::INFINITY, 0.0f64), |l, p| (l.0.min(p.s00), l.1.max(p.alpha)));
+    let s00 = s00 * body.scatter.weakest();
     let limits = &mut body.limits;
     let kept = limits.next.len() == body.record.len();
     std::mem::swap(&mut limits.least, &mut limits.next);

@@ -57,7 +57,10 @@ pub fn forces<K: Isa>(
         }
     }
     let particle = std::mem::take(&mut list.particle);
-    let sites = Sites { count: n, pad: 0, stride: n, particle: &particle, kind: view.kind, only: only(list) };
+    let stiffness = std::mem::take(&mut list.scatter.stiffness);
+    let (kind_of, only) = (view.kind, only(list));
+    let sites =
+        Sites { count: n, pad: 0, stride: n, particle: &particle, kind: kind_of, only, stiffness: &stiffness };
     let sweep = |list: &mut ListBody, numbers: usize, task: &(dyn Fn(&Sweep, usize, &mut Window) + Sync)| {
         let mut memory = std::mem::take(&mut list.state.memory);
         let mut touched = std::mem::take(&mut list.state.touched);
@@ -114,7 +117,7 @@ pub fn forces<K: Isa>(
             hand_back(s.body, &particle, own.chain(next), w, f);
         }
     });
-    (list.particle, list.moving) = (particle, moving);
+    (list.particle, list.moving, list.scatter.stiffness) = (particle, moving, stiffness);
     settling.held(&mut list.state);
 }
 

@@ -109,6 +109,7 @@ impl LatticeBody {
         ] {
             equal(&format!("the number of its {what} is"), len, expected)?;
         }
+        must(self.scatter.fits(cells), "it has factors of more or fewer cells")?;
         must((1..=u16::MAX as usize).contains(&kinds), "it has no types")?;
         must(
             self.kinds.iter().all(|k| (1..=types).contains(&usize::from(*k))),

@@ -48,6 +48,7 @@ impl ListBody {
         ] {
             equal(&format!("the number of its {what} is"), len, expected)?;
         }
+        must(self.scatter.fits(n), "it has factors of more or fewer records")?;
         must(self.partner.len() < u32::MAX as usize, "it has more bonds than can be numbered")?;
         must(of_bonds == 0 || kinds <= 1, "it has several types beside those of bonds")?;
         must(
