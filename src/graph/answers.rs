@@ -40,9 +40,10 @@ pub fn setting(w: &World, blind: bool, name: &str) -> Option<Value> {
         "world_size" | "universe_size" => 1.0,
         "bigint" => 8.0,
         "tagint" | "imageint" => 4.0,
-        "nghost" | "triclinic" | "nangletypes" | "ndihedraltypes" | "nimpropertypes" | "q_flag"
-        | "mu_flag" | "ellipsoid_flag" | "angmom_flag" | "world_rank" | "universe_rank" | "nellipsoids"
-        | "nlines" | "ntris" | "nbodies" | "kokkos_active" | "kokkos_nthreads" | "kokkos_ngpus" => 0.0,
+        "triclinic" => flag(w.domain.as_ref().is_some_and(|d| d.tilt.is_some())),
+        "nghost" | "nangletypes" | "ndihedraltypes" | "nimpropertypes" | "q_flag" | "mu_flag"
+        | "ellipsoid_flag" | "angmom_flag" | "world_rank" | "universe_rank" | "nellipsoids" | "nlines"
+        | "ntris" | "nbodies" | "kokkos_active" | "kokkos_nthreads" | "kokkos_ngpus" => 0.0,
         _ => return None,
     };
     Some(Value::Number(number))

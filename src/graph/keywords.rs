@@ -137,6 +137,9 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
     let taken = || w.memo.playing(*COUPLED).filter_map(|(_, e)| e.first());
     let coupled = || taken().sum::<f64>();
     let edges = |k: usize| w.domain.as_ref().map_or(0.0, |d| d.lengths()[k]);
+    let tilt = |k: usize| w.edges().tilt[k];
+    let vectors = || w.edges().vectors();
+    let angle = |a: usize, b: usize| if w.tilted() { angle(vectors()[a], vectors()[b]) } else { 90.0 };
     let lo = |k: usize| w.domain.as_ref().map_or(0.0, |d| d.lo[k]);
     let hi = |k: usize| w.domain.as_ref().map_or(0.0, |d| d.hi[k]);
     match name {
@@ -157,8 +160,10 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
         "vol" => volume(w),
         "density" => density(w),
         "lx" | "cella" | "avecx" => edges(0),
-        "ly" | "cellb" | "bvecy" => edges(1),
-        "lz" | "cellc" | "cvecz" => edges(2),
+        "ly" | "bvecy" => edges(1),
+        "lz" | "cvecz" => edges(2),
+        "cellb" => perigrain_base::math::vec3::length(vectors()[1]),
+        "cellc" => perigrain_base::math::vec3::length(vectors()[2]),
         "timeremain" => w.settings.time_left(),
         "xlat" => w.lattice.spacing[0],
         "ylat" => w.lattice.spacing[1],
@@ -169,7 +174,13 @@ pub fn value(name: &str, w: &World, s: &Sources) -> f64 {
         "xhi" => hi(0),
         "yhi" => hi(1),
         "zhi" => hi(2),
-        "cellalpha" | "cellbeta" | "cellgamma" => 90.0,
+        "xy" => tilt(0),
+        "xz" | "cvecx" => tilt(1),
+        "yz" | "cvecy" => tilt(2),
+        "bvecx" => tilt(0),
+        "cellalpha" => angle(1, 2),
+        "cellbeta" => angle(0, 2),
+        "cellgamma" => angle(0, 1),
         "pxx" => press(0),
         "pyy" => press(1),
         "pzz" => press(2),
@@ -202,6 +213,12 @@ fn time_value(name: &str, c: &Clock) -> f64 {
         "cpuremain" if done > 0.0 => cpu() * (c.last - c.step) as f64 / done,
         _ => 0.0,
     }
+}
+
+/// Between two edges, in degrees.
+fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {
+    use perigrain_base::math::vec3::{dot, length};
+    (dot(a, b) / (length(a) * length(b))).acos().to_degrees()
 }
 
 fn volume(w: &World) -> f64 {

@@ -130,8 +130,7 @@ impl Members<'_> {
     fn unfolded(&self, i: usize) -> [f64; 3] {
         let p = &self.w.particles;
         let Some(domain) = &*self.w.domain else { return p.x[i] };
-        let l = domain.lengths();
-        [0, 1, 2].map(|d| p.x[i][d] + p.image[i][d] as f64 * l[d])
+        domain.unwrapped(&p.x[i], &p.image[i])
     }
 
     /// Total mass.

@@ -2,6 +2,7 @@
 
 use super::spatial;
 use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::math::vec3::{add, sub};
 use perigrain_base::par;
 use perigrain_plan::{About, BlockSums, Level, Needs, Op, Room, Stage, Tick, Way};
 use perigrain_world::bonds::LostBond;
@@ -81,22 +82,41 @@ impl Op for Reneighbor {
 /// How far the two corners of the box have moved since the last rebuild, together.
 fn corners_moved(w: &World) -> f64 {
     let (Some(domain), Some([lo, hi])) = (&*w.domain, w.rebuild.corners) else { return 0.0 };
-    if (domain.lo, domain.hi) == (lo, hi) {
+    let tilt = w.rebuild.tilt;
+    let now = domain.tilt.unwrap_or_default();
+    if (domain.lo, domain.hi, now) == (lo, hi, tilt) {
         return 0.0;
     }
     let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum::<f64>().sqrt();
-    apart(domain.lo, lo) + apart(domain.hi, hi)
+    if (now, tilt) == ([0.0; 3], [0.0; 3]) {
+        return apart(domain.lo, lo) + apart(domain.hi, hi);
+    }
+    // Of a leaning box all eight count, and the two that moved farthest.
+    let before = Domain { lo, hi, tilt: Some(tilt), ..domain.clone() };
+    let mut ways = [0.0, 0.0];
+    for (a, b) in domain.corners().into_iter().zip(before.corners()) {
+        let way = apart(a, b);
+        if way > ways[0] {
+            ways = [way, ways[0]];
+        } else if way > ways[1] {
+            ways[1] = way;
+        }
+    }
+    ways[0] + ways[1]
 }
 
 /// Particles about to be wrapped into a growing box get the velocity of the image they become.
 fn carry(domain: &Domain, p: &mut Particles) {
     let Some(flow) = domain.flow else { return };
     for i in (0..p.x.len()).filter(|&i| p.mask[i] & flow.group.bit() != 0) {
+        let at = domain.upright(&p.x[i]);
         for d in (0..3).filter(|&d| domain.boundary.periodic(d)) {
-            if p.x[i][d] < domain.lo[d] {
-                p.v[i][d] += flow.rate[d];
-            } else if p.x[i][d] >= domain.hi[d] {
-                p.v[i][d] -= flow.rate[d];
+            let mut edge = [0.0; 3];
+            edge[d] = 1.0;
+            if at[d] < domain.lo[d] {
+                p.v[i] = add(p.v[i], flow.velocity(edge));
+            } else if at[d] >= domain.hi[d] {
+                p.v[i] = sub(p.v[i], flow.velocity(edge));
             }
         }
     }
@@ -144,10 +164,31 @@ fn not_finite(w: &World, i: usize, t: &Tick) -> perigrain_base::diag::Diagnostic
     .into()
 }
 
+/// Puts the box of the same lattice in the place of one that leans too far. Places stay where they are, in other images.
+fn flip(w: &mut World) {
+    let lammps = w.settings.lammps();
+    let Some(domain) = &mut *w.domain else { return };
+    let Some(flip) = domain.flip.take() else { return };
+    let p = &mut w.particles;
+    if !lammps {
+        // In LAMMPS those who have crossed a face since the last rebuild keep their velocities here.
+        carry(domain, p);
+        let all: Vec<usize> = (0..p.x.len()).collect();
+        p.image.wrap(domain, &mut p.x, &all);
+    }
+    domain.tilt = Some(flip.tilt);
+    for i in 0..p.x.len() {
+        let mut image = flip.recount(p.image[i]);
+        domain.wrap(&mut p.x[i], &mut image);
+        p.image.set(i, image);
+    }
+}
+
 /// `anew`: the scene may have changed, so that no list can stay.
 fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> {
     let n = w.n();
     let before = w.rebuild.generation;
+    flip(w);
     let Some(domain) = &mut *w.domain else { return Ok(()) };
     let p = &mut w.particles;
     let extent = Extent::of(&p.x, domain);
@@ -159,7 +200,7 @@ fn rebuild(w: &mut World, t: &Tick, how: &Reneighbor, anew: bool) -> Result<()> 
         p.image.wrap(domain, &mut p.x, &extent.out);
         domain.shrink(extent.corners);
         // Across fixed faces nobody has been wrapped: there the corners still are those of all.
-        extent.corners.iter().all(|corner| domain.keeps(corner))
+        extent.corners.iter().all(|corner| domain.keeps_upright(corner))
     });
     let domain = &*domain;
     if !inside {
@@ -242,6 +283,7 @@ fn hold(w: &mut World) {
     let (p, rebuild) = (&w.particles, &mut *w.rebuild);
     rebuild.seen = Seen::now(*w.travel, 0.0);
     rebuild.corners = w.domain.as_ref().map(|d| [d.lo, d.hi]);
+    rebuild.tilt = w.domain.as_ref().and_then(|d| d.tilt).unwrap_or_default();
     rebuild.unmoved = p.x == p.x0;
     if rebuild.unmoved {
         rebuild.held = Vec::new();

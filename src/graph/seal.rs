@@ -149,7 +149,7 @@ impl<'a> Sealer<'a> {
 
     /// Whether a fix changes the box during the run.
     pub fn deforms(&self) -> bool {
-        self.facts().any(|(_, facts)| facts.deforms != [false; 3])
+        self.facts().any(|(_, facts)| facts.deforms != [false; 6])
     }
 
     /// What is declared.

@@ -37,7 +37,8 @@ fn cells(w: &World) -> Option<[f64; 2]> {
 }
 
 fn order(w: &World, x: &[[f64; 3]]) -> Option<Vec<usize>> {
-    let (domain, period) = (w.domain.as_ref()?, w.periods());
+    // Of a leaning box only the order is asked: whoever is beyond the upright box counts with its outermost cells.
+    let (domain, period) = (w.domain.as_ref()?, w.periods().length);
     let mut slabs = Slabs::default();
     slabs.sort(x, &w.particles.tag, cells(w)?, &domain.lo, &period);
     Some(slabs.order.iter().map(|&i| i as usize).collect())
@@ -89,11 +90,14 @@ pub fn stays(w: &mut World) -> bool {
 
 /// None where lists cannot stay, or it is not known; more than `enough` is not told exactly.
 fn drift(w: &World, enough: f64) -> Option<Drift> {
-    let (domain, period, s) = (w.domain.as_ref()?, w.periods(), &w.settings.neighbor);
+    let (domain, period, s) = (w.domain.as_ref()?, w.periods().length, &w.settings.neighbor);
     let [edge, far] = cells(w)?;
     let (x, made, held) = (&w.particles.x, w.made(), w.held());
     let known = made.len() == w.n() && held.len() == w.n();
-    let rigid = domain.flow.is_none() && w.rebuild.corners.is_some_and(|c| same_box(domain, c));
+    let rigid = domain.flow.is_none()
+        && !domain.tilted()
+        && w.rebuild.tilt == [0.0; 3]
+        && w.rebuild.corners.is_some_and(|c| same_box(domain, c));
     // Lists of two skins have to fit between a grain and its image, with room to spare.
     let most = far - w.rebuild.kept.reach(s.skin) + 2.0 * s.skin;
     let wide = period.iter().all(|l| *l == 0.0 || *l > 4.0 * most);

@@ -4,6 +4,7 @@ use super::Session;
 use crate::graph::build::Context;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Label, Result, Span};
 use perigrain_lang::{Command, Script, Word};
+use perigrain_styles::common::orthogonal;
 use perigrain_styles::{Pair, Use, UseKind};
 use perigrain_world::GroupId;
 use std::cell::RefCell;
@@ -42,6 +43,7 @@ impl Session {
         self.check_surfaces(&mut found);
         self.check_breaking(&mut found);
         self.check_box(&mut found);
+        self.check_orthogonal(span, &mut found);
         self.check_variables(&mut found);
         found.0.extend(self.graph.thermo.forgotten());
         crate::graph::dynamic::check(&self.graph, &self.world, &mut found);
@@ -207,16 +209,53 @@ impl Session {
         }
     }
 
-    /// A length of the box obeys one fix.
+    /// A length or tilt of the box obeys one fix.
     fn check_box(&self, found: &mut Diagnostics) {
         let fixes = &self.graph.fixes;
         let deforms = |f: &crate::graph::FixNode| f.fix.facts(&self.world).deforms;
         for (k, a) in fixes.iter().enumerate() {
-            let same = |b: &&crate::graph::FixNode| (0..3).any(|d| deforms(a)[d] && deforms(b)[d]);
+            let same = |b: &&crate::graph::FixNode| (0..6).any(|d| deforms(a)[d] && deforms(b)[d]);
             if let Some(b) = fixes[k + 1..].iter().find(same) {
-                let text = format!("fixes `{}` and `{}` both change the same length of the box", a.id, b.id);
+                let text =
+                    format!("fixes `{}` and `{}` both change the same length or tilt of the box", a.id, b.id);
                 found.push(Diagnostic::error(Code::CONFLICT, b.span, text).label(a.span, "the other one"));
             }
+        }
+    }
+
+    /// What does not know that boxes may lean is not let into one that may.
+    fn check_orthogonal(&self, span: Span, found: &mut Diagnostics) {
+        if self.world.domain.as_ref().is_none_or(|d| d.tilt.is_none()) {
+            return;
+        }
+        let upright = |f: &&crate::graph::FixNode| f.fix.facts(&self.world).orthogonal;
+        for f in self.graph.fixes.iter().filter(upright) {
+            found.append(orthogonal(&format!("fix {}", f.style)).at(f.span));
+        }
+        let leans = |f: &&crate::graph::FixNode| f.fix.facts(&self.world).deforms[3..].contains(&true);
+        if let Some(deform) = self.graph.fixes.iter().find(leans) {
+            let rigid = |f: &&crate::graph::FixNode| f.style.starts_with("rigid");
+            for f in self.graph.fixes.iter().filter(rigid) {
+                let text = format!("fix {} does not go with a box whose tilts change", f.style);
+                found.push(
+                    Diagnostic::error(Code::NOT_SUPPORTED, f.span, text).label(deform.span, "changed here"),
+                );
+            }
+            if let Some(node) = &self.graph.bond {
+                let text = "bonds do not go with a box whose tilts change";
+                found.push(
+                    Diagnostic::error(Code::NOT_SUPPORTED, node.span, text)
+                        .label(deform.span, "changed here"),
+                );
+            }
+        }
+        let solids = |pair: &dyn Pair| !pair.facts().solids.is_empty();
+        if let Some(node) = &self.graph.pair
+            && (solids(node.pair.as_ref()) || node.pair.parts().into_iter().any(solids))
+        {
+            found.append(orthogonal("a peridynamic solid").at(node.span));
+        } else if self.world.families.is_some() {
+            found.append(orthogonal("a peridynamic solid").at(span));
         }
     }
 

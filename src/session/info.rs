@@ -135,7 +135,11 @@ impl Session {
             None => text += "\nBox has not yet been created\n",
             Some(d) => {
                 let l = d.lengths();
-                let _ = writeln!(text, "Orthogonal box = {} x {} x {}", l[0], l[1], l[2]);
+                let kind = if d.tilt.is_some() { "Triclinic" } else { "Orthogonal" };
+                let _ = writeln!(text, "{kind} box = {} x {} x {}", l[0], l[1], l[2]);
+                if let Some([xy, xz, yz]) = d.tilt {
+                    let _ = writeln!(text, "Xy, xz, yz = {xy}, {xz}, {yz}");
+                }
                 for (k, axis) in ["x", "y", "z"].iter().enumerate() {
                     let _ = writeln!(text, "{axis}lo, {axis}hi = {}, {}", d.lo[k], d.hi[k]);
                 }

@@ -114,7 +114,7 @@ impl Session {
         let w = &self.world;
         let facts = |f: &FixNode| f.fix.facts(w);
         let fixes = &self.graph.fixes;
-        let deforms = fixes.iter().any(|f| facts(f).deforms != [false; 3]);
+        let deforms = fixes.iter().any(|f| facts(f).deforms != [false; 6]);
         let halts = fixes.iter().any(|f| f.style == "halt") || w.settings.deadline.is_some();
         let hurries = fixes.iter().any(|f| f.style.starts_with("dt/"));
         let u = &mut self.world.parts.unseen;

@@ -7,7 +7,6 @@ use crate::graph::regions::place_all;
 use crate::graph::restarts::{claimable, one_process, pattern, save};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, unseen};
 use perigrain_base::gate;
-use perigrain_base::math::cformat::general;
 use perigrain_lang::{Args, Command, Word};
 use perigrain_out::restart::{Saved, fingerprint, read, resume};
 use perigrain_world::{Halt, Key, Numbers, Particles, Parts, Promise, Said, Unseen, World};
@@ -207,8 +206,7 @@ impl Session {
         log.line(&format!("Reading restart file {} ...", path.display()))?;
         log.line(&format!("  restoring atom style {} from restart", w.particles.style.name()))?;
         if let Some(d) = &*w.domain {
-            let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
-            log.line(&format!("  orthogonal box = ({}) to ({})", text(d.lo), text(d.hi)))?;
+            log.line(&format!("  {}", d.told(d.lo, d.hi)))?;
         }
         if let Some(node) = &self.graph.pair {
             log.line(&format!("  restoring pair style {} from restart", node.pair.facts().name))?;

@@ -240,7 +240,7 @@ mod tests {
         for (r, rest) in [(1.3, 1.25), (1.45, 1.325), (0.95, 1.075)] {
             let mut columns = Columns::new(&[member], 2);
             let x = [[r, 0.0, 0.0], [0.0; 3]];
-            let body = Body { x: &x, v: &[], omega: &[], quat: &[], periods: [0.0; 3] };
+            let body = Body { x: &x, v: &[], omega: &[], quat: &[], periods: Default::default() };
             let yielded = give_way(&mut columns, &body, |_| 0.1);
             assert!((columns.own[1][0] - rest).abs() < 1e-15 && yielded.len() == usize::from(r != 1.3));
             let law = Yielding(Breaking { smooth: false, normalize: false });
@@ -262,7 +262,7 @@ mod tests {
         };
         let mut columns = Columns::new(&[member([0, 1]), member([1, 2])], 3);
         let x = [[0.0; 3], [1.5, 0.0, 0.0], [2.5, 0.0, 0.0]];
-        let body = Body { x: &x, v: &[], omega: &[], quat: &[], periods: [0.0; 3] };
+        let body = Body { x: &x, v: &[], omega: &[], quat: &[], periods: Default::default() };
         swell(&mut columns, &body, 3);
         let grown = |v: f64| (v / 3.0).cbrt();
         assert!((columns.own[1][0] - grown(2.0 * 3.375 + 1.0)).abs() < 1e-15);

@@ -7,6 +7,7 @@ use perigrain_base::math::body::{Quat, after};
 use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::four::Four;
 use perigrain_base::math::lanes::Lanes;
+use perigrain_base::math::periods::Periods;
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, add, sub};
 use perigrain_base::par;
@@ -24,7 +25,7 @@ pub struct Body<'a> {
     /// Orientations; may be empty where no law turns.
     pub quat: &'a [Quat],
     /// Edge lengths of the box, 0 where it does not repeat [length].
-    pub periods: Vec3,
+    pub periods: Periods,
 }
 
 /// A pass over all bonds.
@@ -238,8 +239,29 @@ unsafe fn quats<const N: usize, V: Lanes<N>>(list: &[Quat], at: *const u32) -> Q
 
 /// Across the nearest periodic faces, of two points in the box or hardly outside.
 #[inline(always)]
-pub fn nearest<R: Real>(d: Vec3<R>, periods: &Vec3) -> Vec3<R> {
-    [across(d[0], periods[0]), across(d[1], periods[1]), across(d[2], periods[2])]
+pub fn nearest<R: Real>(d: Vec3<R>, periods: &Periods) -> Vec3<R> {
+    if periods.tilted() {
+        return nearest_tilted(d, periods);
+    }
+    let length = &periods.length;
+    [across(d[0], length[0]), across(d[1], length[1]), across(d[2], length[2])]
+}
+
+/// The same where edges lean: along z, then y, then x.
+#[inline(always)]
+fn nearest_tilted<R: Real>(mut d: Vec3<R>, periods: &Periods) -> Vec3<R> {
+    for k in [2, 1, 0] {
+        if periods.length[k] == 0.0 {
+            continue;
+        }
+        let half = d[k].like(0.5 * periods.length[k]);
+        let (over, under) = (d[k].above(half), (-d[k]).above(half));
+        let edge = periods.shift([0, 1, 2].map(|j| if j == k { 1.0 } else { 0.0 }));
+        for (d, edge) in d.iter_mut().zip(edge) {
+            *d = R::choose(over, *d - edge, R::choose(under, *d + edge, *d));
+        }
+    }
+    d
 }
 
 #[inline(always)]

@@ -110,7 +110,9 @@ enum Kind {
 
 impl CommandStyle for Calibrate {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        common::domain(cx)?;
+        if common::domain(cx)?.tilted() {
+            return Err(common::orthogonal("calibrate").at(cx.span));
+        }
         let name = a.choice("kind of calibration", &["dsm", "ste", "periodic", "strength", "fit"])?;
         let kind = match name {
             "dsm" => Kind::Dsm,

@@ -5,7 +5,7 @@ use super::replicate::say_box;
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Word};
-use perigrain_styles::common::{self, not_here, on_particles, scales, units_lattice};
+use perigrain_styles::common::{self, on_particles, scales, units_lattice};
 use perigrain_styles::near::bonds_allow;
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::{Boundary, Domain, Face, GroupId};
@@ -13,7 +13,8 @@ use perigrain_world::{Boundary, Domain, Face, GroupId};
 /// The command.
 pub struct ChangeBox;
 
-const KEYWORDS: [&str; 8] = ["x", "y", "z", "boundary", "ortho", "set", "remap", "units"];
+const KEYWORDS: [&str; 12] =
+    ["x", "y", "z", "xy", "xz", "yz", "boundary", "ortho", "triclinic", "set", "remap", "units"];
 
 impl Style for ChangeBox {
     fn name(&self) -> &'static str {
@@ -23,15 +24,18 @@ impl Style for ChangeBox {
     fn doc(&self) -> Doc {
         Doc {
             syntax: "change_box GROUP x|y|z final LO HI | x|y|z delta DLO DHI | x|y|z scale S | x|y|z volume | \
-                     boundary X Y Z | set | remap | ortho …  [units lattice|box]",
-            summary: "Changes size and faces of the box.",
+                     xy|xz|yz final T | xy|xz|yz delta DT | boundary X Y Z | set | remap | ortho | triclinic …  \
+                     [units lattice|box]",
+            summary: "Changes size, shape and faces of the box.",
             text: "What is asked happens in order. `scale` and `volume` change an edge about its middle; `volume` keeps the \
                    volume that the box had before the edge named just before it changed (two `volume` in a row share it). \
                    Particles stay where they are unless `remap` is said: then those of the group move with the box, from \
                    where it was at the start of the line, or at the last `set` or `remap`, to where it is now. `boundary` changes \
                    what the faces do; image counts along a dimension that is no longer periodic become 0. At the end \
-                   shrink-wrapped faces follow the particles and periodic ones wrap them. Distances are in lattice \
-                   spacings unless `units box` is said. Triclinic boxes (`xy xz yz triclinic`) are refused.",
+                   shrink-wrapped faces follow the particles and periodic ones wrap them. `triclinic` \
+                   makes the box one that may lean, `ortho` one that may not, for which its tilts must be 0; `xy`, `xz` and `yz` \
+                   set its tilts or change them. Distances are in lattice spacings unless `units box` is said, \
+                   `xy` and `xz` in those along x, `yz` in those along y.",
             example: "change_box all x scale 1.01 y final -0.01 0.01 boundary f f f remap units box",
         }
     }
@@ -53,8 +57,16 @@ enum Step {
         how: Edge,
         volume: Vec<usize>,
     },
+    /// A tilt (xy, xz, yz), set or changed by so much.
+    Tilt {
+        k: usize,
+        by: f64,
+        delta: bool,
+        span: Span,
+    },
     Boundary([[Face; 2]; 3]),
-    Ortho,
+    Ortho(Span),
+    Triclinic,
     Set,
     Remap,
 }
@@ -75,12 +87,19 @@ impl CommandStyle for ChangeBox {
                     }
                     steps.push(Step::Boundary(faces));
                 }
-                "ortho" => steps.push(Step::Ortho),
+                "ortho" => steps.push(Step::Ortho(keyword.span)),
+                "triclinic" => steps.push(Step::Triclinic),
                 "set" => steps.push(Step::Set),
                 "remap" => steps.push(Step::Remap),
                 "units" => lattice = units_lattice(a)?,
-                "xy" | "xz" | "yz" | "triclinic" => {
-                    return Err(not_here(keyword, "a triclinic box: change_box"));
+                "xy" | "xz" | "yz" => {
+                    let k = ["xy", "xz", "yz"].iter().position(|n| *n == keyword.text).unwrap_or(0);
+                    if k > 0 && cx.world.settings.two_dimensional {
+                        let text = format!("the tilt {} of a flat scene must be 0", keyword.text);
+                        return fail(Code::CONFLICT, keyword.span, text);
+                    }
+                    let delta = a.choice("change", &["final", "delta"])? == "delta";
+                    steps.push(Step::Tilt { k, by: a.number("the tilt")?, delta, span: keyword.span });
                 }
                 _ => return Err(a.unknown(keyword, &KEYWORDS)),
             }
@@ -153,7 +172,28 @@ fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span:
                 domain.boundary = Boundary(*faces);
                 refit(&mut domain);
             }
-            Step::Ortho => boxes.push(domain.clone()),
+            Step::Tilt { k, by, delta, span } => {
+                let Some(tilt) = &mut domain.tilt else {
+                    let d = Diagnostic::error(Code::CONFLICT, *span, "an orthogonal box cannot lean");
+                    return Err(d.help("`triclinic` before this makes it one that may").into());
+                };
+                tilt[*k] = scale[*k / 2] * by + if *delta { tilt[*k] } else { 0.0 };
+                boxes.push(domain.clone());
+            }
+            Step::Ortho(span) => {
+                if domain.tilted() {
+                    let d = Diagnostic::error(Code::CONFLICT, *span, "a box that leans is not orthogonal");
+                    return Err(d
+                        .help("set its tilts to 0 first: `xy final 0 xz final 0 yz final 0`")
+                        .into());
+                }
+                domain.tilt = None;
+                boxes.push(domain.clone());
+            }
+            Step::Triclinic => {
+                domain.tilt.get_or_insert([0.0; 3]);
+                boxes.push(domain.clone());
+            }
             Step::Set => saved = domain.clone(),
             Step::Remap => {
                 let members = cx.world.particles.mask.iter().map(|m| m & group.bit() != 0);
@@ -165,8 +205,9 @@ fn change(cx: &mut ActCx, group: GroupId, steps: &[Step], scale: [f64; 3], span:
             }
         }
     }
-    let before = cx.world.domain()?.lengths();
-    bonds_allow(cx.world, [0, 1, 2].map(|d| before[d] != domain.lengths()[d])).map_err(|e| e.at(span))?;
+    let (before, now) = (cx.world.domain()?.edges().vectors(), domain.edges().vectors());
+    bonds_allow(cx.world, [0, 1, 2].map(|d| before[d] != now[d])).map_err(|e| e.at(span))?;
+    common::warn_of_skew(cx, &domain);
     cx.say("Changing box ...");
     for domain in boxes {
         cx.world.domain = Some(domain).into();
@@ -243,12 +284,15 @@ fn check(domain: &Domain, span: Span) -> Result<()> {
 /// What LAMMPS does with every new box: the room beyond shrink-wrapped faces is measured anew and added.
 fn refit(domain: &mut Domain) {
     let fresh = Domain::new(domain.lo, domain.hi, domain.boundary);
-    *domain = Domain { flat: domain.flat, ..fresh };
+    *domain = Domain { flat: domain.flat, tilt: domain.tilt, ..fresh };
     domain.open_shrinking_faces();
 }
 
 /// Where a place of one box is in another.
 fn carried(x: [f64; 3], from: &Domain, to: &Domain) -> [f64; 3] {
+    if from.tilted() || to.tilted() {
+        return to.at(from.fractions(&x));
+    }
     let (old, new) = (from.lengths(), to.lengths());
     [0, 1, 2].map(|d| new[d] * ((x[d] - from.lo[d]) * (1.0 / old[d])) + to.lo[d])
 }
@@ -279,6 +323,7 @@ mod tests {
         let w = scene("units si\nregion b block 0 4 0 2 0 1\ncreate_box 1 b");
         for (line, word) in [
             ("change_box all xy final 0.1", "xy"),
+            ("change_box all triclinic xy final 0.1 ortho", "ortho"),
             ("change_box all x volume", "x"),
             ("change_box all x scale 2 x volume", "x"),
             ("change_box all x scale -1", "-1"),

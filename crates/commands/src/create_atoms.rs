@@ -11,9 +11,10 @@ mod volumes;
 use super::{Act, CommandStyle};
 use molecules::Copies;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
-use perigrain_base::math::cformat::general;
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
-use perigrain_styles::common::{self, bad_keyword, in_group, scales, seed, units_lattice, unknown_style};
+use perigrain_styles::common::{
+    self, bad_keyword, in_group, orthogonal, scales, seed, units_lattice, unknown_style,
+};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 use perigrain_world::{Particles, World, memory};
 use places::{Maker, New, Place, Test};
@@ -380,6 +381,9 @@ fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {
     }
     let shares = match (&c.place, c.cut) {
         (Place::Lattice { region: Some(region), .. }, Some(span)) => {
+            if domain.tilted() {
+                return Err(orthogonal("`volume cut`").at(span));
+            }
             Some(volumes::cut(&cx.world.lattice, &domain, region, &places, span)?)
         }
         _ => None,
@@ -410,11 +414,9 @@ fn create(cx: &mut ActCx, c: &Creation) -> Result<()> {
         let count = mesh.triangles.len();
         cx.say(format!("  read {count} triangles with {each:.2} atoms per triangle added in {mode} mode"));
     }
-    let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
     let units = if c.lattice_units { "lattice" } else { "box" };
     cx.say(format!("Created {count} atoms"));
-    let (lo, hi) = (text(domain.lo), text(domain.hi));
-    cx.say(format!("  using {units} units in orthogonal box = ({lo}) to ({hi})"));
+    cx.say(format!("  using {units} units in {}", domain.told(domain.lo, domain.hi)));
     if let Some(shares) = shares {
         cx.say(shares.said);
         shares.warning.into_iter().for_each(|d| cx.note(d));

@@ -2,7 +2,6 @@
 
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_base::math::cformat::general;
 use perigrain_lang::Args;
 use perigrain_styles::common::{self, bad_keyword, setting};
 use perigrain_styles::{BuildCx, Doc, Style};
@@ -60,9 +59,6 @@ impl CommandStyle for CreateBox {
             return Err(common::not_here(word, "a general triclinic box: create_box"));
         }
         let region = cx.region(word)?;
-        if matches!(region.shape, Shape::Prism { .. }) {
-            return Err(common::not_here(word, "a triclinic box: the prism"));
-        }
         if cx.checking && region.motion.is_none() && region.follows() && !region.outside {
             return Ok(guessed_box(region, types as usize, bond_types(a, cx)?));
         }
@@ -73,7 +69,12 @@ impl CommandStyle for CreateBox {
                 "the box must be a bounded region at rest with `side in`",
             );
         }
-        let Some((lo, hi)) = region.shape.bounds() else {
+        // Of a prism the corners count and how it leans, not what is around it.
+        let (bounds, tilt) = match &region.shape {
+            Shape::Prism { lo, hi, tilt } => (Some((*lo, *hi)), Some(*tilt)),
+            shape => (shape.bounds(), None),
+        };
+        let Some((lo, hi)) = bounds else {
             return fail(Code::WRONG_KIND, word.span, "the box must be a bounded region with `side in`");
         };
         if (0..3).any(|d| {
@@ -87,9 +88,9 @@ impl CommandStyle for CreateBox {
         let flat = cx.world.settings.two_dimensional;
         common::check_flat(cx.world.settings.boundary, (lo[2], hi[2]), flat).map_err(|d| d.at(word.span))?;
         Ok(setting(move |cx| {
-            let mut domain = Domain { flat, ..Domain::new(lo, hi, cx.world.settings.boundary) };
-            let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
-            cx.say(format!("Created orthogonal box = ({}) to ({})", text(domain.lo), text(domain.hi)));
+            let mut domain = Domain { flat, tilt, ..Domain::new(lo, hi, cx.world.settings.boundary) };
+            cx.say(format!("Created {}", domain.told(lo, hi)));
+            common::warn_of_skew(cx, &domain);
             cx.say("  1 by 1 by 1 MPI processor grid");
             domain.open_shrinking_faces();
             cx.world.domain = Some(domain).into();
@@ -104,8 +105,12 @@ impl CommandStyle for CreateBox {
 /// While a deck is only checked: a box of some size where variables will say how large it is.
 fn guessed_box(region: &Region, types: usize, bond_types: usize) -> Box<dyn Act> {
     let (mut lo, mut hi) = match &region.shape {
-        Shape::Block { lo, hi } => (*lo, *hi),
+        Shape::Block { lo, hi } | Shape::Prism { lo, hi, .. } => (*lo, *hi),
         _ => ([f64::NAN; 3], [f64::NAN; 3]),
+    };
+    let tilt = match &region.shape {
+        Shape::Prism { tilt, .. } => Some(tilt.map(|t| if t.is_nan() { 0.0 } else { t })),
+        _ => None,
     };
     for d in 0..3 {
         if lo[d].is_nan() {
@@ -115,7 +120,8 @@ fn guessed_box(region: &Region, types: usize, bond_types: usize) -> Box<dyn Act>
     }
     setting(move |cx| {
         let flat = cx.world.settings.two_dimensional;
-        cx.world.domain = Some(Domain { flat, ..Domain::new(lo, hi, cx.world.settings.boundary) }).into();
+        let domain = Domain { flat, tilt, ..Domain::new(lo, hi, cx.world.settings.boundary) };
+        cx.world.domain = Some(domain).into();
         (cx.world.types, cx.world.bonds.types) = (types, bond_types);
         cx.world.type_mass = vec![None; types].into();
         Ok(())

@@ -125,8 +125,8 @@ fn random(a: &mut Args, cx: &BuildCx) -> Result<Random> {
 fn overlap(a: &mut Args, cx: &BuildCx, domain: &Domain) -> Result<Choice> {
     let span = a.here();
     let cutoff = a.positive("the distance")?;
-    let lengths = domain.lengths();
-    if (0..3).any(|d| domain.periodic()[d] && cutoff > lengths[d]) {
+    let heights = domain.edges().heights();
+    if (0..3).any(|d| domain.periodic()[d] && cutoff > heights[d]) {
         return fail(Code::BAD_VALUE, span, "the distance is longer than a periodic edge of the box");
     }
     let (first, second) = (cx.group(a.expect("a group")?)?, cx.group(a.expect("a group")?)?);
@@ -218,7 +218,7 @@ fn overlapping(p: &Particles, domain: &Domain, cutoff: f64, first: GroupId, seco
     marked
 }
 
-/// Particles by cells no smaller than the cutoff.
+/// Particles by cells of the upright box between whose layers there is the cutoff at least.
 struct Cells<'a> {
     x: &'a [[f64; 3]],
     domain: &'a Domain,
@@ -233,18 +233,24 @@ struct Cells<'a> {
 impl<'a> Cells<'a> {
     fn new(domain: &'a Domain, x: &'a [[f64; 3]], cutoff: f64) -> Self {
         let periodic = domain.periodic();
-        let extent =
-            |d: usize, start: f64, pick: fn(f64, f64) -> f64| x.iter().fold(start, |m, x| pick(m, x[d]));
+        let upright: Vec<[f64; 3]> = x.iter().map(|x| domain.upright(x)).collect();
+        let extent = |d: usize, start: f64, pick: fn(f64, f64) -> f64| {
+            upright.iter().fold(start, |m, x| pick(m, x[d]))
+        };
+        // Faces of a leaning box are nearer to each other than its edges are long.
+        let (edges, heights) = (domain.lengths(), domain.edges().heights());
+        let nearer = |d: usize| heights[d] / edges[d];
         let lo =
             [0, 1, 2].map(|d| if periodic[d] { domain.lo[d] } else { extent(d, domain.lo[d], f64::min) });
         let hi =
             [0, 1, 2].map(|d| if periodic[d] { domain.hi[d] } else { extent(d, domain.hi[d], f64::max) });
         // No more cells along an edge than particles can fill in the mean.
         let most = (x.len() as f64).cbrt().ceil().max(1.0);
-        let count = [0, 1, 2].map(|d| ((hi[d] - lo[d]) / cutoff).floor().clamp(1.0, most) as usize);
+        let count =
+            [0, 1, 2].map(|d| ((hi[d] - lo[d]) * nearer(d) / cutoff).floor().clamp(1.0, most) as usize);
         let size = [0, 1, 2].map(|d| (hi[d] - lo[d]) / count[d] as f64);
         let mut cells = Self { x, domain, lo, size, count, starts: vec![], members: vec![] };
-        let place: Vec<usize> = x.iter().map(|&x| cells.index(cells.cell(x))).collect();
+        let place: Vec<usize> = upright.iter().map(|&x| cells.index(cells.cell(x))).collect();
         cells.members = (0..x.len()).collect();
         cells.members.sort_by_key(|&i| place[i]);
         let total = count.iter().product::<usize>();
@@ -262,22 +268,22 @@ impl<'a> Cells<'a> {
 
     /// Whether `test` (particle, its place or that of its image, whether it is an image) holds for one nearby.
     fn any_near(&self, x: [f64; 3], mut test: impl FnMut(usize, [f64; 3], bool) -> bool) -> bool {
-        let here = self.cell(x);
-        let (lengths, periodic) = (self.domain.lengths(), self.domain.periodic());
+        let here = self.cell(self.domain.upright(&x));
+        let (edges, periodic) = (self.domain.edges(), self.domain.periodic());
         (0..27).any(|k| {
-            let (mut cell, mut shift) = ([0; 3], [0.0; 3]);
+            let (mut cell, mut turns) = ([0; 3], [0.0; 3]);
             for d in 0..3 {
                 let c = here[d] as i64 + [k % 3, k / 3 % 3, k / 9][d] - 1;
                 let n = self.count[d] as i64;
                 if (0..n).contains(&c) {
                     cell[d] = c as usize;
                 } else if periodic[d] {
-                    (cell[d], shift[d]) = (c.rem_euclid(n) as usize, c.div_euclid(n) as f64 * lengths[d]);
+                    (cell[d], turns[d]) = (c.rem_euclid(n) as usize, c.div_euclid(n) as f64);
                 } else {
                     return false;
                 }
             }
-            let image = shift != [0.0; 3];
+            let (image, shift) = (turns != [0.0; 3], edges.shift(turns));
             let c = self.index(cell);
             self.members[self.starts[c]..self.starts[c + 1]].iter().any(|&j| {
                 let y = self.x[j];

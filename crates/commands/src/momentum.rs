@@ -93,8 +93,8 @@ pub fn temperature(w: &World, members: &Members, v: &[Vec3]) -> f64 {
 /// Position with periodic images unfolded.
 fn unfolded(w: &World, i: usize) -> Vec3 {
     let (x, image) = (w.particles.x[i], w.particles.image[i]);
-    let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
-    [0, 1, 2].map(|d| x[d] + f64::from(image[d]) * lengths[d])
+    let by = w.edges().shift(image.map(f64::from));
+    [0, 1, 2].map(|d| x[d] + by[d])
 }
 
 /// Angular velocity ω with I ω = L. A body on a line has no rotation about it: small moments are left out.

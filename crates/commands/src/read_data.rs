@@ -7,7 +7,6 @@ use super::data::words::{Ids, extra_types, ids, offsets, outside};
 use super::data::{Column, body};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Source, fail};
-use perigrain_base::math::cformat::general;
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{self, bad_keyword, id};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
@@ -72,7 +71,7 @@ impl Style for ReadData {
                    fix property/atom: a line for each particle, its id and then the values in the order of the fix's line; a \
                    file without the section leaves zeros. HEADER has no meaning. Where a comment names the style (`Atoms # sphere`), it must be the \
                    deck's; LAMMPS only warns. Ids that occur twice, lines beyond the promised number and particles outside \
-                   are refused in the file itself. Refused by name: angles and other topology, type labels, tilted boxes, sections of fixes that no `fix` names.",
+                   are refused in the file itself. Refused by name: angles and other topology, type labels, general triclinic boxes, sections of fixes that no `fix` names.",
             example: "write_data plate.data\nread_data plate.data add append shift 0.0 0.0 0.02",
         }
     }
@@ -241,6 +240,10 @@ impl Reading {
     fn place(&self, cx: &mut ActCx, mut data: DataFile, text: &str) -> Result<DataFile> {
         let world = &*cx.world;
         let domain = self.domain(world, &data);
+        if domain.tilt.unwrap_or_default() != data.header.tilt.unwrap_or_default() {
+            let text = "the box of the file does not lean as the one that is there";
+            return fail(Code::CONFLICT, self.file.span, text);
+        }
         let periodic = domain.periodic();
         let mut p = std::mem::take(&mut data.particles);
         data.particles.style = p.style;
@@ -266,8 +269,12 @@ impl Reading {
             }
             domain.wrap(&mut p.x[k], &mut image);
             p.image.set(k, image);
-            if let Some(d) = (0..3).find(|&d| !(p.x[k][d] >= domain.lo[d] && p.x[k][d] < domain.hi[d])) {
-                return Err(outside(&domain, d, &p.x[k], span(k, Column::X(d)), p.tag[k]));
+            let at = domain.upright(&p.x[k]);
+            let within = |d: usize| at[d] >= domain.lo[d] && at[d] < domain.hi[d];
+            // Rounding may leave one who was wrapped on the upper face of a leaning box.
+            let settled = |d: usize| domain.tilted() && periodic[d];
+            if let Some(d) = (0..3).find(|&d| !within(d) && !settled(d)) {
+                return Err(outside(&domain, d, &at, span(k, Column::X(d)), p.tag[k]));
             }
         }
         if !world.particles.is_empty() {
@@ -303,7 +310,9 @@ impl Reading {
             }
         }
         let flat = world.settings.two_dimensional;
-        let mut domain = Domain { flat, ..Domain::new(lo, hi, world.settings.boundary) };
+        // The first box says how all lean, as its faces do what `boundary` says.
+        let tilt = world.domain.as_ref().map_or(data.header.tilt, |old| old.tilt);
+        let mut domain = Domain { flat, tilt, ..Domain::new(lo, hi, world.settings.boundary) };
         domain.open_shrinking_faces();
         domain
     }
@@ -353,8 +362,8 @@ impl Reading {
     }
 
     fn tell(&self, cx: &mut ActCx, data: &DataFile, domain: &Domain) {
-        let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
-        cx.say(format!("  orthogonal box = ({}) to ({})", text(domain.min_lo), text(domain.min_hi)));
+        cx.say(format!("  {}", domain.told(domain.min_lo, domain.min_hi)));
+        common::warn_of_skew(cx, domain);
         cx.say("  1 by 1 by 1 MPI processor grid");
         let count = data.particles.len();
         cx.say("  reading atoms ...");

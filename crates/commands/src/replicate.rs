@@ -2,7 +2,6 @@
 
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
-use perigrain_base::math::cformat::general;
 use perigrain_lang::Args;
 use perigrain_styles::common::{self, on_particles};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style, matter};
@@ -78,7 +77,7 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
     let domain = larger(&old, count);
     let unwrapped: Vec<[f64; 3]> = (0..n).map(|i| matter::unwrapped(cx.world, i)).collect();
     let from: Vec<usize> = (0..copies).flat_map(|_| 0..n).collect();
-    let lengths = old.lengths();
+    let edges = old.edges();
     let world = &mut *cx.world;
     let molecules = world.particles.last_molecule();
     let (bonds, special) = (std::mem::take(&mut world.bonds.list), std::mem::take(&mut world.bonds.special));
@@ -91,7 +90,7 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
     for copy in 0..copies {
         let place = [copy / (ny * nz), copy / nz % ny, copy % nz];
         let offset = (place[2] * ny * nx + place[1] * nx + place[0]) * last;
-        let shift = [0, 1, 2].map(|d| place[d] as f64 * lengths[d]);
+        let shift = edges.shift(place.map(|k| k as f64));
         let number = (place[2] * ny * nx + place[1] * nx + place[0]) as u32;
         let moved = |ends: [u32; 2]| ends.map(|t| t + offset as u32);
         world.bonds.list.extend(bonds.iter().map(|b| Bond { ends: moved(b.ends), ..*b }));
@@ -133,14 +132,16 @@ fn repeat(cx: &mut ActCx, count: [i64; 3]) -> Result<()> {
 fn larger(old: &Domain, count: [i64; 3]) -> Domain {
     let lengths = old.lengths();
     let hi = [0, 1, 2].map(|d| old.lo[d] + count[d] as f64 * lengths[d]);
-    Domain { flat: old.flat, ..Domain::new(old.lo, hi, old.boundary) }
+    // An edge carries its tilts along.
+    let times = count.map(|n| n as f64);
+    let tilt = old.tilt.map(|[xy, xz, yz]| [times[1] * xy, times[2] * xz, times[2] * yz]);
+    Domain { flat: old.flat, tilt, ..Domain::new(old.lo, hi, old.boundary) }
 }
 
 /// Says where the box is, as LAMMPS does.
 pub fn say_box(cx: &mut ActCx) -> Result<()> {
     let domain = cx.world.domain()?;
-    let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
-    let line = format!("  orthogonal box = ({}) to ({})", text(domain.lo), text(domain.hi));
+    let line = format!("  {}", domain.told(domain.lo, domain.hi));
     cx.say(line);
     Ok(())
 }

@@ -222,7 +222,10 @@ fn bonds_of(w: &World) -> Vec<f64> {
 }
 
 fn scaled(w: &World, i: usize, d: usize) -> f64 {
-    w.domain.as_ref().map_or(0.0, |b| (w.particles.x[i][d] - b.lo[d]) / (b.hi[d] - b.lo[d]))
+    w.domain.as_ref().map_or(0.0, |b| match b.tilted() {
+        true => b.fractions(&w.particles.x[i])[d],
+        false => (w.particles.x[i][d] - b.lo[d]) / (b.hi[d] - b.lo[d]),
+    })
 }
 
 impl ComputeStyle for PropertyAtom {

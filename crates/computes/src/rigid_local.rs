@@ -38,16 +38,16 @@ impl Style for RigidLocal {
     }
 }
 
-/// Body, id of its owner, lengths of the periodic dimensions.
+/// Body, id of its owner, how far its image counts are from the box.
 type Read = fn(&Body, [f64; 2], Vec3) -> f64;
 
 const ATTRIBUTES: &[(&str, Read)] = &[
     ("id", |_, owner, _| owner[0]),
     ("mol", |_, owner, _| owner[1]),
     ("mass", |b, _, _| b.mass),
-    ("x", |b, _, l| b.x[0] - b.image[0] * l[0]),
-    ("y", |b, _, l| b.x[1] - b.image[1] * l[1]),
-    ("z", |b, _, l| b.x[2] - b.image[2] * l[2]),
+    ("x", |b, _, by| b.x[0] - by[0]),
+    ("y", |b, _, by| b.x[1] - by[1]),
+    ("z", |b, _, by| b.x[2] - by[2]),
     ("xu", |b, _, _| b.x[0]),
     ("yu", |b, _, _| b.x[1]),
     ("zu", |b, _, _| b.x[2]),
@@ -134,13 +134,14 @@ impl Declared {
 
     fn rows(&self, w: &World, owners: &[f64], bodies: &[Body]) -> Vec<f64> {
         let (p, index) = (&w.particles, perigrain_world::index::Index::new(&w.particles.tag));
-        let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
+        let edges = w.edges();
         let mut rows = vec![];
         for (body, owner) in bodies.iter().zip(owners) {
             let Some(i) = index.find(*owner as u32, &p.tag) else { continue };
             if p.mask[i] & self.group.bit() != 0 {
                 let molecule = p.molecule.get(i).map_or(0.0, |m| f64::from(*m));
-                rows.extend(self.list.iter().map(|read| read(body, [*owner, molecule], lengths)));
+                let by = edges.shift(body.image);
+                rows.extend(self.list.iter().map(|read| read(body, [*owner, molecule], by)));
             }
         }
         rows

@@ -3,6 +3,8 @@
 use super::thermal::{Streams, Taken, Thermal, dimension};
 use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::math::periods::Periods;
+use perigrain_base::math::vec3::add;
 use perigrain_lang::Args;
 use perigrain_styles::matter::count;
 use perigrain_styles::stretching::{Stretching, stretching};
@@ -43,7 +45,11 @@ struct WithTheBox;
 
 impl Streams for WithTheBox {
     fn taken<'a>(&'a self, w: &'a World, _group: GroupId) -> Taken<'a> {
-        let Stretching { rate, low, .. } = stretching(w).unwrap_or_default();
+        let Stretching { rate, tilt, low, .. } = stretching(w).unwrap_or_default();
+        if let Some(domain) = w.domain.as_ref().filter(|d| d.tilted() || tilt != [0.0; 3]) {
+            let edges = Periods { length: rate, tilt };
+            return Box::new(move |i| add(edges.shift(domain.fractions(&w.particles.x[i])), low));
+        }
         let (from, lengths) = w.domain.as_ref().map_or(([0.0; 3], [1.0; 3]), |d| (d.lo, d.lengths()));
         let inverse = lengths.map(|l| 1.0 / l);
         let x = &w.particles.x;

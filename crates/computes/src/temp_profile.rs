@@ -116,8 +116,9 @@ impl Streams for Profile {
     fn bin(&self, w: &World, i: usize) -> usize {
         let Some(domain) = &*w.domain else { return 0 };
         let (lengths, mut bin) = (domain.lengths(), 0);
+        let at = domain.upright(&w.particles.x[i]);
         for d in [2, 1, 0] {
-            let (mut x, bins) = (w.particles.x[i][d], self.bins[d]);
+            let (mut x, bins) = (at[d], self.bins[d]);
             if domain.boundary.periodic(d) {
                 x += if x < domain.lo[d] { lengths[d] } else { 0.0 };
                 x -= if x >= domain.hi[d] { lengths[d] } else { 0.0 };

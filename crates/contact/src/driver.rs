@@ -1,6 +1,7 @@
 //! The loop over contacts: who touches, what each remembers, what each does, added up in a fixed order.
 
 use super::{Advance, ContactLaw, Geometry, Motion, Wrench};
+use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::{SIX, Vec3, add, sub};
 use perigrain_base::par;
 use perigrain_neigh::list::{Pair, difference};
@@ -109,8 +110,8 @@ pub struct Grains<'a> {
     pub kind: &'a [u16],
     /// Identities.
     pub tag: &'a [u32],
-    /// Edge lengths of the box; zero where it does not repeat.
-    pub period: [f64; 3],
+    /// Edges of the box; zero where it does not repeat.
+    pub period: Periods,
     /// How the box grows, and groups by particle, where images move with it.
     pub flow: Option<(Flow, &'a [u32])>,
     /// The solid each particle belongs to, `NO_BODY` for grains; may be empty where no rule asks.
@@ -147,7 +148,7 @@ impl Grains<'_> {
         if let Some((flow, mask)) = &self.flow
             && mask[p.j as usize] & flow.group.bit() != 0
         {
-            (0..3).for_each(|d| motion.velocity[d] += f64::from(p.shift[d]) * flow.rate[d]);
+            motion.velocity = add(motion.velocity, flow.velocity(p.shift.map(f64::from)));
         }
         motion
     }
@@ -364,7 +365,7 @@ impl Sweep {
     }
 
     /// Virial Σ d ⊗ F over contacts: xx yy zz xy xz yz.
-    pub fn virial(&self, x: &[Vec3], period: &[f64; 3]) -> [f64; 6] {
+    pub fn virial(&self, x: &[Vec3], period: &Periods) -> [f64; 6] {
         let mut sum = [0.0; 6];
         for (p, w) in self.touching.iter().zip(&self.wrenches) {
             let (d, f) = (difference(x, period, p), w.force);

@@ -259,6 +259,15 @@ impl Bound {
             Core::Process(rank) => Data::int(move |_| rank),
             Core::Mass => Data::slice(&p.mass),
             Core::X(k) => Data::float(move |i| f.x(i)[k]),
+            Core::Scaled(k) if d.tilted() => Data::float(move |i| d.fractions(&f.x(i))[k]),
+            Core::Unwrapped(k) if d.tilted() => Data::float(move |i| d.unwrapped(&f.x(i), &f.image(i))[k]),
+            Core::ScaledUnwrapped(k) if d.tilted() => {
+                Data::float(move |i| d.fractions(&f.x(i))[k] + f64::from(f.image(i)[k]))
+            }
+            Core::Tenth(k) if d.tilted() => Data::float(move |i| {
+                let scaled = d.fractions(&f.x(i))[k] + f64::from(f.image(i)[k]);
+                (scaled - 0.5) / 10.0 + 0.5
+            }),
             Core::Scaled(k) => {
                 let (lo, inverse) = (d.lo[k], inverse(k));
                 Data::float(move |i| (f.x(i)[k] - lo) * inverse)

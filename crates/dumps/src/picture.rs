@@ -282,13 +282,14 @@ impl Options {
     where
         I: Iterator<Item = ([f64; 3], f64)>,
     {
-        let at = |f: [f64; 3]| [0, 1, 2].map(|k| domain.lo[k] + f[k] * (domain.hi[k] - domain.lo[k]));
+        let bounds = domain.bounds();
+        let at = |f: [f64; 3]| [0, 1, 2].map(|k| bounds[k][0] + f[k] * (bounds[k][1] - bounds[k][0]));
         let camera = Camera { centre: self.centre.map(at), ..self.camera.clone() };
         // A box that is drawn should also be seen.
         let framing = if self.box_edges { Framing::Box } else { self.framing };
         match framing {
             Framing::Each => camera.frame(spheres()),
-            Framing::Box => camera.frame_box([0, 1, 2].map(|k| [domain.lo[k], domain.hi[k]])),
+            Framing::Box => camera.frame_box(bounds),
             Framing::First => *kept.get_or_insert_with(|| camera.frame(spheres())),
         }
     }
@@ -296,7 +297,11 @@ impl Options {
 
 /// The twelve edges of the box.
 pub fn edges(d: &Domain) -> Vec<[[f64; 3]; 2]> {
-    let corner = |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 0 { d.lo[a] } else { d.hi[a] });
+    let corners = d.corners();
+    let corner = |k: usize| match d.tilted() {
+        true => corners[k],
+        false => [0, 1, 2].map(|a| if k >> a & 1 == 0 { d.lo[a] } else { d.hi[a] }),
+    };
     let mut lines = vec![];
     for k in 0..8usize {
         lines.extend((0..3).filter(|a| k >> a & 1 == 0).map(|a| [corner(k), corner(k | 1 << a)]));

@@ -209,31 +209,43 @@ impl Dump for Text {
                 .collect();
             let target = &mut shot.state.target;
             let (fresh, binary) = (target.is_fresh(), target.pattern.binary());
-            let bounds = [0, 1, 2].map(|k| [domain.lo[k], domain.hi[k]]);
+            let (bounds, tilt) = (domain.bounds(), domain.tilt);
             let (step, rows, time) = (shot.step, &shot.rows, dump.time.then(|| w.clock.time()));
             let units = dump.units.then(|| w.settings.units.name());
             let row = w.parts.row.as_deref().filter(|r| dump.thermo && r.step == step);
             target.write(step, |to| match dump.form {
                 Form::Xyz => forms::xyz(to, step, time, rows, &fields),
-                Form::Cfg(scale) => forms::cfg(to, scale, domain.lengths(), rows, &fields),
+                Form::Cfg(scale) => forms::cfg(to, scale, domain.edges().vectors(), rows, &fields),
                 Form::Yaml => {
                     let (boundary, header) = (letters.as_str(), dump.header);
-                    let head = forms::Yaml { step, units, time, boundary, row, bounds, header };
+                    let head = forms::Yaml { step, units, time, boundary, row, bounds, tilt, header };
                     head.write(to, rows, &fields)
                 }
                 Form::Native if binary => {
                     let (header, boundary) = (dump.header, letters.as_str());
                     let (magic, units) = (dump.magic(), units.filter(|_| fresh));
                     let fields = &fields;
-                    Binary { magic, header, step, time, units, bounds, boundary, rows, fields }.write(to)
+                    Binary { magic, header, step, time, units, bounds, tilt, boundary, rows, fields }
+                        .write(to)
                 }
                 Form::Native => {
                     let units = units.filter(|_| fresh);
                     let header = dump.header;
                     let item = "ATOMS";
                     let boundary = &letters;
-                    Snapshot { header, item, step, time, units, bounds, boundary, rows, fields: &fields }
-                        .write(to)
+                    Snapshot {
+                        header,
+                        item,
+                        step,
+                        time,
+                        units,
+                        bounds,
+                        tilt,
+                        boundary,
+                        rows,
+                        fields: &fields,
+                    }
+                    .write(to)
                 }
             })
         })

@@ -1,16 +1,18 @@
-//! fix deform: a box that changes its lengths while a run goes on.
+//! fix deform: a box that changes its lengths and tilts while a run goes on.
 
+mod lean;
 mod track;
 
 use super::{Facts, Fix, FixStyle};
+use lean::Lean;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
-use perigrain_styles::common::{not_here, scales, units_lattice};
+use perigrain_styles::common::{scales, units_lattice};
 use perigrain_styles::near::bonds_allow;
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::domain::Flow;
-use perigrain_world::field::{BOX, FAMILIES, MASK, MEMO, SLOTS, X, X0};
+use perigrain_world::field::{BOX, FAMILIES, LISTS, MASK, MEMO, SLOTS, X, X0};
 use perigrain_world::{Face, GroupId, Key, Numbers, RATES, World};
 use track::{Track, tracks};
 
@@ -23,8 +25,8 @@ impl Style for Deform {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: "fix ID group deform N x|y|z STYLE … [x|y|z STYLE …] [remap x|v|none] [units lattice|box]",
-            summary: "Changes the lengths of the box while a run goes on.",
+            syntax: "fix ID group deform N x|y|z|xy|xz|yz STYLE … [x|y|z|xy|xz|yz STYLE …] [remap x|v|none] [flip yes|no] [units lattice|box]",
+            summary: "Changes the lengths and tilts of the box while a run goes on.",
             text: "Every N steps, at the end of the step. The styles of a dimension, of which the start is the box at the run's \
                    beginning (with `run … start`, that at this line):\n\n\
                    - `final lo hi`: these faces at the end of the run; `delta dlo dhi`: faces moved by this much at its end; \
@@ -35,11 +37,17 @@ impl Style for Deform {
                    - `wiggle A T`: length + A sin(2π t/T).\n\
                    - `variable v_change v_rate`: the change of the length and its rate in time, both equal-style, in the units of \
                    the box.\n\n\
-                   All but `final` and `delta` move both faces alike. `remap x` (default) stretches the positions of the group's \
+                   All but `final` and `delta` move both faces alike. The tilts `xy`, `xz` and `yz` of a triclinic box \
+                   (`region prism`) have the same styles but for `scale` and `volume`, with one number for `final` and `delta`; \
+                   `erate R` is R times the first length of y (`xy`) or z (`xz`, `yz`) per time. Where a tilt passes half the \
+                   length of x (`xy`, `xz`) or y (`yz`), with `flip yes` (default) the box is put in the place of the one a whole \
+                   edge less, at the next rebuild of lists: another box of the same lattice, in which everybody is where it was. `remap x` (default) stretches the positions of the group's \
                    particles with the box; `remap v` leaves them and gives particles that cross a periodic face the velocity \
                    of that face; with `none` nothing happens to them. Distances are in lattice spacings unless `units box`. \
                    A dimension with shrink-wrapped faces cannot be deformed, and none by two fixes. Peridynamic bonds \
-                   that cross a periodic face keep its length: such a run is refused. There are no tilted boxes here: `xy xz yz` are refused, and `flip yes|no` is without effect.",
+                   that cross a periodic face keep its length: such a run is refused. \
+                   Under `-compat lammps` particles that cross a face just before a flip keep their velocity with `remap v`, as in \
+                   LAMMPS.",
             example: "fix squeeze all deform 1 x scale 0.9999 remap x",
         }
     }
@@ -78,6 +86,8 @@ impl FixStyle for Deform {
             group: cx.group,
             every,
             motions: [const { None }; 3],
+            leans: [const { None }; 3],
+            flips: true,
             remap: Remap::Positions,
             scales: [1.0; 3],
         };
@@ -90,12 +100,13 @@ impl FixStyle for Deform {
                     fix.motions[d] = Some(motion(args, cx)?);
                     any = true;
                 }
-                "xy" | "xz" | "yz" => return Err(not_here(word, "a tilt of the box")),
-                "flip" => {
-                    args.flag("flip")?;
-                    let text = "without effect: only a tilted box is ever flipped";
-                    cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, text));
+                "xy" | "xz" | "yz" => {
+                    let k = lean::NAMES.iter().position(|n| *n == word.text).unwrap_or(0);
+                    check_tilt(cx, word, k)?;
+                    fix.leans[k] = Some(lean::motion(args, cx)?);
+                    any = true;
                 }
+                "flip" => fix.flips = args.flag("flip")?,
                 "remap" => {
                     fix.remap = match args.choice("value of remap", &["x", "v", "none"])? {
                         "x" => Remap::Positions,
@@ -104,11 +115,19 @@ impl FixStyle for Deform {
                     }
                 }
                 "units" => lattice = units_lattice(args)?,
-                _ => return Err(args.unknown(word, &["x", "y", "z", "remap", "units"])),
+                _ => {
+                    return Err(
+                        args.unknown(word, &["x", "y", "z", "xy", "xz", "yz", "remap", "flip", "units"])
+                    );
+                }
             }
         }
         if !any {
-            return fail(Code::MISSING_ARGUMENT, cx.span, "fix deform needs a dimension: x, y or z");
+            return fail(
+                Code::MISSING_ARGUMENT,
+                cx.span,
+                "fix deform needs a length or tilt: x, y, z, xy, xz or yz",
+            );
         }
         fix.scales = scales(cx.world, lattice);
         fix.check_volume(cx)?;
@@ -126,6 +145,22 @@ fn check_faces(cx: &BuildCx, word: &Word, d: usize) -> Result<()> {
         let text = format!("the faces of `{}` follow the particles: no fix can move them", word.text);
         return Err(Diagnostic::error(Code::CONFLICT, word.span, text)
             .help("use `boundary` p or f for this dimension")
+            .into());
+    }
+    Ok(())
+}
+
+/// Refuses tilts of a box that cannot lean, or not that way.
+fn check_tilt(cx: &BuildCx, word: &Word, k: usize) -> Result<()> {
+    let Some(domain) = &*cx.world.domain else { return Ok(()) };
+    if cx.world.settings.two_dimensional && k > 0 {
+        let text = format!("the tilt {} of a flat scene must stay 0", word.text);
+        return fail(Code::CONFLICT, word.span, text);
+    }
+    if domain.tilt.is_none() {
+        let d = Diagnostic::error(Code::CONFLICT, word.span, "an orthogonal box cannot lean");
+        return Err(d
+            .help("make it triclinic: `change_box all triclinic`, or `create_box` with a `region prism`")
             .into());
     }
     Ok(())
@@ -174,6 +209,10 @@ struct Declared {
     group: GroupId,
     every: i64,
     motions: [Option<Motion>; 3],
+    /// What xy, xz and yz do.
+    leans: [Option<lean::Motion>; 3],
+    /// Whether a box that leans too far is flipped.
+    flips: bool,
     remap: Remap,
     /// Factors from the line's distances to the box's.
     scales: [f64; 3],
@@ -204,8 +243,8 @@ impl Declared {
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         let Some(d) = &*w.domain else { return Ok(()) };
-        w.memo.insert(self.key(), [d.lo, d.hi].concat());
-        tell(w, self.rates(), [[0.0; 3]; 2], self.remap);
+        w.memo.insert(self.key(), [d.lo, d.hi, d.tilt.unwrap_or_default()].concat());
+        tell(w, self.rates(), [[0.0; 3]; 3], self.remap);
         Ok(())
     }
 
@@ -217,32 +256,62 @@ impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let when = When::Every(self.every);
         let tracks = tracks(self, cx, &when)?;
+        let start = track::start(self, cx.world())?;
+        let leans = lean::leans(self, cx, &when, start)?;
         let when = when.or(When::First);
         let (remap, group) = (self.remap, self.group);
         let w = cx.world();
         // Forces of the setup see the flow already; a variable's rate is known from the first change on.
         let t = Tick::between_runs(&w.clock);
-        let (_, _, rate) = track::faces(&tracks, w, &t)?;
-        let stretch = self.rates();
-        tell(w, stretch, track::streaming(&tracks, w, rate, true), remap);
+        let now = Shape::at(&tracks, &leans, w, &t)?;
+        let (stretch, flips) = (self.rates(), self.flips);
+        tell(w, stretch, now.streaming(&tracks, &leans, w, true), remap);
         if remap == Remap::Velocities {
-            w.domain.iter_mut().for_each(|d| d.flow = Some(Flow { rate, group }));
+            let Shape { rate, turning: tilt, .. } = now;
+            w.domain.iter_mut().for_each(|d| d.flow = Some(Flow { rate, tilt, group }));
         }
         let name = format!("fix {} deform", self.id);
-        Ok(vec![Box::new(Move { name, stretch, tracks, remap, group, when })])
+        Ok(vec![Box::new(Move { name, stretch, tracks, leans, flips, remap, group, when })])
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { deforms: self.motions.each_ref().map(Option::is_some), ..Facts::default() }
+        let ([x, y, z], [xy, xz, yz]) =
+            (self.motions.each_ref().map(Option::is_some), self.leans.each_ref().map(Option::is_some));
+        Facts { deforms: [x, y, z, xy, xz, yz], ..Facts::default() }
     }
 }
 
-/// Lets the world remember how fast lengths grow and lower faces move.
-fn tell(w: &mut World, key: Numbers, [rate, low]: [[f64; 3]; 2], remap: Remap) {
+/// The box at a step.
+struct Shape {
+    lo: [f64; 3],
+    hi: [f64; 3],
+    tilt: [f64; 3],
+    /// How fast lengths grow.
+    rate: [f64; 3],
+    /// How fast tilts do.
+    turning: [f64; 3],
+}
+
+impl Shape {
+    fn at(tracks: &[Track; 3], leans: &[Lean; 3], w: &World, t: &Tick) -> Result<Self> {
+        let (lo, hi, rate) = track::faces(tracks, w, t)?;
+        let (tilt, turning) = lean::tilts(leans, w, t, [0, 1, 2].map(|d| hi[d] - lo[d]))?;
+        Ok(Self { lo, hi, tilt, rate, turning })
+    }
+
+    /// How fast lengths grow, lower faces move and tilts grow, as compute temp/deform asks for it.
+    fn streaming(&self, tracks: &[Track; 3], leans: &[Lean; 3], w: &World, first: bool) -> [[f64; 3]; 3] {
+        let [rate, low] = track::streaming(tracks, w, self.rate, first);
+        [rate, low, lean::streaming(leans, w, self.turning, first)]
+    }
+}
+
+/// Lets the world remember how fast lengths grow, lower faces move and tilts grow.
+fn tell(w: &mut World, key: Numbers, [rate, low, turning]: [[f64; 3]; 3], remap: Remap) {
     let remapped = f64::from(u8::from(remap == Remap::Positions));
     let row = w.memo.get_or(key, Vec::new);
     row.clear();
-    row.extend(rate.into_iter().chain(low).chain([remapped]));
+    row.extend(rate.into_iter().chain(low).chain([remapped]).chain(turning));
 }
 
 /// Moves the faces.
@@ -251,9 +320,22 @@ struct Move {
     /// Where the world remembers the rates.
     stretch: Numbers,
     tracks: [Track; 3],
+    leans: [Lean; 3],
+    flips: bool,
     remap: Remap,
     group: GroupId,
     when: When,
+}
+
+impl Move {
+    /// Which edges are changed.
+    fn changes(&self) -> [bool; 3] {
+        let mut changes = self.tracks.each_ref().map(Track::moves);
+        for (k, _) in self.leans.iter().enumerate().filter(|(_, lean)| lean.moves()) {
+            changes[lean::ACROSS[k]] = true;
+        }
+        changes
+    }
 }
 
 impl Op for Move {
@@ -264,25 +346,39 @@ impl Op for Move {
             ..About::new(
                 &self.name,
                 Stage::EndOfStep,
-                Needs::new().read(MASK | SLOTS | FAMILIES | X0).write(X | BOX).keep(MEMO),
+                Needs::new().read(MASK | SLOTS | FAMILIES | X0).write(X | BOX | LISTS).keep(MEMO),
             )
         }
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let (lo, hi, rate) = track::faces(&self.tracks, w, t)?;
-        tell(w, self.stretch, track::streaming(&self.tracks, w, rate, t.setup), self.remap);
+        let shape = Shape::at(&self.tracks, &self.leans, w, t)?;
+        tell(w, self.stretch, shape.streaming(&self.tracks, &self.leans, w, t.setup), self.remap);
+        let Shape { lo, hi, tilt, rate, turning } = shape;
         if self.remap == Remap::Velocities
             && let Some(domain) = &mut *w.domain
         {
-            domain.flow = Some(Flow { rate, group: self.group });
+            domain.flow = Some(Flow { rate, tilt: turning, group: self.group });
         }
         if t.setup {
-            return bonds_allow(w, self.tracks.each_ref().map(Track::moves));
+            return bonds_allow(w, self.changes());
         }
         let Some(domain) = &mut *w.domain else { return Ok(()) };
+        let before = domain.clone();
         let (from, length) = (domain.lo, domain.lengths());
         (domain.lo, domain.hi) = (lo, hi);
-        if self.remap == Remap::Positions {
+        if domain.tilt.is_some() {
+            domain.tilt = Some(tilt);
+        }
+        if self.flips {
+            domain.flip = lean::flip(domain);
+            w.rebuild.due |= domain.flip.is_some();
+        }
+        if self.remap == Remap::Positions && (before.tilted() || domain.tilted()) {
+            let (p, bit) = (&mut w.particles, self.group.bit());
+            for (x, _) in p.x.iter_mut().zip(&p.mask).filter(|(_, m)| **m & bit != 0) {
+                *x = domain.at(before.fractions(x));
+            }
+        } else if self.remap == Remap::Positions {
             let (p, bit) = (&mut w.particles, self.group.bit());
             for (x, _) in p.x.iter_mut().zip(&p.mask).filter(|(_, m)| **m & bit != 0) {
                 // Where in the box, then there in the new one: dimensions that stay keep their bits.

@@ -4,7 +4,7 @@ use super::{Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
-use perigrain_styles::common::number_or_null;
+use perigrain_styles::common::{number_or_null, orthogonal};
 use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
@@ -61,6 +61,9 @@ impl Fix for Declared {
                 return Ok(());
             }
             let domain = w.domain()?.clone();
+            if domain.tilted() && target.contains(&None) {
+                return Err(orthogonal("fix drag towards a line or plane"));
+            }
             let total = change_forces::<3>(w, &chosen, |w, i, f| {
                 let x = w.particles.x[i];
                 let away = std::array::from_fn(|d| target[d].map_or(0.0, |c| x[d] - c));

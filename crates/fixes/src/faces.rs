@@ -3,7 +3,7 @@
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Param, Word};
 use perigrain_plan::{Stage, When};
-use perigrain_styles::common::variable_param;
+use perigrain_styles::common::{orthogonal, variable_param};
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::World;
 
@@ -74,6 +74,10 @@ impl Face {
     /// # Errors
     /// A variable that is gone.
     pub fn seal(&self, cx: &mut dyn SealCx, stage: Stage, scales: [f64; 3]) -> Result<Spot> {
+        let [xy, xz, yz] = cx.world().edges().tilt;
+        if self.edge && [xy != 0.0 || xz != 0.0, yz != 0.0, false][self.axis] {
+            return Err(orthogonal("a wall at EDGE, which here leans,").at(cx.span()));
+        }
         let scale = if self.edge { 1.0 } else { scales[self.axis] };
         cx.param(&self.place, stage, &When::Always).map(|place| Spot { place, scale })
     }

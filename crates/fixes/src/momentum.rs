@@ -2,7 +2,7 @@
 
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_base::math::vec3::{Vec3, cross, dot, sub};
+use perigrain_base::math::vec3::{Vec3, add, cross, dot, sub};
 use perigrain_base::par;
 use perigrain_commands::momentum::rotation;
 use perigrain_lang::Args;
@@ -141,10 +141,10 @@ impl Declared {
             ]
         });
         let omega = rotation([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], [lx, ly, lz]);
-        let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
+        let edges = w.edges();
         let (x, image) = (std::mem::take(&mut w.particles.x), std::mem::take(&mut w.particles.image));
         change(w, self.group, |i, v| {
-            let place = std::array::from_fn(|d| x[i][d] + f64::from(image[i][d]) * lengths[d]);
+            let place = add(x[i], edges.shift(image[i].map(f64::from)));
             sub(v, cross(omega, sub(place, center)))
         });
         (w.particles.x, w.particles.image) = (x, image);

@@ -6,6 +6,7 @@ use super::nve::half_step;
 use super::path::{Path, Readings};
 use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::math::vec3::{add, sub};
 use perigrain_base::par;
 use perigrain_lang::{Args, Param, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
@@ -228,8 +229,8 @@ fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key:
     let lammps = (t.step as f64 - elapsed.origin) * t.dt;
     let time = if w.settings.lammps() { lammps } else { elapsed.now() };
     let (bit, half) = (group.bit(), half_step(w, t.dt));
-    let periodic = w.domain.as_ref().map_or([false; 3], |d| d.periodic());
-    let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
+    let periods = w.periods();
+    let (lengths, tilted) = (periods.length, periods.tilted());
     if w.columns.get_vector(key.of()).is_none() {
         return;
     }
@@ -245,6 +246,7 @@ fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key:
                 continue;
             }
             let given = path.at(world, first + k, *start, time, readings);
+            let old = *x;
             for d in 0..3 {
                 let before = x[d];
                 match (given.x[d], given.v[d]) {
@@ -258,10 +260,13 @@ fn advance(w: &mut World, group: GroupId, path: &Path, readings: &Readings, key:
                         x[d] += t.dt * v[d];
                     }
                 }
-                if periodic[d] {
+                if lengths[d] > 0.0 && !tilted {
                     // The image nearest to where it was: wrapping is left to the next reneighbouring.
                     x[d] -= lengths[d] * ((x[d] - before) / lengths[d]).round();
                 }
+            }
+            if tilted {
+                *x = add(old, periods.nearest(sub(*x, old)));
             }
         }
     });

@@ -85,12 +85,16 @@ impl Declared {
     /// What must be added to the positions now.
     fn shift(&self, w: &World) -> [f64; 3] {
         let (_, now) = centre(w, self.group);
-        let (lo, lengths) = w.domain.as_ref().map_or(([0.0; 3], [0.0; 3]), |d| (d.lo, d.lengths()));
+        let lo = w.domain.as_ref().map_or([0.0; 3], |d| d.lo);
+        let edges = w.edges();
+        // A direction that is free counts as none of the others.
+        let held = self.hold.map(|hold| if let Hold::At(c) = hold { c } else { 0.0 });
+        let inside = edges.shift(held);
         let initial = w.memo.get(self.key);
         std::array::from_fn(|d| match self.hold[d] {
             Hold::Free => 0.0,
             Hold::Initial => initial.and_then(|x| x.get(d)).map_or(0.0, |x| x - now[d]),
-            Hold::At(c) if self.fraction => lo[d] + c * lengths[d] - now[d],
+            Hold::At(_) if self.fraction => lo[d] + inside[d] - now[d],
             Hold::At(c) => c - now[d],
         })
     }

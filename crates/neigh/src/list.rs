@@ -1,6 +1,7 @@
 //! Neighbour lists: each pair once, within reach plus skin, in an order that only tags decide.
 
 use super::grid::{Grid, extent};
+use perigrain_base::math::periods::Periods;
 use perigrain_base::par;
 
 /// How far two types of particles reach for each other.
@@ -55,8 +56,8 @@ pub struct View<'a> {
     pub kind: &'a [u16],
     /// Radii; may be empty where no pair reaches by touch.
     pub radius: &'a [f64],
-    /// Edge lengths of the box; zero where it does not repeat.
-    pub period: [f64; 3],
+    /// Edges of the box; zero where it does not repeat.
+    pub period: Periods,
 }
 
 impl View<'_> {
@@ -64,18 +65,22 @@ impl View<'_> {
         self.radius.get(i).copied().unwrap_or(0.0)
     }
 
-    /// x_i − (x_j + shift · period).
+    /// x_i − (x_j + the edges that `shift` counts).
     #[inline]
     pub fn difference(&self, p: &Pair) -> [f64; 3] {
         difference(self.x, &self.period, p)
     }
 }
 
-/// x_i − (x_j + shift · period) for a pair of the list.
+/// x_i − (x_j + the edges that `shift` counts) for a pair of the list.
 #[inline]
-pub fn difference(x: &[[f64; 3]], period: &[f64; 3], p: &Pair) -> [f64; 3] {
+pub fn difference(x: &[[f64; 3]], period: &Periods, p: &Pair) -> [f64; 3] {
     let (a, b) = (&x[p.i as usize], &x[p.j as usize]);
-    std::array::from_fn(|d| a[d] - (b[d] + f64::from(p.shift[d]) * period[d]))
+    if period.tilted() {
+        let by = period.shift(p.shift.map(f64::from));
+        return std::array::from_fn(|d| a[d] - (b[d] + by[d]));
+    }
+    std::array::from_fn(|d| a[d] - (b[d] + f64::from(p.shift[d]) * period.length[d]))
 }
 
 /// Two particles, the one of smaller tag first, and which image of the second is meant.
@@ -119,8 +124,8 @@ pub fn insert(v: &View, wanted: &Wanted, skin: f64, ends: &[[usize; 2]], list: &
         let Some(reach) = wanted.get(v.kind[i], v.kind[j]) else { continue };
         let cut = cutoff(reach, skin, v.radius(i), v.radius(j));
         for_images(images(cut, &v.period), |shift| {
-            let d: [f64; 3] =
-                std::array::from_fn(|k| v.x[i][k] - f64::from(shift[k]) * v.period[k] - v.x[j][k]);
+            let by = v.period.shift(shift.map(f64::from));
+            let d: [f64; 3] = std::array::from_fn(|k| v.x[i][k] - by[k] - v.x[j][k]);
             if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < cut * cut {
                 let pair = oriented(v.tag, i, j, shift);
                 if let Err(at) = list.binary_search_by_key(&key(&pair), key) {
@@ -132,8 +137,8 @@ pub fn insert(v: &View, wanted: &Wanted, skin: f64, ends: &[[usize; 2]], list: &
 }
 
 /// How many images of the box lie within `far`, along each axis.
-fn images(far: f64, period: &[f64; 3]) -> [i32; 3] {
-    std::array::from_fn(|d| match period[d] {
+fn images(far: f64, period: &Periods) -> [i32; 3] {
+    period.heights().map(|height| match height {
         l if l > 0.0 => (far / l).ceil().min(127.0) as i32,
         _ => 0,
     })
@@ -256,7 +261,8 @@ impl<K: Fn(usize, usize) -> bool + Sync> Search<'_, K> {
     /// Members of the larger class within `far` of the smaller one's bounding box (where nothing repeats).
     fn nearby(&self, far: f64) -> Vec<u32> {
         let (lo, hi) = extent(self.v.x, self.few.members.iter().copied());
-        let free = |d: usize| self.v.period[d] > 0.0;
+        // Images across a leaning edge lie elsewhere along the other axes too.
+        let free = |d: usize| self.v.period.length[d] > 0.0 || self.v.period.tilted();
         let near = |m: &&u32| {
             let p = &self.v.x[**m as usize];
             (0..3).all(|d| free(d) || (p[d] >= lo[d] - far && p[d] <= hi[d] + far))
@@ -270,7 +276,8 @@ impl<K: Fn(usize, usize) -> bool + Sync> Search<'_, K> {
         let ri = v.radius(i);
         let far = self.cutoff(ri, self.many.largest);
         for_images(images, |shift| {
-            let at: [f64; 3] = std::array::from_fn(|d| x[d] - f64::from(shift[d]) * v.period[d]);
+            let by = v.period.shift(shift.map(f64::from));
+            let at: [f64; 3] = std::array::from_fn(|d| x[d] - by[d]);
             let (lo, hi) = (at.map(|a| a - far), at.map(|a| a + far));
             // Of a pair within one class the search meets both orders: keep one.
             let forward = shift > [0; 3];

@@ -1,7 +1,7 @@
 //! LAMMPS' binary dumps: snapshots of the styles `atom` and `custom` as they lie in memory, written and read back as text.
 //!
 //! A snapshot (revision 2), all numbers little-endian: minus the length of the style's name (8 bytes) and that name, 1 and 2 (4 bytes
-//! each), step and number of rows (8), whether the box is tilted and what its six faces do (4 each), the faces (8 each),
+//! each), step and number of rows (8), whether the box is tilted and what its six faces do (4 each), the faces and tilts (8 each),
 //! the number of columns and the length of the units' name (4 each), that name, one byte for whether a time follows, the time, the
 //! length of the line of labels (4) and the line, the number of blocks; each block is how many numbers there are (4) and the
 //! numbers (8 each), row by row.
@@ -30,8 +30,10 @@ pub struct Binary<'a> {
     pub time: Option<f64>,
     /// Unit system, for `dump_modify units yes`.
     pub units: Option<&'a str>,
-    /// Lower and upper faces of the box.
+    /// Lower and upper faces of the upright box around the box.
     pub bounds: [[f64; 2]; 3],
+    /// How the box leans, where it is one that may.
+    pub tilt: Option<[f64; 3]>,
     /// Boundary letters, as `pp ff sm`.
     pub boundary: &'a str,
     /// Particle indices in the order of the rows.
@@ -74,11 +76,12 @@ impl Binary<'_> {
         whole(&mut out, 2);
         out.extend(self.step.to_le_bytes());
         out.extend((self.rows.len() as i64).to_le_bytes());
-        whole(&mut out, 0);
+        whole(&mut out, i32::from(self.tilt.is_some()));
         for letter in self.boundary.bytes().filter(|b| *b != b' ') {
             whole(&mut out, FACES.iter().position(|f| *f == letter).unwrap_or(0) as i32);
         }
-        self.bounds.iter().flatten().for_each(|face| out.extend(face.to_le_bytes()));
+        let tilt = self.tilt.iter().flatten();
+        self.bounds.iter().flatten().chain(tilt).for_each(|face| out.extend(face.to_le_bytes()));
         whole(&mut out, self.fields.len() as i32);
         let units = self.units.unwrap_or("");
         whole(&mut out, units.len() as i32);
@@ -151,7 +154,7 @@ fn odd(text: String) -> Error {
 /// A binary dump as the text dump that says the same, numbers to the last bit.
 ///
 /// # Errors
-/// What is no such file, breaks off, comes from a machine of the other byte order, or has a tilted box.
+/// What is no such file, breaks off, or comes from a machine of the other byte order.
 pub fn as_text(all: &[u8]) -> Result<String> {
     let (mut bytes, mut text) = (Bytes { all, at: 0 }, String::new());
     while bytes.at < all.len() {
@@ -176,8 +179,9 @@ fn snapshot(bytes: &mut Bytes, text: &mut String) -> Result<()> {
         return Err(odd("it is of another byte order or revision".into()));
     }
     let (step, rows) = (bytes.long()?, bytes.long()?);
-    if bytes.whole()? != 0 {
-        return Err(odd("its box is tilted".into()));
+    let leans = bytes.whole()?;
+    if leans != 0 && leans != 1 {
+        return Err(odd("its box is neither orthogonal nor a restricted triclinic one".into()));
     }
     let mut faces = String::new();
     for k in 0..6 {
@@ -189,6 +193,10 @@ fn snapshot(bytes: &mut Bytes, text: &mut String) -> Result<()> {
     let mut bounds = [0.0; 6];
     for face in &mut bounds {
         *face = bytes.real()?;
+    }
+    let mut tilt = vec![];
+    for _ in 0..3 * leans {
+        tilt.push(bytes.real()?);
     }
     let (columns, units) = (bytes.length()?, bytes.length()?);
     let units = bytes.text(units)?;
@@ -205,11 +213,14 @@ fn snapshot(bytes: &mut Bytes, text: &mut String) -> Result<()> {
         value.into_iter().for_each(|value| text.push_str(&format!("ITEM: {item}\n{value}\n")));
     }
     text.push_str(&format!(
-        "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{rows}\nITEM: BOX BOUNDS {}\n",
+        "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{rows}\nITEM: BOX BOUNDS {}{}\n",
+        if leans == 1 { "xy xz yz " } else { "" },
         faces.trim()
     ));
-    for [lo, hi] in bounds.as_chunks::<2>().0 {
-        text.push_str(&format!("{} {}\n", shortest(*lo), shortest(*hi)));
+    for (k, [lo, hi]) in bounds.as_chunks::<2>().0.iter().enumerate() {
+        text.push_str(&format!("{} {}", shortest(*lo), shortest(*hi)));
+        tilt.get(k).into_iter().for_each(|tilt| text.push_str(&format!(" {}", shortest(*tilt))));
+        text.push('\n');
     }
     text.push_str(&format!("ITEM: ATOMS {labels}\n"));
     numbers(bytes, text, (rows, columns))
@@ -263,6 +274,7 @@ mod tests {
             time,
             units,
             bounds,
+            tilt: None,
             boundary,
             rows: &[1, 2, 0],
             fields: &fields,

@@ -145,8 +145,10 @@ pub struct Snapshot<'a> {
     pub time: Option<f64>,
     /// Unit system, for `dump_modify units yes`.
     pub units: Option<&'a str>,
-    /// Lower and upper faces of the box.
+    /// Lower and upper faces of the upright box around the box.
     pub bounds: [[f64; 2]; 3],
+    /// How the box leans, where it is one that may.
+    pub tilt: Option<[f64; 3]>,
     /// Boundary letters, as `pp ff sm`.
     pub boundary: &'a str,
     /// Particle indices in the order of the rows.
@@ -180,10 +182,14 @@ impl Snapshot<'_> {
             self.item,
             self.rows.len()
         ));
-        text.push_str(&format!("ITEM: BOX BOUNDS {}\n", self.boundary));
-        let bound = Format::parse("%-1.16e %-1.16e\n").unwrap_or_default();
-        for [lo, hi] in self.bounds {
-            text.push_str(&bound.text(&[Value::Float(lo), Value::Float(hi)]));
+        let leans = if self.tilt.is_some() { "xy xz yz " } else { "" };
+        text.push_str(&format!("ITEM: BOX BOUNDS {leans}{}\n", self.boundary));
+        let format = if leans.is_empty() { "%-1.16e %-1.16e\n" } else { "%-1.16e %-1.16e %-1.16e\n" };
+        let bound = Format::parse(format).unwrap_or_default();
+        for (k, [lo, hi]) in self.bounds.into_iter().enumerate() {
+            let tilt = self.tilt.map(|tilt| tilt[k]);
+            let numbers: Vec<Value> = [lo, hi].into_iter().chain(tilt).map(Value::Float).collect();
+            text.push_str(&bound.text(&numbers));
         }
         text.push_str("ITEM: ");
         text.push_str(self.item);

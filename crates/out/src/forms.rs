@@ -44,8 +44,10 @@ pub struct Yaml<'a> {
     pub boundary: &'a str,
     /// The row of the step table, for `thermo yes`.
     pub row: Option<&'a TableRow>,
-    /// Lower and upper faces of the box.
+    /// Lower and upper faces of the upright box around the box.
     pub bounds: [[f64; 2]; 3],
+    /// How the box leans, where it is one that may.
+    pub tilt: Option<[f64; 3]>,
     /// Whether to write all this.
     pub header: bool,
 }
@@ -94,6 +96,9 @@ impl Yaml<'_> {
         for [lo, hi] in self.bounds {
             writeln!(to, "  - [ {}, {} ]", shortest(lo), shortest(hi))?;
         }
+        if let Some([xy, xz, yz]) = self.tilt.map(|tilt| tilt.map(shortest)) {
+            writeln!(to, "  - [ {xy}, {xz}, {yz} ]")?;
+        }
         Ok(())
     }
 }
@@ -103,15 +108,14 @@ impl Yaml<'_> {
 pub fn cfg(
     to: &mut dyn Write,
     scale: f64,
-    lengths: [f64; 3],
+    edges: [[f64; 3]; 3],
     rows: &[u32],
     fields: &[Field<'_>],
 ) -> std::io::Result<()> {
     writeln!(to, "Number of particles = {}\nA = {} Angstrom (basic length-scale)", rows.len(), g(scale))?;
-    for i in 0..3 {
-        for j in 0..3 {
-            let h = if i == j { lengths[i] } else { 0.0 };
-            writeln!(to, "H0({},{}) = {} A", i + 1, j + 1, g(h))?;
+    for (i, edge) in edges.iter().enumerate() {
+        for (j, h) in edge.iter().enumerate() {
+            writeln!(to, "H0({},{}) = {} A", i + 1, j + 1, g(*h))?;
         }
     }
     let rest = fields.get(2..).unwrap_or(&[]);

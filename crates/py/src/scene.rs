@@ -281,17 +281,17 @@ impl Scene {
         self.ask(py, true, |session| session.make_particles(&new))
     }
 
-    /// Gives an empty box other corners.
-    fn reset_box(&self, py: Python<'_>, lo: [f64; 3], hi: [f64; 3]) -> PyResult<()> {
-        self.ask(py, true, |session| session.reset_box(lo, hi))
+    /// Gives an empty box other corners, and a triclinic one other tilts (xy, xz, yz).
+    fn reset_box(&self, py: Python<'_>, lo: [f64; 3], hi: [f64; 3], tilt: [f64; 3]) -> PyResult<()> {
+        self.ask(py, true, |session| session.reset_box(lo, hi, tilt))
     }
 
-    /// The box: corners and which axes repeat.
+    /// The box: corners, tilts (xy, xz, yz) and which axes repeat.
     #[allow(clippy::type_complexity)]
-    fn domain(&self, py: Python<'_>) -> PyResult<Option<([f64; 3], [f64; 3], [bool; 3])>> {
+    fn domain(&self, py: Python<'_>) -> PyResult<Option<([f64; 3], [f64; 3], [f64; 3], [bool; 3])>> {
         self.ask(py, false, |session| {
             let domain = session.world.domain.as_ref();
-            Ok(domain.map(|d| (d.lo, d.hi, [0, 1, 2].map(|k| d.boundary.periodic(k)))))
+            Ok(domain.map(|d| (d.lo, d.hi, d.edges().tilt, [0, 1, 2].map(|k| d.boundary.periodic(k)))))
         })
     }
 

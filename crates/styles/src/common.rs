@@ -150,6 +150,29 @@ pub fn domain<'a>(cx: &BuildCx<'a>) -> Result<&'a Domain> {
     cx.world.domain().map_err(|d| d.at(cx.span))
 }
 
+/// Warns of a box that leans so far that another one of the same lattice would lean less.
+pub fn warn_of_skew(cx: &ActCx, domain: &Domain) {
+    let (periodic, [lx, ly, _]) = (domain.periodic(), domain.lengths());
+    let [xy, xz, yz] = domain.tilt.unwrap_or_default();
+    let far = [(xy, lx, periodic[0]), (xz, lx, periodic[0]), (yz, ly, periodic[1])];
+    if far.into_iter().any(|(tilt, length, repeats)| repeats && tilt.abs() > 0.5 * length) {
+        let text = "the box leans by more than half of an edge";
+        let d = Diagnostic::warning(Code::SUSPICIOUS, None, text);
+        cx.note(d.help("a whole edge less gives the same scene, and lists are made faster"));
+    }
+}
+
+/// The refusal of what works in orthogonal boxes alone.
+pub fn orthogonal(what: &str) -> perigrain_base::diag::Diagnostics {
+    Diagnostic::error(
+        Code::NOT_SUPPORTED,
+        None,
+        format!("{what} needs an orthogonal box: this one is triclinic"),
+    )
+    .help("without tilts `change_box all ortho` makes it orthogonal")
+    .into()
+}
+
 /// Refuses a line that must come before the box exists.
 pub fn before_box(cx: &BuildCx, command: &str) -> Result<()> {
     match *cx.world.domain {

@@ -36,8 +36,10 @@ pub struct Facts {
     pub integrates: bool,
     /// It counts on the steps going on one by one, so that `reset_timestep` is refused beside it, as in LAMMPS.
     pub counts_steps: bool,
-    /// Which lengths of the box it changes during a run.
-    pub deforms: [bool; 3],
+    /// It works in orthogonal boxes alone.
+    pub orthogonal: bool,
+    /// Which lengths (x, y, z) and tilts (xy, xz, yz) of the box it changes during a run.
+    pub deforms: [bool; 6],
     /// What becomes of it in a minimization; as in LAMMPS, only some that change forces act.
     pub minimizing: Minimizing,
     /// `fix_modify respa` may choose the level of steps in which it adds its force.

@@ -96,9 +96,9 @@ pub fn centre(w: &World, group: GroupId) -> (f64, [f64; 3]) {
 
 /// Where particle `i` would be had it never been wrapped into a periodic box.
 pub fn unwrapped(w: &World, i: usize) -> [f64; 3] {
-    let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
-    let (x, image) = (w.particles.x[i], w.particles.image[i]);
-    std::array::from_fn(|k| x[k] + f64::from(image[k]) * lengths[k])
+    let by = w.edges().shift(w.particles.image[i].map(f64::from));
+    let x = w.particles.x[i];
+    std::array::from_fn(|k| x[k] + by[k])
 }
 
 /// Keeps `what` of every particle of a group in a vector column, for those it does not hold yet; a scalar column of the

@@ -24,7 +24,7 @@ pub fn all_within(w: &World, reach: Reach, keep: &(impl Fn(usize, usize) -> bool
 /// # Errors
 /// The distance is longer than half of a periodic length.
 pub fn one_image(w: &World, cutoff: f64, at: Span) -> Result<()> {
-    let shortest = w.periods().into_iter().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+    let shortest = w.periods().heights().into_iter().filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
     if cutoff <= 0.5 * shortest {
         return Ok(());
     }
@@ -134,12 +134,13 @@ pub fn held_together(w: &World, mut f: impl FnMut(u32, u32)) {
 /// The ids of two particles bonded across a periodic face of such a dimension.
 pub fn bonds_allow(w: &World, changes: [bool; 3]) -> Result<()> {
     let (period, p) = (w.periods(), &w.particles);
-    let dims: Vec<usize> = (0..3).filter(|&d| changes[d] && period[d] > 0.0).collect();
+    let dims: Vec<usize> = (0..3).filter(|&d| changes[d] && period.length[d] > 0.0).collect();
     let mut crossing = None;
     if !dims.is_empty() {
         bonds(w, |i, j| {
             let (a, b) = (p.x0[i as usize], p.x0[j as usize]);
-            if dims.iter().any(|&d| (a[d] - b[d]).abs() > 0.5 * period[d]) {
+            let turns = period.turns(std::array::from_fn(|d| a[d] - b[d]));
+            if dims.iter().any(|&d| turns[d] != 0.0) {
                 crossing = Some([p.tag[i as usize], p.tag[j as usize]]);
             }
         });

@@ -1,6 +1,7 @@
 //! Bonds as their ends are.
 
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::{Vec3, dot, sub};
 use perigrain_world::bonds::LostBond;
 use perigrain_world::index::Index;
@@ -79,17 +80,22 @@ pub fn find(w: &World, wants: impl Fn(&Bond) -> bool, span: Span) -> Result<Vec<
 }
 
 /// x_a − x_b across the nearest periodic faces.
-pub fn apart(w: &World, lengths: &Vec3, ends: [usize; 2]) -> Vec3 {
+pub fn apart(w: &World, periods: &Periods, ends: [usize; 2]) -> Vec3 {
     let x = &w.particles.x;
     let d = sub(x[ends[0]], x[ends[1]]);
+    if periods.tilted() {
+        return periods.nearest(d);
+    }
+    let lengths = &periods.length;
     std::array::from_fn(
         |k| if lengths[k] > 0.0 { d[k] - lengths[k] * (d[k] / lengths[k]).round() } else { d[k] },
     )
 }
 
-/// Edge lengths of the box, zero where it does not repeat.
-pub fn periods(w: &World) -> Result<Vec3> {
-    let domain = w.domain()?;
-    let (lengths, periodic) = (domain.lengths(), domain.periodic());
-    Ok(std::array::from_fn(|d| if periodic[d] { lengths[d] } else { 0.0 }))
+/// Edges of the box, zero where it does not repeat.
+///
+/// # Errors
+/// There is no box.
+pub fn periods(w: &World) -> Result<Periods> {
+    w.domain().map(perigrain_world::Domain::periods)
 }

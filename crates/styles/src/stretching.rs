@@ -7,6 +7,8 @@ use perigrain_world::{RATES, World};
 pub struct Stretching {
     /// How fast each length grows [length/time].
     pub rate: [f64; 3],
+    /// How fast each tilt grows [length/time].
+    pub tilt: [f64; 3],
     /// How fast each lower face moves [length/time].
     pub low: [f64; 3],
     /// Positions move with the box, and velocities do not.
@@ -20,6 +22,7 @@ pub fn stretching(w: &World) -> Option<Stretching> {
         for d in 0..3 {
             s.rate[d] += row.get(d).copied().unwrap_or(0.0);
             s.low[d] += row.get(d + 3).copied().unwrap_or(0.0);
+            s.tilt[d] += row.get(d + 7).copied().unwrap_or(0.0);
         }
         s.remapped |= row.get(6).is_some_and(|r| *r != 0.0);
         Some(s)

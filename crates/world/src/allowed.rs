@@ -2,6 +2,7 @@
 
 use super::bonds::ascending;
 use super::{Particles, World};
+use perigrain_base::math::periods::Periods;
 use perigrain_peri::families::{Excluded, Families};
 
 /// The rules of `neigh_modify exclude`; `None` where none stands.
@@ -32,7 +33,7 @@ pub struct Allowed<'a> {
     /// Group bits of solids and of their hybrid particles.
     surfaces: Vec<[u32; 2]>,
     /// Families of solids that have hybrid particles.
-    families: Option<(&'a Families, [f64; 3])>,
+    families: Option<(&'a Families, Periods)>,
 }
 
 /// Pairs of ids, found by the lower one.

@@ -7,7 +7,7 @@ use perigrain_base::par;
 /// What a look at all positions finds.
 #[derive(Clone, Debug)]
 pub struct Extent {
-    /// The corners of a box around all of them [length].
+    /// The corners of a box around all of them [length]; of a tilted box, around their [`Domain::upright`] places.
     pub corners: [Vec3; 2],
     /// The first one that is not finite.
     pub bad: Option<usize>,
@@ -20,6 +20,17 @@ impl Extent {
     pub fn of(x: &[Vec3], domain: &Domain) -> Option<Self> {
         let periodic = [0, 1, 2].map(|d| domain.boundary.periodic(d));
         let away = |x: &Vec3| (0..3).any(|d| periodic[d] && (x[d] < domain.lo[d] || x[d] >= domain.hi[d]));
+        if domain.tilted() {
+            let part = |range: std::ops::Range<usize>| {
+                let upright: Vec<Vec3> = x[range.clone()].iter().map(|x| domain.upright(x)).collect();
+                let (corners, finite) = corners(&upright);
+                let nowhere = |x: &Vec3| !x.iter().all(|a| a.is_finite());
+                let bad = if finite { None } else { x[range.clone()].iter().position(nowhere) };
+                let out = range.clone().filter(|&i| away(&upright[i - range.start])).collect();
+                Self { corners, bad: bad.map(|k| range.start + k), out }
+            };
+            return par::reduce(x.len(), part, Self::join);
+        }
         let part = |range: std::ops::Range<usize>| {
             let some = &x[range.clone()];
             let (corners, finite) = corners(some);

@@ -48,6 +48,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use perigrain_base::math::periods::Periods;
 use perigrain_peri::families::Families;
 
 pub use allowed::{Allowed, excluded};
@@ -220,18 +221,25 @@ impl World {
         }
     }
 
-    /// Edge lengths of the box, zero where particles do not see images of each other: where it does not repeat, and along z
-    /// in a flat scene.
-    pub fn periods(&self) -> [f64; 3] {
-        self.domain.as_ref().map_or([0.0; 3], |d| {
-            let (lengths, periodic) = (d.lengths(), d.periodic());
-            std::array::from_fn(|k| if periodic[k] { lengths[k] } else { 0.0 })
-        })
+    /// Edges of the box, zero where particles do not see images of each other: where it does not repeat, and along z in a flat
+    /// scene.
+    pub fn periods(&self) -> Periods {
+        self.domain.as_ref().map_or_else(Periods::default, Domain::periods)
     }
 
-    /// The same, infinite where the box does not repeat.
+    /// The lengths of these edges, infinite where the box does not repeat.
     pub fn repeats(&self) -> [f64; 3] {
-        self.periods().map(|length| if length > 0.0 { length } else { f64::INFINITY })
+        self.periods().length.map(|length| if length > 0.0 { length } else { f64::INFINITY })
+    }
+
+    /// Edges of the box, whether it repeats or not; zero without one.
+    pub fn edges(&self) -> Periods {
+        self.domain.as_ref().map_or_else(Periods::default, Domain::edges)
+    }
+
+    /// Whether the box leans now.
+    pub fn tilted(&self) -> bool {
+        self.domain.as_ref().is_some_and(Domain::tilted)
     }
 
     /// Number of particles.

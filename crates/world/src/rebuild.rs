@@ -15,6 +15,9 @@ pub struct Rebuild {
     /// Corners of the box at the last rebuild: lists lose their reach when it changes.
     #[serde(default)]
     pub corners: Option<[[f64; 3]; 2]>,
+    /// How it leaned then.
+    #[serde(default)]
+    pub tilt: [f64; 3],
     /// Everybody was where it was created, and `held` is empty.
     pub unmoved: bool,
     /// Rebuilds in the present run, setup not counted.

@@ -65,11 +65,16 @@ fn frame(s: &Snapshot, before: Option<Grid>) -> Result<Frame> {
         row += 1;
         Ok(())
     })?;
+    let mut scaled = [false; 3];
     for (d, labels) in PLACES.iter().enumerate() {
         let Some((k, label)) = s.column(labels) else { continue };
-        let scaled = label.contains('s');
-        for (place, value) in places.iter_mut().zip(&columns[k]) {
-            place[d] = if scaled { s.lo[d] + value * (s.hi[d] - s.lo[d]) } else { *value };
+        scaled[d] = label.contains('s');
+        places.iter_mut().zip(&columns[k]).for_each(|(place, value)| place[d] = *value);
+    }
+    if scaled != [false; 3] {
+        for place in &mut places {
+            let there = s.at([0, 1, 2].map(|d| if scaled[d] { place[d] } else { 0.0 }));
+            (0..3).filter(|&d| scaled[d]).for_each(|d| place[d] = there[d]);
         }
     }
     let tags: Vec<u32> =
@@ -97,5 +102,5 @@ fn frame(s: &Snapshot, before: Option<Grid>) -> Result<Frame> {
         let speed = |k: usize| [x, y, z].iter().map(|c| columns[*c][at(k)].powi(2)).sum::<f64>().sqrt();
         out.push(Column::of("speed", &(0..n).map(speed).collect::<Vec<_>>()));
     }
-    Ok(Frame { step: s.step, time: None, bounds: [s.lo, s.hi], span, grid, x, columns: out })
+    Ok(Frame { step: s.step, time: None, bounds: s.around(), span, grid, x, columns: out })
 }

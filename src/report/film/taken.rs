@@ -21,7 +21,10 @@ pub fn taken(w: &World, before: Option<Grid>) -> Frame {
         }
     }
     let columns = columns(w, |value| (0..n).map(|k| value(place(k))).collect());
-    let bounds = w.domain.as_ref().map_or(span, |d| [d.lo, d.hi]);
+    let bounds = w.domain.as_ref().map_or(span, |d| {
+        let faces = d.bounds();
+        [0, 1].map(|side| faces.map(|face| face[side]))
+    });
     Frame { step: w.clock.step, time: Some(w.clock.time()), bounds, span, grid, x, columns }
 }
 

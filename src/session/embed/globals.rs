@@ -42,7 +42,8 @@ impl Session {
             "nbondtypes" => Whole(w.bonds.types as i32),
             "map_tag_max" | "tag_max" => Large(i64::from(w.particles.last_tag())),
             "dimension" => Whole(if s.two_dimensional { 2 } else { 3 }),
-            "triclinic" | "q_flag" | "nangles" | "ndihedrals" | "nimpropers" => Whole(0),
+            "triclinic" => flag(w.domain.as_ref().is_some_and(|d| d.tilt.is_some())),
+            "q_flag" | "nangles" | "ndihedrals" | "nimpropers" => Whole(0),
             "procgrid" => Wholes(vec![1; 3]),
             "special_lj" => {
                 let [a, b, c] = w.bonds.weights.lj;
@@ -78,7 +79,9 @@ fn of_box(d: &Domain, name: &str) -> Option<Global> {
         "boxlo" | "sublo" => Some(Global::Reals(d.lo.to_vec())),
         "boxhi" | "subhi" => Some(Global::Reals(d.hi.to_vec())),
         "periodicity" => Some(Global::Wholes((0..3).map(|k| i32::from(d.boundary.periodic(k))).collect())),
-        "xy" | "xz" | "yz" => Some(Global::Real(0.0)),
+        "xy" => Some(Global::Real(d.edges().tilt[0])),
+        "xz" => Some(Global::Real(d.edges().tilt[1])),
+        "yz" => Some(Global::Real(d.edges().tilt[2])),
         _ => {
             let rest = name.strip_prefix("box")?;
             let low = rest.strip_suffix("lo").and_then(|axis| corner(axis, d.lo));

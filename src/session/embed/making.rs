@@ -64,10 +64,11 @@ impl Session {
         for i in 0..n {
             let (mut x, mut image) = (new.x[i], new.images.as_ref().map_or([0; 3], |list| unpacked(list[i])));
             domain.wrap(&mut x, &mut image);
+            let at = domain.upright(&x);
             let kept = (0..3).all(|k| {
                 let follows =
                     domain.boundary.0[k].iter().any(|f| matches!(f, Face::Shrink | Face::ShrinkMin));
-                (new.open && follows) || (x[k] >= domain.lo[k] && x[k] < domain.hi[k])
+                (new.open && follows) || (at[k] >= domain.lo[k] && at[k] < domain.hi[k])
             });
             if !kept {
                 continue;
@@ -109,11 +110,11 @@ impl Session {
         ids.iter().map(take).collect()
     }
 
-    /// Gives an empty box other corners.
+    /// Gives an empty box other corners, and other tilts where it has some.
     ///
     /// # Errors
-    /// No box, particles in it, corners that enclose nothing.
-    pub fn reset_box(&mut self, lo: [f64; 3], hi: [f64; 3]) -> Result<()> {
+    /// No box, particles in it, corners that enclose nothing, tilts of a box that has none.
+    pub fn reset_box(&mut self, lo: [f64; 3], hi: [f64; 3], tilt: [f64; 3]) -> Result<()> {
         if self.world.n() > 0 {
             let d =
                 Diagnostic::error(Code::WRONG_ORDER, None, "the box holds particles and cannot be set anew");
@@ -126,6 +127,17 @@ impl Session {
         let Some(domain) = &mut *self.world.domain else {
             return fail(Code::WRONG_ORDER, None, "there is no box: `create_box` comes first");
         };
+        if !tilt.iter().all(|x| x.is_finite()) {
+            return fail(Code::BAD_VALUE, None, format!("no box leans by {tilt:?}"));
+        }
+        match &mut domain.tilt {
+            Some(leans) => *leans = tilt,
+            None if tilt == [0.0; 3] => {}
+            None => {
+                let d = Diagnostic::error(Code::CONFLICT, None, "an orthogonal box cannot lean");
+                return Err(d.help("`change_box all triclinic` makes it one that may").into());
+            }
+        }
         (domain.lo, domain.hi, domain.min_lo, domain.min_hi) = (lo, hi, lo, hi);
         self.changed_from_outside();
         Ok(())

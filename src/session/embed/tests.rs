@@ -125,17 +125,20 @@ fn particles_are_made_in_the_box_alone() {
         assert!(s.make_particles(&wrong).is_err(), "{wrong:?}");
     }
     assert_eq!(s.global("natoms"), Some(Global::Large(4)));
-    assert!(s.reset_box([0.0; 3], [2.0; 3]).is_err());
+    assert!(s.reset_box([0.0; 3], [2.0; 3], [0.0; 3]).is_err());
 }
 
 #[test]
 fn an_empty_box_can_be_set_anew() {
     let mut s = Session::new(Options::default()).unwrap();
-    assert!(s.make_particles(&Newcomers::default()).is_err() && s.reset_box([0.0; 3], [1.0; 3]).is_err());
+    assert!(
+        s.make_particles(&Newcomers::default()).is_err()
+            && s.reset_box([0.0; 3], [1.0; 3], [0.0; 3]).is_err()
+    );
     assert_eq!((s.global("boxlo"), s.global("nosuch")), (None, None));
     s.eval("deck", "region b block 0 1 0 1 0 1\ncreate_box 1 b\n").unwrap();
-    s.reset_box([0.0; 3], [2.0, 3.0, 4.0]).unwrap();
-    assert!(s.reset_box([0.0; 3], [2.0, 0.0, 4.0]).is_err());
+    s.reset_box([0.0; 3], [2.0, 3.0, 4.0], [0.0; 3]).unwrap();
+    assert!(s.reset_box([0.0; 3], [2.0, 0.0, 4.0], [0.0; 3]).is_err());
     assert_eq!(s.global("boxhi"), Some(Global::Reals(vec![2.0, 3.0, 4.0])));
     assert_eq!(s.global("boxzhi"), Some(Global::Real(4.0)));
     assert_eq!(s.global("units"), Some(Global::Text("lj".into())));

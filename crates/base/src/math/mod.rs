@@ -12,6 +12,7 @@ pub mod four;
 pub mod lanczos;
 pub mod lanes;
 pub mod pair;
+pub mod periods;
 pub mod real;
 pub mod rng;
 pub mod scatter;

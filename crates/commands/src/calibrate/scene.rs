@@ -83,7 +83,7 @@ impl Scene {
         let half = 0.5 * network.length.iter().sum::<f64>() / network.length.len() as f64;
         let radius =
             places.iter().map(|i| p.radius.get(*i).copied().filter(|r| *r > 0.0).unwrap_or(half)).collect();
-        Ok(Self { places, x, radius, network, bonds, period })
+        Ok(Self { places, x, radius, network, bonds, period: period.length })
     }
 
     /// The spheres, along the axis of a load.

@@ -3,6 +3,7 @@
 use super::scene::Scene;
 use super::words::Words;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::length;
 use perigrain_bonded::contacts::{Contact, Contacts, Walls};
 use perigrain_bonded::ends::Hold;
@@ -121,7 +122,9 @@ pub fn contacts(
     let mut row = vec![0; w.n()];
     scene.places.iter().enumerate().for_each(|(k, place)| row[*place] = k as u32);
     let ends: Vec<[u32; 2]> = found.iter().map(|c| [row[c.i as usize], row[c.j as usize]]).collect();
-    if let Some(c) = found.iter().find(|c| length(difference(&p.x, &scene.period, c)) == 0.0) {
+    if let Some(c) =
+        found.iter().find(|c| length(difference(&p.x, &Periods::upright(scene.period), c)) == 0.0)
+    {
         let [a, b] = [c.i, c.j].map(|i| p.tag[i as usize]);
         let text = format!("particles {a} and {b} are in one place");
         return Err(Diagnostic::error(Code::CONFLICT, span, text).into());
@@ -129,7 +132,7 @@ pub fn contacts(
     Ok(Contacts::new(scene.places.len(), &ends, |k| {
         let [i, j] = [found[k].i as usize, found[k].j as usize];
         // From j to i.
-        let d = difference(&p.x, &scene.period, &found[k]);
+        let d = difference(&p.x, &Periods::upright(scene.period), &found[k]);
         let l = length(d);
         let arms = [p.radius[i], p.radius[j]];
         let root = (arms[0] * arms[1] / (arms[0] + arms[1])).sqrt();

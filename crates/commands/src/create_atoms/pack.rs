@@ -10,7 +10,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::{Args, Word};
-use perigrain_styles::common::{self, seed};
+use perigrain_styles::common::{self, orthogonal, seed};
 use perigrain_styles::{ActCx, BuildCx};
 use perigrain_world::{Domain, Region};
 use std::f64::consts::PI;
@@ -114,6 +114,9 @@ fn spheres(style: &Word, cx: &BuildCx) -> Result<()> {
 
 /// Refuses regions that no distance is known to.
 fn refuse_region(name: &Word, region: &Region, domain: &Domain) -> Result<()> {
+    if domain.tilted() {
+        return Err(orthogonal("packing").at(name.span));
+    }
     let Err(what) = Room::new(domain, region) else { return Ok(()) };
     let text = format!("spheres cannot be packed in region `{}`, which {what}", name.text);
     let d = Diagnostic::error(Code::NOT_SUPPORTED, name.span, text);

@@ -142,10 +142,12 @@ fn tested(cx: &mut ActCx, m: &Maker, places: Vec<New>) -> Result<Vec<New>> {
 /// Sites of the lattice inside box and region.
 fn on_sites(world: &World, m: &Maker, region: Option<&Region>) -> Vec<New> {
     let domain = m.domain;
-    let (mut lo, mut hi) = (domain.lo, domain.hi);
+    let (bounds, tilted) = (domain.bounds(), domain.tilted());
+    let (mut lo, mut hi) = (bounds.map(|b| b[0]), bounds.map(|b| b[1]));
     for d in (0..3).filter(|&d| domain.boundary.periodic(d)) {
         let epsilon = 1e-6 * (domain.hi[d] - domain.lo[d]);
-        (lo[d], hi[d]) = (lo[d] - epsilon, hi[d] - 2.0 * epsilon);
+        // What is around a leaning box reaches beyond its own upper faces.
+        (lo[d], hi[d]) = (lo[d] - epsilon, if tilted { hi[d] + epsilon } else { hi[d] - 2.0 * epsilon });
     }
     let (first, last) = match region.and_then(Region::bounds) {
         Some((a, b)) => ([0, 1, 2].map(|d| lo[d].max(a[d])), [0, 1, 2].map(|d| hi[d].min(b[d]))),
@@ -156,13 +158,26 @@ fn on_sites(world: &World, m: &Maker, region: Option<&Region>) -> Vec<New> {
         return places;
     }
     let _ = world.lattice.sites(first, last, |k, x| {
-        let inside = (0..3).all(|d| x[d] >= lo[d] && x[d] < hi[d]);
+        let inside = match tilted {
+            true => within_fractions(domain, x),
+            false => (0..3).all(|d| x[d] >= lo[d] && x[d] < hi[d]),
+        };
         if inside && region.is_none_or(|r| r.contains(x)) {
             places.push(New { kind: m.basis[k], x, radius: None });
         }
         ControlFlow::<()>::Continue(())
     });
     places
+}
+
+/// Whether a site lies in a leaning box, by the margins that sites on its faces need.
+fn within_fractions(domain: &Domain, x: [f64; 3]) -> bool {
+    const EPSILON: f64 = 1e-6;
+    let f = domain.fractions(&x);
+    (0..3).all(|d| match domain.boundary.periodic(d) {
+        true => f[d] >= -EPSILON && f[d] < 1.0 - 2.0 * EPSILON,
+        false => f[d] >= 0.0 && f[d] < 1.0,
+    })
 }
 
 fn single(m: &Maker, mut x: [f64; 3], remap: bool) -> Vec<New> {
@@ -174,11 +189,11 @@ fn single(m: &Maker, mut x: [f64; 3], remap: bool) -> Vec<New> {
 
 /// The part of the box that a region leaves.
 pub fn bounds(domain: &Domain, region: Option<&Region>) -> ([f64; 3], [f64; 3]) {
+    let faces = domain.bounds();
+    let (lo, hi) = (faces.map(|f| f[0]), faces.map(|f| f[1]));
     match region.and_then(Region::bounds) {
-        Some((a, b)) => {
-            ([0, 1, 2].map(|d| domain.lo[d].max(a[d])), [0, 1, 2].map(|d| domain.hi[d].min(b[d])))
-        }
-        None => (domain.lo, domain.hi),
+        Some((a, b)) => ([0, 1, 2].map(|d| lo[d].max(a[d])), [0, 1, 2].map(|d| hi[d].min(b[d]))),
+        None => (lo, hi),
     }
 }
 
@@ -217,7 +232,7 @@ impl Random<'_> {
     }
 
     fn accepts(&self, cx: &mut ActCx, m: &Maker, new: &[New], x: [f64; 3]) -> Result<bool> {
-        if !self.region.is_none_or(|r| r.contains(x)) {
+        if !self.region.is_none_or(|r| r.contains(x)) || (m.domain.tilted() && !m.domain.holds(&x)) {
             return Ok(false);
         }
         if let Some(test) = m.test

@@ -73,7 +73,7 @@ impl Gap {
         let radius = &w.particles.radius;
         let largest = radius.iter().copied().fold(0.0, f64::max);
         let [least, most] = self.range;
-        for (d, period) in w.periods().into_iter().enumerate().filter(|(_, l)| *l > 0.0) {
+        for (d, period) in w.periods().heights().into_iter().enumerate().filter(|(_, l)| *l > 0.0) {
             // A bond knows its ends, not which image of them is meant.
             if 2.0 * largest + most > 0.5 * period {
                 let axis = ["x", "y", "z"][d];

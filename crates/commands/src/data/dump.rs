@@ -2,6 +2,7 @@
 
 use super::text::{Line, Lines, not_here, number, whole};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_world::{Boundary, Domain};
 
 /// One snapshot: its head, and where its rows begin.
 #[derive(Clone, Debug)]
@@ -12,6 +13,8 @@ pub struct Snapshot<'a> {
     pub lo: [f64; 3],
     /// Upper corner.
     pub hi: [f64; 3],
+    /// How it leans, where it is one that may.
+    pub tilt: Option<[f64; 3]>,
     /// Labels of the columns.
     pub labels: Vec<&'a str>,
     /// Place of the labels.
@@ -23,7 +26,7 @@ pub struct Snapshot<'a> {
 /// Takes the next snapshot; `None` at the end of the file.
 ///
 /// # Errors
-/// What is no dump, tilted boxes, files that break off.
+/// What is no dump, general triclinic boxes, files that break off.
 pub fn next<'a>(lines: &mut Lines<'a>) -> Result<Option<Snapshot<'a>>> {
     let (mut step, mut count, mut edges) = (None, None, None);
     while let Some(line) = lines.take_filled() {
@@ -39,12 +42,13 @@ pub fn next<'a>(lines: &mut Lines<'a>) -> Result<Option<Snapshot<'a>>> {
         } else if item == "UNITS" || item == "TIME" {
             lines.take();
         } else if let Some(faces) = item.strip_prefix("BOX BOUNDS") {
-            if faces.contains("xy") || faces.contains("abc") {
-                return Err(not_here(line.span(), "a tilted box").into());
+            if faces.contains("abc") {
+                return Err(not_here(line.span(), "a general triclinic box").into());
             }
-            edges = Some([edge(lines)?, edge(lines)?, edge(lines)?]);
+            let leans = faces.contains("xy");
+            edges = Some(([edge(lines, leans)?, edge(lines, leans)?, edge(lines, leans)?], leans));
         } else if let Some(labels) = item.strip_prefix("ATOMS") {
-            let (Some(step), Some(count), Some(edges)) = (step, count, edges) else {
+            let (Some(step), Some(count), Some((edges, leans))) = (step, count, edges) else {
                 let text = "a snapshot needs TIMESTEP, NUMBER OF ATOMS and BOX BOUNDS before ATOMS";
                 return fail(Code::INCOMPLETE, line.span(), text);
             };
@@ -55,9 +59,14 @@ pub fn next<'a>(lines: &mut Lines<'a>) -> Result<Option<Snapshot<'a>>> {
                     return fail(Code::INCOMPLETE, line.span(), text);
                 }
             }
-            let (lo, hi) = (edges.map(|e| e[0]), edges.map(|e| e[1]));
+            let (lo, hi, tilt) = inner(edges);
+            if let Some(d) = (0..3).find(|&d| !(lo[d] < hi[d])) {
+                let text = format!("the box leans so far that nothing is left of {}", ["x", "y", "z"][d]);
+                return fail(Code::BAD_VALUE, line.span(), text);
+            }
+            let tilt = leans.then_some(tilt);
             let labels = labels.split_ascii_whitespace().collect();
-            return Ok(Some(Snapshot { step, lo, hi, labels, title: line.span(), rows, count }));
+            return Ok(Some(Snapshot { step, lo, hi, tilt, labels, title: line.span(), rows, count }));
         } else {
             return Err(not_here(line.span(), &format!("`ITEM: {item}` in a dump")).into());
         }
@@ -80,10 +89,22 @@ fn single(lines: &mut Lines, what: &str) -> Result<i64> {
     whole(&line, line.word(0), what)
 }
 
-fn edge(lines: &mut Lines) -> Result<[f64; 2]> {
+/// Corners and tilts of a box from the faces around it.
+fn inner([x, y, z]: [[f64; 3]; 3]) -> ([f64; 3], [f64; 3], [f64; 3]) {
+    let tilt = [x[2], y[2], z[2]];
+    let around = Domain { tilt: Some(tilt), ..Domain::new([0.0; 3], [0.0; 3], Boundary::default()) };
+    let [[low_x, high_x], [low_y, high_y], _] = around.bounds();
+    ([x[0] - low_x, y[0] - low_y, z[0]], [x[1] - high_x, y[1] - high_y, z[1]], tilt)
+}
+
+fn edge(lines: &mut Lines, leans: bool) -> Result<[f64; 3]> {
     let line = taken(lines, "a face of the box")?;
-    let edge =
-        [number(&line, line.word(0), "the lower face")?, number(&line, line.word(1), "the upper face")?];
+    let tilt = if leans { number(&line, line.word(2), "the tilt")? } else { 0.0 };
+    let edge = [
+        number(&line, line.word(0), "the lower face")?,
+        number(&line, line.word(1), "the upper face")?,
+        tilt,
+    ];
     if edge[0] < edge[1] {
         Ok(edge)
     } else {
@@ -92,6 +113,19 @@ fn edge(lines: &mut Lines) -> Result<[f64; 2]> {
 }
 
 impl<'a> Snapshot<'a> {
+    /// The corners of the upright box around the box.
+    pub fn around(&self) -> [[f64; 3]; 2] {
+        let faces = Domain { tilt: self.tilt, ..Domain::new(self.lo, self.hi, Boundary::default()) }.bounds();
+        [0, 1].map(|side| faces.map(|face| face[side]))
+    }
+
+    /// The place at these fractions of the box's edges.
+    pub fn at(&self, f: [f64; 3]) -> [f64; 3] {
+        let [xy, xz, yz] = self.tilt.unwrap_or_default();
+        let along = |d: usize| self.lo[d] + f[d] * (self.hi[d] - self.lo[d]);
+        [along(0) + f[1] * xy + f[2] * xz, along(1) + f[2] * yz, along(2)]
+    }
+
     /// Number of particles.
     pub fn len(&self) -> usize {
         self.count

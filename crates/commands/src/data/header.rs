@@ -14,6 +14,8 @@ pub struct Header {
     pub lo: [f64; 3],
     /// Upper corner.
     pub hi: [f64; 3],
+    /// How the box leans (xy, xz, yz), where the file says so [length].
+    pub tilt: Option<[f64; 3]>,
     /// Where the number of particles stands.
     pub atoms_at: Option<Span>,
     /// Number of bonds.
@@ -28,7 +30,17 @@ impl Default for Header {
     /// LAMMPS' defaults: no particles in a box of edge length 1 around the origin.
     fn default() -> Self {
         let (lo, hi) = ([-0.5; 3], [0.5; 3]);
-        Self { atoms: 0, types: 0, lo, hi, atoms_at: None, bonds: 0, bond_types: 0, bonds_at: None }
+        Self {
+            atoms: 0,
+            types: 0,
+            lo,
+            hi,
+            tilt: None,
+            atoms_at: None,
+            bonds: 0,
+            bond_types: 0,
+            bonds_at: None,
+        }
     }
 }
 
@@ -50,13 +62,13 @@ const COUNTS: [&str; 14] = [
     "crossterms",
 ];
 
-/// Header words of boxes that are no blocks.
-const SLANTED: [&str; 5] = ["xy xz yz", "avec", "bvec", "cvec", "abc origin"];
+/// Header words of general triclinic boxes.
+const SLANTED: [&str; 4] = ["avec", "bvec", "cvec", "abc origin"];
 
 /// Reads the header; the first line of the file is a title. The cursor stands before the first section afterwards.
 ///
 /// # Errors
-/// Lines that are neither header nor section, angles, tilted boxes, faces in the wrong order.
+/// Lines that are neither header nor section, angles, general triclinic boxes, faces in the wrong order.
 pub fn read(lines: &mut Lines) -> Result<Header> {
     let mut header = Header::default();
     lines.take();
@@ -103,11 +115,17 @@ fn take(header: &mut Header, line: &Line, values: &[&str], name: &str) -> Result
         "xlo xhi" => edge(header, 0, line, values)?,
         "ylo yhi" => edge(header, 1, line, values)?,
         "zlo zhi" => edge(header, 2, line, values)?,
+        "xy xz yz" => {
+            let &[xy, xz, yz] = values else {
+                return fail(Code::SYNTAX, line.span(), "`xy xz yz` takes three tilts before it");
+            };
+            let tilt = |word: &str, what: &str| number(line, word, what);
+            header.tilt =
+                Some([tilt(xy, "the tilt xy")?, tilt(xz, "the tilt xz")?, tilt(yz, "the tilt yz")?]);
+        }
         _ if SLANTED.contains(&name) => {
-            let d = not_here(line.span(), "a tilted box");
-            return Err(d
-                .help("perigrain's boxes are blocks: give only xlo xhi, ylo yhi and zlo zhi")
-                .into());
+            let d = not_here(line.span(), "a general triclinic box");
+            return Err(d.help("a restricted one has xlo xhi, ylo yhi, zlo zhi and xy xz yz").into());
         }
         _ if COUNTS.contains(&name) => {
             if count(line, values, name)? > 0 {
@@ -115,7 +133,8 @@ fn take(header: &mut Header, line: &Line, values: &[&str], name: &str) -> Result
             }
         }
         _ => {
-            let known = ["atoms", "atom types", "bonds", "bond types", "xlo xhi", "ylo yhi", "zlo zhi"];
+            let known =
+                ["atoms", "atom types", "bonds", "bond types", "xlo xhi", "ylo yhi", "zlo zhi", "xy xz yz"];
             let text = format!("`{name}` is no header line of a data file");
             let d = Diagnostic::error(Code::UNKNOWN_KEYWORD, line.span(), text);
             return Err(match perigrain_base::diag::nearest(name, known) {

@@ -33,6 +33,9 @@ pub fn write(out: &mut dyn Write, w: &World, with: With) -> Result<()> {
         for (d, axis) in ["x", "y", "z"].into_iter().enumerate() {
             writeln!(out, "{} {} {axis}lo {axis}hi", shortest(domain.lo[d]), shortest(domain.hi[d]))?;
         }
+        if let Some([xy, xz, yz]) = domain.tilt.map(|tilt| tilt.map(shortest)) {
+            writeln!(out, "{xy} {xz} {yz} xy xz yz")?;
+        }
     }
     masses(out, w)?;
     if with.coeffs {

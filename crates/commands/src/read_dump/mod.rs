@@ -7,7 +7,6 @@ use super::data::dump::{self, Snapshot};
 use super::data::text::{Lines, comes, find};
 use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_base::math::cformat::general;
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{bad_keyword, domain, on_particles};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
@@ -220,8 +219,7 @@ fn tell(cx: &mut ActCx, s: &Snapshot, before: usize, [purged, replaced, trimmed,
     cx.say("Scanning dump file ...");
     cx.say("Reading snapshot from dump file ...");
     if let Some(d) = &*cx.world.domain {
-        let text = |x: [f64; 3]| x.map(|x| general(x, 8)).join(" ");
-        let line = format!("  orthogonal box = ({}) to ({})", text(d.lo), text(d.hi));
+        let line = format!("  {}", d.told(d.lo, d.hi));
         cx.say(line);
     }
     let after = cx.world.n();

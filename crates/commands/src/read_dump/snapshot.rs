@@ -23,6 +23,13 @@ pub(super) fn particles(s: &Snapshot, wish: &Wish, w: &World) -> Result<Vec<Part
     for &f in &wish.fields {
         columns.push((f, wish.column(s, f)?));
     }
+    // Fractions of a leaning box make places together.
+    let scaled = columns.iter().filter(|(f, (_, scaled, _))| *f < 3 && *scaled).count();
+    let leans = s.tilt.is_some_and(|tilt| tilt != [0.0; 3]) && scaled > 0;
+    if leans && scaled < 3 {
+        let text = "scaled positions of a triclinic box are of use only together: x, y and z";
+        return fail(Code::BAD_VALUE, s.title, text);
+    }
     let mut list = Vec::with_capacity(s.len());
     s.rows(|line, words| {
         let tag = whole(line, words[id], "the id")?;
@@ -42,7 +49,11 @@ pub(super) fn particles(s: &Snapshot, wish: &Wish, w: &World) -> Result<Vec<Part
         }
         for &(f, (k, scaled, _)) in &columns {
             let a = number(line, words[k], FIELDS[f])?;
-            p.values[f] = if scaled { s.lo[f] + a * (s.hi[f] - s.lo[f]) } else { a };
+            p.values[f] = if scaled && !leans { s.lo[f] + a * (s.hi[f] - s.lo[f]) } else { a };
+        }
+        if leans {
+            let there = s.at([p.values[0], p.values[1], p.values[2]]);
+            p.values[..3].copy_from_slice(&there);
         }
         list.push(p);
         Ok(())
@@ -61,7 +72,7 @@ pub(super) fn enter(w: &mut World, s: &Snapshot, list: &[Particle], wish: &Wish)
     }
     if wish.domain {
         let flat = w.settings.two_dimensional;
-        let mut domain = Domain { flat, ..Domain::new(s.lo, s.hi, w.settings.boundary) };
+        let mut domain = Domain { flat, tilt: s.tilt, ..Domain::new(s.lo, s.hi, w.settings.boundary) };
         domain.open_shrinking_faces();
         w.domain = Some(domain).into();
     }

@@ -4,6 +4,7 @@ use super::bins::{Layers, Shells};
 use super::words::{Discard, Ids, Spec, What};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_styles::Reading;
+use perigrain_styles::common::orthogonal;
 use perigrain_world::{Domain, Key, Numbers, Region, Slot, World};
 
 /// What has been found out once and stays until chunks are counted anew.
@@ -148,6 +149,20 @@ impl Task<'_> {
         self.describe(w, &layout, out)
     }
 
+    /// Bins of a leaning box lean with it.
+    fn check_box(&self, d: &Domain) -> Result<()> {
+        let text = match self.spec.what {
+            What::Sphere(_) | What::Cylinder(..) if d.tilted() => {
+                "compute chunk/atom with spheres or cylinders"
+            }
+            What::Bins(_) if d.tilt.is_some() && !self.spec.reduced => {
+                "compute chunk/atom without `units reduced`"
+            }
+            _ => return Ok(()),
+        };
+        Err(orthogonal(text).at(self.span))
+    }
+
     fn binned(&self) -> bool {
         !matches!(self.spec.what, What::Type | What::Value(_))
     }
@@ -155,6 +170,7 @@ impl Task<'_> {
     /// The number of each particle before compression, limit and discarding; NaN for those that have none.
     fn raw(&self, w: &World, layout: Option<&Layout>) -> Result<Vec<f64>> {
         let d = w.domain()?;
+        self.check_box(d)?;
         let found;
         let layout = match layout {
             Some(l) => l,
@@ -203,7 +219,12 @@ impl Task<'_> {
 
     /// The bin of a place, counted from 0.
     fn bin(&self, d: &Domain, layout: &Layout, x: [f64; 3], lammps: bool) -> Option<usize> {
+        let inside = if d.tilted() { d.fractions(&x) } else { x };
         let along = |k: usize| {
+            if d.tilted() {
+                let turns = if d.boundary.periodic(k) { inside[k].floor() } else { 0.0 };
+                return inside[k] - turns;
+            }
             let (lo, hi) = (d.lo[k], d.hi[k]);
             let mut a = x[k];
             if d.boundary.periodic(k) {

@@ -53,7 +53,7 @@ fn evaluate(s: &Scene, average: Average, curvature: Curvature) -> (Vec<Vec3>, Ve
         wanted.set(a, b, Reach::Touch);
         rules.set(a, b, Rule { law: law(), average, curvature });
     }
-    let period = [0.0; 3];
+    let period = perigrain_base::math::periods::Periods::default();
     let view = View { x: &s.x, tag: &s.tag, kind: &s.kind, radius: &s.radius, period };
     let list = pairs(&view, &wanted, 0.1, &|_, _| true);
     let grains = Grains {

@@ -6,6 +6,7 @@ use super::{Fast, NONE};
 use crate::ContactLaw;
 use crate::driver::Grains;
 use perigrain_base::math::lanes::PLACE_BITS;
+use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_neigh::list::{Pair, Reach, View, Wanted, pairs_of_large};
 use perigrain_neigh::slabs::{HERE, Slabs};
@@ -26,6 +27,7 @@ impl<L: ContactLaw> Fast<L> {
             }
         }
         let Grains { x, tag, kind, radius, .. } = *grains;
+        let period = Periods::upright(period);
         pairs_of_large(&View { x, tag, kind, radius, period }, &wanted, skin, keep)
     }
 

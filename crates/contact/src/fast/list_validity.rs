@@ -310,7 +310,7 @@ mod tests {
             mass: radius,
             kind: &[1; 9],
             tag,
-            period: [0.0; 3],
+            period: Default::default(),
             flow: None,
             body: none.0,
             frozen: none.1,

@@ -106,7 +106,7 @@ impl<L: ContactLaw> Laws<L> {
 pub struct Frame {
     /// Lower corner [length].
     pub lo: [f64; 3],
-    /// Edge lengths; zero where the box does not repeat.
+    /// Edge lengths; zero where the box does not repeat. Tilted boxes are the plain loop's business.
     pub period: [f64; 3],
     /// How far beyond touching the lists reach [length].
     pub reach: f64,

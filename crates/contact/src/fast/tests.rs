@@ -6,6 +6,7 @@ use crate::{
     Classic, Damping, Friction, Granular, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting, normal,
 };
 use perigrain_base::math::lanes::place;
+use perigrain_base::math::periods::Periods;
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_neigh::list::{Reach, View, Wanted, pairs};
 use perigrain_world::{Compat, Travel};
@@ -137,7 +138,7 @@ impl Scene {
             mass,
             kind,
             tag,
-            period: *period,
+            period: Periods::upright(*period),
             flow: None,
             body: &[],
             frozen,
@@ -165,7 +166,7 @@ impl Scene {
 
     /// Whether two do not touch.
     fn apart(&self, p: &perigrain_neigh::list::Pair) -> bool {
-        let d = perigrain_neigh::list::difference(&self.x, &self.period, p);
+        let d = perigrain_neigh::list::difference(&self.x, &Periods::upright(self.period), p);
         perigrain_base::math::vec3::length(d) >= self.radius[p.i as usize] + self.radius[p.j as usize]
     }
 
@@ -215,13 +216,19 @@ impl Loop for PlainLoop {
             rules.set(a, b, Rule { law: (self.law)(a, b), average, curvature });
         }
         if k.is_multiple_of(7) {
-            let view = View { x: &s.x, tag: &s.tag, kind: &s.kind, radius: &s.radius, period: s.period };
+            let view = View {
+                x: &s.x,
+                tag: &s.tag,
+                kind: &s.kind,
+                radius: &s.radius,
+                period: Periods::upright(s.period),
+            };
             self.list = pairs(&view, &wanted, SKIN, &|i, j| s.keep(i, j));
         }
         self.sweep.run(&self.list, &s.grains(), &rules, &mut self.memory, Advance { dt: DT, history: true });
         let (mut f, mut torque) = (s.zeros(), s.zeros());
         self.sweep.scatter(&mut f, &mut torque);
-        let (mut heat, virial) = (vec![0.0; s.x.len()], self.sweep.virial(&s.x, &s.period));
+        let (mut heat, virial) = (vec![0.0; s.x.len()], self.sweep.virial(&s.x, &Periods::upright(s.period)));
         self.sweep.conduct(&s.temperatures(), &mut heat);
         Got { f, torque, heat, contacts: self.memory.clone(), virial }
     }

@@ -48,6 +48,23 @@ impl Track {
     }
 }
 
+/// Of runs that share a ramp, the start is where the line was given: lower faces, upper faces, tilts.
+fn said<'a>(fix: &Declared, w: &'a World) -> Option<&'a Vec<f64>> {
+    w.memo.get(fix.key()).filter(|m| w.clock.first != w.clock.start && m.len() >= 6)
+}
+
+/// Tilts and lengths of the box at the start.
+///
+/// # Errors
+/// There is no box.
+pub fn start(fix: &Declared, w: &World) -> Result<([f64; 3], [f64; 3])> {
+    let (domain, said) = (w.domain()?, said(fix, w));
+    let at = |k: usize, now: f64| said.and_then(|m| m.get(k)).copied().unwrap_or(now);
+    let (now, tilt) = (domain.lengths(), domain.tilt.unwrap_or_default());
+    let length = |d: usize| said.map_or(now[d], |m| m[d + 3] - m[d]);
+    Ok(([0, 1, 2].map(|k| at(k + 6, tilt[k])), [0, 1, 2].map(length)))
+}
+
 /// The ways of a run that begins now.
 ///
 /// # Errors
@@ -55,8 +72,7 @@ impl Track {
 pub fn tracks(fix: &Declared, cx: &mut dyn SealCx, when: &When) -> Result<[Track; 3]> {
     let w = cx.world();
     let (clock, domain) = (w.clock.clone(), w.domain()?.clone());
-    // Of runs that share a ramp, the start is where the line was given.
-    let said = w.memo.get(fix.key()).filter(|m| clock.first != clock.start && m.len() == 6);
+    let said = said(fix, w);
     let face = |k: usize, now: f64| said.map_or(now, |m| m[k]);
     let start = [0, 1, 2].map(|d| [face(d, domain.lo[d]), face(d + 3, domain.hi[d])]);
     let time = (clock.stop - clock.start) as f64 * clock.dt;

@@ -2,6 +2,7 @@
 
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_styles::Reading;
+use perigrain_styles::common::orthogonal;
 use perigrain_world::World;
 use perigrain_world::region::across;
 
@@ -76,6 +77,11 @@ impl Form<Reading> {
             }
             Ok(radius)
         };
+        let tapered = matches!(self, Form::Cylinder { .. } | Form::Cone { .. });
+        if tapered && w.tilted() {
+            // Its axis runs through the box, and from one image to the next it would lie elsewhere.
+            return Err(orthogonal("a cylinder or cone of fix indent"));
+        }
         Ok(match self {
             Form::Plane { axis, place, high } => Body::Flat { axis: *axis, place: place.get(w), high: *high },
             Form::Sphere { center, radius } => {

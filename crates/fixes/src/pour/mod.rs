@@ -240,7 +240,7 @@ impl Pouring {
 
 impl Fix for Pouring {
     fn facts(&self, _: &World) -> Facts {
-        Facts { counts_steps: true, makes_particles: true, ..Facts::default() }
+        Facts { counts_steps: true, makes_particles: true, orthogonal: true, ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {

@@ -165,10 +165,10 @@ impl Declared {
     pub fn wrap(&self, w: &mut World) {
         let mut bodies = self.load(w);
         if let Some(domain) = &*w.domain {
-            let lengths = domain.lengths();
             for body in &mut bodies {
+                let inside = domain.fractions(&body.x);
                 body.image = [0, 1, 2].map(|d| match domain.boundary.periodic(d) {
-                    true => ((body.x[d] - domain.lo[d]) / lengths[d]).floor(),
+                    true => inside[d].floor(),
                     false => 0.0,
                 });
             }

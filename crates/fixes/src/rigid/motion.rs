@@ -110,7 +110,7 @@ impl Declared {
             half: half(w, t),
             dt: t.dt,
             flat: w.settings.two_dimensional,
-            lengths: w.domain.as_ref().map_or([0.0; 3], |d| d.lengths()),
+            edges: w.edges(),
             p: &w.particles,
             first: &crew.first,
             members: &crew.members,
@@ -123,7 +123,7 @@ impl Declared {
     /// asked for, half the virial of the forces that hold the bodies together.
     fn follow(&self, w: &mut World, t: &Tick, crew: &Crew, moving: bool, tally: bool) -> [f64; 6] {
         let half = half(w, t);
-        let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
+        let edges = w.edges();
         let p = &mut w.particles;
         let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
         let (image, f) = (&p.image, &p.f);
@@ -142,7 +142,7 @@ impl Declared {
                 let three = |k: usize| [pose[k], pose[k + 1], pose[k + 2]];
                 let (i, omega) = (start + k, three(15));
                 let away = apply(&[three(0), three(3), three(6)], *place);
-                let shift: Vec3 = std::array::from_fn(|d| f64::from(image[i][d]) * lengths[d]);
+                let shift: Vec3 = edges.shift(image[i].map(f64::from));
                 let old = (*x, *v);
                 *v = add(cross(omega, away), three(12));
                 if let Some((spin, radius)) = &mut turning
@@ -186,7 +186,7 @@ impl Declared {
     fn publish(&self, w: &mut World, t: &Tick, slot: SlotId, bodies: &[Body]) {
         let flat = w.settings.two_dimensional;
         let units = w.settings.units.constants();
-        let lengths = w.domain.as_ref().map_or([0.0; 3], |d| d.lengths());
+        let edges = w.edges();
         let (mut sum, mut freedom) = (0.0, 0.0);
         for b in bodies {
             let inner = apply_transposed(&matrix(b.q), b.omega);
@@ -204,7 +204,7 @@ impl Declared {
         out.array.clear();
         out.array_cols = COLUMNS;
         for b in bodies {
-            let x: Vec3 = std::array::from_fn(|d| b.x[d] - b.image[d] * lengths[d]);
+            let x = sub(b.x, edges.shift(b.image));
             for part in [x, b.v, b.force, b.torque, b.image] {
                 out.array.extend(part);
             }

@@ -3,6 +3,7 @@
 use super::Declared;
 use perigrain_base::math::body::{Quat, matrix, no_squish, richardson, spin};
 use perigrain_base::math::four::{Four, has_avx2};
+use perigrain_base::math::periods::Periods;
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
 use perigrain_styles::rigid_bodies::WIDTH;
@@ -54,7 +55,7 @@ pub struct Pass<'a> {
     /// A scene of two dimensions.
     pub flat: bool,
     /// Edges of the box.
-    pub lengths: Vec3,
+    pub edges: Periods,
     /// The particles.
     pub p: &'a Particles,
     /// Where the members of each body begin.
@@ -232,7 +233,7 @@ impl Pass<'_> {
         let p = self.p;
         for &i in &self.members[self.first[k]..self.first[k + 1]] {
             let (x, image) = (p.x[i], p.image[i]);
-            let there: Vec3 = std::array::from_fn(|d| x[d] + f64::from(image[d]) * self.lengths[d]);
+            let there = add(x, self.edges.shift(image.map(f64::from)));
             force = add(force, p.f[i]);
             torque = add(torque, cross(sub(there, centre), p.f[i]));
             if let Some(own) = p.torque.get(i) {

@@ -134,8 +134,11 @@ impl Surface for Running {
         // Places of the wall that matter are a radius from a particle in the box at most.
         let margin = 2.0 * self.radius;
         let corners = w.domain.as_ref().map(|d| {
-            let end =
-                |k: usize, a: usize| if k & (1 << a) == 0 { d.lo[a] - margin } else { d.hi[a] + margin };
+            let bounds = d.bounds();
+            let end = |k: usize, a: usize| match k & (1 << a) == 0 {
+                true => bounds[a][0] - margin,
+                false => bounds[a][1] + margin,
+            };
             [0, 1, 2, 3, 4, 5, 6, 7].map(|k| [0, 1, 2].map(|a| end(k, a)))
         });
         memo.clear();

@@ -34,7 +34,8 @@ fn scene(n: usize) -> Scene {
 }
 
 impl Scene {
-    fn view(&self, period: [f64; 3]) -> View<'_> {
+    fn view(&self, length: [f64; 3]) -> View<'_> {
+        let period = Periods::upright(length);
         View { x: &self.x, tag: &self.tag, kind: &self.kind, radius: &self.radius, period }
     }
 }
@@ -42,7 +43,7 @@ impl Scene {
 /// The plain double loop over all pairs and images.
 fn brute(v: &View, wanted: &Wanted, skin: f64, keep: impl Fn(usize, usize) -> bool) -> Vec<Pair> {
     let mut out = vec![];
-    let m = v.period.map(|l| i32::from(l > 0.0));
+    let m = v.period.length.map(|l| i32::from(l > 0.0));
     for i in 0..v.x.len() {
         for j in 0..v.x.len() {
             let Some(reach) = wanted.get(v.kind[i], v.kind[j]) else { continue };
@@ -89,8 +90,30 @@ fn lists_hold_what_the_double_loop_finds() {
 }
 
 #[test]
+fn lists_of_a_leaning_box_hold_what_the_double_loop_finds() {
+    let mut wanted = Wanted::new(2);
+    wanted.set(1, 2, Reach::Touch);
+    wanted.set(2, 2, Reach::Touch);
+    for tilt in [[5.0, 0.0, 0.0], [-4.0, 3.0, 5.0]] {
+        let period = Periods { length: [10.0; 3], tilt };
+        let mut s = scene(600);
+        s.x.iter_mut().for_each(|x| *x = period.shift(x.map(|a| a / 10.0)));
+        let v = View { period, ..s.view([10.0; 3]) };
+        let list = pairs(&v, &wanted, 0.05, &|_, _| true);
+        assert!(list.iter().filter(|p| p.shift != [0; 3]).count() > 20);
+        assert_eq!(list, brute(&v, &wanted, 0.05, |_, _| true));
+    }
+}
+
+#[test]
 fn a_grain_meets_its_own_image_in_a_thin_box() {
-    let v = View { x: &[[0.5; 3]], tag: &[1], kind: &[1], radius: &[0.6], period: [1.0, 0.0, 0.0] };
+    let v = View {
+        x: &[[0.5; 3]],
+        tag: &[1],
+        kind: &[1],
+        radius: &[0.6],
+        period: Periods::upright([1.0, 0.0, 0.0]),
+    };
     let mut wanted = Wanted::new(1);
     wanted.set(1, 1, Reach::Touch);
     let list = pairs(&v, &wanted, 0.0, &|_, _| true);
@@ -138,7 +161,7 @@ fn a_big_sphere_among_many_small_particles() {
     let mut radius = vec![0.5; count];
     kind[count - 1] = 2;
     radius[count - 1] = 10.0;
-    let v = View { x: &x, tag: &tag, kind: &kind, radius: &radius, period: [0.0; 3] };
+    let v = View { x: &x, tag: &tag, kind: &kind, radius: &radius, period: Periods::default() };
     let mut wanted = Wanted::new(2);
     wanted.set(1, 2, Reach::Touch);
     wanted.set(2, 2, Reach::Touch);

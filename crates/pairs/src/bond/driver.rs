@@ -3,6 +3,7 @@
 use super::store_local::Store;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::body::{Quat, UNTURNED, after, back, turned};
+use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::{Vec3, dot, length, scale, sub};
 use perigrain_base::par;
 use perigrain_bonded::columns::{Columns, Key, Member};
@@ -209,7 +210,7 @@ impl<const C: usize, L: Driven<C>> Bonded<C, L> {
     }
 
     /// Energies and virials, for those who ask.
-    fn tally(&self, w: &mut World, t: &Tick, periods: &Vec3) {
+    fn tally(&self, w: &mut World, t: &Tick, periods: &Periods) {
         if t.energy {
             let energy = par::sum(self.columns.rows(), |k| self.out.force[k][3]);
             w.tally.bond += energy;

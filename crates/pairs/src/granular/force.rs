@@ -4,6 +4,7 @@ use super::super::shared::{add_virial, built_at, find_frozen, made_at, near};
 use super::mdr::Press;
 use super::reach::reaching;
 use perigrain_base::diag::Result;
+use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 use perigrain_contact::bodies::solids;
@@ -103,7 +104,7 @@ impl Force {
             && before == Some(kept.last[0])
             && w.rebuild.generation == kept.last[1]
         {
-            fast.turn(&kept.turns, period);
+            fast.turn(&kept.turns, period.length);
             return Ok(());
         }
         let skin = w.settings.neighbor.skin;
@@ -113,7 +114,7 @@ impl Force {
             let index = Index::new(&w.particles.tag);
             let ends: Vec<usize> =
                 pairs.iter().flatten().filter_map(|id| index.find(*id, &w.particles.tag)).collect();
-            let frame = Frame { lo: w.domain()?.lo, period, reach: kept.reach(skin), skin };
+            let frame = Frame { lo: w.domain()?.lo, period: period.length, reach: kept.reach(skin), skin };
             let allowed = Allowed::new(w);
             let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
             if fast.admit(&grains, &frame, &ends, &|i, j| allowed.pair(i, j)) {
@@ -122,11 +123,11 @@ impl Force {
         }
         if let Some(fast) = self.fast.as_mut().filter(|fast| suits(w, period, fast)) {
             let known = if self.is_fast { None } else { w.contacts.remove(self.key) };
-            let frame = Frame { lo: w.domain()?.lo, period, reach: kept.reach(skin), skin };
+            let frame = Frame { lo: w.domain()?.lo, period: period.length, reach: kept.reach(skin), skin };
             let allowed = Allowed::new(w);
             let grains = Grains { x: made_at(w), ..grains(w, period, &[], &[])? };
             fast.rebuild(&grains, &frame, known.as_ref(), &|i, j| allowed.pair(i, j));
-            fast.turn(&kept.turns, period);
+            fast.turn(&kept.turns, period.length);
             self.is_fast = true;
             return Ok(());
         }
@@ -146,7 +147,7 @@ impl Force {
     }
 
     /// Contacts by the fast loop; `anew`: masses may not be those of the step before.
-    fn run_fast(&mut self, w: &mut World, t: &Tick, period: Vec3, store: bool, anew: bool) -> Result<()> {
+    fn run_fast(&mut self, w: &mut World, t: &Tick, period: Periods, store: bool, anew: bool) -> Result<()> {
         let Some(fast) = &mut self.fast else { return Ok(()) };
         w.contacts.remove(self.key);
         let step = Advance { dt: t.dt, history: !t.setup };
@@ -183,7 +184,7 @@ impl Force {
         &mut self,
         w: &mut World,
         t: &Tick,
-        (period, store, anew): (Vec3, bool, bool),
+        (period, store, anew): (Periods, bool, bool),
         ready: &mut dyn FnMut(&mut World, Range<usize>),
     ) -> Result<bool> {
         let plain = !t.virial && !t.contacts && !conducts(&self.rules);
@@ -212,7 +213,7 @@ impl Force {
     }
 
     /// What precedes contacts: lists where they are due; the box, whether contacts remember, and whether masses may be others.
-    fn prepare(&mut self, w: &mut World, t: &Tick) -> Result<(Vec3, bool, bool)> {
+    fn prepare(&mut self, w: &mut World, t: &Tick) -> Result<(Periods, bool, bool)> {
         // A run that continues an unchanged scene has no setup; who comes or goes shifts the others.
         if t.setup || self.generation.is_none() || self.plain.roster != Some(w.rebuild.roster) {
             self.plain.roster = Some(w.rebuild.roster);
@@ -233,14 +234,14 @@ impl Force {
     }
 
     /// All contacts.
-    fn act(&mut self, w: &mut World, t: &Tick, (period, store, anew): (Vec3, bool, bool)) -> Result<()> {
+    fn act(&mut self, w: &mut World, t: &Tick, (period, store, anew): (Periods, bool, bool)) -> Result<()> {
         match self.is_fast {
             true => self.run_fast(w, t, period, store, anew),
             false => self.run_plain(w, t, period, store),
         }
     }
 
-    fn run_plain(&mut self, w: &mut World, t: &Tick, period: Vec3, store: bool) -> Result<()> {
+    fn run_plain(&mut self, w: &mut World, t: &Tick, period: Periods, store: bool) -> Result<()> {
         let mut memory = w.contacts.remove(self.key).unwrap_or_default();
         let kept: Option<Contacts> = (!store).then(|| memory.clone());
         let manner = Manner { lammps: w.settings.lammps(), setup: t.setup };
@@ -393,13 +394,13 @@ fn laws(rules: &Rules<Granular>, wanted: &Wanted, types: usize) -> Option<Laws<G
 }
 
 /// Whether the fast loop can take these particles.
-fn suits(w: &World, period: Vec3, fast: &Fast<Granular>) -> bool {
+fn suits(w: &World, period: Periods, fast: &Fast<Granular>) -> bool {
     let p = &w.particles;
     let most = par::best(&p.radius, 0.0, f64::max);
     let more = w.rebuild.kept.reach(w.settings.neighbor.skin) + fast.span(most);
-    let still = w.domain.as_ref().is_none_or(|d| d.flow.is_none());
+    let still = w.domain.as_ref().is_none_or(|d| d.flow.is_none()) && !period.tilted();
     let fits = still && w.families.is_none() && !p.is_empty() && p.len() <= MOST_GRAINS;
-    fits && !meet_twice(w, period, most, more)
+    fits && !meet_twice(w, period.length, most, more)
 }
 
 /// Most grains whose images are looked at one by one.
@@ -433,7 +434,7 @@ fn meet_twice(w: &World, period: Vec3, most: f64, more: f64) -> bool {
 }
 
 /// What contacts see of the particles.
-pub fn grains<'a>(w: &'a World, period: Vec3, body: &'a [u32], frozen: &'a [bool]) -> Result<Grains<'a>> {
+pub fn grains<'a>(w: &'a World, period: Periods, body: &'a [u32], frozen: &'a [bool]) -> Result<Grains<'a>> {
     let p = &w.particles;
     Ok(Grains {
         x: &p.x,

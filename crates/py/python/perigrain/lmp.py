@@ -129,14 +129,12 @@ class lammps(External):
         found = self._scene.domain()
         if found is None:
             raise DataError("there is no box: `create_box` comes first")
-        lo, hi, periodic = found
-        return list(lo), list(hi), 0.0, 0.0, 0.0, [int(p) for p in periodic], 0
+        lo, hi, (xy, xz, yz), periodic = found
+        return list(lo), list(hi), xy, yz, xz, [int(p) for p in periodic], 0
 
     def reset_box(self, boxlo: Sequence[float], boxhi: Sequence[float], xy: float, yz: float, xz: float) -> None:
-        """Gives an empty box other corners."""
-        if xy or yz or xz:
-            raise DataError("boxes are orthogonal here: xy, yz and xz are 0")
-        self._scene.reset_box(_three(boxlo, "boxlo"), _three(boxhi, "boxhi"))
+        """Gives an empty box other corners, and a triclinic one other tilts."""
+        self._scene.reset_box(_three(boxlo, "boxlo"), _three(boxhi, "boxhi"), _three([xy, xz, yz], "the tilts"))
 
     def get_thermo(self, name: str) -> float:
         """The present value of a word of thermo output, or of `c_ID`, `f_ID`, `v_NAME`, or of a formula of these."""

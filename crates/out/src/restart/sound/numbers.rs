@@ -53,9 +53,10 @@ pub fn domain(w: &World) -> Outcome {
         (0..3).all(|k| d.lo[k] < d.hi[k] && (d.hi[k] - d.lo[k]).is_finite()),
         "its lower faces are not the lower ones",
     )?;
+    must(d.tilt.iter().flatten().all(|x| x.is_finite()), "it leans beyond all numbers")?;
     must(lengths(&d.small), "the room at its faces is no length")?;
     must(
-        d.flow.is_none_or(|f| known(f.group) && f.rate.iter().all(|r| r.is_finite())),
+        d.flow.is_none_or(|f| known(f.group) && f.rate.iter().chain(&f.tilt).all(|r| r.is_finite())),
         "what flows through it is no group",
     )?;
     let faces = d.boundary.0.iter();

@@ -58,10 +58,11 @@ impl Line {
             return;
         };
         self.generation = w.rebuild.generation;
-        let lengths = domain.lengths();
+        let edges = domain.edges();
         for (i, (x, held)) in self.start.iter_mut().zip(&mut self.images).enumerate() {
             let now = w.particles.image[i];
-            (0..3).for_each(|d| x[d] += f64::from(held[d].wrapping_sub(now[d])) * lengths[d]);
+            let by = edges.shift([0, 1, 2].map(|d| f64::from(held[d].wrapping_sub(now[d]))));
+            (0..3).for_each(|d| x[d] += by[d]);
             *held = now;
         }
     }

@@ -1,0 +1,118 @@
+//! The edges of a box that repeats, upright or tilted: where its images are.
+
+use super::vec3::Vec3;
+
+/// Three edges a = (lx, 0, 0), b = (xy, ly, 0), c = (xz, yz, lz); a length is zero where the box does not repeat, and then so are
+/// the tilts of that edge.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Periods {
+    /// lx, ly, lz [length].
+    pub length: Vec3,
+    /// xy, xz, yz [length].
+    pub tilt: Vec3,
+}
+
+impl Periods {
+    /// Edges along the axes.
+    pub fn upright(length: Vec3) -> Self {
+        Self { length, tilt: [0.0; 3] }
+    }
+
+    /// Whether some edge leans.
+    #[inline]
+    pub fn tilted(&self) -> bool {
+        self.tilt != [0.0; 3]
+    }
+
+    /// The three edges.
+    pub fn vectors(&self) -> [Vec3; 3] {
+        let ([lx, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
+        [[lx, 0.0, 0.0], [xy, ly, 0.0], [xz, yz, lz]]
+    }
+
+    /// How far away the image is that lies so many edges off.
+    #[inline]
+    pub fn shift(&self, n: [f64; 3]) -> Vec3 {
+        let ([lx, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
+        [n[0] * lx + n[1] * xy + n[2] * xz, n[1] * ly + n[2] * yz, n[2] * lz]
+    }
+
+    /// The lengths in which the images are sought: the distance of each pair of faces, zero where the box does not repeat.
+    pub fn heights(&self) -> Vec3 {
+        let ([lx, ly, lz], [xy, xz, yz]) = (self.length, self.tilt);
+        let over = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
+        // By how much one goes along x and y where one goes along y and z within the faces.
+        let (by_y, by_z) = (over(xy, ly), over(yz, lz));
+        let x_by_z = over(xz, lz) - by_y * by_z;
+        [lx / (1.0 + by_y * by_y + x_by_z * x_by_z).sqrt(), ly / (1.0 + by_z * by_z).sqrt(), lz]
+    }
+
+    /// How many edges away the image is that brings a difference near the shortest one: along z, then y, then x, as LAMMPS.
+    /// Where the difference is shorter than half of every height, it is that one.
+    pub fn turns(&self, mut d: Vec3) -> [f64; 3] {
+        let mut turns = [0.0; 3];
+        for k in [2, 1, 0] {
+            let l = self.length[k];
+            if l > 0.0 && d[k].abs() > 0.5 * l {
+                turns[k] = (d[k] / l).round();
+                let mut one = [0.0; 3];
+                one[k] = turns[k];
+                let by = self.shift(one);
+                (0..3).for_each(|j| d[j] -= by[j]);
+            }
+        }
+        turns
+    }
+
+    /// A difference to the image that [`Periods::turns`] finds.
+    pub fn nearest(&self, d: Vec3) -> Vec3 {
+        let by = self.shift(self.turns(d));
+        [d[0] - by[0], d[1] - by[1], d[2] - by[2]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rng::ParkMiller;
+    use super::*;
+
+    fn square(d: Vec3) -> f64 {
+        d.iter().map(|a| a * a).sum()
+    }
+
+    #[test]
+    fn the_nearest_image_is_that_of_the_search_through_all() {
+        let mut random = ParkMiller::new(11);
+        let mut met = 0;
+        for tilt in [[0.0; 3], [1.5, 0.0, 0.0], [-1.5, 1.2, 0.9], [1.4, -1.5, -1.0]] {
+            let edges = Periods { length: [3.0, 2.0, 2.5], tilt };
+            let half = 0.5 * edges.heights().into_iter().fold(f64::INFINITY, f64::min);
+            for _ in 0..500 {
+                let d = edges.shift([0, 1, 2].map(|_| 2.0 * random.uniform() - 1.0));
+                let images = (0..125).map(|k| [k % 5, k / 5 % 5, k / 25].map(|n| f64::from(n) - 2.0));
+                let all = images.map(|n| {
+                    let by = edges.shift(n);
+                    square([d[0] - by[0], d[1] - by[1], d[2] - by[2]])
+                });
+                let shortest = all.fold(f64::INFINITY, f64::min);
+                if shortest.sqrt() < half {
+                    met += 1;
+                    assert!((square(edges.nearest(d)) - shortest).abs() < 1e-12, "{tilt:?} {d:?}");
+                }
+            }
+        }
+        assert!(met > 500, "{met}");
+    }
+
+    #[test]
+    fn heights_are_the_distances_of_faces() {
+        // A rhombus of edge 2 leaning by 30 degrees.
+        let lean = Periods { length: [2.0, 3.0f64.sqrt(), 5.0], tilt: [1.0, 0.0, 0.0] };
+        let [x, y, z] = lean.heights();
+        assert!((x - 3.0f64.sqrt()).abs() < 1e-15 && y == 3.0f64.sqrt() && z == 5.0);
+        // Where x does not repeat, a lean of y along it brings nothing nearer.
+        let open = Periods { length: [0.0, 2.0, 0.0], tilt: [7.0, 0.0, 0.0] };
+        assert_eq!(open.heights(), [0.0, 2.0, 0.0]);
+        assert_eq!(open.shift([0.0, -1.0, 0.0]), [-7.0, -2.0, 0.0]);
+    }
+}

@@ -1,0 +1,225 @@
+//! The tilts of a deforming box: how they go through a run, and when the box is flipped into another one of the same lattice.
+
+use super::{Declared, variable};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Args, ValueRef};
+use perigrain_plan::{Stage, Tick, When};
+use perigrain_styles::{BuildCx, Reading, SealCx};
+use perigrain_world::World;
+use perigrain_world::domain::{Domain, Flip};
+use std::f64::consts::TAU;
+
+/// The tilts by their words.
+pub const NAMES: [&str; 3] = ["xy", "xz", "yz"];
+
+/// Along which axis each tilt leads: an edge there is a flip.
+const ALONG: [usize; 3] = [0, 0, 1];
+
+/// By which edge it leans.
+pub const ACROSS: [usize; 3] = [1, 2, 2];
+
+const STYLES: [&str; 7] = ["final", "delta", "vel", "erate", "trate", "wiggle", "variable"];
+
+/// What a tilt does.
+#[derive(Clone, Debug)]
+pub enum Motion {
+    Final(f64),
+    Delta(f64),
+    Velocity(f64),
+    Rate(f64),
+    TrueRate(f64),
+    Wiggle(f64, f64),
+    Variable(ValueRef, ValueRef),
+}
+
+/// Takes the style of a tilt and its numbers.
+///
+/// # Errors
+/// Other styles, what is no number.
+pub fn motion(args: &mut Args, cx: &BuildCx) -> Result<Motion> {
+    Ok(match args.choice("style of a tilt", &STYLES)? {
+        "final" => Motion::Final(args.number("the tilt")?),
+        "delta" => Motion::Delta(args.number("the change of the tilt")?),
+        "vel" => Motion::Velocity(args.number("the velocity")?),
+        "erate" => Motion::Rate(args.number("the shear rate")?),
+        "trate" => Motion::TrueRate(args.number("the true shear rate")?),
+        "wiggle" => {
+            let amplitude = args.number("the amplitude")?;
+            Motion::Wiggle(amplitude, args.positive("the period")?)
+        }
+        _ => {
+            let change = variable(args, cx, "the variable of the change of the tilt")?;
+            Motion::Variable(change, variable(args, cx, "the variable of its rate")?)
+        }
+    })
+}
+
+/// The way of one tilt through a run.
+#[derive(Clone, Debug)]
+pub struct Lean {
+    start: f64,
+    way: Way,
+}
+
+#[derive(Clone, Debug)]
+enum Way {
+    /// Not moved here.
+    Still,
+    /// Linear to this tilt at the end.
+    Linear(f64),
+    /// As exp(rate · t).
+    Exponential(f64),
+    /// Swings.
+    Wiggle(f64, f64),
+    /// Change of the tilt, and its rate.
+    Variable(Reading, Reading),
+}
+
+impl Lean {
+    /// Whether this tilt is moved at all.
+    pub fn moves(&self) -> bool {
+        !matches!(self.way, Way::Still)
+    }
+}
+
+/// The ways of a run that begins now, from these tilts and lengths of the box.
+///
+/// # Errors
+/// Variables that are gone, and a tilt yz that would flip while xy changes.
+pub fn leans(
+    fix: &Declared,
+    cx: &mut dyn SealCx,
+    when: &When,
+    (start, lengths): ([f64; 3], [f64; 3]),
+) -> Result<[Lean; 3]> {
+    let clock = cx.world().clock.clone();
+    let time = (clock.stop - clock.start) as f64 * clock.dt;
+    let mut leans = start.map(|start| Lean { start, way: Way::Still });
+    for (k, motion) in fix.leans.iter().enumerate() {
+        let Some(motion) = motion else { continue };
+        let (from, s) = (start[k], fix.scales[ALONG[k]]);
+        leans[k].way = match motion {
+            Motion::Final(to) => Way::Linear(to * s),
+            Motion::Delta(by) => Way::Linear(from + by * s),
+            Motion::Velocity(v) => Way::Linear(from + time * v * s),
+            Motion::Rate(r) => Way::Linear(from + time * r * lengths[ACROSS[k]]),
+            Motion::TrueRate(r) => Way::Exponential(*r),
+            Motion::Wiggle(a, period) => Way::Wiggle(a * s, *period),
+            Motion::Variable(change, rate) => Way::Variable(
+                cx.value(change, Stage::EndOfStep, when)?,
+                cx.value(rate, Stage::EndOfStep, when)?,
+            ),
+        };
+    }
+    if fix.flips {
+        one_at_a_time(&leans, time, lengths[1], cx.span())?;
+    }
+    Ok(leans)
+}
+
+/// Refuses a yz that will be flipped while xy changes: the flip turns xz by a xy that is not the same any more.
+fn one_at_a_time([xy, _, yz]: &[Lean; 3], time: f64, length: f64, span: Span) -> Result<()> {
+    if !xy.moves() || !yz.moves() {
+        return Ok(());
+    }
+    let far = match yz.way {
+        Way::Still => 0.0,
+        Way::Linear(to) => to.abs(),
+        Way::Exponential(r) => (yz.start * (r * time).exp()).abs(),
+        Way::Wiggle(a, _) => yz.start.abs() + a.abs(),
+        Way::Variable(..) => f64::INFINITY,
+    };
+    if far <= 0.5 * length {
+        return Ok(());
+    }
+    let text = "yz may lean so far that the box is flipped, while xy changes too";
+    let d = Diagnostic::error(Code::CONFLICT, span, text);
+    Err(d.help("let yz stay within half of ly, or say `flip no`").into())
+}
+
+/// The tilts at a step, in a box that has these lengths then, and how fast they grow. Of all that are whole edges apart it is the
+/// one nearest to the present tilt.
+///
+/// # Errors
+/// Tilts beyond all numbers.
+pub fn tilts(leans: &[Lean; 3], w: &World, t: &Tick, lengths: [f64; 3]) -> Result<([f64; 3], [f64; 3])> {
+    let (clock, domain) = (&w.clock, w.domain()?);
+    let (elapsed, all) = ((t.step - clock.start) as f64, (clock.stop - clock.start) as f64);
+    let (time, share) = (elapsed * clock.dt, if all > 0.0 { elapsed / all } else { 1.0 });
+    let now = domain.tilt.unwrap_or_default();
+    let (mut tilts, mut rates) = (now, [0.0; 3]);
+    for (k, lean) in leans.iter().enumerate() {
+        let (target, rate) = match &lean.way {
+            Way::Still => continue,
+            Way::Linear(to) => {
+                let way = to - lean.start;
+                (lean.start + share * way, if all > 0.0 { way / (all * clock.dt) } else { 0.0 })
+            }
+            Way::Exponential(r) => (lean.start * (r * time).exp(), r * now[k]),
+            Way::Wiggle(a, period) => {
+                let phase = TAU * time / period;
+                (lean.start + a * phase.sin(), a * TAU / period * phase.cos())
+            }
+            Way::Variable(change, speed) => (lean.start + change.get(w), speed.get(w)),
+        };
+        let edge = lengths[ALONG[k]];
+        let over = target / edge - now[k] / domain.lengths()[ALONG[k]];
+        let edges = (over - 0.5).ceil();
+        tilts[k] = if edges == 0.0 { target } else { target - edges * edge };
+        rates[k] = rate;
+        if !tilts[k].is_finite() {
+            let text = format!("the box would lean by {} = {target} at step {}", NAMES[k], t.step);
+            return fail(Code::BAD_VALUE, None, text);
+        }
+    }
+    Ok((tilts, rates))
+}
+
+/// How fast tilts grow, as compute temp/deform asks for it: see [`super::track::streaming`].
+pub fn streaming(leans: &[Lean; 3], w: &World, rates: [f64; 3], first: bool) -> [f64; 3] {
+    let unknown = |k: usize| first && w.settings.lammps() && !matches!(leans[k].way, Way::Linear(_));
+    std::array::from_fn(|k| if unknown(k) { 0.0 } else { rates[k] })
+}
+
+/// The box of the same lattice that leans by half an edge at most, where this one leans farther across faces that repeat.
+pub fn flip(domain: &Domain) -> Option<Flip> {
+    let ([lx, ly, _], [xy, xz, yz]) = (domain.lengths(), domain.tilt?);
+    let mut flip = Flip { tilt: [xy, xz, yz], turns: [0; 3] };
+    let turn = |tilt: f64, edge: f64| match tilt / edge {
+        r if r < -0.5 => 1,
+        r if r > 0.5 => -1,
+        _ => 0,
+    };
+    // First yz, which changes xz.
+    if domain.boundary.periodic(1) {
+        flip.turns[2] = turn(yz, ly);
+        flip.tilt[2] += f64::from(flip.turns[2]) * ly;
+        flip.tilt[1] += f64::from(flip.turns[2]) * xy;
+    }
+    if domain.boundary.periodic(0) {
+        for k in [1, 0] {
+            flip.turns[k] = turn(flip.tilt[k], lx);
+            flip.tilt[k] += f64::from(flip.turns[k]) * lx;
+        }
+    }
+    (flip.turns != [0; 3]).then_some(flip)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use perigrain_world::{Boundary, Face};
+
+    #[test]
+    fn a_flip_leads_to_the_box_that_leans_less() {
+        let boundary = Boundary([[Face::Periodic; 2]; 3]);
+        let domain = |tilt| Domain { tilt: Some(tilt), ..Domain::new([0.0; 3], [4.0, 3.0, 2.0], boundary) };
+        assert_eq!(flip(&domain([2.0, -2.0, 1.5])), None);
+        assert_eq!(flip(&domain([2.5, 0.0, 0.0])), Some(Flip { tilt: [-1.5, 0.0, 0.0], turns: [-1, 0, 0] }));
+        // The edge c less b is -1.5 - 1 in xz, which is an edge a too far.
+        let both = flip(&domain([1.0, -1.5, 2.0])).unwrap();
+        assert_eq!(both, Flip { tilt: [1.0, 1.5, -1.0], turns: [0, 1, -1] });
+        let open = Boundary([[Face::Fixed; 2], [Face::Periodic; 2], [Face::Periodic; 2]]);
+        assert_eq!(flip(&Domain { boundary: open, ..domain([2.5, 0.0, 0.0]) }), None);
+    }
+}
