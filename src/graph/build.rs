@@ -6,9 +6,10 @@ use super::{bonds, dumps, elsewhere, pairs};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_computes::COMPUTES;
 use perigrain_fixes::FIXES;
-use perigrain_lang::{Args, Command};
+use perigrain_lang::{Args, Command, Word};
 use perigrain_styles::{BuildCx, Style, Use, UseKind};
 use perigrain_world::{GroupId, Said, World};
+use std::cell::RefCell;
 
 /// The commands that declare.
 pub const DECLARATIONS: [&str; 20] = [
@@ -255,12 +256,25 @@ fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Resul
             let d = d.label(graph.fixes[k].span, "replaces this one");
             cx.build(graph, w, id, group).note(d.help("choose another ID if both are meant"));
         }
-        graph.fixes[k].fix.remove(w);
+        let old = &graph.fixes[k].fix;
+        let brought = old.computes();
+        old.remove(w);
+        brought.iter().for_each(|(id, ..)| take_away(graph, w, id));
     }
     w.inherit(&format!("{}/{id}", node.style), |w| node.fix.declare(w))?;
+    let brings = node.fix.computes();
     match old {
         Some(k) => graph.fixes[k] = node,
         None => graph.fixes.push(node),
+    }
+    for (id, style, words) in &brings {
+        if let Some(old) = graph.find_compute(id) {
+            let text = format!("this fix brings a compute `{id}`, and there is one already");
+            let d = Diagnostic::error(Code::DUPLICATE_NAME, id_span, text).label(old.span, "defined here");
+            return Err(d.help("choose another ID for the fix").into());
+        }
+        let group = if *style == "pressure" { GroupId::ALL } else { group };
+        bring(graph, w, (id, style, words), group, cx.span)?;
     }
     w.touch();
     Ok(provides(UseKind::Fix, id))
@@ -292,7 +306,9 @@ fn unfix(graph: &mut Graph, w: &mut World, args: &mut Args) -> Result<Declared> 
     let (id, span) = id_of(args, "fix")?;
     let k = find_fix(graph, id, span)?;
     args.finish()?;
-    graph.fixes.remove(k).fix.remove(w);
+    let fix = graph.fixes.remove(k).fix;
+    fix.remove(w);
+    fix.computes().iter().for_each(|(id, ..)| take_away(graph, w, id));
     w.slots.forget(&format!("f_{id}"));
     w.touch();
     Ok(deletes(UseKind::Fix, id))
@@ -351,6 +367,37 @@ fn compute(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> R
     graph.computes.push(ComputeNode { id: id.to_string(), style: style.name(), compute, span: cx.span });
     forget_values(w, &format!("c_{id}"));
     Ok(provides(UseKind::Compute, id))
+}
+
+/// Declares a compute that no line of the deck names: ID, style, and the words behind the style.
+///
+/// # Errors
+/// What the style refuses.
+pub fn bring(
+    graph: &mut Graph,
+    w: &mut World,
+    (id, style, words): (&str, &str, &str),
+    group: GroupId,
+    span: Span,
+) -> Result<()> {
+    let Some(style) = COMPUTES.iter().find(|c| c.name() == style) else { return Ok(()) };
+    let args: Vec<Word> = words.split_whitespace().map(|word| Word::new(word, span)).collect();
+    let cmd = Command { name: Word::new("compute", span), args, span, text: String::new() };
+    let (notes, uses) = (RefCell::default(), RefCell::default());
+    let cx = Context { span, checking: false, notes: &notes, uses: &uses };
+    let compute = style.build(&mut Args::new(&cmd), &cx.build(graph, w, id, group))?;
+    w.inherit(&format!("compute {id}"), |w| compute.declare(w))?;
+    graph.computes.push(ComputeNode { id: id.into(), style: style.name(), compute, span });
+    forget_values(w, &format!("c_{id}"));
+    Ok(())
+}
+
+/// Removes a compute that a fix has brought.
+fn take_away(graph: &mut Graph, w: &mut World, id: &str) {
+    for node in graph.computes.extract_if(.., |c| c.id == id) {
+        node.compute.remove(w);
+        w.slots.forget(&format!("c_{id}"));
+    }
 }
 
 /// A slot of an earlier producer with this name must not be read as this one's.

@@ -1,15 +1,14 @@
 //! Commands about the session itself: print, log, echo, clear, compat.
 
 use super::{Session, refuse};
+use crate::graph::Role;
+use crate::graph::build::bring;
 use crate::graph::env::DeckEnv;
-use crate::graph::{ComputeNode, Role};
 use perigrain_base::diag::{Code, Result};
-use perigrain_computes::COMPUTES;
-use perigrain_lang::{Args, Command, Kind, RefKind, Substituted, ValueRef, Vars, Word, substitute_known};
+use perigrain_lang::{Args, Command, Kind, RefKind, Substituted, ValueRef, Vars, substitute_known};
 use perigrain_out::log::Echo;
-use perigrain_styles::{BuildCx, Shape, Use, UseKind};
+use perigrain_styles::{Shape, Use, UseKind};
 use perigrain_world::{Compat, GroupId, Promise};
-use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -103,27 +102,9 @@ impl Session {
             ("thermo_press", "pressure", "thermo_temp"),
             ("thermo_pe", "pe", ""),
         ] {
-            let Some(style) = COMPUTES.iter().find(|c| c.name() == style) else { continue };
             let span = perigrain_base::diag::Span::default();
-            let words: Vec<Word> = rest.split_whitespace().map(|w| Word::new(w, span)).collect();
-            let cmd = Command { name: Word::new("compute", span), args: words, span, text: String::new() };
-            let (notes, uses) = (RefCell::default(), RefCell::default());
-            let built = style.build(
-                &mut Args::new(&cmd),
-                &BuildCx {
-                    world: &self.world,
-                    names: &self.graph,
-                    id,
-                    group: GroupId::ALL,
-                    span,
-                    checking: false,
-                    notes: &notes,
-                    uses: &uses,
-                },
-            );
-            if let Ok(compute) = built {
-                self.graph.computes.push(ComputeNode { id: id.into(), style: style.name(), compute, span });
-            }
+            // All three are there, and take what is said here.
+            let _ = bring(&mut self.graph, &mut self.world, (id, style, rest), GroupId::ALL, span);
         }
     }
 

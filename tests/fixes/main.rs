@@ -53,6 +53,11 @@ fn wiggle_agrees() {
 }
 
 #[test]
+fn boxes_steered_by_pressures_agree() {
+    agrees("pressed");
+}
+
+#[test]
 fn spheres_agree() {
     agrees("spheres");
 }

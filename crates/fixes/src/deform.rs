@@ -1,7 +1,10 @@
 //! fix deform: a box that changes its lengths and tilts while a run goes on.
 
 mod lean;
+mod pressure;
 mod track;
+
+pub use pressure::DeformPressure;
 
 use super::{Facts, Fix, FixStyle};
 use lean::Lean;
@@ -14,6 +17,7 @@ use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::domain::Flow;
 use perigrain_world::field::{BOX, FAMILIES, LISTS, MASK, MEMO, SLOTS, X, X0};
 use perigrain_world::{Face, GroupId, Key, Numbers, RATES, World};
+use pressure::{Controls, Pressed};
 use track::{Track, tracks};
 
 /// The style.
@@ -65,6 +69,7 @@ enum Motion {
     Volume,
     Wiggle(f64, f64),
     Variable(ValueRef, ValueRef),
+    Pressed(Pressed),
 }
 
 /// What happens to the particles.
@@ -80,60 +85,69 @@ const STYLES: [&str; 9] =
 
 impl FixStyle for Deform {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let every = args.integer_from(1, "the number of steps N")?;
-        let mut fix = Declared {
-            id: cx.id.to_string(),
-            group: cx.group,
-            every,
-            motions: [const { None }; 3],
-            leans: [const { None }; 3],
-            flips: true,
-            remap: Remap::Positions,
-            scales: [1.0; 3],
-        };
-        let (mut lattice, mut any) = (true, false);
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "x" | "y" | "z" => {
-                    let d = ["x", "y", "z"].iter().position(|n| *n == word.text).unwrap_or(0);
-                    check_faces(cx, word, d)?;
-                    fix.motions[d] = Some(motion(args, cx)?);
-                    any = true;
-                }
-                "xy" | "xz" | "yz" => {
-                    let k = lean::NAMES.iter().position(|n| *n == word.text).unwrap_or(0);
-                    check_tilt(cx, word, k)?;
-                    fix.leans[k] = Some(lean::motion(args, cx)?);
-                    any = true;
-                }
-                "flip" => fix.flips = args.flag("flip")?,
-                "remap" => {
-                    fix.remap = match args.choice("value of remap", &["x", "v", "none"])? {
-                        "x" => Remap::Positions,
-                        "v" => Remap::Velocities,
-                        _ => Remap::None,
-                    }
-                }
-                "units" => lattice = units_lattice(args)?,
-                _ => {
-                    return Err(
-                        args.unknown(word, &["x", "y", "z", "xy", "xz", "yz", "remap", "flip", "units"])
-                    );
-                }
-            }
-        }
-        if !any {
-            return fail(
-                Code::MISSING_ARGUMENT,
-                cx.span,
-                "fix deform needs a length or tilt: x, y, z, xy, xz or yz",
-            );
-        }
-        fix.scales = scales(cx.world, lattice);
-        fix.check_volume(cx)?;
-        Ok(Box::new(fix))
+        Ok(Box::new(read(args, cx, None)?))
     }
 }
+
+/// Reads the words of a line; `controls`: those that pressures steer may stand among them.
+///
+/// # Errors
+/// Every mistake in them.
+fn read(args: &mut Args, cx: &BuildCx, controls: Option<Controls>) -> Result<Declared> {
+    let every = args.integer_from(1, "the number of steps N")?;
+    let mut fix = Declared {
+        id: cx.id.to_string(),
+        group: cx.group,
+        every,
+        motions: [const { None }; 3],
+        leans: [const { None }; 3],
+        flips: true,
+        remap: Remap::Positions,
+        scales: [1.0; 3],
+        controls,
+    };
+    let (mut lattice, mut any) = (true, false);
+    while let Some(word) = args.next() {
+        match word.text.as_str() {
+            "x" | "y" | "z" => {
+                let d = ["x", "y", "z"].iter().position(|n| *n == word.text).unwrap_or(0);
+                check_faces(cx, word, d)?;
+                fix.motions[d] = Some(motion(args, cx, fix.controls.is_some())?);
+                any = true;
+            }
+            "xy" | "xz" | "yz" => {
+                let k = lean::NAMES.iter().position(|n| *n == word.text).unwrap_or(0);
+                check_tilt(cx, word, k)?;
+                fix.leans[k] = Some(lean::motion(args, cx, fix.controls.is_some())?);
+                any = true;
+            }
+            "flip" => fix.flips = args.flag("flip")?,
+            "remap" => {
+                fix.remap = match args.choice("value of remap", &["x", "v", "none"])? {
+                    "x" => Remap::Positions,
+                    "v" => Remap::Velocities,
+                    _ => Remap::None,
+                }
+            }
+            "units" => lattice = units_lattice(args)?,
+            _ => match &mut fix.controls {
+                Some(controls) => controls.keyword(word, args)?,
+                None => return Err(args.unknown(word, &WORDS)),
+            },
+        }
+    }
+    if !any {
+        let text = format!("fix {} needs a length or tilt: x, y, z, xy, xz or yz", fix.style());
+        return fail(Code::MISSING_ARGUMENT, cx.span, text);
+    }
+    fix.scales = scales(cx.world, lattice);
+    fix.couple(cx)?;
+    fix.check_volume(cx)?;
+    Ok(fix)
+}
+
+/// The words that begin a part of the line.
+const WORDS: [&str; 9] = ["x", "y", "z", "xy", "xz", "yz", "remap", "flip", "units"];
 
 /// Refuses dimensions whose faces follow the particles.
 fn check_faces(cx: &BuildCx, word: &Word, d: usize) -> Result<()> {
@@ -166,11 +180,15 @@ fn check_tilt(cx: &BuildCx, word: &Word, k: usize) -> Result<()> {
     Ok(())
 }
 
-fn motion(args: &mut Args, cx: &BuildCx) -> Result<Motion> {
+fn motion(args: &mut Args, cx: &BuildCx, steered: bool) -> Result<Motion> {
     let two = |args: &mut Args, a: &str, b: &str| {
         Ok::<_, perigrain_base::diag::Diagnostics>((args.number(a)?, args.number(b)?))
     };
-    Ok(match args.choice("style of a deformation", &STYLES)? {
+    let styles = [&STYLES[..], if steered { &pressure::STYLES } else { &[] }].concat();
+    Ok(match args.choice("style of a deformation", &styles)? {
+        style @ ("pressure" | "pressure/mean") => {
+            Motion::Pressed(Pressed::read(args, cx, style == "pressure/mean")?)
+        }
         "final" => {
             let (lo, hi) = two(args, "the lower face", "the upper face")?;
             Motion::Final(lo, hi)
@@ -216,9 +234,15 @@ struct Declared {
     remap: Remap,
     /// Factors from the line's distances to the box's.
     scales: [f64; 3],
+    /// How pressures steer, if they may.
+    controls: Option<Controls>,
 }
 
 impl Declared {
+    fn style(&self) -> &'static str {
+        if self.controls.is_some() { "deform/pressure" } else { "deform" }
+    }
+
     fn key(&self) -> Numbers {
         Key::new(&format!("deform/{}", self.id))
     }
@@ -270,8 +294,19 @@ impl Fix for Declared {
             let Shape { rate, turning: tilt, .. } = now;
             w.domain.iter_mut().for_each(|d| d.flow = Some(Flow { rate, tilt, group }));
         }
-        let name = format!("fix {} deform", self.id);
+        let name = format!("fix {} {}", self.id, self.style());
         Ok(vec![Box::new(Move { name, stretch, tracks, leans, flips, remap, group, when })])
+    }
+
+    fn computes(&self) -> Vec<(String, &'static str, String)> {
+        self.pressures()
+    }
+
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        match &mut self.controls {
+            Some(controls) => controls.modify(args, cx),
+            None => super::no_option(args),
+        }
     }
 
     fn facts(&self, _: &World) -> Facts {

@@ -88,6 +88,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &bond_break::BondBreak,
     &controller::Controller,
     &deform::Deform,
+    &deform::DeformPressure,
     &deposit::Deposit,
     &drag::Drag,
     &dt_critical::DtCritical,

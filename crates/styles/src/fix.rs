@@ -93,6 +93,11 @@ pub trait Fix: DynClone + Send {
         Ok(())
     }
 
+    /// The computes that come and go with it: ID, style, words behind the style.
+    fn computes(&self) -> Vec<(String, &'static str, String)> {
+        vec![]
+    }
+
     /// Forgets what `declare` captured.
     fn remove(&self, _w: &mut World) {}
 

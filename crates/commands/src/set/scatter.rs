@@ -7,6 +7,7 @@ use perigrain_base::math::scatter::{Distribution, Field, gaussian};
 use perigrain_base::par;
 use perigrain_lang::{Args, Param, Word};
 use perigrain_styles::BuildCx;
+use perigrain_styles::common::orthogonal;
 use perigrain_world::columns::BOND_FACTORS;
 use perigrain_world::{Numbers, World};
 
@@ -55,7 +56,11 @@ pub fn read(keyword: &Word, a: &mut Args, cx: &BuildCx) -> Result<Change> {
         }
     };
     let seed = a.integer_from(1, "the seed")? as u64;
+    let at = a.here();
     let length = match a.eat("correlated") {
+        true if cx.world.domain.as_ref().is_some_and(|d| d.tilted()) => {
+            return Err(orthogonal("a correlated field of factors").at(at));
+        }
         true => Some(a.positive("the correlation length")?),
         false => None,
     };
@@ -67,7 +72,7 @@ impl Drawn {
     pub fn of(&self, w: &World, chosen: &[usize]) -> Vec<f64> {
         let p = &w.particles;
         let mut factors = vec![0.0; chosen.len()];
-        let field = self.length.map(|length| Field::new(self.seed, length, w.periods().map(endless)));
+        let field = self.length.map(|length| Field::new(self.seed, length, w.periods().length.map(endless)));
         par::each(&mut factors[..], |start, factors| {
             for (factor, &i) in factors.iter_mut().zip(&chosen[start..]) {
                 let normal = match &field {

@@ -1,13 +1,24 @@
 //! Lists that go on after grains have been moved around the box.
 
 use super::lists::Slab;
-use super::{Fast, NOWHERE};
+use super::{FAR, Fast, NOWHERE};
 use crate::ContactLaw;
 use perigrain_base::math::lanes::{PLACE_BITS, place};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
+use perigrain_neigh::slabs::shift_of;
 
 impl<L: ContactLaw> Fast<L> {
+    /// Images of a box that repeats after these periods.
+    pub(super) fn see_images(&mut self, period: Vec3) {
+        self.period = period;
+        for (image, shift) in self.shifts.iter_mut().take(27).enumerate() {
+            let s = shift_of(image as u32);
+            (0..3).for_each(|d| shift[d] = s[d] * period[d]);
+        }
+        self.shifts[NOWHERE as usize][0] = FAR;
+    }
+
     /// Lists see grains where they are after as many `turns` of each since the lists were made, that is after they were moved by
     /// so many `period`s; empty where nobody was.
     pub fn turn(&mut self, turns: &[[i8; 3]], period: Vec3) {

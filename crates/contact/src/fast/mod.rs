@@ -159,6 +159,8 @@ pub struct Fast<L> {
     lists: Vec<Slab>,
     /// How far a grain is shifted in each image, and 0; very far for what fills lists up.
     shifts: [[f64; 4]; 32],
+    /// The periods of these.
+    period: Vec3,
     /// The second skin [length]; infinite where short lists are the long ones.
     thin: f64,
     /// What the second skin costs.
@@ -199,6 +201,7 @@ impl<L: ContactLaw> Fast<L> {
             turns: vec![],
             lists: vec![],
             shifts: [[0.0; 4]; 32],
+            period: [0.0; 3],
             thin: 0.0,
             upkeep: Upkeep::default(),
             span: 0.0,
@@ -272,11 +275,7 @@ impl<L: ContactLaw> Fast<L> {
         self.turns = vec![];
         self.tag.clear();
         self.tag.extend_from_slice(grains.tag);
-        for (image, shift) in self.shifts.iter_mut().take(27).enumerate() {
-            let s = shift_of(image as u32);
-            (0..3).for_each(|d| shift[d] = s[d] * frame.period[d]);
-        }
-        self.shifts[NOWHERE as usize][0] = FAR;
+        self.see_images(frame.period);
         self.thin = if whole { f64::INFINITY } else { THIN * frame.skin };
         if edge == far {
             self.make_long(grains, &slabs, reach, keep);
@@ -339,7 +338,12 @@ impl<L: ContactLaw> Fast<L> {
 
     /// Makes short lists where they are due.
     pub(super) fn begin(&mut self, grains: &Grains) {
-        let stale = std::mem::take(&mut self.stale);
+        // In a box that has changed since, images stand elsewhere, and who was far from one may be near.
+        let elsewhere = grains.period.length != self.period;
+        if elsewhere {
+            self.see_images(grains.period.length);
+        }
+        let stale = std::mem::take(&mut self.stale) || elsewhere;
         let looks = self.validity.looks + self.validity_of_large.looks;
         let mut strayed = self.validity.strayed(grains, self.thin, stale);
         let mut due = std::mem::take(&mut self.due);

@@ -1,5 +1,6 @@
 //! The tilts of a deforming box: how they go through a run, and when the box is flipped into another one of the same lattice.
 
+use super::pressure::{Aim, Pressed, Steering};
 use super::{Declared, variable};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, ValueRef};
@@ -30,14 +31,17 @@ pub enum Motion {
     TrueRate(f64),
     Wiggle(f64, f64),
     Variable(ValueRef, ValueRef),
+    Pressed(Pressed),
 }
 
 /// Takes the style of a tilt and its numbers.
 ///
 /// # Errors
 /// Other styles, what is no number.
-pub fn motion(args: &mut Args, cx: &BuildCx) -> Result<Motion> {
-    Ok(match args.choice("style of a tilt", &STYLES)? {
+pub fn motion(args: &mut Args, cx: &BuildCx, steered: bool) -> Result<Motion> {
+    let styles = [&STYLES[..], if steered { &["pressure"] } else { &[] }].concat();
+    Ok(match args.choice("style of a tilt", &styles)? {
+        "pressure" => Motion::Pressed(Pressed::read(args, cx, false)?),
         "final" => Motion::Final(args.number("the tilt")?),
         "delta" => Motion::Delta(args.number("the change of the tilt")?),
         "vel" => Motion::Velocity(args.number("the velocity")?),
@@ -73,6 +77,8 @@ enum Way {
     Wiggle(f64, f64),
     /// Change of the tilt, and its rate.
     Variable(Reading, Reading),
+    /// A pressure steers it.
+    Steered(Steering),
 }
 
 impl Lean {
@@ -105,6 +111,7 @@ pub fn leans(
             Motion::Rate(r) => Way::Linear(from + time * r * lengths[ACROSS[k]]),
             Motion::TrueRate(r) => Way::Exponential(*r),
             Motion::Wiggle(a, period) => Way::Wiggle(a * s, *period),
+            Motion::Pressed(pressed) => Way::Steered(fix.steering(pressed, Aim::Tilt(k), cx, when)?),
             Motion::Variable(change, rate) => Way::Variable(
                 cx.value(change, Stage::EndOfStep, when)?,
                 cx.value(rate, Stage::EndOfStep, when)?,
@@ -127,7 +134,7 @@ fn one_at_a_time([xy, _, yz]: &[Lean; 3], time: f64, length: f64, span: Span) ->
         Way::Linear(to) => to.abs(),
         Way::Exponential(r) => (yz.start * (r * time).exp()).abs(),
         Way::Wiggle(a, _) => yz.start.abs() + a.abs(),
-        Way::Variable(..) => f64::INFINITY,
+        Way::Variable(..) | Way::Steered(_) => f64::INFINITY,
     };
     if far <= 0.5 * length {
         return Ok(());
@@ -161,6 +168,10 @@ pub fn tilts(leans: &[Lean; 3], w: &World, t: &Tick, lengths: [f64; 3]) -> Resul
                 (lean.start + a * phase.sin(), a * TAU / period * phase.cos())
             }
             Way::Variable(change, speed) => (lean.start + change.get(w), speed.get(w)),
+            Way::Steered(steering) => {
+                let rate = domain.lengths()[ACROSS[k]] * steering.rate(w, t)?;
+                (now[k] + rate * steering.span(w, t), rate)
+            }
         };
         let edge = lengths[ALONG[k]];
         let over = target / edge - now[k] / domain.lengths()[ALONG[k]];

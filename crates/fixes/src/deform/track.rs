@@ -1,5 +1,6 @@
 //! Where the faces of a deforming box are at a step, and how fast its lengths grow.
 
+use super::pressure::{Aim, Steering};
 use super::{Declared, Motion};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_plan::{Stage, Tick, When};
@@ -27,6 +28,8 @@ enum Way {
     Wiggle(f64, f64),
     /// Change of length, and its rate.
     Variable(Reading, Reading),
+    /// A pressure steers it.
+    Steered(Steering),
     /// The volume stays. `shared`: two dimensions follow one.
     Volume { shared: bool },
 }
@@ -93,6 +96,7 @@ pub fn tracks(fix: &Declared, cx: &mut dyn SealCx, when: &When) -> Result<[Track
             Motion::Rate(r) => grown(time * r * (hi - lo)),
             Motion::TrueRate(r) => Way::Exponential(*r),
             Motion::Wiggle(a, period) => Way::Wiggle(a * s, *period),
+            Motion::Pressed(pressed) => Way::Steered(fix.steering(pressed, Aim::Length(d), cx, when)?),
             Motion::Volume => Way::Volume { shared: followers == 2 },
             Motion::Variable(change, rate) => Way::Variable(
                 cx.value(change, Stage::EndOfStep, when)?,
@@ -153,6 +157,12 @@ pub fn faces(tracks: &[Track; 3], w: &World, t: &Tick) -> Result<([f64; 3], [f64
             Way::Variable(change, speed) => {
                 let half = 0.5 * change.get(w);
                 (at[d], rate[d]) = ([lo - half, hi + half], speed.get(w));
+            }
+            Way::Steered(steering) => {
+                let [lo, hi] = at[d];
+                let grows = steering.rate(w, t)?;
+                let half = 0.5 * (hi - lo) * grows * steering.span(w, t);
+                (at[d], rate[d]) = ([lo - half, hi + half], (hi - lo) * grows);
             }
         }
     }

@@ -398,7 +398,8 @@ fn suits(w: &World, period: Periods, fast: &Fast<Granular>) -> bool {
     let p = &w.particles;
     let most = par::best(&p.radius, 0.0, f64::max);
     let more = w.rebuild.kept.reach(w.settings.neighbor.skin) + fast.span(most);
-    let still = w.domain.as_ref().is_none_or(|d| d.flow.is_none()) && !period.tilted();
+    // A box that may lean is for the other loop even while it stands upright: a run can tilt it between two rebuilds.
+    let still = w.domain.as_ref().is_none_or(|d| d.flow.is_none() && d.tilt.is_none());
     let fits = still && w.families.is_none() && !p.is_empty() && p.len() <= MOST_GRAINS;
     fits && !meet_twice(w, period.length, most, more)
 }

@@ -1,0 +1,274 @@
+//! fix deform/pressure: a deforming box of which pressures steer lengths and tilts.
+
+use super::{Declared, Fix, FixStyle, Motion, WORDS, lean, read};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_lang::{Args, Param, RefKind, ValueRef, Word};
+use perigrain_plan::{Stage, Tick, When};
+use perigrain_styles::common::variable_param;
+use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
+use perigrain_world::World;
+
+/// The style.
+pub struct DeformPressure;
+
+impl Style for DeformPressure {
+    fn name(&self) -> &'static str {
+        "deform/pressure"
+    }
+    fn doc(&self) -> Doc {
+        Doc {
+            syntax: "fix ID group deform/pressure N x|y|z|xy|xz|yz STYLE … [couple none|xyz|xy|yz|xz] [max/rate R] [normalize/pressure yes|no] and words of fix deform",
+            summary: "A deforming box of which pressures steer lengths and tilts.",
+            text: "As `fix deform`, with two more styles of `x`, `y`, `z` and one of `xy`, `xz`, `yz`:\n\n\
+                   - `pressure P K`: the length L grows as dL/dt = L K (p − P) with the component p of the pressure along it, as long as that is \
+                   above P; a tilt as dT/dt = L K (p − P) with the off-diagonal component p and the length L across which it leads.\n\
+                   - `pressure/mean P K`: the same with the mean pressure.\n\n\
+                   P is a number or an equal-style `v_name`, K a rate over a pressure, or with `normalize/pressure yes` a rate: (p − P)/|P| is taken. \
+                   `max/rate R` keeps every such rate of strain between −R and R. `couple xy` takes the mean of both components and changes both lengths by \
+                   the same factor; of a length without a style it takes that of the other. N steps lie between two changes; the pressure \
+                   is the one at the end of the step.\n\
+                   The fix brings its own computes `ID_temp` (temp) and `ID_press` (pressure), which other lines may read; `fix_modify ID press C` takes \
+                   another one. Choose K so that 1/(K · bulk modulus) is some ten times what a wave needs to cross the box: above that the box swings.\n\
+                   Under `-compat lammps` a change takes the time of one step whatever N is, as in LAMMPS. `box` and `vol/balance/p` are not here: they are refused.",
+            example: "fix hold all deform/pressure 1 x pressure 0.0 1e-3 max/rate 0.1 remap x",
+        }
+    }
+}
+
+/// The styles that are here besides those of fix deform.
+pub const STYLES: [&str; 2] = ["pressure", "pressure/mean"];
+
+impl FixStyle for DeformPressure {
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+        Ok(Box::new(read(args, cx, Some(Controls::default()))?))
+    }
+}
+
+/// What a length or tilt follows.
+#[derive(Clone, Debug)]
+pub struct Pressed {
+    /// The pressure wanted.
+    target: Param,
+    gain: f64,
+    mean: bool,
+    span: Span,
+}
+
+impl Pressed {
+    /// Reads pressure and gain.
+    ///
+    /// # Errors
+    /// What is no number nor an equal-style variable.
+    pub fn read(args: &mut Args, cx: &BuildCx, mean: bool) -> Result<Self> {
+        let span = args.here();
+        let target = variable_param(args, "the pressure")?;
+        cx.param(&target, false)?;
+        Ok(Self { target, gain: args.number("the gain")?, mean, span })
+    }
+}
+
+/// How pressures steer.
+#[derive(Clone, Debug, Default)]
+pub struct Controls {
+    /// Which lengths go together.
+    together: [bool; 3],
+    most: Option<f64>,
+    normalized: bool,
+    /// Another compute than the one it brings.
+    press: Option<ValueRef>,
+}
+
+impl Controls {
+    /// Reads what stands behind a keyword of its own.
+    ///
+    /// # Errors
+    /// Every mistake in it, other words, what LAMMPS has and perigrain does not.
+    pub fn keyword(&mut self, word: &Word, args: &mut Args) -> Result<()> {
+        match word.text.as_str() {
+            "couple" => {
+                let name = args.choice("lengths that go together", &["none", "xyz", "xy", "yz", "xz"])?;
+                self.together = ["x", "y", "z"].map(|axis| name != "none" && name.contains(axis));
+            }
+            "max/rate" => self.most = Some(args.positive("the largest rate of strain")?),
+            "normalize/pressure" => self.normalized = args.flag("normalize/pressure")?,
+            "box" | "vol/balance/p" => {
+                let text = format!("`{}` of fix deform/pressure is not in perigrain", word.text);
+                let d = Diagnostic::error(Code::NOT_SUPPORTED, word.span, text);
+                return Err(d
+                    .help("steer x, y and z by `pressure` or `pressure/mean`, with `couple xyz`")
+                    .into());
+            }
+            _ => {
+                let own = ["couple", "max/rate", "normalize/pressure"];
+                return Err(args.unknown(word, &[&WORDS[..], &own].concat()));
+            }
+        }
+        Ok(())
+    }
+
+    /// `fix_modify ID press C`.
+    ///
+    /// # Errors
+    /// What is no compute of a pressure, other options.
+    pub fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        if !args.eat("press") {
+            return crate::no_option(args);
+        }
+        let word = args.expect("the ID of a compute of a pressure")?;
+        if let Some(style) = cx.names.compute_style(&word.text)
+            && style != "pressure"
+        {
+            let text = format!("compute `{}` is of style {style}: it has no pressure", word.text);
+            return fail(Code::WRONG_KIND, word.span, text);
+        }
+        let r = component(&word.text, 1, word.span);
+        cx.value(&r, false)?;
+        self.press = Some(r);
+        Ok(())
+    }
+}
+
+/// An element of a compute's vector.
+fn component(id: &str, k: usize, span: Span) -> ValueRef {
+    ValueRef { kind: RefKind::Compute, name: id.into(), index: vec![k], span }
+}
+
+/// What is steered: the length along an axis, or a tilt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Aim {
+    /// x, y or z.
+    Length(usize),
+    /// xy, xz or yz.
+    Tilt(usize),
+}
+
+impl Declared {
+    /// The computes that it brings along.
+    pub(super) fn pressures(&self) -> Vec<(String, &'static str, String)> {
+        let steered = self.motions.iter().flatten().any(|m| matches!(m, Motion::Pressed(_)))
+            || self.leans.iter().flatten().any(|m| matches!(m, lean::Motion::Pressed(_)));
+        if !steered {
+            return vec![];
+        }
+        let [temp, press] = ["temp", "press"].map(|what| format!("{}_{what}", self.id));
+        vec![(temp.clone(), "temp", String::new()), (press, "pressure", temp)]
+    }
+
+    /// Gives lengths that go together the style of the one that has one.
+    ///
+    /// # Errors
+    /// Two that are steered in different ways, and none that is steered.
+    pub(super) fn couple(&mut self, cx: &BuildCx) -> Result<()> {
+        let Some(controls) = self.controls.as_ref().filter(|c| c.together != [false; 3]) else {
+            return Ok(());
+        };
+        let flat = cx.world.settings.two_dimensional;
+        let axes: Vec<usize> = (0..3).filter(|d| controls.together[*d] && !(flat && *d == 2)).collect();
+        let pressed = |d: &usize| match &self.motions[*d] {
+            Some(Motion::Pressed(p)) if !p.mean => Some(p.clone()),
+            _ => None,
+        };
+        let Some(first) = axes.iter().find_map(pressed) else {
+            return fail(Code::CONFLICT, cx.span, "`couple`: none of these lengths has the style `pressure`");
+        };
+        for d in axes {
+            match &self.motions[d] {
+                None => {}
+                Some(Motion::Pressed(p)) if !p.mean && p.target == first.target && p.gain == first.gain => {}
+                Some(_) => {
+                    let text = format!(
+                        "`couple`: {} is to follow another pressure than the rest",
+                        ["x", "y", "z"][d]
+                    );
+                    return fail(Code::CONFLICT, cx.span, text);
+                }
+            }
+            self.motions[d] = Some(Motion::Pressed(first.clone()));
+        }
+        Ok(())
+    }
+
+    /// How a pressure steers a length or tilt in a run that begins.
+    ///
+    /// # Errors
+    /// Computes and variables that are gone.
+    pub(super) fn steering(
+        &self,
+        pressed: &Pressed,
+        aim: Aim,
+        cx: &mut dyn SealCx,
+        when: &When,
+    ) -> Result<Steering> {
+        let controls = self.controls.clone().unwrap_or_default();
+        let (id, at) = match &controls.press {
+            Some(other) => (other.name.clone(), other.span),
+            None => (format!("{}_press", self.id), pressed.span),
+        };
+        let elements: Vec<usize> = match aim {
+            Aim::Length(_) if pressed.mean => vec![],
+            Aim::Length(d) if controls.together[d] => {
+                let flat = cx.world().settings.two_dimensional;
+                (0..3).filter(|d| controls.together[*d] && !(flat && *d == 2)).collect()
+            }
+            Aim::Length(d) => vec![d],
+            Aim::Tilt(k) => vec![k + 3],
+        };
+        let mut now: Vec<Reading> = vec![];
+        for k in elements {
+            now.push(cx.value(&component(&id, k + 1, at), Stage::EndOfStep, when)?);
+        }
+        if now.is_empty() {
+            let scalar = ValueRef { index: vec![], ..component(&id, 1, at) };
+            now.push(cx.value(&scalar, Stage::EndOfStep, when)?);
+        }
+        let target = cx.param(&pressed.target, Stage::EndOfStep, when)?;
+        let every = if cx.world().settings.lammps() { 1 } else { self.every };
+        let Controls { most, normalized, .. } = controls;
+        Ok(Steering { now, target, gain: pressed.gain, most, normalized, every, span: pressed.span })
+    }
+}
+
+/// A pressure that steers something through a run.
+#[derive(Clone, Debug)]
+pub struct Steering {
+    /// Components, of which the mean counts.
+    now: Vec<Reading>,
+    target: Reading,
+    gain: f64,
+    most: Option<f64>,
+    normalized: bool,
+    /// Steps for which a change is.
+    every: i64,
+    span: Span,
+}
+
+impl Steering {
+    /// The rate of strain: K (p − P); none before the first step, where no pressure is known.
+    ///
+    /// # Errors
+    /// A share of a pressure of 0, without a largest rate.
+    pub fn rate(&self, w: &World, t: &Tick) -> Result<f64> {
+        if t.setup {
+            return Ok(0.0);
+        }
+        let now = self.now.iter().map(|p| p.get(w)).sum::<f64>() / self.now.len() as f64;
+        let target = self.target.get(w);
+        let mut rate = self.gain * (now - target);
+        if self.normalized {
+            if target == 0.0 && self.most.is_none() {
+                let text = "a pressure of 0 cannot be what others are measured by";
+                let d = Diagnostic::error(Code::BAD_VALUE, self.span, text);
+                return Err(d.help("say `normalize/pressure no`, or limit the rate by `max/rate`").into());
+            }
+            rate /= target.abs();
+        }
+        // 0/0: at a pressure of 0 that is 0 nothing moves.
+        let rate = if rate.is_nan() && target == 0.0 && now == 0.0 { 0.0 } else { rate };
+        Ok(self.most.map_or(rate, |most| rate.clamp(-most, most)))
+    }
+
+    /// The time that a change is for [time].
+    pub fn span(&self, w: &World, t: &Tick) -> f64 {
+        if t.setup { 0.0 } else { self.every as f64 * w.clock.dt }
+    }
+}
