@@ -130,6 +130,8 @@ impl Session {
             watch: _,
             worked: _,
             spent: _,
+            foreseen: _,
+            spoken: _,
             swept: _,
             interrupted: _,
             quit: _,
