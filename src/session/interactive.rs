@@ -184,6 +184,11 @@ impl Session {
         self.scenes += 1;
     }
 
+    /// The folder that files are named from beside the working folder: the deck's own.
+    pub fn folder(&self) -> std::path::PathBuf {
+        self.options.folder.clone()
+    }
+
     /// Bytes the scene takes.
     pub fn bytes(&self) -> u64 {
         perigrain_world::memory::bytes(&self.world)

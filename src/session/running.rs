@@ -118,6 +118,13 @@ impl Session {
         if self.planning() {
             self.unsee(known);
         }
+        if self.interrupted {
+            let step = self.world.clock.step;
+            let made = args.steps - (last - step);
+            self.graph
+                .lines
+                .amend(cmd.span, |text| format!("{text}  # stopped at step {step}, after {made}"));
+        }
         Ok(())
     }
 
