@@ -27,6 +27,7 @@ mod rerunning;
 mod resolution;
 mod restarting;
 mod running;
+mod scales;
 mod shell;
 mod solids;
 mod spent;

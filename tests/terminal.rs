@@ -156,6 +156,31 @@ fn table(text: &str) -> Vec<Vec<&str>> {
 }
 
 #[test]
+fn files_of_averages_name_their_columns_and_a_check_notes_lattice_units() {
+    let folder = tempfile::tempdir().unwrap();
+    let ledger = "compute e all energy/ledger\nvariable q equal step\nfix a all ave/time 1 5 10 c_e[1] v_q c_e[11] file a.txt\n\
+                  fix b all ave/time 1 5 10 c_e mode vector file b.txt\n";
+    let deck = format!(
+        "{GRAINS}velocity all set 0 0 -2 units box\n{ledger}fix m all move linear 0 0 -0.5\nunfix m\nrun 10\n"
+    );
+    let text = shown(folder.path(), 100, &deck, PLAIN, &[]);
+    assert!(text.contains("results: log.lammps, a.txt, b.txt\r\n"), "{text}");
+    let head = |file: &str, n| {
+        let text = fs::read_to_string(folder.path().join(file)).unwrap();
+        text.lines().nth(n).unwrap_or_default().to_string()
+    };
+    assert_eq!(head("a.txt", 1), "# TimeStep c_e[1] v_q c_e[11]");
+    assert_eq!(head("a.txt", 2), "# columns: step c_e[kinetic] v_q c_e[residual]");
+    assert!(head("b.txt", 3).starts_with("# rows: kinetic rotational strain contacts "));
+    shown(folder.path(), 100, &deck, "in.deck -threads 1 -compat lammps", &[]);
+    assert!(head("a.txt", 2).starts_with("10 "));
+    // Spacings of 0.025 are no thousandth; of 0.001 they nearly are.
+    let deck = deck.replace("lattice sc 0.025", "lattice sc 0.001").replace("unfix m\n", "");
+    let text = shown(folder.path(), 100, &deck, "check in.deck", &[("NO_COLOR", "1")]);
+    assert!(text.contains("this speed counts in lattice spacings of 1e-3: it is 5e-4"), "{text}");
+}
+
+#[test]
 fn tables_of_sweeps_are_cut_between_columns_too() {
     let folder = tempfile::tempdir().unwrap();
     let deck = format!(
