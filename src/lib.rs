@@ -25,6 +25,7 @@ pub mod bench;
 pub mod cli;
 pub mod graph;
 mod heads;
+mod human;
 mod json;
 pub mod lsp;
 pub mod manual;

@@ -1,12 +1,15 @@
 //! One deck being worked off: text in, diagnostics and results out.
 
 mod acts;
+mod ahead;
 pub mod axes;
 mod belongs;
+mod brief;
 mod causes;
 mod checking;
 mod commands;
 mod embed;
+mod ending;
 mod files;
 mod flow;
 mod inert;
@@ -24,6 +27,7 @@ mod rerunning;
 mod resolution;
 mod restarting;
 mod running;
+mod scales;
 mod shell;
 mod solids;
 mod spent;
@@ -38,6 +42,7 @@ use crate::graph::Graph;
 use crate::graph::build::DECLARATIONS;
 use crate::graph::env::DeckEnv;
 pub use crate::graph::keywords::KEYWORDS as THERMO;
+pub use ahead::steps_ahead;
 pub use commands::OWN;
 pub use embed::{Column, Global, Newcomers, Order, Rows, Told};
 pub use files::folder_of;
@@ -57,6 +62,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 pub use sweeping::Swept;
+pub use timer::{Limit, time};
 
 /// What a session is asked to do with a deck.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -95,6 +101,8 @@ pub struct Options {
     pub partition: Option<Partition>,
     /// Texts that count in place of files, where lines are read.
     pub overlay: Overlay,
+    /// How long runs may take in all.
+    pub limit: Option<Limit>,
 }
 
 impl Default for Options {
@@ -110,6 +118,7 @@ impl Default for Options {
             folder: PathBuf::new(),
             partition: None,
             overlay: Overlay::default(),
+            limit: None,
         }
     }
 }
@@ -157,6 +166,10 @@ pub struct Session {
     timer: timer::Timer,
     worked: Worked,
     spent: Spent,
+    /// What a check has seen of runs.
+    foreseen: ahead::Foreseen,
+    /// What runs have said on a terminal.
+    spoken: ending::Spoken,
     /// What step tables are to show beside the deck's own columns.
     columns: Vec<String>,
     /// What the deck's `sweep` line says.
@@ -221,6 +234,8 @@ impl Session {
             timer: Default::default(),
             worked: Worked::default(),
             spent: Spent::default(),
+            foreseen: Default::default(),
+            spoken: Default::default(),
             columns: vec![],
             swept: None,
             born: std::time::Instant::now(),
@@ -239,6 +254,7 @@ impl Session {
             s.vars.set_index(&name, &values)?;
         }
         s.reset_world();
+        s.limit_time();
         Ok(s)
     }
 
@@ -298,6 +314,7 @@ impl Session {
         let script = Script::new(file);
         let mut script = if self.planning() { script.first_branches() } else { script };
         let outcome = self.work_off(&mut script);
+        self.doubt(&script);
         if self.planning() {
             self.told_to.line(&self.plans.text(&self.sources))?;
             self.told_to.flush()?;
@@ -449,6 +466,7 @@ impl Session {
             return self.partition(script, cmd);
         }
         if name == "run" {
+            self.doubt(script);
             self.run_command(cmd)?;
         } else if name == "write_dump" {
             self.write_dump(cmd)?;

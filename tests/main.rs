@@ -50,6 +50,7 @@ mod staggered;
 mod stress;
 mod sweep;
 mod swinging;
+mod terminal;
 #[path = "common/threads.rs"]
 mod threads;
 mod verify;

@@ -17,7 +17,11 @@ fn program(folder: &Path, args: &[&str]) -> Command {
 
 fn settle(command: &mut Command, folder: &Path) {
     command.current_dir(folder);
-    command.env("XDG_STATE_HOME", folder.join("state")).env("NO_COLOR", "1").env("TERM", "xterm");
+    command
+        .env("XDG_STATE_HOME", folder.join("state"))
+        .env("NO_COLOR", "1")
+        .env("TERM", "xterm")
+        .env("PAGER", "cat");
 }
 
 /// What the session says to lines from a pipe.
@@ -86,6 +90,65 @@ mod terminal {
     }
 
     #[test]
+    fn what_the_guide_shows_works_as_typed() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut p = start(folder.path());
+        let guide = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/howto/prompt.md");
+        let guide = fs::read_to_string(guide).unwrap();
+        let typed: Vec<&str> = guide.lines().filter_map(|l| l.strip_prefix("perigrain> ")).collect();
+        assert!(typed.len() > 15, "{typed:?}");
+        for line in typed {
+            let said = say(&mut p, line);
+            assert!(!said.contains("error"), "{line}: {said}");
+            if line.starts_with("run ") {
+                // A short end leaves the table in sight.
+                assert!(said.contains(" steps in ") && !said.contains("Loop time"), "{said}");
+            }
+        }
+    }
+
+    #[test]
+    fn habits_work_or_are_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut p = start(folder.path());
+        assert!(say(&mut p, "?").contains("at the prompt"));
+        assert!(say(&mut p, "?timestep").contains("# timestep"));
+        for line in ["units si", "region b block 0 1 0 1 0 1", "create_box 1 b", "mass 1 1"] {
+            assert!(!say(&mut p, line).contains("error"), "{line}");
+        }
+        assert!(say(&mut p, "%time create_atoms 1 single 0.5 0.5 0.5").contains("(that took "));
+        assert!(say(&mut p, "print \"atoms $(atoms)\"").contains("atoms 1\r\n"));
+        assert!(say(&mut p, "ls -l").contains("write `shell ls -l`"));
+        assert!(say(&mut p, "plot ke").contains("write `:plot ke`"));
+        p.send_line("exit").unwrap();
+        p.exp_eof().unwrap();
+    }
+
+    #[test]
+    fn tab_knows_what_the_syntax_wants() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut p = start(folder.path());
+        for line in ["units si", "region hole sphere 0 0 0 1", "region b block 0 1 0 1 0 1", "create_box 1 b"]
+        {
+            say(&mut p, line);
+        }
+        say(&mut p, "fix fall all gravity 9.81 vector 0 0 -1");
+        say(&mut p, "group heavy empty");
+        for (typed, wanted) in [
+            ("material m file stee\t", "material m file steel.toml"),
+            ("region r block IN\t EDG\t", "region r block INF EDGE"),
+            ("fix w all wall/gran/region granular hooke 1 0.5 region ho\t", "0.5 region hole"),
+            ("unfix f\t", "unfix fall"),
+            ("velocity h\t", "velocity heavy"),
+            ("dump_modify d backcolor gol\t", "dump_modify d backcolor gold"),
+        ] {
+            type_in(&mut p, typed);
+            p.exp_string(wanted).unwrap();
+            give_up(&mut p);
+        }
+    }
+
+    #[test]
     fn a_session_through_a_terminal() {
         let folder = tempfile::tempdir().unwrap();
         let mut p = start(folder.path());
@@ -124,6 +187,14 @@ mod terminal {
         p.exp_string("perigrain> ").unwrap();
         let stopped = say(&mut p, "print \"state $(step) $(x[1]:%.17g) $(ke:%.17g)\"");
         let state = lines_with(&stopped, "state ")[0].to_string();
+        // the run is in the list of lines as far as it went
+        let said = say(&mut p, ":graph");
+        let step = state.split(' ').nth(1).unwrap();
+        let line = lines_with(&said, "").into_iter().find(|l| l.contains("run 100000000"));
+        assert!(
+            line.is_some_and(|l| l.contains(&format!("# stopped at step {step}, after {step}"))),
+            "{said}"
+        );
 
         // undo goes back to before the run, and forwards again by another one
         say(&mut p, ":undo");
@@ -224,6 +295,32 @@ fn a_deck_may_come_first() {
     let o = program(folder.path(), &["repl", "decks/in.first"]).stdin(Stdio::null()).output().unwrap();
     assert_eq!(o.status.code(), Some(0), "{}", err(&o));
     assert!(out(&o).contains("read"), "{}", out(&o));
+}
+
+#[test]
+fn a_saved_session_stands_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let decks = folder.path().join("decks");
+    fs::create_dir(&decks).unwrap();
+    fs::create_dir(folder.path().join("kept")).unwrap();
+    let steel = Path::new(env!("CARGO_MANIFEST_DIR")).join("potentials/steel.toml");
+    fs::copy(steel, decks.join("own.toml")).unwrap();
+    fs::write(decks.join("in.first"), "units si\natom_style sphere\nmaterial m file own.toml\n").unwrap();
+    let mut command = program(folder.path(), &["repl", "decks/in.first"]);
+    let mut child =
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let lines = "region b block 0 1 0 1 0 1\ncreate_box 1 b\n:save s.in\n:save kept/s.in\n";
+    child.stdin.take().unwrap().write_all(lines.as_bytes()).unwrap();
+    let o = child.wait_with_output().unwrap();
+    assert_eq!(o.status.code(), Some(0), "{}", err(&o));
+    // The included deck is gone; where its files are is known.
+    fs::remove_file(decks.join("in.first")).unwrap();
+    for deck in ["s.in", "kept/s.in"] {
+        let o = program(folder.path(), &[deck, "-log", "none"]).output().unwrap();
+        let text = fs::read_to_string(folder.path().join(deck)).unwrap();
+        assert_eq!(o.status.code(), Some(0), "{text}{}", err(&o));
+        assert!(text.contains("atom_style sphere") && !text.contains("include"), "{text}");
+    }
 }
 
 #[test]

@@ -5,6 +5,7 @@ use perigrain_base::diag::nearest;
 use perigrain_base::gate::Limits;
 use perigrain_world::Compat;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Where the deck comes from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -22,6 +23,8 @@ pub enum Target {
     /// Where it goes when nothing is said: `log.lammps`, the terminal.
     #[default]
     Usual,
+    /// As usual, with every word also on a terminal.
+    Full,
     /// Nowhere.
     None,
     /// A file.
@@ -35,7 +38,7 @@ pub struct Options {
     pub deck: Deck,
     /// `-log file|none`.
     pub log: Target,
-    /// `-screen file|none`.
+    /// `-screen file|none|full`.
     pub screen: Target,
     /// `-echo none|screen|log|both`.
     pub echo: Option<String>,
@@ -45,6 +48,8 @@ pub struct Options {
     pub report: Option<PathBuf>,
     /// `-view [PORT]`: the page while the run goes on; 0 for any port.
     pub view: Option<u16>,
+    /// `-timeout TIME`: how long runs may take in all.
+    pub timeout: Option<Duration>,
     /// `-threads N`, `-pk omp N`.
     pub threads: Option<usize>,
     /// `-compat lammps`: LAMMPS' numbers also where LAMMPS is wrong, and of which version.
@@ -115,10 +120,16 @@ pub const SWITCHES: &[Switch] = &[
         o.log = target(v.one("a file or `none`")?);
         Ok(())
     }),
-    switch(&["-screen", "-sc"], "FILE|none", "where the screen output goes (the terminal)", |o, v| {
-        o.screen = target(v.one("a file or `none`")?);
-        Ok(())
-    }),
+    switch(
+        &["-screen", "-sc"],
+        "FILE|none|full",
+        "where the screen output goes (the terminal, where `full` shows all that the log has)",
+        |o, v| {
+            let word = v.one("a file, `none` or `full`")?;
+            o.screen = if word == "full" { Target::Full } else { target(word) };
+            Ok(())
+        },
+    ),
     switch(&["-echo", "-e"], "none|screen|log|both", "repeat each line of the deck there (log)", |o, v| {
         const KNOWN: [&str; 4] = ["none", "screen", "log", "both"];
         let word = v.one("none, screen, log or both")?;
@@ -154,6 +165,20 @@ pub const SWITCHES: &[Switch] = &[
         "use at most N threads; results are the same bits for any N (OMP_NUM_THREADS, else all cores)",
         |o, v| {
             o.threads = Some(v.count("a number of threads")?);
+            Ok(())
+        },
+    ),
+    switch(
+        &["-timeout"],
+        "TIME",
+        "end runs after TIME (seconds, MM:SS or H:MM:SS) in all, at a whole step, with a last restart file",
+        |o, v| {
+            let word = v.one("a time")?;
+            let Some(time) = crate::session::time(&word) else {
+                let usage = Usage::new(format!("`-timeout {word}`: `{word}` is no time"));
+                return Err(usage.help("write seconds, MM:SS or H:MM:SS, as `-timeout 23:30:00`"));
+            };
+            o.timeout = Some(time);
             Ok(())
         },
     ),

@@ -5,11 +5,13 @@ use super::progress::{self, Progress};
 use super::reporting::{Recorder, Sheet, Told};
 use super::{FAILED, INTERRUPTED, OK, partitions, signals, viewing};
 use crate::session::{self, Made, Mode, Session, Watch, folder_of};
+use console::Term;
 use perigrain_base::diag::{Code, Diagnostics, Result, Sources, fail, render};
 use perigrain_base::gate;
 use perigrain_out::file::trouble;
 use perigrain_out::log::{Echo, Log};
 use perigrain_out::thermo::wall_time;
+use perigrain_world::World;
 use std::io::{IsTerminal, LineWriter, Read, Write, stderr, stdin, stdout};
 use std::path::Path;
 use std::sync::PoisonError;
@@ -43,7 +45,9 @@ fn attempt(o: &Options, mode: Mode, progress: &Progress, log: &Log, sources: &mu
     if sheet.is_some() {
         log.keep_rows();
     }
-    let mut session = begin(o, mode, log)?;
+    let settled = settled(o, mode, log)?;
+    progress.look_ahead(&settled, &name, &text);
+    let mut session = Session::new(settled)?;
     let live = viewing::open(o, &text, log)?;
     let recorder = Recorder::new(progress.clone(), sheet.is_some(), live.clone(), session.stop_flag());
     let film = recorder.film();
@@ -135,7 +139,19 @@ pub(super) fn settled(o: &Options, mode: Mode, log: &Log) -> Result<session::Opt
         folder,
         partition: partitions::of(o),
         overlay: Default::default(),
+        limit: o.timeout.map(|time| session::Limit { time, restart: last_restart(o) }),
     })
+}
+
+/// What a deck leaves behind to go on from where `-timeout` ends it, in the folder it is started in.
+fn last_restart(o: &Options) -> String {
+    let name = match &o.deck {
+        Deck::Stdin => None,
+        Deck::File(path) => path.file_name().and_then(|name| name.to_str()),
+    };
+    let name = name.unwrap_or("stdin").replace(['*', '%'], "_");
+    let partition = o.world.as_ref().map_or(String::new(), |w| format!(".{}", w.number));
+    format!("{name}{partition}.*.restart")
 }
 
 /// A session for a program that hosts it, as the words of a command line want it; the screen is the host's unless they say otherwise.
@@ -164,7 +180,7 @@ pub fn host(words: Vec<String>, screen: Box<dyn Write + Send>) -> std::result::R
     }
     let log = Log::silent();
     let opened = match &o.screen {
-        Target::Usual => {
+        Target::Usual | Target::Full => {
             log.set_screen(Some(screen));
             Ok(())
         }
@@ -221,6 +237,14 @@ pub(super) fn catch_interrupts(session: &Session) {
 pub(super) struct Bar(pub Progress);
 
 impl Watch for Bar {
+    fn asked(&mut self, steps: i64) {
+        self.0.asked(steps);
+    }
+
+    fn begins(&mut self, _w: &World) {
+        self.0.begins();
+    }
+
     fn step(&mut self, made: &Made) {
         self.0.step(made);
     }
@@ -271,15 +295,21 @@ fn open_log(log: &Log, o: &Options, mode: Mode) -> Result<()> {
 /// # Errors
 /// A file that cannot be written.
 pub(super) fn open_screen(log: &Log, o: &Options, progress: &Progress) -> Result<()> {
+    let terminal = stdout().is_terminal();
     log.set_screen(match &o.screen {
         Target::None => None,
-        Target::Usual if stdout().is_terminal() => Some(Box::new(LineWriter::new(progress.around(stdout())))),
-        Target::Usual => Some(Box::new(stdout())),
+        Target::Usual | Target::Full if terminal => {
+            Some(Box::new(LineWriter::new(progress.around(stdout()))))
+        }
+        Target::Usual | Target::Full => Some(Box::new(stdout())),
         Target::File(path) => match std::fs::File::create(path) {
             Ok(file) => Some(Box::new(file)),
             Err(e) => return fail(Code::NO_FILE, None, format!("cannot write `{}`: {e}", path.display())),
         },
     });
+    if terminal && o.screen == Target::Usual {
+        log.be_brief(|| Term::stdout().size_checked().map_or(80, |(_, columns)| columns.into()));
+    }
     Ok(())
 }
 

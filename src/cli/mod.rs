@@ -8,6 +8,7 @@ pub mod deck;
 mod examples;
 mod formatting;
 pub mod grammar;
+mod live;
 pub mod manual;
 mod pager;
 pub mod partitions;

@@ -20,6 +20,13 @@ pub fn page(text: &str) {
     }
 }
 
+/// How many characters a line on standard output may have: so many, and fewer where a terminal has fewer.
+pub fn width(most: usize) -> usize {
+    let columns =
+        Term::stdout().size_checked().filter(|_| stdout().is_terminal()).map(|(_, columns)| columns.into());
+    columns.map_or(most, |columns: usize| most.min(columns))
+}
+
 /// Hands the text to `$PAGER`, or to `less`; whether one could be started. An empty `PAGER` wants none.
 fn through_pager(text: &str) -> bool {
     let wanted = std::env::var("PAGER").unwrap_or_else(|_| "less".into());
@@ -45,8 +52,10 @@ pub fn wrapped(text: &str, width: usize) -> String {
     let mut out = String::with_capacity(text.len() + text.len() / 32);
     for line in text.lines() {
         code ^= line.trim_start().starts_with("```");
-        if code || line.starts_with('|') || line.starts_with("  ") {
+        if code || line.starts_with('|') {
             out += line;
+        } else if line.starts_with("  ") {
+            out += &entry(line, width);
         } else {
             let options = textwrap::Options::new(width)
                 .subsequent_indent(if line.starts_with("- ") { "  " } else { "" })
@@ -59,6 +68,25 @@ pub fn wrapped(text: &str, width: usize) -> String {
     out
 }
 
+/// A line of a list, whose text goes on below itself: `  fix nve   what it does`.
+fn entry(line: &str, width: usize) -> String {
+    let name = line.trim_start();
+    let behind = name.find("  ").map(|k| &name[k..]).unwrap_or_default();
+    let text = behind.trim_start();
+    let at = line.chars().count() - text.chars().count();
+    if text.is_empty() || width < at + NARROWEST {
+        return line.into();
+    }
+    let options = textwrap::Options::new(width - at)
+        .word_splitter(textwrap::WordSplitter::NoHyphenation)
+        .break_words(false);
+    let below = format!("\n{}", " ".repeat(at));
+    line[..line.len() - text.len()].to_string() + &textwrap::wrap(text, options).join(&below)
+}
+
+/// Characters beside a name from which a text is put there line by line.
+const NARROWEST: usize = 20;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -70,6 +98,9 @@ mod tests {
             "- one two three four\n```text\nfix ID group STYLE word\n```\n| a | table | of | columns |\n";
         let wanted = "- one two\n  three\n  four\n```text\nfix ID group STYLE word\n```\n| a | table | of | columns |\n";
         assert_eq!(wrapped(text, 10), wanted);
+        let list = "  fix nve        Moves all particles of a group along\n";
+        let wanted = "  fix nve        Moves all particles\n                 of a group along\n";
+        assert_eq!(wrapped(list, 38), wanted);
         for page in pages() {
             let (text, words) =
                 (page.markdown(), |t: &str| t.split_whitespace().map(String::from).collect::<Vec<_>>());

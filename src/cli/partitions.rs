@@ -58,9 +58,11 @@ pub fn own(o: &Options, world: &World) -> Options {
 /// `FILE.N` by the switch for partitions, else by the one for all, else by the usual name.
 fn file(own: &Target, all: &Target, usual: &str, number: usize) -> Target {
     let base = match (own, all) {
-        (Target::None, _) | (Target::Usual, Target::None) => return Target::None,
-        (Target::File(path), _) | (Target::Usual, Target::File(path)) => path.display().to_string(),
-        (Target::Usual, Target::Usual) => usual.to_owned(),
+        (Target::None, _) | (Target::Usual | Target::Full, Target::None) => return Target::None,
+        (Target::File(path), _) | (Target::Usual | Target::Full, Target::File(path)) => {
+            path.display().to_string()
+        }
+        _ => usual.to_owned(),
     };
     Target::File(format!("{base}.{number}").into())
 }
@@ -120,11 +122,11 @@ fn all(o: &Options, turns: &Path) -> std::io::Result<u8> {
     File::create(turns)?;
     let mut log = match &o.log {
         Target::None => None,
-        Target::Usual => Some(File::create("log.lammps")?),
+        Target::Usual | Target::Full => Some(File::create("log.lammps")?),
         Target::File(path) => Some(File::create(path)?),
     };
     let mut say = |text: String| {
-        if o.screen == Target::Usual {
+        if matches!(o.screen, Target::Usual | Target::Full) {
             super::show(&text);
         }
         log.as_mut().map_or(Ok(()), |log| log.write_all(text.as_bytes()))

@@ -1,158 +1,254 @@
-//! The live line of a run: steps done, time, thermo columns, speed and time left on a terminal, nothing otherwise;
-//! the only user of indicatif.
+//! The live line of runs: how much of the whole deck is done, speed and time left as they have been so far, and the latest values;
+//! and that of many runs side by side.
 
+use super::live::{Around, Live};
+use crate::human::{count, duration};
 pub(super) use crate::plot::short;
-use crate::session::Made;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use crate::session::{Made, Options, steps_ahead};
 use perigrain_out::log::Log;
-use std::io::{IsTerminal, Stderr, Write, stderr};
+use std::io::{IsTerminal, Stderr, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How often the line's words are made anew; indicatif draws no faster.
+/// How often the line is made anew; nothing is shown of a run that is over by then.
 const PAUSE: Duration = Duration::from_millis(200);
 
-/// Thermo columns beside step and time that find room in the line.
-const COLUMNS: usize = 4;
+/// How long a deck may be read for the number of its steps.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// How much a new measurement of the speed counts against those before.
+const NEWS: f64 = 0.2;
 
 /// A line on standard error, hidden when that is no terminal.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct Progress {
-    bar: ProgressBar,
-    /// Whether it is never seen; to ask the line takes as long as to move a few particles.
-    hidden: bool,
+    live: Live,
     /// Whose thermo columns are shown.
     log: Option<Log>,
-    shown: Arc<Mutex<Option<Instant>>>,
+    state: Arc<Mutex<State>>,
+}
+
+/// Where the deck stands.
+#[derive(Default)]
+struct State {
+    /// Steps of the whole deck, once they are known.
+    deck: Arc<Mutex<Option<i64>>>,
+    /// Ends the look ahead, and since when it has gone on.
+    looking: Option<(Arc<AtomicBool>, Instant)>,
+    /// Steps of the runs that are over, as they were asked for.
+    before: i64,
+    /// Steps of the run that goes on, those of its stretches that are over, and of the present one.
+    asked: i64,
+    stretches: i64,
+    done: i64,
+    /// Steps per second, learnt from the runs so far.
+    rate: Option<f64>,
+    /// When the line was made last; before that, when the first step was.
+    drawn: Option<Instant>,
+    /// Since when the present stretch is timed, and its steps then.
+    mark: Option<(Instant, i64)>,
+    /// Seconds and steps of stretches since the line was made last, setups not included.
+    timed: (f64, i64),
 }
 
 impl Progress {
-    /// A line that shows itself at the first step, with the latest thermo values of `log` if there is one.
+    /// A line that shows itself when a run has gone on for a while, with the latest thermo values of `log` if there is one.
     pub fn new(log: Option<Log>) -> Self {
-        let target = if stderr().is_terminal() {
-            ProgressDrawTarget::stderr_with_hz(5)
-        } else {
-            ProgressDrawTarget::hidden()
-        };
-        if let Some(log) = log.as_ref().filter(|_| !target.is_hidden()) {
+        let live = Live::of_stderr();
+        if let Some(log) = log.as_ref().filter(|_| !live.is_hidden()) {
             log.keep_rows();
         }
-        Self::on(target, log)
+        Self { live, log, state: Arc::default() }
     }
 
-    fn on(target: ProgressDrawTarget, log: Option<Log>) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(0), target);
-        if let Ok(style) =
-            ProgressStyle::with_template("{bar:20} {pos}/{len}  {wide_msg} {per_sec}, {eta} left")
-        {
-            bar.set_style(style);
+    /// Reads the deck for the number of its steps, beside what else goes on.
+    pub fn look_ahead(&self, options: &Options, name: &str, text: &str) {
+        if self.live.is_hidden() {
+            return;
         }
-        Self { hidden: bar.is_hidden(), bar, log, shown: Arc::default() }
+        let stop = Arc::new(AtomicBool::new(false));
+        let mut state = self.state();
+        state.looking = Some((stop.clone(), Instant::now()));
+        let (deck, options, name, text) =
+            (state.deck.clone(), options.clone(), name.to_owned(), text.to_owned());
+        // It ends with the program.
+        std::thread::spawn(move || {
+            let steps = steps_ahead(&options, &name, &text, &stop);
+            *deck.lock().unwrap_or_else(PoisonError::into_inner) = steps;
+        });
+    }
+
+    /// A run of so many steps begins.
+    pub fn asked(&self, steps: i64) {
+        let mut state = self.state();
+        state.before += state.asked;
+        (state.asked, state.stretches, state.done, state.mark) = (steps, 0, 0, None);
+    }
+
+    /// A stretch of the run begins: its setup, which the speed of steps knows nothing of, is made.
+    pub fn begins(&self) {
+        let mut state = self.state();
+        state.stretches += state.done;
+        (state.done, state.mark) = (0, Some((Instant::now(), 0)));
     }
 
     /// A step of the present run is made.
     pub fn step(&self, made: &Made) {
-        if self.hidden {
+        if self.live.is_hidden() {
             return;
         }
-        if made.done <= 1 {
-            self.bar.set_length(made.total.max(0) as u64);
-            self.bar.reset();
+        let now = Instant::now();
+        let mut state = self.state();
+        if made.done < state.done {
+            state.stretches += state.done;
+            state.mark = None;
         }
-        self.bar.set_position(made.done.max(0) as u64);
-        if made.done >= made.total {
-            self.bar.finish_and_clear();
+        state.done = made.done;
+        let ends = made.done >= made.total;
+        let due = now - *state.drawn.get_or_insert(now) >= PAUSE;
+        if ends || due {
+            state.time(now);
+        }
+        if ends && !state.goes_on() {
+            state.drawn = None;
+            drop(state);
+            return self.live.clear();
+        }
+        if !due {
             return;
         }
-        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
-        if shown.is_none_or(|t| t.elapsed() >= PAUSE) {
-            *shown = Some(Instant::now());
-            self.bar.set_message(words(made, self.log.as_ref()));
+        state.drawn = Some(now);
+        state.learn();
+        if let Some((stop, _)) = state.looking.as_ref().filter(|(_, since)| since.elapsed() > PATIENCE) {
+            stop.store(true, Ordering::Relaxed);
         }
+        let text = state.line(made, self.log.as_ref(), self.live.width());
+        drop(state);
+        self.live.draw(text);
     }
 
     /// Takes the line away, for instance before a message.
     pub fn clear(&self) {
-        self.bar.finish_and_clear();
+        self.live.clear();
     }
 
     /// A writer for the terminal that steps around the line.
     pub fn around<W: Write>(&self, inner: W) -> Around<W> {
-        Around { bar: self.bar.clone(), inner }
+        self.live.around(inner)
+    }
+
+    fn state(&self) -> std::sync::MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// The line of many runs: a bar of those that have ended and some words, hidden when standard error is no terminal.
-pub struct Tally {
-    bar: ProgressBar,
+impl State {
+    /// Adds up the time of the stretch since it was looked at last.
+    fn time(&mut self, now: Instant) {
+        if let Some((since, from)) = self.mark.replace((now, self.done)) {
+            self.timed.0 += (now - since).as_secs_f64();
+            self.timed.1 += self.done - from;
+        }
+    }
+
+    /// Takes up a new measurement of the speed.
+    fn learn(&mut self) {
+        let (seconds, steps) = std::mem::take(&mut self.timed);
+        if seconds > 0.0 {
+            let rate = steps as f64 / seconds;
+            self.rate = Some(self.rate.map_or(rate, |before| before + NEWS * (rate - before)));
+        }
+    }
+
+    /// Whether it is known that further runs follow the present one.
+    fn goes_on(&self) -> bool {
+        let deck = *self.deck.lock().unwrap_or_else(PoisonError::into_inner);
+        deck.is_some_and(|all| self.before + self.stretches + self.done < all)
+    }
+
+    /// Steps made and steps in all: those of the whole deck if they are known and fit what has been made, else those of the run, or
+    /// of what goes on without a run having been asked for.
+    fn share(&self, made: &Made) -> (i64, i64, bool) {
+        let deck = *self.deck.lock().unwrap_or_else(PoisonError::into_inner);
+        let in_run = self.stretches + self.done;
+        match deck {
+            _ if in_run > self.asked => (made.done, made.total, false),
+            Some(all) if self.before + self.asked <= all => (self.before + in_run, all, true),
+            _ => (in_run, self.asked, false),
+        }
+    }
+
+    /// The line: bar, steps, speed, time left, and as many of the latest values as there is room for.
+    fn line(&self, made: &Made, log: Option<&Log>, width: usize) -> String {
+        let (done, all, whole) = self.share(made);
+        let wide = if width < 100 { 10 } else { 20 };
+        let full = (wide as f64 * done as f64 / all.max(1) as f64).floor().clamp(0.0, wide as f64) as usize;
+        let of = if whole || all == made.total && self.before == 0 { "" } else { " of this run" };
+        let mut text = format!("{}{} ", "█".repeat(full), "░".repeat(wide - full));
+        text += &format!("{} of {} steps{of}", count(done as f64), count(all as f64));
+        if let Some(rate) = self.rate.filter(|r| *r > 0.0) {
+            let left = duration(((all - done) as f64 / rate).ceil());
+            text += &format!(", {} steps/s, {left} left", count(rate));
+        }
+        let mut long = text.chars().count();
+        for word in values(made, log) {
+            long += word.chars().count() + 2;
+            if long > width {
+                break;
+            }
+            text += "  ";
+            text += &word;
+        }
+        text
+    }
 }
+
+/// Step, time, step size and the latest thermo row, as `step 120`, `t 1.2e-6`, `dt 1e-8`, `pe 0.31`.
+fn values(made: &Made, log: Option<&Log>) -> Vec<String> {
+    let mut words = vec![
+        format!("step {}", made.step),
+        format!("t {}", short(made.time)),
+        format!("dt {}", short(made.dt)),
+    ];
+    let row = log.and_then(|log| log.tables(|t| t.last().map(|(c, r)| (c.to_vec(), r.values.clone()))));
+    let (columns, values) = row.unwrap_or_default();
+    let own = |c: &str| ["step", "time", "dt"].contains(&c);
+    let shown = columns.iter().zip(values).filter(|(c, _)| !own(c));
+    words.extend(shown.map(|(column, value)| format!("{column} {}", short(value))));
+    words
+}
+
+/// The line of many runs: a bar of those that have ended and some words, hidden when standard error is no terminal.
+pub struct Tally(Live);
 
 impl Default for Tally {
     /// A line that shows itself when there is something to show.
     fn default() -> Self {
-        let target = if stderr().is_terminal() {
-            ProgressDrawTarget::stderr_with_hz(5)
-        } else {
-            ProgressDrawTarget::hidden()
-        };
-        let bar = ProgressBar::with_draw_target(Some(0), target);
-        if let Ok(style) = ProgressStyle::with_template("{bar:20} {pos}/{len} runs  {wide_msg}") {
-            bar.set_style(style);
-        }
-        Self { bar }
+        Self(Live::of_stderr())
     }
 }
 
 impl Tally {
     /// Shows how many of how many have ended, and some words.
     pub fn show(&self, done: usize, of: usize, words: &str) {
-        self.bar.set_length(of as u64);
-        self.bar.set_position(done as u64);
-        self.bar.set_message(words.to_owned());
+        let full = (20 * done / of.max(1)).min(20);
+        self.0.draw(format!("{}{} {done}/{of} runs  {words}", "█".repeat(full), "░".repeat(20 - full)));
     }
 
     /// Takes the line away.
     pub fn clear(&self) {
-        self.bar.finish_and_clear();
+        self.0.clear();
     }
 
     /// Does something with the line out of the way.
     pub fn suspend(&self, what: impl FnOnce()) {
-        self.bar.suspend(what);
+        self.0.aside(what);
     }
 
     /// A writer for the terminal that steps around the line.
     pub fn around<W: Write>(&self, inner: W) -> Around<W> {
-        Around { bar: self.bar.clone(), inner }
-    }
-}
-
-/// Step, time, step size and the latest thermo row, as `step 120  t 1.2e-6  dt 1e-8  pe 0.31`.
-fn words(made: &Made, log: Option<&Log>) -> String {
-    let mut text = format!("step {}  t {}  dt {}", made.step, short(made.time), short(made.dt));
-    let row = log.and_then(|log| log.tables(|t| t.last().map(|(c, r)| (c.to_vec(), r.values.clone()))));
-    let (columns, values) = row.unwrap_or_default();
-    let own = |c: &str| ["step", "time", "dt"].contains(&c);
-    for (column, value) in columns.iter().zip(values).filter(|(c, _)| !own(c)).take(COLUMNS) {
-        text += &format!("  {column} {}", short(value));
-    }
-    text
-}
-
-/// Writes with the line out of the way, so that table lines and live line do not run into each other.
-pub struct Around<W> {
-    bar: ProgressBar,
-    inner: W,
-}
-
-impl<W: Write> Write for Around<W> {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        let inner = &mut self.inner;
-        self.bar.suspend(|| inner.write(bytes))
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.inner.flush()
+        self.0.around(inner)
     }
 }
 
@@ -175,7 +271,7 @@ mod tests {
 
     #[test]
     fn without_a_terminal_the_line_is_silent_and_text_passes_unchanged() {
-        let progress = Progress::on(ProgressDrawTarget::hidden(), None);
+        let progress = Progress::default();
         let mut out = vec![];
         progress.step(&MADE);
         progress.around(&mut out).write_all(b"Step Temp\n").unwrap();
@@ -184,12 +280,38 @@ mod tests {
     }
 
     #[test]
-    fn the_line_shows_the_latest_row() {
+    fn the_line_shows_the_latest_row_as_far_as_there_is_room() {
         let log = Log::silent();
         log.keep_rows();
         let columns = || ["step", "pe", "v_speed"].map(String::from).to_vec();
         log.row(|| (columns(), Row { step: 120, time: 1.2e-6, values: vec![120.0, 0.31257, 7.5e6] }));
-        assert_eq!(words(&MADE, Some(&log)), "step 121  t 1.210e-6  dt 1.000e-8  pe 0.3126  v_speed 7.500e6");
-        assert_eq!(words(&MADE, None), "step 121  t 1.210e-6  dt 1.000e-8");
+        let all = ["step 121", "t 1.210e-6", "dt 1.000e-8", "pe 0.3126", "v_speed 7.500e6"];
+        assert_eq!(values(&MADE, Some(&log)), all);
+        assert_eq!(values(&MADE, None), all[..3]);
+        let state = State { asked: 10, done: 1, rate: Some(3.0), ..State::default() };
+        let line = |width| state.line(&MADE, Some(&log), width);
+        assert_eq!(line(60), "█░░░░░░░░░ 1 of 10 steps, 3 steps/s, 3 s left  step 121");
+        assert!(line(94).ends_with("  step 121  t 1.210e-6  dt 1.000e-8  pe 0.3126"), "{}", line(94));
+    }
+
+    #[test]
+    fn steps_are_those_of_the_whole_deck_once_they_are_known() {
+        let progress = Progress::default();
+        let share = || progress.state().share(&Made { done: 40, total: 50, ..MADE });
+        progress.asked(100);
+        progress.state().done = 40;
+        progress.begins();
+        progress.state().done = 40;
+        assert_eq!(share(), (80, 100, false));
+        *progress.state().deck.lock().unwrap() = Some(700);
+        assert_eq!(share(), (80, 700, true));
+        progress.asked(300);
+        progress.state().done = 40;
+        assert_eq!(share(), (140, 700, true));
+        // The deck makes more than was foreseen, and then a minimization.
+        progress.asked(500);
+        assert_eq!(share(), (0, 500, false));
+        progress.state().done = 501;
+        assert_eq!(share(), (40, 50, false));
     }
 }

@@ -167,6 +167,10 @@ impl Names for Graph {
         self.find_compute(id).map(|c| c.compute.shape())
     }
 
+    fn elements(&self, id: &str) -> Vec<String> {
+        self.find_compute(id).map(|c| c.compute.elements()).unwrap_or_default()
+    }
+
     fn fix(&self, id: &str) -> Option<Shape> {
         self.find_fix(id).map(|f| f.fix.shape())
     }

@@ -147,6 +147,13 @@ impl Record {
         self.put(k, key);
     }
 
+    /// Changes the text of the line at a place that provides no name, as by something that became of it.
+    pub fn amend(&mut self, span: Span, text: impl FnOnce(&str) -> String) {
+        if let Some(&k) = self.known.get(&(place(span), None)) {
+            self.nodes[k].text = text(&self.nodes[k].text);
+        }
+    }
+
     fn put(&mut self, k: usize, key: (Place, Option<Use>)) {
         self.known.insert(key, k);
         self.count(k, true);

@@ -24,6 +24,8 @@ pub struct Row {
     pub log: Log,
     /// Says once that particles were lost.
     pub warn: bool,
+    /// How many columns the header on a narrow screen has.
+    pub shown: usize,
 }
 
 impl Row {
@@ -51,6 +53,17 @@ impl Row {
         Ok(())
     }
 
+    /// Says on a narrow screen which columns it has no room for.
+    fn name_the_rest(&self) {
+        let rest: Vec<&str> =
+            self.layout.columns.iter().skip(self.shown).map(|c| c.header.as_str()).collect();
+        if rest.is_empty() {
+            return;
+        }
+        let place = self.log.path().map_or(String::new(), |path| format!(", in {} alone", path.display()));
+        self.log.to_screen(&format!("({} more than fit here{place}: {})", rest.len(), rest.join(" ")));
+    }
+
     /// The row as dumps repeat it.
     fn repeated(&self, w: &World, t: &Tick) -> TableRow {
         let (_, row) = self.kept(w, t);
@@ -71,18 +84,8 @@ impl Op for Row {
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if t.setup {
-            self.log.line(&memory_line(perigrain_world::memory::bytes(w)))?;
-        }
-        if t.setup {
+            self.log.line_or(&memory_line(perigrain_world::memory::bytes(w)), None)?;
             self.all_there(w, t)?;
-        }
-        if t.setup && !self.layout.header().is_empty() {
-            self.log.line(&self.layout.header())?;
-        }
-        if self.warn && w.rebuild.lost > 0 {
-            self.warn = false;
-            let (now, lost) = (w.n() as u64, std::mem::take(&mut w.rebuild.lost));
-            self.log.line(&format!("WARNING: Lost atoms: original {} current {now}", now + lost))?;
         }
         let values: Vec<Value> = (self.readings.iter().zip(&self.layout.columns))
             .map(|(r, c)| {
@@ -93,8 +96,24 @@ impl Op for Row {
                 }
             })
             .collect();
+        let atoms = w.n() as u64;
+        let fitting = self.log.brief().map_or(usize::MAX, |width| self.layout.fitting(width, atoms, &values));
+        if t.setup && !self.layout.header().is_empty() {
+            self.shown = fitting;
+            self.log.line_or(&self.layout.header(), Some(&self.layout.header_of(fitting)))?;
+            self.name_the_rest();
+        }
+        if self.warn && w.rebuild.lost > 0 {
+            self.warn = false;
+            let (now, lost) = (atoms, std::mem::take(&mut w.rebuild.lost));
+            self.log.line(&format!("WARNING: Lost atoms: original {} current {now}", now + lost))?;
+        }
         let cpu = w.clock.began.map_or(0.0, |b| b.elapsed().as_secs_f64());
-        self.log.line(&self.layout.row(t.step, cpu, w.n() as u64, &values))?;
+        let row = self.layout.row(t.step, cpu, atoms, &values);
+        match fitting.min(self.shown) {
+            n if n >= values.len() => self.log.line(&row)?,
+            n => self.log.line_or(&row, Some(&self.layout.row_of(n, t.step, cpu, atoms, &values)))?,
+        }
         self.log.row(|| self.kept(w, t));
         w.parts.row = Some(Arc::new(self.repeated(w, t)));
         if self.layout.flush { self.log.flush() } else { Ok(()) }

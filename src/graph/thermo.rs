@@ -342,7 +342,15 @@ impl Thermo {
                 }
             });
         }
-        Ok(Box::new(Row { layout, readings, spans, when, log, warn: self.lost == Lost::Warn }))
+        Ok(Box::new(Row {
+            layout,
+            readings,
+            spans,
+            when,
+            log,
+            warn: self.lost == Lost::Warn,
+            shown: usize::MAX,
+        }))
     }
 }
 

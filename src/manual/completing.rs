@@ -107,19 +107,34 @@ fn possible(typed: &[&str], word: &str, known: &Known, folder: &Path) -> (usize,
         },
         _ => {}
     }
-    let Some((place, page)) = knowing::place(typed, known) else { return (0, vec![]) };
+    let Some((places, page)) = knowing::places(typed, known) else { return (0, vec![]) };
     let slot = Slot { command, typed, text: page.doc.text, known, folder, word };
-    let mut out = vec![];
+    let mut out = slot.behind_region(page.doc.syntax);
     let mut skip = 0;
-    for here in &place.here {
-        for one in here.trim_end_matches('…').split('|') {
-            let (s, mut names) = slot.names(one, &place.before);
-            skip = skip.max(s);
-            out.append(&mut names);
+    for place in &places {
+        for here in place.here.iter().filter(|here| !PLACES.contains(&here.as_str())) {
+            for one in here.trim_end_matches('…').split('|') {
+                let (s, mut names) = slot.names(one, &place.before);
+                skip = skip.max(s);
+                out.append(&mut names);
+            }
         }
+        let faces = place.here.iter().any(|here| FACES.contains(&here.as_str()));
+        out.extend(of(
+            What::Keyword,
+            if command == "region" && faces { &["INF", "EDGE"][..] } else { &[] }.iter().copied(),
+        ));
+        let open = place.here.iter().any(|here| PLACES.contains(&here.as_str()));
+        out.extend(of(What::Keyword, open.then_some("NULL")));
     }
     (skip, out)
 }
+
+/// Where a region may go on without an end, or end with the box.
+const FACES: [&str; 8] = ["XLO", "XHI", "YLO", "YHI", "ZLO", "ZHI", "LO", "HI"];
+
+/// Where a wall lies, if it is there at all: numbers, and no words as they stand in syntax lines.
+const PLACES: [&str; 2] = ["lo", "hi"];
 
 /// Attributes of particles that formulas know.
 const ATTRIBUTES: [&str; 16] = [
@@ -138,10 +153,32 @@ struct Slot<'a> {
 }
 
 impl Slot<'_> {
+    /// Regions behind a `region` that wants one, wherever in the line it stands.
+    fn behind_region(&self, syntax: &str) -> Vec<Candidate> {
+        let wants = ["region ID", "region regionID", "region region-ID"].iter().any(|w| syntax.contains(w));
+        if !wants || self.typed.len() < 3 || self.typed.last() != Some(&"region") {
+            return vec![];
+        }
+        let named = |text: &String| Candidate { text: text.clone(), what: What::Named(Named::Region) };
+        self.known.regions.iter().map(named).collect()
+    }
+
+    /// Whether the page lists keywords that may come one after the other.
+    fn text_repeats(&self) -> bool {
+        !knowing::keywords_in(self.text).is_empty()
+    }
+
     /// What a placeholder may become, `before` being the word of the syntax line before it.
     fn names(&self, placeholder: &str, before: &str) -> (usize, Vec<Candidate>) {
         let last = self.typed.last().copied().unwrap_or_default();
         match (Named::of(placeholder, before, last, self.command), placeholder) {
+            (_, "file") if self.command == "material" => (0, of(What::Keyword, ["file"])),
+            (Some(Named::File), _) if self.command == "material" => {
+                let (skip, mut all) = files(self.word, self.folder);
+                let built_in = perigrain_world::potentials::EMBEDDED.iter().map(|(name, _)| *name);
+                all.extend(of(What::File, built_in));
+                (skip, all)
+            }
             (Some(Named::File), _) => files(self.word, self.folder),
             (Some(kind), _) => {
                 let mut known = self.known.clone();
@@ -150,7 +187,17 @@ impl Slot<'_> {
             }
             (_, "STYLE" | "style") => (0, of(What::Style, knowing::styles(self.command))),
             (_, "attribute") => (0, [of(What::Attribute, ATTRIBUTES), values(self.known)].concat()),
+            // Behind the first keyword and its value others may come.
+            (_, "value") if before.starts_with("keyword") || self.text_repeats() => {
+                (0, [of(What::Keyword, knowing::keywords_in(self.text)), values(self.known)].concat())
+            }
             (_, "input" | "value") => (0, values(self.known)),
+            (_, "NULL") => (0, of(What::Keyword, ["NULL"])),
+            (_, "c_ID") => (0, values(self.known).into_iter().filter(|c| c.text.starts_with('c')).collect()),
+            (_, "f_ID") => (0, values(self.known).into_iter().filter(|c| c.text.starts_with('f')).collect()),
+            (_, p) if p.starts_with("v_") => {
+                (0, values(self.known).into_iter().filter(|c| c.text.starts_with('v')).collect())
+            }
             (_, "KEYWORD" | "keyword") => (0, of(What::Keyword, knowing::keywords_in(self.text))),
             (_, p) if is_word(p) => (0, of(What::Keyword, [p])),
             _ => (0, vec![]),
@@ -304,6 +351,25 @@ mod tests {
         check("run 100 pos", &["run 100 post"]);
         check("run 100 &\n  upt", &["run 100 &\n  upto"]);
         check("thermo_style custom st", &["thermo_style custom step"]);
+    }
+
+    #[test]
+    fn what_the_syntax_wants_is_offered_wherever_it_stands() {
+        check("material m f", &["material m file"]);
+        check("material m file ste", &["material m file steel.toml"]);
+        check("region r block I", &["region r block INF"]);
+        check("region r block INF E", &["region r block INF EDGE"]);
+        check("region r cylinder z 0 0 1 E", &["region r cylinder z 0 0 1 EDGE"]);
+        check(
+            "fix w all wall/gran/region granular hooke 1 0.5 region n",
+            &["fix w all wall/gran/region granular hooke 1 0.5 region notch"],
+        );
+        check("fix w all wall/gran hooke 1 NULL 1 NULL 0.5 0 zplane h", &[]);
+        check("compute c all erotate/rigid m", &["compute c all erotate/rigid motion"]);
+        check("compute c all com/chunk d", &["compute c all com/chunk dmg"]);
+        check("dump d all image 1 a.png type type backc", &["dump d all image 1 a.png type type backcolor"]);
+        check("group g region b", &["group g region block"]);
+        check("fix 1 all setforce NULL NU", &["fix 1 all setforce NULL NULL"]);
     }
 
     #[test]

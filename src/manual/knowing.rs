@@ -98,10 +98,11 @@ impl Named {
     /// What a placeholder of a syntax line names: `before` is the word of the line before it, `last` the word typed there.
     pub fn of(placeholder: &str, before: &str, last: &str, command: &str) -> Option<Self> {
         Some(match placeholder {
-            "group" | "GROUP" | "group-ID" | "PARENT" => Self::Group,
-            "REGION" | "region-ID" => Self::Region,
-            "temp-ID" | "COMPUTE" => Self::Compute,
-            "FIX" => Self::Fix,
+            "group" | "GROUP" | "group-ID" | "PARENT" | "GROUP1" | "GROUP2" => Self::Group,
+            "REGION" | "region-ID" | "regionID" => Self::Region,
+            "temp-ID" | "COMPUTE" | "chunkID" => Self::Compute,
+            "FIX" | "fix-ID" | "fixID" => Self::Fix,
+            "TEMPLATE" => Self::Molecule,
             "LABEL" => Self::Label,
             "NAME" if ["variable", "next"].contains(&command) => Self::Variable,
             "NAME" if ["variable", "var", "x|y|z"].contains(&before) => Self::Variable,
@@ -176,6 +177,15 @@ fn best(typed: &[&str], known: &Known) -> Option<&'static Entry> {
         }
     }
     best.map(|(_, entry)| entry)
+}
+
+/// What may stand behind the words typed as far as other forms of the same page say that fit as well as the best one.
+pub fn places(typed: &[&str], known: &Known) -> Option<(Vec<Place>, Page)> {
+    let entry = best(typed, known)?;
+    let fit = entry.form.fit(typed);
+    let same = |e: &&Entry| e.page.title() == entry.page.title() && e.form.fit(typed) == fit;
+    let all = FORMS.get(*typed.first()?)?;
+    Some((all.iter().filter(same).map(|e| e.form.place(typed)).collect(), entry.page))
 }
 
 /// What stands behind the words typed, from the form that fits them best, and that form's page.

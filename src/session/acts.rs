@@ -1,7 +1,7 @@
 //! Declarations, and lines that change the scene, done at once; where a deck is only looked at, only as far as the scene is known.
 
 use super::planning::hangs_on_a_run;
-use super::{Mode, Session, commands, later};
+use super::{Mode, Session, brief, commands, later};
 use crate::graph::Role;
 use crate::graph::build::{Context, declare};
 use crate::graph::env::DeckValues;
@@ -88,9 +88,7 @@ impl Session {
         })();
         let notes = self.sources.adopt(notes.into_inner());
         self.notes.append(notes);
-        for line in &said {
-            self.options.log.line(line)?;
-        }
+        self.tell_in_one_line(cmd, &said)?;
         let settles = outcome?;
         if let Some((id, compute)) = left {
             self.graph.leave(id, style.name(), compute, cmd.span);
@@ -105,6 +103,19 @@ impl Session {
             self.declare(&line).map_err(|e| e.at(line.span).within(&text))?;
         }
         Ok(())
+    }
+
+    /// Says what a command has made: its lines in the log, and one line on a terminal, unless they are results as those of
+    /// `calibrate`.
+    fn tell_in_one_line(&self, cmd: &Command, said: &[String]) -> Result<()> {
+        let log = &self.options.log;
+        if log.brief().is_none() || cmd.name.text == "calibrate" {
+            return said.iter().try_for_each(|line| log.line(line));
+        }
+        if let Some(line) = brief::one_line(said) {
+            log.to_screen(&line);
+        }
+        said.iter().try_for_each(|line| log.to_log(line))
     }
 
     /// A scene read from a file that the deck would have written is known as far as the scene was that went into it; what

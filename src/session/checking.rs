@@ -45,6 +45,7 @@ impl Session {
         self.check_box(&mut found);
         self.check_orthogonal(span, &mut found);
         self.check_variables(&mut found);
+        self.check_lattice_units(&mut found);
         found.0.extend(self.graph.thermo.forgotten());
         crate::graph::dynamic::check(&self.graph, &self.world, &mut found);
         let (errors, notes) =

@@ -130,6 +130,8 @@ impl Session {
             watch: _,
             worked: _,
             spent: _,
+            foreseen: _,
+            spoken: _,
             swept: _,
             interrupted: _,
             quit: _,
@@ -180,6 +182,11 @@ impl Session {
         self.timer = s.timer;
         self.plan = None;
         self.scenes += 1;
+    }
+
+    /// The folder that files are named from beside the working folder: the deck's own.
+    pub fn folder(&self) -> std::path::PathBuf {
+        self.options.folder.clone()
     }
 
     /// Bytes the scene takes.

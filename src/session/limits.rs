@@ -55,6 +55,10 @@ pub(super) struct Warden<'a> {
 }
 
 impl Watch for Warden<'_> {
+    fn asked(&mut self, steps: i64) {
+        self.watch.asked(steps);
+    }
+
     fn begins(&mut self, w: &World) {
         self.watch.begins(w);
     }

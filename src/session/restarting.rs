@@ -34,11 +34,20 @@ impl Session {
             self.promise_restart(name.text().to_string());
             return Ok(());
         }
+        self.save_restart(&word.text).map_err(|e| e.at(word.span))
+    }
+
+    /// Writes the scene as it is to a restart file; `*` in its name stands for the step.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub(super) fn save_restart(&mut self, name: &str) -> Result<()> {
+        let name = pattern(name)?;
         self.world.spread_type_masses();
         let standing = self.ran && !self.world.parts.changed;
         let path = name.at(self.world.clock.step);
         let (pair, declared) = (self.graph.force_lines(), self.graph.declared());
-        save(&path, &self.world, self.ran, standing, &pair, &declared).map_err(|e| e.at(word.span))
+        save(&path, &self.world, self.ran, standing, &pair, &declared)
     }
 
     /// Where nothing is written: files that a line would have written, for the lines that read them.
@@ -94,7 +103,8 @@ impl Session {
             return Ok(());
         }
         self.tell(&path)?;
-        self.options.log.line(&format!("  read_restart CPU = {:.3} seconds", began.elapsed().as_secs_f64()))
+        let text = format!("  read_restart CPU = {:.3} seconds", began.elapsed().as_secs_f64());
+        self.options.log.line_or(&text, None)
     }
 
     /// Where nothing is written: the scene that an earlier line would have written.
@@ -203,18 +213,20 @@ impl Session {
 
     fn tell(&self, path: &Path) -> Result<()> {
         let (log, w) = (&self.options.log, &self.world);
-        log.line(&format!("Reading restart file {} ...", path.display()))?;
-        log.line(&format!("  restoring atom style {} from restart", w.particles.style.name()))?;
+        let mut said = vec![format!("Reading restart file {} ...", path.display())];
+        said.push(format!("  restoring atom style {} from restart", w.particles.style.name()));
         if let Some(d) = &*w.domain {
-            log.line(&format!("  {}", d.told(d.lo, d.hi)))?;
+            said.push(format!("  {}", d.told(d.lo, d.hi)));
         }
         if let Some(node) = &self.graph.pair {
-            log.line(&format!("  restoring pair style {} from restart", node.pair.facts().name))?;
+            said.push(format!("  restoring pair style {} from restart", node.pair.facts().name));
         }
         if let Some(node) = &self.graph.bond {
-            log.line(&format!("  restoring bond style {} from restart", node.force.name()))?;
+            said.push(format!("  restoring bond style {} from restart", node.force.name()));
         }
-        log.line(&format!("  {} atoms at step {}", w.n(), w.clock.step))
+        let count = format!("  {} atoms at step {}", w.n(), w.clock.step);
+        log.line_or(&said.join("\n"), None)?;
+        log.line_or(&count, Some(&format!("Reading restart file {}:{}", path.display(), &count[1..])))
     }
 
     /// At the first run after read_restart: whether the scene with its forces is still the one that was stored, and what

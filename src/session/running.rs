@@ -57,6 +57,7 @@ impl Session {
         self.ready(cmd.span)?;
         self.check_run(cmd.span, args.steps > 0)?;
         if self.checking() {
+            self.foresee(cmd, args.steps);
             self.promise_outputs();
             self.unsee(false);
             return Ok(());
@@ -66,7 +67,8 @@ impl Session {
         }
         self.say_notes()?;
         if self.world.settings.timed_out() {
-            self.options.log.line("The limit of `timer timeout` has passed: no further run")?;
+            let which = if self.options.limit.is_some() { "-timeout" } else { "timer timeout" };
+            self.options.log.line(&format!("The limit of `{which}` has passed: no further run"))?;
             return Ok(());
         }
         if self.world.clock.halt == Halt::All {
@@ -77,6 +79,10 @@ impl Session {
         c.start = args.start.unwrap_or(c.step);
         c.stop = args.stop.unwrap_or(last);
         let known = !hangs_on_a_run(cmd);
+        if !self.looking() {
+            self.foretell();
+            self.watch.asked(args.steps);
+        }
         match args.every {
             None => self.leg(args.steps, args.pre, args.post, cmd.span),
             Some((every, commands)) => {
@@ -111,6 +117,13 @@ impl Session {
         }?;
         if self.planning() {
             self.unsee(known);
+        }
+        if self.interrupted {
+            let step = self.world.clock.step;
+            let made = args.steps - (last - step);
+            self.graph
+                .lines
+                .amend(cmd.span, |text| format!("{text}  # stopped at step {step}, after {made}"));
         }
         Ok(())
     }
@@ -342,8 +355,7 @@ impl Session {
         self.say_end(&plan, &outcome, None, post && self.timer.tables())?;
         self.say_deep(span)?;
         if self.world.clock.halt == Halt::All && self.world.settings.timed_out() {
-            let step = self.world.clock.step;
-            self.options.log.line(&format!("Wall time limit reached at step {step}"))?;
+            self.say_timed_out()?;
         }
         if self.options.mode == Mode::Measure {
             self.options.log.line(explain::text(&plan, true).trim_end())?;
@@ -380,6 +392,7 @@ impl Session {
     ) -> Result<()> {
         self.worked.add(o);
         self.spend(plan);
+        let few = self.in_three_lines(plan, o, minimized, post);
         let log = &self.options.log;
         let times = plan.time_by_class();
         let section = |name, class| Section {
@@ -410,14 +423,14 @@ impl Session {
         };
         let text = finish.text();
         let shown = if post { text.as_str() } else { text.lines().next().unwrap_or("") };
-        log.line(shown)?;
+        log.line_or(shown, Some(&few))?;
         if post {
             let ops: Vec<(&str, f64, u64)> = plan
                 .ops
                 .iter()
                 .map(|p| (&*p.about.name, p.meter.time.as_secs_f64(), p.meter.calls))
                 .collect();
-            log.line(perigrain_out::thermo::ops_table(&ops, finish.seconds).trim_end())?;
+            log.line_or(perigrain_out::thermo::ops_table(&ops, finish.seconds).trim_end(), None)?;
         }
         if o.interrupted {
             log.line(&format!("Interrupted at step {}: all files are complete", self.world.clock.step))?;

@@ -40,6 +40,22 @@ impl Session {
         );
     }
 
+    /// How many times as long the time step could be, as far as pair styles and walls can tell: nothing where bonds of a bond
+    /// style, levels, short steps of solids or a fix decide.
+    pub(super) fn room_for_step(&self) -> Option<f64> {
+        let (w, g) = (&self.world, &self.graph);
+        let decided = g.fixes.iter().any(|f| f.style.starts_with("dt/")) || !w.bonds.is_empty();
+        if decided || !matches!(w.settings.run_style, RunStyle::Verlet) || w.clock.dt <= 0.0 {
+            return None;
+        }
+        let deck = self.said();
+        let pairs = g.pair.iter().flat_map(|n| sub_styles(n.pair.as_ref())).map(|p| p.scales(w, deck));
+        let own = pairs.flat_map(|p| [p.stable_step.map(|s| 0.8 * s), p.contact_time.map(|c| 0.05 * c)]);
+        let said = deck.density.zip(deck.diameter);
+        let walls = g.fixes.iter().map(|f| f.fix.contact_time(w, said).map(|c| 0.05 * c));
+        own.chain(walls).flatten().reduce(f64::min).map(|longest| longest / w.clock.dt)
+    }
+
     /// Which step is too long for bonds, where that is said, and what to say instead.
     fn step_remedy(&self, limit: f64, place: Span) -> (&'static str, Span, String) {
         let whole = self.world.clock.dt;

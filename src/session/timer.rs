@@ -26,7 +26,39 @@ impl Timer {
     }
 }
 
+/// A limit of time for all runs of a session, and what is left behind where it ends one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Limit {
+    /// How long the session may make steps, from its beginning on.
+    pub time: Duration,
+    /// The restart file that is written then, unless the deck has its own; `*` stands for the step.
+    pub restart: String,
+}
+
 impl Session {
+    /// Sets the limit that the session was given.
+    pub(super) fn limit_time(&mut self) {
+        let Some(limit) = &self.options.limit else { return };
+        let settings = &mut self.world.settings;
+        (settings.deadline, settings.limit_every) = (Some(self.born + limit.time), 1);
+    }
+
+    /// Tells that a limit of time has ended a run, and leaves a restart file to go on from if the session was given the limit.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub(super) fn say_timed_out(&mut self) -> Result<()> {
+        let (step, log) = (self.world.clock.step, self.options.log.clone());
+        log.line(&format!("Wall time limit reached at step {step}"))?;
+        let Some(limit) = self.options.limit.clone() else { return Ok(()) };
+        let mut names = self.graph.restarts.names();
+        if names.is_empty() {
+            self.save_restart(&limit.restart)?;
+            names.push(limit.restart.replacen('*', &step.to_string(), 1));
+        }
+        log.line(&format!("  to go on from: {}", names.join(" or ")))
+    }
+
     /// The `timer` command.
     ///
     /// # Errors
@@ -71,16 +103,21 @@ fn limit(word: &Word) -> Result<Option<Duration>> {
     if ["off", "unlimited"].contains(&word.text.as_str()) {
         return Ok(None);
     }
-    let parts: Option<Vec<u64>> =
-        word.text.split(':').map(|p| p.parse().ok().filter(|n| *n < 1 << 32)).collect();
-    match parts.filter(|p| p.len() <= 3) {
-        Some(parts) => Ok(Some(Duration::from_secs(parts.into_iter().fold(0, |s, p| 60 * s + p)))),
+    match time(&word.text) {
+        Some(time) => Ok(Some(time)),
         None => refuse(
             Code::BAD_VALUE,
             word.span,
             format!("`{}` is no time: write seconds, MM:SS, H:MM:SS or off", word.text),
         ),
     }
+}
+
+/// `SS`, `MM:SS` or `H:MM:SS` as a time.
+pub fn time(text: &str) -> Option<Duration> {
+    let parts: Option<Vec<u64>> = text.split(':').map(|p| p.parse().ok().filter(|n| *n < 1 << 32)).collect();
+    let parts = parts.filter(|p| p.len() <= 3)?;
+    Some(Duration::from_secs(parts.into_iter().fold(0, |s, p| 60 * s + p)))
 }
 
 /// Seconds as HH:MM:SS.

@@ -20,8 +20,7 @@ pub struct Checked {
 
 /// Checks a deck without acting. It ends between two lines when `stop` is set, and what it has found then is not all.
 pub fn check(options: &Options, name: &str, text: &str, stop: &Arc<AtomicBool>) -> Checked {
-    let options = Options { mode: Mode::Check, ..options.clone() };
-    let mut session = match begin(&options, stop) {
+    let mut session = match begin(options, stop) {
         Ok(session) => session,
         Err(problems) => return Checked { sources: Sources::default(), problems },
     };
@@ -31,14 +30,15 @@ pub fn check(options: &Options, name: &str, text: &str, stop: &Arc<AtomicBool>) 
         all.append(problems);
     }
     if let Some(swept) = session.swept() {
-        combinations(&options, &swept.axes, (name, text), stop, &mut all);
+        combinations(options, &swept.axes, (name, text), stop, &mut all);
     }
     all.0.sort_by_key(|d| d.span.map(|s| (s.file, s.start)));
     Checked { sources: session.sources, problems: all }
 }
 
-fn begin(options: &Options, stop: &Arc<AtomicBool>) -> Result<Session, Diagnostics> {
-    let mut session = Session::new(options.clone())?;
+/// A session that only reads, and gives up when `stop` is set.
+pub(super) fn begin(options: &Options, stop: &Arc<AtomicBool>) -> Result<Session, Diagnostics> {
+    let mut session = Session::new(Options { mode: Mode::Check, ..options.clone() })?;
     session.world.settings.stop = stop.clone();
     Ok(session)
 }

@@ -117,36 +117,65 @@ pub fn text(
 }
 
 /// Columns that line up on the right, no row of more than `width` characters and not more than `most` of them; cells beyond the
-/// head are left out.
+/// head are left out. What there is no room for is left out by whole columns, one at least being shown; only texts are cut.
 pub fn aligned(head: &[String], rows: &[Vec<String>], width: usize, most: usize) -> String {
-    let lengths: Vec<usize> = (0..head.len())
-        .map(|c| {
-            rows.iter()
-                .take(most)
-                .map(|r| r[c].chars().count())
-                .chain([head[c].chars().count()])
-                .max()
-                .unwrap_or(0)
-        })
-        .collect();
+    let shown = || std::iter::once(head).chain(rows.iter().take(most).map(Vec::as_slice));
+    let long = |c: usize| shown().map(|r| r[c].chars().count()).max().unwrap_or(0);
+    let mut lengths: Vec<usize> = (0..head.len()).map(long).collect();
+    let (mut used, mut fit) = (0, 0);
+    while fit < head.len() && (used + lengths[fit] + 2 <= width || fit == 0) {
+        used += lengths[fit] + 2;
+        fit += 1;
+    }
+    let is_text = |c: usize| shown().skip(1).any(|r| !r[c].is_empty() && r[c].parse::<f64>().is_err());
+    if fit < head.len() && is_text(fit) && width >= used + 2 + SHORTEST {
+        lengths[fit] = width - used - 2;
+        fit += 1;
+    }
     let mut out = String::new();
-    for row in std::iter::once(head).chain(rows.iter().take(most).map(Vec::as_slice)) {
+    for row in shown() {
         let mut words = String::new();
-        for (cell, length) in row.iter().zip(&lengths) {
-            let _ = write!(words, "  {cell:>length$}");
+        for (cell, &length) in row[..fit.min(row.len())].iter().zip(&lengths) {
+            match cell.chars().count() > length {
+                true => words.extend("  ".chars().chain(cell.chars().take(length - 1)).chain(['…'])),
+                false => _ = write!(words, "  {cell:>length$}"),
+            }
         }
-        let cut: String = words.trim_end().chars().take(width).collect();
-        let _ = writeln!(out, "{cut}");
+        let _ = writeln!(out, "{}", words.trim_end());
     }
     if rows.len() > most {
         let _ = writeln!(out, "  … {} more", rows.len() - most);
     }
+    if fit < head.len() {
+        let _ =
+            writeln!(out, "  ({} columns more than fit here: {})", head.len() - fit, head[fit..].join(" "));
+    }
     out
 }
+
+/// The fewest characters of a text that is cut.
+const SHORTEST: usize = 12;
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_are_cut_between_columns_and_within_texts_alone() {
+        let words = |line: &str| line.split(' ').map(String::from).collect::<Vec<_>>();
+        let (head, rows) = (words("run v pe"), [words("1 20.25 0.123456789")]);
+        let table = |width| aligned(&head, &rows, width, 9);
+        assert_eq!(
+            table(23),
+            "  run      v           pe\n    1  20.25  0.123456789\n"
+                .replace("           pe", "")
+                .replace("  0.123456789", "")
+                + "  (1 columns more than fit here: pe)\n"
+        );
+        assert_eq!(table(25).lines().nth(1), Some("    1  20.25  0.123456789"));
+        let rows = [vec!["1".into(), "2".into(), "a long story of what went wrong".into()]];
+        assert_eq!(aligned(&head, &rows, 24, 9).lines().nth(1), Some("    1  2  a long story …"));
+    }
 
     #[test]
     fn every_run_has_its_row_whether_it_has_ended_or_not() {
@@ -169,7 +198,7 @@ mod tests {
         assert_eq!(csv(&jobs, &report, &outcomes), wanted);
         assert_eq!(times(&outcomes), "run,seconds,loop_seconds,threads\n1,2.000,0.000,0\n3,0.500,0.000,0\n");
         let text = text(&jobs, &report, &outcomes, 40, 2);
-        assert!(text.lines().count() == 4 && text.contains("… 1 more"), "{text}");
-        assert!(text.lines().all(|l| l.chars().count() <= 40), "{text}");
+        assert!(text.lines().count() == 5 && text.contains("… 1 more"), "{text}");
+        assert!(text.lines().take(4).all(|l| l.chars().count() <= 40), "{text}");
     }
 }

@@ -160,6 +160,10 @@ impl Declared {
 const KEPT: usize = 6;
 
 impl Compute for Declared {
+    fn elements(&self) -> Vec<String> {
+        ["tip_x", "tip_y", "tip_z", "length", "speed", "angle", "arms", "cracked"].map(String::from).to_vec()
+    }
+
     fn shape(&self) -> Shape {
         Shape { vector: 8, ..Shape::default() }
     }

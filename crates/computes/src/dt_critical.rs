@@ -82,6 +82,10 @@ struct Declared {
 }
 
 impl Compute for Declared {
+    fn elements(&self) -> Vec<String> {
+        ["solids", "grains", "times", "bonds"].map(String::from).to_vec()
+    }
+
     fn shape(&self) -> Shape {
         Shape { scalar: true, vector: 4, ..Shape::default() }
     }

@@ -63,6 +63,24 @@ struct Declared {
 }
 
 impl Compute for Declared {
+    fn elements(&self) -> Vec<String> {
+        const CHANNELS: [&str; 11] = [
+            "kinetic",
+            "rotational",
+            "strain",
+            "contacts",
+            "dashpots",
+            "friction",
+            "cracks",
+            "walls",
+            "gravity",
+            "imposed",
+            "residual",
+        ];
+        let strains = (1..=self.types).map(|k| format!("strain_{k}"));
+        CHANNELS.map(String::from).into_iter().chain(strains).chain(["heat".into()]).collect()
+    }
+
     fn shape(&self) -> Shape {
         Shape {
             scalar: true,

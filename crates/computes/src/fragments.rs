@@ -183,6 +183,12 @@ fn spectrum(list: &[Piece], least: usize) -> Vec<f64> {
 const WIDTH: usize = 11;
 
 impl Compute for Declared {
+    fn elements(&self) -> Vec<String> {
+        ["fragments", "body", "others", "dust", "eroded", "volume", "speed", "fastest"]
+            .map(String::from)
+            .to_vec()
+    }
+
     fn shape(&self) -> Shape {
         Shape { vector: 8, array: WIDTH, array_rows: Shape::OPEN, ..Shape::default() }
     }

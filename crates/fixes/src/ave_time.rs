@@ -5,7 +5,7 @@ use super::{Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::cformat::{Format, Value};
 use perigrain_computes::chunk::{hold, let_go};
-use perigrain_lang::{Args, ValueRef};
+use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_out::Sheet;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
@@ -34,7 +34,8 @@ impl Style for AveTime {
                    `start N`: no sample before step N. `off k`: the k-th value is not averaged, its latest sample counts. \
                    `file name` and `append name`: where averages go; `overwrite`: only the latest stays there (needs \
                    `ave running`). `format %g`: of each number. `title1 title2 title3`: the lines at the head of the file \
-                   (the third in mode vector only).\n\n\
+                   (the third in mode vector only). Where the elements of a compute have names, as those of energy/ledger, a line more tells them \
+                   (`# columns: step c_e[kinetic] …`, `# rows: …`), not with `compat lammps`.\n\n\
                    Scalar where there is one value and vector where there are several in mode scalar; vector for one, array \
                    with a column per value for several in mode vector. 0 before the first average. Where \
                    rows are those of chunks, their number is held from the first sample of an average to its last, for good with \
@@ -93,12 +94,29 @@ impl Output {
     /// # Errors
     /// The file cannot be written.
     pub fn begin(&self, w: &mut World, key: Numbers, defaults: &[String]) -> Result<()> {
+        self.begin_named(w, key, defaults, None)
+    }
+
+    /// As [`Output::begin`], with a line of names below the head.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn begin_named(
+        &self,
+        w: &mut World,
+        key: Numbers,
+        defaults: &[String],
+        names: Option<&str>,
+    ) -> Result<()> {
         let Some((path, append)) = self.file.as_ref().filter(|_| !w.parts.promised.instead) else {
             return Ok(());
         };
         let mut head = String::new();
         for (given, default) in self.titles.iter().zip(defaults) {
             let _ = writeln!(head, "{}", given.as_ref().unwrap_or(default));
+        }
+        if let Some(names) = names {
+            let _ = writeln!(head, "{names}");
         }
         let length = Sheet::begin(path, *append, &head)?;
         w.memo.insert(key.with("/file"), vec![length as f64]);
@@ -145,6 +163,7 @@ impl FixStyle for AveTime {
             format: Format::parse(" %g").unwrap_or_default(),
             rows: 0,
             extensive: vec![],
+            named: vec![],
         };
         let mut off = vec![];
         while let Some(word) = args.next() {
@@ -217,6 +236,8 @@ struct Declared {
     rows: usize,
     /// Which values grow with the scene.
     extensive: Vec<bool>,
+    /// What the values are, in mode vector what the rows are, where computes have names for that.
+    named: Vec<Option<String>>,
 }
 
 impl Declared {
@@ -247,8 +268,36 @@ impl Declared {
             (true, false) => shape.array_extensive,
         };
         self.extensive.push(grows);
+        self.take_names(&r, cx);
         self.values.push(r);
         Ok(())
+    }
+
+    /// Takes note of what a value is, or what the rows of a vector are.
+    fn take_names(&mut self, r: &ValueRef, cx: &BuildCx) {
+        let names = if r.kind == RefKind::Compute { cx.names.elements(&r.name) } else { vec![] };
+        match (self.vector, r.index.first()) {
+            (false, Some(k)) => {
+                let name = k.checked_sub(1).and_then(|k| names.get(k));
+                self.named.push(name.map(|name| format!("c_{}[{name}]", r.name)));
+            }
+            (false, None) => self.named.push(None),
+            (true, None) if self.named.is_empty() => self.named = names.into_iter().map(Some).collect(),
+            (true, _) => {}
+        }
+    }
+
+    /// A line of names below LAMMPS' own head, for files that are read without the manual.
+    fn names_line(&self) -> Option<String> {
+        if self.named.iter().all(Option::is_none) {
+            return None;
+        }
+        let names = self.named.iter().enumerate().map(|(k, name)| match name {
+            Some(name) => format!(" {name}"),
+            None => format!(" {}", self.values[k]),
+        });
+        let head = if self.vector { "# rows:" } else { "# columns: step" };
+        Some(head.to_owned() + &names.collect::<String>())
     }
 
     fn titles(&self) -> Vec<String> {
@@ -321,7 +370,8 @@ impl Fix for Declared {
         *w.slots.get_mut(slot) =
             perigrain_world::Slot { name: format!("f_{}", self.id), ..Default::default() };
         offer(w, slot, w.clock.step, &vec![0.0; rows * self.values.len()], self.values.len(), self.vector);
-        self.output.begin(w, self.kept().key, &self.titles())
+        let names = self.names_line().filter(|_| !w.settings.lammps());
+        self.output.begin_named(w, self.kept().key, &self.titles(), names.as_deref())
     }
 
     fn remove(&self, w: &mut World) {

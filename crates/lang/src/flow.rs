@@ -190,6 +190,7 @@ impl Script {
 
     /// Passes over a jump that a run may make: what the lines between here and its label set is unknown behind them.
     fn pass_over(&mut self, label: (FileId, usize), vars: &mut Vars) {
+        self.cut_short = true;
         match self.passed.get(&label) {
             Some(p) => vars.set_adrift_since(p.sets),
             None => drop(self.awaited.entry(label).or_insert_with(|| vars.sets())),

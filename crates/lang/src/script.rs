@@ -72,6 +72,8 @@ pub struct Script {
     pub(super) first_only: bool,
     /// How many jumps and quits that a run may make have been passed over.
     pub(super) escapes: u64,
+    /// A jump has been passed over that a run may make.
+    pub(super) cut_short: bool,
     /// Labels that have been passed, by the byte behind them.
     pub(super) passed: BTreeMap<(FileId, usize), Passed>,
     /// Labels further down that a run may have jumped to, each with the number of lines up to the jump that set variables.
@@ -117,6 +119,7 @@ impl Script {
             aside: false,
             first_only: false,
             escapes: 0,
+            cut_short: false,
             passed: BTreeMap::new(),
             awaited: BTreeMap::new(),
             progress: Progress::default(),
@@ -141,6 +144,11 @@ impl Script {
     /// Whether only a run can tell if the command at hand is reached.
     pub fn is_speculative(&self) -> bool {
         self.speculative
+    }
+
+    /// Whether a jump has been passed over that a run may make, so that lines may come more often than they did here.
+    pub fn is_cut_short(&self) -> bool {
+        self.cut_short
     }
 
     /// Whether the command at hand stands in a branch that is left aside: see [`Script::first_branches`].

@@ -50,7 +50,12 @@ struct Inner {
     tables: Option<Tables>,
     /// Only the last of them is wanted.
     last_row: bool,
+    /// Set where the screen wants few words: how many characters fit beside each other.
+    width: Option<Width>,
 }
+
+/// How many characters fit beside each other on a screen, asked each time.
+type Width = Box<dyn Fn() -> usize + Send>;
 
 impl std::fmt::Debug for Log {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -66,8 +71,8 @@ impl std::fmt::Debug for Log {
 impl Log {
     /// A log with this screen (`None`: silent) and no file yet.
     pub fn new(screen: Option<Box<dyn Write + Send>>) -> Self {
-        let (shared, tables, last_row) = (None, None, false);
-        let inner = Inner { screen, file: None, shared, echo: Echo::default(), tables, last_row };
+        let (shared, tables, last_row, width) = (None, None, false, None);
+        let inner = Inner { screen, file: None, shared, echo: Echo::default(), tables, last_row, width };
         Self(Arc::new(Mutex::new(inner)))
     }
 
@@ -84,6 +89,17 @@ impl Log {
     /// Replaces the screen, for instance by one that makes room for a progress bar.
     pub fn set_screen(&self, screen: Option<Box<dyn Write + Send>>) {
         self.inner().screen = screen;
+    }
+
+    /// From now on the screen gets few words where [`Log::line_or`] has them, and rows no wider than it is.
+    pub fn be_brief(&self, width: impl Fn() -> usize + Send + 'static) {
+        self.inner().width = Some(Box::new(width));
+    }
+
+    /// How many characters fit on a screen that wants few words; `None` for one that wants all.
+    pub fn brief(&self) -> Option<usize> {
+        let inner = self.inner();
+        inner.screen.as_ref().and(inner.width.as_ref()).map(|width| width())
     }
 
     /// Switches to another log file, `log FILE [append]`; the old one is finished first.
@@ -133,6 +149,20 @@ impl Log {
     pub fn line(&self, line: &str) -> Result<()> {
         let mut inner = self.inner();
         inner.say(line);
+        inner.record(line)
+    }
+
+    /// A line for screen and file, of which a screen that wants few words gets others, or none.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn line_or(&self, line: &str, brief: Option<&str>) -> Result<()> {
+        let mut inner = self.inner();
+        match (inner.width.is_some(), brief) {
+            (true, Some(brief)) => inner.say(brief),
+            (true, None) => {}
+            (false, _) => inner.say(line),
+        }
         inner.record(line)
     }
 
@@ -280,6 +310,22 @@ mod tests {
         assert_eq!(read(&b), "run 0\n");
         assert_eq!(screen.text(), "both\nscreen\nrun 0\nagain\nscreen only\n");
         assert_eq!(log.path(), None);
+    }
+
+    #[test]
+    fn a_screen_of_few_words_leaves_the_file_as_it_is() {
+        let dir = tempfile::tempdir().unwrap();
+        let (path, screen) = (dir.path().join("a.log"), Buffer::default());
+        let log = Log::new(Some(Box::new(screen.clone())));
+        log.open(&path, false).unwrap();
+        assert_eq!(log.brief(), None);
+        log.line_or("all", Some("few")).unwrap();
+        log.be_brief(|| 80);
+        assert_eq!(log.brief(), Some(80));
+        log.line_or("block", Some("line")).unwrap();
+        log.line_or("more", None).unwrap();
+        log.close().unwrap();
+        assert_eq!((screen.text().as_str(), read(&path).as_str()), ("all\nline\n", "all\nblock\nmore\n"));
     }
 
     #[test]

@@ -106,6 +106,10 @@ pub trait Names {
     fn compute_style(&self, _id: &str) -> Option<&'static str> {
         None
     }
+    /// What the elements of a compute's vector are, where that has names.
+    fn elements(&self, _id: &str) -> Vec<String> {
+        vec![]
+    }
     /// The values a fix offers.
     fn fix(&self, id: &str) -> Option<Shape>;
     /// The values a variable offers: one per particle of atom style, a vector, else one number.

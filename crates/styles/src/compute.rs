@@ -21,6 +21,11 @@ pub trait Compute: DynClone + Send {
     /// Which values it offers.
     fn shape(&self) -> Shape;
 
+    /// What the elements of its vector are, in their order, where that has names: files of averages show them.
+    fn elements(&self) -> Vec<String> {
+        vec![]
+    }
+
     /// The op that fills `slot`; it is run at most once per step, at `stage`, whenever `when` fires.
     ///
     /// # Errors

@@ -44,6 +44,13 @@ const LARGE: f64 = 200_000.0;
 /// Time of one step per particle of a peridynamic body with 122 bonds, one thread [s] (benches/versus_lammps).
 const SECONDS_PER_PARTICLE: f64 = 1.5e-7;
 
+/// Bytes that the present scene is likely to take once forces act.
+pub fn expected(w: &World) -> f64 {
+    let before = w.families.is_none() && w.rebuild.held.is_empty();
+    let forces = if before { w.n() as f64 * FORCES_PER_PARTICLE } else { 0.0 };
+    bytes(w) as f64 + forces
+}
+
 /// What `more` particles on top of the present ones would take: a line for the log when that is much, a refusal
 /// when it cannot fit.
 ///

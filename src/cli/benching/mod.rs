@@ -4,6 +4,7 @@ pub mod args;
 pub mod suite;
 
 use super::args::{Target, Usage};
+use super::pager::width;
 use super::progress::{Tally, colors_wanted};
 use super::sweeping::show::Show;
 use super::sweeping::{axes, counts, listen, of_deck, prepared, said, status, usage};
@@ -152,7 +153,7 @@ fn complain(found: &Found) {
 
 /// Table, pictures and where they are.
 fn told(bench: &Bench, found: &Found, pictures: &[String]) -> String {
-    let mut text = table::text(bench, found, WIDTH, SHOWN);
+    let mut text = table::text(bench, found, width(WIDTH), SHOWN);
     let colours = std::io::stdout().is_terminal() && colors_wanted();
     for k in 0..bench.measures.len() {
         if let Some(picture) = picture::text(bench, found, k, colours) {

@@ -1,11 +1,13 @@
 //! Commands of the prompt: `:plan :graph :plot :slice :show :undo :save :help`.
 
+use super::alone::Alone;
 use super::picture::{self, Ink};
 use super::{Repl, colours, saving, slicing};
 use crate::manual::knowing::COLON;
 use crate::plot::terminal::{Curve, plot};
 use perigrain_base::diag::{nearest, render};
 use std::fmt::Write;
+use std::path::Path;
 
 /// Characters across and pixels down of a picture.
 const PICTURE: (usize, usize) = (80, 80);
@@ -40,7 +42,8 @@ impl Repl {
                 _ => Err(format!("`{n}` is no number of lines")),
             },
             (":save", [file]) => self.save(file),
-            (":help", _) => Ok(list()),
+            (":help", []) => Ok(list()),
+            (":help", words) => self.help(&words.iter().map(|w| (*w).to_string()).collect::<Vec<_>>()),
             (name, _) => Err(wrong(name)),
         }
     }
@@ -100,7 +103,9 @@ impl Repl {
     }
 
     fn save(&self, file: &str) -> Outcome {
-        let (text, odd) = saving::deck(&self.lines, &self.switches);
+        let folder = self.session.folder();
+        let alone = Alone::new(&self.session.sources, &folder, Path::new(file));
+        let (text, odd) = saving::deck(&self.lines, &self.switches, &alone);
         let said = write(file, &text)?;
         Ok(match odd {
             0 => said,

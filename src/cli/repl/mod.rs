@@ -1,6 +1,8 @@
 //! The interactive session: lines are read, worked off, looked at and taken back.
 
+mod alone;
 mod colon;
+mod habits;
 pub mod hinting;
 pub mod painting;
 mod picture;
@@ -12,7 +14,9 @@ pub mod undoing;
 use super::args::{Deck, Options, Target};
 use super::progress::{self, Progress};
 use super::{FAILED, OK, deck, manual};
+use crate::human::duration;
 use crate::session::{Heard, Known, Mode, Session};
+use habits::Meant;
 use perigrain_base::diag::{Diagnostics, Result, render};
 use perigrain_lang::is_unfinished;
 use perigrain_out::log::{Echo, Log};
@@ -20,10 +24,11 @@ use reading::{Read, Reader};
 use saving::{Line, Stopped};
 use std::cell::RefCell;
 use std::rc::Rc;
+use std::time::Instant;
 use undoing::Undo;
 
 /// What the prompt says first.
-const GREETING: &str = "Lines of a deck are worked off as you type them. Tab completes, `help` and `:help` tell more, \
+const GREETING: &str = "Lines of a deck are worked off as you type them. Tab completes, `help` (or `?`) and `:help` tell more, \
                         Ctrl-C stops a run, Ctrl-D leaves.";
 
 /// An interactive session.
@@ -125,15 +130,26 @@ impl Repl {
             None => return None,
             Some(w) if w.starts_with('#') => return None,
             Some(&":quit") => return Some(0),
-            Some(w) if w.starts_with(':') => {
+            Some(_) => {}
+        }
+        match habits::meant(line) {
+            Meant::Leave => return Some(0),
+            Meant::Help(about) => match self.help(&about) {
+                Ok(text) => super::pager::page(&text),
+                outcome => self.tell(outcome),
+            },
+            Meant::Told(text) => self.tell(Err(text)),
+            Meant::Timed(rest) => {
+                let begin = Instant::now();
+                let status = self.line(&rest);
+                self.say(&format!("(that took {})", duration(begin.elapsed().as_secs_f64())));
+                return status;
+            }
+            Meant::Deck if line.trim_start().starts_with(':') => {
                 let outcome = self.colon(&words);
                 self.tell(outcome);
             }
-            Some(&"help") => {
-                let outcome = self.help(&words[1..]);
-                self.tell(outcome);
-            }
-            Some(_) => return self.deck_line(line),
+            Meant::Deck => return self.deck_line(line),
         }
         None
     }
@@ -190,7 +206,7 @@ impl Repl {
     }
 
     /// `help`, `help fix nve`.
-    fn help(&self, words: &[&str]) -> std::result::Result<String, String> {
+    fn help(&self, words: &[String]) -> std::result::Result<String, String> {
         if words.is_empty() {
             return Ok(format!(
                 "{}\n{}`help NAME` shows a page, as `help fix nve`.\n",

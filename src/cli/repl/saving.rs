@@ -1,5 +1,6 @@
 //! The lines that count, and the deck they make.
 
+use super::alone::Alone;
 use std::fmt::Write;
 
 /// A line that was worked off and not taken back.
@@ -22,7 +23,7 @@ pub struct Stopped {
 
 /// A deck that does what the session did. `switches` are its first lines; the number is that of lines that a deck
 /// cannot repeat, because something other than a run was stopped in them.
-pub fn deck(lines: &[Line], switches: &[String]) -> (String, usize) {
+pub fn deck(lines: &[Line], switches: &[String], alone: &Alone) -> (String, usize) {
     let mut out = format!("# Saved by perigrain {}.\n", env!("CARGO_PKG_VERSION"));
     let mut odd = 0;
     for line in switches {
@@ -51,7 +52,7 @@ pub fn deck(lines: &[Line], switches: &[String]) -> (String, usize) {
                 }
             },
         }
-        let _ = writeln!(out, "{}", line.text);
+        let _ = writeln!(out, "{}", alone.line(&line.text));
     }
     (out, odd)
 }
@@ -82,6 +83,13 @@ fn shorter(text: &str, s: Stopped) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use perigrain_base::diag::Sources;
+    use std::path::Path;
+
+    fn deck(lines: &[Line], switches: &[String]) -> (String, usize) {
+        let (sources, here) = (Sources::default(), Path::new(""));
+        super::deck(lines, switches, &Alone::new(&sources, here, here))
+    }
 
     fn line(text: &str, stopped: Option<Stopped>) -> Line {
         Line { text: text.into(), stopped }

@@ -57,7 +57,12 @@ impl Recorder {
 }
 
 impl Watch for Recorder {
+    fn asked(&mut self, steps: i64) {
+        self.bar.asked(steps);
+    }
+
     fn begins(&mut self, w: &World) {
+        self.bar.begins();
         self.before += std::mem::take(&mut self.made);
         if let Some(live) = &self.live {
             live.begins(w);

@@ -110,6 +110,12 @@ impl Request {
             let usage = Usage::new("`-log`, `-echo` and `-screen FILE` have no meaning for a sweep");
             return Err(usage.help("each run has a log.lammps in its own folder; `-screen none` keeps quiet"));
         }
+        if o.timeout.is_some() {
+            let usage = Usage::new("`-timeout` has no meaning for a sweep");
+            return Err(
+                usage.help("end it with Ctrl-C: started again, it goes on with the runs that are left")
+            );
+        }
         if o.report.is_some() {
             let usage = Usage::new("`--report FILE` shows one run, and a sweep makes many");
             return Err(usage.help("with one dash, `-report WORD…` names what the table is to have"));

@@ -4,6 +4,7 @@ pub mod args;
 pub(super) mod show;
 
 use super::args::{Deck, Target, Usage};
+use super::pager::width;
 use super::progress::Tally;
 use super::{FAILED, INTERRUPTED, OK, deck, signals};
 use crate::session::axes::{Axis, combined, zip};
@@ -22,7 +23,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const ENDING: &str = "sweep";
 /// Rows of the table that are shown at the end.
 const SHOWN: usize = 40;
-/// Characters of its lines.
+/// Characters of its lines where no terminal has fewer.
 const WIDTH: usize = 160;
 
 /// Makes the runs, or tells where they stand; the exit code.
@@ -194,7 +195,7 @@ pub(super) fn listen(stop: &Arc<AtomicBool>) {
 
 /// The table and where it is.
 fn ending(sweep: &Sweep, results: &Results) -> String {
-    let mut text = table::text(&sweep.jobs, &sweep.report, &results.outcomes, WIDTH, SHOWN);
+    let mut text = table::text(&sweep.jobs, &sweep.report, &results.outcomes, width(WIDTH), SHOWN);
     let place = sweep.folder.join(table::TABLE);
     text += &format!("{}: {}\n", place.display(), counts(results));
     if results.interrupted {
@@ -224,7 +225,7 @@ pub(super) fn status(folder: &Path) -> Result<u8> {
     if let Some(left) = left {
         work += &format!(", {} to go", show::short(left));
     }
-    let mut text = table::text(&jobs, &report, &results.outcomes, WIDTH, SHOWN);
+    let mut text = table::text(&jobs, &report, &results.outcomes, width(WIDTH), SHOWN);
     text += &format!("{}: {deck}, {}, {work}\n", folder.display(), counts(&results));
     super::show(&text);
     Ok(OK)

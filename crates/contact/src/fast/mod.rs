@@ -29,7 +29,7 @@ use perigrain_base::math::lanes::PLACE_BITS;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_base::par;
 use perigrain_neigh::list::small;
-use perigrain_neigh::slabs::{Slabs, edges, shift_of};
+use perigrain_neigh::slabs::{Slabs, edges};
 use perigrain_world::contacts::Contacts;
 use upkeep::Upkeep;
 

@@ -156,17 +156,56 @@ impl Layout {
     pub fn header(&self) -> String {
         match self.line {
             Line::Multi => String::new(),
-            Line::One => {
-                let heads = self.columns.iter().map(|c| match c.kind {
-                    Kind::Int => format!("{:^11}", c.header),
-                    _ => format!("{:^14}", c.header),
-                });
-                heads.collect::<Vec<_>>().join(" ")
-            }
+            Line::One => self.heads().join(" "),
             Line::Yaml => {
                 let names: String = self.columns.iter().map(|c| format!("'{}', ", c.header)).collect();
                 format!("---\nkeywords: [{names}]\ndata:")
             }
+        }
+    }
+
+    fn heads(&self) -> Vec<String> {
+        let head = |c: &Column| match c.kind {
+            Kind::Int => format!("{:^11}", c.header),
+            _ => format!("{:^14}", c.header),
+        };
+        self.columns.iter().map(head).collect()
+    }
+
+    /// How many columns of a row and its header are no wider than `width` characters, one at least; the other line styles are
+    /// never wide.
+    pub fn fitting(&self, width: usize, atoms: u64, values: &[Value<'_>]) -> usize {
+        if self.line != Line::One {
+            return self.columns.len();
+        }
+        let (mut head, mut row) = (0, 0);
+        let fits = |(h, c): &(String, String)| -> bool {
+            // What is left of blanks at the end does no harm.
+            let (h_end, c_end) = (h.trim_end().chars().count(), c.trim_end().chars().count());
+            let fits = head + h_end <= width && row + c_end <= width;
+            head += h.chars().count() + 1;
+            row += c.chars().count() + 1;
+            fits
+        };
+        self.heads().into_iter().zip(self.cells(atoms, values)).take_while(fits).count().max(1)
+    }
+
+    /// The header's first `n` columns.
+    pub fn header_of(&self, n: usize) -> String {
+        match self.line {
+            Line::One => self.heads()[..n.min(self.columns.len())].join(" ").trim_end().into(),
+            _ => self.header(),
+        }
+    }
+
+    /// The first `n` columns of a row, as [`Layout::row`] has them.
+    pub fn row_of(&self, n: usize, step: i64, cpu: f64, atoms: u64, values: &[Value<'_>]) -> String {
+        match self.line {
+            Line::One => {
+                let cells = self.cells(atoms, values);
+                cells[..n.min(cells.len())].join(" ").trim_end().into()
+            }
+            _ => self.row(step, cpu, atoms, values),
         }
     }
 
@@ -321,6 +360,20 @@ E_coul   =         0.0000 E_long   =         0.0000 Press    =         0.0244";
         assert_eq!(t.row(0, 0.0, 27, &total).trim(), "0.98960169");
         t.norm = true;
         assert_eq!(t.row(0, 0.0, 27, &total).trim(), "0.036651914");
+    }
+
+    #[test]
+    fn a_narrow_screen_gets_whole_columns() {
+        let mut t = custom("step atoms temp v_q");
+        let values = [STEP, Value::Int(27), TEMP, Value::Float(3.25)];
+        // The columns end at 11, 23, 38 and 53 characters; 0.025374402 at 37.
+        let fit = |t: &Layout, width| t.fitting(width, 27, &values);
+        assert_eq!([10, 25, 36, 37, 80].map(|width| fit(&t, width)), [1, 2, 2, 3, 4]);
+        assert_eq!(t.header_of(2), "   Step        Atoms");
+        assert_eq!(t.row_of(3, 5, 0.0, 27, &values), "         5          27   0.025374402");
+        t.format_float("%40.15g").unwrap();
+        assert_eq!(fit(&t, 37), 2);
+        assert_eq!(Layout::multi().fitting(10, 27, &values), 12);
     }
 
     #[test]

@@ -40,6 +40,8 @@ pub struct Made {
 
 /// Told after every step, for a progress bar or a film.
 pub trait Watch: Send {
+    /// A deck asks for a run of so many steps, which may be made in several stretches.
+    fn asked(&mut self, _steps: i64) {}
     /// A run begins: its setup is made.
     fn begins(&mut self, _w: &World) {}
     /// A step is made.

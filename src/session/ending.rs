@@ -1,0 +1,152 @@
+//! What a run says on a terminal in place of LAMMPS' blocks: what it will take, and three lines at its end.
+
+use super::Session;
+use crate::human::{about, bytes, count, duration};
+use perigrain_base::par;
+use perigrain_out::log::Log;
+use perigrain_plan::run::verlet::Outcome;
+use perigrain_plan::{OpClass, StepPlan};
+use perigrain_world::memory;
+
+/// Files that are named one by one; of more the number is told.
+const NAMED: usize = 6;
+
+/// A share of the time from which it is worth a word.
+const MUCH: f64 = 0.25;
+
+/// Particles for which several threads pay.
+const MANY: usize = 2000;
+
+/// What was said last, so that a loop around `run` does not say it again.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Spoken {
+    /// The scene whose memory was told, and its particles then.
+    scene: u64,
+    particles: usize,
+    results: String,
+    faster: String,
+}
+
+impl Session {
+    /// Tells on a terminal, before a run, how much memory the scene will take.
+    pub(super) fn foretell(&mut self) {
+        let n = self.world.n();
+        let (told, log) = (&mut self.spoken, &self.options.log);
+        let same = told.scene == self.scenes && 10 * n.abs_diff(told.particles) <= told.particles;
+        if same || log.brief().is_none() {
+            return;
+        }
+        (told.scene, told.particles) = (self.scenes, n);
+        let memory = bytes(memory::expected(&self.world));
+        log.to_screen(&format!("{} particles, about {memory} of memory", count(n as f64)));
+    }
+
+    /// The three lines: time and speed; where results are; what would make the run faster. The last two only where they are
+    /// news, and where `all` are wanted.
+    pub(super) fn in_three_lines(
+        &mut self,
+        plan: &StepPlan,
+        o: &Outcome,
+        minimized: Option<&str>,
+        all: bool,
+    ) -> String {
+        let mut lines = vec![speed(o, self.world.n(), minimized)];
+        if all {
+            let (results, hints) = (self.results(), self.hints(plan, o));
+            if self.spoken.results != results {
+                self.spoken.results.clone_from(&results);
+                lines.push(results);
+            }
+            // Shares of the time differ a little from run to run.
+            let digits = |c: char| c.is_ascii_digit() || c == '.';
+            let gist = format!("faster: {}", hints.join("; ").replace(digits, ""));
+            if self.spoken.faster != gist {
+                self.spoken.faster = gist;
+                lines.extend(faster(&hints, plan, o));
+            }
+        }
+        lines.join("\n")
+    }
+
+    /// Where results are.
+    fn results(&self) -> String {
+        let mut files: Vec<String> = log_file(&self.options.log).into_iter().collect();
+        files.extend(self.graph.dumps.iter().map(|d| d.file.clone()));
+        let written = self.graph.fixes.iter().filter_map(|f| f.fix.facts(&self.world).file);
+        files.extend(written.map(|path| path.display().to_string()));
+        files.extend(self.graph.restarts.names());
+        let mut seen = std::collections::BTreeSet::new();
+        files.retain(|f| seen.insert(f.clone()));
+        if files.is_empty() {
+            return "results: on this screen alone; `log FILE` and `dump` keep some".into();
+        }
+        let more = files.len().saturating_sub(NAMED);
+        files.truncate(NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        format!("results: {}{more}", files.join(", "))
+    }
+
+    /// What would make such a run faster, the likeliest first.
+    fn hints(&self, plan: &StepPlan, o: &Outcome) -> Vec<String> {
+        let seconds = o.time.as_secs_f64();
+        let mut hints: Vec<String> = vec![];
+        if cfg!(debug_assertions) {
+            hints.push("a release build (this one is for looking for mistakes)".into());
+        }
+        if let Some(times) = self.room_for_step().filter(|times| *times >= 1.5) {
+            let dt = self.world.clock.dt;
+            hints.push(format!("a longer time step: {:.1e} in place of {dt:.1e}", times * dt));
+        }
+        if seconds > 0.0 {
+            let times = plan.time_by_class();
+            let of = |class| times.iter().find(|(c, _)| *c == class).map_or(0.0, |t| t.1.as_secs_f64());
+            let share = |class| (of(class) / seconds).min(1.0);
+            let (output, neigh) = (share(OpClass::Output), share(OpClass::Neigh));
+            if output > MUCH {
+                hints.push(format!("rarer `thermo` and dumps, which take {:.0} %", 100.0 * output));
+            }
+            if neigh > MUCH {
+                hints.push(format!("a longer skin (`neighbor`): lists take {:.0} %", 100.0 * neigh));
+            }
+        }
+        let (used, cores) =
+            (par::most_threads(), std::thread::available_parallelism().map_or(1, usize::from));
+        if used < cores && self.world.n() >= MANY {
+            hints.push(format!("more threads: {used} of {cores} cores are used"));
+        }
+        hints
+    }
+}
+
+/// The line that names what would make a run faster, and where its time went.
+fn faster(hints: &[String], plan: &StepPlan, o: &Outcome) -> Option<String> {
+    let longest = plan.ops.iter().max_by_key(|p| p.meter.time);
+    let part = longest.map(|p| (p.about.name.as_str(), p.meter.time.as_secs_f64() / o.time.as_secs_f64()));
+    let part = part.filter(|(_, part)| part.is_finite() && *part > 0.0);
+    let goes = part.map(|(name, part)| format!("{:.0} % goes into {name}", 100.0 * part.min(1.0)));
+    match (hints.is_empty(), goes) {
+        (true, goes) => goes.map(|goes| format!("faster: {goes}, and nothing simple is left to win")),
+        (false, goes) => {
+            Some(format!("faster: {}", hints.iter().cloned().chain(goes).collect::<Vec<_>>().join("; ")))
+        }
+    }
+}
+
+/// Time and speed of a run, or how a minimization went.
+fn speed(o: &Outcome, particles: usize, minimized: Option<&str>) -> String {
+    let seconds = o.time.as_secs_f64();
+    let what = if minimized.is_some() { "iterations" } else { "steps" };
+    let mut line = format!("{} {what} in {}", count(o.steps as f64), duration(seconds));
+    if let Some(stop) = minimized.and_then(|text| text.split_once("Stopping criterion = ")) {
+        line += &format!(", ended by: {}", stop.1.lines().next().unwrap_or_default());
+    } else if o.steps > 0 && seconds > 0.0 {
+        let rate = o.steps as f64 / seconds;
+        line += &format!(": {} steps/s, {} particle steps/s", count(rate), about(rate * particles as f64));
+    }
+    line
+}
+
+/// The name of the log file, if there is one.
+fn log_file(log: &Log) -> Option<String> {
+    log.path().map(|path| path.display().to_string())
+}
