@@ -53,6 +53,11 @@ fn wiggle_agrees() {
 }
 
 #[test]
+fn grains_in_a_squeezed_box_agree() {
+    agrees("squeezed");
+}
+
+#[test]
 fn boxes_steered_by_pressures_agree() {
     agrees("pressed");
 }
