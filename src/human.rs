@@ -33,11 +33,13 @@ pub fn about(x: f64) -> String {
 /// Seconds as `3.4 ms`, `0.35 s`, `42 s`, `3 min 20 s`, `2 h 5 min`, `3 d 4 h`.
 pub fn duration(seconds: f64) -> String {
     let whole = seconds.round().max(0.0) as u64;
+    if seconds < 0.0995 {
+        return format!("{} ms", count(1e3 * seconds.max(0.0)));
+    }
     match whole {
-        _ if seconds < 0.0995 => format!("{} ms", count(1e3 * seconds.max(0.0))),
-        _ if seconds < 59.5 => format!("{} s", count(seconds.max(0.0))),
-        ..3600 => format!("{} min {} s", whole / 60, whole % 60),
-        ..86400 => format!("{} h {} min", whole / 3600, whole / 60 % 60),
+        0..60 => format!("{} s", count(seconds)),
+        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
+        3600..86400 => format!("{} h {} min", whole / 3600, whole / 60 % 60),
         _ => format!("{} d {} h", whole / 86400, whole / 3600 % 24),
     }
 }

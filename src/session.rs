@@ -42,7 +42,7 @@ use crate::graph::Graph;
 use crate::graph::build::DECLARATIONS;
 use crate::graph::env::DeckEnv;
 pub use crate::graph::keywords::KEYWORDS as THERMO;
-pub use ahead::steps_ahead;
+pub use ahead::{Ahead, steps_ahead};
 pub use commands::OWN;
 pub use embed::{Column, Global, Newcomers, Order, Rows, Told};
 pub use files::folder_of;
@@ -421,6 +421,13 @@ impl Session {
             self.options.log.echo(text)?;
         }
         let Some(cmd) = &line.command else { return Ok(None) };
+        if self.checking() {
+            match cmd.name.text.as_str() {
+                "if" => self.foresee_loop(&line.raw),
+                "jump" if script.is_speculative() => self.foresee_jump(),
+                _ => {}
+            }
+        }
         let outcome = self.within_limits(cmd).and_then(|()| self.command(script, cmd));
         self.say_notes()?;
         outcome

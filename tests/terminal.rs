@@ -108,9 +108,14 @@ fn progress_is_that_of_the_whole_deck() {
     );
     let none = ["0/0", " of 0 steps", "of this run"];
     assert!(none.iter().all(|word| !text.contains(word)), "{text}");
+    // A loop that asks the clock ends in sight, perhaps earlier.
+    let until = "if \"$t < 0.00016 && $(ke) < 1\" then \"jump SELF again\"";
+    let deck = format!("{GRAINS}thermo 0\nvariable t equal time\nlabel again\nrun 80000 post no\n{until}\n");
+    let text = shown(folder.path(), 120, &deck, PLAIN, &[]);
+    assert!(text.contains(" of up to 160,000 steps, "), "{text}");
     // How often a loop comes that hangs on a run nobody knows: the bar is that of the run.
     let deck = format!(
-        "{GRAINS}thermo 0\nlabel again\nrun 150000 post no\nif \"$(step) < 300000\" then \"jump SELF again\"\n"
+        "{GRAINS}thermo 0\nlabel again\nrun 150000 post no\nif \"$(ke) < 3e-9\" then \"jump SELF again\"\n"
     );
     let text = shown(folder.path(), 120, &deck, PLAIN, &[]);
     assert!(text.contains(" of 150,000 steps") && !text.contains(" of 300,000"), "{text}");

@@ -4,7 +4,7 @@
 use super::live::{Around, Live};
 use crate::human::{count, duration};
 pub(super) use crate::plot::short;
-use crate::session::{Made, Options, steps_ahead};
+use crate::session::{Ahead, Made, Options, steps_ahead};
 use perigrain_out::log::Log;
 use std::io::{IsTerminal, Stderr, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -33,7 +33,7 @@ pub struct Progress {
 #[derive(Default)]
 struct State {
     /// Steps of the whole deck, once they are known.
-    deck: Arc<Mutex<Option<i64>>>,
+    deck: Arc<Mutex<Option<Ahead>>>,
     /// Ends the look ahead, and since when it has gone on.
     looking: Option<(Arc<AtomicBool>, Instant)>,
     /// Steps of the runs that are over, as they were asked for.
@@ -74,8 +74,8 @@ impl Progress {
             (state.deck.clone(), options.clone(), name.to_owned(), text.to_owned());
         // It ends with the program.
         std::thread::spawn(move || {
-            let steps = steps_ahead(&options, &name, &text, &stop);
-            *deck.lock().unwrap_or_else(PoisonError::into_inner) = steps;
+            let ahead = steps_ahead(&options, &name, &text, &stop);
+            *deck.lock().unwrap_or_else(PoisonError::into_inner) = ahead;
         });
     }
 
@@ -164,29 +164,31 @@ impl State {
     /// Whether it is known that further runs follow the present one.
     fn goes_on(&self) -> bool {
         let deck = *self.deck.lock().unwrap_or_else(PoisonError::into_inner);
-        deck.is_some_and(|all| self.before + self.stretches + self.done < all)
+        deck.is_some_and(|all| self.before + self.stretches + self.done < all.steps)
     }
 
     /// Steps made and steps in all: those of the whole deck if they are known and fit what has been made, else those of the run, or
-    /// of what goes on without a run having been asked for.
-    fn share(&self, made: &Made) -> (i64, i64, bool) {
+    /// of what goes on without a run having been asked for; and the words around the second number.
+    fn share(&self, made: &Made) -> (i64, i64, [&'static str; 2]) {
         let deck = *self.deck.lock().unwrap_or_else(PoisonError::into_inner);
         let in_run = self.stretches + self.done;
+        let own = if self.before == 0 { ["", ""] } else { ["", " of this run"] };
         match deck {
-            _ if in_run > self.asked => (made.done, made.total, false),
-            Some(all) if self.before + self.asked <= all => (self.before + in_run, all, true),
-            _ => (in_run, self.asked, false),
+            _ if in_run > self.asked => (made.done, made.total, ["", ""]),
+            Some(all) if self.before + self.asked <= all.steps => {
+                (self.before + in_run, all.steps, [if all.at_most { "up to " } else { "" }, ""])
+            }
+            _ => (in_run, self.asked, own),
         }
     }
 
     /// The line: bar, steps, speed, time left, and as many of the latest values as there is room for.
     fn line(&self, made: &Made, log: Option<&Log>, width: usize) -> String {
-        let (done, all, whole) = self.share(made);
+        let (done, all, [most, of]) = self.share(made);
         let wide = if width < 100 { 10 } else { 20 };
         let full = (wide as f64 * done as f64 / all.max(1) as f64).floor().clamp(0.0, wide as f64) as usize;
-        let of = if whole || all == made.total && self.before == 0 { "" } else { " of this run" };
         let mut text = format!("{}{} ", "█".repeat(full), "░".repeat(wide - full));
-        text += &format!("{} of {} steps{of}", count(done as f64), count(all as f64));
+        text += &format!("{} of {most}{} steps{of}", count(done as f64), count(all as f64));
         if let Some(rate) = self.rate.filter(|r| *r > 0.0) {
             let left = duration(((all - done) as f64 / rate).ceil());
             text += &format!(", {} steps/s, {left} left", count(rate));
@@ -302,16 +304,16 @@ mod tests {
         progress.state().done = 40;
         progress.begins();
         progress.state().done = 40;
-        assert_eq!(share(), (80, 100, false));
-        *progress.state().deck.lock().unwrap() = Some(700);
-        assert_eq!(share(), (80, 700, true));
+        assert_eq!(share(), (80, 100, ["", ""]));
+        *progress.state().deck.lock().unwrap() = Some(Ahead { steps: 700, at_most: true });
+        assert_eq!(share(), (80, 700, ["up to ", ""]));
         progress.asked(300);
         progress.state().done = 40;
-        assert_eq!(share(), (140, 700, true));
+        assert_eq!(share(), (140, 700, ["up to ", ""]));
         // The deck makes more than was foreseen, and then a minimization.
         progress.asked(500);
-        assert_eq!(share(), (0, 500, false));
+        assert_eq!(share(), (0, 500, ["", " of this run"]));
         progress.state().done = 501;
-        assert_eq!(share(), (40, 50, false));
+        assert_eq!(share(), (40, 50, ["", ""]));
     }
 }

@@ -367,9 +367,12 @@ mod tests {
         check("fix w all wall/gran hooke 1 NULL 1 NULL 0.5 0 zplane h", &[]);
         check("compute c all erotate/rigid m", &["compute c all erotate/rigid motion"]);
         check("compute c all com/chunk d", &["compute c all com/chunk dmg"]);
-        check("dump d all image 1 a.png type type backc", &["dump d all image 1 a.png type type backcolor"]);
+        check(
+            "dump d all image 1 a.png type type backcolor",
+            &["dump d all image 1 a.png type type backcolor2"],
+        );
         check("group g region b", &["group g region block"]);
-        check("fix 1 all setforce NULL NU", &["fix 1 all setforce NULL NULL"]);
+        check("create_atoms 1 random 10 4711 NU", &["create_atoms 1 random 10 4711 NULL"]);
     }
 
     #[test]

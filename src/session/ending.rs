@@ -38,7 +38,8 @@ impl Session {
         }
         (told.scene, told.particles) = (self.scenes, n);
         let memory = bytes(memory::expected(&self.world));
-        log.to_screen(&format!("{} particles, about {memory} of memory", count(n as f64)));
+        let s = if n == 1 { "" } else { "s" };
+        log.to_screen(&format!("{} particle{s}, about {memory} of memory", count(n as f64)));
     }
 
     /// The three lines: time and speed; where results are; what would make the run faster. The last two only where they are
