@@ -65,13 +65,7 @@ impl Task {
             path(&self.folder),
             join(&vars),
             s.compat.name().into(),
-            join(&[
-                on(s.force_list),
-                on(s.no_skipping),
-                on(s.portable),
-                on(s.series),
-                on(self.telling),
-            ]),
+            join(&[on(s.force_list), on(s.no_skipping), on(s.portable), on(s.series), on(self.telling)]),
             join(&self.report),
             self.threads.to_string(),
             self.parent.to_string(),
@@ -80,7 +74,8 @@ impl Task {
     }
 
     fn read(text: &str) -> Option<Self> {
-        let [print, name, deck, folder, vars, compat, on, report, threads, parent, lock] = &open(text)?[..] else {
+        let [print, name, deck, folder, vars, compat, on, report, threads, parent, lock] = &open(text)?[..]
+        else {
             return None;
         };
         let vars = split(vars).into_iter().map(|v| {

@@ -31,7 +31,8 @@ fn the_same_bytes_as_lammps() {
     fs::write(folder.path().join("g.dump"), "before\n").unwrap();
     let dir = folder.path().to_str().unwrap().to_string();
     // LAMMPS' unfolded fractions carry the rounding of its image offset: an artefact of compat.
-    let options = Options { compat: Compat::Lammps, vars: vec![("dir".into(), vec![dir])], ..Options::default() };
+    let options =
+        Options { compat: Compat::Lammps, vars: vec![("dir".into(), vec![dir])], ..Options::default() };
     let mut session = Session::new(options).unwrap();
     let deck = fs::read_to_string(here.join("in.dumps")).unwrap();
     session.run_text("in.dumps", &deck).unwrap();
@@ -58,7 +59,8 @@ fn writes_the_same(name: &str) {
     let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/dumps");
     let folder = tempfile::tempdir().unwrap();
     let dir = folder.path().to_str().unwrap().to_string();
-    let options = Options { compat: Compat::Lammps, vars: vec![("dir".into(), vec![dir])], ..Options::default() };
+    let options =
+        Options { compat: Compat::Lammps, vars: vec![("dir".into(), vec![dir])], ..Options::default() };
     let file = format!("in.{name}");
     let deck = fs::read_to_string(here.join(&file)).unwrap();
     Session::new(options).unwrap().run_text(&file, &deck).unwrap();

@@ -63,7 +63,8 @@ fn block(set: &str) -> String {
     )
 }
 
-const UNLIKE: &str = "set group all peri/strength weibull 5 4711 correlated 0.002\nset group all peri/stiffness normal 0.1 9";
+const UNLIKE: &str =
+    "set group all peri/strength weibull 5 4711 correlated 0.002\nset group all peri/stiffness normal 0.1 9";
 
 fn bits(w: &World) -> Vec<u64> {
     w.particles.x.iter().chain(&*w.particles.v).flatten().map(|a| a.to_bits()).collect()
@@ -110,7 +111,9 @@ fn what_factors_do_not_concern_is_refused() {
         .replace("peri/pmb", "peri/lps")
         .replace("1.6e21 0.0030001", "1e10 6e9 0.0030001");
     assert!(refused(&format!("{solid}run 0")).contains("peri/stiffness"));
-    let plastic = block("").replace("peri/pmb", "peri/eps").replace("1.6e21 0.0030001 0.0015 0.25", "1e10 6e9 0.0030001 0.0015 0.25 1e8");
+    let plastic = block("")
+        .replace("peri/pmb", "peri/eps")
+        .replace("1.6e21 0.0030001 0.0015 0.25", "1e10 6e9 0.0030001 0.0015 0.25 1e8");
     let said = refused(&format!("compat lammps/2026\n{plastic}run 0"));
     assert!(said.contains("peri/eps") && said.contains("have not been compared"), "{said}");
 }

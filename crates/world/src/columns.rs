@@ -11,7 +11,8 @@ pub static HEATFLOW: Constant<Vec<f64>> = Constant::new("heatflow");
 pub static VOLUME_PROPERTY: Constant<Vec<f64>> = Constant::new("d_vfrac");
 
 /// The columns that hold factors of particles on what their peridynamic bonds bear and on how stiff these are; 0 stands for 1.
-pub static BOND_FACTORS: [Constant<Vec<f64>>; 2] = [Constant::new("peri/strength"), Constant::new("peri/stiffness")];
+pub static BOND_FACTORS: [Constant<Vec<f64>>; 2] =
+    [Constant::new("peri/strength"), Constant::new("peri/stiffness")];
 
 /// How the names of columns of plastic grains begin (normal model `mdr`): decks read them as those of fix property/atom.
 pub const PLASTIC_COLUMNS: &str = "property/atom/mdr/";

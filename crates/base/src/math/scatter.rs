@@ -155,7 +155,8 @@ mod tests {
         let limit = 1.36 / (n as f64).sqrt();
         for m in [1.0, 3.0, 10.0] {
             let (all, scale) = (drawn(Distribution::Weibull(m)), gamma(1.0 + 1.0 / m));
-            let (mean, deviation) = (all.iter().sum::<f64>() / n as f64, gamma(1.0 + 2.0 / m) / scale / scale - 1.0);
+            let (mean, deviation) =
+                (all.iter().sum::<f64>() / n as f64, gamma(1.0 + 2.0 / m) / scale / scale - 1.0);
             assert!((mean - 1.0).abs() < 3.0 * (deviation / n as f64).sqrt(), "{m} {mean}");
             let off = distance(all, |f| 1.0 - (-(scale * f).powf(m)).exp());
             assert!(off < limit, "{m} {off}");

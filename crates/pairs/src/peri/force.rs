@@ -8,8 +8,8 @@ use perigrain_plan::{About, Level, Needs, Op, Stage, Tick};
 use perigrain_styles::peri_view::view;
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
-    BOX, COLUMNS, DENSITY, F, FACTS, FAMILIES, Fields, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, RADIUS, TAG, TALLY, VOLUME, X,
-    X0,
+    BOX, COLUMNS, DENSITY, F, FACTS, FAMILIES, Fields, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, RADIUS, TAG,
+    TALLY, VOLUME, X, X0,
 };
 use perigrain_world::{Crack, Key, Numbers, World};
 
@@ -55,7 +55,19 @@ impl Op for Force {
                 &self.name,
                 Stage::Force,
                 Needs::new()
-                    .read(TAG | MASK | MOLECULE | X | X0 | KIND | VOLUME | BOX | MEMO | DENSITY | RADIUS | factors)
+                    .read(
+                        TAG | MASK
+                            | MOLECULE
+                            | X
+                            | X0
+                            | KIND
+                            | VOLUME
+                            | BOX
+                            | MEMO
+                            | DENSITY
+                            | RADIUS
+                            | factors,
+                    )
                     .add(F)
                     .write(LISTS | FAMILIES | TALLY | FACTS)
                     .keep(MASS),

@@ -325,9 +325,13 @@ impl Pair for Solid {
         let options = self.options(w);
         if w.settings.lammps_of_2026() && self.law.kind == LawKind::ElasticPlastic {
             let text = "under `compat lammps/2026`: its yielding has been mended in 2026 by rules that have not been compared";
-            return Err(Diagnostic::error(Code::NOT_SUPPORTED, span, format!("no pair_style {} {text}", self.name))
-                .help("`compat lammps/2025` has the yielding of LAMMPS 22Jul2025, `compat none` the right one")
-                .into());
+            return Err(Diagnostic::error(
+                Code::NOT_SUPPORTED,
+                span,
+                format!("no pair_style {} {text}", self.name),
+            )
+            .help("`compat lammps/2025` has the yielding of LAMMPS 22Jul2025, `compat none` the right one")
+            .into());
         }
         let before = w.families.as_ref().map(|f| f.law.kind);
         let scatter = Scatter::of(self, &options, w).map_err(|e| e.at(span))?;

@@ -76,7 +76,9 @@ impl Scatter {
             let (mut low, mut high, mut sum) = (f64::INFINITY, 0.0f64, 0.0);
             all.clone().for_each(|f| (low, high, sum) = (low.min(f), high.max(f), sum + f));
             let mean = sum / all.len() as f64;
-            format!("peridynamic bonds: {of} of particles scatters from {low:.4} to {high:.4} times, mean {mean:.4}")
+            format!(
+                "peridynamic bonds: {of} of particles scatters from {low:.4} to {high:.4} times, mean {mean:.4}"
+            )
         };
         let strength = self.strength.then(|| one(0, "the critical stretch"));
         let stiffness = self.stiffness.then(|| one(1, "the micro-modulus"));

@@ -1,7 +1,7 @@
 //! A peridynamic body on a lattice: cells in rows, rows in planes, one bit per bond.
 
-use crate::families::{Measures, Scatter};
 use crate::families::law::SiteState;
+use crate::families::{Measures, Scatter};
 use perigrain_base::math::cell::{Basis, point};
 
 /// Cells per chunk: alive bits of a chunk's bonds along one stencil vector are one byte.

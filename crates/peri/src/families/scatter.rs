@@ -89,7 +89,9 @@ impl Families {
 
 #[cfg(test)]
 mod tests {
-    use crate::families::{Bounds, Families, FamilyOptions, Law, LawKind, Layout, PeriView, PmbCoeff, PmbTable};
+    use crate::families::{
+        Bounds, Families, FamilyOptions, Law, LawKind, Layout, PeriView, PmbCoeff, PmbTable,
+    };
     use perigrain_base::math::rng::ParkMiller;
     use perigrain_base::math::scatter::{Distribution, gaussian};
 
@@ -160,7 +162,8 @@ mod tests {
             let bears = |ends: &&[u32; 2]| {
                 let [i, j] = ends.map(|i| i as usize);
                 let place = |i: usize| [i % 18, i / 18 % 6, i / 108].map(|a| a as f64);
-                let length = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+                let length =
+                    |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
                 let stretch = length(x[i], x[j]) / length(place(i), place(j)) - 1.0;
                 stretch <= 0.01 * factors[i].min(factors[j])
             };
@@ -193,10 +196,12 @@ mod tests {
         let mut table = PmbTable::new(1);
         table.set(1, 1, PmbCoeff { c: 1.0, horizon: 1.4, s00: 1.0, alpha: 0.0 }).unwrap();
         let drawn = [[0.0; 3], [1.01, 0.0, 0.0]];
-        let view = |x| PeriView { x, x0: &x0, kind: &[1; 2], volume: &[1.0; 2], bounds: BOUNDS, excluded: None };
+        let view =
+            |x| PeriView { x, x0: &x0, kind: &[1; 2], volume: &[1.0; 2], bounds: BOUNDS, excluded: None };
         for layout in [Layout::Auto, Layout::List] {
             let options = FamilyOptions { layout, ..FamilyOptions::new(1.0) };
-            let law = Law { kind: LawKind::Shaped, influence: crate::families::Influence::One, ..Law::default() };
+            let law =
+                Law { kind: LawKind::Shaped, influence: crate::families::Influence::One, ..Law::default() };
             let mut families = Families::build_of(&view(&x0), &table, options, law).unwrap();
             families.scatter(&[], &[0.5, 1.1]);
             let mut f = [[0.0; 3]; 2];

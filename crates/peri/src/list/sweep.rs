@@ -59,8 +59,15 @@ pub fn forces<K: Isa>(
     let particle = std::mem::take(&mut list.particle);
     let stiffness = std::mem::take(&mut list.scatter.stiffness);
     let (kind_of, only) = (view.kind, only(list));
-    let sites =
-        Sites { count: n, pad: 0, stride: n, particle: &particle, kind: kind_of, only, stiffness: &stiffness };
+    let sites = Sites {
+        count: n,
+        pad: 0,
+        stride: n,
+        particle: &particle,
+        kind: kind_of,
+        only,
+        stiffness: &stiffness,
+    };
     let sweep = |list: &mut ListBody, numbers: usize, task: &(dyn Fn(&Sweep, usize, &mut Window) + Sync)| {
         let mut memory = std::mem::take(&mut list.state.memory);
         let mut touched = std::mem::take(&mut list.state.touched);
